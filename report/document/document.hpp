@@ -109,7 +109,8 @@ struct Table {
   std::string style = {};   ///< class of the style sheet
   std::size_t heading = 0;  ///< index of the column that names the row
   std::size_t keys = 1;     ///< leading columns, repeated in every block of a narrow terminal
-  std::string file = {};    ///< file with the columns that a narrow terminal omits
+  std::string file = {};    ///< file with the columns and rows that are omitted
+  std::size_t most = 1000;  ///< rows on a page, about twenty printed sheets; more are only counted
   std::vector<Column> columns = {};
   std::vector<Row> rows = {};
 };
@@ -212,12 +213,22 @@ struct LivePlot {
 struct LiveSeries {
   std::string json;
 };
+/// Many things of one kind, a line each. The page's script draws one when a reader opens its line.
+struct Sketches {
+  struct Sketch {
+    std::string id;
+    Badge badge;
+    Line line;
+    std::string json;  ///< what the script draws; empty if there is nothing to draw
+  };
+  std::vector<Sketch> sketches;
+};
 
 struct Fold;
 struct Article;
 using Block =
     std::variant<Paragraph, Heading, List, Facts, Table, Figure, Gallery, Tiles, Verdict, Doubts,
-                 Aspects, Signatures, Command, Raw, LivePlot, LiveSeries, Fold, Article>;
+                 Aspects, Signatures, Command, Raw, LivePlot, LiveSeries, Sketches, Fold, Article>;
 using Blocks = std::vector<Block>;
 /// Content that the reader can unfold; it is printed unfolded.
 struct Fold {

@@ -1,16 +1,32 @@
 #include "report/document/render_html.hpp"
 
 #include <fmt/format.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
+#include <new>
+#include <vector>
 
 #include "report/document/overloaded.hpp"
+#include "report/figure/decimate.hpp"
 #include "report/text/escape.hpp"
 
 namespace rigcal::report::doc {
 namespace {
+
+/// A zlib stream, which browsers unpack.
+std::vector<std::uint8_t> deflated(const std::string& text) {
+  uLongf size = compressBound(text.size());
+  std::vector<std::uint8_t> packed(size);
+  if (compress2(packed.data(), &size, reinterpret_cast<const Bytef*>(text.data()), text.size(),
+                Z_BEST_COMPRESSION) != Z_OK)
+    throw std::bad_alloc();
+  packed.resize(size);
+  return packed;
+}
 
 std::string marked(const Badge& badge) {
   return fmt::format("<span aria-hidden=\"true\">{}</span> {}", mark(badge.state),
@@ -144,6 +160,13 @@ std::string table_class(const Table& table) {
   return html_attribute("class", classes);
 }
 
+/// "2200 more, in fit.json."; empty if nothing was left out.
+std::string rest_of(std::size_t count, const std::string& file) {
+  if (count == 0) return {};
+  return fmt::format("<p class=\"source\">{} more{}.</p>\n", count,
+                     file.empty() ? "" : ", in " + escaped(file));
+}
+
 void add(const Table& table, std::string& page) {
   page += fmt::format(
       "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{}\">\n<table{}>\n",
@@ -159,8 +182,10 @@ void add(const Table& table, std::string& page) {
     page += "</th>";
   }
   page += "</tr></thead>\n<tbody>\n";
-  for (const Row& row : table.rows) add_row(table, row, page);
+  const std::size_t shown = std::min(table.most, table.rows.size());
+  for (std::size_t i = 0; i < shown; ++i) add_row(table, table.rows[i], page);
   page += "</tbody>\n</table>\n</div>\n";
+  page += rest_of(table.rows.size() - shown, table.file);
 }
 
 void add(const Paragraph& paragraph, std::string& page) {
@@ -187,13 +212,18 @@ void add(const Heading& heading, std::string& page) {
   page += fmt::format("<h{0}>{1}</h{0}>\n", heading.level, html(heading.line));
 }
 
+/// Nobody reads more reasons or warnings; those who make a list begin with the gravest.
+constexpr std::size_t kMostItems = 100;
+
 void add(const List& list, std::string& page) {
   if (list.items.empty()) return;
   page += "<ul" +
           html_attribute("class", list.state ? fmt::format("reasons {}", css(*list.state)) : "") +
           ">";
-  for (const Line& item : list.items) page += "<li>" + html(item) + "</li>";
+  const std::size_t shown = std::min(kMostItems, list.items.size());
+  for (std::size_t i = 0; i < shown; ++i) page += "<li>" + html(list.items[i]) + "</li>";
   page += "</ul>\n";
+  page += rest_of(list.items.size() - shown, {});
 }
 
 void add(const Facts& facts, std::string& page) {
@@ -320,6 +350,25 @@ void add(const LivePlot& live, std::string& page) {
 
 void add(const LiveSeries& series, std::string& page) {
   page += "<script type=\"application/json\" class=\"series\">" + series.json + "</script>\n";
+}
+
+/// One stream of so many sketches is unpacked when a reader opens any of them.
+constexpr std::size_t kSketchesInStream = 40;
+
+void add(const Sketches& all, std::string& page) {
+  const std::vector<Sketches::Sketch>& sketches = all.sketches;
+  page += fmt::format("<div class=\"sketches\" data-each=\"{}\">\n", kSketchesInStream);
+  for (const Sketches::Sketch& sketch : sketches)
+    page += fmt::format("<details class=\"sketch\" id=\"{}\"><summary>{} {}</summary></details>\n",
+                        escaped(sketch.id), tag(sketch.badge), html(sketch.line));
+  for (std::size_t begin = 0; begin < sketches.size(); begin += kSketchesInStream) {
+    std::string json;
+    for (std::size_t i = begin; i < std::min(begin + kSketchesInStream, sketches.size()); ++i)
+      json += (json.empty() ? "[" : ",") + sketches[i].json;
+    page += fmt::format("<script type=\"text/plain\" class=\"packed\">{}</script>\n",
+                        base64(deflated(json + "]")));
+  }
+  page += "</div>\n";
 }
 
 }  // namespace

@@ -118,6 +118,7 @@ void add_top(const Part& first, bool synthetic, std::string& page) {
 doc::Fold inputs_of(const Parts& parts) {
   doc::Table inputs{"Input files"};
   inputs.style = "hashes";
+  inputs.file = parts.drawn.front().file;
   inputs.columns = {{"File"}, {"SHA-256"}};
   std::set<std::pair<std::string, std::string>> listed;
   for (const Part& part : parts.drawn)

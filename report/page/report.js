@@ -57,16 +57,17 @@
 
   /** The plots of one condition: they share their time axis and cursor. */
   class Group {
-    constructor(article) {
+    /** @param data  its series; without it they are in the article */
+    constructor(article, data) {
       this.figures = [...article.querySelectorAll("figure.plot")];
-      this.source = article.querySelector("script.series");
+      this.source = () => data ?? JSON.parse(article.querySelector("script.series").textContent);
       this.charts = new Map();
       this.range = null;
     }
 
     load() {
       if (this.data) return;
-      this.data = JSON.parse(this.source.textContent);
+      this.data = this.source();
       this.time = times(this.data);
       this.columns = [];
       this.whole = [this.time[0], this.time[this.time.length - 1]];
@@ -175,7 +176,7 @@
       add("→", "Later", () => this.move("ArrowRight"));
       add("Show all", "Show the whole record", () => this.reset());
       add("PNG", "Save the plot as it is shown, as PNG", () => saveImage(figure, this.charts.get(figure)));
-      add("SVG", "Save the picture of the whole record as SVG", () => savePicture(figure));
+      if (figure.querySelector("svg.static")) add("SVG", "Save the picture of the whole record as SVG", () => savePicture(figure));
       figure.querySelector("figcaption").append(tools);
       figure.addEventListener("keydown", (event) => { if (event.target === figure) this.key(event); });
     }
@@ -193,12 +194,52 @@
     }
   }
 
+  const element = (name, className, text = "") => Object.assign(document.createElement(name), {className, textContent: text});
+
+  const streams = new Map();
+  /** The sketches of a packed script, unpacked once. */
+  const unpacked = (script) => {
+    if (!streams.has(script)) {
+      const stream = new Blob([bytes(script.textContent)]).stream().pipeThrough(new DecompressionStream("deflate"));
+      streams.set(script, new Response(stream).json());
+    }
+    return streams.get(script);
+  };
+
+  /** Fills the line of a condition when a reader opens it. */
+  const fill = async (line) => {
+    const list = line.parentElement;
+    const index = [...list.querySelectorAll("details.sketch")].indexOf(line);
+    const each = +list.dataset.each;
+    const {texts, series} = (await unpacked(list.querySelectorAll("script.packed")[Math.floor(index / each)]))[index % each];
+    for (const text of texts) line.append(element("p", "reading", text));
+    if (!series) return;
+    series.plots.forEach(({name, caption, description}, i) => {
+      const figure = element("figure", "plot");
+      Object.assign(figure.dataset, {plot: i, file: line.id + "_" + name});
+      figure.tabIndex = 0;
+      figure.setAttribute("role", "group");
+      figure.setAttribute("aria-label", description);
+      figure.append(element("figcaption", "", caption));
+      line.append(figure);
+    });
+    const group = new Group(line, series);
+    groups.push(group);
+    group.figures.forEach((figure) => group.draw(figure));
+  };
+
   const groups = [...document.querySelectorAll("article.condition")].filter((a) => a.querySelector("script.series")).map((a) => new Group(a));
   const owner = new Map(groups.flatMap((group) => group.figures.map((figure) => [figure, group])));
+  // The event does not bubble.
+  document.querySelector(".sketches")?.addEventListener("toggle", ({target}) => {
+    if (!target.open || target.dataset.filled) return;
+    target.dataset.filled = "yes";
+    fill(target);
+  }, true);
   /** A link to a condition, or to what is within, opens what hides it. */
   const reveal = () => {
     const target = document.getElementById(decodeURIComponent(location.hash.slice(1)));
-    target?.querySelector(":scope > details.curves")?.setAttribute("open", "");
+    (target?.matches("details.sketch") ? target : target?.querySelector(":scope > details.curves"))?.setAttribute("open", "");
   };
   addEventListener("hashchange", reveal);
   reveal();
@@ -218,5 +259,5 @@
   });
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => groups.forEach((group) => group.redraw()));
   // On paper nothing can be opened.
-  addEventListener("beforeprint", () => document.querySelectorAll("details").forEach((d) => { d.open = true; }));
+  addEventListener("beforeprint", () => document.querySelectorAll("details:not(.sketch)").forEach((d) => { d.open = true; }));
 })();

@@ -1,12 +1,16 @@
 #!/usr/bin/env python3
-"""How long a report takes to open in headless Chromium, by the browser's own clock: opening_time.py REPORT.
+"""How long a report takes to open in headless Chromium, by the browser's own clock: opening_time.py REPORT [--sheets].
 
-Prints the medians of five: until all is loaded and laid out, and until the first plots can be zoomed.
+Prints the medians of five: until all is loaded and laid out, and until the first plots can be zoomed. With --sheets also
+how many sheets of A4 it fills.
 """
 
 import pathlib
+import re
 import statistics
+import subprocess
 import sys
+import tempfile
 
 from browser import Browser, chromium
 
@@ -30,12 +34,22 @@ def opened(path):
         return loaded / 1e3, (page.run(LIVE) - begin) / 1e3
 
 
+def sheets_of(path):
+    with Browser() as page, tempfile.NamedTemporaryFile(suffix=".pdf") as sheet:
+        page.open(path)
+        page.wait_for(f"{LOADED} > 0", "loaded")
+        page.pdf(sheet.name)
+        told = subprocess.run(["pdfinfo", sheet.name], capture_output=True, text=True, check=True).stdout
+    return int(re.search(r"Pages: +(\d+)", told)[1])
+
+
 def main():
     if chromium() is None:
         print("opens: not measured, no chromium (scripts/setup --dev installs it)")
         return 0
     loaded, live = zip(*(opened(pathlib.Path(sys.argv[1])) for _ in range(5)))
-    print(f"opens in {statistics.median(loaded):.2f} s, its first plots are drawn in {statistics.median(live):.2f} s more")
+    sheets = f"; on paper it has {sheets_of(pathlib.Path(sys.argv[1]))} sheets" if "--sheets" in sys.argv else ""
+    print(f"opens in {statistics.median(loaded):.2f} s, its first plots are drawn in {statistics.median(live):.2f} s more{sheets}")
     return 0
 
 

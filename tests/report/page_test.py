@@ -282,6 +282,34 @@ def check_good(binary, work):
         check_quiet(page, path)
 
 
+def check_many(binary, work):
+    """Of many conditions the worst are there in full; a line of another is drawn when it is opened, here by its link."""
+    campaign = (work / "twin" / "campaign.toml").read_text()
+    head, sine, square = campaign.split("[[condition]]\n")
+    copies = [sine.replace('id = "sine"', f'id = "s{i}"') for i in range(90)]
+    (work / "twin" / "many.toml").write_text("[[condition]]\n".join([head, *copies, square]))
+    check(rigcal(binary, work, "fit", "twin/many.toml", "--out", "many") == 0, "the fit of many is good")
+    path = work / "many" / "report.html"
+    with Browser() as page:
+        page.open(path)
+        check_sections(page)
+        check(page.run("[document.querySelectorAll('article.condition').length, document.querySelectorAll('.sketch').length]") == [20, 71],
+              "twenty in full, the others in a line each")
+        # The last one is in the second of the packed streams.
+        last = page.run("[...document.querySelectorAll('.sketch')].pop().id")
+        page.run(f"location.hash = '#{last}'")
+        line = f"document.getElementById('{last}')"
+        page.wait_for(f"{line}.querySelectorAll('figure.live').length === 4", "its two channels and their residuals are drawn")
+        check(last.removeprefix("condition-") in page.run(f"{line}.textContent"), "it names its file")
+        check(page.run(f"{line}.querySelector('.plot').ariaLabel").startswith("position, measured and model: largest"), "its label")
+        page.run(f"{line}.open = false")
+        page.run(f"{line}.open = true")
+        check(page.run(f"{line}.querySelectorAll('figure').length") == 4, "it is drawn once")
+        check_printed(page, work, ["The other 71 conditions", last.removeprefix("condition-")])
+        check_widths(page)
+        check_quiet(page, path)
+
+
 def check_bad(binary, work):
     """A failed and a poor result say so at their top."""
     campaign = (work / "twin" / "campaign.toml").read_text()
@@ -524,6 +552,7 @@ def main():
         (work / "truth.toml").write_text(CAMPAIGN)
         check(rigcal(binary, work, "synthesize", "truth.toml", "--seed", "3", "--out", "twin") == 0, "synthesize")
         check_good(binary, work)
+        check_many(binary, work)
         check_bad(binary, work)
         check_leak_table(binary, work, sources)
         check_diagnosis(binary, work)

@@ -10,6 +10,7 @@
 #include "report/page/calibration/fit_sections.hpp"
 #include "report/page/calibration/page_agreement_figures.hpp"
 #include "report/page/calibration/score_columns.hpp"
+#include "report/page/calibration/shown_part.hpp"
 #include "report/page/page_parts.hpp"
 #include "report/text/readable.hpp"
 
@@ -182,16 +183,67 @@ doc::Article article_of(const StoredCondition& condition, const Table& series,
   return article;
 }
 
+/// Points of a line in a sketch: every sample of two periods with up to 200.
+constexpr std::size_t kSketchPoints = 400;
+
+/// The last two periods of what was measured and simulated, for the page's script.
+Json sketched_series(const StoredCondition& condition, const Table& series) {
+  if (series.columns.empty() || series.columns.front().empty()) return nullptr;
+  Table part;
+  const auto* time_s = series.find("time_s");
+  const std::size_t first = time_s == nullptr ? 0 : first_of_last_periods(condition, *time_s);
+  for (std::size_t i = 0; i < series.columns.size(); ++i) {
+    const std::string& name = series.names[i];
+    // A band would take as much room as the lines.
+    if (name.starts_with("sd_") || name.starts_with("prediction_sd_")) continue;
+    part.names.push_back(name);
+    part.columns.emplace_back(series.columns[i].begin() + static_cast<std::ptrdiff_t>(first),
+                              series.columns[i].end());
+  }
+  SeriesData data(part, kSketchPoints);
+  Json plots = Json::array();
+  for (const TimePlot& plot : time_plots(part)) {
+    if (plot.name == "flows" || plot.name == "command") continue;
+    plots.push_back(live_plot(plot, data));
+    plots.back()["caption"] = fmt::format("{} [{}]", plot.title, plot.unit);
+    plots.back()["description"] = description(plot, part);
+  }
+  data.json()["plots"] = std::move(plots);
+  return std::move(data.json());
+}
+
+std::string plain_text(const doc::Line& line) {
+  std::string text;
+  for (const doc::Inline& part : line)
+    if (const auto* words = std::get_if<std::string>(&part)) text += *words;
+  return text;
+}
+
+doc::Sketches::Sketch sketch_of(const StoredCondition& condition, const Table& series) {
+  doc::Sketches::Sketch sketch{
+      anchor(condition.id), doc::badge(condition.verdict), {doc::Strong{condition.id}}, {}};
+  for (const auto& [channel, scores] : condition.metrics) {
+    sketch.line.emplace_back(" · " + spaced(channel) + " ");
+    sketch.line.emplace_back(doc::agreement(scores.rho2));
+  }
+  std::vector<std::string> texts{plain_text(facts_of(condition))};
+  texts.insert(texts.end(), condition.reasons.begin(), condition.reasons.end());
+  for (const std::string& text : condition.warnings) texts.push_back("Recording: " + text);
+  texts.push_back("From residuals/" + condition.id + ".csv: the last two periods, or all of it.");
+  sketch.json = Json{{"texts", texts}, {"series", sketched_series(condition, series)}}.dump(
+      -1, ' ', false, Json::error_handler_t::replace);
+  return sketch;
+}
+
 /// Approximate size of all interactive series of a page.
 constexpr std::size_t kSeriesBytes = 3'600'000;
 constexpr double kBytesPerPoint = 2.0 * 4.0 / 3.0;
 constexpr std::size_t kLeastPoints = 2000;
 
 /// Number of points per series with which all series together have that size.
-std::size_t points_of(const Calibration& stored) {
+std::size_t points_of(const Calibration& stored, const std::vector<std::size_t>& shown) {
   std::size_t columns = 0;
-  for (std::size_t i = 0; i < stored.result.conditions.size(); ++i)
-    columns += stored.series(i)->columns.size();
+  for (const std::size_t i : shown) columns += stored.series(i)->columns.size();
   const auto points =
       static_cast<std::size_t>(static_cast<double>(kSeriesBytes) / kBytesPerPoint /
                                static_cast<double>(std::max<std::size_t>(1, columns)));
@@ -219,22 +271,42 @@ doc::Section conditions_section(const Calibration& stored, int threads) {
     section.blocks.emplace_back(doc::reading("No condition was scored."));
     return section;
   }
+  const std::vector<std::size_t> shown = shown_in_full(conditions);
+  const bool all = shown.size() == conditions.size();
   section.blocks.emplace_back(doc::Paragraph{
-      {"Drag across a plot to zoom in time; all plots of a condition move together. Double-click "
+      {(all ? std::string()
+            : fmt::format("The worst {} in full, the others in a line each below. ",
+                          shown.size())) +
+       "Drag across a plot to zoom in time; all plots of a condition move together. Double-click "
        "or 0 shows all. Focus a plot for the keyboard: plus, minus, arrows."},
       doc::Paragraph::Tone::screen});
-  const std::size_t points = points_of(stored);
+  const std::size_t points = points_of(stored, shown);
   std::vector<std::string> articles(conditions.size());
+  std::vector<doc::Sketches::Sketch> sketches(conditions.size());
   // Each article is rendered right away. Keeping the series of all articles would need most of the
   // memory of a page.
   parallel_for(conditions.size(), threads, [&](std::size_t i) {
+    const StoredCondition& condition = conditions[i];
     const std::shared_ptr<const Table> series = stored.series(i);
-    const bool open = i == 0 || conditions.size() <= kFew;
-    doc::render_html({article_of(conditions[i], *series,
-                                 find(stored.curves.conditions, conditions[i].id), points, open)},
+    if (!std::binary_search(shown.begin(), shown.end(), i)) {
+      sketches[i] = sketch_of(condition, *series);
+      return;
+    }
+    const bool open = i == shown.front() || conditions.size() <= kFew;
+    doc::render_html({article_of(condition, *series, find(stored.curves.conditions, condition.id),
+                                 points, open)},
                      articles[i]);
   });
-  for (std::string& article : articles) section.blocks.emplace_back(doc::Raw{std::move(article)});
+  for (std::string& article : articles)
+    if (!article.empty()) section.blocks.emplace_back(doc::Raw{std::move(article)});
+  if (all) return section;
+  std::erase_if(sketches, [](const auto& sketch) { return sketch.id.empty(); });
+  section.blocks.emplace_back(
+      doc::Heading{{fmt::format("The other {} conditions", sketches.size())}, 3});
+  section.blocks.emplace_back(doc::reading(
+      "rho2 of each channel. Open a line for its last two periods; every sample is in its file in "
+      "residuals/."));
+  section.blocks.emplace_back(doc::Sketches{std::move(sketches)});
   return section;
 }
 

@@ -9,6 +9,7 @@
 #include "report/document/words.hpp"
 #include "report/figure/decimate.hpp"
 #include "report/page/calibration/fit_sections.hpp"
+#include "report/page/calibration/shown_part.hpp"
 #include "report/page/page_parts.hpp"
 #include "report/text/readable.hpp"
 
@@ -20,33 +21,10 @@ namespace {
 constexpr double kCellWidth = 190.0;
 constexpr double kCellHeight = 84.0;
 constexpr std::size_t kCellPoints = 260;
-/// Periods that a small picture has room for.
-constexpr double kPeriods = 2.0;
-
-/// Position where it was compared, else the first channel.
-std::string shown_channel(const std::vector<StoredCondition>& conditions) {
-  std::string first;
-  for (const StoredCondition& condition : conditions) {
-    for (const auto& [channel, scores] : condition.metrics) {
-      if (channel == "position" || channel == "angle") return channel;
-      if (first.empty()) first = channel;
-    }
-  }
-  return first;
-}
 
 std::string column_name(const char* what, const std::string& channel) {
   const auto known = datasets::channel_from_key(channel);
   return fmt::format("{}_{}", what, known ? datasets::info(*known).name : channel);
-}
-
-/// The last two periods of a record, or all of it where it has fewer.
-std::size_t first_shown(const StoredCondition& condition, const std::vector<double>& time_s) {
-  const std::optional<double>& frequency = condition.frequency_hz;
-  if (!frequency || !(*frequency > 0.0)) return 0;
-  const double from = time_s.back() - kPeriods / *frequency;
-  return static_cast<std::size_t>(std::lower_bound(time_s.begin(), time_s.end(), from) -
-                                  time_s.begin());
 }
 
 Plot small_plot(const StoredCondition& condition, const Table& series, const std::string& channel) {
@@ -57,7 +35,7 @@ Plot small_plot(const StoredCondition& condition, const Table& series, const std
   plot.bare = true;
   const auto* time_s = series.find("time_s");
   if (time_s == nullptr || time_s->empty()) return plot;
-  const std::size_t begin = first_shown(condition, *time_s);
+  const std::size_t begin = first_of_last_periods(condition, *time_s);
   const std::span<const double> times = std::span(*time_s).subspan(begin);
   const Buckets thin = buckets(times.size(), kCellPoints);
   for (const auto& [what, style] : {std::pair{"measured", "measured"}, {"simulated", "model"}}) {
@@ -159,14 +137,18 @@ std::optional<doc::Section> overview_section(const Calibration& stored) {
   const std::vector<StoredCondition>& conditions = stored.result.conditions;
   const std::string channel = shown_channel(conditions);
   if (channel.empty()) return std::nullopt;
-  doc::Section section{"overview", "All conditions"};
+  const std::vector<std::size_t> shown = shown_in_full(conditions);
+  doc::Section section{"overview", shown.size() < conditions.size()
+                                       ? fmt::format("The worst {} of {} conditions", shown.size(),
+                                                     conditions.size())
+                                       : "All conditions"};
   section.blocks.emplace_back(three_numbers(stored.result));
   section.blocks.emplace_back(doc::reading(
       fmt::format("The {} over the last two periods, or the whole record: measured dark and wide, "
                   "model orange. Each leads to its condition.",
                   spaced(channel))));
   doc::Tiles tiles;
-  for (std::size_t i = 0; i < conditions.size(); ++i) {
+  for (const std::size_t i : shown) {
     doc::Tile tile{doc::badge(conditions[i].verdict), {conditions[i].id}};
     tile.to = "#" + anchor(conditions[i].id);
     Plot plot = small_plot(conditions[i], *stored.series(i), channel);

@@ -72,7 +72,8 @@ doc::Row bootstrap_row(const StoredParameter& parameter, const StoredBootstrap& 
            doc::in_unit(bootstrap.bias, unit.si, 3)}};
 }
 
-doc::Table lack_of_fit_table(const StoredLackOfFit& lack) {
+doc::Table lack_of_fit_table(const StoredFit& fit) {
+  const StoredLackOfFit& lack = *fit.lack_of_fit;
   doc::Table table{"Lack of fit by condition"};
   table.columns = {{"Condition"},
                    {"Channel"},
@@ -81,7 +82,14 @@ doc::Table lack_of_fit_table(const StoredLackOfFit& lack) {
                    {"Degrees of freedom", Kind::number},
                    {"p", Kind::number},
                    {"Outcome, all together"}};
-  for (const StoredLackOfFitTest& test : lack.tests) {
+  table.file = is_fit_schema(fit.schema) ? "fit.json" : "validation.json";
+  table.most = 100;
+  std::vector<StoredLackOfFitTest> tests = lack.tests;
+  if (tests.size() > table.most)
+    std::stable_sort(tests.begin(), tests.end(), [](const auto& a, const auto& b) {
+      return !std::isnan(a.p) && (std::isnan(b.p) || a.p < b.p);
+    });
+  for (const StoredLackOfFitTest& test : tests) {
     const bool judged = test.outcome != metrics::TestOutcome::not_judged;
     table.rows.push_back(
         {{test.condition, test.channel, test.against, doc::in_unit(test.ratio, 1.0, 4),
@@ -111,7 +119,7 @@ void add_lack_of_fit(const StoredFit& fit, doc::Blocks& blocks) {
   blocks.emplace_back(doc::Paragraph{std::move(line), doc::Paragraph::Tone::plain});
   if (lack.tests.empty()) return;
   blocks.emplace_back(doc::Fold{fmt::format("Tests of each condition ({})", lack.tests.size()),
-                                {lack_of_fit_table(lack)}});
+                                {lack_of_fit_table(fit)}});
 }
 
 /// "27.05 um (27.01 um where it was fitted)" per channel.

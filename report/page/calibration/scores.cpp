@@ -1,6 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <tuple>
 
 #include "report/document/quantity.hpp"
 #include "report/document/words.hpp"
@@ -12,6 +16,7 @@ namespace {
 
 using doc::Line;
 using Kind = doc::Column::Kind;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Frequency to sort by, and "0.1 Hz sine".
 std::pair<double, std::string> signal_of(const StoredCondition& condition) {
@@ -67,21 +72,48 @@ std::optional<doc::Tile> tile_of(const StoredCondition& condition, const std::st
   return tile;
 }
 
+/// One tile for many conditions of a cell: how many of each verdict, and the worst of them.
+doc::Tile summary_of(const std::vector<const StoredCondition*>& conditions,
+                     const std::string& channel) {
+  std::map<std::optional<calib::Verdict>, std::size_t> counts;
+  const StoredCondition* worst = conditions.front();
+  const auto badness = [&](const StoredCondition& condition) {
+    const StoredScore* scores = find(condition.metrics, channel);
+    const double rho2 = scores == nullptr || std::isnan(scores->rho2) ? -kInfinity : scores->rho2;
+    return std::tuple(condition.failure.has_value(), condition.verdict_of(channel), -rho2);
+  };
+  for (const StoredCondition* condition : conditions) {
+    ++counts[condition->verdict_of(channel)];
+    if (badness(*worst) < badness(*condition)) worst = condition;
+  }
+  doc::Tile tile = *tile_of(*worst, channel);
+  std::string numbers;
+  for (const auto& [verdict, count] : counts)
+    numbers +=
+        fmt::format("{}{} {}", numbers.empty() ? "" : ", ", count, doc::badge(verdict).words);
+  tile.below = {{numbers}, {"the worst: " + worst->id}};
+  return tile;
+}
+
+/// More conditions than this in one cell are summed up.
+constexpr std::size_t kMostTiles = 8;
+
 /// A table of signals by leak levels for each channel.
 std::vector<doc::Table> matrices(const StoredFit& fit) {
   std::vector<std::string> channels;
-  std::vector<std::pair<double, std::string>> signals;
+  std::map<std::pair<double, std::string>,
+           std::map<std::string, std::vector<const StoredCondition*>>>
+      by_signal;
   std::vector<std::string> levels;
   const auto remember = [](auto& list, const auto& item) {
     if (std::find(list.begin(), list.end(), item) == list.end()) list.push_back(item);
   };
   for (const StoredCondition& condition : fit.conditions) {
     for (const auto& [channel, metrics] : condition.metrics) remember(channels, channel);
-    remember(signals, signal_of(condition));
     remember(levels, level_of(condition));
+    by_signal[signal_of(condition)][level_of(condition)].push_back(&condition);
   }
-  std::stable_sort(signals.begin(), signals.end());
-  if (channels.empty() && !signals.empty()) channels.emplace_back("position");
+  if (channels.empty() && !by_signal.empty()) channels.emplace_back("position");
   std::vector<doc::Table> tables;
   for (const std::string& channel : channels) {
     doc::Table table{"Scores of " + channel};
@@ -90,14 +122,21 @@ std::vector<doc::Table> matrices(const StoredFit& fit) {
     table.columns = {{"Signal"}};
     for (const std::string& level : levels)
       table.columns.push_back({level.empty() ? "no leak level" : "leak " + level});
-    for (const auto& signal : signals) {
+    for (const auto& [signal, by_level] : by_signal) {
       doc::Row row{{signal.second}};
       for (const std::string& level : levels) {
         doc::Cell& cell = row.cells.emplace_back();
-        for (const StoredCondition& condition : fit.conditions) {
-          if (signal_of(condition) != signal || level_of(condition) != level) continue;
-          if (auto tile = tile_of(condition, channel)) cell.tiles.push_back(std::move(*tile));
+        const auto found = by_level.find(level);
+        if (found == by_level.end()) continue;
+        std::vector<const StoredCondition*> compared;
+        for (const StoredCondition* condition : found->second)
+          if (tile_of(*condition, channel)) compared.push_back(condition);
+        if (compared.size() > kMostTiles) {
+          cell.tiles = {summary_of(compared, channel)};
+          continue;
         }
+        for (const StoredCondition* condition : compared)
+          cell.tiles.push_back(*tile_of(*condition, channel));
         if (cell.tiles.size() > 1)
           for (doc::Tile& tile : cell.tiles) tile.below.push_back({tile.title});
       }

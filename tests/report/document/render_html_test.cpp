@@ -42,12 +42,29 @@ TEST_CASE("render_html: whatever stands in a document is text", "[report]") {
        doc::Doubts{{every}},
        doc::Aspects{{{{doc::State::none, kHostileText}, kHostileText, {every}}}},
        doc::Signatures{{{kHostileText, kHostileText}}}, doc::Command{kHostileText},
-       doc::Fold{kHostileText, {doc::Paragraph{every}}}, doc::Article{kHostileText, every, {}}});
+       doc::Fold{kHostileText, {doc::Paragraph{every}}}, doc::Article{kHostileText, every, {}},
+       doc::Sketches{{{kHostileText, {doc::State::good, kHostileText}, every, "{}"}}}});
   CHECK_THAT(page, !Contains("<script>") && !Contains("\"'&"));
   CHECK_THAT(page, Contains("&lt;script&gt;alert(1)"));
   std::string section;
   doc::render_html(doc::Section{kHostileText, kHostileText, {}}, section);
   CHECK_THAT(section, !Contains("<script>"));
+}
+
+TEST_CASE("render_html: rows and items beyond the most are counted", "[report]") {
+  doc::Table table{"tests"};
+  table.columns = {{"Name"}};
+  table.most = 3;
+  table.file = "fit.json";
+  for (int i = 0; i < 5; ++i) table.rows.push_back({{"row " + std::to_string(i)}});
+  const std::string page = drawn_blocks({table});
+  CHECK_THAT(page, Contains("row 2") && !Contains("row 3") && Contains("2 more, in fit.json."));
+  doc::List list;
+  for (int i = 0; i < 250; ++i) list.items.push_back({"item " + std::to_string(i)});
+  const std::string items = drawn_blocks({list});
+  CHECK_THAT(items, Contains("item 99<") && !Contains("item 100<") && Contains("150 more."));
+  list.items.resize(100);
+  CHECK_THAT(drawn_blocks({list}), Contains("item 99<") && !Contains(" more."));
 }
 
 TEST_CASE("render_html: a number keeps its exact value beside what is shown", "[report]") {

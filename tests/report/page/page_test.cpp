@@ -1,5 +1,7 @@
 #include "report/page/page.hpp"
 
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -65,6 +67,43 @@ TEST_CASE("page: sections in the order of the guide", "[report]") {
   // The plot library names its home in a comment; nothing leads out of the page.
   for (const char* outside : {"src=\"", "href=\"http", "@import", "url(http"})
     CHECK_THAT(html, !Contains(outside));
+}
+
+TEST_CASE("page: of many conditions the worst are shown in full", "[report]") {
+  Json json = stored_result();
+  const Json one = json["conditions"][0];
+  const auto with = [&](int count) {
+    json["conditions"] = Json::array();
+    for (int i = 0; i < count; ++i) {
+      Json condition = one;
+      condition["id"] = fmt::format("c{}", i);
+      condition["limit_checks"][0]["tolerance_used"] = i % 2 == 0 ? 0.5 + 1e-3 * i : 0.1;
+      json["conditions"].push_back(condition);
+    }
+    json["conditions"][1]["verdict"] = json["conditions"][1]["limit_checks"][0]["verdict"] = "FAIL";
+    json["conditions"][1]["channel_verdicts"]["position"] = "FAIL";
+    json["conditions"][3]["failure"] = "the rig runs away";
+    return page(json);
+  };
+  const auto is_full = [](const std::string& html, const std::string& id) {
+    const bool full =
+        html.find("<article class=\"condition\" id=\"condition-" + id + "\"") != std::string::npos;
+    const bool sketched =
+        html.find("<details class=\"sketch\" id=\"condition-" + id + "\"") != std::string::npos;
+    CHECK(full != sketched);
+    return full;
+  };
+  const std::string few = with(40);
+  for (int i = 0; i < 40; ++i) CHECK(is_full(few, fmt::format("c{}", i)));
+  const std::string many = with(101);
+  // One that could not be simulated, one that fails, and those that use most of their limits.
+  for (int i = 0; i < 101; ++i) {
+    CAPTURE(i);
+    CHECK(is_full(many, fmt::format("c{}", i)) == (i == 1 || i == 3 || (i % 2 == 0 && i >= 66)));
+  }
+  CHECK_THAT(many, Contains("The worst 20 of 101 conditions") &&
+                       Contains("The other 81 conditions") && Contains("1 FAIL") &&
+                       Contains("the worst: c3"));
 }
 
 TEST_CASE("page: the plot library comes with its notice", "[report]") {

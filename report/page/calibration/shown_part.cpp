@@ -1,0 +1,63 @@
+#include "report/page/calibration/shown_part.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
+namespace rigcal::report {
+namespace {
+
+/// Each condition in full takes about 200 kB of a page and half a printed sheet.
+constexpr std::size_t kMostInFull = 40;
+/// Of more than that, so many show what is wrong; the others are sketches.
+constexpr std::size_t kInFullOfMany = 20;
+/// Periods that a small picture has room for.
+constexpr double kPeriods = 2.0;
+
+/// Larger is worse.
+auto badness(const StoredCondition& condition) {
+  const bool unusable = condition.failure.has_value() || condition.not_scored.has_value();
+  double used = 0.0;
+  for (const StoredLimitCheck& check : condition.limit_checks)
+    used = std::max(used, check.tolerance_used.value_or(0.0));
+  double error_percent = 0.0;
+  for (const auto& [channel, scores] : condition.metrics)
+    error_percent = std::max(error_percent, scores.absolute_error_percent);
+  return std::tuple(unusable, condition.verdict, used, error_percent);
+}
+
+}  // namespace
+
+std::vector<std::size_t> shown_in_full(const std::vector<StoredCondition>& conditions) {
+  std::vector<std::size_t> shown(conditions.size());
+  std::iota(shown.begin(), shown.end(), 0);
+  if (shown.size() <= kMostInFull) return shown;
+  std::stable_sort(shown.begin(), shown.end(), [&](std::size_t a, std::size_t b) {
+    return badness(conditions[b]) < badness(conditions[a]);
+  });
+  shown.resize(kInFullOfMany);
+  std::sort(shown.begin(), shown.end());
+  return shown;
+}
+
+std::size_t first_of_last_periods(const StoredCondition& condition,
+                                  std::span<const double> time_s) {
+  const std::optional<double>& frequency = condition.frequency_hz;
+  if (time_s.empty() || !frequency || !(*frequency > 0.0)) return 0;
+  const double from = time_s.back() - kPeriods / *frequency;
+  return static_cast<std::size_t>(std::lower_bound(time_s.begin(), time_s.end(), from) -
+                                  time_s.begin());
+}
+
+std::string shown_channel(const std::vector<StoredCondition>& conditions) {
+  std::string first;
+  for (const StoredCondition& condition : conditions) {
+    for (const auto& [channel, scores] : condition.metrics) {
+      if (channel == "position" || channel == "angle") return channel;
+      if (first.empty()) first = channel;
+    }
+  }
+  return first;
+}
+
+}  // namespace rigcal::report
