@@ -83,6 +83,8 @@ Plan plan(const Campaign& campaign, const std::vector<Record>& records,
     PlannedRecord& record = result.records.emplace_back();
     record.condition = conditions[i]->id;
     record.recorded = recorded[i];
+    record.alone.resize(z.size());
+    record.without.resize(z.size());
     if (!at.conditions[i].ok()) {
       record.problem = fmt::format("cannot be simulated at {:g} s: {}",
                                    at.conditions[i].failed_at_s, at.conditions[i].reason);

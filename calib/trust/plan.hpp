@@ -14,8 +14,9 @@ struct PlannedRecord {
   std::string condition;
   bool recorded = false;                       ///< false: planned, simulated only
   std::string problem;                         ///< why nothing is known of it; else empty
-  std::vector<std::optional<double>> alone;    ///< sd of each unknown from this record alone, SI
-  std::vector<std::optional<double>> without;  ///< and from all records but this
+  std::vector<std::optional<double>> alone;    ///< sd of each unknown from this record alone, SI;
+                                               ///< shape (unknowns), also if nothing is known
+  std::vector<std::optional<double>> without;  ///< and from all records but this; the same shape
 };
 
 /// Cramer-Rao standard deviations at given values: white noise, a correct model, every unknown

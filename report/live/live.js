@@ -598,6 +598,7 @@
     resizing = setTimeout(() => charts?.forEach(({figure, chart, plot}) => chart.setSize({width: figure.clientWidth, height: plot.height})), 100);
   });
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+    if (!worker) return;  // nothing is drawn yet
     charts?.forEach(({figure, chart}) => { chart.destroy(); figure.remove(); });
     charts = null;
     changed();

@@ -183,7 +183,8 @@ PlanFiles load_plan(const ReadFile& read, const std::string& where) {
   StoredPlan& plan = stored.result;
   for (StoredPlannedRecord& record : plan.records) {
     for (auto* list : {&record.sd_alone, &record.sd_without}) {
-      if (list->empty()) list->resize(plan.parameters.size());  // nothing is known about the record
+      if (list->empty())
+        list->resize(plan.parameters.size());  // as 0.1.0 wrote a record that cannot be simulated
       require_length(list->size(), plan.parameters.size(), "sd_alone or sd_without of a record",
                      path_in(where, "plan.json"));
     }

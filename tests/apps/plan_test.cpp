@@ -44,4 +44,35 @@ use = "fit"
   CHECK(folder.read("out/report.html") == page);
 }
 
+TEST_CASE("plan: of a condition that cannot be simulated nothing is known", "[apps]") {
+  const CommandFolder folder;
+  REQUIRE(write_twin(folder).exit_code == 0);
+  folder.write("twin/plan.toml", folder.read("twin/campaign.toml") + R"(
+[[condition]]
+id = "runs_away"
+waveform = "square"
+frequency = "10 Hz"
+amplitude = "2 mm"
+duration = "1 s"
+sample_rate = "1 kHz"
+leak_level = "none"
+use = "fit"
+parameters = { load_curvature = "1e12 N/m2" }
+)");
+  const Outcome outcome = folder.run({"plan", "twin/plan.toml", "--out", "out"});
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.exit_code == 0);
+  const auto json = nlohmann::json::parse(folder.read("out/plan.json"));
+  CHECK(violations(json, "plan") == "");
+  const auto& record = json["records"][2];
+  CHECK_THAT(record["problem"].get<std::string>(), Contains("cannot be simulated"));
+  CHECK(record["sd_alone"] == nlohmann::json({nullptr, nullptr}));
+  CHECK(record["sd_without"] == record["sd_alone"]);
+  CHECK(json["records"][0]["sd_alone"][0].is_number());
+  CHECK_THAT(outcome.out, Contains("runs_away: cannot be simulated"));
+  const std::string page = folder.read("out/report.html");
+  CHECK(folder.run({"report", "out"}).exit_code == 0);
+  CHECK(folder.read("out/report.html") == page);
+}
+
 }  // namespace rigcal::test

@@ -16,6 +16,8 @@ from browser import Browser, chromium
 SECTIONS = ["verdict", "assessment", "overview", "matrix", "parameters", "conditions", "identifiability", "starts", "warnings", "provenance",
             "formulas"]
 
+AXE = pathlib.Path(__file__).resolve().parents[2] / "node_modules" / "axe-core" / "axe.min.js"
+
 # Names that would do harm if a page took them for anything but text.
 NAME = "<script>alert(1)</script> \"quoted\" 'rig' & \u00fcber \u2192\nnext {{line}}"
 LEVEL = "<img src=x onerror=alert(2)>"
@@ -116,6 +118,25 @@ def check_access(page):
       ...[...document.querySelectorAll('[tabindex]')].filter(e => !e.getAttribute('aria-label')),
     ].map(e => e.outerHTML.slice(0, 100))""")
     check(not missing, f"nothing to tell a screen reader: {missing}")
+    check_axe(page)
+
+
+def check_axe(page):
+    """No violation of WCAG 2.2 AA that axe-core finds, light and dark, with everything unfolded and drawn."""
+    closed = "document.querySelectorAll('details:not([open])')"
+    page.run(f"window.were_closed = [...{closed}]; were_closed.forEach(d => {{ d.open = true; }})")
+    page.run(AXE.read_text() + "; 1")
+    for dark in (False, True):
+        page.dark(dark)
+        page.run("""window.violations = null;
+          axe.run(document, {runOnly: ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa'], resultTypes: ['violations']})
+             .then(({violations}) => { window.violations = violations.map(v => [v.id, v.nodes.length, v.nodes[0].html.slice(0, 200)]); })
+             .catch(error => { window.violations = [String(error)]; })""")
+        page.wait_for("window.violations !== null", "axe-core ends")
+        violations = page.run("window.violations")
+        check(not violations, f"{'dark' if dark else 'light'}: axe-core finds {violations}")
+    page.dark(False)
+    page.run("were_closed.forEach(d => { d.open = false; })")
 
 
 def check_widths(page):
