@@ -12,7 +12,9 @@
 #include "report/job/job.hpp"
 #include "report/job/leak_records.hpp"
 #include "report/leak/diagnosis.hpp"
+#include "report/live/live_fit.hpp"
 #include "report/page/page_parts.hpp"
+#include "report/store/result_files.hpp"
 #include "report/store/validity.hpp"
 
 namespace rigcal::report {
@@ -111,11 +113,15 @@ std::optional<std::vector<datasets::FittedValue>> truth_beside(const Campaign& c
   return read_truth(file, campaign.rig.plant);
 }
 
-JobResult finished(const DiagnosisResult& result) {
-  const StoredDiagnosis diagnosis = stored(result);
+/// @param live  live.json, if the rig can be simulated in the page
+JobResult finished(const DiagnosisResult& result, const std::optional<Json>& live = {}) {
+  StoredDiagnosis diagnosis = stored(result);
   JobResult job;
+  job.files = {{"diagnosis.csv", diagnosis_csv(result)}};
+  if (live) job.files.push_back({kLiveFile, json_line(*live)});
+  name_files(job.files, diagnosis.provenance);
   job.json = json_of(diagnosis);
-  job.files = {{"diagnosis.csv", diagnosis_csv(result)}, {"diagnosis.json", json_text(job.json)}};
+  job.files.push_back({"diagnosis.json", json_text(job.json)});
   job.first = {"diagnosis.json", "diagnosis.csv"};
   job.verdict = diagnosis_headline(diagnosis);
   job.sections = diagnosis_sections(diagnosis);
@@ -139,7 +145,7 @@ JobResult diagnosis_job(Campaign campaign, const DiagnosisRequest& request, cons
     throw UsageError(
         "diagnose: --fit is missing: expected the fit.json of a fit to healthy records");
   }
-  terms.hold({{"diagnosis.json", "diagnosis.csv", "report.html"}, {}});
+  terms.hold({{"diagnosis.json", "diagnosis.csv", kLiveFile, "report.html"}, {}});
   diagnosis::Diagnosis found;
   if (!reasons.empty()) {
     provenance.inputs = hash_inputs(campaign, {}, more_inputs);
@@ -162,7 +168,8 @@ JobResult diagnosis_job(Campaign campaign, const DiagnosisRequest& request, cons
   warn_of_recordings(records.averages(), found);
   if (!limits.empty()) warn_of_absent(limits, campaign, found);
   warn_of_fit(earlier, found);
-  return finished({campaign, found, reasons, provenance, limits});
+  const auto live = live_diagnosis(campaign, records.averages(), earlier.values, found);
+  return finished({campaign, found, reasons, provenance, limits}, live);
 }
 
 }  // namespace rigcal::report

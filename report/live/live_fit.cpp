@@ -29,17 +29,20 @@ constexpr std::size_t kLeastOfACase = 500;
 
 bool is_estimate(const calib::FittedParameter& p) { return p.fitted && std::isfinite(p.value); }
 
+/// @param p  an estimate with its scope: of the rig, of a leak level, or of a condition
+template <typename Estimate>
+bool acts_in(const Estimate& p, const Condition& condition) {
+  return p.scope == datasets::Scope::rig ||
+         (p.scope == datasets::Scope::leak_level && p.level == condition.leak_level) ||
+         (p.scope == datasets::Scope::condition && p.level == condition.id);
+}
+
 /// Values of a condition at the optimum, nuisance parameters included.
 model::ParameterValues values_at_optimum(const datasets::Campaign& campaign,
                                          const Condition& condition, const calib::Fit& fit) {
   model::ParameterValues values = values_in(campaign, condition);
-  for (const calib::FittedParameter& p : fit.parameters) {
-    if (!is_estimate(p)) continue;
-    const bool here = p.scope == datasets::Scope::rig ||
-                      (p.scope == datasets::Scope::leak_level && p.level == condition.leak_level) ||
-                      (p.scope == datasets::Scope::condition && p.level == condition.id);
-    if (here) values.set(p.index, p.value);
-  }
+  for (const calib::FittedParameter& p : fit.parameters)
+    if (is_estimate(p) && acts_in(p, condition)) values.set(p.index, p.value);
   return values;
 }
 
@@ -79,6 +82,17 @@ Json windows_of(const std::vector<bool>& in_window, std::size_t samples) {
   return windows;
 }
 
+/// First and last sample of each window of a record.
+Json windows_of(const datasets::Record& record) {
+  std::vector<bool> counts;
+  for (const double t : record.windows.empty() ? std::vector<double>() : record.time_s)
+    counts.push_back(std::any_of(record.windows.begin(), record.windows.end(),
+                                 [&](const datasets::TimeWindow& window) {
+                                   return t >= window.start_s && t <= window.end_s;
+                                 }));
+  return windows_of(counts, record.time_s.size());
+}
+
 /// Sample times as start, step and number, or each where they are not regular.
 Json times_of(const std::vector<double>& time_s) {
   const double step_s = (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1);
@@ -107,51 +121,81 @@ Json limits_of(const calib::ConditionScore& score, datasets::Channel channel) {
   return limits;
 }
 
-/// @param every  of so many samples one is taken
-Json measured_channel(const calib::ConditionScore& score, const calib::ChannelScore& channel,
-                      model::Output output, std::size_t every) {
-  const std::vector<double>& measured = score.series.at(channel.channel).first;
-  std::vector<double> taken;
-  taken.reserve(measured.size() / every + 1);
-  for (std::size_t i = 0; i < measured.size(); i += every) taken.push_back(measured[i]);
-  return {{"channel", info(channel.channel).key},
-          {"unit", info(channel.channel).unit},
-          {"output", model::output_name(output)},
-          {"values", floats_base64(taken)},
-          {"limits", limits_of(score, channel.channel)}};
-}
+/// What was measured in a case.
+struct MeasuredCase {
+  struct Measured {
+    datasets::Channel channel;
+    model::Output output;
+    const std::vector<double>* mean = nullptr;  ///< borrowed, shape (samples)
+    Json limits = Json::array();
+  };
+  const std::vector<double>* time_s = nullptr;  ///< borrowed
+  Json windows;                                 ///< first and last sample of each that counts
+  bool held_back = false;
+  std::vector<Measured> channels;  ///< those that the model has an output for
+};
 
-/// Channels that the model has an output for.
-std::vector<std::pair<const calib::ChannelScore*, model::Output>> compared(
-    const calib::ConditionScore& score) {
-  std::vector<std::pair<const calib::ChannelScore*, model::Output>> channels;
+MeasuredCase measured_case(const calib::ConditionScore& score) {
+  MeasuredCase found{&score.time_s,
+                     windows_of(score.in_window, score.time_s.size()),
+                     score.use == datasets::Use::validate,
+                     {}};
   for (const calib::ChannelScore& channel : score.channels) {
     const auto output = datasets::model_output(channel.channel);
-    if (output && score.series.contains(channel.channel)) channels.emplace_back(&channel, *output);
+    const auto series = score.series.find(channel.channel);
+    if (output && series != score.series.end())
+      found.channels.push_back(
+          {channel.channel, *output, &series->second.first, limits_of(score, channel.channel)});
   }
-  return channels;
+  return found;
+}
+
+/// @param every  of so many samples one is taken
+Json json_of(const MeasuredCase::Measured& measured, std::size_t every) {
+  std::vector<double> taken;
+  taken.reserve(measured.mean->size() / every + 1);
+  for (std::size_t i = 0; i < measured.mean->size(); i += every)
+    taken.push_back((*measured.mean)[i]);
+  return {{"channel", info(measured.channel).key},
+          {"unit", info(measured.channel).unit},
+          {"output", model::output_name(measured.output)},
+          {"values", floats_base64(taken)},
+          {"limits", measured.limits}};
 }
 
 /// Measured means of the cases, within the limit of all.
-void add_measured(const std::vector<const calib::ConditionScore*>& scores, Json& cases) {
+void add_measured(const std::vector<MeasuredCase>& measured, Json& cases) {
   std::size_t left = kMostSamples;
-  for (std::size_t i = 0; i < scores.size(); ++i) {
-    const calib::ConditionScore& score = *scores[i];
-    const auto channels = compared(score);
-    const std::size_t others = kLeastOfACase * (scores.size() - i - 1);
-    const std::size_t wanted = score.time_s.size() * channels.size();
+  for (std::size_t i = 0; i < measured.size(); ++i) {
+    const MeasuredCase& each = measured[i];
+    const std::size_t others = kLeastOfACase * (measured.size() - i - 1);
+    const std::size_t wanted = each.time_s->size() * each.channels.size();
     const std::size_t room = std::max(left > others ? left - others : 0, kLeastOfACase);
     const std::size_t every = wanted <= room ? 1 : (wanted + room - 1) / room;
     left -= std::min(left, wanted / every);
     Json& row = cases[i];
     row["every"] = every;
-    row["times"] = times_of(score.time_s);
-    row["windows"] = windows_of(score.in_window, score.time_s.size());
-    row["held_back"] = score.use == datasets::Use::validate;
+    row["times"] = times_of(*each.time_s);
+    row["windows"] = each.windows;
+    row["held_back"] = each.held_back;
     row["measured"] = Json::array();
-    for (const auto& [channel, output] : channels)
-      row["measured"].push_back(measured_channel(score, *channel, output, every));
+    for (const MeasuredCase::Measured& channel : each.channels)
+      row["measured"].push_back(json_of(channel, every));
   }
+}
+
+/// The rig of some cases, in a page of their result.
+Json embedded_rig(const datasets::Campaign& campaign, const std::vector<LiveCase>& cases,
+                  const std::vector<MeasuredCase>& measured) {
+  Json rig = live_rig(campaign, cases);
+  rig["embedded"] = true;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    Json& row = rig["cases"][i];
+    row["level"] = cases[i].condition.leak_level.value_or("");
+    row["campaign"] = given_values(values_in(campaign, cases[i].condition));
+  }
+  add_measured(measured, rig["cases"]);
+  return rig;
 }
 
 /// Intervals of the estimates; those of a leak level belong to its conditions.
@@ -175,34 +219,79 @@ Json intervals_of(const calib::Fit& fit) {
 std::optional<Json> live_fit(const Result& result) {
   const calib::Fit& fit = result.fit;
   if (!fit.has_converged()) return std::nullopt;
-  std::vector<const calib::ConditionScore*> scores;
+  std::vector<MeasuredCase> measured;
   std::vector<LiveCase> cases;
   for (const calib::ConditionScore* score : shown_first(fit)) {
     const Condition* condition = result.campaign.find(score->id);
     const auto record =
         std::find_if(result.records.begin(), result.records.end(),
                      [&](const datasets::Record& each) { return each.condition == score->id; });
-    if (condition == nullptr || record == result.records.end() || compared(*score).empty())
-      continue;
+    if (condition == nullptr || record == result.records.end()) continue;
+    MeasuredCase found = measured_case(*score);
+    if (found.channels.empty()) continue;
     cases.push_back(live_case(result.campaign, score->id, *condition,
                               values_at_optimum(result.campaign, *condition, fit), *record));
     if (cases.back().task.time_s != score->time_s) {
       cases.pop_back();
       continue;
     }
-    scores.push_back(score);
+    measured.push_back(std::move(found));
   }
   if (cases.empty()) return std::nullopt;
-  Json rig = live_rig(result.campaign, cases);
+  Json rig = embedded_rig(result.campaign, cases, measured);
   rig["tolerance"] = fit.tolerance;
-  rig["embedded"] = true;
   rig["intervals"] = intervals_of(fit);
-  for (std::size_t i = 0; i < cases.size(); ++i) {
-    Json& row = rig["cases"][i];
-    row["level"] = cases[i].condition.leak_level.value_or("");
-    row["campaign"] = given_values(values_in(result.campaign, cases[i].condition));
+  return rig;
+}
+
+std::optional<Json> live_diagnosis(const datasets::Campaign& campaign,
+                                   const std::vector<datasets::Record>& averages,
+                                   const std::vector<datasets::FittedValue>& healthy,
+                                   const diagnosis::Diagnosis& found) {
+  const int leak = model::parameter_index(campaign.rig.plant, "leakage_coefficient");
+  std::vector<const diagnosis::RecordDiagnosis*> shown;
+  for (const diagnosis::RecordDiagnosis& record : found.records)
+    if (!record.repeat && record.fit.ok() && !record.estimate.incompatible)
+      shown.push_back(&record);
+  std::stable_sort(shown.begin(), shown.end(), [](const auto* a, const auto* b) {
+    return a->estimate.coefficient > b->estimate.coefficient;
+  });
+  if (shown.size() > kMostCases) shown.resize(kMostCases);
+  std::vector<MeasuredCase> measured;
+  std::vector<LiveCase> cases;
+  Json intervals = Json::array();
+  for (const diagnosis::RecordDiagnosis* record : shown) {
+    const Condition* condition = campaign.find(record->condition);
+    const auto average = std::find_if(
+        averages.begin(), averages.end(),
+        [&](const datasets::Record& each) { return each.condition == record->condition; });
+    if (condition == nullptr || average == averages.end()) continue;
+    MeasuredCase means{&average->time_s, windows_of(*average), false, {}};
+    for (const auto& [channel, series] : average->channels)
+      if (const auto output = datasets::model_output(channel))
+        means.channels.push_back({channel, *output, &series.mean});
+    model::ParameterValues values = values_in(campaign, *condition);
+    for (const datasets::FittedValue& p : healthy)
+      if (p.index != leak && acts_in(p, *condition)) values.set(p.index, p.value);
+    values.set(leak, std::max(0.0, record->estimate.coefficient));
+    if (means.channels.empty() || !values.missing().empty()) continue;
+    cases.push_back(live_case(campaign, condition->id, *condition, std::move(values), *average));
+    if (cases.back().task.time_s != average->time_s) {
+      cases.pop_back();
+      continue;
+    }
+    measured.push_back(std::move(means));
+    const auto& [low, high] = record->estimate.ci95;
+    if (std::isfinite(low) && std::isfinite(high))
+      intervals.push_back({{"index", leak},
+                           {"level", condition->id},
+                           {"scope", to_string(datasets::Scope::condition)},
+                           {"low", low},
+                           {"high", high}});
   }
-  add_measured(scores, rig["cases"]);
+  if (cases.empty()) return std::nullopt;
+  Json rig = embedded_rig(campaign, cases, measured);
+  rig["intervals"] = std::move(intervals);
   return rig;
 }
 

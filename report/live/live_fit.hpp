@@ -2,11 +2,13 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "diagnosis/diagnose.hpp"
 #include "report/store/result.hpp"
 #include "report/store/stored.hpp"
 
-// The calibrated rig of a fit or validation, for the live section of its page.
+// The calibrated rig of a fit, a validation or a diagnosis, for the live section of its page.
 
 namespace rigcal::report {
 
@@ -16,6 +18,16 @@ inline constexpr const char* kLiveFile = "live.json";
 /// held back and worst first. Nothing if no condition was scored, or if the search did not
 /// converge.
 std::optional<Json> live_fit(const Result& result);
+
+/// Contents of live.json: the healthy rig with the leak that was found in each average, the largest
+/// first. Nothing if no leak was found out.
+///
+/// @param averages  the records that were diagnosed
+/// @param healthy   estimates of the fit that the diagnosis rests on
+std::optional<Json> live_diagnosis(const datasets::Campaign& campaign,
+                                   const std::vector<datasets::Record>& averages,
+                                   const std::vector<datasets::FittedValue>& healthy,
+                                   const diagnosis::Diagnosis& found);
 
 /// The section of a page with the rig in it, and the scripts that run it.
 struct LiveSection {

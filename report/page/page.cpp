@@ -225,6 +225,7 @@ std::string page_of(const Parts& parts, const std::string& sha256, PageExtent ex
   const auto add_link = [&](const std::string& id, const std::string& name) {
     page += fmt::format("<a href=\"#{}\">{}</a>", escaped(id), escaped(name));
   };
+  if (first.live) add_link("try", "Try it");
   for (const Part& part : parts.drawn)
     for (const auto& [id, name] : part.nav) add_link(id, name);
   add_link("provenance", "Provenance");

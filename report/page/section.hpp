@@ -79,6 +79,10 @@ Part part_of(const Result& result, const char* link, const char* name, const std
   return part;
 }
 
+/// The rig of a result's own run in its page; nothing if the run wrote no live.json.
+std::optional<LiveSection> live_of(const StoredProvenance& provenance, const ResultFolder& folder,
+                                   const std::string& file);
+
 /// A row of sections(), from functions that all take the data that the first one has read.
 ///
 /// @param more  further data of this kind of result; null if there are none
@@ -97,6 +101,7 @@ Section section(const SectionTitle& title, Files (*load)(const ReadFile&, const 
     for (const doc::Section& each : made.sections)
       made.nav.emplace_back(each.id, each.short_title.empty() ? each.title : each.short_title);
     made.provenance = provenance_blocks(result.provenance, title.name, title.file);
+    made.live = live_of(result.provenance, folder, title.file);
     if (more != nullptr) more(files, made);
     return made;
   };

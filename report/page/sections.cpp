@@ -1,11 +1,25 @@
+#include <algorithm>
+
 #include "report/page/calibration/page_calibration.hpp"
 #include "report/page/page_average.hpp"
 #include "report/page/page_batch.hpp"
 #include "report/page/page_overlay.hpp"
 #include "report/page/page_plan.hpp"
 #include "report/page/section.hpp"
+#include "report/store/result_files.hpp"
 
 namespace rigcal::report {
+
+std::optional<LiveSection> live_of(const StoredProvenance& provenance, const ResultFolder& folder,
+                                   const std::string& file) {
+  if (!provenance.files) return std::nullopt;
+  const bool named = std::any_of(provenance.files->begin(), provenance.files->end(),
+                                 [](const InputFile& each) { return each.path == kLiveFile; });
+  if (!named) return std::nullopt;
+  const auto text = files_of_run(folder.read, provenance, folder.where, file)(kLiveFile);
+  if (!text) return std::nullopt;
+  return live_section(*text, folder.where + "/" + kLiveFile);
+}
 
 const std::vector<Section>& sections() {
   static const std::vector<Section> rows{

@@ -69,16 +69,6 @@ Part fit_part(const Calibration& stored, int threads) {
   return part;
 }
 
-/// live.json of this result's own run, if it has one.
-std::optional<std::string> live_text(const Calibration& stored, const ResultFolder& folder) {
-  const StoredProvenance& provenance = stored.result.provenance;
-  if (!provenance.files) return std::nullopt;
-  const bool named = std::any_of(provenance.files->begin(), provenance.files->end(),
-                                 [](const InputFile& file) { return file.path == kLiveFile; });
-  if (!named) return std::nullopt;
-  return files_of_run(folder.read, provenance, folder.where, stored.file)(kLiveFile);
-}
-
 }  // namespace
 
 Part calibration_part(const ResultFolder& folder) {
@@ -86,9 +76,7 @@ Part calibration_part(const ResultFolder& folder) {
   if (const auto* tables = std::get_if<StoredTablesFit>(&stored)) return tables_fit_part(*tables);
   const auto& calibration = std::get<Calibration>(stored);
   Part part = fit_part(calibration, folder.threads);
-  if (const auto live = live_text(calibration, folder))
-    part.live = live_section(*live, folder.where + "/" + kLiveFile);
-  if (part.live) part.nav.insert(part.nav.begin(), {"try", "Try it"});
+  part.live = live_of(calibration.result.provenance, folder, calibration.file);
   return part;
 }
 
