@@ -128,7 +128,8 @@ def variable(node):
     start = tidy(text_of(node.find("initializer")))
     if len(start) > 60:  # a table, whose rows are no part of the interface
         start = ""
-    return tidy(f"{text_of(node.find('type'))} {text_of(node.find('name'))}{text_of(node.find('argsstring'))} {start}") + ";"
+    gap = "" if start in ("", "{}") else " "
+    return tidy(f"{text_of(node.find('type'))} {text_of(node.find('name'))}{text_of(node.find('argsstring'))}{gap}{start}") + ";"
 
 
 def enumeration(node):

@@ -13,7 +13,8 @@ var __search = {};
       document.head.append(Object.assign(document.createElement("script"), {src: new URL("search/search_index.js", base)}));
     };
     addEventListener("keydown", (event) => { if (["f", "s", "/"].includes(event.key)) ask(); });
-    addEventListener("focusin", (event) => { if (event.target.matches?.("[data-md-component=search-query]")) ask(); });
+    for (const type of ["focusin", "input", "keyup"])
+      addEventListener(type, (event) => { if (event.target.matches?.("[data-md-component=search-query]")) ask(); });
     addEventListener("change", (event) => { if (event.target.id === "__search") ask(); });
     if (new URL(location).searchParams.has("q")) ask();
   });

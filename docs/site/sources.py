@@ -116,6 +116,8 @@ def prepare(root, out, *, live, gallery_folder, module_folder, say):
         text = CONSOLE.sub(console, text)
         text = re.sub(r"<!-- gallery(?:: (\d+))? -->", lambda match: cards(gallery[:int(match[1] or len(gallery))]) if gallery else
                       "*The gallery is not part of this build of the site: `scripts/gallery` makes it.*", text)
+        if str(name).startswith("decisions/0"):
+            text = re.sub(r"\n", "\n\n[All decisions](index.md)\n", text, count=1)
         text = with_report(text, gallery, str(name).replace(".md", ".html"))
         (out / name).parent.mkdir(exist_ok=True)
         (out / name).write_text(text, encoding="utf-8")

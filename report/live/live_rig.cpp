@@ -247,6 +247,24 @@ Json presets_of(const Campaign& campaign,
   return list;
 }
 
+/// Rows of the published table of leak levels, for the page to compute the same beside them.
+Json published_levels(const datasets::LeakTableSettings& settings) {
+  Json list = Json::array();
+  for (const datasets::PrintedFeatures& row : settings.features) {
+    Json printed = Json::object();
+    for (const auto& [feature, value] : row.printed) {
+      const bool left_out =
+          std::find(row.left_out.begin(), row.left_out.end(), feature) != row.left_out.end();
+      printed[std::string(to_string(feature))] = {{"value", value}, {"left_out", left_out}};
+    }
+    list.push_back({{"name", row.level},
+                    {"coefficient", row.coefficient},
+                    {"printed", printed},
+                    {"reason", row.reason}});
+  }
+  return list;
+}
+
 Json classes_of(const datasets::DiagnosisSettings& settings) {
   Json list = Json::array();
   for (std::size_t i = 0; i < datasets::kLeakClasses.size(); ++i) {
@@ -343,6 +361,11 @@ Json live_rig(const Campaign& campaign, const std::vector<LiveCase>& cases) {
            {"classes", classes_of(campaign.diagnosis)},
            // Values that --set starts from: the rig without the changes of any level or condition.
            {"campaign", given_values(values_in(campaign, Condition()))}};
+  if (leak_table && !leak_table->features.empty()) {
+    rig["levels"] = published_levels(*leak_table);
+    if (const datasets::Assumption* scale = leak_table->assumption(datasets::kResidualScale))
+      rig["residual_scale"] = scale->value;
+  }
   rig["turns"] = campaign.rig.plant == model::PlantKind::linkage;
   rig["has_load_pressure"] = campaign.rig.plant == model::PlantKind::load_pressure;
   for (const model::Output output : model::kAllOutputs)
