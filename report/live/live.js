@@ -678,8 +678,8 @@
     if (rig.embedded) document.getElementById("try").scrollIntoView();
     if (worker && location.hash.slice(1) !== address()) { readAddress(); drawControls(); changed(); }
   });
-  // In a frame of another page the rig is a part of that page, which is told how high it is.
-  if (window.parent !== window && !rig.embedded) {
+  // A page with a title of its own asks for the rig alone by the name of the frame, and is told how high it is.
+  if (window.parent !== window && window.name === "rigcal-part") {
     document.documentElement.classList.add("framed");
     new ResizeObserver(() => window.parent.postMessage({rigcalHeight: document.body.scrollHeight}, "*")).observe(document.body);
   }
