@@ -28,10 +28,16 @@ GENERATE_XML = YES
 XML_PROGRAMLISTING = NO
 HAVE_DOT = NO
 QUIET = YES
-WARNINGS = NO
+WARN_IF_UNDOCUMENTED = NO
+WARN_IF_INCOMPLETE_DOC = NO
+ALIASES = "source=\\par Source^^" "deviation=\\par Deviation^^"
 """
 SECTIONS = {"throws": "Throws", "exception": "Throws", "return": "Returns", "note": "Note", "see": "See", "warning": "Warning",
             "pre": "Before the call", "post": "After the call"}
+
+
+class Stale(Exception):
+    """A comment tells of an argument that is not there."""
 
 
 class Missing(Exception):
@@ -48,6 +54,8 @@ def prose(node):
         return ""
     inside = html.escape(node.text or "", quote=False)
     for child in node:
+        if child.tag == "title":
+            continue
         inside += prose(child) + html.escape(child.tail or "", quote=False)
     tag = node.tag
     if tag == "para":
@@ -72,7 +80,8 @@ def prose(node):
                        f"<dd>{prose(item.find('parameterdescription'))}</dd>" for item in node.findall("parameteritem"))
         return f"<p class=\"part\">{title}</p><dl>{rows}</dl>"
     if tag == "simplesect":
-        return f"<p class=\"part\">{SECTIONS.get(node.get('kind'), node.get('kind', '').capitalize())}</p>{inside}"
+        title = text_of(node.find("title")) or SECTIONS.get(node.get("kind"), node.get("kind", "").capitalize())
+        return f"<p class=\"part\">{title}</p>{inside}"
     return inside
 
 
@@ -235,14 +244,24 @@ def page(library, about, headers):
     return "".join(text)
 
 
+def stale_comments(told, root):
+    """What Doxygen tells of arguments that are not there; in a comment of the code's own (`/*x*/`) they are."""
+    for line in told.splitlines():
+        found = re.match(r"(?P<header>.*?):(?P<line>\d+): warning: argument '(?P<name>\w+)' .*(?:is not found|has multiple)", line)
+        if found and f"/*{found['name']}*/" not in Path(found["header"]).read_text(encoding="utf-8"):
+            yield f"{Path(found['header']).relative_to(root)}:{found['line']}: @param {found['name']}"
+
+
 def write(root, out):
     """Writes cpp.md and cpp-LIBRARY.md into the folder `out`."""
     with tempfile.TemporaryDirectory() as folder:
         settings = DOXYFILE.format(input=" ".join(str(root / name) for name in LIBRARIES), output=folder, root=root)
         try:
-            subprocess.run(["doxygen", "-"], input=settings, text=True, check=True, capture_output=True)
+            done = subprocess.run(["doxygen", "-"], input=settings, text=True, check=True, capture_output=True)
         except FileNotFoundError:
             raise Missing("doxygen is missing: scripts/setup --dev") from None
+        if stale := list(stale_comments(done.stderr, root)):
+            raise Stale("no such argument, or it is told of twice: " + ", ".join(stale))
         headers = {re.sub(f"^{re.escape(str(root))}/", "", header): parts for header, parts in headers_of(Path(folder) / "xml").items()}
     rows = ""
     for name, about in LIBRARIES.items():
