@@ -506,10 +506,11 @@
     const rms = Math.sqrt(sizes.reduce((sum, v) => sum + v * v, 0) / sizes.length);
     return {mean, rms, std: Math.sqrt(Math.max(0, rms * rms - mean * mean))};
   };
-  const drivesAsPublished = () => rig.levels && ["waveform", "frequency", "amplitude"].every((key) => state[key] === rig.cases[0][key]);
+  const published = levels.some((level) => Object.keys(level.printed ?? {}).length);
+  const drivesAsPublished = () => published && state.case === rig.cases[0].name && ["waveform", "frequency", "amplitude"].every((key) => state[key] === rig.cases[0][key]);
   const showTable = (healthy) => {
     const printed = drivesAsPublished();
-    const columns = features.filter(([key]) => rig.levels || key.endsWith("flow") || healthy);
+    const columns = features.filter(([key]) => key.endsWith("flow") || healthy);
     const unit = rig.residual_scale ? "" : ` [${motion.unit}]`;
     const rows = levels.map((level, k) => {
       const run = levelRuns[k];
