@@ -12,8 +12,8 @@ namespace rigcal::calib {
 /// predicts the omitted one (its own nuisance parameters are estimated on it). A condition that
 /// alone determines an unknown, such as the only one of its leak level, cannot be predicted.
 ///
-/// @param whole   the fit of all conditions, with its scores
-/// @param budget  rest of the budget of the whole job; null: only `options.cancel` ends it
+/// @param whole  the fit of all conditions, with its scores
+/// @param left   rest of the budget of the whole job
 std::vector<HeldOut> cross_validate(const datasets::Campaign& campaign,
                                     const std::vector<datasets::Record>& records, const Fit& whole,
                                     const FitOptions& options, Budget& left);

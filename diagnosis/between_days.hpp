@@ -81,7 +81,7 @@ void estimate_days(const std::vector<HealthyDay>& healthy, BetweenDays& between)
 /// What was taken, in words: "records of 2026-03-02 are of another day than the reference ...".
 /// Empty where no record is of another day.
 ///
-/// @param others  conditions of another day than their reference
+/// @param other_days  conditions of another day than their reference
 std::string in_words(const BetweenDays& between, const std::vector<std::string>& other_days);
 
 /// The error with that by the days.

@@ -92,7 +92,6 @@ struct LeakFit {
 ///                   rig's parameters then act only through the effect of the leak; 0: none
 /// @param scan  of the same condition, gives the start; may be null
 /// @param covered  times of the record that count, within the condition's windows
-/// @param covered  times of the record that count, within the condition's windows
 LeakFit fit_leak(const LeakProblem& leak_problem, const RigFit& rig,
                  const datasets::Condition& condition, const datasets::Record& record,
                  const std::optional<datasets::TimeWindow>& covered, int reference,

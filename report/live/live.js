@@ -288,7 +288,10 @@
     begin(caseOf(state.case));
     try { return work(); } finally { state = was; }
   };
+  /** Counts the changes of the page, so that what was asked for before ends. */
+  let changes = 0;
   const simulate = () => {
+    ++changes;
     const chosen = caseOf(state.case);
     if (chosen.measured && !chosen.calibrated) {
       const calibrated = asBegun(requestOf);
@@ -321,6 +324,18 @@
   // A joint turns; every other rig moves along a line.
   const motion = rig.turns ? {name: "angle", output: "angle_rad", unit: "deg", si: Math.PI / 180}
     : {name: "position", output: "position_m", unit: "mm", si: 1e-3};
+  // Leak levels of the published table, else those of the campaign; a page of a fit has no table of them.
+  const levels = document.getElementById("live-levels") && rig.leak >= 0 ? rig.levels ?? (rig.presets.length > 1 ? rig.presets : []) : [];
+  const styleOf = (k) => `level-${k % 5}`;
+  const ofLevels = levels.length ? [
+    {title: `${rig.turns ? "Angle" : "Position"} at each leak level`, unit: motion.unit, si: motion.si, height: 220, ofLevels: true,
+     percent: driven.si_unit === "m" ? () => state.waveform === "recorded" ? 0 : state.amplitude / motion.si : undefined,
+     lines: [...(driven.si_unit === "m" ? [{name: "reference", style: "reference", reference: true}] : []),
+             ...levels.map(({name}, k) => ({name, style: styleOf(k), level: k, output: motion.output, width: 1.5}))]},
+    {title: "Flows at each leak level: servo, and leak (dashed)", unit: "L/min", si: 1e-3 / 60, height: 220, ofLevels: true,
+     lines: levels.flatMap(({name}, k) => [{name, style: styleOf(k), level: k, output: "servo_flow_m3_per_s", width: 1.5},
+                                           {name: `${name} leak`, style: styleOf(k), level: k, output: "leakage_flow_m3_per_s", width: 1.5, dash: [5, 3]}])},
+  ] : [];
   const plots = [
     {title: rig.turns ? "Angle" : "Position", unit: motion.unit, si: motion.si, height: 220, lines: [
       ...(driven.si_unit === "m" ? [{name: "reference", style: "reference", reference: true}] : []),
@@ -331,6 +346,7 @@
       {name: "servo", style: "servo", output: "servo_flow_m3_per_s"},
       {name: "work", style: "model", output: "work_flow_m3_per_s"},
       {name: "leak", style: "leak", output: "leakage_flow_m3_per_s", width: 1.8}]},
+    ...ofLevels,
     {title: rig.has_load_pressure ? "Load pressure" : "Pressures", unit: "MPa", si: 1e6, height: 160, lines: pressures.flatMap((line) => [...recorded(line.output, pressures.length > 1 ? ` ${line.name.at(-1)}` : ""), line])},
     {title: `Parity residual: ${motion.name} without a leak minus live`, unit: motion.unit, si: motion.si, height: 140, lines: [
       {name: "residual", style: "residual", residual: true}]},
@@ -371,6 +387,7 @@
       return outputs ? scaled(outputs, plot.si) : new Array(request.times.length).fill(null);
     }
     if (line.reference) return scaled(driveValues(request), plot.si);
+    if (line.level !== undefined) return scaled(levelRuns[line.level]?.outputs[output(line.output)], plot.si) ?? new Array(request.times.length).fill(null);
     if (line.healthy) return scaled(answer.healthy, plot.si) ?? request.times.map(() => NaN);
     if (line.residual) {
       const live = answer.outputs[output(motion.output)];
@@ -378,32 +395,33 @@
     }
     return scaled(answer.outputs[output(line.output)], plot.si);
   })];
+  /** What the levels lead to under the drive and with the values of the page, in the order of `levels`. */
+  let levelRuns = [];
   let charts = null;
   const sync = "live";
+  const chartOf = (plot, data) => {
+    const figure = make("figure", {class: "plot made", role: "img"}, make("figcaption", {text: `${plot.title} [${plot.unit}]`}));
+    $("plots").append(figure);
+    const axis = {stroke: css("--soft"), grid: {stroke: css("--rule"), width: 1}, ticks: {stroke: css("--rule")}, font: "11px system-ui, sans-serif"};
+    const chart = new uPlot({
+      width: figure.clientWidth || 600, height: plot.height,
+      series: [{label: "time", value: (_, v) => v == null ? "–" : digits(v) + " s"},
+               ...plot.lines.map((line) => ({label: line.name, stroke: css("--" + line.style), width: line.width ?? 1.2, spanGaps: Boolean(line.measured), dash: line.dash ?? (line.calibrated ? [6, 3] : line.reference ? [5, 3] : line.healthy ? [2, 2] : undefined),
+                                             points: {show: false}, value: (_, v) => v == null ? "–" : `${digits(v)} ${plot.unit}`}))],
+      scales: {x: {time: false}},
+      axes: [{...axis, size: 28, values: (_, ticks) => ticks.map((t) => digits(t) + " s")}, {...axis, size: 56, values: (_, ticks) => ticks.map((t) => digits(t))},
+             ...(plot.percent ? [{...axis, side: 1, size: 52, grid: {show: false}, splits: () => [-100, -50, 0, 50, 100].map((part) => part / 100 * plot.percent()),
+                                 values: (_, ticks) => ticks.map((t) => plot.percent() ? `${digits(100 * t / plot.percent(), 3)} %` : "")}] : [])],
+      cursor: {sync: {key: sync, setSeries: false, scales: ["x", null]}, drag: {x: true, y: false}},
+    }, data, figure);
+    chart.root.setAttribute("aria-hidden", "true");
+    return {plot, figure, chart};
+  };
   const drawPlots = (request, answer) => {
-    const place = $("plots");
-    if (!charts) {
-      charts = plots.map((plot) => {
-        const figure = make("figure", {class: "plot made", role: "img"}, make("figcaption", {text: `${plot.title} [${plot.unit}]`}));
-        place.append(figure);
-        const axis = {stroke: css("--soft"), grid: {stroke: css("--rule"), width: 1}, ticks: {stroke: css("--rule")}, font: "11px system-ui, sans-serif"};
-        const chart = new uPlot({
-          width: figure.clientWidth || 600, height: plot.height,
-          series: [{label: "time", value: (_, v) => v == null ? "–" : digits(v) + " s"},
-                   ...plot.lines.map((line) => ({label: line.name, stroke: css("--" + line.style), width: line.width ?? 1.2, spanGaps: Boolean(line.measured), dash: line.calibrated ? [6, 3] : line.reference ? [5, 3] : line.healthy ? [2, 2] : undefined,
-                                                 points: {show: false}, value: (_, v) => v == null ? "–" : `${digits(v)} ${plot.unit}`}))],
-          scales: {x: {time: false}},
-          axes: [{...axis, size: 28, values: (_, ticks) => ticks.map((t) => digits(t) + " s")}, {...axis, size: 56, values: (_, ticks) => ticks.map((t) => digits(t))}],
-          cursor: {sync: {key: sync, setSeries: false, scales: ["x", null]}, drag: {x: true, y: false}},
-        }, dataOf(plot, request, answer), figure);
-        chart.root.setAttribute("aria-hidden", "true");
-        return {plot, figure, chart};
-      });
-    } else {
-      for (const {plot, chart} of charts) chart.setData(dataOf(plot, request, answer));
-    }
+    if (!charts) charts = plots.map((plot) => chartOf(plot, dataOf(plot, request, answer)));
+    else for (const {plot, chart} of charts) if (!plot.ofLevels) chart.setData(dataOf(plot, request, answer));
     for (const {plot, figure} of charts) {
-      const peaks = plot.lines.filter((line) => line.output).map((line) =>
+      const peaks = plot.lines.filter((line) => line.output && !plot.ofLevels).map((line) =>
         `${line.name} up to ${digits(answer.outputs[output(line.output)].reduce((most, v) => Math.max(most, Math.abs(v)), 0) / plot.si)} ${plot.unit}`);
       figure.setAttribute("aria-label", [plot.title, ...peaks].join(", "));
     }
@@ -479,6 +497,70 @@
     clearTimeout(saying);
     saying = setTimeout(() => { $("said").textContent = items.map(([name, text, of]) => `${name} ${text} ${of}`).join("; "); }, 700);
   };
+  /** The table of leak levels: what the page computes, and below it what was published for the first drive. */
+  const features = [["servo_flow", "Servo flow", "L/min", 1e-3 / 60], ["leak_flow", "Leak flow", "L/min", 1e-3 / 60], ["mean", "mean", "", 1], ["rms", "rms", "", 1], ["std", "std", "", 1]];
+  const residualFeatures = (run, healthy, from) => {
+    const position = run.outputs[output(motion.output)];
+    const sizes = Array.from({length: position.length - 1 - from}, (_, i) => Math.abs(healthy[from + i] - position[from + i]) * (rig.residual_scale ?? 1 / motion.si));
+    const mean = sizes.reduce((sum, v) => sum + v, 0) / sizes.length;
+    const rms = Math.sqrt(sizes.reduce((sum, v) => sum + v * v, 0) / sizes.length);
+    return {mean, rms, std: Math.sqrt(Math.max(0, rms * rms - mean * mean))};
+  };
+  const published = levels.some((level) => Object.keys(level.printed ?? {}).length);
+  const drivesAsPublished = () => published && state.case === rig.cases[0].name && ["waveform", "frequency", "amplitude"].every((key) => state[key] === rig.cases[0][key]);
+  const showTable = (healthy) => {
+    const printed = drivesAsPublished();
+    const columns = features.filter(([key]) => key.endsWith("flow") || healthy);
+    const unit = rig.residual_scale ? "" : ` [${motion.unit}]`;
+    const rows = levels.map((level, k) => {
+      const run = levelRuns[k];
+      const ok = run?.status === "ok";
+      const found = ok ? {servo_flow: run.flows.servo, leak_flow: run.flows.leak, ...(healthy ? residualFeatures(run, healthy, run.from) : {})} : {};
+      const fraction = ok ? run.flows.fraction : null;
+      const cells = columns.map(([key, , , si]) => {
+        const paper = printed && level.printed?.[key];
+        return make("td", {class: "n"}, make("span", {text: digits(found[key] == null ? null : found[key] / si, 3)}),
+                    ...(paper ? [make("small", {text: `${digits(paper.value / si, 5)}${paper.left_out ? " *" : ""}`, title: paper.left_out ? level.reason : "published"})] : []));
+      });
+      const leakClass = fraction == null ? "" : classOf(fraction);
+      const button = make("button", {type: "button", text: level.name, "aria-pressed": String(level.coefficient === state.values.get(rig.leak)), "data-level": k});
+      button.addEventListener("click", () => {
+        state.values.set(rig.leak, level.coefficient);
+        showAll();
+        changed();
+      });
+      return make("tr", {class: level.coefficient === state.values.get(rig.leak) ? "chosen" : null},
+                  make("th", {scope: "row"}, make("span", {class: "swatch", style: `background: var(--${styleOf(k)})`}), button), make("td", {class: "n", text: digits(level.coefficient)}),
+                  ...cells.slice(0, 2), make("td", {class: "n", text: fraction == null ? "–" : `${digits(100 * fraction, 3)} %`}),
+                  make("td", {}, make("span", {class: `tag ${leakClass === "normal" ? "good" : leakClass === "slight" ? "warn" : leakClass ? "bad" : ""}`, text: leakClass || "–"})), ...cells.slice(2));
+    });
+    const heads = ["Leak level", "C_leak", "Servo flow [L/min]", "Leak flow [L/min]", "Share", "Class", ...columns.slice(2).map(([, title]) => `Residual ${title}${unit}`)];
+    const focused = document.activeElement?.dataset?.level;
+    document.getElementById("live-table").replaceChildren(make("caption", {text: `Leak levels under this drive${printed ? ", with the published numbers below" : ""}`}),
+      make("thead", {}, make("tr", {}, ...heads.map((text, i) => make("th", {scope: "col", class: i && i !== 5 ? "n" : null, text})))), make("tbody", {}, ...rows));
+    if (focused !== undefined) document.querySelector(`#live-table [data-level="${focused}"]`)?.focus();
+    document.getElementById("live-table-notes").textContent = printed && levels.some((level) => Object.values(level.printed ?? {}).some((each) => each.left_out))
+      ? "* does not agree with the other published numbers; a pointer on it shows why." : "";
+  };
+  /** Runs one level after the other, unless the page changes meanwhile. */
+  const runLevels = (request, healthy) => {
+    const begun = changes;
+    const runs = [];
+    const another = () => {
+      if (changes !== begun || running) return;
+      if (runs.length === levels.length) {
+        levelRuns = runs;
+        for (const {plot, chart} of charts) if (plot.ofLevels) chart.setData(dataOf(plot, request, {outputs: []}));
+        showTable(healthy);
+        window.rigcalLive.levels = levels.map(({name}, k) => ({name, ...runs[k].flows, ...(runs[k].status === "ok" && healthy ? residualFeatures(runs[k], healthy, runs[k].from) : {})}));
+        return;
+      }
+      const values = [...request.values.filter(([index]) => index !== rig.leak), [rig.leak, levels[runs.length].coefficient]];
+      send({id: next++, data: {request: {...request, values}, level: true}, done: (run) => { runs.push(run); another(); }});
+    };
+    another();
+  };
+  let levelsLater = 0;
   const show = (request, answer) => {
     if (request.of !== state.case) return;  // another case was chosen meanwhile: its answer follows
     const curves = document.querySelector(".live-curves");
@@ -492,6 +574,11 @@
     drawPlots(request, answer);
     showNumbers(request, answer);
     const scores = showScores(request, answer);
+    if (levels.length) {
+      showTable(answer.healthy);
+      clearTimeout(levelsLater);
+      levelsLater = setTimeout(() => runLevels(request, answer.healthy), 80);
+    }
     window.rigcalLive = {request, answer, scores, rig, of: request.of, drawn: (window.rigcalLive?.drawn ?? 0) + 1};
   };
 
@@ -565,7 +652,7 @@
     worker.postMessage({module}, [module]);
     readAddress();
     drawControls();
-    for (const node of document.querySelectorAll("#live .screen")) node.hidden = false;
+    for (const node of document.querySelectorAll(levels.length ? "#live .screen, #live-levels" : "#live .screen")) node.hidden = false;
     changed();
   };
   const begun = () => start().catch((error) => {
@@ -592,6 +679,11 @@
     if (rig.embedded) document.getElementById("try").scrollIntoView();
     if (worker && location.hash.slice(1) !== address()) { readAddress(); drawControls(); changed(); }
   });
+  // A page with a title of its own asks for the rig alone by the name of the frame, and is told how high it is.
+  if (window.parent !== window && window.name === "rigcal-part") {
+    document.documentElement.classList.add("framed");
+    new ResizeObserver(() => window.parent.postMessage({rigcalHeight: document.body.scrollHeight}, "*")).observe(document.body);
+  }
   let resizing = 0;
   addEventListener("resize", () => {
     clearTimeout(resizing);

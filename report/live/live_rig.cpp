@@ -50,6 +50,10 @@ void complete(Condition& condition) {
   }
 }
 
+std::string case_name(const datasets::LeakSignal& signal) {
+  return fmt::format("leak table: {}", signal.name());
+}
+
 /// Adds the signals of the leak table; the signal of its features comes first.
 void add_leak_table(const Campaign& campaign, const datasets::LeakTableSettings& settings,
                     std::vector<LiveCase>& cases) {
@@ -75,8 +79,7 @@ void add_leak_table(const Campaign& campaign, const datasets::LeakTableSettings&
     condition.frequency_hz = signal.frequency_hz;
     condition.amplitude = signal.amplitude;
     condition.where = {campaign.file.string()};
-    cases.push_back(live_case(campaign, fmt::format("leak table: {}", signal.name()),
-                              std::move(condition), values));
+    cases.push_back(live_case(campaign, case_name(signal), std::move(condition), values));
   }
 }
 
@@ -247,6 +250,27 @@ Json presets_of(const Campaign& campaign,
   return list;
 }
 
+/// Rows of the published table of leak levels, which the page computes anew.
+///
+/// @param comparable  the first case is the published drive of the published rig
+Json published_levels(const datasets::LeakTableSettings& settings, bool comparable) {
+  Json list = Json::array();
+  for (const datasets::PrintedFeatures& row : settings.features) {
+    Json printed = Json::object();
+    for (const auto& [feature, value] : row.printed) {
+      if (!comparable) break;
+      const bool left_out =
+          std::find(row.left_out.begin(), row.left_out.end(), feature) != row.left_out.end();
+      printed[std::string(to_string(feature))] = {{"value", value}, {"left_out", left_out}};
+    }
+    list.push_back({{"name", row.level},
+                    {"coefficient", row.coefficient},
+                    {"printed", printed},
+                    {"reason", row.reason}});
+  }
+  return list;
+}
+
 Json classes_of(const datasets::DiagnosisSettings& settings) {
   Json list = Json::array();
   for (std::size_t i = 0; i < datasets::kLeakClasses.size(); ++i) {
@@ -343,6 +367,13 @@ Json live_rig(const Campaign& campaign, const std::vector<LiveCase>& cases) {
            {"classes", classes_of(campaign.diagnosis)},
            // Values that --set starts from: the rig without the changes of any level or condition.
            {"campaign", given_values(values_in(campaign, Condition()))}};
+  if (leak_table && !leak_table->features.empty()) {
+    const bool comparable =
+        leak_table->feature_signal && cases.front().name == case_name(*leak_table->feature_signal);
+    rig["levels"] = published_levels(*leak_table, comparable);
+    const datasets::Assumption* scale = leak_table->assumption(datasets::kResidualScale);
+    if (comparable && scale != nullptr) rig["residual_scale"] = scale->value;
+  }
   rig["turns"] = campaign.rig.plant == model::PlantKind::linkage;
   rig["has_load_pressure"] = campaign.rig.plant == model::PlantKind::load_pressure;
   for (const model::Output output : model::kAllOutputs)

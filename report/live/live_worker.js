@@ -146,7 +146,7 @@ const coefficientOf = (model, request, leak, fraction, order) => {
   return null;
 };
 
-/** The run, the rig without a leak under the same drive, and what both amount to. */
+/** The run, the rig without a leak under the same drive (not for a level of the table), and what both amount to. */
 const answer = (model, message) => {
   const {request, leak, order} = message;
   const begun = performance.now();
@@ -155,6 +155,7 @@ const answer = (model, message) => {
   }
   const run = model.simulate(request);
   if (run.status !== "ok") return run;
+  if (message.level) return {...run, flows: flowsOf(request, run.outputs, order), from: lastPeriod(request)};
   const healthy = model.simulate(withValue(request, leak, 0));
   return {...run, healthy: healthy.status === "ok" ? healthy.outputs[order.indexOf(message.motion)] : null,
           flows: flowsOf(request, run.outputs, order), milliseconds: performance.now() - begun};

@@ -45,6 +45,7 @@ class Browser:
         self.number = 0
         self.problems = []
         self.requests = []
+        self.contexts = {}  # of scripts, by frame
         self.loaded = False
         target = next(t for t in self.call("Target.getTargets")["targetInfos"] if t["type"] == "page")
         self.session = self.call("Target.attachToTarget", targetId=target["targetId"], flatten=True)["sessionId"]
@@ -73,6 +74,10 @@ class Browser:
             self.problems.append(params["entry"]["text"])
         elif method == "Network.requestWillBeSent":
             self.requests.append(params["request"]["url"])
+        elif method == "Runtime.executionContextCreated":
+            about = params["context"].get("auxData", {})
+            if about.get("isDefault"):
+                self.contexts[about["frameId"]] = params["context"]["id"]
         elif method == "Page.loadEventFired":
             self.loaded = True
 
@@ -96,16 +101,21 @@ class Browser:
         while not self.loaded:
             self._note(self._receive())
 
-    def run(self, script):
-        """Value of a JavaScript expression; waits for a promise."""
-        result = self.call("Runtime.evaluate", expression=script, returnByValue=True, awaitPromise=True)
+    def run(self, script, frame=None):
+        """Value of a JavaScript expression; waits for a promise. `frame` is a part of the address of a frame of the page."""
+        where = {}
+        if frame:
+            frames = self.call("Page.getFrameTree")["frameTree"].get("childFrames", [])
+            found = next(each["frame"]["id"] for each in frames if frame in each["frame"]["url"])
+            where = {"contextId": self.contexts[found]}
+        result = self.call("Runtime.evaluate", expression=script, returnByValue=True, awaitPromise=True, userGesture=True, **where)
         if "exceptionDetails" in result:
             raise RuntimeError(result["exceptionDetails"].get("exception", {}).get("description", script))
         return result["result"].get("value")
 
-    def wait_for(self, script, what):
+    def wait_for(self, script, what, frame=None):
         for _ in range(600):
-            if self.run(script):
+            if self.run(script, frame):
                 return
             time.sleep(0.05)
         raise AssertionError(f"never: {what}")

@@ -137,6 +137,35 @@ def compare(browser, rigcal, campaign, what):
     print(f"{what}: within {worst:.1e} of the peaks, {browser.run('window.rigcalLive.answer.milliseconds'):.0f} ms")
 
 
+def table_of_levels(browser, rigcal, campaign):
+    """The live table of leak levels has the numbers of `leak-table`, and follows values and drive."""
+    run(rigcal, "leak-table", campaign.name, "--out", "table", "--quiet", cwd=campaign.parent)
+    rows = json.loads((campaign.parent / "table" / "leak_table.json").read_text())["features"]
+    browser.wait_for("window.rigcalLive.levels !== undefined", "no numbers of the leak levels")
+    live = browser.run("window.rigcalLive.levels")
+    check([each["name"] for each in live] == [row["level"] for row in rows], f"levels {live}")
+    for each, row in zip(live, rows):
+        for name, value, native in (("servo flow", each["servo"] * 60e3, row["servo_flow_l_per_min"]),
+                                    ("leak flow", each["leak"] * 60e3, row["leak_flow_l_per_min"]),
+                                    *((name, each[name], row[name]) for name in ("mean", "rms", "std"))):
+            check(abs(value - native) < 1e-3 * native, f"{name} of {row['level']}: {value}, leak-table has {native}")
+    shown = "[...document.querySelectorAll('#live-table tbody tr')].map((row) => row.innerText)"
+    printed = browser.run(shown)
+    check("2.07" in printed[1] and "2.0887" in printed[1] and "9.77 %" in printed[1] and "0.022 *" in printed[1], printed)
+    # A click chooses a level; a value moves the table; another drive has no published numbers.
+    moved(browser, "document.querySelector('#live-table [data-level=\"3\"]').click()")
+    check(browser.run("document.getElementById('live-of-leakage_coefficient').value") == "0.6", "the level of a row")
+    check(browser.run("document.querySelector('#live-table tr.chosen button').textContent") == "Critical", "the chosen row")
+    moved(browser, type_in("kp", 60))
+    browser.wait_for(f"{shown}[1].includes('9.77') === false", "the table does not follow the gain")
+    moved(browser, type_in("frequency", 0.2))
+    browser.wait_for(f"!{shown}[1].includes('2.0887')", "published numbers of another drive")
+    peaks = ("(() => { const chart = [...document.querySelectorAll('figure.made')].filter((each) => /each leak level/.test(each.textContent));"
+             " return chart.length; })()")
+    check(browser.run(peaks) == 2, "figures of the levels")
+    moved(browser, "document.getElementById('live-reset').click()")
+
+
 def the_papers_rig(rigcal, sources, folder):
     campaign = folder / "campaign.toml"
     campaign.write_text((sources / "datasets/rigs/uis_shake_table/campaign.toml").read_text())
@@ -148,6 +177,7 @@ def the_papers_rig(rigcal, sources, folder):
     with Browser(1440, 1000) as browser:
         browser.open(page)
         simulated(browser)
+        table_of_levels(browser, rigcal, campaign)
         # The address contains the tolerance, like every other difference.
         browser.run("location.hash = '#tolerance=1e-9&duration=10&frequency=1'")
         browser.wait_for("window.rigcalLive.request.tolerance === 1e-9", "the address changes nothing")

@@ -20,6 +20,7 @@ ELSEWHERE = {
     "lint": ".ci/run",
     "package": ".ci/run",
     "docs": "scripts/lint",
+    "gallery": "tests/docs/pages_test.py",
     "docs-numbers": "tests/docs/numbers_test.py",
     "mutation-study": "tests/CMakeLists.txt",
     "performance-job": "scripts/performance",
@@ -72,6 +73,19 @@ class Scripts(unittest.TestCase):
         self.assertIn("setup \nbuild release --target rigcal\n", printed)
         for name in ("truth.json", "fit.json", "validation.json", "report.html", "validation/report.html"):
             self.assertTrue((self.tree / "demo" / name).is_file(), name)
+
+    def test_live(self):
+        if "no live pages" in subprocess.run([RIGCAL, "--version"], capture_output=True, text=True, check=True).stdout:
+            self.skipTest("this program was built without the model for pages")
+        make_program(self.programs / "xdg-open", "#!/bin/sh\necho \"$1\" >opened\n")
+        os.environ["DISPLAY"] = ":7"  # nobody's
+        self.addCleanup(os.environ.pop, "DISPLAY", None)
+        page = self.tree / "live" / "explore.html"
+        for arguments in ((), ("datasets/rigs/karpenko_sepehri/campaign.toml",)):
+            printed = self.run_script("live", *arguments)
+            self.assertEqual(printed, f"setup \nbuild release --target rigcal\n{page}\n")
+            self.assertIn("Karpenko" if arguments else "UIS", page.read_text())
+            self.assertEqual((self.tree / "opened").read_text(), f"{page}\n")
 
     def test_design_study(self):
         self.assertEqual(self.run_script("design-study", "7", "2", "10"), "rigcal_design_study 7 2 10\n")

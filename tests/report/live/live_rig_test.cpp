@@ -60,6 +60,26 @@ TEST_CASE("live rig: the levels of the published table are the buttons", "[repor
   CHECK(names() == std::vector<std::string>{"Slight", "Medium", "Critical", "Super"});
 }
 
+TEST_CASE("live rig: the published table is there for its own rig and drive", "[report][live]") {
+  const datasets::Campaign campaign = uis();
+  std::vector<LiveCase> cases = live_cases(campaign);
+  const Json rig = live_rig(campaign, cases);
+  REQUIRE(rig.at("levels").size() == 5);
+  const Json& slight = rig.at("levels")[1];
+  CHECK(slight.at("name") == "Slight");
+  CHECK(slight.at("coefficient") == 0.15);
+  CHECK(slight.at("printed").at("mean") == Json{{"value", 0.0508}, {"left_out", false}});
+  CHECK(slight.at("printed").at("std").at("left_out") == true);
+  CHECK_THAT(slight.at("reason").get<std::string>(), Catch::Contains("printed std"));
+  CHECK(rig.at("residual_scale") == 55.35);
+  // Of another drive, or with the values of a fit, the levels remain, but not what was published.
+  cases.erase(cases.begin(), cases.begin() + 6);
+  const Json other = live_rig(campaign, cases);
+  REQUIRE(other.at("levels").size() == 5);
+  CHECK(other.at("levels")[1].at("printed").empty());
+  CHECK_FALSE(other.contains("residual_scale"));
+}
+
 TEST_CASE("live rig: where nothing can be simulated the first condition is named",
           "[report][live]") {
   datasets::Campaign campaign = uis();
