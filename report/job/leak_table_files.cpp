@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "report/live/live_fit.hpp"
+#include "report/live/live_rig.hpp"
 #include "report/store/json.hpp"
 #include "report/store/result_files.hpp"
 #include "report/store/stored.hpp"
@@ -44,9 +46,9 @@ calib::LeakTableOptions leak_table_options(const datasets::Campaign& campaign, i
 }
 
 PlannedFiles planned_leak_table(const datasets::LeakTableSettings& settings) {
-  PlannedFiles planned{
-      {"leak_table.json", "leak_table.csv", "features.csv", "report.html", kHealthySeries},
-      {kLevels}};
+  PlannedFiles planned{{"leak_table.json", "leak_table.csv", "features.csv", kLiveFile,
+                        "report.html", kHealthySeries},
+                       {kLevels}};
   for (const datasets::PrintedFeatures& features : settings.features)
     planned.files.push_back(kLevels / level_file(features.level));
   return planned;
@@ -65,6 +67,9 @@ std::vector<ResultFile> leak_table_files(const LeakTableResult& result) {
                        level_csv(signal, row.series, &*table.healthy)});
     }
   }
+  Json rig = live_rig(result.campaign, leak_table_cases(result.campaign, result.settings));
+  rig["embedded"] = true;
+  files.push_back({kLiveFile, json_line(rig)});
   StoredLeakTable stored = report::stored(result);
   name_files(files, stored.provenance);
   files.push_back({"leak_table.json", json_text(json_of(stored))});

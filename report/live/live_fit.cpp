@@ -1,5 +1,7 @@
 #include "report/live/live_fit.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -299,14 +301,19 @@ std::optional<LiveSection> live_section(const std::string& text, const std::stri
   if (live_module().empty()) return std::nullopt;
   const Json rig = parse_json(text, where);
   LiveSection section;
-  section.html =
-      "<style>" + std::string(asset("live.css")) +
-      "</style>\n<section id=\"try\" class=\"screen\" aria-labelledby=\"try-title\">\n<h2 "
-      "id=\"try-title\">Try it</h2>\n<p class=\"reading\">The calibrated rig, solved in this page "
-      "as <code>rigcal</code> solves it. It begins at the estimates; a mark on each slider shows "
-      "them, and a shade their 95 % interval. Scores and limits are those of the curves "
-      "shown.</p>\n" +
-      live_html("", "") + "</section>\n\n";
+  const char* const about =
+      rig.contains("intervals")
+          ? "The calibrated rig, solved in this page as <code>rigcal</code> solves it. It begins "
+            "at "
+            "the estimates; a mark on each slider shows them, and a shade their 95 % interval. "
+            "Scores and limits are those of the curves shown."
+          : "The rig, solved in this page as <code>rigcal</code> solves it. It begins at the "
+            "values "
+            "of the result; a mark on each slider shows them.";
+  section.html = fmt::format(
+      "<style>{}</style>\n<section id=\"try\" class=\"screen\" aria-labelledby=\"try-title\">\n"
+      "<h2 id=\"try-title\">Try it</h2>\n<p class=\"reading\">{}</p>\n{}</section>\n\n",
+      asset("live.css"), about, live_html("", ""));
   section.scripts = live_scripts(rig);
   return section;
 }

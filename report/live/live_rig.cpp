@@ -54,35 +54,6 @@ std::string case_name(const datasets::LeakSignal& signal) {
   return fmt::format("leak table: {}", signal.name());
 }
 
-/// Adds the signals of the leak table; the signal of its features comes first.
-void add_leak_table(const Campaign& campaign, const datasets::LeakTableSettings& settings,
-                    std::vector<LiveCase>& cases) {
-  std::vector<datasets::LeakSignal> signals = settings.signals;
-  if (settings.feature_signal) {
-    const auto first =
-        std::find_if(signals.begin(), signals.end(), [&](const datasets::LeakSignal& signal) {
-          return signal.name() == settings.feature_signal->name();
-        });
-    if (first != signals.end()) std::rotate(signals.begin(), first, first + 1);
-  }
-  model::ParameterValues values = leak_table_values(campaign, settings);
-  values.set(kLeak, settings.features.empty() ? 0.0 : settings.features.back().coefficient);
-  for (const datasets::PrintedFeatures& features : settings.features) {
-    if (!features.leaking) continue;
-    values.set(kLeak, features.coefficient);
-    break;
-  }
-  for (const datasets::LeakSignal& signal : signals) {
-    Condition condition;
-    condition.id = signal.name();
-    condition.waveform = signal.waveform;
-    condition.frequency_hz = signal.frequency_hz;
-    condition.amplitude = signal.amplitude;
-    condition.where = {campaign.file.string()};
-    cases.push_back(live_case(campaign, case_name(signal), std::move(condition), values));
-  }
-}
-
 /// Settings of the leak table, if the campaign has one.
 std::optional<datasets::LeakTableSettings> leak_table_of(const Campaign& campaign) {
   const bool periodic =
@@ -307,11 +278,41 @@ LiveCase live_case(const Campaign& campaign, std::string name, Condition conditi
   return {std::move(name), std::move(condition), std::move(task)};
 }
 
+std::vector<LiveCase> leak_table_cases(const Campaign& campaign,
+                                       const datasets::LeakTableSettings& settings) {
+  std::vector<datasets::LeakSignal> signals = settings.signals;
+  if (settings.feature_signal) {
+    const auto first =
+        std::find_if(signals.begin(), signals.end(), [&](const datasets::LeakSignal& signal) {
+          return signal.name() == settings.feature_signal->name();
+        });
+    if (first != signals.end()) std::rotate(signals.begin(), first, first + 1);
+  }
+  model::ParameterValues values = leak_table_values(campaign, settings);
+  values.set(kLeak, settings.features.empty() ? 0.0 : settings.features.back().coefficient);
+  for (const datasets::PrintedFeatures& features : settings.features) {
+    if (!features.leaking) continue;
+    values.set(kLeak, features.coefficient);
+    break;
+  }
+  std::vector<LiveCase> cases;
+  for (const datasets::LeakSignal& signal : signals) {
+    Condition condition;
+    condition.id = signal.name();
+    condition.waveform = signal.waveform;
+    condition.frequency_hz = signal.frequency_hz;
+    condition.amplitude = signal.amplitude;
+    condition.where = {campaign.file.string()};
+    cases.push_back(live_case(campaign, case_name(signal), std::move(condition), values));
+  }
+  return cases;
+}
+
 std::vector<LiveCase> live_cases(const Campaign& campaign,
                                  const std::vector<datasets::FittedValue>& fitted) {
   std::vector<LiveCase> cases;
   if (const auto settings = fitted.empty() ? leak_table_of(campaign) : std::nullopt)
-    add_leak_table(campaign, *settings, cases);
+    cases = leak_table_cases(campaign, *settings);
   std::optional<InputError> problem;
   for (const Condition& condition : campaign.conditions) {
     if (condition.use == datasets::Use::ignore) continue;

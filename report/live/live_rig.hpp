@@ -6,6 +6,7 @@
 
 #include "calib/problem/simulation_task.hpp"
 #include "datasets/campaign/campaign.hpp"
+#include "datasets/campaign/leak_table_settings.hpp"
 #include "report/json/json_fields.hpp"
 
 // Data that the script of a live page needs to simulate a rig like `rigcal simulate`.
@@ -28,6 +29,10 @@ struct LiveCase {
 /// @throws InputError  no case can be simulated, or a recording cannot be read (names its place)
 std::vector<LiveCase> live_cases(const datasets::Campaign& campaign,
                                  const std::vector<datasets::FittedValue>& fitted = {});
+
+/// The signals of a leak table, that of its features first, with the smallest leak of these.
+std::vector<LiveCase> leak_table_cases(const datasets::Campaign& campaign,
+                                       const datasets::LeakTableSettings& settings);
 
 /// Data of the rig for the script: parameters with units and ranges, cases, leak levels, classes.
 ///

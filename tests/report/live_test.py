@@ -308,6 +308,33 @@ def fitted_rigs(rigcal, sources, folder):
         the_fitted_rig(rigcal, sources / "datasets" / "rigs" / rig / "campaign.toml", folder / rig, rig, "--data", recordings / records)
 
 
+def leaking_rigs(rigcal, sources, folder):
+    """The pages of a diagnosis and of a leak table: the rig begins at the leak that was found, or at the smallest published one."""
+    made = folder / "leaks"
+    run(rigcal, "synthesize", sources / "datasets/rigs/uis_shake_table/diagnosis.toml", "--seed", "1", "--out", made, "--quiet", cwd=folder)
+    campaign = made / "campaign.toml"
+    run(rigcal, "fit", campaign, "--out", made / "fit", "--quiet", cwd=folder)
+    run(rigcal, "diagnose", campaign, "--fit", made / "fit" / "fit.json", "--out", made / "diagnosis", "--quiet", cwd=folder)
+    records = json.loads((made / "diagnosis" / "diagnosis.json").read_text())["records"]
+    largest = max((each for each in records if each["repeat"] is None and not each["is_reference"]), key=lambda each: each["leakage_coefficient"])
+    campaign.write_text(campaign.read_text() + "\n[simulation]\ntolerance = 1e-9\n")
+    run(rigcal, "leak-table", campaign, "--fit", made / "fit" / "fit.json", "--out", made / "table", "--quiet", cwd=folder)
+    for what, leak in (("diagnosis", largest["leakage_coefficient"]), ("table", None)):
+        with Browser() as browser:
+            browser.open(made / what / "report.html")
+            browser.run("document.getElementById('try').scrollIntoView()")
+            simulated(browser)
+            if leak is not None:
+                shown = float(browser.run("document.getElementById('live-of-leakage_coefficient').value"))
+                check(abs(shown - leak) < 1e-5 * leak, f"{what}: the leak {shown} of the page, {leak} of the result")
+                check(largest["condition"] in browser.run("document.getElementById('try').innerText"), f"{what}: the largest leak is first")
+                rho2 = browser.run("window.rigcalLive.scores.position.rho2")
+                check(rho2 > 0.999, f"{what}: the leak explains its record, rho2 {rho2}")
+            else:
+                compare(browser, rigcal, campaign, "the page of a leak table")
+            check(not browser.problems, f"{what}: {browser.problems}")
+
+
 def wrong_input(rigcal, folder):
     broken = folder / "broken.toml"
     broken.write_text(TWO_CHAMBER.replace('mass = { start = "60 kg", lower = "10 kg", upper = "500 kg", fit = true }\n', ""))
@@ -334,6 +361,7 @@ def main():
         the_papers_rig(rigcal, sources, folder)
         a_rig_with_everything(rigcal, folder)
         fitted_rigs(rigcal, sources, folder)
+        leaking_rigs(rigcal, sources, folder)
     return 0
 
 
