@@ -1,4 +1,6 @@
 """scripts/docs runs the commands of a document, and finds broken links. usage: site_test.py"""
+import importlib.machinery
+import importlib.util
 import os
 import pathlib
 import subprocess
@@ -89,6 +91,25 @@ class Navigation(unittest.TestCase):
         navigation = (ROOT / "mkdocs.yml").read_text()
         for path in (ROOT / "docs").glob("*.md"):  # decisions are on a page of their own
             self.assertIn(f": {path.relative_to(ROOT / 'docs')}\n", navigation)
+
+
+class Gallery(unittest.TestCase):
+    def test_every_shipped_rig_is_in_it(self):
+        loader = importlib.machinery.SourceFileLoader("gallery", str(ROOT / "scripts" / "gallery"))
+        gallery = importlib.util.module_from_spec(importlib.util.spec_from_loader("gallery", loader))
+        loader.exec_module(gallery)
+        shown = {pathlib.PurePath(entry.run.arguments.split()[1]).parent.name for entry in gallery.ENTRIES}
+        self.assertEqual(shown, {path.name for path in (ROOT / "datasets" / "rigs").iterdir()})
+        for entry in gallery.ENTRIES:
+            self.assertTrue(entry.document == "" or (ROOT / "docs" / entry.document).is_file(), entry)
+
+    def test_without_recordings_a_rig_is_left_out(self):
+        with tempfile.TemporaryDirectory() as folder:
+            done = subprocess.run([ROOT / "scripts" / "gallery", "--out", folder, "--without-pictures", "festo"], capture_output=True,
+                                  text=True, check=False, env={**os.environ, "RIGCAL": "/bin/true", "RIGCAL_DATA": folder})
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("gallery: without festo: no recordings in ", done.stderr)
+            self.assertEqual((pathlib.Path(folder) / "gallery.json").read_text(), "[]")
 
 
 if __name__ == "__main__":
