@@ -163,16 +163,35 @@ class TemporaryFile {
     if (!renamed_) ::unlink(path_.c_str());
   }
 
-  /// @param keep  keep the earlier file for take_back()
-  void rename_into_place(bool keep) {
-    if (keep) keep_earlier();
-    if (::rename(path_.c_str(), target_.c_str()) != 0) fail_to_write(target_, reason(errno));
+  /// Keeps the earlier file under a second name, for take_back(). Where the file system has no hard
+  /// links rename_into_place() will rename it.
+  void keep_earlier() {
+    struct stat status {};
+    if (::lstat(target_.c_str(), &status) != 0 || S_ISDIR(status.st_mode)) return;
+    int failed = EEXIST;
+    for (int tries = 0; failed == EEXIST && tries < kMostLeftovers; ++tries) {
+      earlier_ = temporary_name(target_);
+      failed = ::link(target_.c_str(), earlier_.c_str()) == 0 ? 0 : errno;
+    }
+    kept_ = failed == 0;
+  }
+
+  /// Takes no memory, so that of several files none is renamed unless all can be taken back.
+  ///
+  /// @return  0, or errno
+  int rename_into_place() noexcept {
+    if (!earlier_.empty() && !kept_) {
+      if (::rename(target_.c_str(), earlier_.c_str()) != 0) return errno;
+      kept_ = true;
+    }
+    if (::rename(path_.c_str(), target_.c_str()) != 0) return errno;
     renamed_ = true;
+    return 0;
   }
 
   /// Restores the state before rename_into_place(), whether or not that succeeded.
   void take_back() const noexcept {
-    if (earlier_.empty()) {
+    if (!kept_) {
       if (renamed_) ::unlink(target_.c_str());
       return;
     }
@@ -181,9 +200,11 @@ class TemporaryFile {
   }
 
   /// Removes the kept earlier file. take_back() is impossible afterwards.
-  void settle() const {
-    if (!earlier_.empty()) ::unlink(earlier_.c_str());
+  void settle() const noexcept {
+    if (kept_) ::unlink(earlier_.c_str());
   }
+
+  const fs::path& target() const { return target_; }
 
  private:
   void write(std::string_view content) const {
@@ -210,26 +231,11 @@ class TemporaryFile {
     remove();
   }
 
-  /// Keeps the earlier file under a second name; renames it where the file system has no hard
-  /// links.
-  void keep_earlier() {
-    struct stat status {};
-    if (::lstat(target_.c_str(), &status) != 0 || S_ISDIR(status.st_mode)) return;
-    fs::path name;
-    int failed = EEXIST;
-    for (int tries = 0; failed == EEXIST && tries < kMostLeftovers; ++tries) {
-      name = temporary_name(target_);
-      failed = ::link(target_.c_str(), name.c_str()) == 0 ? 0 : errno;
-    }
-    if (failed != 0 && ::rename(target_.c_str(), name.c_str()) != 0)
-      fail_to_write(target_, reason(errno));
-    earlier_ = name;
-  }
-
   fs::path target_;
   fs::path path_;
-  fs::path earlier_;  ///< kept earlier file; empty if there was none
+  fs::path earlier_;  ///< second name of the earlier file; empty if there was none
   int descriptor_ = -1;
+  bool kept_ = false;  ///< the earlier file has its second name
   bool renamed_ = false;
 };
 
@@ -298,15 +304,25 @@ void FilesInWriting::add(const fs::path& path, std::string_view content) {
 }
 
 // If one file cannot be renamed, those before it are restored: a set is never a mixture of two
-// runs.
+// runs. All memory is taken before the first is renamed.
 void FilesInWriting::rename_into_place() {
   const Uninterrupted whole;
-  auto next = written_.begin();
-  try {
-    for (; next != written_.end(); ++next) (*next)->rename_into_place(written_.size() > 1);
-  } catch (...) {
-    for (auto renamed = next + 1; renamed != written_.begin();) (*--renamed)->take_back();
-    throw;
+  const auto take_back = [&] {
+    for (auto file = written_.rbegin(); file != written_.rend(); ++file) (*file)->take_back();
+  };
+  if (written_.size() > 1) {
+    try {
+      for (const auto& file : written_) file->keep_earlier();
+    } catch (...) {
+      take_back();
+      throw;
+    }
+  }
+  for (const auto& file : written_) {
+    const int failed = file->rename_into_place();
+    if (failed == 0) continue;
+    take_back();
+    fail_to_write(file->target(), reason(failed));
   }
   for (const auto& file : written_) file->settle();
 }

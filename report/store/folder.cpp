@@ -88,19 +88,6 @@ std::optional<std::string> manifest_there(const fs::path& out) {
   }
 }
 
-/// Restores a manifest if possible. If not, the longer one stays, which is true as well.
-void restore(const fs::path& manifest, const std::optional<std::string>& text) noexcept {
-  try {
-    if (text) {
-      write_file_atomically(manifest, *text);
-    } else {
-      fs::remove(manifest);
-    }
-  } catch (const WriteError&) {
-  } catch (const fs::filesystem_error&) {
-  }
-}
-
 /// Whether a file keeps the state of a fit for --resume. It changes during a fit, so no manifest
 /// lists it.
 bool is_kept_state(const std::string& path, const fs::path& file) {
@@ -293,18 +280,29 @@ void ResultsInWriting::move_into_place() {
   // If the process ends between two renames, the manifest still lists every file that exists then.
   const fs::path manifest = held_.out_ / kManifestFile;
   const auto earlier = manifest_there(held_.out_);
+  // Every text is made before the work that nothing may cut short: without memory a process ends
+  // there by an exception, and freeing a JSON value takes memory.
+  const std::string text_of_left = manifest_text(left);
+  const std::string text_of_all = manifest_text(all);
+  const std::string text_of_staying = manifest_text(staying);
   const Uninterrupted whole;
-  writing_.add(manifest, manifest_text(left));
-  write_file_atomically(manifest, manifest_text(all));
+  writing_.add(manifest, text_of_left);
+  FilesInWriting back;  // written before anything is renamed: without memory nothing could be
+  if (earlier) back.add(manifest, *earlier);
+  write_file_atomically(manifest, text_of_all);
   try {
     writing_.rename_into_place();
-  } catch (const WriteError&) {
-    restore(manifest, earlier);
+  } catch (...) {
+    try {
+      back.rename_into_place();
+    } catch (const WriteError&) {  // the longer one stays, which is true as well
+    }
+    if (!earlier) ::unlink(manifest.c_str());
     throw;
   }
   if (!going.empty()) {
     for (const fs::path& path : going) remove_stale(held_.out_ / path);
-    write_file_atomically(manifest, manifest_text(staying));
+    write_file_atomically(manifest, text_of_staying);
   }
   held_.listed_ = staying;
 }
