@@ -207,6 +207,11 @@ double value_of_key(const Problem& problem, const model::ParameterValues& values
   return index < 0 ? std::nan("") : values.value[static_cast<std::size_t>(index)];
 }
 
+/// Whether the model has a pump of limited flow, which gives way.
+bool has_pump(const model::ParameterValues& values) {
+  return model::parameter_index(values.plant, "pump_flow") >= 0 && values.is_given("pump_flow");
+}
+
 double first_finite(double a, double b) { return std::isfinite(a) ? a : b; }
 
 double shortest_interval(const Problem& problem) {
@@ -345,7 +350,7 @@ std::vector<Effect> possible_effects(const Problem& problem, std::span<const dou
         std::any_of(problem.conditions.begin(), problem.conditions.end(),
                     [](const auto& each) { return each.inputs.supply_pressure_pa.has_value(); }))
       continue;  // what was recorded includes its sag
-    if (row.kind == EffectKind::supply_sag && values.is_given("pump_flow"))
+    if (row.kind == EffectKind::supply_sag && has_pump(values))
       continue;  // the pump decides how far its pressure falls
     if (!(effect.range > 0.0) || !std::isfinite(size.value) || !(size.value > 0.0)) continue;
     effect.about.key = row.key;
