@@ -6,14 +6,37 @@ namespace rigcal::datasets {
 namespace {
 
 /// Keys of parameters; a plant without one of them has no such effect.
-constexpr std::array kOfParameters{
-    "valve_time_constant",  "valve_offset",        "valve_dead_band",   "coulomb_friction",
-    "laminar_leakage",      "leakage_coefficient", "transport_delay",   "ki",
-    "total_volume",         "dead_volume_a",       "dead_volume_b",     "position_lag",
-    "position_gain",        "position_offset",     "load_pressure_lag", "load_pressure_gain",
-    "load_pressure_offset", "pressure_a_lag",      "pressure_a_gain",   "pressure_a_offset",
-    "pressure_b_lag",       "pressure_b_gain",     "pressure_b_offset", "force_lag",
-    "force_gain",           "force_offset"};
+constexpr std::array kOfParameters{"valve_time_constant",
+                                   "valve_offset",
+                                   "valve_dead_band",
+                                   "coulomb_friction",
+                                   "laminar_leakage",
+                                   "leakage_coefficient",
+                                   "transport_delay",
+                                   "ki",
+                                   "total_volume",
+                                   "dead_volume_a",
+                                   "dead_volume_b",
+                                   "position_lag",
+                                   "position_gain",
+                                   "position_offset",
+                                   "load_pressure_lag",
+                                   "load_pressure_gain",
+                                   "load_pressure_offset",
+                                   "pressure_a_lag",
+                                   "pressure_a_gain",
+                                   "pressure_a_offset",
+                                   "angle_lag",
+                                   "angle_gain",
+                                   "angle_offset",
+                                   "joint_friction",
+                                   "pilot_dead_band",
+                                   "pressure_b_lag",
+                                   "pressure_b_gain",
+                                   "pressure_b_offset",
+                                   "force_lag",
+                                   "force_gain",
+                                   "force_offset"};
 
 }  // namespace
 
@@ -26,8 +49,9 @@ std::vector<EffectName> effect_names(model::PlantKind plant) {
     names.push_back({key, std::string(spec.unit)});
   }
   names.push_back({"supply_sag", "1"});
-  for (const char* key : {"position_bow", "position_wave", "position_hysteresis"})
-    names.push_back({key, "m"});
+  const bool turns = plant == model::PlantKind::linkage;
+  for (const char* effect : {"_bow", "_wave", "_hysteresis"})
+    names.push_back({(turns ? "angle" : "position") + std::string(effect), turns ? "rad" : "m"});
   return names;
 }
 

@@ -17,9 +17,12 @@ using model::Output;
 /// What is known of a rig's size, SI; NaN where a value is missing.
 struct RigScale {
   double force_n = 0.0;        ///< piston area times supply
-  double command_v = 0.0;      ///< full scale of the command
+  double moment_n_m = 0.0;     ///< the same on the lever
+  double command_v = 0.0;      ///< full scale of the command [V], or of the pilot pressure [Pa]
   double flow_m3_per_s = 0.0;  ///< through the valve at full command and no load
   double travel_m = 0.0;       ///< stroke, or oil volume over piston area
+  double turn_rad = 0.0;       ///< angle between the stops
+  double middle_rad = 0.0;     ///< in the middle between them
   double pressure_pa = 0.0;    ///< supply
   double sample_s = 0.0;       ///< shortest sampling interval
   double kp_v_per_m = 0.0;
@@ -85,6 +88,14 @@ constexpr std::array kCatalogue{
                  [](const RigScale& rig) {
                    return EffectSize{1e-3 * rig.force_n, "0.1 % of area times supply"};
                  }},
+    CatalogueRow{"pilot_dead_band", EffectKind::parameter, true, "overlap of the spool",
+                 [](const RigScale& rig) {
+                   return EffectSize{1e-3 * rig.command_v, "0.1 % of full pilot pressure"};
+                 }},
+    CatalogueRow{"joint_friction", EffectKind::parameter, true, "friction of joint and seals",
+                 [](const RigScale& rig) {
+                   return EffectSize{1e-3 * rig.moment_n_m, "0.1 % of lever, area and supply"};
+                 }},
     CatalogueRow{"laminar_leakage", EffectKind::parameter, true, "laminar leak",
                  [](const RigScale& rig) {
                    return EffectSize{0.05 * rig.flow_m3_per_s / rig.pressure_pa,
@@ -140,6 +151,27 @@ constexpr std::array kCatalogue{
                  [](const RigScale& rig) {
                    return EffectSize{2e-4 * rig.travel_m, "0.02 % of the travel"};
                  }},
+    CatalogueRow{"angle_lag", EffectKind::parameter, true, "lag of the angle sensor", sensor_lag},
+    CatalogueRow{"angle_gain", EffectKind::parameter, false, "gain of the angle sensor",
+                 [](const RigScale&) {
+                   return EffectSize{2e-3, "0.2 % of the reading"};
+                 }},
+    CatalogueRow{"angle_offset", EffectKind::parameter, false, "offset of the angle sensor",
+                 [](const RigScale& rig) {
+                   return EffectSize{2e-4 * rig.turn_rad, "0.02 % of the angle between the stops"};
+                 }},
+    CatalogueRow{"angle_bow", EffectKind::bow, false, "nonlinearity of the angle sensor, even",
+                 [](const RigScale& rig) {
+                   return EffectSize{1e-3 * rig.turn_rad, "0.1 % of the angle between the stops"};
+                 }},
+    CatalogueRow{"angle_wave", EffectKind::wave, false, "nonlinearity of the angle sensor, odd",
+                 [](const RigScale& rig) {
+                   return EffectSize{1e-3 * rig.turn_rad, "0.1 % of the angle between the stops"};
+                 }},
+    CatalogueRow{"angle_hysteresis", EffectKind::hysteresis, true, "hysteresis of the angle sensor",
+                 [](const RigScale& rig) {
+                   return EffectSize{2e-4 * rig.turn_rad, "0.02 % of the angle between the stops"};
+                 }},
     CatalogueRow{"load_pressure_lag", EffectKind::parameter, true,
                  "lag of the load pressure sensor", sensor_lag},
     CatalogueRow{"load_pressure_gain", EffectKind::parameter, false,
@@ -175,6 +207,11 @@ double value_of_key(const Problem& problem, const model::ParameterValues& values
   return index < 0 ? std::nan("") : values.value[static_cast<std::size_t>(index)];
 }
 
+/// Whether the model has a pump of limited flow, which gives way.
+bool has_pump(const model::ParameterValues& values) {
+  return model::parameter_index(values.plant, "pump_flow") >= 0 && values.is_given("pump_flow");
+}
+
 double first_finite(double a, double b) { return std::isfinite(a) ? a : b; }
 
 double shortest_interval(const Problem& problem) {
@@ -200,6 +237,17 @@ RigScale scale_of(const Problem& problem, std::span<const double> z) {
   rig.flow_m3_per_s = get("discharge_coefficient") * get("area_gradient") * get("valve_gain") *
                       rig.command_v * std::sqrt(rig.pressure_pa / get("density"));
   rig.travel_m = first_finite(get("stroke"), get("total_volume") / area);
+  if (problem.campaign->rig.plant == model::PlantKind::linkage) {
+    rig.turn_rad = get("upper_stop") - get("lower_stop");
+    rig.middle_rad = 0.5 * (get("upper_stop") + get("lower_stop"));
+    rig.travel_m = get("lever") * rig.turn_rad;
+    rig.moment_n_m = rig.force_n * get("lever");
+  }
+  if (problem.campaign->rig.pilot) {
+    rig.command_v = get("pilot_dead_band") + get("pilot_range");
+    rig.flow_m3_per_s = get("discharge_coefficient") * get("area_gradient") * get("pilot_gain") *
+                        get("pilot_range") * std::sqrt(rig.pressure_pa / get("density"));
+  }
   rig.sample_s = shortest_interval(problem);
   rig.kp_v_per_m = get("kp");
   rig.leak_per_coefficient =
@@ -210,7 +258,7 @@ RigScale scale_of(const Problem& problem, std::span<const double> z) {
 /// The channel whose sensor a key names ("pressure_a_lag"); none if it names none.
 std::optional<Channel> sensor_channel(std::string_view key) {
   for (const Channel channel : {Channel::load_pressure, Channel::pressure_a, Channel::pressure_b,
-                                Channel::position, Channel::force}) {
+                                Channel::position, Channel::angle, Channel::force}) {
     const std::string_view name = datasets::info(channel).key;
     if (key.starts_with(name) && key.substr(name.size()).starts_with('_')) return channel;
   }
@@ -225,7 +273,14 @@ bool is_compared(const Problem& problem, Channel channel) {
 }
 
 bool is_curved(std::string_view key) {
-  return key == "coulomb_friction" || key == "valve_dead_band" || key == "position_hysteresis";
+  return key == "coulomb_friction" || key == "joint_friction" || key == "valve_dead_band" ||
+         key == "pilot_dead_band" || key == "position_hysteresis" || key == "angle_hysteresis";
+}
+
+/// Whether a key is of the valve that a rig does not have: one driven by a voltage, or by a pilot.
+bool is_of_other_valve(std::string_view key, bool pilot) {
+  if (key == "pilot_dead_band") return !pilot;
+  return pilot && (key == "valve_dead_band" || key == "valve_offset");
 }
 
 bool is_volume(std::string_view key) {
@@ -270,6 +325,7 @@ std::vector<Effect> possible_effects(const Problem& problem, std::span<const dou
     const auto name = std::find_if(names.begin(), names.end(),
                                    [&](const auto& each) { return each.key == row.key; });
     if (name == names.end()) continue;
+    if (is_of_other_valve(row.key, problem.campaign->rig.pilot)) continue;
     Effect effect;
     effect.kind = row.kind;
     effect.curved = is_curved(row.key);
@@ -280,6 +336,10 @@ std::vector<Effect> possible_effects(const Problem& problem, std::span<const dou
       if (is_in_model(problem, row.key, effect.index)) continue;
     }
     effect.range = row.kind == EffectKind::supply_sag ? rig.flow_m3_per_s : rig.travel_m;
+    if (channel == Channel::angle) {
+      effect.range = rig.turn_rad;
+      effect.middle = rig.middle_rad;
+    }
     EffectSize size = row.size(rig);
     if (is_volume(row.key)) {
       const double area = first_finite(value_of_key(problem, values, "piston_area"),
@@ -290,6 +350,8 @@ std::vector<Effect> possible_effects(const Problem& problem, std::span<const dou
         std::any_of(problem.conditions.begin(), problem.conditions.end(),
                     [](const auto& each) { return each.inputs.supply_pressure_pa.has_value(); }))
       continue;  // what was recorded includes its sag
+    if (row.kind == EffectKind::supply_sag && has_pump(values))
+      continue;  // the pump decides how far its pressure falls
     if (!(effect.range > 0.0) || !std::isfinite(size.value) || !(size.value > 0.0)) continue;
     effect.about.key = row.key;
     effect.about.meaning = row.meaning;
@@ -312,7 +374,7 @@ Eigen::VectorXd with_play(const Eigen::VectorXd& x, double half_width) {
 
 /// Change of a reading by an error of its sensor of a size.
 Eigen::VectorXd reading_error(const Effect& effect, const Eigen::VectorXd& reading, double size) {
-  const Eigen::ArrayXd turn = reading.array() / effect.range;  // fraction of the range
+  const Eigen::ArrayXd turn = (reading.array() - effect.middle) / effect.range;  // of the range
   if (effect.kind == EffectKind::bow) return size * (2.0 * turn).square();
   if (effect.kind == EffectKind::wave) return size * (2.0 * std::numbers::pi * turn).sin();
   return with_play(reading, size) - reading;
@@ -399,7 +461,7 @@ Eigen::VectorXd outputs_with(const Problem& problem, std::size_t condition,
     for (std::size_t e = 0; e < effects.size(); ++e) {
       const bool of_sensor =
           effects[e].kind != EffectKind::parameter && effects[e].kind != EffectKind::supply_sag;
-      if (of_sensor && channel.channel == Channel::position && size_of(e) != 0.0)
+      if (of_sensor && channel.channel == sensor_channel(effects[e].about.key) && size_of(e) != 0.0)
         reading += reading_error(effects[e], reading, size_of(e));
     }
     for (Eigen::Index t = 0; t < samples; ++t) {
@@ -446,7 +508,7 @@ Eigen::MatrixXd effect_rows(const Problem& problem, std::size_t condition,
       change = (run.outputs - base.outputs).leftCols(channels);
     } else {
       for (Eigen::Index k = 0; k < channels; ++k) {
-        if (data.channels[static_cast<std::size_t>(k)].channel == Channel::position)
+        if (data.channels[static_cast<std::size_t>(k)].channel == sensor_channel(effect.about.key))
           change.col(k) = reading_error(effect, base.outputs.col(k), size);
       }
     }

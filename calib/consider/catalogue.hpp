@@ -15,16 +15,17 @@ namespace rigcal::calib {
 enum class EffectKind {
   parameter,   ///< it is added to a parameter: an optional term, a volume
   supply_sag,  ///< the supply falls with the flow that it feeds
-  bow,         ///< nonlinearity of the position sensor, in the square of the reading
+  bow,         ///< nonlinearity of the sensor of the motion, in the square of the reading
   wave,        ///< the same, one wave over the range
-  hysteresis,  ///< play of the position sensor
+  hysteresis,  ///< play of the sensor of the motion
 };
 
 /// One effect that may act in a problem, with its plausible size.
 struct Effect {
   EffectKind kind = EffectKind::parameter;
-  int index = -1;      ///< row of the parameter table; -1: no parameter describes it
-  double range = 0.0;  ///< range of the sensor or the flow to which the size relates, SI
+  int index = -1;       ///< row of the parameter table; -1: no parameter describes it
+  double range = 0.0;   ///< range of the sensor or the flow to which the size relates, SI
+  double middle = 0.0;  ///< reading in the middle of this range
   /// Whether its secant depends on the size at which it is taken: friction, overlap, play.
   bool curved = false;
   double secant = 1.0;  ///< size at which that is taken, over the plausible size

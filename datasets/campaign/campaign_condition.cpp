@@ -202,14 +202,17 @@ void read_waveform(const TomlNode& node, const Campaign& campaign, Condition& co
   if (const auto amplitude = node.find("amplitude")) {
     const bool pid = campaign.rig.controller == model::ControllerKind::pid;
     const model::FeedbackRow& loop = model::gain_keys(campaign.rig.feedback);
-    const bool forces = pid && (campaign.rig.feedback == model::Feedback::force ||
-                                campaign.rig.feedback == model::Feedback::load_pressure);
+    const bool pilot = campaign.rig.pilot;
+    const bool forces = pilot || (pid && (campaign.rig.feedback == model::Feedback::force ||
+                                          campaign.rig.feedback == model::Feedback::load_pressure));
     const std::string note =
-        pid ? fmt::format("with a pid controller the waveform is the {} reference, in {}",
-                          loop.name, loop.unit)
-            : "without a controller the waveform is the valve command, in V";
-    condition.amplitude = amplitude->noted(note).quantity(pid ? loop.unit : "V",
-                                                          forces ? kLoadAmplitudes : kAmplitudes);
+        pid     ? fmt::format("with a pid controller the waveform is the {} reference, in {}",
+                              loop.name, loop.unit)
+        : pilot ? "pilot_gain makes the waveform a pilot pressure, in Pa"
+                : "without a controller the waveform is the valve command, in V";
+    const std::string_view unit = pid ? loop.unit : pilot ? "Pa" : "V";
+    condition.amplitude =
+        amplitude->noted(note).quantity(unit, forces ? kLoadAmplitudes : kAmplitudes);
   }
 }
 

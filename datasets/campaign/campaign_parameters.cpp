@@ -235,8 +235,9 @@ std::optional<ParameterConflict> find_pilot_conflict(const model::Rig& rig,
     return ParameterConflict{"pilot_gain",
                              "pilot_gain decides what drives the rig, and some conditions alone "
                              "have it: expected it in [rig.parameters]"};
-  constexpr std::array kOfPilot{"pilot_dead_band", "pilot_range", "pilot_exponent",
-                                "return_dead_band", "return_exponent"};
+  constexpr std::array kOfPilot{"pilot_dead_band",  "pilot_range",     "pilot_exponent",
+                                "return_dead_band", "return_exponent", "bypass_opening",
+                                "bypass_range"};
   constexpr std::array kOfVolts{"valve_dead_band", "valve_offset", "valve_rate_limit"};
   for (const char* key : kOfPilot) {
     if (pilot || !values.is_given(key)) continue;
@@ -259,6 +260,14 @@ std::optional<ParameterConflict> find_pump_conflict(const model::ParameterValues
     return ParameterConflict{"pump_flow",
                              "a pump of limited flow needs supply_resistance (how far its pressure "
                              "falls before it gives all of it) and supply_capacity: expected both"};
+  if (values.is_given("bypass_opening") && !values.is_given("supply_resistance"))
+    return ParameterConflict{
+        "bypass_opening",
+        "what passes the valve by shows in the pressure of a pump that gives way: expected "
+        "supply_resistance and supply_capacity"};
+  if (values.is_given("bypass_range") && !values.is_given("bypass_opening"))
+    return ParameterConflict{"bypass_range",
+                             "bypass_range without a bypass: expected bypass_opening"};
   constexpr std::array kSecond{"pump_second_flow", "pump_delay"};
   for (const char* key : {"pump_second_flow", "pump_delay", "pump_rise", "pump_first_rate"}) {
     if (!values.is_given(key)) continue;

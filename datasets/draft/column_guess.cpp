@@ -35,6 +35,9 @@ const std::vector<std::pair<Channel, Words>> kChannelWords{
     {Channel::position,
      {"x", "y", "s", "s1", "pos", "position", "stroke", "disp", "displacement", "piston", "ist",
       "istwert", "istposition", "weg", "kolbenweg", "hub", "xp", "lvdt"}},
+    {Channel::angle, {"angle", "theta", "ang", "jointangle", "winkel", "gelenkwinkel"}},
+    {Channel::pilot_pressure,
+     {"pilot", "ppilot", "pilotpressure", "vorsteuerdruck", "steuerdruck"}},
     {Channel::load_pressure,
      {"pl", "dp", "loadpressure", "pload", "deltap", "lastdruck", "differenzdruck"}},
     {Channel::pressure_a,
@@ -133,6 +136,7 @@ std::optional<Channel> guess_by_unit(const std::string& unit, bool has_position)
     }
   };
   if (unit.empty()) return std::nullopt;
+  if (is_of("rad")) return Channel::angle;
   if (is_of("m")) return has_position ? Channel::reference : Channel::position;
   if (is_of("V")) return Channel::command;
   if (is_of("Pa")) return Channel::pressure_a;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <functional>
 #include <iterator>
@@ -195,7 +196,9 @@ std::vector<std::vector<ChannelColumns>> column_sets(const FileColumns& columns)
 std::string comment(const std::string& text) { return "  # " + text; }
 
 /// One line of [recording.channels]; a column of another dimension than the channel needs a gain.
-std::string channel_line(Channel channel, const std::string& column, const std::string& unit) {
+/// @param minus  column of the other direction; empty: there is none
+std::string channel_line(Channel channel, const std::string& column, const std::string& unit,
+                         const std::string& minus = {}) {
   const ChannelInfo& about = info(channel);
   std::string shown_unit = unit.empty() ? kBlank : unit;
   std::string remark;
@@ -211,9 +214,65 @@ std::string channel_line(Channel channel, const std::string& column, const std::
           unit, about.unit));
     }
   }
-  const std::string name = column.empty() ? "" : fmt::format("column = {}, ", toml_quoted(column));
+  std::string name = column.empty() ? "" : fmt::format("column = {}, ", toml_quoted(column));
+  if (!minus.empty()) name += fmt::format("minus = {}, ", toml_quoted(minus));
   return fmt::format("{} = {{ {}unit = {} }}{}\n", about.key, name, toml_quoted(shown_unit),
                      remark);
+}
+
+const ChannelColumns* find(const FileColumns& columns, Channel channel) {
+  const auto found = std::find_if(columns.channels.begin(), columns.channels.end(),
+                                  [&](const ChannelColumns& c) { return c.channel == channel; });
+  return found == columns.channels.end() ? nullptr : &*found;
+}
+
+/// The motion of a rig: the angle of a joint, or the position of a piston.
+const ChannelColumns* motion_of(const FileColumns& columns) {
+  const ChannelColumns* angle = find(columns, Channel::angle);
+  return angle != nullptr ? angle : find(columns, Channel::position);
+}
+
+/// Whether a pilot pressure drives the rig; it can where a joint turns.
+bool has_pilot(const FileColumns& columns) {
+  return find(columns, Channel::angle) != nullptr &&
+         find(columns, Channel::pilot_pressure) != nullptr;
+}
+
+/// Which way a column of a drive moves the machine, by a word in its name: 1 out or up, -1 in or
+/// down, 0 unknown.
+int direction_of(const std::string& name) {
+  using Words = std::array<std::string_view, 9>;
+  constexpr Words kOut{"up", "out", "extend", "raise", "open", "forward", "fwd", "auf", "aus"};
+  constexpr Words kIn{"down", "dn", "in", "retract", "close", "reverse", "rev", "ab", "ein"};
+  std::string part;
+  for (const char c : name + "_") {
+    if (std::isalpha(static_cast<unsigned char>(c)) != 0) {
+      part += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+      continue;
+    }
+    if (std::find(kOut.begin(), kOut.end(), part) != kOut.end()) return 1;
+    if (std::find(kIn.begin(), kIn.end(), part) != kIn.end()) return -1;
+    part.clear();
+  }
+  return 0;
+}
+
+/// Columns of a drive, if there is one per direction.
+struct OneEachWay {
+  std::string out;
+  std::string in;
+};
+
+std::optional<OneEachWay> one_each_way(const FileColumns& columns, Channel drive) {
+  OneEachWay found;
+  for (const ChannelColumns& column : columns.channels) {
+    if (column.channel != drive || !column.numbers.empty()) continue;
+    const int direction = direction_of(column.stem);
+    if (direction > 0 && found.out.empty()) found.out = column.stem;
+    if (direction < 0 && found.in.empty()) found.in = column.stem;
+  }
+  if (found.out.empty() || found.in.empty()) return std::nullopt;
+  return found;
 }
 
 /// Numbers of the named columns; empty if one of them has none.
@@ -297,11 +356,28 @@ std::string channels_text(const fs::path& file, const FileColumns& columns) {
                       columns.time_unit.empty() ? comment("assumed: its name tells no unit") : "");
   std::vector<Channel> done;
   for (const ChannelColumns& column : columns.channels) {
+    if (column.channel == Channel::pilot_pressure && !has_pilot(columns)) {
+      text += fmt::format("# '{}' looks like a pilot pressure, which drives a joint alone\n",
+                          column.stem);
+      continue;
+    }
+    if (column.channel == Channel::command && has_pilot(columns)) {
+      text += fmt::format(
+          "# '{}' also looks like a drive: the pilot pressure is nearer to the "
+          "spool\n",
+          column.stem);
+      continue;
+    }
     const bool again = std::find(done.begin(), done.end(), column.channel) != done.end();
     if (!again) {
       done.push_back(column.channel);
-      text += channel_line(column.channel, column.numbers.empty() ? column.stem : "", column.unit);
-    } else if (column.numbers.empty()) {
+      const auto ways = one_each_way(columns, column.channel);
+      if (ways && (column.channel == Channel::command || column.channel == Channel::pilot_pressure))
+        text += channel_line(column.channel, ways->out, column.unit, ways->in);
+      else
+        text +=
+            channel_line(column.channel, column.numbers.empty() ? column.stem : "", column.unit);
+    } else if (column.numbers.empty() && !one_each_way(columns, column.channel)) {
       text += fmt::format("# '{}' also looks like {}\n", column.stem, info(column.channel).key);
     }
   }
@@ -340,15 +416,30 @@ constexpr std::array<std::string_view, 8> kLoadPressureTerms{
     "valve_offset",       "valve_dead_band", "valve_time_constant", "transport_delay",
     "valve_null_leakage", "laminar_leakage", "external_force",      "coulomb_friction"};
 
+/// Terms of a joint.
+constexpr std::array<std::string_view, 15> kLinkageTerms{
+    "reference_angle", "lever_gradient",      "lever_curvature",
+    "gravity_moment",  "joint_friction",      "gravity_moment_gradient",
+    "stop_stiffness",  "valve_time_constant", "gain_a_to_tank",
+    "gain_b_to_tank",  "make_up_conductance", "supply_resistance",
+    "supply_capacity", "pump_flow",           "air_fraction"};
+
+/// Terms of a valve that a pilot pressure drives.
+constexpr std::array<std::string_view, 6> kPilotTerms{
+    "pilot_dead_band",     "pilot_exponent",         "return_exponent",
+    "return_line_opening", "return_line_resistance", "bypass_opening"};
+
 /// Terms of a rig with a payload, proposed if an acceleration was recorded.
 constexpr std::array<std::string_view, 3> kPayloadTerms{"payload_mass", "payload_frequency",
                                                         "payload_damping_ratio"};
 
 /// Terms that may join, as comments.
-std::string terms_text(model::PlantKind plant, bool with_payload) {
-  const bool two_chambers = plant == model::PlantKind::two_chamber;
+std::string terms_text(model::PlantKind plant, bool with_payload, bool pilot) {
   std::vector<std::string_view> terms(kLoadPressureTerms.begin(), kLoadPressureTerms.end());
-  if (two_chambers) terms.assign(kTwoChamberTerms.begin(), kTwoChamberTerms.end());
+  if (plant == model::PlantKind::two_chamber)
+    terms.assign(kTwoChamberTerms.begin(), kTwoChamberTerms.end());
+  if (plant == model::PlantKind::linkage) terms.assign(kLinkageTerms.begin(), kLinkageTerms.end());
+  if (pilot) terms.insert(terms.end(), kPilotTerms.begin(), kPilotTerms.end());
   if (with_payload) terms.insert(terms.end(), kPayloadTerms.begin(), kPayloadTerms.end());
   std::string text = "# Terms that are absent unless given (rigcal params lists all):\n";
   for (const std::string_view key : terms) {
@@ -361,22 +452,33 @@ std::string terms_text(model::PlantKind plant, bool with_payload) {
   return text;
 }
 
-/// @param loop  controlled quantity; none: the command was recorded
-std::string rig_text(model::PlantKind plant, std::optional<model::Feedback> loop,
-                     bool with_payload) {
-  const bool two_chambers = plant == model::PlantKind::two_chamber;
-  std::string text =
-      two_chambers
-          ? "[rig]\n"
-            "model = \"two_chamber\"  # single-rod or double-rod, with both chamber pressures\n"
-          : "[rig]\n"
-            "model = \"load_pressure\"  # a symmetric cylinder on one servo-valve\n";
+std::string model_text(model::PlantKind plant) {
+  switch (plant) {
+    case model::PlantKind::load_pressure:
+      return "model = \"load_pressure\"  # a symmetric cylinder on one servo-valve\n";
+    case model::PlantKind::two_chamber:
+      return "model = \"two_chamber\"  # single-rod or double-rod, with both chamber pressures\n";
+    case model::PlantKind::linkage:
+      return "model = \"linkage\"  # a cylinder that turns an arm; chamber A is the one whose "
+             "pressure raises the angle\n";
+  }
+  return {};
+}
+
+/// @param loop   controlled quantity; none: the command was recorded
+/// @param pilot  whether the recorded drive is a pilot pressure
+std::string rig_text(model::PlantKind plant, std::optional<model::Feedback> loop, bool with_payload,
+                     bool pilot) {
+  std::string text = "[rig]\n" + model_text(plant);
   text +=
       "# What a data sheet does not tell is fitted: { start = ..., lower = ..., upper = ..., fit = "
       "true }\n"
       "[rig.parameters]\n";
   for (const model::ParameterSpec& spec : model::parameter_table(plant)) {
-    if (spec.kind != model::ParameterKind::plant || spec.default_value) continue;
+    // The gain of a linkage's valve is one of two terms, by what drives it.
+    const bool needed = plant == model::PlantKind::linkage &&
+                        spec.key == std::string_view(pilot ? "pilot_gain" : "valve_gain");
+    if (!needed && (spec.kind != model::ParameterKind::plant || spec.default_value)) continue;
     const std::string blank = spec.unit == "1"
                                   ? toml_quoted(kBlank)
                                   : toml_quoted(fmt::format("{} {}", kBlank, spec.unit));
@@ -384,11 +486,12 @@ std::string rig_text(model::PlantKind plant, std::optional<model::Feedback> loop
                         comment(fmt::format("{}: {}{}", spec.symbol, spec.meaning,
                                             spec.unit == "1" ? " (a plain number)" : "")));
   }
-  text += terms_text(plant, with_payload);
+  text += terms_text(plant, with_payload, pilot);
   if (!loop)
-    return text +
-           "[rig.controller]\ntype = \"none\"  # the recorded command drives the "
-           "valve\n";
+    return text + fmt::format(
+                      "[rig.controller]\ntype = \"none\"  # the recorded {} drives the "
+                      "valve\n",
+                      pilot ? "pilot pressure" : "command");
   const model::FeedbackRow& row = model::gain_keys(*loop);
   const auto unit_of = [&](std::string_view key) {
     return model::parameter_table(
@@ -470,17 +573,11 @@ std::string id_of(const std::string& stem) {
   return id.empty() ? "record" : id;
 }
 
-const ChannelColumns* find(const FileColumns& columns, Channel channel) {
-  const auto found = std::find_if(columns.channels.begin(), columns.channels.end(),
-                                  [&](const ChannelColumns& c) { return c.channel == channel; });
-  return found == columns.channels.end() ? nullptr : &*found;
-}
-
-/// Proposes limits, as comments, for the compared channels other than the position.
+/// Proposes limits, as comments, for the compared channels other than the motion.
 std::string limits_of_others(const FileColumns& columns) {
   std::string text;
   for (const Channel channel : {Channel::load_pressure, Channel::pressure_a, Channel::pressure_b}) {
-    if (find(columns, channel) == nullptr || find(columns, Channel::position) == nullptr) continue;
+    if (find(columns, channel) == nullptr || motion_of(columns) == nullptr) continue;
     const auto key = info(channel).key;
     text += fmt::format(
         "# [acceptance.{0}]\n# rho2 = 0.95  # or, in [acceptance]: not_judged = [\"{0}\"]\n", key);
@@ -490,6 +587,7 @@ std::string limits_of_others(const FileColumns& columns) {
 
 /// Controlled quantity of the loop whose reference is recorded; none: no reference is recorded.
 std::optional<model::Feedback> loop_of(const FileColumns& columns) {
+  if (find(columns, Channel::angle) != nullptr) return std::nullopt;  // a joint has no controller
   for (std::size_t i = 0; i < model::kFeedbackCount; ++i) {
     const model::Rig rig{{}, model::ControllerKind::pid, {}, static_cast<model::Feedback>(i)};
     if (find(columns, drive_channel(rig)) != nullptr) return rig.feedback;
@@ -500,7 +598,7 @@ std::optional<model::Feedback> loop_of(const FileColumns& columns) {
 /// Drive of the rig, if it is recorded.
 const ChannelColumns* drive_of(const FileColumns& columns) {
   const auto loop = loop_of(columns);
-  if (!loop) return find(columns, Channel::command);
+  if (!loop) return find(columns, has_pilot(columns) ? Channel::pilot_pressure : Channel::command);
   return find(columns, drive_channel(model::Rig{{}, model::ControllerKind::pid, {}, *loop}));
 }
 
@@ -527,9 +625,9 @@ std::string initial_text(const std::vector<FileGroup>& groups) {
   const double window_s = Campaign().initial_window_s;
   for (const FileGroup& group : groups) {
     const FileColumns& columns = group.files.front().columns;
-    const ChannelColumns* position = find(columns, Channel::position);
-    if (position == nullptr) continue;
-    const auto signal = signal_of(group.files.front().file, columns, *position);
+    const ChannelColumns* motion = motion_of(columns);
+    if (motion == nullptr) continue;
+    const auto signal = signal_of(group.files.front().file, columns, *motion);
     if (!signal || !motion_at_start(signal->first, signal->second, window_s)) continue;
     return fmt::format(
         "initial = \"fit\"  # estimated: {} moves within its first {:g} s; \"record\": their mean, "
@@ -705,8 +803,12 @@ Draft draft_campaign(const std::vector<fs::path>& files, const fs::path& folder)
       kBlank);
   for (const std::string& file : left_out) text += fmt::format("# left out: {}\n", file);
   if (!left_out.empty()) text += "\n";
-  text += rig_text(chambers ? model::PlantKind::two_chamber : model::PlantKind::load_pressure, loop,
-                   find(columns, Channel::acceleration) != nullptr);
+  auto plant = chambers ? model::PlantKind::two_chamber : model::PlantKind::load_pressure;
+  if (find(columns, Channel::angle) != nullptr) plant = model::PlantKind::linkage;
+  text += rig_text(
+      plant, loop,
+      plant != model::PlantKind::linkage && find(columns, Channel::acceleration) != nullptr,
+      has_pilot(columns));
   text += "\n[recording]\n" + initial_text(groups);
   text +=
       "# before = \"rest\"  # the drive was neutral until the first sample: a record that begins "

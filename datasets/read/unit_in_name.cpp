@@ -11,9 +11,10 @@
 namespace rigcal::datasets {
 namespace {
 
-constexpr std::array<std::string_view, 28> kUnits{
-    "s",   "ms",  "us",  "min", "V",  "mV",  "m", "cm", "mm",   "um",   "in", "bar", "mbar", "Pa",
-    "kPa", "MPa", "psi", "N",   "kN", "lbf", "K", "C",  "degC", "degF", "mA", "A",   "inch", "hPa"};
+constexpr std::array<std::string_view, 30> kUnits{
+    "s",  "ms",  "us",   "min",  "V",   "mV",  "m",    "cm",  "mm",  "um",
+    "in", "bar", "mbar", "Pa",   "kPa", "MPa", "psi",  "N",   "kN",  "lbf",
+    "K",  "C",   "degC", "degF", "mA",  "A",   "inch", "hPa", "deg", "rad"};
 
 /// Common spellings of units, in lower case, with the unit they mean.
 constexpr std::array kSpellings{std::pair<std::string_view, std::string_view>{"c", "degC"},

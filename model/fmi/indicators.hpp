@@ -59,6 +59,10 @@ void plant_indicators(const LinkagePlant::Coefficients<double>& p, const Present
     indicators.push_back(out - p.return_dead_band_pa);
     indicators.push_back(-out - p.return_dead_band_pa);
   }
+  if (terms.bypass) {
+    indicators.push_back(p.dead_band + p.bypass_range_pa - out);
+    indicators.push_back(p.dead_band + p.bypass_range_pa + out);
+  }
   indicators.push_back(x[Plant::angle] - p.lower_stop_rad);
   indicators.push_back(p.upper_stop_rad - x[Plant::angle]);
   if (terms.make_up) {  // pressures count from the tank's, whose changes are small

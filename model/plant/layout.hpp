@@ -34,6 +34,8 @@ struct PresentTerms {
   bool return_band = false;     ///< the edges to the tank have their own dead band
   bool return_power = false;    ///< likewise, their own power law
   bool return_line = false;     ///< the line to the tank throttles, too
+  bool return_loss = false;     ///< likewise, in proportion to its flow
+  bool bypass = false;          ///< the closed valve lets the pump's flow by
   bool pump_flow = false;       ///< the flow of the pump is limited
   bool make_up = false;         ///< the tank fills a chamber that is pulled empty
   int pump = -1;                ///< index of the time of demand; -1: its limit is constant
@@ -201,6 +203,8 @@ inline Layout layout_of(const Rig& rig, const ParameterValues& values, std::span
   layout.terms.return_band = given("return_dead_band");
   layout.terms.return_power = given("return_exponent");
   layout.terms.return_line = given("return_line_opening");
+  layout.terms.return_loss = acts("return_line_resistance");
+  layout.terms.bypass = given("bypass_opening");
   layout.terms.pump_flow = given("pump_flow");
   layout.terms.make_up = acts("make_up_conductance");
   layout.terms.pump = layout.pump;

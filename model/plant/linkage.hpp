@@ -154,9 +154,9 @@ struct LinkagePlant {
     const X &p_A = x[pressure_a], &p_B = x[pressure_b];
     const X &P_s = in.supply_pressure_pa, &P_t = in.tank_pressure_pa;
     return {edge(out_m, p.gain_supply_to_a, P_s, p_A, p, terms),
-            edge(back_return_m, p.gain_a_to_tank, p_A, P_t, p, terms),
+            edge_to_tank(back_return_m, p.gain_a_to_tank, p_A, P_t, p, terms),
             edge(back_m, p.gain_supply_to_b, P_s, p_B, p, terms),
-            edge(out_return_m, p.gain_b_to_tank, p_B, P_t, p, terms)};
+            edge_to_tank(out_return_m, p.gain_b_to_tank, p_B, P_t, p, terms)};
   }
 
   /// Flow that the valve takes from the supply [m3/s].
@@ -164,7 +164,24 @@ struct LinkagePlant {
   static X supply_flow(const std::array<X, M>& x, const PlantInput<X>& in, const Coefficients<C>& p,
                        const PresentTerms& terms) {
     const ValveFlows<X> q = valve_flows(x, in, p, terms);
-    return q.supply_to_a + q.supply_to_b;
+    const X taken = q.supply_to_a + q.supply_to_b;
+    return terms.bypass ? X(taken + bypass_flow(in, p)) : taken;
+  }
+
+  /// Flow from the pump to the tank through the open centre of the valve [m3/s].
+  template <typename X, typename C>
+  static X bypass_flow(const PlantInput<X>& in, const Coefficients<C>& p) {
+    const X closed = beyond_dead_band(in, p) / p.bypass_range_pa;
+    const X opening_m = positive_part(X(1.0 - positive_part(closed))) * p.bypass_opening_m;
+    return opening_m * p.conductance *
+           signed_sqrt(X(in.supply_pressure_pa - in.tank_pressure_pa), p.leakage_smoothing_pa);
+  }
+
+  /// Signal of the spool beyond its dead band, of either direction [V or Pa].
+  template <typename X, typename C>
+  static X beyond_dead_band(const PlantInput<X>& in, const Coefficients<C>& p) {
+    const X out = in.spool_command_v + p.valve_offset_v;
+    return (value_of(out) < 0.0 ? X(-out) : out) - p.dead_band;
   }
 
   /// Flow of the pump [m3/s]: what its pressure asks for, within its largest.
@@ -195,9 +212,7 @@ struct LinkagePlant {
     using std::tanh;
     // A signal beyond the dead band that counts as a demand [V or Pa].
     const double whole = terms.pilot ? 1e5 : 0.1;
-    const X out = in.spool_command_v + p.valve_offset_v;
-    const X beyond = (value_of(out) < 0.0 ? X(-out) : X(out)) - p.dead_band;
-    const X demand = tanh(X(positive_part(beyond) / whole));
+    const X demand = tanh(X(positive_part(beyond_dead_band(in, p)) / whole));
     return demand - (1.0 - demand) * x[static_cast<std::size_t>(terms.pump)] / p.pump_delay_s;
   }
 
@@ -347,6 +362,19 @@ struct LinkagePlant {
     const X leak = terms.null_leak ? head_pa * p.valve_null_leakage_m3_per_s_pa : X(0.0);
     if (!(value_of(opening_m) > 0.0)) return leak;
     return leak + opening_m * (area * p.conductance) * signed_sqrt(head_pa, p.leakage_smoothing_pa);
+  }
+
+  /// The same of an edge to the tank, with the laminar loss of its line.
+  template <typename X, typename C>
+  static X edge_to_tank(const X& opening_m, const C& area, const X& up_pa, const X& tank_pa,
+                        const Coefficients<C>& p, const PresentTerms& terms) {
+    if (!terms.return_loss || !(value_of(opening_m) > 0.0))
+      return edge(opening_m, area, up_pa, tank_pa, p, terms);
+    const X head_pa = up_pa - tank_pa;
+    const X orifice =
+        flow_before_line(head_pa, X(opening_m * (area * p.conductance)),
+                         p.return_line_resistance_pa_s_per_m3, p.leakage_smoothing_pa);
+    return terms.null_leak ? X(orifice + head_pa * p.valve_null_leakage_m3_per_s_pa) : orifice;
   }
 
   template <typename X, typename C>

@@ -36,6 +36,9 @@ struct LinkageParameters : TwoChamberParameters<T> {
   T return_dead_band_pa{};
   T return_exponent{};
   T return_line_opening_m{};
+  T return_line_resistance_pa_s_per_m3{};
+  T bypass_opening_m{};
+  T bypass_range_pa{};
   T pump_flow_m3_per_s{};
   T pump_second_flow_m3_per_s{};
   T pump_first_rate_m3_per_s2{};
@@ -118,6 +121,9 @@ constexpr auto linkage_term_rows() {
       F{&P::return_dead_band_pa, {"return_dead_band", "return_dead_band_pa", "p_dt", "Pa", "pilot pressure at which the edges to the tank begin to open; that of the others unless given", "docs/model.md", K::term, 0, 1e8, 0.0}},
       F{&P::return_exponent, {"return_exponent", "return_exponent", "n_t", "1", "power of the opening of the edges to the tank; that of the others unless given", "docs/model.md", K::term, 1, 6, 1.0}},
       F{&P::return_line_opening_m, {"return_line_opening", "return_line_opening_m", "l_t", "m", "spool travel at which an edge to the tank and the line after it lose alike", "docs/model.md", K::term, 1e-7, 10, 0.0}},
+      F{&P::return_line_resistance_pa_s_per_m3, {"return_line_resistance", "return_line_resistance_pa_s_per_m3", "R_t", "Pa s/m3", "laminar loss of the line to the tank, as of filter and cooler", "docs/model.md", K::term, 0, 1e13, 0.0}},
+      F{&P::bypass_opening_m, {"bypass_opening", "bypass_opening_m", "l_0", "m", "spool travel that opens an edge as far as the closed valve opens the way from pump to tank (open centre)", "docs/model.md", K::term, 1e-9, 10, 0.0}},
+      F{&P::bypass_range_pa, {"bypass_range", "bypass_range_pa", "p_0", "Pa", "pilot pressure beyond the dead band at which this way is closed", "docs/model.md", K::term, 1e3, 1e8, 1e6, false}},
       F{&P::pump_flow_m3_per_s, {"pump_flow", "pump_flow_m3_per_s", "Q_1", "m3/s", "largest flow of the pump, whose pressure supply_pressure limits", "docs/model.md", K::term, 1e-9, 10, 0.0}},
       F{&P::pump_second_flow_m3_per_s, {"pump_second_flow", "pump_second_flow_m3_per_s", "Q_2", "m3/s", "largest flow of the pump after the valve has been open for pump_delay", "docs/model.md", K::term, 1e-9, 10, 0.0}},
       F{&P::pump_first_rate_m3_per_s2, {"pump_first_rate", "pump_first_rate_m3_per_s2", "Q_1'", "m3/s2", "what the first flow grows by per time of demand", "docs/model.md", K::term, 0, 10, 0.0}},

@@ -98,6 +98,21 @@ X series_opening(const X& y, const C& l) {
   return y / sqrt(share * share + 1.0);
 }
 
+/// Flow of an orifice before a line of laminar loss [m3/s], Q = G sgn(P) sqrt(|P - R Q|):
+/// 2 G P / (G R + sqrt((G R)^2 + 4 |P|)).
+///
+/// @param head_pa      P, of orifice and line together
+/// @param conductance  G, flow of the orifice per root of pressure, >= 0
+/// @param resistance   R of the line [Pa s/m3], >= 0
+template <typename X, typename C>
+X flow_before_line(const X& head_pa, const X& conductance, const C& resistance,
+                   const C& smoothing_pa) {
+  using std::sqrt;
+  const X line = conductance * resistance;
+  const X size_pa = sqrt(X(head_pa * head_pa + smoothing_pa * smoothing_pa));
+  return 2.0 * conductance * head_pa / (line + sqrt(X(line * line + 4.0 * size_pa)));
+}
+
 /// Opening by a power law, y_r (y / y_r)^n, as of an edge with notches.
 ///
 /// @param y        signal beyond the dead band, > 0

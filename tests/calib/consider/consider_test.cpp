@@ -2,10 +2,12 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <set>
 
 #include "calib/consider/catalogue.hpp"
 #include "calib/fit.hpp"
 #include "tests/calib/twin.hpp"
+#include "tests/datasets/campaign_fixture.hpp"
 
 namespace rigcal::calib {
 namespace {
@@ -146,6 +148,132 @@ TEST_CASE("considered: what is free or given is no effect beside it", "[calib]")
   CHECK(effect(found, "valve_time_constant") == nullptr);
   CHECK(effect(found, "coulomb_friction") == nullptr);
   CHECK(effect(found, "transport_delay") != nullptr);
+}
+
+const char* const kConsideredArm = R"(schema = "rigcal.campaign/1"
+[rig]
+model = "linkage"
+[rig.parameters]
+inertia = { start = "420 kg m2", lower = "100 kg m2", upper = "2000 kg m2", fit = true }
+joint_damping = "500 N m s/rad"
+lever = "0.3 m/rad"
+lower_stop = "-0.6 rad"
+upper_stop = "1.4 rad"
+stop_stiffness = "1e7 N m/rad"
+area_a = "40 cm2"
+area_b = "24 cm2"
+dead_volume_a = "1 L"
+dead_volume_b = "1 L"
+tank_pressure = "2 bar"
+supply_pressure = "200 bar"
+density = "870 kg/m3"
+bulk_modulus = "800 MPa"
+discharge_coefficient = 0.65
+area_gradient = "20 mm"
+pilot_gain = { start = "0.048 mm/bar", lower = "0.01 mm/bar", upper = "0.2 mm/bar", fit = true }
+pilot_dead_band = "10 bar"
+pilot_range = "20 bar"
+leakage_coefficient = 0
+leakage_area = "1 mm2"
+[rig.controller]
+type = "none"
+[recording]
+initial = "rest"
+[recording.channels]
+time = { column = "t_s", unit = "s" }
+pilot_pressure = { column = "pilot_bar", unit = "bar" }
+angle = { column = "angle_rad", unit = "rad", sd = "0.5 mrad" }
+[[condition]]
+id = "sine"
+waveform = "sine"
+frequency = "2 Hz"
+amplitude = "20 bar"
+use = "fit"
+repeats = ["sine.csv"]
+)";
+
+/// A record of an arm whose true values are 400 kg m2 and 0.05 mm/bar, with noise of the stated sd.
+datasets::Record considered_arm_record(const datasets::Campaign& campaign) {
+  auto values = datasets::values_in(campaign, campaign.conditions.front());
+  values.set("inertia", 400.0);
+  values.set("pilot_gain", 5e-10);
+  datasets::Record record;
+  record.condition = "sine";
+  for (int i = 0; i < 400; ++i) record.time_s.push_back(0.005 * i);
+  const auto run =
+      model::simulate(campaign.rig, values, {},
+                      datasets::inputs_of(campaign, campaign.conditions.front(), values, nullptr),
+                      record.time_s, std::vector{model::Output::angle}, model::SimulationOptions());
+  if (!run.ok()) throw std::runtime_error(run.reason);
+  boost::random::mt19937_64 random(1);
+  boost::random::normal_distribution<double> normal;
+  datasets::Series series;
+  for (Eigen::Index i = 0; i < run.outputs.rows(); ++i)
+    series.mean.push_back(run.outputs(i, 0) + 5e-4 * normal(random));
+  series.sd_of_mean = 5e-4;
+  record.channels[datasets::Channel::angle] = series;
+  return record;
+}
+
+TEST_CASE("considered: a linkage has effects in radians and of its pilot", "[calib]") {
+  const datasets::Campaign campaign = rigcal::test::load_text(kConsideredArm);
+  const std::vector<datasets::Record> records{considered_arm_record(campaign)};
+  const Problem problem =
+      make_problem(campaign, records, {&campaign.conditions.front()}, false, nullptr);
+  const auto effects = effects_of(problem, problem.start());
+  std::set<std::string> keys;
+  for (const Effect& each : effects) keys.insert(each.about.key);
+  // The dead band is given, so that it is none of them; the pressures are not compared.
+  CHECK(keys == std::set<std::string>{"valve_time_constant", "transport_delay", "joint_friction",
+                                      "laminar_leakage", "leakage_coefficient", "dead_volume_a",
+                                      "dead_volume_b", "supply_sag", "angle_lag", "angle_gain",
+                                      "angle_offset", "angle_bow", "angle_wave",
+                                      "angle_hysteresis"});
+  const Eigen::MatrixXd rows = effect_rows(problem, 0, problem.start(), effects, nullptr);
+  REQUIRE(rows.allFinite());
+  const auto column = [&](std::string_view key) -> Eigen::VectorXd {
+    for (std::size_t e = 0; e < effects.size(); ++e)
+      if (effects[e].about.key == key) return rows.col(static_cast<Eigen::Index>(e));
+    throw std::runtime_error("no effect");
+  };
+  for (const Effect& each : effects) {
+    CAPTURE(each.about.key);
+    CHECK(column(each.about.key).norm() > 0.0);
+    if (each.about.key == "joint_friction")  // 0.1 % of lever, area and supply
+      CHECK_THAT(each.about.size, WithinRel(1e-3 * 0.3 * 4e-3 * 2e7, 1e-12));
+    if (each.about.key == "angle_offset") CHECK_THAT(each.about.size, WithinRel(2e-4 * 2.0, 1e-12));
+    if (each.about.key == "laminar_leakage") {  // 5 % of the flow at pilot_range, over the supply
+      const double flow = 0.65 * 0.02 * 4.8e-10 * 2e6 * std::sqrt(2e7 / 870.0);
+      CHECK_THAT(each.about.size, WithinRel(0.05 * flow / 2e7, 1e-9));
+    }
+  }
+  CHECK_THAT(column("angle_offset").minCoeff(), WithinAbs(4e-4 / 5e-4, 1e-9));
+  // The bow is even about the middle between the stops, 0.4 rad, where it is 0.
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(effects.size()));
+  const Eigen::VectorXd reading = outputs_with(problem, 0, problem.start(), effects, none, nullptr);
+  for (const Eigen::Index i : {0, 50, 170}) {
+    const double turn = (reading(i) * 5e-4 - 0.4) / 2.0;
+    CHECK_THAT(column("angle_bow")(i), WithinRel(2e-3 * 4.0 * turn * turn / 5e-4, 1e-6));
+    CHECK_THAT(column("angle_wave")(i),
+               WithinRel(2e-3 * std::sin(2.0 * 3.14159265358979 * turn) / 5e-4, 1e-6));
+  }
+}
+
+TEST_CASE("considered: what a linkage leaves out widens its intervals, or is a reservation",
+          "[calib]") {
+  datasets::Campaign campaign = rigcal::test::load_text(kConsideredArm);
+  const std::vector<datasets::Record> records{considered_arm_record(campaign)};
+  const Fit found = fit(campaign, records, {});
+  REQUIRE(found.considered);
+  CHECK(found.considered->missing.empty());
+  for (const FittedParameter& each : found.parameters) {
+    if (!each.fitted) continue;
+    CHECK(each.ci95->first < each.ci95_if_exact->first);
+    CHECK(each.ci95->second > each.ci95_if_exact->second);
+  }
+  campaign.considered.left_out = {"joint_friction", "angle_bow"};
+  CHECK(fit(campaign, records, {}).considered->left_out ==
+        std::vector<std::string>{"joint_friction", "angle_bow"});
 }
 
 }  // namespace

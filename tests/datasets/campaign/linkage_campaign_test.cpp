@@ -94,6 +94,15 @@ TEST_CASE("load_campaign: a linkage with an electric valve is driven by the comm
   CHECK(drive_channel(campaign) == Channel::command);
 }
 
+TEST_CASE("load_campaign: a generated pilot pressure has an amplitude in bar", "[datasets]") {
+  const std::string text =
+      replaced(kArm, "waveform = \"recorded\"",
+               "waveform = \"sine\"\nfrequency = \"0.5 Hz\"\namplitude = \"20 bar\"");
+  CHECK(*load_text(text).conditions.front().amplitude == Approx(2e6));
+  CHECK_THROWS_WITH(load_text(replaced(text, "20 bar", "2 V")),
+                    Catch::Contains("pilot_gain makes the waveform a pilot pressure"));
+}
+
 TEST_CASE("load_campaign: what does not go together on a linkage", "[datasets]") {
   struct Row {
     const char* part;
@@ -117,6 +126,10 @@ TEST_CASE("load_campaign: what does not go together on a linkage", "[datasets]")
               "expected pump_delay as well"},
           Row{gain, "pilot_gain = \"0.3 mm/bar\"\npump_delay = \"1 s\"",
               "pump_delay without a first flow: expected pump_flow"},
+          Row{gain, "pilot_gain = \"0.3 mm/bar\"\nbypass_opening = \"0.4 mm\"",
+              "expected supply_resistance and supply_capacity"},
+          Row{gain, "pilot_gain = \"0.3 mm/bar\"\nbypass_range = \"8 bar\"",
+              "bypass_range without a bypass: expected bypass_opening"},
           Row{gain, "pilot_gain = \"0.3 mm/bar\"\nmass = \"5 kg\"", "mass"},
           Row{"upper_stop = \"-30 deg\"", "upper_stop = \"-160 deg\"", "is not above lower_stop"},
           Row{"lever = \"12 mm/deg\"", "lever = \"12 mm/deg\"\nlever_gradient = \"-1 m/rad2\"",

@@ -80,6 +80,51 @@ TEST_CASE("draft_campaign: a reference in newtons makes a loop on force", "[data
   CHECK(campaign.conditions.front().amplitude == Approx(2000.0));
 }
 
+TEST_CASE("draft_campaign: an angle makes a linkage, and its pilot pressures one drive",
+          "[datasets]") {
+  const TemporaryFolder folder;
+  std::string text =
+      "t_s,p_head_bar,p_rod_bar,duty_arm_in_pct,duty_arm_out_pct,pilot_arm_in_bar,"
+      "pilot_arm_out_bar,angle_deg\n";
+  for (int i = 0; i < 200; ++i) {
+    const bool moves = i > 50;
+    text += fmt::format("{},{},20,{},0,{},0.2,{}\n", 0.01 * i, 30 + 0.01 * i, moves ? 60 : 0,
+                        moves ? 18.0 : 0.1, moves ? -30.0 - 0.1 * (i - 50) : -30.0);
+  }
+  const fs::path file = folder.write("arm.csv", text);
+  std::string draft = draft_campaign({file}, folder.path()).text;
+  CHECK_THAT(draft, Contains("model = \"linkage\""));
+  CHECK_THAT(draft, Contains("angle = { column = \"angle_deg\", unit = \"deg\" }"));
+  CHECK_THAT(draft, Contains("pilot_pressure = { column = \"pilot_arm_out_bar\", minus = "
+                             "\"pilot_arm_in_bar\", unit = \"bar\" }"));
+  CHECK_THAT(draft, Contains("# 'duty_arm_in_pct' also looks like a drive"));
+  CHECK_THAT(draft, Contains("# pilot_dead_band = ") && Contains("# bypass_opening = "));
+  CHECK_THAT(draft, Contains("initial = \"record\""));
+  draft = filled(draft, model::PlantKind::linkage);
+  draft = replaced(draft, "pilot_gain = \"FILL IN m/Pa\"", "pilot_gain = \"0.1 mm/bar\"");
+  for (const auto& [key, value] :
+       {std::pair("lower_stop", "-3"), std::pair("upper_stop", "-0.5")}) {
+    const auto at = draft.find(fmt::format("\n{} = ", key)) + 1;
+    draft.replace(at, draft.find('\n', at) - at, fmt::format("{} = \"{} rad\"", key, value));
+  }
+  const Campaign campaign = load_campaign(folder.write("draft.toml", draft));
+  CHECK(campaign.rig.pilot);
+  const Record record = load_record(campaign, campaign.conditions.at(0));
+  CHECK(record.channels.at(Channel::pilot_pressure).mean.back() == Approx((0.2 - 18.0) * 1e5));
+}
+
+TEST_CASE("draft_campaign: a joint without a pilot has an electric valve", "[datasets]") {
+  const TemporaryFolder folder;
+  std::string text = "t_s,angle_deg,u_up_V,u_down_V\n";
+  for (int i = 0; i < 200; ++i)
+    text += fmt::format("{},{},{},0\n", 0.01 * i, i > 50 ? 0.1 * i : 5.0, i > 50 ? 4 : 0);
+  const std::string draft = draft_campaign({folder.write("j.csv", text)}, folder.path()).text;
+  CHECK_THAT(draft, Contains("model = \"linkage\""));
+  CHECK_THAT(draft, Contains("\nvalve_gain = \"FILL IN m/V\""));
+  CHECK_THAT(draft, Contains("column = \"u_up_V\", minus = \"u_down_V\""));
+  CHECK_THAT(draft, !Contains("pilot_dead_band"));
+}
+
 TEST_CASE("draft_campaign: repeats, waveform and columns, and loads once it is filled",
           "[datasets]") {
   const TemporaryFolder folder;

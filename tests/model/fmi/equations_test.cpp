@@ -93,7 +93,7 @@ TEST_CASE("equations: an arm moves as it is simulated, and its kinks have indica
   Experiment e = arm_rig();
   e.set("valve_time_constant", 0.03).set("supply_resistance", 1e9).set("supply_capacity", 1e-11);
   e.set("pump_flow", 6e-4).set("pump_second_flow", 9e-4).set("pump_delay", 0.3);
-  e.set("make_up_conductance", 1e-8);
+  e.set("make_up_conductance", 1e-8).set("bypass_opening", 1e-4).set("bypass_range", 2.5e6);
   e.inputs.drive = Signal::constant(3e6);
   e.times_s = {0.0, 0.5};
   e.options.tolerance = 1e-9;
@@ -120,11 +120,13 @@ TEST_CASE("equations: an arm moves as it is simulated, and its kinks have indica
   CHECK(x[0] == Approx(run.outputs(1, 0)).epsilon(1e-6));
   CHECK(x[1] == Approx(run.outputs(1, 1)).epsilon(1e-5));
   CHECK(equations->output(Output::pilot_pressure, x) == 3e6);
-  // Both directions of the spool, both stops, both make-up valves, and the limit of the pump.
+  // Both directions of the spool and both of its bypass, both stops, both make-up valves, and the
+  // limit of the pump.
   const std::vector<double> indicators = equations->indicators(x);
-  REQUIRE(indicators.size() == 7);
+  REQUIRE(indicators.size() == 9);
   CHECK(indicators[0] == Approx(x[6] - 1e6));
-  CHECK(indicators[3] == Approx(1.0 - x[0]));
+  CHECK(indicators[2] == Approx(1e6 + 2.5e6 - x[6]));
+  CHECK(indicators[5] == Approx(1.0 - x[0]));
 }
 
 TEST_CASE("equations: states that leave the numbers are an error", "[model]") {

@@ -83,6 +83,7 @@ TEST_CASE("linkage: two methods agree on an arm with all of its terms", "[model]
   e.set("supply_resistance", 1e9).set("supply_capacity", 1e-11).set("pump_flow", 6e-4);
   e.set("pump_second_flow", 9e-4).set("pump_delay", 0.5).set("pump_rise", 0.05);
   e.set("make_up_conductance", 1e-8).set("joint_friction", 100.0);
+  e.set("return_line_resistance", 1e9).set("bypass_opening", 2e-4).set("bypass_range", 1.2e6);
   e.inputs.drive = Signal::sine(2.5e6, 0.5);
   e.times_s = grid(0.0, 2.0, 101);
   e.outputs = {Output::angle, Output::pressure_a, Output::pressure_b, Output::servo_flow};
@@ -141,6 +142,48 @@ TEST_CASE("linkage: in steady motion the flows are those of the edges", "[model]
   CHECK_THAT(0.7 * spool_edge_flow(opening_m, end(2) - 2e5),
              WithinRel(2.4e-3 * 0.3 * end(0), 1e-4));
   CHECK_THAT(0.3 * (4e-3 * end(1) - 2.4e-3 * end(2)), WithinRel(4e4 * end(0), 1e-4));
+}
+
+TEST_CASE("linkage: the line to the tank loses in proportion to its flow", "[model]") {
+  for (const double sign : {1.0, -1.0}) {
+    Experiment e = arm_rig();
+    e.set("joint_damping", 4e4).set("pilot_gain", 1e-11).set("return_line_resistance", 2e11);
+    e.set("gain_b_to_tank", 0.7).set("gain_a_to_tank", 0.6);
+    e.set("lower_stop", -2.0).set("upper_stop", 2.0);
+    e.inputs.drive = Signal::constant(sign * 2e6);
+    e.times_s = {0.0, 60.0};
+    e.options.tolerance = 1e-9;
+    e.outputs = {Output::angular_velocity, Output::pressure_a, Output::pressure_b};
+    const auto end = last_of_arm(e);
+    const bool out = sign > 0.0;
+    const double flow = (out ? 2.4e-3 : 4e-3) * 0.3 * std::abs(end(0));
+    const double port_pa = 2e5 + 2e11 * flow;
+    REQUIRE(port_pa > 1e6);
+    CHECK_THAT((out ? 0.7 : 0.6) * spool_edge_flow(1e-5, end(out ? 2 : 1) - port_pa),
+               WithinRel(flow, 1e-4));
+  }
+}
+
+TEST_CASE("linkage: through an open centre the pump's pressure follows the spool", "[model]") {
+  Experiment e = arm_rig();
+  e.set("supply_resistance", 1e9).set("supply_capacity", 1e-12).set("pump_flow", 5e-4);
+  e.set("bypass_opening", 4e-4).set("bypass_range", 2e6);
+  e.times_s = {0.0, 20.0};
+  e.outputs = {Output::pressure_a};
+  // At the stop all of the pump's flow takes this way, as long as the pump is not cut off.
+  for (const double beyond_pa : {4e5, 8e5}) {
+    e.inputs.drive = Signal::constant(1e6 + beyond_pa);
+    const double a_pa = last_of_arm(e)(0);
+    REQUIRE(a_pa < 1.9e7);
+    CHECK_THAT(spool_edge_flow(4e-4 * (1.0 - beyond_pa / 2e6), a_pa - 2e5), WithinRel(5e-4, 1e-4));
+  }
+  e.inputs.drive = Signal::constant(3.1e6);  // it is closed
+  CHECK_THAT(last_of_arm(e)(0), WithinRel(2e7, 1e-4));
+  // The other way round it opens as far.
+  e.set("bypass_opening", 5e-4).set("upper_stop", 2.0);
+  e.outputs = {Output::pressure_b};
+  e.inputs.drive = Signal::constant(-1.4e6);
+  CHECK_THAT(spool_edge_flow(5e-4 * 0.8, last_of_arm(e)(0) - 2e5), WithinRel(5e-4, 1e-4));
 }
 
 TEST_CASE("linkage: the spool opens by a power of the pilot pressure, both ways alike", "[model]") {
@@ -259,14 +302,19 @@ TEST_CASE("linkage: sensitivities are exact against differences, every parameter
                           {"external_leakage_a", 2e-12},
                           {"external_leakage_b", 3e-12},
                           {"transport_delay", 3e-3}};
-  const NamedValues valve{
-      {"pilot_exponent", 1.7},       {"pilot_range", 1e6},          {"gain_supply_to_a", 1.1},
-      {"gain_a_to_tank", 0.9},       {"gain_supply_to_b", 0.8},     {"gain_b_to_tank", 1.2},
-      {"valve_null_leakage", 2e-12}, {"valve_time_constant", 8e-3}, {"supply_resistance", 1e9},
-      {"supply_capacity", 2e-12},    {"pump_flow", 5e-4},           {"pump_second_flow", 9e-4},
-      {"pump_delay", 0.05},          {"pump_first_rate", 3e-3},     {"return_dead_band", 1.2e6},
-      {"return_exponent", 1.4},      {"return_line_opening", 2e-4}, {"pump_rise", 0.02},
-      {"make_up_conductance", 1e-9}};
+  const NamedValues valve{{"pilot_exponent", 1.7},       {"pilot_range", 1e6},
+                          {"gain_supply_to_a", 1.1},     {"gain_a_to_tank", 0.9},
+                          {"gain_supply_to_b", 0.8},     {"gain_b_to_tank", 1.2},
+                          {"valve_null_leakage", 2e-12}, {"valve_time_constant", 8e-3},
+                          {"supply_resistance", 1e9},    {"supply_capacity", 2e-12},
+                          {"pump_flow", 5e-4},           {"pump_second_flow", 9e-4},
+                          {"pump_delay", 0.05},          {"pump_first_rate", 3e-3},
+                          {"return_dead_band", 1.2e6},   {"return_exponent", 1.4},
+                          {"return_line_opening", 2e-4}, {"pump_rise", 0.02},
+                          {"make_up_conductance", 1e-9}, {"return_line_resistance", 2e9}};
+  const NamedValues centre{{"supply_resistance", 1e9}, {"supply_capacity", 2e-12},
+                           {"pump_flow", 5e-4},        {"bypass_opening", 3e-4},
+                           {"bypass_range", 1.5e6},    {"return_line_resistance", 4e9}};
   std::set<int> seen;
   const auto check = [&seen](const Scenario& scenario, const Experiment& rig) {
     CAPTURE(scenario.name);
@@ -281,6 +329,7 @@ TEST_CASE("linkage: sensitivities are exact against differences, every parameter
   check({"joint, sensors and leaks", Signal::sine(3e6, 10.0), joint, none, InitialState::given},
         arm_rig());
   check({"pilot valve and pump", Signal::sine(3e6, 8.0), valve, none}, arm_rig());
+  check({"open centre", Signal::sine(3e6, 8.0), centre, none}, arm_rig());
   Experiment pressed = arm_rig();
   pressed.set("lower_stop", -0.01).set("upper_stop", 0.005).set("stop_stiffness", 5e6);
   check({"into both stops", Signal::sine(4e6, 8.0), {{"stop_damping", 2.0}}, none}, pressed);
