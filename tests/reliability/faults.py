@@ -14,11 +14,13 @@ KINDS = {
 
 
 def places(count, most):
-    """Which of `count` calls fail: all, or the first of them one by one and others evenly over the rest."""
+    """Which of `count` calls fail: all, or the first and the last of them one by one, and others evenly between. The last ones
+    put the files into their places."""
     if most is None or count <= most:
         return list(range(1, count + 1))
-    first = most // 3
-    return [*range(1, first + 1), *(first + 1 + k * (count - first - 1) // (most - first - 1) for k in range(most - first))]
+    ends = most // 3
+    between = most - 2 * ends
+    return [*range(1, ends + 1), *(ends + 1 + k * (count - 2 * ends) // between for k in range(between)), *range(count - ends + 1, count + 1)]
 
 
 def repeatable(folder):
