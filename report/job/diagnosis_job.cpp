@@ -112,14 +112,10 @@ std::optional<std::vector<datasets::FittedValue>> truth_beside(const Campaign& c
 }
 
 JobResult finished(const DiagnosisResult& result) {
-  const StoredDiagnosis diagnosis = stored(result);
   JobResult job;
-  job.json = json_of(diagnosis);
-  job.files = {{"diagnosis.csv", diagnosis_csv(result)}, {"diagnosis.json", json_text(job.json)}};
+  job.files = {{"diagnosis.csv", diagnosis_csv(result)},
+               {"diagnosis.json", json_text(json_of(stored(result)))}};
   job.first = {"diagnosis.json", "diagnosis.csv"};
-  job.verdict = diagnosis_headline(diagnosis);
-  job.sections = diagnosis_sections(diagnosis);
-  job.synthetic = diagnosis.synthetic;
   job.inputs = result.provenance.inputs;
   job.code = status_of(result) == LeakStatus::done ? ExitCode::done : ExitCode::no_result;
   return job;

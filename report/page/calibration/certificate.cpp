@@ -227,7 +227,7 @@ doc::Doubts doubts_of(const StoredFit& fit) {
     Line line{doc::Link{"#warnings", plural(fit.warnings.size(), "warning")}, ": "};
     line.emplace_back(fit.warnings.front());
     if (fit.warnings.size() > 1) line.emplace_back(" …");
-    doubts.items.push_back(std::move(line));
+    doubts.warnings = std::move(line);
   }
   return doubts;
 }
@@ -342,7 +342,7 @@ void add_values(const StoredFit& fit, bool judged, doc::Blocks& blocks) {
   const std::string correlated = correlation_words(fit.correlation);
   if (!correlated.empty()) notes.emplace_back(correlated);
   if (!notes.empty())
-    blocks.emplace_back(doc::Paragraph{std::move(notes), doc::Paragraph::Tone::source});
+    blocks.emplace_back(doc::Paragraph{std::move(notes), doc::Paragraph::Tone::small});
 }
 
 /// Residual of a whole record against the band that its limit allows.
@@ -527,11 +527,11 @@ void add_signals(const Calibration& stored, doc::Blocks& blocks) {
           doc::Paragraph{{doc::Link{"#matrix", plural(more, "more signal")},
                           beyond == 0 ? std::string(", all within their limits.")
                                       : fmt::format(", {} of them outside their limits.", beyond)},
-                         doc::Paragraph::Tone::source});
+                         doc::Paragraph::Tone::small});
     }
   }
   if (!not_judged.empty())
-    blocks.emplace_back(doc::Paragraph{{not_judged}, doc::Paragraph::Tone::source});
+    blocks.emplace_back(doc::Paragraph{{not_judged}, doc::Paragraph::Tone::small});
 }
 
 void add_aspects(const StoredFit& fit, doc::Blocks& blocks) {
@@ -575,7 +575,7 @@ void add_scope(const StoredFit& fit, doc::Blocks& blocks) {
     const auto rule = fit.decision.value_or(datasets::DecisionRule::simple);
     blocks.emplace_back(doc::Paragraph{{fmt::format("Decision rule: {} (ISO/IEC 17025, 7.8.6). {}",
                                                     calib::words_of(rule), rule_words(rule))},
-                                       doc::Paragraph::Tone::source});
+                                       doc::Paragraph::Tone::small});
   }
   if (fit.status == FitStatus::failed) return;
   std::vector<std::string> ranges;
@@ -603,7 +603,7 @@ void add_scope(const StoredFit& fit, doc::Blocks& blocks) {
       {doc::Strong{valid ? "Range of validity, outside it the model is not validated: "
                          : "Conditions tested: "},
        fmt::format("{}.", fmt::join(ranges, "; "))},
-      doc::Paragraph::Tone::source});
+      doc::Paragraph::Tone::small});
 }
 
 }  // namespace

@@ -142,11 +142,8 @@ std::size_t add_plots(const StoredCondition& condition, const Table& series, std
   return count;
 }
 
-/// @param series  residuals/<condition>.csv
-/// @param curves  its entry in residual_tests.json, or null
-/// @param open    whether its curves are unfolded
-doc::Article article_of(const StoredCondition& condition, const Table& series,
-                        const StoredChannelCurves* curves, std::size_t points, bool open) {
+/// What a condition is, and its scores.
+doc::Article facts_article(const StoredCondition& condition) {
   const doc::Badge verdict = doc::badge(condition.verdict);
   doc::Article article{anchor(condition.id), {verdict, " " + condition.id}, {}};
   doc::Blocks& blocks = article.blocks;
@@ -162,12 +159,23 @@ doc::Article article_of(const StoredCondition& condition, const Table& series,
   for (const std::string& text : condition.warnings) doubts.items.push_back({"Recording: " + text});
   blocks.emplace_back(std::move(doubts));
   add_scores(condition, blocks);
+  return article;
+}
+
+/// @param series  residuals/<condition>.csv
+/// @param curves  its entry in residual_tests.json, or null
+/// @param open    whether its curves are unfolded
+void add_curves(const StoredCondition& condition, const Table& series,
+                const StoredChannelCurves* curves, std::size_t points, bool open,
+                doc::Blocks& blocks) {
   doc::Fold curves_of{"", {}, open, "curves"};
   const std::size_t plots = add_plots(condition, series, points, curves_of.blocks);
   // Every scored condition must have a series; without it the page would only look complete.
   if (!condition.metrics.empty() && plots == 0)
-    problem(fmt::format("residuals/{}.csv is missing or holds no rows: nothing can be drawn.",
-                        condition.id));
+    blocks.emplace_back(doc::Paragraph{
+        {fmt::format("residuals/{}.csv is missing or holds no rows: nothing can be drawn.",
+                     condition.id)},
+        doc::Paragraph::Tone::problem});
   doc::Blocks agreement = agreement_blocks(condition.id, periodic_frequency(condition), series);
   if (!agreement.empty()) {
     doc::Fold fold{"Parity, histogram, gain and phase", std::move(agreement)};
@@ -175,11 +183,10 @@ doc::Article article_of(const StoredCondition& condition, const Table& series,
     curves_of.blocks.emplace_back(std::move(fold));
   }
   add_residual_tests(condition, curves, curves_of.blocks);
-  if (curves_of.blocks.empty()) return article;
+  if (curves_of.blocks.empty()) return;
   curves_of.summary =
       fmt::format("Curves and residual tests ({} plot{} over time)", plots, plots == 1 ? "" : "s");
   blocks.emplace_back(std::move(curves_of));
-  return article;
 }
 
 /// Approximate size of all interactive series of a page.
@@ -212,7 +219,7 @@ std::vector<Figure> condition_figures(const StoredCondition& condition, const Ta
   return figures;
 }
 
-doc::Section conditions_section(const Calibration& stored, int threads) {
+doc::Section conditions_section(const Calibration& stored, int threads, bool curves) {
   const std::vector<StoredCondition>& conditions = stored.result.conditions;
   doc::Section section{"conditions", "Conditions"};
   if (conditions.empty()) {
@@ -223,18 +230,21 @@ doc::Section conditions_section(const Calibration& stored, int threads) {
       {"Drag across a plot to zoom in time; all plots of a condition move together. Double-click "
        "or 0 shows all. Focus a plot for the keyboard: plus, minus, arrows."},
       doc::Paragraph::Tone::screen});
-  const std::size_t points = points_of(stored);
-  std::vector<std::string> articles(conditions.size());
+  std::vector<doc::Rendered> articles(conditions.size());
+  for (std::size_t i = 0; i < conditions.size(); ++i)
+    articles[i].blocks = {facts_article(conditions[i])};
+  const std::size_t points = curves ? points_of(stored) : 0;
   // Each article is rendered right away. Keeping the series of all articles would need most of the
   // memory of a page.
-  parallel_for(conditions.size(), threads, [&](std::size_t i) {
+  parallel_for(curves ? conditions.size() : 0, threads, [&](std::size_t i) {
     const std::shared_ptr<const Table> series = stored.series(i);
     const bool open = i == 0 || conditions.size() <= kFew;
-    doc::render_html({article_of(conditions[i], *series,
-                                 find(stored.curves.conditions, conditions[i].id), points, open)},
-                     articles[i]);
+    doc::Article article = std::get<doc::Article>(articles[i].blocks.front());
+    add_curves(conditions[i], *series, find(stored.curves.conditions, conditions[i].id), points,
+               open, article.blocks);
+    doc::render_html({std::move(article)}, articles[i].html);
   });
-  for (std::string& article : articles) section.blocks.emplace_back(doc::Raw{std::move(article)});
+  for (doc::Rendered& article : articles) section.blocks.emplace_back(std::move(article));
   return section;
 }
 
