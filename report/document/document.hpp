@@ -53,7 +53,11 @@ struct Strong {
 struct Code {
   std::string words;
 };
-using Inline = std::variant<std::string, Quantity, Badge, Mark, Link, Soft, Strong, Code>;
+/// What only a page has room for, or a picture.
+struct Aside {
+  std::string words;
+};
+using Inline = std::variant<std::string, Quantity, Badge, Mark, Link, Soft, Strong, Code, Aside>;
 using Line = std::vector<Inline>;
 using Lines = std::vector<Line>;
 

@@ -48,6 +48,7 @@ std::string html_of(const Inline& part) {
             return fmt::format("<strong>{}</strong>", escaped(strong.words));
           },
           [](const Code& code) { return fmt::format("<code>{}</code>", escaped(code.words)); },
+          [](const Aside& aside) { return escaped(aside.words); },
       },
       part);
 }

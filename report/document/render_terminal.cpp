@@ -252,6 +252,7 @@ class Terminal {
                              [&](const Mark& one) {
                                return in_colour(std::string(mark(one.state)), colour_of(one.state));
                              },
+                             [](const Aside&) { return std::string(); },
                              [](const auto& other) { return on_one_line(other.words); },
                          },
                          part);

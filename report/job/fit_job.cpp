@@ -5,10 +5,10 @@
 
 #include "common/memory.hpp"
 #include "datasets/prepare/load_record.hpp"
+#include "report/job/checkpoint_file.hpp"
 #include "report/job/job.hpp"
 #include "report/run/validation.hpp"
 #include "report/store/checkpoint.hpp"
-#include "report/job/checkpoint_file.hpp"
 #include "report/store/kept_tasks.hpp"
 #include "report/store/whole_fit.hpp"
 

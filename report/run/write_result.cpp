@@ -104,6 +104,12 @@ std::vector<ResultFile> files_of(const fs::path& out, const Result& result,
   return files;
 }
 
+/// The files that a page without curves is made from.
+std::vector<ResultFile> shown_files(const Result& result) {
+  return {{"residual_tests.json", json_line(json_of(stored_curves(result)))},
+          {main_file(result.kind), json_text(json_of(stored(result)))}};
+}
+
 }  // namespace
 
 PlannedFiles planned_result(ResultKind kind, const datasets::Campaign& campaign) {
@@ -154,14 +160,12 @@ std::vector<ResultFile> result_files(const Result& result, int threads) {
 }
 
 doc::Document document_of(const Result& result) {
-  StoredFit fit = stored(result);
-  const std::vector<ResultFile> files = files_of({}, result, {}, fit);
+  const std::vector<ResultFile> files = shown_files(result);
   return documents_in(files, result.campaign.name, tables_of(result)).front();
 }
 
 std::string brief_page(const Result& result) {
-  StoredFit fit = stored(result);
-  const std::vector<ResultFile> files = files_of({}, result, {}, fit);
+  const std::vector<ResultFile> files = shown_files(result);
   return brief_page(files_in(files), result.campaign.name, tables_of(result));
 }
 

@@ -140,7 +140,7 @@ TEST_CASE("fit: a channel that is compared and not judged is a reservation", "[a
   const std::vector<std::string> fit{"fit", "twin/campaign.toml", "--out", "out", "--strict"};
   const Outcome stated = folder.run(fit);
   CHECK(stated.exit_code == 0);
-  CHECK_THAT(stated.out, Catch::Contains("note: load_pressure is not judged in 2 conditions"));
+  CHECK_THAT(stated.out, Catch::Contains("load_pressure is not judged in 2 conditions"));
   CHECK(csv_verdict("position") == "PASS");
   CHECK(csv_verdict("load_pressure") == "not judged");
   CHECK(result_of(folder, "out/fit.json")["not_judged"] == Json{"load_pressure"});

@@ -437,7 +437,7 @@ doc::Row signal_row(const Calibration& stored, const Judged& signal) {
   const StoredCondition& condition = *signal.condition;
   doc::Cell name{Line{doc::Link{"#" + anchor(condition.id), condition.id}}};
   const std::string whose = signal_words(condition);
-  Line use{whose + (whose.empty() ? "" : " · ")};
+  Line use{doc::Aside{whose + (whose.empty() ? "" : " · ")}};
   if (!signal.channel.empty()) use.emplace_back(spaced(signal.channel) + " · ");
   if (signal.held_back())
     use.emplace_back(doc::Strong{"held back"});
@@ -505,9 +505,9 @@ void add_signals(const Calibration& stored, doc::Blocks& blocks) {
   std::vector<Judged> signals = judged_signals(fit);
   const std::string not_judged = not_judged_words(fit);
   if (!signals.empty()) {
-    blocks.emplace_back(doc::Heading{
-        {"Agreement: residual of each signal against its limit (grey: the rms that rho2 allows)"},
-        2});
+    blocks.emplace_back(doc::Heading{{"Agreement: residual of each signal against its limit",
+                                      doc::Aside{" (grey: the rms that rho2 allows)"}},
+                                     2});
     const std::size_t more = signals.size() > kSignals ? signals.size() - kSignals : 0;
     doc::Table table{"Agreement of each signal with its limit"};
     table.style = "signals";

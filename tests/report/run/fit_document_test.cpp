@@ -28,6 +28,7 @@ struct Scene {
     mass.upper = 500.0;
     mass.standard_error = 0.25;
     mass.ci95 = ci95;
+    mass.interval = calib::IntervalSource::standard_error;
     mass.fitted = true;
     return mass;
   }
@@ -77,7 +78,7 @@ TEST_CASE("fit on a terminal: both intervals, and what widens one", "[report][ru
   budget.lines = {{"noise", "records", 0.25}, {"valve_time_constant", "effect", 4.0}};
   budget.combined = 4.0078;
   CHECK_THAT(scene.shown(), Contains("U if the model is exact") && Contains("± 0.50"));
-  CHECK_THAT(scene.shown(kEverything), Contains("valve_time_constant"));
+  CHECK_THAT(scene.shown(kEverything), Contains("valve time constant"));
 }
 
 TEST_CASE("fit on a terminal: at most 60 lines, however many conditions and warnings",
