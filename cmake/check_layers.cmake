@@ -48,8 +48,8 @@ set(report_document json text figure)
 set(report_page json store text figure document comparison batch live)
 set(report_comparison json store text page figure document)
 set(report_live json store text figure document)
-set(report_run json store text page live)
-set(report_job json store text page document leak comparison fmu run live)
+set(report_run json store text page live document)
+set(report_job json store text page document leak comparison batch fmu run live)
 
 # A header and its source count as one.
 set(most_units 20)

@@ -7,8 +7,6 @@
 #include <limits>
 #include <thread>
 
-#include "report/run/fit_choices.hpp"
-
 namespace rigcal::python {
 
 namespace py = pybind11;
@@ -72,6 +70,29 @@ py::str decoded(std::string_view text) {
 
 std::string written(const char* name, const py::handle& value) {
   return fmt::format("{}={}", name, std::string(py::repr(value)));
+}
+
+report::FitChoices choices_of(const std::optional<Integer>& starts, const Integer& seed,
+                              const Integer& bootstrap, bool profiles,
+                              const std::optional<Integer>& posterior, bool cross_validate,
+                              std::optional<double> max_time_s,
+                              const std::optional<Integer>& max_evaluations) {
+  report::FitChoices choices;
+  if (starts) choices.starts = count("starts", *starts, 1, report::kMostStarts);
+  choices.seed = whole_number("seed", seed, 0, std::numeric_limits<std::uint64_t>::max());
+  choices.bootstrap = count("bootstrap", bootstrap, 0, report::kMostReplicates);
+  choices.profiles = profiles;
+  if (posterior) {
+    choices.posterior = count("posterior", *posterior, datasets::kLeastPosteriorDraws,
+                              datasets::kMostPosteriorDraws);
+  }
+  choices.cross_validate = cross_validate;
+  choices.max_time_s = positive("max_time", max_time_s);
+  if (max_evaluations) {
+    choices.max_evaluations = static_cast<long>(
+        whole_number("max_evaluations", *max_evaluations, 1, std::numeric_limits<long>::max()));
+  }
+  return choices;
 }
 
 }  // namespace rigcal::python

@@ -11,6 +11,8 @@
 #include <string_view>
 #include <vector>
 
+#include "report/run/fit_choices.hpp"
+
 namespace rigcal::python {
 
 /// Whatever Python takes for a whole number: int, numpy.int64... Converted by whole_number(), so
@@ -65,6 +67,13 @@ auto named(Member Self::*member, Value Holder::*value) {
 
 /// "name=value" in Python's notation, for the call recorded in a result.
 std::string written(const char* name, const pybind11::handle& value);
+
+/// @throws pybind11::value_error  an argument is out of its range
+report::FitChoices choices_of(const std::optional<Integer>& starts, const Integer& seed,
+                              const Integer& bootstrap, bool profiles,
+                              const std::optional<Integer>& posterior, bool cross_validate,
+                              std::optional<double> max_time_s,
+                              const std::optional<Integer>& max_evaluations);
 
 }  // namespace rigcal::python
 

@@ -16,16 +16,9 @@
 
 namespace rigcal::python {
 
-/// A fit or validation with all that its files are made from.
-struct FitResult {
-  CampaignPtr campaign;
-  report::ResultKind kind = report::ResultKind::fit;
-  std::vector<datasets::Record> records;
-  report::Provenance provenance;
-  calib::Fit fit;
-
-  /// Borrows from this one.
-  report::Result result() const { return {kind, campaign->campaign, records, fit, provenance}; }
+/// A fit or validation with its campaign as Python has it.
+struct FitResult : report::FitRun {
+  CampaignPtr source;
 };
 using FitResultPtr = std::shared_ptr<FitResult>;
 

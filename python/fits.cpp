@@ -12,26 +12,23 @@
 
 #include "calib/fit.hpp"
 #include "common/suggest.hpp"
-#include "datasets/prepare/load_record.hpp"
 #include "python/arrays.hpp"
 #include "python/fit_result.hpp"
 #include "python/holding.hpp"
 #include "python/interruptible.hpp"
 #include "python/progress.hpp"
 #include "python/result.hpp"
+#include "report/document/render_terminal.hpp"
 #include "report/run/fit_choices.hpp"
-#include "report/run/validation.hpp"
 #include "report/run/write_result.hpp"
 #include "report/store/folder.hpp"
 #include "report/store/json.hpp"
-#include "report/text/terminal.hpp"
 
 namespace rigcal::python {
 namespace {
 
 namespace py = pybind11;
 namespace fs = std::filesystem;
-using datasets::Use;
 
 // ---- making them
 
@@ -50,13 +47,22 @@ using datasets::Use;
   }
 }
 
-/// Runs `work`, which makes the fit, and reports to `progress` meanwhile.
-FitResultPtr made(const std::optional<py::function>& progress,
-                  const std::function<FitResultPtr(Progress&, std::atomic<bool>&)>& work) {
+/// Runs a job that makes a fit, and reports to `progress` meanwhile.
+FitResultPtr made(const CampaignPtr& self, const std::string& call,
+                  const std::optional<Integer>& threads,
+                  const std::optional<py::function>& progress,
+                  const std::function<report::JobResult(std::shared_ptr<const datasets::Campaign>,
+                                                        const report::JobTerms&)>& job) {
   std::atomic<bool> cancel{false};
   Progress told(progress, cancel);
+  report::JobTerms terms{call, report::recorded(self->choice), thread_count(threads), cancel};
+  terms.hold = [](const report::PlannedFiles&) {};
+  terms.watch = [&](calib::FitOptions& settings, const std::string&) { told.attach(settings); };
   FitResultPtr found;
-  const auto raised = run_interruptibly(cancel, [&] { found = work(told, cancel); });
+  const auto raised = run_interruptibly(cancel, [&] {
+    const std::shared_ptr<const datasets::Campaign> campaign(self, &self->campaign);
+    found = std::make_shared<FitResult>(FitResult{std::move(*job(campaign, terms).fit), self});
+  });
   if (raised) raise_interrupted(raised, found);
   told.rethrow();
   return found;
@@ -80,29 +86,6 @@ class Call {
   std::string text_;
   bool first_ = true;
 };
-
-report::FitChoices choices_of(const std::optional<Integer>& starts, const Integer& seed,
-                              const Integer& bootstrap, bool profiles,
-                              const std::optional<Integer>& posterior, bool cross_validate,
-                              std::optional<double> max_time_s,
-                              const std::optional<Integer>& max_evaluations) {
-  report::FitChoices choices;
-  if (starts) choices.starts = count("starts", *starts, 1, report::kMostStarts);
-  choices.seed = whole_number("seed", seed, 0, std::numeric_limits<std::uint64_t>::max());
-  choices.bootstrap = count("bootstrap", bootstrap, 0, report::kMostReplicates);
-  choices.profiles = profiles;
-  if (posterior) {
-    choices.posterior = count("posterior", *posterior, datasets::kLeastPosteriorDraws,
-                              datasets::kMostPosteriorDraws);
-  }
-  choices.cross_validate = cross_validate;
-  choices.max_time_s = positive("max_time", max_time_s);
-  if (max_evaluations) {
-    choices.max_evaluations = static_cast<long>(
-        whole_number("max_evaluations", *max_evaluations, 1, std::numeric_limits<long>::max()));
-  }
-  return choices;
-}
 
 std::string call_of(const Campaign& campaign, const report::FitChoices& choices) {
   const report::FitChoices none;
@@ -144,57 +127,35 @@ FitResultPtr fit(const CampaignPtr& self, const std::optional<Integer>& starts, 
                  const std::optional<py::function>& progress) {
   const report::FitChoices choices = choices_of(starts, seed, bootstrap, profiles, posterior,
                                                 cross_validate, max_time_s, max_evaluations);
-  const int thread_number = thread_count(threads);
-  const std::string call = call_of(*self, choices);
-  return made(progress, [&](Progress& told, std::atomic<bool>& cancel) {
-    auto result = std::make_shared<FitResult>();
-    result->campaign = self;
-    const datasets::Campaign& campaign = self->campaign;
-    result->records =
-        datasets::load_records(campaign, {Use::fit, Use::validate}, thread_number, true);
-    calib::FitOptions settings = report::fit_options(campaign, thread_number, cancel);
-    report::apply(choices, settings);
-    result->provenance = report::provenance_of_starts(call, self->choice, choices, settings,
-                                                      campaign, result->records);
-    for (const auto& option : report::recorded(choices))
-      result->provenance.options.push_back(option);
-    told.attach(settings);
-    result->fit = calib::fit(campaign, result->records, settings);
-    return result;
-  });
+  return made(
+      self, call_of(*self, choices), threads, progress,
+      [&](std::shared_ptr<const datasets::Campaign> campaign, const report::JobTerms& terms) {
+        return report::fit_job(std::move(campaign), {choices}, terms);
+      });
 }
 
 FitResultPtr validate(const CampaignPtr& self, const std::optional<FitArgument>& fit,
                       const std::optional<Integer>& threads,
                       const std::optional<py::function>& progress) {
-  const int thread_number = thread_count(threads);
-  const report::FitSource source = fit_source(fit, self->campaign.rig.plant);
+  const report::ValidationRequest request{fit_source(fit, self->campaign.rig.plant)};
   const std::string call = self->call + ".validate(" + (fit ? written_fit(*fit) : "") + ")";
-  return made(progress, [&](Progress& told, std::atomic<bool>& cancel) {
-    auto result = std::make_shared<FitResult>();
-    result->campaign = self;
-    result->kind = report::ResultKind::validation;
-    const datasets::Campaign& campaign = self->campaign;
-    std::optional<report::EarlierFit> earlier;
-    if (source.given()) earlier = source.read(campaign.rig.plant);
-    result->records =
-        datasets::load_records(campaign, {Use::fit, Use::validate}, thread_number, true);
-    calib::FitOptions settings = report::fit_options(campaign, thread_number, cancel);
-    result->provenance = {call, settings.seed, report::recorded(self->choice),
-                          report::hash_inputs(campaign, result->records, source.inputs())};
-    told.attach(settings);
-    result->fit = report::validate(campaign, result->records, earlier ? &*earlier : nullptr,
-                                   result->provenance, settings);
-    return result;
-  });
+  return made(
+      self, call, threads, progress,
+      [&](std::shared_ptr<const datasets::Campaign> campaign, const report::JobTerms& terms) {
+        return report::validation_job(std::move(campaign), request, terms);
+      });
+}
+
+std::string text_of(const FitResult& self) {
+  return render_terminal(report::document_of(self.result()), report::Style{});
 }
 
 ResultPtr result_of(const FitResult& self, int threads) {
   auto result = std::make_shared<Result>();
   result->kind = self.kind == report::ResultKind::fit ? "fit" : "validation";
-  result->name = self.campaign->campaign.name;
+  result->name = self.campaign->name;
   result->files = report::result_files(self.result(), threads);
-  result->text = report::result_text(self.result(), {}, report::Style{});
+  result->text = text_of(self);
   result->inputs = self.provenance.inputs;
   return result;
 }
@@ -202,7 +163,7 @@ ResultPtr result_of(const FitResult& self, int threads) {
 // ---- members
 
 std::vector<FittedParameter> result_parameters(const FitResult& self) {
-  const auto table = model::parameter_table(self.campaign->campaign.rig.plant);
+  const auto table = model::parameter_table(self.campaign->rig.plant);
   std::vector<FittedParameter> parameters;
   for (const calib::FittedParameter& each : self.fit.parameters)
     parameters.push_back({each, table[static_cast<std::size_t>(each.index)]});
@@ -244,9 +205,8 @@ std::vector<fs::path> write(const FitResult& self, const fs::path& out,
   const report::Result result = self.result();
   report::HeldFolder held(
       out, holding(result.kind == report::ResultKind::fit ? "fit" : "validate", force));
-  report::StoredFit stored = report::stored(result);
   std::vector<fs::path> paths;
-  for (const fs::path& file : report::write_result(held, thread_number, result, stored))
+  for (const fs::path& file : report::write_result(held, thread_number, result).files)
     paths.push_back(out / file);
   return paths;
 }
@@ -272,7 +232,7 @@ Page explore(const FitResult& self) {
   for (const calib::FittedParameter& p : self.fit.parameters)
     if (p.fitted && !p.nuisance) values.push_back({p.index, p.scope, p.level, p.value});
   const py::gil_scoped_release released;
-  return explore_page_of(self.campaign->campaign, values, self.provenance.command + ".explore()");
+  return explore_page_of(*self.campaign, values, self.provenance.command + ".explore()");
 }
 
 void bind_start(py::module_& module) {
@@ -303,7 +263,7 @@ void bind_result(py::module_& module) {
           },
           "\"fit\" or \"validation\".")
       .def_property_readonly(
-          "campaign", [](const Self& self) { return self.campaign; }, "What it was made from.")
+          "campaign", [](const Self& self) { return self.source; }, "What it was made from.")
       .def_property_readonly(
           "status", [](const Self& self) { return to_string(report::status_of(self.fit)); },
           "\"converged\", \"stopped\" (the best so far) or \"failed\".")
@@ -435,12 +395,9 @@ Returns:
              }
              return reduced(result);
            })
-      .def(
-          "__str__",
-          [](const Self& self) { return report::result_text(self.result(), {}, report::Style{}); },
-          "What the command prints.")
+      .def("__str__", &text_of, "What the command prints.")
       .def("__repr__", [](const Self& self) {
-        return fmt::format("<rigcal.Fit of \"{}\": {}, {}>", self.campaign->campaign.name,
+        return fmt::format("<rigcal.Fit of \"{}\": {}, {}>", self.campaign->name,
                            to_string(report::status_of(self.fit)),
                            self.fit.verdict ? to_string(*self.fit.verdict) : "no verdict");
       });

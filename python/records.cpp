@@ -14,7 +14,7 @@
 #include "python/campaign.hpp"
 #include "python/holding.hpp"
 #include "python/result.hpp"
-#include "report/run/averaging.hpp"
+#include "report/job/job.hpp"
 #include "report/run/check.hpp"
 #include "report/store/folder.hpp"
 #include "report/store/provenance.hpp"
@@ -59,15 +59,15 @@ py::dict average(const Campaign& self, const std::optional<fs::path>& out, bool 
   {
     const py::gil_scoped_release released;
     std::optional<report::HeldFolder> held;
-    if (out) {
+    const std::atomic<bool> cancel{false};
+    report::JobTerms terms{call, report::recorded(self.choice), threads, cancel};
+    terms.hold = [&](report::PlannedFiles planned) {
+      if (!out) return;
       held.emplace(*out, holding("average", force));
-      held->plan(report::planned_average(self.campaign));
-    }
-    records = report::averaged_records(self.campaign);
-    if (out) {
-      report::write_average(*held, threads, self.campaign, records,
-                            {call, 1, report::recorded(self.choice), {}});
-    }
+      held->plan(std::move(planned));
+    };
+    records = report::averaged_records(self.campaign, terms);
+    if (held) report::write_job(*held, threads, report::average_job(self.campaign, records, terms));
   }
   py::dict by_condition;
   for (Record& record : records) {

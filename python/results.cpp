@@ -53,8 +53,9 @@ ResultPtr job_result(const char* kind, std::string name, std::string call,
     report::JobResult found = job(terms);
     result->kind = kind;
     result->name = std::move(name);
-    result->text = report::doc::render_terminal(found.verdict, found.sections, report::Style{});
     result->files = std::move(found.files);
+    for (const auto& document : report::documents_in(result->files, result->name))
+      result->text += render_terminal(document, report::Style{});
     result->inputs = std::move(found.inputs);
   });
   if (raised) std::rethrow_exception(raised);
@@ -167,6 +168,44 @@ ResultPtr compare(const std::vector<fs::path>& folders) {
       [&](const report::JobTerms& terms) { return report::comparison_job(folders, terms); });
 }
 
+ResultPtr batch(const fs::path& folder, const fs::path& out,
+                const std::optional<std::vector<fs::path>>& earlier, bool diagnose, bool resume,
+                bool force, const std::optional<fs::path>& root,
+                const std::optional<Integer>& starts, const Integer& seed, const Integer& bootstrap,
+                bool profiles, const std::optional<Integer>& posterior, bool cross_validate,
+                std::optional<double> max_time_s, const std::optional<Integer>& max_evaluations,
+                const std::optional<Integer>& threads, const ProgressFunction& progress) {
+  require_path("folder", folder);
+  require_path("out", out);
+  require_path("root", root);
+  report::BatchRequest request;
+  request.folder = folder;
+  request.root = root.value_or("");
+  request.earlier = earlier.value_or(std::vector<fs::path>());
+  request.choices = choices_of(starts, seed, bootstrap, profiles, posterior, cross_validate,
+                               max_time_s, max_evaluations);
+  request.resume = resume;
+  request.diagnose = diagnose;
+  request.force = force;
+  CallText call("rigcal.batch");
+  call.add(path_text("folder", folder));
+  call.add(path_text("out", out));
+  return job_result("batch", "", call.text(), {}, threads, progress,
+                    [&](const report::JobTerms& given) {
+                      report::JobTerms terms = given;
+                      terms.out = out;
+                      std::optional<report::HeldFolder> held;
+                      terms.hold = [&](report::PlannedFiles planned) {
+                        held.emplace(out, holding("batch", force));
+                        held->plan(std::move(planned));
+                      };
+                      const report::RigVerbs verbs = report::verbs_in_process(request, terms);
+                      report::JobResult found = report::batch_job(request, verbs, terms);
+                      report::write_job(*held, terms.threads, found);
+                      return found;
+                    });
+}
+
 std::pair<fs::path, std::vector<std::string>> export_fmu(
     const CampaignPtr& self, const fs::path& out, const std::optional<FitArgument>& fit,
     const std::optional<std::string>& condition, const std::optional<std::string>& level,
@@ -222,7 +261,7 @@ py::object content_of(const Result& self) {
 
 std::string page_of(const Result& self) {
   const py::gil_scoped_release released;
-  return report::result_page(report::files_in(self.files), self.name, 1);
+  return report::result_page(report::files_in(self.files), self.name, 1).html;
 }
 
 py::dict files_of(const Result& self) {
@@ -296,10 +335,10 @@ void bind_results(py::module_& module) {
   py::class_<Result, ResultPtr>(
       module, "Result",
       "What a verb other than fit and validate found: its files, in memory. It can be pickled.")
-      .def_readonly(
-          "kind", &Result::kind,
-          "\"diagnosis\", \"parity\", \"leak_table\", \"plan\", \"comparison\"; \"fit\" or\n"
-          "\"validation\" of a Fit that was pickled.")
+      .def_readonly("kind", &Result::kind,
+                    "\"diagnosis\", \"parity\", \"leak_table\", \"plan\", \"comparison\" or "
+                    "\"batch\"; \"fit\"\n"
+                    "or \"validation\" of a Fit that was pickled.")
       .def("json", &content_of, "The contents of its JSON file, as a dict.")
       .def_property_readonly(
           "files", &files_of,
@@ -458,6 +497,34 @@ Raises:
 Raises:
     InputError: a folder has no result
     UsageError: there are fewer than two folders, or one is given twice)");
+  module.def("batch", &batch, py::arg("folder"), py::arg("out"), py::kw_only(),
+             py::arg("earlier") = py::none(), py::arg("diagnose") = false,
+             py::arg("resume") = false, py::arg("force") = false, py::arg("root") = py::none(),
+             py::arg("starts") = py::none(), py::arg("seed") = 1, py::arg("bootstrap") = 0,
+             py::arg("profiles") = false, py::arg("posterior") = py::none(),
+             py::arg("cross_validate") = false, py::arg("max_time") = py::none(),
+             py::arg("max_evaluations") = py::none(), py::arg("threads") = py::none(),
+             py::arg("progress") = py::none(),
+             R"(Fits every rig beneath a folder, one after the other, as `rigcal batch`.
+
+The results of each rig are written into a folder of its own in `out`, and a row for each rig.
+
+Args:
+    folder: every campaign.toml beneath it is a rig
+    out: folder of the results
+    earlier: `out` of earlier batches, for the trends
+    diagnose: whether to diagnose the records of each rig by its fit
+    resume: keep whole results of the same inputs and options; go on where a fit was stopped
+    force: replace files that rigcal did not write, or that were changed since
+    root: no file outside this folder is read; None: no limit
+    starts, seed, bootstrap, profiles, posterior, cross_validate, max_time, max_evaluations: as
+        those of Campaign.fit()
+    threads: None: as many as the machine has; results do not depend on it
+    progress: called with Pieces when a rig has ended; an exception there is raised here
+
+Raises:
+    UsageError: there is no campaign.toml, or `out` is one of `earlier`
+    ValueError: an argument is out of its range)");
   module.def("init", &init, py::arg("files"), py::arg("out"), py::kw_only(),
              py::arg("force") = false,
              R"(Drafts a campaign file from recordings, as `rigcal init`.

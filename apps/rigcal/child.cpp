@@ -45,8 +45,8 @@ class Descriptor {
   int value_;
 };
 
-ChildEnd not_started(const char* what) {
-  ChildEnd end;
+report::VerbEnd not_started(const char* what) {
+  report::VerbEnd end;
   end.error = fmt::format("{}: {}", what, std::generic_category().message(errno));
   return end;
 }
@@ -94,7 +94,8 @@ std::string message_of(const std::string& text) {
 
 }  // namespace
 
-ChildEnd run_child(const std::vector<std::string>& arguments, const std::atomic<bool>& cancel) {
+report::VerbEnd run_child(const std::vector<std::string>& arguments,
+                          const std::atomic<bool>& cancel) {
   const auto began = std::chrono::steady_clock::now();
   std::vector<std::string> words{"rigcal"};
   words.insert(words.end(), arguments.begin(), arguments.end());
@@ -122,7 +123,7 @@ ChildEnd run_child(const std::vector<std::string>& arguments, const std::atomic<
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  ChildEnd end;
+  report::VerbEnd end;
   end.error = message_of(said);
   if (WIFSIGNALED(status)) {
     end.error = fmt::format(

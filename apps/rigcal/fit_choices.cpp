@@ -60,23 +60,4 @@ void add_fit_choices(CLI::App& verb, FitChoices& choices) {
   add_strict_option(verb, choices.strict);
 }
 
-std::vector<std::string> arguments_of(const FitChoices& choices) {
-  std::vector<std::string> arguments;
-  const auto add = [&](const char* option, const std::string& value) {
-    arguments.emplace_back(option);
-    arguments.push_back(value);
-  };
-  if (choices.starts) add("--starts", fmt::format("{}", *choices.starts));
-  if (choices.seed != FitChoices{}.seed) add("--seed", fmt::format("{}", choices.seed));
-  if (choices.bootstrap > 0) add("--bootstrap", fmt::format("{}", choices.bootstrap));
-  if (choices.profiles) arguments.emplace_back("--profiles");
-  if (choices.posterior) add("--posterior", fmt::format("{}", *choices.posterior));
-  if (choices.cross_validate) arguments.emplace_back("--cross-validate");
-  if (choices.max_time_s) add("--max-time", fmt::format("{}", *choices.max_time_s));
-  if (choices.max_evaluations)
-    add("--max-evaluations", fmt::format("{}", *choices.max_evaluations));
-  if (choices.strict) arguments.emplace_back("--strict");
-  return arguments;
-}
-
 }  // namespace rigcal::app

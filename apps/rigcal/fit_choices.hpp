@@ -1,8 +1,6 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <string>
-#include <vector>
 
 #include "report/run/fit_choices.hpp"
 
@@ -14,8 +12,5 @@ struct FitChoices : report::FitChoices {
 };
 
 void add_fit_choices(CLI::App& verb, FitChoices& choices);
-
-/// The same as arguments of a command line, without defaults.
-std::vector<std::string> arguments_of(const FitChoices& choices);
 
 }  // namespace rigcal::app

@@ -127,7 +127,7 @@ bool print_manual(const CLI::App& app, const std::vector<std::string>& arguments
   } else {
     return false;
   }
-  rigcal::app::print({}, text, {});
+  rigcal::app::print({}, text, std::string());
   return true;
 }
 

@@ -55,7 +55,7 @@ void add_print_options(CLI::App& verb, PrintOptions& options) {
   verb.add_flag("--quiet", options.quiet, "Print nothing but errors");
   verb.add_flag("--json", options.json, "Print JSON instead of text");
   verb.add_flag("-v,--verbose", options.verbose,
-                "Print every condition, parameter and warning on a terminal, too");
+                "Print every section of the result, and every row on a terminal, too");
 }
 
 void add_force_option(CLI::App& verb, bool& force) {
@@ -131,17 +131,22 @@ report::Style terminal_style() {
 
 report::Style terminal_style(const PrintOptions& options) {
   report::Style style = terminal_style();
+  style.everything = options.verbose;
   // What goes elsewhere is for programs and logs.
   if (::isatty(STDOUT_FILENO) == 1 && !options.verbose) style.lines = report::kTerminalLines;
   return style;
 }
 
 void print(const PrintOptions& options, const std::string& text, const report::Json& json) {
+  print(options, text, report::json_text(json));
+}
+
+void print(const PrintOptions& options, const std::string& text, const std::string& json) {
   if (options.quiet) return;
   // JSON understands the escapes of the few characters that its writer does not escape itself.
   const std::string shown =
       options.json
-          ? printable(report::json_text(json))
+          ? printable(json)
           : report::wrapped_lines(printable(text, terminal_style().colour), output_columns());
   const bool written = std::fwrite(shown.data(), 1, shown.size(), stdout) == shown.size();
   if (!written || std::fflush(stdout) != 0) {

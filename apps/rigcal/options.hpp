@@ -9,7 +9,7 @@
 #include "report/run/campaign_choice.hpp"
 #include "report/store/folder.hpp"
 #include "report/store/json.hpp"
-#include "report/text/terminal.hpp"
+#include "report/text/style.hpp"
 
 namespace rigcal::app {
 
@@ -60,5 +60,7 @@ report::Style terminal_style(const PrintOptions& options);
 ///
 /// @throws WriteError  stdout does not take it
 void print(const PrintOptions& options, const std::string& text, const report::Json& json);
+/// @param json  as text
+void print(const PrintOptions& options, const std::string& text, const std::string& json);
 
 }  // namespace rigcal::app

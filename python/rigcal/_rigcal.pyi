@@ -27,6 +27,26 @@ def load(
     root: Path_ | None = None,
 ) -> Campaign: ...
 
+def batch(
+    folder: Path_,
+    out: Path_,
+    *,
+    earlier: Sequence[Path_] | None = None,
+    diagnose: bool = False,
+    resume: bool = False,
+    force: bool = False,
+    root: Path_ | None = None,
+    starts: SupportsIndex | None = None,
+    seed: SupportsIndex = 1,
+    bootstrap: SupportsIndex = 0,
+    profiles: bool = False,
+    posterior: SupportsIndex | None = None,
+    cross_validate: bool = False,
+    max_time: float | None = None,
+    max_evaluations: SupportsIndex | None = None,
+    threads: SupportsIndex | None = None,
+    progress: Callable[[Pieces], object] | None = None,
+) -> Result: ...
 def compare(folders: Sequence[Path_]) -> Result: ...
 def init(files: Sequence[Path_], out: Path_, *, force: bool = False) -> tuple[Path, list[str]]: ...
 

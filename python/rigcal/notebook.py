@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 # The list of most interest in the JSON of each kind of result.
 _TABLES = {
+    "batch": "rigs",
     "comparison": "parameters",
     "diagnosis": "records",
     "fit": "parameters",
@@ -165,6 +166,11 @@ def _plot_result(result: Result) -> Figure:
         zero = [0.0] * len(half)
         return _intervals([_label(row) for row in planned], zero, [-h for h in half], half,
                           "95 % interval, percent of the value")
+    if result.kind == "batch":
+        known = [(row["rig"], each) for row in rows for each in row["parameters"] if each["value"] and each["ci95"]]
+        percent = [[100.0 * (end / each["value"] - 1.0) for end in sorted(each["ci95"])] for _, each in known]
+        return _intervals([f"{rig}: {_label(each)}" for rig, each in known], [0.0] * len(known),
+                          [low for low, _ in percent], [high for _, high in percent], "95 % interval, percent of the value")
     if result.kind == "comparison":
         names = [each["name"] for each in result.json()["results"]]
         labels, values, low, high = [], [], [], []

@@ -6,7 +6,6 @@
 
 #include "report/comparison/stored_comparison.hpp"
 #include "report/store/stored.hpp"
-#include "report/text/terminal.hpp"
 
 namespace rigcal::report {
 

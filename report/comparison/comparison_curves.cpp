@@ -79,9 +79,7 @@ Table overlaid(const std::vector<ConditionSeries>& results, double frequency_hz)
   if (time_s == nullptr || time_s->empty()) return table;
   std::vector<std::size_t> samples;
   const auto add = [&](std::string name, const std::vector<double>& values) {
-    table.names.push_back(std::move(name));
-    auto& column = table.columns.emplace_back();
-    for (const std::size_t i : samples) column.push_back(values[i]);
+    table.add(std::move(name), samples.size(), [&](std::size_t i) { return values[samples[i]]; });
   };
   for (const datasets::ChannelInfo& about : datasets::channel_table()) {
     const auto* measured = first.find(curve_column("measured", about.name));
@@ -100,17 +98,6 @@ Table overlaid(const std::vector<ConditionSeries>& results, double frequency_hz)
     }
   }
   return table;
-}
-
-std::string table_csv(const Table& table) {
-  std::string text = csv_row(table.names);
-  const std::size_t rows = table.columns.empty() ? 0 : table.columns.front().size();
-  for (std::size_t i = 0; i < rows; ++i) {
-    std::vector<std::string> fields;
-    for (const auto& column : table.columns) fields.push_back(csv_number(column[i]));
-    text += csv_row(fields);
-  }
-  return text;
 }
 
 namespace {
@@ -149,7 +136,7 @@ std::vector<ResultFile> comparison_curves(const std::vector<Compared>& results) 
     }
     if (found.size() < 2) continue;
     const Table table = overlaid(found, frequency_hz);
-    if (!table.names.empty()) files.push_back({"overlay/" + id + ".csv", table_csv(table)});
+    if (!table.names.empty()) files.push_back({"overlay/" + id + ".csv", csv_of(table)});
   }
   return files;
 }

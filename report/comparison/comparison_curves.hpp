@@ -24,9 +24,6 @@ struct ConditionSeries {
 /// @param frequency_hz  of a periodic drive; 0 for any other
 Table overlaid(const std::vector<ConditionSeries>& results, double frequency_hz);
 
-/// A table as CSV that parse_table() reads back.
-std::string table_csv(const Table& table);
-
 /// overlay/<condition>.csv of every condition that two or more of the results have simulated.
 ///
 /// @throws InputError  a result's residuals are no table, or its condition has a name that cannot

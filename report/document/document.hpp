@@ -53,7 +53,11 @@ struct Strong {
 struct Code {
   std::string words;
 };
-using Inline = std::variant<std::string, Quantity, Badge, Mark, Link, Soft, Strong, Code>;
+/// What only a page has room for, or a picture.
+struct Aside {
+  std::string words;
+};
+using Inline = std::variant<std::string, Quantity, Badge, Mark, Link, Soft, Strong, Code, Aside>;
 using Line = std::vector<Inline>;
 using Lines = std::vector<Line>;
 
@@ -119,7 +123,8 @@ struct Paragraph {
   enum class Tone {
     plain,
     reading,
-    source,
+    source,  ///< small print, on the page alone
+    small,   ///< small print
     problem,
     screen,   ///< not in print
     picture,  ///< how to read a picture, or where to click: on the page alone
@@ -178,6 +183,7 @@ struct Verdict {
 /// Everything that must be known before the result is signed.
 struct Doubts {
   Lines items;
+  std::optional<Line> warnings = {};  ///< the last item of a page; a terminal shows their section
 };
 /// Aspects that are judged separately, side by side.
 struct Aspects {
@@ -196,11 +202,6 @@ struct Signatures {
 struct Command {
   std::string words;
 };
-/// Markup from another renderer.
-struct Raw {
-  std::string html;
-};
-
 /// A picture that the page's script replaces by one with zoom, from the series of its article.
 struct LivePlot {
   std::size_t number = 0;   ///< index of the plot in the series
@@ -226,9 +227,10 @@ struct Sketches {
 
 struct Fold;
 struct Article;
-using Block =
-    std::variant<Paragraph, Heading, List, Facts, Table, Figure, Gallery, Tiles, Verdict, Doubts,
-                 Aspects, Signatures, Command, Raw, LivePlot, LiveSeries, Sketches, Fold, Article>;
+struct Rendered;
+using Block = std::variant<Paragraph, Heading, List, Facts, Table, Figure, Gallery, Tiles, Verdict,
+                           Doubts, Aspects, Signatures, Command, LivePlot, LiveSeries, Sketches,
+                           Fold, Article, Rendered>;
 using Blocks = std::vector<Block>;
 /// Content that the reader can unfold; it is printed unfolded.
 struct Fold {
@@ -243,12 +245,27 @@ struct Article {
   Line title;
   Blocks blocks;
 };
+/// Blocks that are a page already, and what a terminal shows of them: those of a long page would
+/// need most of its memory.
+struct Rendered {
+  std::string html;
+  Blocks blocks;
+};
 
 struct Section {
   std::string id;
   std::string title;
   Blocks blocks = {};
   std::string short_title = {};  ///< in lists of sections
+  bool always = false;  ///< a terminal shows it below the first page, whatever the style asks for
+};
+
+/// A result as its page and a terminal show it.
+struct Document {
+  Verdict verdict;
+  Blocks front = {};  ///< below the verdict, on the page that is signed
+  std::vector<Section> sections = {};
+  bool synthetic = false;  ///< its records are
 };
 
 }  // namespace rigcal::report::doc

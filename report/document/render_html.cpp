@@ -64,6 +64,7 @@ std::string html_of(const Inline& part) {
             return fmt::format("<strong>{}</strong>", escaped(strong.words));
           },
           [](const Code& code) { return fmt::format("<code>{}</code>", escaped(code.words)); },
+          [](const Aside& aside) { return escaped(aside.words); },
       },
       part);
 }
@@ -197,6 +198,7 @@ void add(const Paragraph& paragraph, std::string& page) {
       case Paragraph::Tone::picture:
         return "reading";
       case Paragraph::Tone::source:
+      case Paragraph::Tone::small:
         return "source";
       case Paragraph::Tone::problem:
         return "problem";
@@ -285,11 +287,13 @@ void add(const Verdict& verdict, std::string& page) {
 }
 
 void add(const Doubts& doubts, std::string& page) {
-  if (doubts.items.empty()) return;
+  Lines items = doubts.items;
+  if (doubts.warnings) items.push_back(*doubts.warnings);
+  if (items.empty()) return;
   page += fmt::format(
       "<div class=\"doubts\"><p><strong>Before you sign: {} point{}.</strong></p>\n<ol>",
-      doubts.items.size(), doubts.items.size() == 1 ? "" : "s");
-  for (const Line& item : doubts.items) page += "<li>" + html(item) + "</li>";
+      items.size(), items.size() == 1 ? "" : "s");
+  for (const Line& item : items) page += "<li>" + html(item) + "</li>";
   page += "</ol></div>\n";
 }
 
@@ -320,7 +324,7 @@ void add(const Command& command, std::string& page) {
   page += "<pre><code>" + escaped(command.words) + "</code></pre>\n";
 }
 
-void add(const Raw& raw, std::string& page) { page += raw.html; }
+void add(const Rendered& rendered, std::string& page) { page += rendered.html; }
 
 void add(const Fold& fold, std::string& page) {
   page += fmt::format("<details{}{}>\n<summary>{}</summary>\n", html_attribute("class", fold.style),

@@ -47,51 +47,10 @@ class Terminal {
   }
 
   void add(const Section& section) {
-    const Blocks& blocks = section.blocks;
-    if (std::none_of(blocks.begin(), blocks.end(),
-                     [&](const Block& block) { return shows(block); }))
-      return;
+    if (!shows(section.blocks)) return;
     text_ += "\n" + in_colour(section.title, "1") + "\n";
-    add(blocks);
+    add(section.blocks);
   }
-
-  std::string text() && { return std::move(text_); }
-
- private:
-  static bool is_warning(const Block& block) {
-    const auto* list = std::get_if<List>(&block);
-    return list != nullptr && list->state && *list->state != State::none;
-  }
-
-  /// Whether anything of a block is for a terminal.
-  bool shows(const Block& block) const {
-    return std::visit(
-        Overloaded{
-            [](const Table& table) { return !table.rows.empty(); },
-            [](const List& list) { return !list.items.empty(); },
-            [](const Facts& facts) { return !facts.rows.empty(); },
-            [&](const Paragraph& paragraph) {
-              using Tone = Paragraph::Tone;
-              return paragraph.tone == Tone::plain || paragraph.tone == Tone::problem ||
-                     (paragraph.tone == Tone::reading && !is_brief_);
-            },
-            [](const Figure& figure) { return !figure.reading.empty(); },
-            [](const Gallery& gallery) {
-              return std::any_of(gallery.figures.begin(), gallery.figures.end(),
-                                 [](const Figure& figure) { return !figure.reading.empty(); });
-            },
-            [](const Tiles& tiles) { return !tiles.tiles.empty(); },
-            [&](const Fold& fold) {
-              return std::any_of(fold.blocks.begin(), fold.blocks.end(), [&](const Block& inner) {
-                return (fold.open || is_warning(inner)) && shows(inner);
-              });
-            },
-            [](const Article&) { return true; },
-            [](const auto&) { return false; },
-        },
-        block);
-  }
-
   void add(const Blocks& blocks) {
     const Heading* pending = nullptr;  // waits for what it is the heading of
     starts_section_ = true;
@@ -111,7 +70,10 @@ class Terminal {
               [&](const Table& table) { add(table); },
               [&](const List& list) {
                 const char* const start = is_warning(block) ? "warning: " : "- ";
-                for (const Line& item : list.items) add_wrapped(start + text_of(item), 2);
+                const std::size_t count = std::min(most_, list.items.size());
+                for (std::size_t i = 0; i < count; ++i)
+                  add_wrapped(start + text_of(list.items[i]), 2);
+                add_count(list.items.size() - count);
               },
               [&](const Facts& facts) { add(facts); },
               [&](const Paragraph& paragraph) {
@@ -131,8 +93,19 @@ class Terminal {
               [&](const Fold& fold) {
                 text_ += "\n" + in_colour(fold.summary, "1") + "\n";
                 for (const Block& inner : fold.blocks)
-                  if (fold.open || is_warning(inner)) add(Blocks{inner});
+                  if (is_open(fold) || is_warning(inner)) add(Blocks{inner});
               },
+              [&](const Doubts& doubts) {
+                text_ += "\n" + in_colour("Before you sign", "1") + "\n";
+                for (const Line& item : doubts.items) add_wrapped("- " + text_of(item), 2);
+              },
+              [&](const Aspects& aspects) {
+                for (const Aspects::Aspect& aspect : aspects.aspects)
+                  add_wrapped(
+                      text_of(aspect.badge) + " " + aspect.name + ": " + joined(aspect.lines, "; "),
+                      2);
+              },
+              [&](const Rendered& rendered) { add(rendered.blocks); },
               [&](const Article& article) {
                 text_ += "\n" + in_colour(text_of(article.title), "1") + "\n";
                 add(article.blocks);
@@ -142,6 +115,58 @@ class Terminal {
           block);
       starts_section_ = false;
     }
+  }
+
+  void add_wrapped(const std::string& line, std::size_t indent) {
+    text_ += wrapped(line, style_.columns, indent) + "\n";
+  }
+
+  std::string text() && { return std::move(text_); }
+
+ private:
+  static bool is_warning(const Block& block) {
+    const auto* list = std::get_if<List>(&block);
+    return list != nullptr && list->state && *list->state != State::none;
+  }
+
+  bool shows(const Blocks& blocks) const {
+    return std::any_of(blocks.begin(), blocks.end(),
+                       [&](const Block& block) { return shows(block); });
+  }
+
+  bool is_open(const Fold& fold) const { return fold.open || style_.everything; }
+
+  /// Whether anything of a block is for a terminal.
+  bool shows(const Block& block) const {
+    return std::visit(
+        Overloaded{
+            [](const Table& table) { return !table.rows.empty(); },
+            [](const List& list) { return !list.items.empty(); },
+            [](const Facts& facts) { return !facts.rows.empty(); },
+            [&](const Paragraph& paragraph) {
+              using Tone = Paragraph::Tone;
+              return paragraph.tone == Tone::plain || paragraph.tone == Tone::problem ||
+                     paragraph.tone == Tone::small ||
+                     (paragraph.tone == Tone::reading && !is_brief_);
+            },
+            [](const Figure& figure) { return !figure.reading.empty(); },
+            [](const Gallery& gallery) {
+              return std::any_of(gallery.figures.begin(), gallery.figures.end(),
+                                 [](const Figure& figure) { return !figure.reading.empty(); });
+            },
+            [](const Tiles& tiles) { return !tiles.tiles.empty(); },
+            [&](const Fold& fold) {
+              return std::any_of(fold.blocks.begin(), fold.blocks.end(), [&](const Block& inner) {
+                return (is_open(fold) || is_warning(inner)) && shows(inner);
+              });
+            },
+            [](const Doubts& doubts) { return !doubts.items.empty(); },
+            [](const Aspects& aspects) { return !aspects.aspects.empty(); },
+            [](const Article&) { return true; },
+            [&](const Rendered& rendered) { return shows(rendered.blocks); },
+            [](const auto&) { return false; },
+        },
+        block);
   }
 
   void add(const Table& table) {
@@ -181,16 +206,28 @@ class Terminal {
             fmt::format("{}: {}", fmt::join(lines_of(row.cells[table.heading]), " "), note));
     }
     text_ += shown.text(style_.columns);
-    if (count < table.rows.size())
-      text_ += fmt::format("and {} more (-v for all)\n", table.rows.size() - count);
+    add_count(table.rows.size() - count);
     if (const auto left_out = shown.left_out(style_.columns); !left_out.empty())
       add_wrapped(fmt::format("hidden on this narrow terminal: {}", fmt::join(left_out, ", ")), 2);
     for (const std::string& note : notes) add_wrapped(note, 2);
   }
 
+  void add_count(std::size_t more) {
+    if (more > 0) text_ += fmt::format("and {} more (-v for all)\n", more);
+  }
+
   void add(const Facts& facts) {
     if (!facts.caption.empty()) text_ += "\n" + in_colour(text_of(facts.caption), "1") + "\n";
     for (const auto& [name, line] : facts.rows) add_wrapped(name + ": " + text_of(line), 2);
+  }
+
+  std::string joined(const Lines& lines, std::string_view separator) const {
+    std::string text;
+    for (const Line& line : lines) {
+      if (!text.empty()) text += separator;
+      text += text_of(line);
+    }
+    return text;
   }
 
   std::string in_colour(const std::string& text, const char* code) const {
@@ -215,6 +252,7 @@ class Terminal {
                              [&](const Mark& one) {
                                return in_colour(std::string(mark(one.state)), colour_of(one.state));
                              },
+                             [](const Aside&) { return std::string(); },
                              [](const auto& other) { return on_one_line(other.words); },
                          },
                          part);
@@ -257,10 +295,6 @@ class Terminal {
     return result;
   }
 
-  void add_wrapped(const std::string& line, std::size_t indent) {
-    text_ += wrapped(line, style_.columns, indent) + "\n";
-  }
-
   Style style_;
   std::size_t most_;
   bool is_brief_;
@@ -269,11 +303,28 @@ class Terminal {
   bool starts_section_ = true;  ///< nothing is below the last title yet
 };
 
-std::string rendered(const Verdict& verdict, const std::vector<Section>& sections,
-                     const Style& style, std::size_t most, bool is_brief) {
+/// Names the sections of a document that a terminal shows only if asked.
+std::string further_sections(const Document& document) {
+  std::string text;
+  for (const Section& section : document.sections)
+    if (!section.always) text += (text.empty() ? "-v for more: " : ", ") + section.title;
+  return text;
+}
+
+std::string rendered(const Document& document, const Style& style, std::size_t most,
+                     bool is_brief) {
   Terminal terminal(style, most, is_brief);
-  terminal.add(verdict);
-  for (const Section& section : sections) terminal.add(section);
+  terminal.add(document.verdict);
+  terminal.add(document.front);
+  const bool all = document.front.empty() || style.everything;
+  for (const Section& section : document.sections)
+    if (all || section.always) terminal.add(section);
+  if (!all) {
+    terminal.add_wrapped("", 0);
+    terminal.add_wrapped(further_sections(document), 2);
+  }
+  if (document.synthetic)
+    terminal.add_wrapped("note: the records of this campaign are synthetic", 2);
   return std::move(terminal).text();
 }
 
@@ -283,14 +334,13 @@ std::size_t lines_in(const std::string& text) {
 
 }  // namespace
 
-std::string render_terminal(const Verdict& verdict, const std::vector<Section>& sections,
-                            const Style& style) {
+std::string render_terminal(const Document& document, const Style& style) {
   constexpr std::size_t kFewestRows = 3;  // beside the sentences that say how to read them
   const std::size_t all = std::numeric_limits<std::size_t>::max();
-  std::string text = rendered(verdict, sections, style, all, false);
+  std::string text = rendered(document, style, all, false);
   if (style.lines == 0) return text;
   for (std::size_t most = style.lines; most > 0 && lines_in(text) > style.lines; --most)
-    text = rendered(verdict, sections, style, most, most < kFewestRows);
+    text = rendered(document, style, most, most < kFewestRows);
   return text;
 }
 

@@ -31,11 +31,8 @@ JobResult comparison_job(const std::vector<std::filesystem::path>& folders, cons
   JobResult job;
   job.files = comparison_curves(results);
   name_files(job.files, comparison.provenance);
-  job.json = json_of(comparison);
-  job.files.push_back({"comparison.json", json_text(job.json)});
+  job.files.push_back({"comparison.json", json_text(json_of(comparison))});
   job.first = {"comparison.json"};
-  job.verdict = comparison_headline(comparison);
-  job.sections = comparison_sections(comparison);
   job.inputs = provenance.inputs;
   job.code = comparison.status == "done" ? ExitCode::done : ExitCode::no_result;
   return job;

@@ -120,12 +120,8 @@ JobResult finished(const DiagnosisResult& result, const std::optional<Json>& liv
   job.files = {{"diagnosis.csv", diagnosis_csv(result)}};
   if (live) job.files.push_back({kLiveFile, json_line(*live)});
   name_files(job.files, diagnosis.provenance);
-  job.json = json_of(diagnosis);
-  job.files.push_back({"diagnosis.json", json_text(job.json)});
+  job.files.push_back({"diagnosis.json", json_text(json_of(diagnosis))});
   job.first = {"diagnosis.json", "diagnosis.csv"};
-  job.verdict = diagnosis_headline(diagnosis);
-  job.sections = diagnosis_sections(diagnosis);
-  job.synthetic = diagnosis.synthetic;
   job.inputs = result.provenance.inputs;
   job.code = status_of(result) == LeakStatus::done ? ExitCode::done : ExitCode::no_result;
   return job;

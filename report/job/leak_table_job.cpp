@@ -58,13 +58,9 @@ JobResult leak_table_job(const CampaignChoice& choice, const LeakTableRequest& r
   provenance.inputs = hash_inputs(input.campaign, {}, request.fit.inputs());
   const LeakTableResult result{input.campaign, input.settings, table,
                                provenance,     rig.notes,      rig.warnings};
-  const LeakTableFiles files{stored(result), {}};
   JobResult job;
   job.files = leak_table_files(result);
   job.first = {"leak_table.csv", "leak_table.json"};
-  job.json = json_of(files.result);
-  job.verdict = leak_table_headline(files);
-  job.sections = leak_table_sections(files);
   job.inputs = provenance.inputs;
   return job;
 }

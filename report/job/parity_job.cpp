@@ -17,13 +17,8 @@ JobResult finished(const ParityResult& result) {
   job.files = parity_series(result);
   job.files.push_back({"parity.csv", parity_csv(result)});
   name_files(job.files, parity.provenance);
-  job.json = json_of(parity);
-  job.files.push_back({"parity.json", json_text(job.json)});
+  job.files.push_back({"parity.json", json_text(json_of(parity))});
   job.first = {"parity.json", "parity.csv", "parity/"};
-  const ParityFiles files{std::move(parity), {}};
-  job.verdict = parity_headline(files);
-  job.sections = parity_sections(files);
-  job.synthetic = files.result.synthetic;
   job.inputs = result.provenance.inputs;
   job.code = status_of(result) == LeakStatus::done ? ExitCode::done : ExitCode::no_result;
   return job;

@@ -89,12 +89,9 @@ JobResult plan_job(const datasets::Campaign& campaign, const PlanRequest& reques
   plan.result = plan_of_records(campaign, records, values, has_design, provenance, terms.threads);
   plan.result.design = std::move(designed);
   if (!job.files.empty()) name_files(job.files, plan.result.provenance);
-  job.json = json_of(plan.result);
-  job.files.push_back({"plan.json", json_text(job.json)});
+  job.files.push_back({"plan.json", json_text(json_of(plan.result))});
   job.first = {"plan.json"};
   if (has_design) job.first.insert(job.first.end(), {kDriveFile, kDesignedCampaignFile});
-  job.verdict = plan_headline(plan);
-  job.sections = plan_sections(plan);
   job.inputs = provenance.inputs;
   if (plan.result.design && plan.result.design->stopped()) job.code = ExitCode::stopped;
   return job;

@@ -7,6 +7,7 @@
 
 #include "report/leak/leak_table.hpp"
 #include "report/store/csv_fields.hpp"
+#include "report/store/table.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -81,23 +82,20 @@ std::string level_csv(const datasets::LeakSignal& signal, const calib::PeriodicS
                       const calib::PeriodicSeries* healthy) {
   const model::Signal drive =
       datasets::periodic_signal(signal.waveform, signal.amplitude, signal.frequency_hz);
-  std::vector<std::string> names{"time_s", "drive"};
-  for (const model::Output output : calib::kFeatureOutputs) names.emplace_back(output_name(output));
-  if (healthy != nullptr) names.emplace_back("residual_m");
-  std::string text = csv_row(names);
-  for (std::size_t i = 0; i < series.time_s.size(); ++i) {
-    const auto sample = static_cast<Eigen::Index>(i);
-    std::vector<std::string> fields{csv_number(series.time_s[i]),
-                                    csv_number(drive.value(series.time_s[i]))};
-    for (Eigen::Index k = 0; k < series.run.outputs.cols(); ++k) {
-      fields.push_back(csv_number(series.run.outputs(sample, k)));
-    }
-    if (healthy != nullptr) {
-      fields.push_back(csv_number(series.run.outputs(sample, 0) - healthy->run.outputs(sample, 0)));
-    }
-    text += csv_row(fields);
-  }
-  return text;
+  const std::size_t rows = series.time_s.size();
+  const auto output = [](const calib::PeriodicSeries& of, std::size_t i, Eigen::Index k) {
+    return of.run.outputs(static_cast<Eigen::Index>(i), k);
+  };
+  Table table;
+  table.add("time_s", series.time_s);
+  table.add("drive", rows, [&](std::size_t i) { return drive.value(series.time_s[i]); });
+  for (Eigen::Index k = 0; k < series.run.outputs.cols(); ++k)
+    table.add(std::string(output_name(calib::kFeatureOutputs[static_cast<std::size_t>(k)])), rows,
+              [&](std::size_t i) { return output(series, i, k); });
+  if (healthy != nullptr)
+    table.add("residual_m", rows,
+              [&](std::size_t i) { return output(series, i, 0) - output(*healthy, i, 0); });
+  return csv_of(table);
 }
 
 }  // namespace rigcal::report

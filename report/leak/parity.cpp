@@ -8,6 +8,7 @@
 
 #include "report/store/csv_fields.hpp"
 #include "report/store/identity.hpp"
+#include "report/store/table.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -86,23 +87,19 @@ std::filesystem::path series_file(const std::string& condition) {
 }
 
 std::string series_csv(const ParityCondition& condition) {
-  std::vector<std::string> titles{"time_s", "healthy_model_m"};
+  Table table;
+  table.add("time_s", condition.time_s);
+  table.add("healthy_model_m", condition.model_m);
   for (const ParityRecord& record : condition.records) {
     if (!record.failure.empty()) continue;
-    for (const char* column : {"parity", "residual", "moving_rms"})
-      titles.push_back(fmt::format("{}_{}_m", column, repeat_name(record)));
+    const auto add = [&](const char* what, const std::vector<double>& values) {
+      table.add(fmt::format("{}_{}_m", what, repeat_name(record)), values);
+    };
+    add("parity", record.parity_m);
+    add("residual", record.residual_m);
+    add("moving_rms", record.moving_rms_m);
   }
-  std::string text = csv_row(titles);
-  for (std::size_t i = 0; i < condition.time_s.size(); ++i) {
-    std::vector<std::string> row{csv_number(condition.time_s[i]), csv_number(condition.model_m[i])};
-    for (const ParityRecord& record : condition.records) {
-      if (!record.failure.empty()) continue;
-      for (const auto* column : {&record.parity_m, &record.residual_m, &record.moving_rms_m})
-        row.push_back(csv_number((*column)[i]));
-    }
-    text += csv_row(row);
-  }
-  return text;
+  return csv_of(table);
 }
 
 }  // namespace

@@ -172,7 +172,8 @@ void shorten(doc::Blocks& blocks) {
     }
     if (std::holds_alternative<doc::Figure>(block)) return ++pictures > kMostPictures;
     return std::holds_alternative<doc::Fold>(block) ||
-           std::holds_alternative<doc::Article>(block) || std::holds_alternative<doc::Raw>(block) ||
+           std::holds_alternative<doc::Article>(block) ||
+           std::holds_alternative<doc::Rendered>(block) ||
            std::holds_alternative<doc::LivePlot>(block) ||
            std::holds_alternative<doc::LiveSeries>(block) ||
            std::holds_alternative<doc::Tiles>(block);
@@ -252,17 +253,29 @@ std::string page_of(const Parts& parts, const std::string& sha256, PageExtent ex
   return page + "</body>\n</html>\n";
 }
 
+std::vector<ResultDocument> documents_of(Parts parts) {
+  std::vector<ResultDocument> documents;
+  for (Part& part : parts.drawn) documents.push_back({part.file, std::move(part)});
+  return documents;
+}
+
 }  // namespace
 
-std::string result_page(const ReadFile& read, const std::string& where, int threads,
-                        const ReadTable& made) {
-  const Parts parts = parts_of({read, where, threads, made});
-  return page_of(parts, sha256_of_text(read(parts.drawn.front().file).value_or("")),
-                 PageExtent::whole);
+ResultPage result_page(const ReadFile& read, const std::string& where, int threads,
+                       const ReadTable& made) {
+  Parts parts = parts_of({read, where, threads, made});
+  std::string html = page_of(parts, sha256_of_text(read(parts.drawn.front().file).value_or("")),
+                             PageExtent::whole);
+  return {std::move(html), documents_of(std::move(parts))};
+}
+
+std::vector<ResultDocument> result_documents(const ReadFile& read, const std::string& where,
+                                             const ReadTable& made) {
+  return documents_of(parts_of({read, where, 1, made, false}));
 }
 
 std::string brief_page(const ReadFile& read, const std::string& where, const ReadTable& made) {
-  Parts parts = parts_of({read, where, 1, made});
+  Parts parts = parts_of({read, where, 1, made, false});
   shorten(parts);
   return page_of(parts, sha256_of_text(read(parts.drawn.front().file).value_or("")),
                  PageExtent::brief);

@@ -5,9 +5,22 @@
 #include <utility>
 #include <vector>
 
+#include "report/document/document.hpp"
 #include "report/store/stored.hpp"
 
 namespace rigcal::report {
+
+/// A result of a folder.
+struct ResultDocument {
+  std::string file;  ///< the result itself: "fit.json"
+  doc::Document document;
+};
+
+/// A drawn page, and the results on it.
+struct ResultPage {
+  std::string html;
+  std::vector<ResultDocument> documents;
+};
 
 /// report.html of a result folder: every result in it, from its files alone. The same files give
 /// the same bytes. A result that cannot be read is named on the page and left out, unless it is the
@@ -16,8 +29,12 @@ namespace rigcal::report {
 /// @param where    the folder, named in errors
 /// @param made     as of load_calibration()
 /// @throws InputError  there is no result, or none that this version can read
-std::string result_page(const ReadFile& read, const std::string& where, int threads,
-                        const ReadTable& made = {});
+ResultPage result_page(const ReadFile& read, const std::string& where, int threads,
+                       const ReadTable& made = {});
+
+/// The same results without a page, and without curves of single conditions.
+std::vector<ResultDocument> result_documents(const ReadFile& read, const std::string& where,
+                                             const ReadTable& made = {});
 
 /// The same without scripts, and without what makes it long: folds, the articles of single
 /// conditions, provenance and formulas. For a notebook.

@@ -21,10 +21,10 @@ constexpr double kWideInterval = 0.1;
 /// Style classes of levels side by side; their order distinguishes them without colour.
 constexpr std::array kLevelStyles{"model", "residual", "servo", "leak", "reference"};
 
-/// "0.1 Hz sine, 50.8 mm" of an entry or of the rig without a fault.
+/// "sine 0.1 Hz, 50.8 mm" of an entry or of the rig without a fault.
 template <typename Entry>
 std::string drive_name(const Entry& entry) {
-  std::string text = fmt::format("{:.6g} Hz {}", entry.frequency_hz, to_string(entry.waveform));
+  std::string text = fmt::format("{} {:.6g} Hz", to_string(entry.waveform), entry.frequency_hz);
   if (entry.amplitude_m) text += ", " + readable(*entry.amplitude_m, "m", 4);
   if (entry.amplitude_v) text += ", " + readable(*entry.amplitude_v, "V", 4);
   return text;

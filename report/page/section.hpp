@@ -19,19 +19,16 @@ struct ResultFolder {
   std::string where;    ///< for messages
   int threads = 1;      ///< threads for reading series and drawing
   ReadTable made = {};  ///< tables that this run has made, which need not be read back
+  bool curves = true;   ///< whether the curves of single conditions are drawn
 };
 
 /// Part of a page from one result.
-struct Part {
+struct Part : doc::Document {
   std::string link;  ///< id of its first section
   std::string name;  ///< "Calibration"
   std::string file;  ///< file that the part is made from
   std::string campaign;
-  bool synthetic = false;
   Identity identity;
-  doc::Verdict verdict;
-  doc::Blocks front;  ///< for page one, below the verdict
-  std::vector<doc::Section> sections;
   std::optional<LiveSection> live;  ///< the rig in the page, after its first page
   doc::Blocks provenance;
   std::vector<InputFile> inputs;                         ///< that it was made from

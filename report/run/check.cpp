@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -10,7 +11,7 @@
 #include "datasets/checks/short_records.hpp"
 #include "datasets/prepare/load_record.hpp"
 #include "report/store/stored/stored_record.hpp"
-#include "report/text/terminal.hpp"
+#include "report/text/readable.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -24,6 +25,32 @@ struct StoredCheck {
   std::vector<std::string> warnings;  ///< warnings about the campaign as a whole
   RIGCAL_DESCRIBE(campaign, synthetic, records, without_record, warnings)
 };
+
+/// One line on a record and one on each of its warnings.
+std::string record_text(const datasets::Condition& condition, const datasets::Record& record) {
+  const double duration_s =
+      record.time_s.empty() ? 0.0 : record.time_s.back() - record.time_s.front();
+  const double rate_hz =
+      duration_s > 0.0 ? static_cast<double>(record.time_s.size() - 1) / duration_s : 0.0;
+  std::string channels;
+  for (const auto& [channel, series] : record.channels) {
+    const datasets::ChannelInfo& about = info(channel);
+    channels += fmt::format(
+        "{}{} ({}sd {})", channels.empty() ? "" : ", ", about.key,
+        series.repeats == record.repeats ? "" : fmt::format("{} repeats, ", series.repeats),
+        std::isfinite(series.pooled_sd) ? readable(series.pooled_sd, about.unit, 3) : "unknown");
+  }
+  std::string text =
+      fmt::format("{}: {}, {} samples at {:.6g} Hz, {:.6g} s, {} repeat{}, {}, {} file{}\n",
+                  condition.id, to_string(condition.use), record.time_s.size(), rate_hz, duration_s,
+                  record.repeats, record.repeats == 1 ? "" : "s", channels, record.files.size(),
+                  record.files.size() == 1 ? "" : "s");
+  for (const std::string& note : record.notes) text += fmt::format("  note: {}\n", note);
+  for (const std::string& warning : record.warnings) {
+    text += fmt::format("  warning: {}\n", warning);
+  }
+  return text;
+}
 
 }  // namespace
 

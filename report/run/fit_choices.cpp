@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 namespace rigcal::report {
 namespace {
 
@@ -34,11 +36,12 @@ void apply(const FitChoices& choices, calib::FitOptions& settings) {
   if (choices.max_time_s) settings.max_seconds = choices.max_time_s;
 }
 
-Provenance provenance_of_starts(const std::string& command, const CampaignChoice& choice,
+Provenance provenance_of_starts(const std::string& command,
+                                std::vector<std::pair<std::string, std::string>> options,
                                 const FitChoices& choices, const calib::FitOptions& settings,
                                 const datasets::Campaign& campaign,
                                 const std::vector<datasets::Record>& records) {
-  Provenance provenance{command, choices.seed, recorded(choice), hash_inputs(campaign, records)};
+  Provenance provenance{command, choices.seed, std::move(options), hash_inputs(campaign, records)};
   provenance.options.emplace_back("starts", fmt::format("{}", settings.starts));
   return provenance;
 }
@@ -51,6 +54,24 @@ std::vector<std::pair<std::string, std::string>> recorded(const FitChoices& choi
   if (choices.posterior) options.emplace_back("posterior", fmt::format("{}", *choices.posterior));
   if (choices.cross_validate) options.emplace_back("cross_validate", "true");
   return options;
+}
+
+std::vector<std::string> arguments_of(const FitChoices& choices) {
+  std::vector<std::string> arguments;
+  const auto add = [&](const char* option, const std::string& value) {
+    arguments.emplace_back(option);
+    arguments.push_back(value);
+  };
+  if (choices.starts) add("--starts", fmt::format("{}", *choices.starts));
+  if (choices.seed != FitChoices{}.seed) add("--seed", fmt::format("{}", choices.seed));
+  if (choices.bootstrap > 0) add("--bootstrap", fmt::format("{}", choices.bootstrap));
+  if (choices.profiles) arguments.emplace_back("--profiles");
+  if (choices.posterior) add("--posterior", fmt::format("{}", *choices.posterior));
+  if (choices.cross_validate) arguments.emplace_back("--cross-validate");
+  if (choices.max_time_s) add("--max-time", fmt::format("{}", *choices.max_time_s));
+  if (choices.max_evaluations)
+    add("--max-evaluations", fmt::format("{}", *choices.max_evaluations));
+  return arguments;
 }
 
 }  // namespace rigcal::report

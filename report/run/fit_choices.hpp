@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calib/search/fit_options.hpp"
@@ -40,12 +41,17 @@ void apply(const FitChoices& choices, calib::FitOptions& settings);
 
 /// Provenance of a fit.
 ///
+/// @param options   recorded() of the campaign's choice
 /// @param settings  with the choices applied
 /// @return  for the starts; that of a result has recorded(choices) at its end
-Provenance provenance_of_starts(const std::string& command, const CampaignChoice& choice,
+Provenance provenance_of_starts(const std::string& command,
+                                std::vector<std::pair<std::string, std::string>> options,
                                 const FitChoices& choices, const calib::FitOptions& settings,
                                 const datasets::Campaign& campaign,
                                 const std::vector<datasets::Record>& records);
+
+/// The choices as arguments of a command line, without defaults.
+std::vector<std::string> arguments_of(const FitChoices& choices);
 
 /// The choices that add to a result without changing its starts.
 std::vector<std::pair<std::string, std::string>> recorded(const FitChoices& choices);

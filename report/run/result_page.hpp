@@ -1,8 +1,10 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
+#include "report/document/document.hpp"
 #include "report/store/folder.hpp"
 #include "report/store/stored.hpp"
 
@@ -15,7 +17,14 @@ ReadFile files_in(const std::vector<ResultFile>& files);
 /// page shows these files and other results that are already in `out`, as `report` would.
 ///
 /// @param made  the tables of this run's residuals/, if they are not among `files`
-void add_page(const std::filesystem::path& out, int threads, std::vector<ResultFile>& files,
-              const ReadTable& made = {});
+/// @return      the results among `files`
+std::vector<doc::Document> add_page(const std::filesystem::path& out, int threads,
+                                    std::vector<ResultFile>& files, const ReadTable& made = {});
+
+/// The results among files in memory.
+///
+/// @param where  for messages
+std::vector<doc::Document> documents_in(const std::vector<ResultFile>& files,
+                                        const std::string& where, const ReadTable& made = {});
 
 }  // namespace rigcal::report

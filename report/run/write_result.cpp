@@ -104,6 +104,12 @@ std::vector<ResultFile> files_of(const fs::path& out, const Result& result,
   return files;
 }
 
+/// The files that a page without curves is made from.
+std::vector<ResultFile> shown_files(const Result& result) {
+  return {{"residual_tests.json", json_line(json_of(stored_curves(result)))},
+          {main_file(result.kind), json_text(json_of(stored(result)))}};
+}
+
 }  // namespace
 
 PlannedFiles planned_result(ResultKind kind, const datasets::Campaign& campaign) {
@@ -122,8 +128,7 @@ PlannedFiles planned_result(ResultKind kind, const datasets::Campaign& campaign)
   return planned;
 }
 
-std::vector<fs::path> write_result(HeldFolder& held, int threads, const Result& result,
-                                   StoredFit& stored) {
+WrittenResult write_result(HeldFolder& held, int threads, const Result& result) {
   const fs::path& out = held.path();
   const PlannedFiles planned = planned_result(result.kind, result.campaign);
   require_inputs_kept(out, planned.files, result.provenance.inputs);
@@ -131,16 +136,18 @@ std::vector<fs::path> write_result(HeldFolder& held, int threads, const Result& 
   ResultsInWriting writing(held, result.provenance.inputs);
   const std::vector<InputFile> residuals =
       add_residuals(result, threads, [&](const ResultFile& file) { writing.add(file); });
-  std::vector<fs::path> paths;
-  for (const InputFile& file : residuals) paths.emplace_back(file.path);
+  WrittenResult written;
+  for (const InputFile& file : residuals) written.files.emplace_back(file.path);
+  StoredFit stored = report::stored(result);
   std::vector<ResultFile> files = files_of(out, result, residuals, stored);
-  add_page(out, threads, files, tables_of(result));
+  written.documents = add_page(out, threads, files, tables_of(result));
   for (const ResultFile& file : files) {
     writing.add(file);
-    paths.push_back(file.path);
+    written.files.push_back(file.path);
   }
+  written.json = std::move(files.back().content);
   writing.move_into_place();
-  return paths;
+  return written;
 }
 
 std::vector<ResultFile> result_files(const Result& result, int threads) {
@@ -152,9 +159,13 @@ std::vector<ResultFile> result_files(const Result& result, int threads) {
   return files;
 }
 
+doc::Document document_of(const Result& result) {
+  const std::vector<ResultFile> files = shown_files(result);
+  return documents_in(files, result.campaign.name, tables_of(result)).front();
+}
+
 std::string brief_page(const Result& result) {
-  StoredFit fit = stored(result);
-  const std::vector<ResultFile> files = files_of({}, result, {}, fit);
+  const std::vector<ResultFile> files = shown_files(result);
   return brief_page(files_in(files), result.campaign.name, tables_of(result));
 }
 

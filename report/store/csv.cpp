@@ -106,12 +106,10 @@ std::string scorecard_csv(const Result& result) {
 Table residual_table(const Result& result, const calib::ConditionScore& score) {
   Table table;
   const auto add = [&](std::string name, const auto& value) {
-    table.names.push_back(std::move(name));
-    std::vector<double>& column = table.columns.emplace_back(score.time_s.size());
-    for (std::size_t i = 0; i < column.size(); ++i) {
+    table.add(std::move(name), score.time_s.size(), [&](std::size_t i) {
       const double x = value(i);
-      column[i] = std::isfinite(x) ? x : std::nan("");
-    }
+      return std::isfinite(x) ? x : std::nan("");
+    });
   };
   const auto add_values = [&](std::string name, std::span<const double> values) {
     add(std::move(name), [&](std::size_t i) { return at(values, i); });
@@ -146,23 +144,20 @@ std::string residuals_csv(const Result& result, const calib::ConditionScore& sco
 }
 
 std::string averaged_csv(const datasets::Record& record) {
-  std::vector<std::string> titles{"time_s"};
+  Table table;
+  const std::size_t rows = record.time_s.size();
+  table.add("time_s", record.time_s);
   for (const auto& [channel, series] : record.channels) {
-    for (const char* what : {"mean", "sd", "count"}) {
-      titles.push_back(fmt::format("{}_{}", info(channel).name, what));
-    }
+    const auto add = [&, name = info(channel).name, rows](const char* what, const auto& values) {
+      table.add(fmt::format("{}_{}", name, what), rows, [&](std::size_t i) {
+        return values.empty() ? std::nan("") : static_cast<double>(values[i]);
+      });
+    };
+    add("mean", series.mean);
+    add("sd", series.sd);
+    add("count", series.count);
   }
-  std::string text = csv_row(titles);
-  for (std::size_t i = 0; i < record.time_s.size(); ++i) {
-    std::vector<std::string> fields{csv_number(record.time_s[i])};
-    for (const auto& [channel, series] : record.channels) {
-      fields.push_back(csv_number(series.mean[i]));
-      fields.push_back(series.sd.empty() ? std::string() : csv_number(series.sd[i]));
-      fields.push_back(series.count.empty() ? std::string() : fmt::format("{}", series.count[i]));
-    }
-    text += csv_row(fields);
-  }
-  return text;
+  return csv_of(table);
 }
 
 std::string repeatability_csv(const std::vector<datasets::Record>& records) {
@@ -205,21 +200,16 @@ std::string simulation_csv(std::span<const double> time_s, std::string_view refe
                                     to_string(simulation.status), simulation.failed_at_s,
                                     simulation.reason));
   }
-  std::vector<std::string> titles{"time_s"};
-  if (!reference.empty()) titles.emplace_back(reference_name);
-  for (const model::Output output : outputs) titles.emplace_back(output_name(output));
-  text += csv_row(titles);
-  if (!simulation.ok()) return text;
-  for (std::size_t i = 0; i < time_s.size(); ++i) {
-    std::vector<std::string> fields{csv_number(time_s[i])};
-    if (!reference.empty()) fields.push_back(csv_number(reference[i]));
-    for (const model::Output output : outputs) {
-      fields.push_back(csv_number(
-          simulation.outputs(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(output))));
-    }
-    text += csv_row(fields);
-  }
-  return text;
+  const std::size_t rows = simulation.ok() ? time_s.size() : 0;
+  Table table;
+  table.add("time_s", rows, [&](std::size_t i) { return time_s[i]; });
+  if (!reference.empty())
+    table.add(std::string(reference_name), rows, [&](std::size_t i) { return reference[i]; });
+  for (const model::Output output : outputs)
+    table.add(std::string(output_name(output)), rows, [&](std::size_t i) {
+      return simulation.outputs(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(output));
+    });
+  return text + csv_of(table);
 }
 
 }  // namespace rigcal::report

@@ -2,6 +2,7 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace rigcal::report {
@@ -10,6 +11,18 @@ namespace rigcal::report {
 struct Table {
   std::vector<std::string> names;
   std::vector<std::vector<double>> columns;  ///< shape (names)(rows); NaN where a field is empty
+
+  /// @param value  of each row
+  template <typename Value>
+  void add(std::string name, std::size_t rows, const Value& value) {
+    names.push_back(std::move(name));
+    std::vector<double>& column = columns.emplace_back(rows);
+    for (std::size_t i = 0; i < rows; ++i) column[i] = static_cast<double>(value(i));
+  }
+  void add(std::string name, std::vector<double> values) {
+    names.push_back(std::move(name));
+    columns.push_back(std::move(values));
+  }
 
   /// A column by its name; null if the table does not have it.
   const std::vector<double>* find(std::string_view name) const;

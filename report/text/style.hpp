@@ -8,7 +8,8 @@ namespace rigcal::report {
 struct Style {
   bool colour = false;
   std::size_t columns = 0;  ///< of the terminal; 0: tables as wide as they are
-  std::size_t lines = 0;    ///< that a result may take; 0: all that there is to say
+  std::size_t lines = 0;    ///< that a result may take; 0: as many as it has
+  bool everything = false;  ///< also what follows the first page, and what is folded
 };
 
 /// Lines of a result on a terminal, unless --verbose asks for all.

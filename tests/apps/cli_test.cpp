@@ -523,7 +523,7 @@ TEST_CASE("fit and validate: a twin from its records to its verdict", "[apps]") 
   CAPTURE(outcome.err, outcome.out);
   REQUIRE(outcome.exit_code == 0);
   CHECK(files_in(folder, "out/") == kFitFiles);
-  CHECK_THAT(outcome.out, Contains("verdict: PASS") && Contains("damping"));
+  CHECK_THAT(outcome.out, StartsWith("PASS: ") && Contains("Damping"));
 
   check_complete(folder.read("out/fit.json"));
   const json fit = json::parse(folder.read("out/fit.json"));
@@ -591,10 +591,10 @@ TEST_CASE("fit and validate: a twin from its records to its verdict", "[apps]") 
   }
   {
     INFO("the campaign that was fitted can be used at once");
-    const Outcome validation = folder.run({"validate", "out/fitted.toml", "--out", "used"});
+    const Outcome validation = folder.run({"validate", "out/fitted.toml", "--out", "used", "-v"});
     CAPTURE(validation.err);
     CHECK(validation.exit_code == 0);
-    CHECK_THAT(validation.out, Contains("All parameters as given."));
+    CHECK_THAT(validation.out, Contains("Nothing was estimated."));
     CHECK(folder.read("used/residuals/square.csv").find("prediction_sd") == std::string::npos);
   }
   {
@@ -602,7 +602,7 @@ TEST_CASE("fit and validate: a twin from its records to its verdict", "[apps]") 
     const Outcome validation = folder.run(
         {"validate", "twin/campaign.toml", "--set", "valve_gain=1e-6 m/V", "--out", "failed"});
     CHECK(validation.exit_code == 1);
-    CHECK_THAT(validation.out, Contains("verdict: FAIL"));
+    CHECK_THAT(validation.out, StartsWith("FAIL: "));
     CHECK(json::parse(folder.read("failed/validation.json"))["verdict"] == "FAIL");
   }
   {
@@ -663,7 +663,7 @@ TEST_CASE("fit: stopped by a limit of iterations it says so", "[apps]") {
   const Outcome outcome = folder.run({"fit", "twin/short.toml", "--out", "out"});
   CHECK(outcome.exit_code == 4);
   CHECK(files_in(folder, "out/") == unfinished_files());
-  CHECK_THAT(outcome.out, StartsWith("STOPPED: ") && Contains("status: stopped"));
+  CHECK_THAT(outcome.out, StartsWith("STOPPED: ") && Contains("not judged"));
   CHECK_THAT(outcome.out, !Contains("identified"));
   check_complete(folder.read("out/fit.json"));
   const json fit = json::parse(folder.read("out/fit.json"));

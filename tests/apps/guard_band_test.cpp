@@ -52,11 +52,13 @@ TEST_CASE("fit: by the guard band a limit is kept by more than the score's uncer
 
   const Outcome simple = judged(rho2 - 0.5 * uncertainty, "");
   CHECK(simple.exit_code == 0);
-  CHECK_THAT(simple.out, Catch::StartsWith("verdict: PASS by simple acceptance"));
+  CHECK_THAT(simple.out,
+             Catch::StartsWith("PASS: ") && Catch::Contains("Decision rule: simple acceptance"));
   CHECK(judged(rho2 - 1.5 * uncertainty, guard).exit_code == 0);
   const Outcome within = judged(rho2 - 0.5 * uncertainty, guard);
   CHECK(within.exit_code == 1);
-  CHECK_THAT(within.out, Catch::StartsWith("verdict: WARN by guard band"));
+  CHECK_THAT(within.out,
+             Catch::StartsWith("WARN: ") && Catch::Contains("Decision rule: guard band"));
   CHECK_THAT(within.out, Catch::Contains("not by more than its expanded uncertainty"));
   const Json result = result_of(folder, "judged/fit.json");
   CHECK(result["verdict"] == "WARN");
@@ -102,7 +104,8 @@ TEST_CASE("fit: what a certificate states of a sensor counts, or is told", "[app
   // The uncertainty is as large as the motion: with the guard band no limit is kept.
   const Outcome large = judged("uncertainty = \"20 mm (k = 2)\"\n");
   CHECK(large.exit_code == 1);
-  CHECK_THAT(large.out, Catch::StartsWith("verdict: WARN by guard band"));
+  CHECK_THAT(large.out,
+             Catch::StartsWith("WARN: ") && Catch::Contains("Decision rule: guard band"));
   CHECK(uncertainty("sine") > 100.0 * small);
 
   const Outcome other = judged("uncertainty = \"class 0.1\"\n");
@@ -137,7 +140,7 @@ TEST_CASE("fit: a channel that is compared and not judged is a reservation", "[a
   const std::vector<std::string> fit{"fit", "twin/campaign.toml", "--out", "out", "--strict"};
   const Outcome stated = folder.run(fit);
   CHECK(stated.exit_code == 0);
-  CHECK_THAT(stated.out, Catch::Contains("note: load_pressure is not judged in 2 conditions"));
+  CHECK_THAT(stated.out, Catch::Contains("load_pressure is not judged in 2 conditions"));
   CHECK(csv_verdict("position") == "PASS");
   CHECK(csv_verdict("load_pressure") == "not judged");
   CHECK(result_of(folder, "out/fit.json")["not_judged"] == Json{"load_pressure"});
@@ -146,7 +149,7 @@ TEST_CASE("fit: a channel that is compared and not judged is a reservation", "[a
   folder.write("twin/campaign.toml", edited(text, {{"not_judged = [\"load_pressure\"]\n", ""}}));
   const Outcome silent = folder.run(fit);
   CHECK(silent.exit_code == 1);
-  CHECK_THAT(silent.out, Catch::StartsWith("verdict: WARN") &&
+  CHECK_THAT(silent.out, Catch::StartsWith("WARN: ") &&
                              Catch::Contains("no limit judges load_pressure in 2 conditions"));
   CHECK_FALSE(result_of(folder, "out/fit.json").contains("not_judged"));
   // A comparison marks as passed only what was judged.

@@ -69,7 +69,7 @@ TEST_CASE("leak-table: any rig, without records, writes table and JSON", "[apps]
                                       "--signals", "sine@2Hz@5mm", "--out", "out"});
   CAPTURE(outcome.err);
   REQUIRE(outcome.exit_code == 0);
-  CHECK_THAT(outcome.out, Contains("10 %") && Contains("2 Hz sine"));
+  CHECK_THAT(outcome.out, Contains("10 %") && Contains("sine 2 Hz"));
   const json table = json::parse(folder.read("out/leak_table.json"));
   CHECK(table["schema"] == "rigcal.leak_table/1");
   REQUIRE(table["entries"].size() == 2);
@@ -93,7 +93,7 @@ TEST_CASE("leak-table: any rig, without records, writes table and JSON", "[apps]
   CHECK_FALSE(folder.has("out/features.csv"));
   CHECK(violations(table, "leak_table") == "");
   const std::string page = folder.read("out/report.html");
-  CHECK_THAT(page, Contains("id=\"leak-table\"") && Contains("2 Hz sine, 5 mm"));
+  CHECK_THAT(page, Contains("id=\"leak-table\"") && Contains("sine 2 Hz, 5 mm"));
   const double first = table["entries"][0]["coefficients"][0].get<double>();
   const std::string before = "<data value=\"";
   const std::size_t at = page.find(before, page.find("class=\"cell "));

@@ -67,21 +67,20 @@ TEST_CASE("rigcal: every verb fits on 80 columns", "[apps]") {
   }
 }
 
-TEST_CASE("fit: verdict, the worst conditions and the files are said first", "[apps]") {
+TEST_CASE("fit: the page that is signed, and all else only if asked for", "[apps]") {
   const CommandFolder folder;
   REQUIRE(write_twin(folder).exit_code == 0);
   const std::string out = folder.run({"fit", "twin/campaign.toml", "--out", "fit"}).out;
-  CHECK_THAT(line_of(out, 1), Contains("verdict: ") && Contains("synthetic"));
-  CHECK_THAT(line_of(out, 2), Contains("agreement ") && Contains(", parameters "));
-  CHECK(line_of(out, 3) == "worst:");
-  CHECK_THAT(line_of(out, 4), Contains(" of position, ") && Contains("% of the tolerance used"));
-  // The tolerance that the first uses is the larger one.
-  const auto used = [&](std::size_t line) {
-    const std::string text = line_of(out, line);
-    return std::stod(text.substr(text.find(", ") + 2));
-  };
-  CHECK(used(4) >= used(5));
-  CHECK_THAT(line_of(out, 6), Contains("files: fit/fit.json fit/report.html"));
+  CHECK_THAT(line_of(out, 1), Catch::StartsWith("PASS: ") && Contains("of the permitted error"));
+  CHECK_THAT(out, Contains("\nResult: calibrated values") && Contains("Decision rule: ") &&
+                      Contains("\nWhy this verdict\n") && Contains("campaign are synthetic\n") &&
+                      Contains("\n-v for more: Assessment, ") && !Contains("Plain std. error"));
+  CHECK_THAT(out, Contains("\nfiles: fit/fit.json "));
+  const std::string all =
+      folder.run({"fit", "twin/campaign.toml", "--out", "fit", "--verbose"}).out;
+  CHECK_THAT(all, Catch::StartsWith("PASS: ") && Contains("Plain std. error") &&
+                      Contains("Known values") && Contains("Gain ratio") &&
+                      !Contains("-v for more"));
 }
 
 TEST_CASE("average: the terminal tells noise floor and offsets", "[apps]") {

@@ -121,7 +121,7 @@ TEST_CASE("wrong sensor: what keeps every limit of the position is a lack of fit
   CHECK(result.state("agreement") == "pass");
   CHECK(result.state("adequacy") == "reservation");
   CHECK(result.names("adequacy", "lack_of_fit"));
-  CHECK_THAT(result.run.out, Contains("passed with reservations") && Contains("lack of fit in "));
+  CHECK_THAT(result.run.out, Contains("Passed with reservations") && Contains("lack of fit in "));
   CHECK_THAT(folder.read("out/report.html"), Contains("<title>WARN"));
   CHECK(folder.run({"fit", "twin/campaign.toml", "--out", "strict", "--strict"}).exit_code == 1);
 }

@@ -71,7 +71,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   read_or_refuse([&] {
     const auto results = load_compared({fuzz::scratch_folder(), fuzz::scratch_folder()});
     const StoredComparison comparison = compared(results, {});
-    doc::render_terminal(comparison_headline(comparison), comparison_sections(comparison), {});
+    doc::render_terminal({comparison_headline(comparison), {}, comparison_sections(comparison)},
+                         {});
   });
   return 0;
 }

@@ -27,15 +27,26 @@ def written(fit: rigcal.Fit, tmp_path_factory: pytest.TempPathFactory) -> pathli
 
 
 @pytest.fixture(scope="module")
-def results(campaign: rigcal.Campaign, fit: rigcal.Fit, written: pathlib.Path) -> dict[str, rigcal.Result]:
+def results(
+    data: pathlib.Path, campaign: rigcal.Campaign, fit: rigcal.Fit, written: pathlib.Path,
+    tmp_path_factory: pytest.TempPathFactory,
+) -> dict[str, rigcal.Result]:
     made = [
         campaign.diagnose(fit),
         campaign.parity(fit),
         campaign.leak_table(fit, targets=[10.0], signals=["sine@2Hz@5mm"]),
         campaign.plan(fit),
         rigcal.compare([written, _copied(written)]),
+        rigcal.batch(_lab_of(data, tmp_path_factory.mktemp("batch")), tmp_path_factory.mktemp("of_batch") / "out"),
     ]
     return {each.kind: each for each in made}
+
+
+def _lab_of(data: pathlib.Path, folder: pathlib.Path) -> pathlib.Path:
+    import shutil
+
+    shutil.copytree(data, folder / "lab" / "bench")
+    return folder / "lab"
 
 
 def _copied(folder: pathlib.Path) -> pathlib.Path:
@@ -65,7 +76,26 @@ def test_a_path_is_as_good_as_a_fit(campaign: rigcal.Campaign, written: pathlib.
     assert "fit()" in results["plan"].json()["provenance"]["command"]
 
 
-@pytest.mark.parametrize("kind", ["comparison", "diagnosis", "leak_table", "parity", "plan"])
+def test_a_batch_is_that_of_the_command(data: pathlib.Path, tmp_path: pathlib.Path) -> None:
+    lab = _lab_of(data, tmp_path)
+    seen: list[object] = []
+    result = rigcal.batch(lab, tmp_path / "here", diagnose=True, progress=seen.append)
+    command("batch", lab, "--diagnose", "--out", tmp_path / "by_command")
+    by_command = json.loads((tmp_path / "by_command" / "batch.json").read_text())
+    assert json.loads((tmp_path / "here" / "batch.json").read_text()) == result.json()
+    for (here, there) in zip(result.json()["rigs"], by_command["rigs"], strict=True):
+        assert {**here, "seconds": 0} == {**there, "seconds": 0}
+    assert (tmp_path / "here" / "bench" / "diagnosis.json").exists() and len(seen) == 1
+    again = rigcal.batch(lab, tmp_path / "here", resume=True)
+    assert [rig["unchanged"] for rig in again.json()["rigs"]] == [True]
+    (lab / "bench" / "campaign.toml").write_text("nonsense")
+    wrong = rigcal.batch(lab, tmp_path / "wrong")
+    assert wrong.json()["exit_code"] == 2 and "campaign.toml" in wrong.json()["rigs"][0]["message"]
+    with pytest.raises(rigcal.UsageError, match="found no campaign.toml"):
+        rigcal.batch(tmp_path / "wrong", tmp_path / "nothing")
+
+
+@pytest.mark.parametrize("kind", ["batch", "comparison", "diagnosis", "leak_table", "parity", "plan"])
 def test_a_result_is_written_shown_and_pickled(kind: str, results: dict[str, rigcal.Result], tmp_path: pathlib.Path) -> None:
     result = results[kind]
     paths = result.write(tmp_path / kind)

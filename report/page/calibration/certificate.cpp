@@ -227,7 +227,7 @@ doc::Doubts doubts_of(const StoredFit& fit) {
     Line line{doc::Link{"#warnings", plural(fit.warnings.size(), "warning")}, ": "};
     line.emplace_back(fit.warnings.front());
     if (fit.warnings.size() > 1) line.emplace_back(" …");
-    doubts.items.push_back(std::move(line));
+    doubts.warnings = std::move(line);
   }
   return doubts;
 }
@@ -342,7 +342,7 @@ void add_values(const StoredFit& fit, bool judged, doc::Blocks& blocks) {
   const std::string correlated = correlation_words(fit.correlation);
   if (!correlated.empty()) notes.emplace_back(correlated);
   if (!notes.empty())
-    blocks.emplace_back(doc::Paragraph{std::move(notes), doc::Paragraph::Tone::source});
+    blocks.emplace_back(doc::Paragraph{std::move(notes), doc::Paragraph::Tone::small});
 }
 
 /// Residual of a whole record against the band that its limit allows.
@@ -437,7 +437,7 @@ doc::Row signal_row(const Calibration& stored, const Judged& signal) {
   const StoredCondition& condition = *signal.condition;
   doc::Cell name{Line{doc::Link{"#" + anchor(condition.id), condition.id}}};
   const std::string whose = signal_words(condition);
-  Line use{whose + (whose.empty() ? "" : " · ")};
+  Line use{doc::Aside{whose + (whose.empty() ? "" : " · ")}};
   if (!signal.channel.empty()) use.emplace_back(spaced(signal.channel) + " · ");
   if (signal.held_back())
     use.emplace_back(doc::Strong{"held back"});
@@ -505,9 +505,9 @@ void add_signals(const Calibration& stored, doc::Blocks& blocks) {
   std::vector<Judged> signals = judged_signals(fit);
   const std::string not_judged = not_judged_words(fit);
   if (!signals.empty()) {
-    blocks.emplace_back(doc::Heading{
-        {"Agreement: residual of each signal against its limit (grey: the rms that rho2 allows)"},
-        2});
+    blocks.emplace_back(doc::Heading{{"Agreement: residual of each signal against its limit",
+                                      doc::Aside{" (grey: the rms that rho2 allows)"}},
+                                     2});
     const std::size_t more = signals.size() > kSignals ? signals.size() - kSignals : 0;
     doc::Table table{"Agreement of each signal with its limit"};
     table.style = "signals";
@@ -527,11 +527,11 @@ void add_signals(const Calibration& stored, doc::Blocks& blocks) {
           doc::Paragraph{{doc::Link{"#matrix", plural(more, "more signal")},
                           beyond == 0 ? std::string(", all within their limits.")
                                       : fmt::format(", {} of them outside their limits.", beyond)},
-                         doc::Paragraph::Tone::source});
+                         doc::Paragraph::Tone::small});
     }
   }
   if (!not_judged.empty())
-    blocks.emplace_back(doc::Paragraph{{not_judged}, doc::Paragraph::Tone::source});
+    blocks.emplace_back(doc::Paragraph{{not_judged}, doc::Paragraph::Tone::small});
 }
 
 void add_aspects(const StoredFit& fit, doc::Blocks& blocks) {
@@ -575,7 +575,7 @@ void add_scope(const StoredFit& fit, doc::Blocks& blocks) {
     const auto rule = fit.decision.value_or(datasets::DecisionRule::simple);
     blocks.emplace_back(doc::Paragraph{{fmt::format("Decision rule: {} (ISO/IEC 17025, 7.8.6). {}",
                                                     calib::words_of(rule), rule_words(rule))},
-                                       doc::Paragraph::Tone::source});
+                                       doc::Paragraph::Tone::small});
   }
   if (fit.status == FitStatus::failed) return;
   std::vector<std::string> ranges;
@@ -603,7 +603,7 @@ void add_scope(const StoredFit& fit, doc::Blocks& blocks) {
       {doc::Strong{valid ? "Range of validity, outside it the model is not validated: "
                          : "Conditions tested: "},
        fmt::format("{}.", fmt::join(ranges, "; "))},
-      doc::Paragraph::Tone::source});
+      doc::Paragraph::Tone::small});
 }
 
 }  // namespace

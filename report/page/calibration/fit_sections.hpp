@@ -23,7 +23,9 @@ doc::Section parameters_section(const std::vector<StoredParameter>& parameters,
 /// What contributes to the uncertainty of each estimate; nothing where no effects were considered.
 void add_budget(const std::vector<StoredParameter>& parameters, doc::Blocks& blocks);
 /// One article for each condition: what it is, its scores, its plots and residual tests.
-doc::Section conditions_section(const Calibration& stored, int threads);
+///
+/// @param curves  whether plots and residual tests are drawn
+doc::Section conditions_section(const Calibration& stored, int threads, bool curves);
 /// Evidence on the estimates: singular values, profiles, bootstrap, lack of fit, predictions.
 doc::Section identifiability_section(const StoredFit& fit);
 /// Adds the singular values of the Jacobian with an explanation.

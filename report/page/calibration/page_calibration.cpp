@@ -42,12 +42,17 @@ Part tables_fit_part(const StoredTablesFit& fit) {
   part.verdict = tables_verdict(fit);
   part.sections = {
       parameters_section(fit.parameters, fit.correlation, fit.status != calib::FitStatus::stopped)};
+  if (!fit.left_out.empty()) {
+    doc::Blocks& blocks = part.sections.front().blocks;
+    blocks.emplace_back(doc::Heading{{"Published numbers that are left out"}});
+    blocks.emplace_back(list_of(fit.left_out));
+  }
   part.provenance = provenance_blocks(fit.provenance, "Calibration", "fit.json", making_of(fit));
   part.nav = {{"parameters", "Parameters"}};
   return part;
 }
 
-Part fit_part(const Calibration& stored, int threads) {
+Part fit_part(const Calibration& stored, const ResultFolder& folder) {
   const StoredFit& fit = stored.result;
   Part part = part_of(fit, "parameters", is_fit_schema(fit.schema) ? "Calibration" : "Validation",
                       stored.file);
@@ -58,7 +63,7 @@ Part fit_part(const Calibration& stored, int threads) {
   if (auto overview = overview_section(stored)) part.sections.push_back(std::move(*overview));
   part.sections.push_back(scores_section(fit, unfinished));
   part.sections.push_back(parameters_section(fit.parameters, fit.correlation, !unfinished));
-  part.sections.push_back(conditions_section(stored, threads));
+  part.sections.push_back(conditions_section(stored, folder.threads, folder.curves));
   part.sections.push_back(identifiability_section(fit));
   part.sections.push_back(starts_section(fit));
   part.sections.push_back(warnings_section(fit));
@@ -75,7 +80,7 @@ Part calibration_part(const ResultFolder& folder) {
   const auto stored = load_calibration(folder.read, folder.where, folder.threads, folder.made);
   if (const auto* tables = std::get_if<StoredTablesFit>(&stored)) return tables_fit_part(*tables);
   const auto& calibration = std::get<Calibration>(stored);
-  Part part = fit_part(calibration, folder.threads);
+  Part part = fit_part(calibration, folder);
   part.live = live_of(calibration.result.provenance, folder, calibration.file);
   return part;
 }

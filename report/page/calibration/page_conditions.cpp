@@ -143,11 +143,8 @@ std::size_t add_plots(const StoredCondition& condition, const Table& series, std
   return count;
 }
 
-/// @param series  residuals/<condition>.csv
-/// @param curves  its entry in residual_tests.json, or null
-/// @param open    whether its curves are unfolded
-doc::Article article_of(const StoredCondition& condition, const Table& series,
-                        const StoredChannelCurves* curves, std::size_t points, bool open) {
+/// What a condition is, and its scores.
+doc::Article facts_article(const StoredCondition& condition) {
   const doc::Badge verdict = doc::badge(condition.verdict);
   doc::Article article{anchor(condition.id), {verdict, " " + condition.id}, {}};
   doc::Blocks& blocks = article.blocks;
@@ -163,12 +160,23 @@ doc::Article article_of(const StoredCondition& condition, const Table& series,
   for (const std::string& text : condition.warnings) doubts.items.push_back({"Recording: " + text});
   blocks.emplace_back(std::move(doubts));
   add_scores(condition, blocks);
+  return article;
+}
+
+/// @param series  residuals/<condition>.csv
+/// @param curves  its entry in residual_tests.json, or null
+/// @param open    whether its curves are unfolded
+void add_curves(const StoredCondition& condition, const Table& series,
+                const StoredChannelCurves* curves, std::size_t points, bool open,
+                doc::Blocks& blocks) {
   doc::Fold curves_of{"", {}, open, "curves"};
   const std::size_t plots = add_plots(condition, series, points, curves_of.blocks);
   // Every scored condition must have a series; without it the page would only look complete.
   if (!condition.metrics.empty() && plots == 0)
-    problem(fmt::format("residuals/{}.csv is missing or holds no rows: nothing can be drawn.",
-                        condition.id));
+    blocks.emplace_back(doc::Paragraph{
+        {fmt::format("residuals/{}.csv is missing or holds no rows: nothing can be drawn.",
+                     condition.id)},
+        doc::Paragraph::Tone::problem});
   doc::Blocks agreement = agreement_blocks(condition.id, periodic_frequency(condition), series);
   if (!agreement.empty()) {
     doc::Fold fold{"Parity, histogram, gain and phase", std::move(agreement)};
@@ -176,11 +184,10 @@ doc::Article article_of(const StoredCondition& condition, const Table& series,
     curves_of.blocks.emplace_back(std::move(fold));
   }
   add_residual_tests(condition, curves, curves_of.blocks);
-  if (curves_of.blocks.empty()) return article;
+  if (curves_of.blocks.empty()) return;
   curves_of.summary =
       fmt::format("Curves and residual tests ({} plot{} over time)", plots, plots == 1 ? "" : "s");
   blocks.emplace_back(std::move(curves_of));
-  return article;
 }
 
 /// Points of a line in a sketch: every sample of two periods with up to 200.
@@ -264,7 +271,7 @@ std::vector<Figure> condition_figures(const StoredCondition& condition, const Ta
   return figures;
 }
 
-doc::Section conditions_section(const Calibration& stored, int threads) {
+doc::Section conditions_section(const Calibration& stored, int threads, bool curves) {
   const std::vector<StoredCondition>& conditions = stored.result.conditions;
   doc::Section section{"conditions", "Conditions"};
   if (conditions.empty()) {
@@ -280,29 +287,32 @@ doc::Section conditions_section(const Calibration& stored, int threads) {
        "Drag across a plot to zoom in time; all plots of a condition move together. Double-click "
        "or 0 shows all. Focus a plot for the keyboard: plus, minus, arrows."},
       doc::Paragraph::Tone::screen});
-  const std::size_t points = points_of(stored, shown);
-  std::vector<std::string> articles(conditions.size());
+  const std::size_t points = curves ? points_of(stored, shown) : 0;
+  std::vector<doc::Rendered> articles(conditions.size());
   std::vector<doc::Sketches::Sketch> sketches(conditions.size());
   // Each article is rendered right away. Keeping the series of all articles would need most of the
   // memory of a page.
   parallel_for(conditions.size(), threads, [&](std::size_t i) {
     const StoredCondition& condition = conditions[i];
+    const bool in_full = std::binary_search(shown.begin(), shown.end(), i);
+    if (in_full) articles[i].blocks = {facts_article(condition)};
+    if (!curves) return;
     const std::shared_ptr<const Table> series = stored.series(i);
-    if (!std::binary_search(shown.begin(), shown.end(), i)) {
+    if (!in_full) {
       sketches[i] = sketch_of(condition, *series);
       return;
     }
     const bool open = i == shown.front() || conditions.size() <= kFew;
-    doc::render_html({article_of(condition, *series, find(stored.curves.conditions, condition.id),
-                                 points, open)},
-                     articles[i]);
+    doc::Article article = std::get<doc::Article>(articles[i].blocks.front());
+    add_curves(condition, *series, find(stored.curves.conditions, condition.id), points, open,
+               article.blocks);
+    doc::render_html({std::move(article)}, articles[i].html);
   });
-  for (std::string& article : articles)
-    if (!article.empty()) section.blocks.emplace_back(doc::Raw{std::move(article)});
+  for (const std::size_t i : shown) section.blocks.emplace_back(std::move(articles[i]));
   if (all) return section;
   std::erase_if(sketches, [](const auto& sketch) { return sketch.id.empty(); });
   section.blocks.emplace_back(
-      doc::Heading{{fmt::format("The other {} conditions", sketches.size())}, 3});
+      doc::Heading{{fmt::format("The other {} conditions", conditions.size() - shown.size())}, 3});
   section.blocks.emplace_back(doc::reading(
       "rho2 of each channel. Open a line for its last two periods; every sample is in its file in "
       "residuals/."));

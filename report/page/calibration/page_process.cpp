@@ -99,7 +99,7 @@ doc::Section starts_section(const StoredFit& fit) {
 
 doc::Section warnings_section(const StoredFit& fit) {
   doc::Section section{"warnings", "Failures and warnings"};
-  doc::List warnings;
+  doc::List warnings{{}, doc::State::warn};
   for (const std::string& warning : fit.warnings) {
     // The table of parameters already shows this reason.
     const bool told =
@@ -110,6 +110,8 @@ doc::Section warnings_section(const StoredFit& fit) {
   }
   if (warnings.items.empty() && fit.failures.empty())
     section.blocks.emplace_back(doc::reading("None."));
+  else
+    section.always = true;
   if (!warnings.items.empty()) {
     doc::Fold fold{fmt::format("Warnings ({})", warnings.items.size()), {}};
     fold.open = warnings.items.size() <= kFew;

@@ -18,13 +18,13 @@ using doc::Line;
 using Kind = doc::Column::Kind;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Frequency to sort by, and "0.1 Hz sine".
+/// Frequency to sort by, and "sine 0.1 Hz".
 std::pair<double, std::string> signal_of(const StoredCondition& condition) {
   const std::string waveform =
       condition.waveform ? std::string(to_string(*condition.waveform)) : std::string();
   const std::optional<double>& frequency = condition.frequency_hz;
   if (!frequency) return {0.0, waveform};
-  return {*frequency, fmt::format("{:.6g} Hz {}", *frequency, waveform)};
+  return {*frequency, fmt::format("{} {:.6g} Hz", waveform, *frequency)};
 }
 
 std::string level_of(const StoredCondition& condition) { return condition.leak_level.value_or(""); }

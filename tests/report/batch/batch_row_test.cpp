@@ -278,7 +278,7 @@ TEST_CASE("batch: on the terminal a line for each rig, then what is wrong with i
   diagnosed.worst_scores = {score};
   batch.rigs = {good, fails, stopped, diagnosed};
   const std::string text =
-      rigcal::report::doc::render_terminal(batch_headline(batch), batch_sections(batch), {});
+      rigcal::report::doc::render_terminal({batch_headline(batch), {}, batch_sections(batch)}, {});
   CHECK_THAT(text, Contains("4 rigs: 2 PASS, 1 FAIL, 1 stopped."));
   CHECK_THAT(text, Contains("unchanged") && Contains("sine position: 0.9877") &&
                        Contains("sine: not simulated") && Contains("sine position: –"));

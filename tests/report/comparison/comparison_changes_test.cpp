@@ -153,7 +153,7 @@ TEST_CASE("comparison: a difference between two dates contains two days", "[repo
     StoredComparison comparison = comparison_of(
         compared_parameters(compared_all({on("a", 85.0, "2026-03-01"), on("b", 84.0, date)})));
     comparison.significance.resize(2);
-    return doc::render_terminal({}, comparison_sections(comparison), {});
+    return doc::render_terminal({{}, {}, comparison_sections(comparison)}, {});
   };
   CHECK_THAT(words("2026-03-02"), Contains("Fits of different dates"));
   CHECK_THAT(words("2026-03-01"), !Contains("Fits of different dates"));

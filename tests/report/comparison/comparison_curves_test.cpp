@@ -65,7 +65,7 @@ TEST_CASE("overlaid: other sample times are read between", "[report]") {
 
 TEST_CASE("overlaid: its CSV is read back to the same bits", "[report]") {
   const Table table = overlaid({{0, sine_series(1.0, 0.1)}, {1, sine_series(0.5, 0.0)}}, 0.0);
-  const Table back = parse_table(table_csv(table), "overlay.csv");
+  const Table back = parse_table(csv_of(table), "overlay.csv");
   CHECK(back.names == table.names);
   REQUIRE(back.columns.size() == table.columns.size());
   CHECK(back.columns[1] == table.columns[1]);
@@ -78,7 +78,7 @@ TEST_CASE("comparison_curves: of conditions that two results have simulated", "[
   for (const char* name : {"a", "b"}) {
     const auto own = folder.path() / name;
     std::filesystem::create_directories(own / "residuals");
-    std::ofstream(own / "residuals" / "sine.csv") << table_csv(sine_series(2.0, 0.1));
+    std::ofstream(own / "residuals" / "sine.csv") << csv_of(sine_series(2.0, 0.1));
     results.push_back(compared_of(rigcal::test::stored_result(), own / "fit.json", name));
   }
   const auto files = comparison_curves(results);

@@ -32,8 +32,9 @@ StoredComparison read_back(const Json& json) {
 
 std::string comparison_text(const Json& json, const rigcal::report::Style& style) {
   const StoredComparison comparison = read_back(json);
-  return rigcal::report::doc::render_terminal(rigcal::report::comparison_headline(comparison),
-                                              rigcal::report::comparison_sections(comparison),
+  return rigcal::report::doc::render_terminal({rigcal::report::comparison_headline(comparison),
+                                               {},
+                                               rigcal::report::comparison_sections(comparison)},
                                               style);
 }
 

@@ -14,7 +14,7 @@ namespace {
 const doc::Verdict kVerdict{{doc::State::good, "PASS"}, {"All is well."}};
 
 std::string shown(doc::Blocks blocks, const Style& style = {}) {
-  return doc::render_terminal(kVerdict, {{"id", "Title", std::move(blocks)}}, style);
+  return doc::render_terminal({kVerdict, {}, {{"id", "Title", std::move(blocks)}}}, style);
 }
 
 doc::Table table_of(std::size_t rows) {
@@ -36,11 +36,11 @@ TEST_CASE("render_terminal: the verdict first, with its reasons and how many the
   doc::Verdict verdict{{doc::State::bad, "FAIL"}, {"Beyond the limit."}};
   verdict.reasons = {{doc::Link{"#there", "rho2 is 0.9"}}};
   verdict.more = 2;
-  CHECK(doc::render_terminal(verdict, {}, {}) ==
+  CHECK(doc::render_terminal({verdict}, {}) ==
         "FAIL: Beyond the limit.\n  - rho2 is 0.9\n  and 2 more\n");
   Style style;
   style.colour = true;
-  CHECK_THAT(doc::render_terminal(verdict, {}, style), Contains("\x1b[31mFAIL\x1b[0m"));
+  CHECK_THAT(doc::render_terminal({verdict}, style), Contains("\x1b[31mFAIL\x1b[0m"));
 }
 
 TEST_CASE("render_terminal: a cell of several lines keeps its column", "[report]") {
@@ -85,6 +85,33 @@ TEST_CASE("render_terminal: a closed fold shows its warnings alone", "[report]")
              Contains("Details\nwarning: the supply sagged\n") && !Contains("row 0"));
   fold.open = true;
   CHECK_THAT(shown({fold}), Contains("row 0") && Contains("warning: the supply sagged"));
+}
+
+TEST_CASE("render_terminal: below a first page, sections only if asked for", "[report]") {
+  doc::Document document{kVerdict};
+  document.front = {doc::Doubts{{{"a doubt"}}, doc::Line{"2 warnings"}},
+                    doc::Aspects{{{{doc::State::good, "pass"}, "Agreement", {{"all"}, {"good"}}}}},
+                    doc::Paragraph{{"small print"}, doc::Paragraph::Tone::small}};
+  document.sections = {{"one", "One", {table_of(1)}},
+                       {"two", "Two", {doc::List{{{"w"}}, doc::State::warn}}}};
+  document.sections[1].always = true;
+  CHECK(doc::render_terminal(document, {}) ==
+        "PASS: All is well.\n\nBefore you sign\n- a doubt\npass Agreement: all; good\n"
+        "small print\n\nTwo\nwarning: w\n\n-v for more: One\n");
+  Style style;
+  style.everything = true;
+  CHECK_THAT(doc::render_terminal(document, style),
+             Contains("\nOne\nName") && !Contains("-v for more"));
+}
+
+TEST_CASE("render_terminal: a rendered page shows its blocks, a long list its first items",
+          "[report]") {
+  CHECK_THAT(shown({doc::Rendered{"<p>", {table_of(1)}}}), Contains("row 0") && !Contains("<p>"));
+  doc::List list;
+  for (int i = 0; i < 100; ++i) list.items.push_back({"item"});
+  Style style;
+  style.lines = 20;
+  CHECK_THAT(shown({list}, style), Contains("and 84 more (-v for all)"));
 }
 
 TEST_CASE("render_terminal: as many rows as find room, and the rest is counted", "[report]") {

@@ -54,7 +54,7 @@ std::string page_with(const std::string& file, const Json& json) {
              "0,0,1e-5,3\n0.1,0.01,2e-5,3\n0.2,0.02,3e-5,3\n0.3,0.01,2e-5,3\n";
     return std::nullopt;
   };
-  return result_page(read, "folder", 1);
+  return result_page(read, "folder", 1).html;
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ std::string page(const Json& json, const std::string& file = "fit.json", int thr
     }
     return std::nullopt;
   };
-  return result_page(read, "folder", threads);
+  return result_page(read, "folder", threads).html;
 }
 
 /// Text between the tags of the first element of this class.
@@ -501,7 +501,7 @@ TEST_CASE("page: the band of prediction lies around model and residual", "[repor
                fields + ",1,0.001\n";
       return csv;
     };
-    return result_page(read, "folder", 1);
+    return result_page(read, "folder", 1).html;
   };
   const std::string with = drawn(",prediction_sd_position_m", ",0.0002");
   CHECK_THAT(with, Contains("95 % prediction") && Contains("class=\"band model\""));
@@ -519,7 +519,7 @@ TEST_CASE("page: a result that cannot be read is named beside those that can", "
     if (path == "leak_table.json") return R"({"schema": "rigcal.leak_table/1"})";
     return std::nullopt;
   };
-  const std::string html = result_page(read, "folder", 1);
+  const std::string html = result_page(read, "folder", 1).html;
   CHECK_THAT(word_of(html), Contains("PASS"));
   CHECK_THAT(html, Contains("Left out: folder") && !Contains("id=\"leak-table\""));
 }
@@ -564,7 +564,7 @@ TEST_CASE("page: 24 conditions stay below 8 MB, however long they are", "[report
     if (path.parent_path() == "residuals") return csv;
     return std::nullopt;
   };
-  const std::string html = result_page(read, "folder", 2);
+  const std::string html = result_page(read, "folder", 2).html;
   CHECK(html.size() < 8'000'000);
   CHECK(html.size() > 1'000'000);
 }

@@ -62,8 +62,8 @@ TEST_CASE("fit choices: a provenance names inputs and what the starts rest on", 
   FitChoices choices;
   choices.seed = 3;
   choices.bootstrap = 50;
-  const Provenance provenance =
-      provenance_of_starts("rigcal fit", rig.choice, choices, settings, campaign, records);
+  const Provenance provenance = provenance_of_starts("rigcal fit", recorded(rig.choice), choices,
+                                                     settings, campaign, records);
   CHECK(provenance.command == "rigcal fit");
   CHECK(provenance.seed == 3);
   CHECK(provenance.options == std::vector<std::pair<std::string, std::string>>{

@@ -29,7 +29,7 @@ struct MadeFit : MadeRig {
   std::atomic<bool> cancel{false};
   calib::FitOptions settings = report::fit_options(campaign, 1, cancel);
   report::Provenance provenance =
-      report::provenance_of_starts("rigcal fit", choice, {}, settings, campaign, records);
+      report::provenance_of_starts("rigcal fit", recorded(choice), {}, settings, campaign, records);
   calib::Fit fit;
 };
 

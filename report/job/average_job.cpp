@@ -1,17 +1,15 @@
-#include "report/run/averaging.hpp"
-
 #include <filesystem>
 
 #include "common/error.hpp"
 #include "datasets/checks/short_records.hpp"
 #include "datasets/prepare/load_record.hpp"
-#include "report/run/result_page.hpp"
+#include "report/job/job.hpp"
 #include "report/store/csv.hpp"
 #include "report/store/json.hpp"
 #include "report/store/result_files.hpp"
+#include "report/store/stored/stored_record.hpp"
 
 namespace rigcal::report {
-
 namespace {
 
 bool is_averaged(const datasets::Condition& condition) {
@@ -22,8 +20,6 @@ std::filesystem::path averaged_file(const std::string& condition) {
   return std::filesystem::path("averaged") / (condition + ".csv");
 }
 
-}  // namespace
-
 PlannedFiles planned_average(const datasets::Campaign& campaign) {
   PlannedFiles planned{{"average.json", "repeatability.csv", "report.html"}, {"averaged"}};
   for (const datasets::Condition& condition : campaign.conditions)
@@ -31,7 +27,11 @@ PlannedFiles planned_average(const datasets::Campaign& campaign) {
   return planned;
 }
 
-std::vector<datasets::Record> averaged_records(const datasets::Campaign& campaign) {
+}  // namespace
+
+std::vector<datasets::Record> averaged_records(const datasets::Campaign& campaign,
+                                               const JobTerms& terms) {
+  terms.hold(planned_average(campaign));
   std::vector<datasets::Record> records;
   for (const datasets::Condition& condition : campaign.conditions) {
     if (!is_averaged(condition)) continue;
@@ -47,25 +47,24 @@ std::vector<datasets::Record> averaged_records(const datasets::Campaign& campaig
   return records;
 }
 
-StoredAverage write_average(HeldFolder& held, int threads, const datasets::Campaign& campaign,
-                            const std::vector<datasets::Record>& records, Provenance provenance) {
-  provenance.inputs = hash_inputs(campaign, records);
+JobResult average_job(const datasets::Campaign& campaign,
+                      const std::vector<datasets::Record>& records, const JobTerms& terms) {
+  Provenance provenance{terms.command, 1, terms.options, hash_inputs(campaign, records)};
   StoredAverage average;
   average.campaign = campaign.name;
   average.synthetic = campaign.synthetic;
-  std::vector<ResultFile> files;
+  JobResult job;
   for (const datasets::Record& record : records) {
-    files.push_back({averaged_file(record.condition), averaged_csv(record)});
+    job.files.push_back({averaged_file(record.condition), averaged_csv(record)});
     average.records.push_back(stored(*campaign.find(record.condition), record));
   }
-  files.push_back({"repeatability.csv", repeatability_csv(records)});
+  job.files.push_back({"repeatability.csv", repeatability_csv(records)});
   average.provenance = stored(provenance);
-  name_files(files, average.provenance);
-  files.push_back({"average.json", json_text(json_of(average))});
-  held.plan(planned_average(campaign));
-  add_page(held.path(), threads, files);
-  write_results(held, files, provenance.inputs);
-  return average;
+  name_files(job.files, average.provenance);
+  job.files.push_back({"average.json", json_text(json_of(average))});
+  job.first = {"average.json", "repeatability.csv", "averaged/"};
+  job.inputs = provenance.inputs;
+  return job;
 }
 
 }  // namespace rigcal::report

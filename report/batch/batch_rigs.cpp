@@ -1,4 +1,4 @@
-#include "apps/rigcal/batch_rigs.hpp"
+#include "report/batch/batch_rigs.hpp"
 
 #include <fmt/format.h>
 
@@ -7,10 +7,9 @@
 #include <optional>
 #include <system_error>
 
-#include "apps/rigcal/child.hpp"
 #include "common/file.hpp"
 
-namespace rigcal::app {
+namespace rigcal::report {
 namespace {
 
 namespace fs = std::filesystem;
@@ -24,29 +23,6 @@ std::optional<std::string> hash_of(const fs::path& file) {
   } catch (const InputError&) {
     return std::nullopt;
   }
-}
-
-/// Relative record paths start at the campaign file's folder wherever the command runs.
-std::vector<std::string> arguments_for(const char* verb, const BatchRig& rig, const RigTask& task) {
-  std::vector<std::string> arguments{
-      verb,        rig.campaign.string(),           "--out",  (task.out / rig.folder).string(),
-      "--threads", fmt::format("{}", task.threads), "--quiet"};
-  if (!task.root.empty()) arguments.insert(arguments.end(), {"--root", task.root.string()});
-  if (task.force) arguments.emplace_back("--force");
-  return arguments;
-}
-
-ChildEnd fit_rig(const BatchRig& rig, const RigTask& task, const std::atomic<bool>& cancel) {
-  std::vector<std::string> arguments = arguments_for("fit", rig, task);
-  arguments.insert(arguments.end(), task.fit_arguments.begin(), task.fit_arguments.end());
-  if (task.resume) arguments.insert(arguments.end(), {"--resume", "--if-changed"});
-  return run_child(arguments, cancel);
-}
-
-ChildEnd diagnose_rig(const BatchRig& rig, const RigTask& task, const std::atomic<bool>& cancel) {
-  std::vector<std::string> arguments = arguments_for("diagnose", rig, task);
-  arguments.insert(arguments.end(), {"--fit", (task.out / rig.folder / "fit.json").string()});
-  return run_child(arguments, cancel);
 }
 
 }  // namespace
@@ -103,16 +79,17 @@ RigEnd rig_end_of(const std::string& bytes) {
   return end;
 }
 
-RigEnd run_rig(const BatchRig& rig, const RigTask& task, const std::atomic<bool>& cancel) {
+RigEnd run_rig(const BatchRig& rig, const fs::path& out, const RigVerbs& verbs,
+               const std::atomic<bool>& cancel) {
   RigEnd end;
   if (cancel) {
     end.code = ExitCode::stopped;
     end.error = "not begun: stopped by a signal";
     return end;
   }
-  const fs::path result = task.out / rig.folder / "fit.json";
+  const fs::path result = out / rig.folder / "fit.json";
   const auto before = hash_of(result);
-  const ChildEnd fit = fit_rig(rig, task, cancel);
+  const VerbEnd fit = verbs.fit(rig);
   const auto after = hash_of(result);
   const bool same = before == after;
   const bool whole = fit.code == ExitCode::done || fit.code == ExitCode::verdict_fail ||
@@ -124,12 +101,12 @@ RigEnd run_rig(const BatchRig& rig, const RigTask& task, const std::atomic<bool>
   end.error = fit.error;
   end.seconds = fit.seconds;
   const bool usable = fit.code == ExitCode::done || fit.code == ExitCode::verdict_fail;
-  if (!task.diagnose || !usable || cancel) return end;
-  const ChildEnd diagnosis = diagnose_rig(rig, task, cancel);
+  if (!verbs.diagnose || !usable || cancel) return end;
+  const VerbEnd diagnosis = verbs.diagnose(rig);
   end.seconds += diagnosis.seconds;
   end.code = std::max(end.code, diagnosis.code);
   if (!diagnosis.error.empty()) end.error = "diagnose: " + diagnosis.error;
   return end;
 }
 
-}  // namespace rigcal::app
+}  // namespace rigcal::report

@@ -2,13 +2,13 @@
 
 #include <atomic>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "common/error.hpp"
-#include "common/task_farm.hpp"
 
-namespace rigcal::app {
+namespace rigcal::report {
 
 /// A rig that `batch` found.
 struct BatchRig {
@@ -24,17 +24,6 @@ struct BatchRig {
 std::vector<BatchRig> find_rigs(const std::filesystem::path& folder,
                                 const std::filesystem::path& out);
 
-/// Work on each rig.
-struct RigTask {
-  std::filesystem::path out;
-  std::filesystem::path root;  ///< no file outside this folder is read; empty: no restriction
-  std::vector<std::string> fit_arguments;
-  int threads = 1;
-  bool resume = false;
-  bool diagnose = false;
-  bool force = false;
-};
-
 /// Result of the work on a rig.
 struct RigEnd {
   ExitCode code = ExitCode::internal;
@@ -48,7 +37,22 @@ struct RigEnd {
 std::string bytes_of(const RigEnd& end);
 RigEnd rig_end_of(const std::string& bytes);
 
-/// Fits a rig, and diagnoses its records if requested, each in a separate process.
-RigEnd run_rig(const BatchRig& rig, const RigTask& task, const std::atomic<bool>& cancel);
+/// End of `fit` or `diagnose` for one rig.
+struct VerbEnd {
+  ExitCode code = ExitCode::internal;
+  std::string error;  ///< on one line; empty if there was none
+  double seconds = 0.0;
+};
+/// The verbs that `batch` runs, which write into the folder of the rig's results.
+struct RigVerbs {
+  std::function<VerbEnd(const BatchRig&)> fit;
+  std::function<VerbEnd(const BatchRig&)> diagnose;  ///< may be empty: not asked for
+};
 
-}  // namespace rigcal::app
+/// Fits a rig, and diagnoses its records if requested.
+///
+/// @param out  folder of the batch
+RigEnd run_rig(const BatchRig& rig, const std::filesystem::path& out, const RigVerbs& verbs,
+               const std::atomic<bool>& cancel);
+
+}  // namespace rigcal::report

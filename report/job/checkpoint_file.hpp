@@ -8,13 +8,13 @@
 #include "calib/search/checkpoint.hpp"
 #include "report/store/provenance.hpp"
 
-namespace rigcal::app {
+namespace rigcal::report {
 
 /// File in the result folder from which a fit can continue after a kill.
 class CheckpointFile {
  public:
   /// @param provenance  of the fit; borrowed
-  CheckpointFile(const std::filesystem::path& out, const report::Provenance& provenance);
+  CheckpointFile(const std::filesystem::path& out, const Provenance& provenance);
 
   /// The checkpoint of an earlier run of the same fit; empty where there is none.
   ///
@@ -33,9 +33,9 @@ class CheckpointFile {
   void write();
 
   std::filesystem::path file_;
-  const report::Provenance& provenance_;
+  const Provenance& provenance_;
   std::optional<calib::Checkpoint> unwritten_;
   Clock::time_point not_before_{};
 };
 
-}  // namespace rigcal::app
+}  // namespace rigcal::report

@@ -1,18 +1,17 @@
-#include "apps/rigcal/checkpoint_file.hpp"
+#include "report/job/checkpoint_file.hpp"
 
 #include "common/file.hpp"
 #include "report/store/checkpoint.hpp"
 #include "report/store/folder.hpp"
 
-namespace rigcal::app {
+namespace rigcal::report {
 
-CheckpointFile::CheckpointFile(const std::filesystem::path& out,
-                               const report::Provenance& provenance)
-    : file_(out / report::kCheckpointFile), provenance_(provenance) {}
+CheckpointFile::CheckpointFile(const std::filesystem::path& out, const Provenance& provenance)
+    : file_(out / kCheckpointFile), provenance_(provenance) {}
 
 std::optional<calib::Checkpoint> CheckpointFile::read() const {
   if (!std::filesystem::exists(file_)) return std::nullopt;
-  return report::read_checkpoint(file_, provenance_);
+  return read_checkpoint(file_, provenance_);
 }
 
 void CheckpointFile::keep(const calib::Checkpoint& checkpoint) {
@@ -22,7 +21,7 @@ void CheckpointFile::keep(const calib::Checkpoint& checkpoint) {
 
 void CheckpointFile::finish(calib::FitStatus status) {
   if (status != calib::FitStatus::stopped) {
-    report::remove_stale(file_);
+    remove_stale(file_);
   } else if (unwritten_) {
     write();
   }
@@ -31,10 +30,10 @@ void CheckpointFile::finish(calib::FitStatus status) {
 void CheckpointFile::write() {
   constexpr int kShare = 20;  // one part of writing to so many of fitting
   const auto began = Clock::now();
-  write_file_atomically(file_, report::checkpoint_text(*unwritten_, provenance_));
+  write_file_atomically(file_, checkpoint_text(*unwritten_, provenance_));
   const auto ended = Clock::now();
   not_before_ = ended + kShare * (ended - began);
   unwritten_.reset();
 }
 
-}  // namespace rigcal::app
+}  // namespace rigcal::report

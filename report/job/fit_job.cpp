@@ -1,0 +1,170 @@
+#include <fmt/format.h>
+
+#include <optional>
+#include <utility>
+
+#include "common/memory.hpp"
+#include "datasets/prepare/load_record.hpp"
+#include "report/job/checkpoint_file.hpp"
+#include "report/job/job.hpp"
+#include "report/run/validation.hpp"
+#include "report/store/checkpoint.hpp"
+#include "report/store/kept_tasks.hpp"
+#include "report/store/whole_fit.hpp"
+
+namespace rigcal::report {
+namespace {
+
+using calib::FitStatus;
+using datasets::Use;
+
+/// @param strict  WARN counts as FAIL
+ExitCode code_of(FitStatus status, std::optional<calib::Verdict> verdict, bool strict) {
+  switch (status) {
+    case FitStatus::failed:
+      return ExitCode::no_result;
+    case FitStatus::stopped:
+      return ExitCode::stopped;
+    case FitStatus::converged:
+      break;
+  }
+  const bool failed =
+      verdict == calib::Verdict::fail || (strict && verdict == calib::Verdict::warn);
+  return failed ? ExitCode::verdict_fail : ExitCode::done;
+}
+
+/// What a fit keeps in its folder until it is written, to go on after a kill. Bootstrap, profiles
+/// and cross-validation do not change the starts.
+struct Unfinished {
+  Unfinished(const std::filesystem::path& out, Provenance searched, TaskFarm* processes,
+             bool resume)
+      : of_starts(std::move(searched)),
+        checkpoint(out, of_starts),
+        tasks(processes != nullptr ? *processes : threads, out / kKeptTasksFile, of_starts,
+              resume) {}
+
+  Provenance of_starts;
+  ThreadFarm threads;
+  CheckpointFile checkpoint;
+  KeptTasks tasks;
+};
+
+std::shared_ptr<FitRun> begun(std::shared_ptr<const datasets::Campaign> campaign, ResultKind kind,
+                              int threads) {
+  auto run = std::make_shared<FitRun>();
+  run->kind = kind;
+  run->campaign = std::move(campaign);
+  run->records = datasets::load_records(*run->campaign, {Use::fit, Use::validate}, threads, true);
+  return run;
+}
+
+void watch(const JobTerms& terms, calib::FitOptions& settings, const std::string& work) {
+  if (terms.watch) terms.watch(settings, work);
+}
+
+JobResult finished(std::shared_ptr<FitRun> run, bool strict) {
+  JobResult job;
+  const FitStatus status = status_of(run->fit);
+  const bool is_fit = run->kind == ResultKind::fit;
+  job.first = {is_fit ? "fit.json" : "validation.json", "scorecard.csv", "parameters.csv",
+               "residuals/"};
+  if (is_fit && status != FitStatus::failed) job.first.emplace_back("fitted.toml");
+  job.inputs = run->provenance.inputs;
+  job.code = code_of(status, run->fit.verdict, strict);
+  job.fit = std::move(run);
+  return job;
+}
+
+/// The same fit in a process that does not lead: it works on the leader's tasks, and continues with
+/// the same results.
+void help(const FitRun& run, const Provenance& searched, bool resume, const JobTerms& terms,
+          calib::FitOptions settings) {
+  settings.farm = terms.processes;
+  const auto earlier = resume ? CheckpointFile(terms.out, searched).read() : std::nullopt;
+  if (earlier) settings.resume = &*earlier;
+  calib::fit(*run.campaign, run.records, settings);
+}
+
+/// The fit itself, which keeps what it needs to go on.
+void search(FitRun& run, Unfinished& kept, bool resume, const JobTerms& terms,
+            calib::FitOptions settings) {
+  settings.farm = &kept.tasks;
+  const auto earlier = resume ? kept.checkpoint.read() : std::nullopt;
+  if (earlier) settings.resume = &*earlier;
+  // A fit that begins anew must not look as if it went on.
+  if (resume && !earlier && kept.tasks.found() == 0 && terms.note)
+    terms.note(fmt::format("no checkpoint in {}{}: the fit begins anew", terms.out.string(),
+                           settings.starts > 1 ? "" : " (a fit of one start keeps none)"));
+  if (settings.starts > 1)
+    settings.checkpoint = [&](const calib::Checkpoint& reached) { kept.checkpoint.keep(reached); };
+  give_freed_memory_back();  // memory of the single repeats
+  run.fit = calib::fit(*run.campaign, run.records, settings);
+  // Files and page are not made from them, and need as much memory again.
+  datasets::drop_deviations(run.records);
+  give_freed_memory_back();
+  give_large_blocks_back();
+}
+
+}  // namespace
+
+JobResult fit_job(std::shared_ptr<const datasets::Campaign> campaign, const FitRequest& request,
+                  const JobTerms& terms) {
+  auto run = begun(std::move(campaign), ResultKind::fit, terms.threads);
+  calib::FitOptions settings = fit_options(*run->campaign, terms.threads, terms.cancel);
+  apply(request.choices, settings);
+  const Provenance searched = provenance_of_starts(terms.command, terms.options, request.choices,
+                                                   settings, *run->campaign, run->records);
+  run->provenance = searched;
+  for (const auto& option : recorded(request.choices)) run->provenance.options.push_back(option);
+  if (!terms.leads()) {
+    help(*run, searched, request.resume, terms, settings);
+    return {};
+  }
+  PlannedFiles planned = planned_result(ResultKind::fit, *run->campaign);
+  planned.files.emplace_back(kKeptTasksFile);
+  // With `resume` the checkpoint is read, and a foreign one is refused with the reason.
+  if (!request.resume) planned.files.emplace_back(kCheckpointFile);
+  if (request.if_changed) {
+    if (const auto made = whole_fit(terms.out, run->provenance)) {
+      JobResult job;
+      job.files = {{"fit.json", json_text(json_of(*made))}};
+      job.code = code_of(made->status, made->verdict, request.strict);
+      job.unchanged = true;
+      return job;
+    }
+  }
+  terms.hold(std::move(planned));
+  watch(terms, settings,
+        settings.starts > 1 ? fmt::format("start {{}} of {}", settings.starts)
+                            : std::string("start {}"));
+  if (terms.out.empty()) {
+    run->fit = calib::fit(*run->campaign, run->records, settings);
+    return finished(std::move(run), request.strict);
+  }
+  const auto kept =
+      std::make_shared<Unfinished>(terms.out, searched, terms.processes, request.resume);
+  search(*run, *kept, request.resume, terms, settings);
+  JobResult job = finished(std::move(run), request.strict);
+  job.written = [kept, status = job.fit->fit.status] {
+    kept->checkpoint.finish(status);
+    if (status != FitStatus::stopped) kept->tasks.remove();
+  };
+  return job;
+}
+
+JobResult validation_job(std::shared_ptr<const datasets::Campaign> campaign,
+                         const ValidationRequest& request, const JobTerms& terms) {
+  std::optional<EarlierFit> earlier;
+  if (request.fit.given()) earlier = request.fit.read(campaign->rig.plant);
+  auto run = begun(std::move(campaign), ResultKind::validation, terms.threads);
+  calib::FitOptions settings = fit_options(*run->campaign, terms.threads, terms.cancel);
+  run->provenance = {terms.command, settings.seed, terms.options,
+                     hash_inputs(*run->campaign, run->records, request.fit.inputs())};
+  terms.hold(planned_result(ResultKind::validation, *run->campaign));
+  watch(terms, settings, "nuisance parameters");
+  run->fit = validate(*run->campaign, run->records, earlier ? &*earlier : nullptr, run->provenance,
+                      settings);
+  return finished(std::move(run), request.strict);
+}
+
+}  // namespace rigcal::report
