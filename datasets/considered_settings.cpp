@@ -6,14 +6,37 @@ namespace rigcal::datasets {
 namespace {
 
 /// Keys of parameters; a plant without one of them has no such effect.
-constexpr std::array kOfParameters{
-    "valve_time_constant",  "valve_offset",        "valve_dead_band",   "coulomb_friction",
-    "laminar_leakage",      "leakage_coefficient", "transport_delay",   "ki",
-    "total_volume",         "dead_volume_a",       "dead_volume_b",     "position_lag",
-    "position_gain",        "position_offset",     "load_pressure_lag", "load_pressure_gain",
-    "load_pressure_offset", "pressure_a_lag",      "pressure_a_gain",   "pressure_a_offset",
-    "pressure_b_lag",       "pressure_b_gain",     "pressure_b_offset", "force_lag",
-    "force_gain",           "force_offset"};
+constexpr std::array kOfParameters{"valve_time_constant",
+                                   "valve_offset",
+                                   "valve_dead_band",
+                                   "coulomb_friction",
+                                   "laminar_leakage",
+                                   "leakage_coefficient",
+                                   "transport_delay",
+                                   "ki",
+                                   "kp",
+                                   "kd",
+                                   "total_volume",
+                                   "dead_volume_a",
+                                   "dead_volume_b",
+                                   "position_lag",
+                                   "position_gain",
+                                   "position_offset",
+                                   "load_pressure_lag",
+                                   "load_pressure_gain",
+                                   "load_pressure_offset",
+                                   "pressure_a_lag",
+                                   "pressure_a_gain",
+                                   "pressure_a_offset",
+                                   "pressure_b_lag",
+                                   "pressure_b_gain",
+                                   "pressure_b_offset",
+                                   "force_lag",
+                                   "force_gain",
+                                   "force_offset",
+                                   "acceleration_lag",
+                                   "acceleration_gain",
+                                   "acceleration_offset"};
 
 }  // namespace
 

@@ -145,6 +145,30 @@ TEST_CASE("rig_fit_of: what has no error counts with its whole range", "[diagnos
   CHECK((rig.covariance - Eigen::MatrixXd(variances.asDiagonal())).norm() < 1e-12);
 }
 
+TEST_CASE("RigFit: an effect and what the fit has mistaken for it go together", "[diagnosis]") {
+  diagnosis::RigFit rig;
+  rig.indices = {4, 1};
+  rig.covariance = Eigen::Vector2d(9.0, 4.0).asDiagonal();
+  calib::EstimateSpread spread;
+  spread.estimates = {{1, datasets::Scope::rig, ""},
+                      {1, datasets::Scope::condition, "sine"},
+                      {4, datasets::Scope::rig, ""}};
+  spread.effects.keys = {"leakage_coefficient", "ki"};
+  spread.effects.root = Eigen::Vector2d(0.1, 2.0).asDiagonal();
+  spread.effects.moves = Eigen::MatrixXd::Zero(3, 2);
+  spread.effects.moves.row(0) << 100.0, 5.0;
+  spread.effects.moves.row(1) << 100.0, 100.0;
+  spread.effects.moves.row(2) << 100.0, -3.0;
+  rig.consider(spread);
+  // The leak is what a diagnosis looks for: no effect beside it.
+  REQUIRE(rig.effects.keys == std::vector<std::string>{"ki"});
+  Eigen::Matrix3d expected;
+  expected << 9.0 + 36.0, -60.0, -12.0,  //
+      -60.0, 4.0 + 100.0, 20.0,          //
+      -12.0, 20.0, 4.0;
+  CHECK((rig.covariance - expected).norm() < 1e-12);
+}
+
 TEST_CASE("fit_leak: the noise of the reference is not the record's own", "[diagnosis]") {
   const HealthySine made = healthy_sine();
   const diagnosis::RigFit rig = rig_of(made.campaign);
