@@ -461,24 +461,28 @@ std::vector<Eigen::MatrixXd> effect_changes(const Problem& problem, std::size_t 
                                             const model::ParameterValues& values,
                                             std::span<const double> times_s,
                                             const std::vector<Effect>& effects,
-                                            const std::atomic<bool>* cancel) {
+                                            const std::atomic<bool>* cancel,
+                                            std::span<const Output> further) {
   const ProblemCondition& data = problem.conditions[condition];
   const auto samples = static_cast<Eigen::Index>(times_s.size());
   const auto channels = static_cast<Eigen::Index>(data.channels.size());
+  std::vector<Output> outputs = data.outputs;
+  outputs.insert(outputs.end(), further.begin(), further.end());
+  const auto kept = static_cast<Eigen::Index>(outputs.size());
+  outputs.push_back(Output::servo_flow);  // what a sagging supply feeds
   std::vector<Eigen::MatrixXd> result(
-      data.channels.size(),
+      static_cast<std::size_t>(kept),
       Eigen::MatrixXd::Constant(samples, static_cast<Eigen::Index>(effects.size()), std::nan("")));
   const auto options = effect_options(problem, condition, cancel);
   const auto run_with = [&](const model::ParameterValues& at, const model::SimulationInputs& in) {
-    return model::simulate(data.rig, at, std::vector<int>(), in, times_s, outputs_and_flow(data),
-                           options);
+    return model::simulate(data.rig, at, std::vector<int>(), in, times_s, outputs, options);
   };
   const model::Simulation base = run_with(values, data.inputs);
   if (!base.ok()) return result;
   for (std::size_t e = 0; e < effects.size(); ++e) {
     const Effect& effect = effects[e];
     const double size = effect.secant * effect.about.size;
-    Eigen::MatrixXd change = Eigen::MatrixXd::Zero(samples, channels);
+    Eigen::MatrixXd change = Eigen::MatrixXd::Zero(samples, kept);
     if (effect.is_of_sensor()) {
       for (Eigen::Index k = 0; k < channels; ++k) {
         if (data.channels[static_cast<std::size_t>(k)].channel == Channel::position)
@@ -491,13 +495,13 @@ std::vector<Eigen::MatrixXd> effect_changes(const Problem& problem, std::size_t 
         changed.set(effect.index, values.value[static_cast<std::size_t>(effect.index)] + size);
       } else {
         inputs.supply_pressure_pa =
-            sagging_supply(effect, values, times_s, base.outputs.col(channels), size);
+            sagging_supply(effect, values, times_s, base.outputs.col(kept), size);
       }
       const model::Simulation run = run_with(changed, inputs);
       if (!run.ok()) continue;
-      change = (run.outputs - base.outputs).leftCols(channels);
+      change = (run.outputs - base.outputs).leftCols(kept);
     }
-    for (Eigen::Index k = 0; k < channels; ++k)
+    for (Eigen::Index k = 0; k < kept; ++k)
       result[static_cast<std::size_t>(k)].col(static_cast<Eigen::Index>(e)) =
           change.col(k) / effect.secant;
   }

@@ -64,11 +64,14 @@ Eigen::MatrixXd effect_rows(const Problem& problem, std::size_t condition,
 
 /// The same in SI for each channel, at any values of the parameters and any times; shape (times,
 /// effects).
+///
+/// @param further  outputs that follow the channels
 std::vector<Eigen::MatrixXd> effect_changes(const Problem& problem, std::size_t condition,
                                             const model::ParameterValues& values,
                                             std::span<const double> times_s,
                                             const std::vector<Effect>& effects,
-                                            const std::atomic<bool>* cancel);
+                                            const std::atomic<bool>* cancel,
+                                            std::span<const model::Output> further = {});
 
 /// Weighted outputs of one condition with some effects.
 struct OutputsWith {

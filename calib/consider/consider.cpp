@@ -425,11 +425,15 @@ double score_inflation(const Seen& seen, const ScoreCovariance& scores, std::siz
 struct RefittedFit {
   std::vector<std::size_t> effects;
   Refit refit;
+
+  /// Minus twice the logarithm of its probability by prior and records, up to a constant: two
+  /// effects that act alike differ in how plausible the sizes are which they would need.
+  double misfit(double scale) const { return refit.squares / scale + refit.sizes.squaredNorm(); }
 };
 
 /// Refits the effects that explain most, alone and then beside each other. Score tests are linear
 /// about the fit, which has mistaken the missing effect for a change of the estimates: two that act
-/// alike may change places there. The one that leaves the least squares is named first.
+/// alike may change places there. The one that is likeliest by prior and records is named first.
 std::vector<RefittedFit> refit_best(const Problem& problem, std::span<const double> z,
                                     const Uncertainty& found, const Seen& seen,
                                     const ScoreCovariance& scores, int threads,
@@ -473,8 +477,9 @@ std::vector<RefittedFit> refit_best(const Problem& problem, std::span<const doub
     if (each && each->sizes(0) != 0.0) models.push_back({{e}, std::move(*each)});
   }
   if (models.empty()) return models;
-  const auto leaves_less = [](const RefittedFit& a, const RefittedFit& b) {
-    return a.refit.squares < b.refit.squares;
+  const double scale = score_inflation(seen, scores, missing.front());
+  const auto leaves_less = [&](const RefittedFit& a, const RefittedFit& b) {
+    return a.misfit(scale) < b.misfit(scale);
   };
   RefittedFit best = *std::min_element(models.begin(), models.end(), leaves_less);
   while (best.effects.size() < kMostMissing) {
@@ -529,7 +534,7 @@ void describe_refits(const Seen& seen, const ScoreCovariance& scores,
     model.fall = plain.refit.squares - each.refit.squares;
     if (each.refit.held_out && plain.refit.held_out)
       model.held_out_fall = *plain.refit.held_out - *each.refit.held_out;
-    model.weight = each.refit.squares / scale + 2.0 * static_cast<double>(each.effects.size());
+    model.weight = each.misfit(scale) + 2.0 * static_cast<double>(each.effects.size());
     least = std::min(least, model.weight);
   }
   double sum = 0.0;

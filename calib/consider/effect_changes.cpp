@@ -36,16 +36,19 @@ std::vector<Effect> considered_in(const Problem& problem, std::span<const double
   std::erase_if(acting, [&](const Effect& each) {
     return place_of(effects, each.about.key) == effects.keys.size();
   });
-  for (Effect& each : acting)
-    each.secant = std::max(effects.size(each.about.key) / each.about.size, kLeastSecantSize);
+  for (Effect& each : acting) {
+    if (each.curved)
+      each.secant = std::max(effects.size(each.about.key) / each.about.size, kLeastSecantSize);
+  }
   return acting;
 }
 
 EffectChanges changes_by(const Problem& problem, std::size_t condition,
                          const model::ParameterValues& values, const std::vector<Effect>& acting,
-                         const EffectSpread& effects, const std::atomic<bool>* cancel) {
+                         const EffectSpread& effects, const std::atomic<bool>* cancel,
+                         std::span<const model::Output> further) {
   const std::span<const double> times_s = problem.conditions[condition].record->time_s;
-  const auto found = effect_changes(problem, condition, values, times_s, acting, cancel);
+  const auto found = effect_changes(problem, condition, values, times_s, acting, cancel, further);
   EffectChanges result;
   for (const Eigen::MatrixXd& channel : found) {
     Eigen::MatrixXd& own = result.emplace_back(

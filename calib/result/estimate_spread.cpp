@@ -19,6 +19,7 @@ EffectSpread effect_spread(const Considered& considered,
                            const std::vector<const Budget95*>& budgets) {
   EffectSpread result;
   const Eigen::Index count = considered.correlation.rows();
+  if (count == 0) return result;
   Eigen::VectorXd mean(count);
   Eigen::VectorXd error(count);
   for (Eigen::Index k = 0; k < count; ++k) {

@@ -13,6 +13,7 @@
 #include "calib/problem/scaled_svd.hpp"
 #include "calib/search/search.hpp"
 #include "diagnosis/leak/phase_clusters.hpp"
+#include "diagnosis/leak/record_share.hpp"
 #include "diagnosis/leak/residual_rms.hpp"
 #include "diagnosis/leak/steady_leak.hpp"
 
@@ -395,30 +396,28 @@ std::shared_ptr<const LeakEffects> leak_effects_of(const LeakProblem& leak_probl
     values.set(leak_problem.leak, coefficient);
     return values;
   };
+  constexpr std::array kFlows{model::Output::servo_flow, model::Output::leakage_flow};
   const auto changes_at = [&](double coefficient) {
     return calib::changes_by(problem, 0, values_at(coefficient), acting, rig.effects,
-                             leak_problem.cancel);
+                             leak_problem.cancel, kFlows);
   };
   auto result = std::make_shared<LeakEffects>();
   result->healthy = changes_at(0.0);
   result->by_leak = changes_at(leak);
   for (std::size_t k = 0; k < result->healthy.size(); ++k) {
     if (!result->healthy[k].allFinite() || !result->by_leak[k].allFinite()) return nullptr;
+  }
+  // The share, by the flows of the record.
+  model::Simulation run =
+      model::simulate(prepared.rig, values_at(leak), std::vector<int>(), prepared.inputs,
+                      average.time_s, kFlows, problem.simulation_options(leak_problem.cancel));
+  if (!run.ok()) return nullptr;
+  run.sensitivities.assign(result->by_leak.end() - kFlows.size(), result->by_leak.end());
+  result->share = leak_in_record(prepared, run, 0).share_slope / leak;
+  result->healthy.resize(prepared.channels.size());
+  result->by_leak.resize(prepared.channels.size());
+  for (std::size_t k = 0; k < result->healthy.size(); ++k)
     result->by_leak[k] = (result->by_leak[k] - result->healthy[k]) / leak;
-  }
-  result->share = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(rig.effects.keys.size()));
-  const double share =
-      steady_leak(problem, prepared, values_at(leak), {}, leak_problem.cancel).share;
-  for (const calib::Effect& effect : acting) {
-    if (effect.kind != calib::EffectKind::parameter) continue;
-    const double size = effect.secant * effect.about.size;
-    model::ParameterValues values = values_at(leak);
-    values.set(effect.index, values.value[static_cast<std::size_t>(effect.index)] + size);
-    const auto& keys = rig.effects.keys;
-    const auto place = std::find(keys.begin(), keys.end(), effect.about.key) - keys.begin();
-    const double with = steady_leak(problem, prepared, values, {}, leak_problem.cancel).share;
-    result->share(place) = (with - share) / (size * leak);
-  }
   return result;
 }
 

@@ -200,19 +200,22 @@ TEST_CASE("considered: a band of prediction includes an effect less what the fit
           "[calib]") {
   SmallRig rig;
   rig.add("faster", datasets::Waveform::sine, 6.0, 0.01).use = datasets::Use::validate;
-  const auto band = [&] {
+  // What estimates and effects add to the noise, over all samples.
+  const auto beyond_noise = [&](datasets::Use use) {
     const Fit found = rig.fitted();
     double sum = 0.0;
     for (const ConditionScore& each : found.conditions) {
-      if (each.use != datasets::Use::validate) continue;
-      for (const double sd : each.prediction_sd.at(datasets::Channel::position)) sum += sd * sd;
+      if (each.use != use) continue;
+      for (const double sd : each.prediction_sd.at(datasets::Channel::position))
+        sum += sd * sd - rig.noise_sd_m * rig.noise_sd_m;
     }
     return sum;
   };
-  const double with = band();
+  const double predicted = beyond_noise(datasets::Use::validate);
+  const double fitted = beyond_noise(datasets::Use::fit);
   rig.campaign.considered.none = true;
-  const double without = band();
-  CHECK(with > 1.01 * without);
+  CHECK(predicted > 5.0 * beyond_noise(datasets::Use::validate));
+  CHECK_THAT(fitted, WithinRel(beyond_noise(datasets::Use::fit), 1e-9));
 }
 
 TEST_CASE("effect_spread: second moments of the sizes, and moves by the lines of budgets",
