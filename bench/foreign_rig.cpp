@@ -43,8 +43,9 @@ ForeignState slope(const ForeignRig& rig, const ForeignState& s, double referenc
   const double velocity = s[1];
   const double load = s[2];
   const double error = reference - position;
-  const double wanted =
-      rig.kp_v_per_m * error + s[4] + rig.kd_v_s_per_m * rig.filter_rad_per_s * (error - s[3]);
+  const double kp = rig.kp_v_per_m + rig.kp_error_v_per_m;
+  const double kd = rig.kd_v_s_per_m + rig.kd_error_v_s_per_m;
+  const double wanted = kp * error + s[4] + kd * rig.filter_rad_per_s * (error - s[3]);
   const double command = std::clamp(wanted, -rig.limit_v, rig.limit_v);
   const double spool = rig.valve_lag_s > 0.0 ? s[5] : command;
   const double volts = without_band(spool + rig.null_shift_v, rig.dead_band_v);

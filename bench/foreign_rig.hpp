@@ -20,6 +20,7 @@ struct ForeignRig {
   double kp_v_per_m = 120.0, kd_v_s_per_m = 0.3, filter_rad_per_s = 150.0, limit_v = 10.0;
 
   double valve_lag_s = 0.0, delay_s = 0.0, null_shift_v = 0.0, dead_band_v = 0.0;
+  double kp_error_v_per_m = 0.0, kd_error_v_s_per_m = 0.0;  ///< added to what the user knows
   double friction_n = 0.0, laminar_m3_per_s_pa = 0.0, integral_v_per_m_s = 0.0;
   double hose_volume_m3 = 0.0, sag = 0.0;  ///< fraction of the supply at the flow of full command
   double sensor_lag_s = 0.0, sensor_gain = 0.0, sensor_offset_m = 0.0;  ///< gain: relative error

@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "calib/consider/consider.hpp"
+#include "calib/consider/effect_changes.hpp"
 #include "calib/consider/stability.hpp"
 #include "calib/cross_validation.hpp"
 #include "calib/finish.hpp"
@@ -100,6 +101,33 @@ void warn_of_start(const Campaign& campaign, const std::vector<const Condition*>
   if (!text.empty()) fit.warnings.push_back(text);
 }
 
+/// The dates of some conditions, each once; none where one has no date.
+std::vector<std::string> dates_of(const std::vector<const Condition*>& conditions) {
+  std::vector<std::string> dates;
+  for (const Condition* each : conditions) {
+    if (!each->date) return {};
+    if (std::find(dates.begin(), dates.end(), *each->date) == dates.end())
+      dates.push_back(*each->date);
+  }
+  return dates;
+}
+
+/// The effects that a fit considered, beside its estimates.
+EffectSpread effects_beside(const Fit& fit, const EstimateSpread& spread) {
+  if (!fit.considered) return {};
+  std::vector<const Budget95*> budgets;
+  for (const EstimateSpread::Estimate& each : spread.estimates) {
+    const auto found =
+        std::find_if(fit.parameters.begin(), fit.parameters.end(), [&](const auto& parameter) {
+          return parameter.fitted && parameter.index == each.index &&
+                 parameter.scope == each.scope && parameter.level == each.level;
+        });
+    const bool known = found != fit.parameters.end() && found->budget.has_value();
+    budgets.push_back(known ? &*found->budget : nullptr);
+  }
+  return effect_spread(*fit.considered, budgets);
+}
+
 /// Scores conditions at known values, with nuisance parameters estimated again.
 ///
 /// @param spread  covariance of the values, for bands of prediction; null: none
@@ -135,9 +163,11 @@ Fit score_at(const Campaign& campaign, const std::vector<Record>& records,
     fit.conditions = unscored_conditions(problem, fit.message);
     return fit;
   }
-  fit.conditions = score_conditions(problem, z, options.threads);
+  const EffectSpread effects = spread != nullptr ? spread->effects : EffectSpread{};
+  fit.conditions = score_conditions(problem, z, options.threads, effects);
   if (spread != nullptr) {
-    add_prediction_sd(problem, z, *spread, options.threads, fit.conditions);
+    const auto changes = predicted_changes(problem, z, effects, options.threads, options.cancel);
+    add_prediction_sd(problem, z, *spread, changes, options.threads, fit.conditions);
     test_predictions(problem, fit.conditions);
   }
   if (problem.map.unknowns().empty() &&
@@ -221,11 +251,16 @@ Fit fit(const Campaign& campaign, const std::vector<Record>& records, const FitO
                        result);
     }
     solved.spread.scores = {};
-    result.conditions = score_conditions(problem, solved.optimum.z, options.threads);
     std::optional<EstimateSpread> spread;
     if (result.status == FitStatus::converged) {
       spread = estimate_spread(problem, solved.optimum.z, solved.spread);
-      add_prediction_sd(problem, solved.optimum.z, *spread, options.threads, result.conditions);
+      spread->effects = effects_beside(result, *spread);
+      spread->dates = dates_of(fitted);
+    }
+    result.conditions = score_conditions(problem, solved.optimum.z, options.threads,
+                                         spread ? spread->effects : EffectSpread{});
+    if (spread) {
+      add_prediction_sd(problem, solved.optimum.z, *spread, {}, options.threads, result.conditions);
     }
     // Scored before steps that may take hours, so that stopping them changes no score.
     std::optional<Fit> validation;

@@ -25,8 +25,8 @@ namespace {
 using datasets::Campaign;
 using datasets::Condition;
 
-Prepared prepare(const LeakProblem& problem, const datasets::RepeatRecords& records,
-                 const DiagnosisOptions& options) {
+Prepared prepare(const LeakProblem& problem, const RigFit& rig,
+                 const datasets::RepeatRecords& records, const DiagnosisOptions& options) {
   Prepared result;
   result.condition = problem.campaign.find(records.average.condition);
   if (result.condition == nullptr)
@@ -34,6 +34,7 @@ Prepared prepare(const LeakProblem& problem, const datasets::RepeatRecords& reco
   result.records = &records;
   try {
     result.scan = leak_scan_of(problem, *result.condition, records.average);
+    result.effects = leak_effects_of(problem, rig, *result.condition, records.average, result.scan);
     std::vector<const datasets::Record*> all{&records.average};
     for (const datasets::Record& single : records.singles) all.push_back(&single);
     result.residuals = healthy_residuals(problem, *result.condition, records.average, all);
@@ -123,8 +124,9 @@ RecordDiagnosis diagnose_record(const LeakProblem& problem, const RigFit& rig, c
 
   const LeakProblem bounded = problem.up_to(2.0 * prepared.scan.largest_coefficient)
                                   .corrected_by(result.reference_repeats, record.repeats);
-  result.fit = fit_leak(bounded, rig, *prepared.condition, record, covered,
-                        result.reference_repeats, &prepared.scan, options.cancel);
+  result.fit =
+      fit_leak(bounded, rig, *prepared.condition, record, covered, result.reference_repeats,
+               &prepared.scan, options.cancel, prepared.effects.get());
   return result;
 }
 
@@ -225,9 +227,9 @@ void estimate(const LeakProblem& problem, const RigFit& rig, const Prepared& pre
     const LeakCurve curve =
         leak_curve_of(problem, *prepared.condition, average, record.fit.coefficient,
                       std::max(error.half_width(), least), *prepared.leaks);
-    const double share_rig_se =
-        share_rig_error(problem, rig, *prepared.condition, average, record.fit,
-                        curve.share_slope(record.fit.coefficient), prepared.negligible());
+    const double share_rig_se = share_rig_error(
+        problem, rig, *prepared.condition, average, record.fit,
+        curve.share_slope(record.fit.coefficient), prepared.negligible(), prepared.effects.get());
     const double share_slope = curve.share_slope(record.fit.coefficient);
     const double share_days_se =
         distance > 0.0 ? between.error(distance, share_day_effects(problem, *prepared.condition,
@@ -359,7 +361,7 @@ Diagnosis diagnose(const Campaign& campaign, const std::vector<datasets::RepeatR
   problem.cancel = options.cancel;
   std::vector<Prepared> prepared(records.size());
   parallel_for(prepared.size(), options.threads,
-               [&](std::size_t i) { prepared[i] = prepare(problem, records[i], options); });
+               [&](std::size_t i) { prepared[i] = prepare(problem, rig, records[i], options); });
   // The problem's own campaign no longer has the known leaks.
   for (Prepared& each : prepared)
     each.is_healthy = is_healthy(campaign, *campaign.find(each.condition->id));

@@ -91,8 +91,9 @@ void judge_state(const LeakProblem& problem, const RigFit& rig, const Prepared& 
     const LeakCurve curve =
         leak_curve_of(problem, *duty.condition, average, leak.coefficient, reach, *duty.leaks);
     state.share_slope = curve.share_slope(leak.coefficient);
-    const double share_rig_se = share_rig_error(problem, rig, *duty.condition, average, leak,
-                                                state.share_slope, duty.negligible());
+    const double share_rig_se =
+        share_rig_error(problem, rig, *duty.condition, average, leak, state.share_slope,
+                        duty.negligible(), duty.effects.get());
     const double share_se =
         std::hypot(share_rig_se, share_days_error(problem, duty, days, leak, state));
     state.estimate = estimate_leak(leak.coefficient, state.pooled.error, curve,

@@ -18,7 +18,8 @@ struct Prepared {
   const datasets::Condition* condition = nullptr;
   const datasets::RepeatRecords* records = nullptr;
   LeakScan scan;
-  Residuals residuals;  ///< for the average, then for each repeat
+  std::shared_ptr<const LeakEffects> effects;  ///< null: none were considered
+  Residuals residuals;                         ///< for the average, then for each repeat
   std::string failure;
   std::optional<double> true_share;
   bool is_healthy = false;

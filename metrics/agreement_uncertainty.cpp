@@ -108,6 +108,14 @@ Changed changed_by_sensor(const MeasuredMean& measured, std::span<const double> 
     result.back().push_back(score(1.0 + share, -share * middle));
     if (share < 1.0) result.back().push_back(score(1.0 - share, share * middle));
   }
+  for (const std::vector<double>& change : measured.changes) {
+    std::vector<Agreement>& both = result.emplace_back();
+    for (const double sign : {1.0, -1.0}) {
+      std::vector<double> changed(measured.mean.begin(), measured.mean.end());
+      for (std::size_t i = 0; i < changed.size(); ++i) changed[i] += sign * change[i];
+      both.push_back(agreement(changed, simulated));
+    }
+  }
   return result;
 }
 

@@ -26,6 +26,8 @@ struct RigScale {
   double pressure_pa = 0.0;    ///< supply
   double sample_s = 0.0;       ///< shortest sampling interval
   double kp_v_per_m = 0.0;
+  double kd_v_s_per_m = 0.0;
+  double mass_kg = 0.0;
   double leak_per_coefficient = 0.0;  ///< flow of the orifice leak at supply, per coefficient
 };
 
@@ -78,7 +80,7 @@ constexpr std::array kCatalogue{
                  }},
     CatalogueRow{"valve_offset", EffectKind::parameter, false, "null shift of the valve",
                  [](const RigScale& rig) {
-                   return EffectSize{3e-4 * rig.command_v, "0.03 % of full command"};
+                   return EffectSize{1e-3 * rig.command_v, "0.1 % of full command"};
                  }},
     CatalogueRow{"valve_dead_band", EffectKind::parameter, true, "overlap of the spool",
                  [](const RigScale& rig) {
@@ -108,7 +110,15 @@ constexpr std::array kCatalogue{
                  }},
     CatalogueRow{"ki", EffectKind::parameter, true, "integral gain of the controller",
                  [](const RigScale& rig) {
-                   return EffectSize{5e-3 * rig.kp_v_per_m, "a reset time of 200 s"};
+                   return EffectSize{0.02 * rig.kp_v_per_m, "a reset time of 50 s"};
+                 }},
+    CatalogueRow{"kp", EffectKind::parameter, false, "error of the proportional gain",
+                 [](const RigScale& rig) {
+                   return EffectSize{2e-3 * rig.kp_v_per_m, "0.2 % of its value"};
+                 }},
+    CatalogueRow{"kd", EffectKind::parameter, false, "error of the derivative gain",
+                 [](const RigScale& rig) {
+                   return EffectSize{0.01 * rig.kd_v_s_per_m, "1 % of its value"};
                  }},
     CatalogueRow{"total_volume", EffectKind::parameter, true, "oil of hoses and ports",
                  [](const RigScale& rig) {
@@ -190,6 +200,17 @@ constexpr std::array kCatalogue{
                  pressure_gain},
     CatalogueRow{"pressure_b_offset", EffectKind::parameter, false,
                  "offset of the pressure sensor B", pressure_offset},
+    CatalogueRow{"acceleration_lag", EffectKind::parameter, true, "lag of the accelerometer",
+                 sensor_lag},
+    CatalogueRow{"acceleration_gain", EffectKind::parameter, false, "gain of the accelerometer",
+                 [](const RigScale&) {
+                   return EffectSize{0.01, "1 % of the reading"};
+                 }},
+    CatalogueRow{"acceleration_offset", EffectKind::parameter, false, "offset of the accelerometer",
+                 [](const RigScale& rig) {
+                   return EffectSize{1e-3 * rig.force_n / rig.mass_kg,
+                                     "0.1 % of what area times supply accelerates the mass by"};
+                 }},
     CatalogueRow{"force_lag", EffectKind::parameter, true, "lag of the load cell", sensor_lag},
     CatalogueRow{"force_gain", EffectKind::parameter, false, "gain of the load cell",
                  [](const RigScale&) {
@@ -250,19 +271,11 @@ RigScale scale_of(const Problem& problem, std::span<const double> z) {
   }
   rig.sample_s = shortest_interval(problem);
   rig.kp_v_per_m = get("kp");
+  rig.kd_v_s_per_m = get("kd");
+  rig.mass_kg = get("mass");
   rig.leak_per_coefficient =
       get("leakage_area") * std::sqrt(2.0 * rig.pressure_pa / get("density"));
   return rig;
-}
-
-/// The channel whose sensor a key names ("pressure_a_lag"); none if it names none.
-std::optional<Channel> sensor_channel(std::string_view key) {
-  for (const Channel channel : {Channel::load_pressure, Channel::pressure_a, Channel::pressure_b,
-                                Channel::position, Channel::angle, Channel::force}) {
-    const std::string_view name = datasets::info(channel).key;
-    if (key.starts_with(name) && key.substr(name.size()).starts_with('_')) return channel;
-  }
-  return std::nullopt;
 }
 
 bool is_compared(const Problem& problem, Channel channel) {
@@ -287,6 +300,12 @@ bool is_volume(std::string_view key) {
   return key == "total_volume" || key.starts_with("dead_volume");
 }
 
+bool is_of_controller(std::string_view key) { return key == "kp" || key == "ki" || key == "kd"; }
+
+/// Whether an effect is an error of a value that the model has: hoses add to a volume, converters
+/// change a gain.
+bool changes_value(std::string_view key) { return is_volume(key) || key == "kp" || key == "kd"; }
+
 /// Whether the model has the effect already, or its size is stated elsewhere: a parameter that is
 /// free or given in any condition, a sensor with a certificate.
 bool is_in_model(const Problem& problem, std::string_view key, int index) {
@@ -296,14 +315,18 @@ bool is_in_model(const Problem& problem, std::string_view key, int index) {
     return true;
   const auto* setting = problem.campaign->setting(index);
   if (setting != nullptr && (setting->fit || setting->prior)) return true;
-  if (is_volume(key)) return false;
+  if (is_of_controller(key) &&
+      std::any_of(problem.conditions.begin(), problem.conditions.end(), [](const auto& each) {
+        return each.rig.controller == model::ControllerKind::none;
+      }))
+    return true;
+  if (changes_value(key)) return false;
   const auto& spec =
       model::parameter_table(problem.campaign->rig.plant)[static_cast<std::size_t>(index)];
   const double neutral = spec.default_value.value_or(0.0);
   for (const ProblemCondition& each : problem.conditions) {
     if (each.values.value[static_cast<std::size_t>(index)] != neutral) return true;
     if (key == "valve_time_constant" && each.values.is_given("valve_frequency")) return true;
-    if (key == "ki" && each.rig.controller == model::ControllerKind::none) return true;
   }
   if (const auto channel = sensor_channel(key)) {
     const auto& stated = problem.campaign->channels.at(*channel);
@@ -364,22 +387,6 @@ std::vector<Effect> possible_effects(const Problem& problem, std::span<const dou
   return result;
 }
 
-/// Reading of a sensor with play: it follows the quantity where that has taken up the play.
-Eigen::VectorXd with_play(const Eigen::VectorXd& x, double half_width) {
-  Eigen::VectorXd y = x;
-  for (Eigen::Index i = 1; i < x.size(); ++i)
-    y(i) = std::clamp(y(i - 1), x(i) - half_width, x(i) + half_width);
-  return y;
-}
-
-/// Change of a reading by an error of its sensor of a size.
-Eigen::VectorXd reading_error(const Effect& effect, const Eigen::VectorXd& reading, double size) {
-  const Eigen::ArrayXd turn = (reading.array() - effect.middle) / effect.range;  // of the range
-  if (effect.kind == EffectKind::bow) return size * (2.0 * turn).square();
-  if (effect.kind == EffectKind::wave) return size * (2.0 * std::numbers::pi * turn).sin();
-  return with_play(reading, size) - reading;
-}
-
 /// The supply at which a flow is fed through a line that costs `sag` of it at the flow of the
 /// range.
 model::Signal sagging_supply(const Effect& effect, const model::ParameterValues& values,
@@ -399,7 +406,41 @@ std::vector<Output> outputs_and_flow(const ProblemCondition& condition) {
   return outputs;
 }
 
+/// Reading of a sensor with play: it follows the quantity where that has taken up the play.
+Eigen::VectorXd with_play(const Eigen::VectorXd& x, double half_width) {
+  Eigen::VectorXd y = x;
+  for (Eigen::Index i = 1; i < x.size(); ++i)
+    y(i) = std::clamp(y(i - 1), x(i) - half_width, x(i) + half_width);
+  return y;
+}
+
+/// Options of the simulations of effects.
+model::SimulationOptions effect_options(const Problem& problem, std::size_t condition,
+                                        const std::atomic<bool>* cancel) {
+  auto options = problem.simulation_options(cancel);
+  options.tolerance = std::max(problem.tolerance_of(condition), kSecantTolerance);
+  options.max_steps = problem.conditions[condition].max_steps;
+  return options;
+}
+
 }  // namespace
+
+std::optional<Channel> sensor_channel(std::string_view key) {
+  for (const Channel channel :
+       {Channel::load_pressure, Channel::pressure_a, Channel::pressure_b, Channel::position,
+        Channel::angle, Channel::force, Channel::acceleration}) {
+    const std::string_view name = datasets::info(channel).key;
+    if (key.starts_with(name) && key.substr(name.size()).starts_with('_')) return channel;
+  }
+  return std::nullopt;
+}
+
+Eigen::VectorXd reading_error(const Effect& effect, const Eigen::VectorXd& reading, double size) {
+  const Eigen::ArrayXd turn = (reading.array() - effect.middle) / effect.range;  // of the range
+  if (effect.kind == EffectKind::bow) return size * (2.0 * turn).square();
+  if (effect.kind == EffectKind::wave) return size * (2.0 * std::numbers::pi * turn).sin();
+  return with_play(reading, size) - reading;
+}
 
 std::vector<Effect> effects_of(const Problem& problem, std::span<const double> z) {
   const datasets::ConsideredSettings& stated = problem.campaign->considered;
@@ -423,51 +464,110 @@ std::vector<std::string> left_out_effects(const Problem& problem, std::span<cons
   return keys;
 }
 
-Eigen::VectorXd outputs_with(const Problem& problem, std::size_t condition,
-                             std::span<const double> z, const std::vector<Effect>& effects,
-                             const Eigen::VectorXd& sizes, const std::atomic<bool>* cancel) {
+OutputsWith outputs_with(const Problem& problem, std::size_t condition, std::span<const double> z,
+                         const std::vector<Effect>& effects, const Eigen::VectorXd& sizes,
+                         Derivatives derivatives, const std::atomic<bool>* cancel) {
   const ProblemCondition& data = problem.conditions[condition];
   const auto samples = static_cast<Eigen::Index>(data.rows.size());
   const auto channels = static_cast<Eigen::Index>(data.channels.size());
-  auto options = problem.simulation_options(cancel);
-  options.tolerance = std::max(problem.tolerance_of(condition), kSecantTolerance);
-  options.max_steps = data.max_steps;
+  const auto options = effect_options(problem, condition, cancel);
+  const std::vector<int> free =
+      derivatives == Derivatives::of_unknowns ? data.free : std::vector<int>();
   model::ParameterValues values = problem.values_at(condition, z);
   model::SimulationInputs inputs = data.inputs;
-  const auto run = [&] {
-    return model::simulate(data.rig, values, std::vector<int>(), inputs, data.fit_times(),
-                           outputs_and_flow(data), options);
+  const auto run = [&](const std::vector<int>& rows) {
+    return model::simulate(data.rig, values, rows, inputs, data.fit_times(), outputs_and_flow(data),
+                           options);
   };
   const auto size_of = [&](std::size_t e) {
     return effects[e].about.size * sizes(static_cast<Eigen::Index>(e));
   };
+  bool sags = false;
   for (std::size_t e = 0; e < effects.size(); ++e) {
     const int index = effects[e].index;
     if (effects[e].kind == EffectKind::parameter && size_of(e) != 0.0)
       values.set(index, values.value[static_cast<std::size_t>(index)] + size_of(e));
+    sags = sags || (effects[e].kind == EffectKind::supply_sag && size_of(e) != 0.0);
   }
-  model::Simulation simulation = run();
+  model::Simulation simulation = run(sags ? std::vector<int>() : free);
   for (std::size_t e = 0; e < effects.size() && simulation.ok(); ++e) {
     if (effects[e].kind != EffectKind::supply_sag || size_of(e) == 0.0) continue;
     inputs.supply_pressure_pa = sagging_supply(effects[e], values, data.fit_times(),
                                                simulation.outputs.col(channels), size_of(e));
-    simulation = run();
+    simulation = run(free);
   }
   if (!simulation.ok()) return {};
-  Eigen::VectorXd result(samples * channels);
+  OutputsWith result;
+  result.outputs.resize(samples * channels);
+  result.jacobian.resize(samples * channels, static_cast<Eigen::Index>(free.size()));
+  const std::vector<Eigen::Index> counted(data.rows.begin(), data.rows.end());
   for (Eigen::Index k = 0; k < channels; ++k) {
     const ProblemChannel& channel = data.channels[static_cast<std::size_t>(k)];
     Eigen::VectorXd reading = simulation.outputs.col(k);
     for (std::size_t e = 0; e < effects.size(); ++e) {
-      const bool of_sensor =
-          effects[e].kind != EffectKind::parameter && effects[e].kind != EffectKind::supply_sag;
-      if (of_sensor && channel.channel == sensor_channel(effects[e].about.key) && size_of(e) != 0.0)
+      if (effects[e].is_of_sensor() && channel.channel == sensor_channel(effects[e].about.key) &&
+          size_of(e) != 0.0)
         reading += reading_error(effects[e], reading, size_of(e));
     }
-    for (Eigen::Index t = 0; t < samples; ++t) {
-      const auto sample = static_cast<Eigen::Index>(data.rows[static_cast<std::size_t>(t)]);
-      result(k * samples + t) = reading(sample) / channel.sd;
+    const auto own = Eigen::seqN(k * samples, samples);
+    result.outputs(own) = reading(counted) / channel.sd;
+    if (!free.empty()) {
+      result.jacobian(own, Eigen::all) =
+          simulation.sensitivities[static_cast<std::size_t>(k)].leftCols(result.jacobian.cols())(
+              counted, Eigen::all) /
+          channel.sd;
     }
+  }
+  return result;
+}
+
+std::vector<Eigen::MatrixXd> effect_changes(const Problem& problem, std::size_t condition,
+                                            const model::ParameterValues& values,
+                                            std::span<const double> times_s,
+                                            const std::vector<Effect>& effects,
+                                            const std::atomic<bool>* cancel,
+                                            std::span<const Output> further) {
+  const ProblemCondition& data = problem.conditions[condition];
+  const auto samples = static_cast<Eigen::Index>(times_s.size());
+  const auto channels = static_cast<Eigen::Index>(data.channels.size());
+  std::vector<Output> outputs = data.outputs;
+  outputs.insert(outputs.end(), further.begin(), further.end());
+  const auto kept = static_cast<Eigen::Index>(outputs.size());
+  outputs.push_back(Output::servo_flow);  // what a sagging supply feeds
+  std::vector<Eigen::MatrixXd> result(
+      static_cast<std::size_t>(kept),
+      Eigen::MatrixXd::Constant(samples, static_cast<Eigen::Index>(effects.size()), std::nan("")));
+  const auto options = effect_options(problem, condition, cancel);
+  const auto run_with = [&](const model::ParameterValues& at, const model::SimulationInputs& in) {
+    return model::simulate(data.rig, at, std::vector<int>(), in, times_s, outputs, options);
+  };
+  const model::Simulation base = run_with(values, data.inputs);
+  if (!base.ok()) return result;
+  for (std::size_t e = 0; e < effects.size(); ++e) {
+    const Effect& effect = effects[e];
+    const double size = effect.secant * effect.about.size;
+    Eigen::MatrixXd change = Eigen::MatrixXd::Zero(samples, kept);
+    if (effect.is_of_sensor()) {
+      for (Eigen::Index k = 0; k < channels; ++k) {
+        if (data.channels[static_cast<std::size_t>(k)].channel == sensor_channel(effect.about.key))
+          change.col(k) = reading_error(effect, base.outputs.col(k), size);
+      }
+    } else {
+      model::ParameterValues changed = values;
+      model::SimulationInputs inputs = data.inputs;
+      if (effect.kind == EffectKind::parameter) {
+        changed.set(effect.index, values.value[static_cast<std::size_t>(effect.index)] + size);
+      } else {
+        inputs.supply_pressure_pa =
+            sagging_supply(effect, values, times_s, base.outputs.col(kept), size);
+      }
+      const model::Simulation run = run_with(changed, inputs);
+      if (!run.ok()) continue;
+      change = (run.outputs - base.outputs).leftCols(kept);
+    }
+    for (Eigen::Index k = 0; k < kept; ++k)
+      result[static_cast<std::size_t>(k)].col(static_cast<Eigen::Index>(e)) =
+          change.col(k) / effect.secant;
   }
   return result;
 }
@@ -477,48 +577,14 @@ Eigen::MatrixXd effect_rows(const Problem& problem, std::size_t condition,
                             const std::atomic<bool>* cancel) {
   const ProblemCondition& data = problem.conditions[condition];
   const auto samples = static_cast<Eigen::Index>(data.rows.size());
-  const auto channels = static_cast<Eigen::Index>(data.channels.size());
-  Eigen::MatrixXd result = Eigen::MatrixXd::Constant(
-      samples * channels, static_cast<Eigen::Index>(effects.size()), std::nan(""));
-  const model::ParameterValues values = problem.values_at(condition, z);
-  auto options = problem.simulation_options(cancel);
-  options.tolerance = std::max(problem.tolerance_of(condition), kSecantTolerance);
-  options.max_steps = data.max_steps;
-  const auto run_with = [&](const model::ParameterValues& at, const model::SimulationInputs& in) {
-    return model::simulate(data.rig, at, std::vector<int>(), in, data.fit_times(),
-                           outputs_and_flow(data), options);
-  };
-  const model::Simulation base = run_with(values, data.inputs);
-  if (!base.ok()) return result;
-  for (std::size_t e = 0; e < effects.size(); ++e) {
-    const Effect& effect = effects[e];
-    const double size = effect.secant * effect.about.size;
-    Eigen::MatrixXd change = Eigen::MatrixXd::Zero(base.outputs.rows(), channels);
-    if (effect.kind == EffectKind::parameter || effect.kind == EffectKind::supply_sag) {
-      model::ParameterValues changed = values;
-      model::SimulationInputs inputs = data.inputs;
-      if (effect.kind == EffectKind::parameter) {
-        changed.set(effect.index, values.value[static_cast<std::size_t>(effect.index)] + size);
-      } else {
-        inputs.supply_pressure_pa =
-            sagging_supply(effect, values, data.fit_times(), base.outputs.col(channels), size);
-      }
-      const model::Simulation run = run_with(changed, inputs);
-      if (!run.ok()) continue;
-      change = (run.outputs - base.outputs).leftCols(channels);
-    } else {
-      for (Eigen::Index k = 0; k < channels; ++k) {
-        if (data.channels[static_cast<std::size_t>(k)].channel == sensor_channel(effect.about.key))
-          change.col(k) = reading_error(effect, base.outputs.col(k), size);
-      }
-    }
-    for (Eigen::Index k = 0; k < channels; ++k) {
-      const double weight = 1.0 / (effect.secant * data.channels[static_cast<std::size_t>(k)].sd);
-      for (Eigen::Index t = 0; t < samples; ++t) {
-        const auto sample = static_cast<Eigen::Index>(data.rows[static_cast<std::size_t>(t)]);
-        result(k * samples + t, static_cast<Eigen::Index>(e)) = change(sample, k) * weight;
-      }
-    }
+  const auto changes = effect_changes(problem, condition, problem.values_at(condition, z),
+                                      data.fit_times(), effects, cancel);
+  const std::vector<Eigen::Index> counted(data.rows.begin(), data.rows.end());
+  Eigen::MatrixXd result(samples * static_cast<Eigen::Index>(changes.size()),
+                         static_cast<Eigen::Index>(effects.size()));
+  for (std::size_t k = 0; k < changes.size(); ++k) {
+    result.middleRows(static_cast<Eigen::Index>(k) * samples, samples) =
+        changes[k](counted, Eigen::all) / data.channels[k].sd;
   }
   return result;
 }

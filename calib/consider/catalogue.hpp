@@ -2,8 +2,10 @@
 
 #include <Eigen/Core>
 #include <atomic>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "calib/problem/problem.hpp"
@@ -30,6 +32,11 @@ struct Effect {
   bool curved = false;
   double secant = 1.0;  ///< size at which that is taken, over the plausible size
   ConsideredEffect about;
+
+  /// Whether it changes the reading of the position sensor, not the motion.
+  bool is_of_sensor() const {
+    return kind != EffectKind::parameter && kind != EffectKind::supply_sag;
+  }
 };
 
 /// The effects that the model of a problem leaves out: rows of the catalogue whose parameter is
@@ -42,6 +49,12 @@ std::vector<Effect> effects_of(const Problem& problem, std::span<const double> z
 /// Those of the rows of the catalogue that the campaign leaves out.
 std::vector<std::string> left_out_effects(const Problem& problem, std::span<const double> z);
 
+/// The channel whose sensor a key names ("pressure_a_lag"); none if it names none.
+std::optional<datasets::Channel> sensor_channel(std::string_view key);
+
+/// Change of a reading by an error of the position sensor of a size.
+Eigen::VectorXd reading_error(const Effect& effect, const Eigen::VectorXd& reading, double size);
+
 /// Change of the weighted outputs of one condition by each effect, per plausible size. It is a
 /// secant: a term that cannot be negative has no derivative at zero, where a lag cannot be
 /// simulated. Shape (channels * samples that count, effects); a column that cannot be simulated is
@@ -50,11 +63,31 @@ Eigen::MatrixXd effect_rows(const Problem& problem, std::size_t condition,
                             std::span<const double> z, const std::vector<Effect>& effects,
                             const std::atomic<bool>* cancel);
 
-/// Weighted outputs of one condition with all effects at once; empty if it cannot be simulated.
+/// The same in SI for each channel, at any values of the parameters and any times; shape (times,
+/// effects).
+///
+/// @param further  outputs that follow the channels
+std::vector<Eigen::MatrixXd> effect_changes(const Problem& problem, std::size_t condition,
+                                            const model::ParameterValues& values,
+                                            std::span<const double> times_s,
+                                            const std::vector<Effect>& effects,
+                                            const std::atomic<bool>* cancel,
+                                            std::span<const model::Output> further = {});
+
+/// Weighted outputs of one condition with some effects.
+struct OutputsWith {
+  Eigen::VectorXd outputs;   ///< shape (channels * samples that count); empty: not simulated
+  Eigen::MatrixXd jacobian;  ///< by the acting unknowns, SI; without columns if not asked for
+  bool ok() const { return outputs.size() > 0; }
+};
+enum class Derivatives { none, of_unknowns };
+
+/// Weighted outputs of one condition with all effects at once. Derivatives take the errors of the
+/// position sensor and the supply's fall as given.
 ///
 /// @param sizes  of the effects over their plausible sizes
-Eigen::VectorXd outputs_with(const Problem& problem, std::size_t condition,
-                             std::span<const double> z, const std::vector<Effect>& effects,
-                             const Eigen::VectorXd& sizes, const std::atomic<bool>* cancel);
+OutputsWith outputs_with(const Problem& problem, std::size_t condition, std::span<const double> z,
+                         const std::vector<Effect>& effects, const Eigen::VectorXd& sizes,
+                         Derivatives derivatives, const std::atomic<bool>* cancel);
 
 }  // namespace rigcal::calib

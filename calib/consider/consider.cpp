@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "calib/consider/catalogue.hpp"
+#include "calib/consider/refit.hpp"
 #include "calib/consider/truncated_normal.hpp"
 #include "calib/trust/between_repeats.hpp"
 #include "calib/trust/identifiability.hpp"
@@ -42,6 +43,11 @@ constexpr double kSettledMove = 0.3;
 constexpr int kMostSecants = 2;
 /// More terms than this at once are a guess.
 constexpr std::size_t kMostMissing = 3;
+/// How many effects are refitted alone, and what part of the best explanation is worth it.
+constexpr std::size_t kMostCandidates = 6;
+constexpr double kWorthRefitting = 0.2;
+/// Over the plausible size: where the refit of a further effect begins.
+constexpr double kFirstSize = 0.3;
 
 /// Effects and what the fit and the residuals see of them, each in units of its plausible size.
 struct Seen {
@@ -223,6 +229,14 @@ Sizes sizes_of(const Seen& seen, const MatrixXd& directions) {
   return {std::move(cut.mean), std::move(cut.covariance), std::move(likeliest)};
 }
 
+MatrixXd correlation_of(const MatrixXd& covariance) {
+  const VectorXd scale = covariance.diagonal().cwiseSqrt().unaryExpr(
+      [](double sd) { return sd > 0.0 ? 1.0 / sd : 0.0; });
+  MatrixXd correlation = scale.asDiagonal() * covariance * scale.asDiagonal();
+  correlation.diagonal().setOnes();
+  return correlation;
+}
+
 /// Takes the secants of curved effects again, at the size that prior and records leave them.
 ///
 /// @return  whether any was; then their columns, and those of all others as they were, are in
@@ -272,7 +286,7 @@ bool follow_curvature(const Problem& problem, std::span<const double> z, const U
   std::vector<VectorXd> base(problem.conditions.size());
   const VectorXd none = VectorXd::Zero(at.mean.size());
   parallel_for(base.size(), threads, [&](std::size_t i) {
-    base[i] = outputs_with(problem, i, z, seen.effects, none, cancel);
+    base[i] = outputs_with(problem, i, z, seen.effects, none, Derivatives::none, cancel).outputs;
   });
   for (int chord = 0; chord < kMostChords; ++chord) {
     std::vector<double> there(z.begin(), z.end());
@@ -284,7 +298,8 @@ bool follow_curvature(const Problem& problem, std::span<const double> z, const U
     std::vector<VectorXd> taken(base.size());
     std::atomic<bool> failed = false;
     parallel_for(base.size(), threads, [&](std::size_t i) {
-      const VectorXd outputs = outputs_with(problem, i, there, seen.effects, at.mean, cancel);
+      const VectorXd outputs =
+          outputs_with(problem, i, there, seen.effects, at.mean, Derivatives::none, cancel).outputs;
       if (outputs.size() == 0 || base[i].size() == 0) {
         failed = true;
         return;
@@ -343,55 +358,215 @@ void test_alone(const Seen& seen, const ScoreCovariance& scores,
   for (std::size_t i = 0; i < tested.size(); ++i) about[tested[i]].p_of_all = together[i];
 }
 
-/// Forward selection: the effect that explains most of what is left, as long as some effect is
-/// significant beside those that were taken already.
-std::vector<std::size_t> missing_effects(const Seen& seen, const ScoreCovariance& scores,
-                                         const std::vector<ConsideredEffect>& about) {
+/// The effect that explains most of what those taken leave, where it is significant beside them.
+std::optional<std::size_t> next_missing(const Seen& seen, const ScoreCovariance& scores,
+                                        const std::vector<ConsideredEffect>& about,
+                                        const std::vector<std::size_t>& taken) {
   const MatrixXd felt = seen.left * seen.basis;
   const MatrixXd variance = felt * scores.directions * felt.transpose();
-  std::vector<std::size_t> taken;
-  std::vector<Index> columns;
-  while (taken.size() < std::min(kMostMissing, about.size())) {
-    std::vector<double> p_values;
-    std::vector<std::size_t> tested;
-    std::vector<double> gains;
-    const MatrixXd among = seen.left(columns, columns);
-    const Eigen::LDLT<MatrixXd> solver(among);
-    for (std::size_t e = 0; e < about.size(); ++e) {
-      const auto k = static_cast<Index>(e);
-      if (std::find(taken.begin(), taken.end(), e) != taken.end() || !about[e].p_value) continue;
-      // What would be negative alone is no explanation, whatever it does beside others.
-      if (about[e].one_sided && seen.score(k) < 0.0) continue;
-      // Score, information and its variance of this effect beside those taken.
-      VectorXd weights = VectorXd::Zero(seen.left.rows());
-      weights(k) = 1.0;
-      if (!columns.empty()) {
-        const VectorXd along = seen.left(columns, k);
-        const VectorXd beside = solver.solve(along);
-        for (std::size_t c = 0; c < columns.size(); ++c)
-          weights(columns[c]) = -beside(static_cast<Index>(c));
-      }
-      const double information = weights.dot(seen.left * weights);
-      const double spread = weights.dot(variance * weights);
-      if (!(information > 0.01 * seen.left(k, k)) || !(spread > 0.0)) continue;
-      // The variance of its own score may be by the repeats, which knows more than `variance`.
-      const double widened = std::max(1.0, scores.alone(k) / variance(k, k));
-      const double score = weights.dot(seen.score);
-      const double t = score / std::sqrt(spread * widened);
-      const double above = 1.0 - metrics::student_t_cdf(t, scores.freedom(k));
-      tested.push_back(e);
-      p_values.push_back(about[e].one_sided ? above : 2.0 * std::min(above, 1.0 - above));
-      gains.push_back(about[e].one_sided && score < 0.0 ? 0.0 : score * score / information);
+  const std::vector<Index> columns(taken.begin(), taken.end());
+  std::vector<double> p_values;
+  std::vector<std::size_t> tested;
+  std::vector<double> gains;
+  const MatrixXd among = seen.left(columns, columns);
+  const Eigen::LDLT<MatrixXd> solver(among);
+  for (std::size_t e = 0; e < about.size(); ++e) {
+    const auto k = static_cast<Index>(e);
+    if (std::find(taken.begin(), taken.end(), e) != taken.end() || !about[e].p_value) continue;
+    // What would be negative alone is no explanation, whatever it does beside others.
+    if (about[e].one_sided && seen.score(k) < 0.0) continue;
+    // Score, information and its variance of this effect beside those taken.
+    VectorXd weights = VectorXd::Zero(seen.left.rows());
+    weights(k) = 1.0;
+    if (!columns.empty()) {
+      const VectorXd along = seen.left(columns, k);
+      const VectorXd beside = solver.solve(along);
+      for (std::size_t c = 0; c < columns.size(); ++c)
+        weights(columns[c]) = -beside(static_cast<Index>(c));
     }
-    if (tested.empty()) break;
-    const auto together = metrics::holm(p_values);
-    if (*std::min_element(together.begin(), together.end()) >= kMissingLevel) break;
-    const auto best = std::max_element(gains.begin(), gains.end()) - gains.begin();
-    if (together[static_cast<std::size_t>(best)] >= kMissingLevel) break;
-    taken.push_back(tested[static_cast<std::size_t>(best)]);
-    columns.push_back(static_cast<Index>(taken.back()));
+    const double information = weights.dot(seen.left * weights);
+    const double spread = weights.dot(variance * weights);
+    if (!(information > 0.01 * seen.left(k, k)) || !(spread > 0.0)) continue;
+    // The variance of its own score may be by the repeats, which knows more than `variance`.
+    const double widened = std::max(1.0, scores.alone(k) / variance(k, k));
+    const double score = weights.dot(seen.score);
+    const double t = score / std::sqrt(spread * widened);
+    const double above = 1.0 - metrics::student_t_cdf(t, scores.freedom(k));
+    tested.push_back(e);
+    p_values.push_back(about[e].one_sided ? above : 2.0 * std::min(above, 1.0 - above));
+    gains.push_back(about[e].one_sided && score < 0.0 ? 0.0 : score * score / information);
+  }
+  if (tested.empty()) return std::nullopt;
+  const auto together = metrics::holm(p_values);
+  const auto best = std::max_element(gains.begin(), gains.end()) - gains.begin();
+  if (together[static_cast<std::size_t>(best)] >= kMissingLevel) return std::nullopt;
+  return tested[static_cast<std::size_t>(best)];
+}
+
+/// Forward selection, as long as some effect is significant beside those that were taken already.
+std::vector<std::size_t> missing_effects(const Seen& seen, const ScoreCovariance& scores,
+                                         const std::vector<ConsideredEffect>& about) {
+  std::vector<std::size_t> taken;
+  while (taken.size() < std::min(kMostMissing, about.size())) {
+    const auto next = next_missing(seen, scores, about, taken);
+    if (!next) break;
+    taken.push_back(*next);
   }
   return taken;
+}
+
+/// How many times the variance of a score is what white noise of variance 1 would give it.
+double score_inflation(const Seen& seen, const ScoreCovariance& scores, std::size_t effect) {
+  const auto k = static_cast<Index>(effect);
+  return std::max(scores.alone(k) / seen.left(k, k), 1e-300);
+}
+
+/// One of the models that were refitted.
+struct RefittedFit {
+  std::vector<std::size_t> effects;
+  Refit refit;
+
+  /// Minus twice the logarithm of its probability by prior and records, up to a constant: two
+  /// effects that act alike differ in how plausible the sizes are which they would need.
+  double misfit(double scale) const { return refit.squares / scale + refit.sizes.squaredNorm(); }
+};
+
+/// Refits the effects that explain most, alone and then beside each other. Score tests are linear
+/// about the fit, which has mistaken the missing effect for a change of the estimates: two that act
+/// alike may change places there. The one that is likeliest by prior and records is named first.
+std::vector<RefittedFit> refit_best(const Problem& problem, std::span<const double> z,
+                                    const Uncertainty& found, const Seen& seen,
+                                    const ScoreCovariance& scores, int threads,
+                                    const std::atomic<bool>* cancel, Considered& considered) {
+  std::vector<ConsideredEffect>& about = considered.effects;
+  std::vector<std::size_t>& missing = considered.missing;
+  std::vector<RefittedFit> models;
+  if (missing.empty() || z.size() > kMostRefitted) return models;
+  const Refitter refitter(problem, z, found.scores, threads, cancel);
+  // From where the linear model leads with these effects.
+  const auto refit = [&](const std::vector<std::size_t>& which, const std::vector<double>& from,
+                         const VectorXd& sizes) {
+    std::vector<Effect> effects;
+    for (const std::size_t e : which) effects.push_back(seen.effects[e]);
+    return refitter.fit(effects, from, sizes);
+  };
+  auto plain = refit({}, {z.begin(), z.end()}, VectorXd::Zero(0));
+  if (!plain) return models;
+  std::vector<std::size_t> candidates;
+  for (std::size_t e = 0; e < about.size(); ++e) {
+    if (e == missing.front() || about[e].p_of_all.value_or(1.0) < kMissingLevel)
+      candidates.push_back(e);
+  }
+  const auto explains_more = [&](std::size_t a, std::size_t b) {
+    return about[a].explains > about[b].explains;
+  };
+  std::stable_sort(candidates.begin(), candidates.end(), explains_more);
+  const double enough = kWorthRefitting * about[candidates.front()].explains;
+  for (std::size_t c = 0; c < std::min(kMostCandidates, candidates.size()); ++c) {
+    const std::size_t e = candidates[c];
+    if (about[e].explains < enough) break;
+    const auto k = static_cast<Index>(e);
+    const double size = about[e].alone.value_or(0.0) / about[e].size;
+    std::vector<double> from(z.begin(), z.end());
+    const VectorXd move = -size * seen.taken.col(k);
+    for (std::size_t j = 0; j < from.size(); ++j) {
+      from[j] = std::clamp(from[j] + found.root.times(static_cast<Index>(j), move)(0), 0.0, 1.0);
+    }
+    auto each = refit({e}, from, VectorXd::Constant(1, size));
+    if (!each) each = refit({e}, {z.begin(), z.end()}, VectorXd::Constant(1, 0.3 * size));
+    if (each && each->sizes(0) != 0.0) models.push_back({{e}, std::move(*each)});
+  }
+  if (models.empty()) return models;
+  const double scale = score_inflation(seen, scores, missing.front());
+  const auto leaves_less = [&](const RefittedFit& a, const RefittedFit& b) {
+    return a.misfit(scale) < b.misfit(scale);
+  };
+  RefittedFit best = *std::min_element(models.begin(), models.end(), leaves_less);
+  while (best.effects.size() < kMostMissing) {
+    const auto next = next_missing(seen, scores, about, best.effects);
+    if (!next) break;
+    std::vector<std::size_t> which = best.effects;
+    which.push_back(*next);
+    VectorXd sizes(best.refit.sizes.size() + 1);
+    sizes << best.refit.sizes, kFirstSize;
+    auto more = refit(which, best.refit.z, sizes);
+    if (!more || more->sizes(more->sizes.size() - 1) == 0.0) break;
+    // What the score test claims beside the first may be the curvature of that one.
+    const auto k = static_cast<Index>(*next);
+    const double t = std::sqrt(std::max(0.0, best.refit.squares - more->squares) /
+                               score_inflation(seen, scores, *next));
+    const double p =
+        (about[*next].one_sided ? 1.0 : 2.0) * (1.0 - metrics::student_t_cdf(t, scores.freedom(k)));
+    if (p * static_cast<double>(about.size()) >= kMissingLevel) break;
+    best = {std::move(which), std::move(*more)};
+    models.push_back(best);
+  }
+  missing = best.effects;
+  models.push_back({{}, std::move(*plain)});
+  return models;
+}
+
+/// Into the result goes what was refitted: sizes and errors of the missing effects, and the models
+/// with their weights.
+void describe_refits(const Seen& seen, const ScoreCovariance& scores,
+                     const std::vector<RefittedFit>& models, Considered& considered) {
+  if (models.empty()) return;
+  const RefittedFit& plain = models.back();
+  const double scale = score_inflation(seen, scores, considered.missing.front());
+  double least = HUGE_VAL;
+  for (const RefittedFit& each : models) {
+    RefittedModel& model = considered.refitted.emplace_back();
+    model.effects = each.effects;
+    for (std::size_t i = 0; i < each.effects.size(); ++i) {
+      ConsideredEffect& about = considered.effects[each.effects[i]];
+      const auto k = static_cast<Index>(i);
+      model.sizes.push_back(about.size * each.refit.sizes(k));
+      const bool is_best = each.effects == considered.missing;
+      if (each.effects.size() > 1 && !is_best) continue;
+      const Index row = static_cast<Index>(each.refit.z.size()) + k;
+      const double spread = std::sqrt(score_inflation(seen, scores, each.effects[i]) *
+                                      each.refit.covariance(row, row));
+      about.alone = model.sizes.back();
+      about.alone_error = about.size * spread;
+      about.alone_half_width =
+          student_t(scores.freedom(static_cast<Index>(each.effects[i]))) * *about.alone_error;
+    }
+    model.fall = plain.refit.squares - each.refit.squares;
+    if (each.refit.held_out && plain.refit.held_out)
+      model.held_out_fall = *plain.refit.held_out - *each.refit.held_out;
+    model.weight = each.misfit(scale) + 2.0 * static_cast<double>(each.effects.size());
+    least = std::min(least, model.weight);
+  }
+  double sum = 0.0;
+  for (RefittedModel& each : considered.refitted) {
+    each.weight = std::exp(-0.5 * (each.weight - least));
+    sum += each.weight;
+  }
+  for (RefittedModel& each : considered.refitted) each.weight /= sum;
+}
+
+/// Average of an estimate over the models that were refitted.
+std::optional<AveragedEstimate> averaged_over(const Problem& problem, std::size_t unknown,
+                                              const std::vector<RefittedFit>& models,
+                                              const Considered& considered, double scale) {
+  if (models.empty()) return std::nullopt;
+  const auto j = static_cast<int>(unknown);
+  AveragedEstimate result;
+  std::vector<double> values;
+  for (std::size_t m = 0; m < models.size(); ++m) {
+    values.push_back(problem.map.to_physical(j, models[m].refit.z[unknown]));
+    result.value += considered.refitted[m].weight * values.back();
+  }
+  double variance = 0.0;
+  for (std::size_t m = 0; m < models.size(); ++m) {
+    const Refit& refit = models[m].refit;
+    const double slope = problem.map.slope(j, refit.z[unknown]);
+    const double within = scale * slope * slope * refit.covariance(j, j);
+    const double off = values[m] - result.value;
+    variance += considered.refitted[m].weight * (within + off * off);
+  }
+  result.standard_error = std::sqrt(variance);
+  return result;
 }
 
 /// Contributions of the effects to the variance of an estimate; those of effects that the records
@@ -421,16 +596,16 @@ Budget95 budget_of(const Uncertainty& found, std::size_t unknown, const FittedPa
     const double part =
         std::abs(slope * found.known.response(static_cast<Index>(unknown), static_cast<Index>(p)));
     known += part * part;
-    stated.push_back({found.known.names[p], "known_value", part});
+    stated.push_back({found.known.names[p], "known_value", part, 0.0});
   }
   const double noise = std::sqrt(std::max(0.0, exact * exact - known));
   budget.lines.push_back(
-      {robust && found.from_repeats[unknown] ? "repeats" : "noise", "records", noise});
+      {robust && found.from_repeats[unknown] ? "repeats" : "noise", "records", noise, 0.0});
   budget.lines.insert(budget.lines.end(), stated.begin(), stated.end());
   const VectorXd parts = variances_by_effect(moves, sizes.covariance);
   for (Index k = 0; k < parts.size(); ++k) {
-    budget.lines.push_back(
-        {seen.effects[static_cast<std::size_t>(k)].about.key, "effect", std::sqrt(parts(k))});
+    const ConsideredEffect& about = seen.effects[static_cast<std::size_t>(k)].about;
+    budget.lines.push_back({about.key, "effect", std::sqrt(parts(k)), moves(k) / about.size});
   }
   const double rest = known + parts.sum();
   budget.combined = std::sqrt(noise * noise + rest);
@@ -482,7 +657,8 @@ VectorXd unexplained_moves(const Problem& problem, const std::vector<ScoreRows>&
 
 /// The interval of the rig. Which of the effects are there nobody knows, so that it extends over
 /// the estimate as it is, that shifted by the mean sizes of the effects and that by the likeliest
-/// ones, by the expanded uncertainty to either side.
+/// ones, by the expanded uncertainty to either side; and over that of the averaged estimate, if the
+/// residuals ask for an effect.
 ///
 /// @param likeliest  shift by the likeliest sizes, SI
 void widen(const Problem& problem, std::size_t unknown, Budget95 budget, double likeliest,
@@ -491,8 +667,15 @@ void widen(const Problem& problem, std::size_t unknown, Budget95 budget, double 
   auto& [low, high] = *parameter.ci95;
   const double below = parameter.value + std::min({0.0, budget.shift, likeliest}) - budget.expanded;
   const double above = parameter.value + std::max({0.0, budget.shift, likeliest}) + budget.expanded;
-  low = std::max(spec.lower, std::min(low, below));
-  high = std::min(spec.upper, std::max(high, above));
+  low = std::min(low, below);
+  high = std::max(high, above);
+  if (parameter.averaged) {
+    const double half = budget.coverage_factor * parameter.averaged->standard_error;
+    low = std::min(low, parameter.averaged->value - half);
+    high = std::max(high, parameter.averaged->value + half);
+  }
+  low = std::max(spec.lower, low);
+  high = std::min(spec.upper, high);
   parameter.budget = std::move(budget);
 }
 
@@ -513,6 +696,8 @@ void consider_effects(const Problem& problem, std::span<const double> z, const U
   std::optional<Seen> seen;
   Sizes sizes;
   VectorXd moved;
+  std::vector<RefittedFit> models;
+  double scale = 1.0;
   if (!effects.empty()) {
     seen = look_at(std::move(effects), columns, found);
     // White noise tells well enough at which size to take a secant.
@@ -536,6 +721,11 @@ void consider_effects(const Problem& problem, std::span<const double> z, const U
       test_alone(*seen, scores, considered.effects);
       considered.missing = missing_effects(*seen, scores, considered.effects);
     }
+    models = refit_best(problem, z, found, *seen, scores, threads, cancel, considered);
+    if (cancel != nullptr && cancel->load()) return;
+    describe_refits(*seen, scores, models, considered);
+    if (!models.empty()) scale = score_inflation(*seen, scores, considered.missing.front());
+    considered.correlation = correlation_of(sizes.covariance);
     for (std::size_t e = 0; e < considered.effects.size(); ++e) {
       const auto k = static_cast<Index>(e);
       ConsideredEffect& about = considered.effects[e];
@@ -559,6 +749,7 @@ void consider_effects(const Problem& problem, std::span<const double> z, const U
     const VectorXd moves = slope * found.root.times(static_cast<Index>(j), seen->taken);
     const double shift = slope * found.root.times(static_cast<Index>(j), moved)(0);
     const double likeliest = shift - moves.dot(sizes.likeliest - sizes.mean);
+    parameter.averaged = averaged_over(problem, j, models, considered, scale);
     widen(problem, j, budget_of(found, j, parameter, slope, *seen, moves, sizes, shift), likeliest,
           parameter);
     const std::string exact = fmt::format("{}: {}", problem.name(j), parameter.reason);
@@ -571,6 +762,14 @@ void consider_effects(const Problem& problem, std::span<const double> z, const U
     else if (parameter.identifiability != Identifiability::identified)
       fit.warnings.push_back(widened);
     parameter.moved_by_unexplained = slope * unexplained(static_cast<Index>(j));
+    if (!models.empty()) {
+      const auto best = std::find_if(models.begin(), models.end(), [&](const RefittedFit& each) {
+        return each.effects == considered.missing;
+      });
+      parameter.moved_by_missing = std::abs(
+          problem.map.to_physical(static_cast<int>(j), best->refit.z[j]) - parameter.value);
+      continue;
+    }
     for (const std::size_t e : considered.missing) {
       const double by_it = moves(static_cast<Index>(e)) / considered.effects[e].size *
                            considered.effects[e].alone.value_or(0.0);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,6 +36,8 @@ struct BudgetLine {
   std::string source;        ///< "noise", "repeats", or the key of a known value or an effect
   std::string kind;          ///< "records", "known_value" or "effect"
   double uncertainty = 0.0;  ///< standard uncertainty that it contributes, SI
+  /// Change of the estimate per unit of an effect's size, SI; 0 elsewhere.
+  double sensitivity = 0.0;
 };
 
 /// Uncertainty budget of an estimate (JCGM 100:2008, 5.1 and annex G): the squares of the lines add
@@ -50,12 +53,25 @@ struct Budget95 {
   double shift = 0.0;
 };
 
+/// The fit made again with effects that the residuals ask for as further unknowns.
+struct RefittedModel {
+  std::vector<std::size_t> effects;  ///< positions; none: the model as it is
+  std::vector<double> sizes;         ///< SI
+  double fall = 0.0;                 ///< of the sum of the squared residuals
+  /// The same of conditions that are each predicted from the others; absent with one condition.
+  std::optional<double> held_out_fall;
+  double weight = 0.0;  ///< by which its estimates count in the average (Akaike)
+};
+
 /// What was considered in a fit.
 struct Considered {
   std::vector<ConsideredEffect> effects;
   std::vector<std::string> left_out;  ///< by the campaign
   /// Positions of the effects that the residuals ask for, the best explanation first.
   std::vector<std::size_t> missing;
+  std::vector<RefittedModel> refitted;  ///< empty: the residuals ask for nothing
+  /// Correlations of the effects' sizes by prior and records, shape (considered ones)^2.
+  Eigen::MatrixXd correlation;
 };
 
 /// An estimate made once more from the validation records alone. SI.

@@ -2,11 +2,34 @@
 
 #include <Eigen/Core>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "calib/result/considered.hpp"
 #include "datasets/campaign/campaign.hpp"
 
 namespace rigcal::calib {
+
+/// What a fit knows of the small effects that its model leaves out: how large they may be, and what
+/// it has mistaken for a change of its estimates. Bands, scores, leaks and comparisons all read it.
+struct EffectSpread {
+  std::vector<std::string> keys;
+  /// S with S S^T the second moments of their sizes about zero, SI, since nothing is corrected for
+  /// them. Shape (effects, columns).
+  Eigen::MatrixXd root;
+  /// Change of the estimates per unit of size, SI. Shape (estimates, effects).
+  Eigen::MatrixXd moves;
+
+  bool empty() const { return keys.empty(); }
+  /// Root of the second moment of one, SI; 0 for an effect that is not among them.
+  double size(std::string_view key) const;
+};
+
+/// By prior and records.
+///
+/// @param budgets  of the estimates, in their order; null where there is none
+EffectSpread effect_spread(const Considered& considered,
+                           const std::vector<const Budget95*>& budgets);
 
 /// Joint covariance of the estimates of a fit, for predictions.
 struct EstimateSpread {
@@ -28,6 +51,9 @@ struct EstimateSpread {
   Eigen::MatrixXd root;
   /// Where there are many of them: no simulation knows those of two conditions.
   std::vector<Own> own = {};
+  EffectSpread effects = {};  ///< moves: of `estimates`
+  /// Of the records that the fit was made from; empty where one has no date.
+  std::vector<std::string> dates = {};
 };
 
 /// R with R R^T = M, of a positive semidefinite matrix that rounding may have left without.

@@ -53,6 +53,12 @@ struct BootstrapSpread {
   std::pair<double, double> ci95{};  ///< percentiles, widened for the degrees of freedom
 };
 
+/// An estimate over several models, each with its weight.
+struct AveragedEstimate {
+  double value = 0.0;           ///< SI
+  double standard_error = 0.0;  ///< error within each model, and scatter between them, SI
+};
+
 /// One parameter in the result: fitted or known.
 struct FittedParameter {
   int index = 0;
@@ -79,6 +85,8 @@ struct FittedParameter {
   /// different dates are compared.
   std::optional<double> between_days_error;
   std::optional<Budget95> budget;  ///< contributions to ci95; absent where nothing was considered
+  /// Over the fits with the effects that the residuals ask for; absent where they ask for none.
+  std::optional<AveragedEstimate> averaged;
   /// The most that an effect which the residuals ask for would move the estimate, SI.
   double moved_by_missing = 0.0;
   /// The most that a significant error of the model which no effect explains could, SI.

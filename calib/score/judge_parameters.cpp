@@ -128,6 +128,24 @@ double half_width_if_exact(const FittedParameter& parameter) {
   return 0.5 * (parameter.ci95_if_exact->second - parameter.ci95_if_exact->first);
 }
 
+/// Other effects that would explain nearly as much as the missing one, with their weights:
+/// "; lag of the position sensor would explain nearly as much (weight 0.3)".
+std::string alternatives_text(const Considered& considered) {
+  constexpr double kNegligibleWeight = 0.05;
+  std::vector<std::string> words;
+  for (const RefittedModel& each : considered.refitted) {
+    if (each.effects.empty() || each.effects == considered.missing ||
+        each.weight < kNegligibleWeight)
+      continue;
+    std::vector<std::string> names;
+    for (const std::size_t e : each.effects) names.push_back(considered.effects[e].meaning);
+    words.push_back(
+        fmt::format("{} (weight {})", fmt::join(names, " with "), significant(each.weight, 2)));
+  }
+  if (words.empty()) return {};
+  return fmt::format("; the records hardly tell it from {}", fmt::join(words, ", "));
+}
+
 /// What the residuals ask for. It is a reservation where the effect would move an estimate beyond
 /// the interval that it has if the model is exact.
 void judge_missing(const Campaign& campaign, const Fit& fit, std::vector<Reason>& reasons) {
@@ -144,14 +162,16 @@ void judge_missing(const Campaign& campaign, const Fit& fit, std::vector<Reason>
     const double half = effect.alone_half_width.value_or(0.0);
     reasons.push_back(reason(
         moved.empty() ? AspectState::note : AspectState::reservation, "missing_effect",
-        fmt::format("the residuals ask for a term that the model lacks: {} ({}) of {} ({} to {}){}",
-                    effect.meaning, effect.key, readable_size(alone, effect.unit),
-                    readable_size(alone - half, effect.unit),
-                    readable_size(alone + half, effect.unit),
-                    moved.empty() ? std::string()
-                                  : fmt::format("; it would move {} by more than half of the "
-                                                "interval that holds if the model is exact",
-                                                fmt::join(moved, ", "))),
+        fmt::format(
+            "the residuals ask for a term that the model lacks: {} ({}) of {} ({} to {}){}{}",
+            effect.meaning, effect.key, readable_size(alone, effect.unit),
+            readable_size(alone - half, effect.unit), readable_size(alone + half, effect.unit),
+            moved.empty() ? std::string()
+                          : fmt::format("; it would move {} by more than half of the "
+                                        "interval that holds if the model is exact",
+                                        fmt::join(moved, ", ")),
+            position == fit.considered->missing.front() ? alternatives_text(*fit.considered)
+                                                        : std::string()),
         effect.key,
         {{"size", alone},
          {"low", alone - half},

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "calib/consider/effect_changes.hpp"
 #include "calib/score/acceptance.hpp"
 #include "calib/trust/lack_of_fit.hpp"
 #include "common/parallel.hpp"
@@ -89,15 +90,25 @@ metrics::MeasuredMean measured_mean(const datasets::Campaign& campaign,
   return result;
 }
 
+/// Effects that a fit considered, and those of them that act in a problem.
+struct ScoredEffects {
+  const EffectSpread& spread;
+  std::vector<Effect> acting;
+};
+
 ChannelScore score_channel(const datasets::Campaign& campaign, const ProblemCondition& condition,
                            const ProblemChannel& channel, const std::vector<double>& simulated,
-                           std::span<const double> drive) {
+                           std::span<const double> drive, const ScoredEffects& effects) {
   ChannelScore score;
   score.channel = channel.channel;
   try {
     score.agreement = metrics::agreement(channel.measured, simulated);
-    if (const auto found = metrics::agreement_uncertainty(
-            measured_mean(campaign, condition, channel), simulated)) {
+    metrics::MeasuredMean mean = measured_mean(campaign, condition, channel);
+    std::vector<double> times_s;
+    for (const std::size_t row : condition.rows) times_s.push_back(condition.record->time_s[row]);
+    mean.changes =
+        sensor_changes(channel.channel, effects.acting, effects.spread, simulated, times_s);
+    if (const auto found = metrics::agreement_uncertainty(mean, simulated)) {
       score.expanded_uncertainty = found->one_sided;
       score.two_sided_uncertainty = found->two_sided;
     }
@@ -120,7 +131,8 @@ ChannelScore score_channel(const datasets::Campaign& campaign, const ProblemCond
   return score;
 }
 
-ConditionScore score_condition(const Problem& problem, std::size_t i, std::span<const double> z) {
+ConditionScore score_condition(const Problem& problem, std::size_t i, std::span<const double> z,
+                               const ScoredEffects& effects) {
   const ProblemCondition& condition = problem.conditions[i];
   ConditionScore score;
   score.id = condition.condition->id;
@@ -156,7 +168,7 @@ ConditionScore score_condition(const Problem& problem, std::size_t i, std::span<
       std::vector<double> simulated;
       for (const std::size_t row : condition.rows) simulated.push_back(whole[row]);
       score.channels.push_back(
-          score_channel(*problem.campaign, condition, channel, simulated, score.drive));
+          score_channel(*problem.campaign, condition, channel, simulated, score.drive, effects));
       score.series[channel.channel] = {condition.record->channels.at(channel.channel).mean,
                                        std::move(whole)};
     }
@@ -169,10 +181,11 @@ ConditionScore score_condition(const Problem& problem, std::size_t i, std::span<
 }  // namespace
 
 std::vector<ConditionScore> score_conditions(const Problem& problem, std::span<const double> z,
-                                             int threads) {
+                                             int threads, const EffectSpread& effects) {
+  const ScoredEffects scored{effects, considered_in(problem, z, effects)};
   std::vector<ConditionScore> scores(problem.conditions.size());
   parallel_for(scores.size(), threads,
-               [&](std::size_t i) { scores[i] = score_condition(problem, i, z); });
+               [&](std::size_t i) { scores[i] = score_condition(problem, i, z, scored); });
   return scores;
 }
 

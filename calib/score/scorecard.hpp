@@ -5,17 +5,19 @@
 #include <vector>
 
 #include "calib/problem/problem.hpp"
+#include "calib/result/estimate_spread.hpp"
 #include "calib/result/fit_result.hpp"
 
 namespace rigcal::calib {
 
 /// Simulates every condition of a problem at z, over the whole record, and scores it.
 ///
-/// @param z  shape (unknowns), in the unit box
-/// @return   in the order of the problem's conditions; a condition that cannot be simulated says
-/// why
+/// @param z        shape (unknowns), in the unit box
+/// @param effects  that the fit considered; those of sensors count in the uncertainty of the scores
+/// @return         in the order of the problem's conditions; a condition that cannot be simulated
+///                 says why
 std::vector<ConditionScore> score_conditions(const Problem& problem, std::span<const double> z,
-                                             int threads);
+                                             int threads, const EffectSpread& effects = {});
 
 /// Makes the residual tests of predictions again, without what the uncertainty of the estimates
 /// explains (ChannelScore::explained): under the right model an estimate that is off leaves a

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "calib/problem/day_effects.hpp"
 #include "common/parallel.hpp"
 #include "model/simulate.hpp"
 
@@ -120,8 +121,11 @@ bool acts(const Problem& problem, const ProblemCondition& condition,
 
 /// Sets what the uncertainty of the estimates explains of the residuals: a step of linear least
 /// squares from the estimates, whose covariance is the prior.
-void explain(const ProblemCondition& condition, const model::Simulation& run, Eigen::Index free,
-             const Eigen::MatrixXd& root, ConditionScore& score) {
+///
+/// @param gradients  of each channel by what `root` is the spread of, shape (times, spread)
+void explain(const ProblemCondition& condition, const model::Simulation& run,
+             const std::vector<Eigen::MatrixXd>& gradients, const Eigen::MatrixXd& root,
+             ConditionScore& score) {
   const std::vector<Eigen::Index> counted(condition.rows.begin(), condition.rows.end());
   const auto samples = static_cast<Eigen::Index>(counted.size());
   const auto channels = static_cast<Eigen::Index>(condition.channels.size());
@@ -132,8 +136,7 @@ void explain(const ProblemCondition& condition, const model::Simulation& run, Ei
     const ProblemChannel& data = condition.channels[static_cast<std::size_t>(k)];
     const auto own = Eigen::seqN(k * samples, samples);
     effects(own, Eigen::all) =
-        run.sensitivities[static_cast<std::size_t>(k)].leftCols(free)(counted, Eigen::all) * root /
-        data.sd;
+        gradients[static_cast<std::size_t>(k)](counted, Eigen::all) * root / data.sd;
     const Eigen::Map<const Eigen::VectorXd> measured(data.measured.data(), samples);
     residual(own) = (measured - run.outputs(counted, k)) / data.sd;
   }
@@ -148,8 +151,30 @@ void explain(const ProblemCondition& condition, const model::Simulation& run, Ei
   }
 }
 
+/// By how many deviations between days a record may differ from those of the fit: its own day's and
+/// those of the fit, where dates say that these are others; else 0.
+double day_distance(const datasets::Condition& condition, const std::vector<std::string>& dates) {
+  const bool another = condition.date && !dates.empty() &&
+                       std::find(dates.begin(), dates.end(), *condition.date) == dates.end();
+  return another ? std::sqrt(1.0 + 1.0 / static_cast<double>(dates.size())) : 0.0;
+}
+
+/// Adds columns to gradients, and their spread to its root.
+void append(const std::vector<Eigen::MatrixXd>& columns, const Eigen::MatrixXd& spread,
+            std::vector<Eigen::MatrixXd>& gradients, Eigen::MatrixXd& root) {
+  Eigen::MatrixXd both =
+      Eigen::MatrixXd::Zero(root.rows() + spread.rows(), root.cols() + spread.cols());
+  both.topLeftCorner(root.rows(), root.cols()) = root;
+  both.bottomRightCorner(spread.rows(), spread.cols()) = spread;
+  root = std::move(both);
+  for (std::size_t k = 0; k < gradients.size(); ++k) {
+    gradients[k].conservativeResize(Eigen::NoChange, root.rows());
+    gradients[k].rightCols(spread.rows()) = columns[k];
+  }
+}
+
 void add_to(const Problem& problem, std::size_t i, std::span<const double> z,
-            const EstimateSpread& spread, ConditionScore& score) {
+            const EstimateSpread& spread, const EffectChanges& changes, ConditionScore& score) {
   const ProblemCondition& condition = problem.conditions[i];
   const auto own = std::find_if(spread.own.begin(), spread.own.end(), [&](const auto& each) {
     return each.estimates.front().level == condition.condition->id;
@@ -171,20 +196,53 @@ void add_to(const Problem& problem, std::size_t i, std::span<const double> z,
       rows[static_cast<std::size_t>(same - free.begin())] = static_cast<Eigen::Index>(j);
     }
   }
+  const double distance = day_distance(*condition.condition, spread.dates);
+  const model::ParameterValues values = problem.values_at(i, z);
+  std::vector<DayQuantity> quantities;
+  std::vector<int> simulated = free;
+  if (distance > 0.0 && score.time_s.size() > 1) {
+    const double sample_s =
+        (score.time_s.back() - score.time_s.front()) / static_cast<double>(score.time_s.size() - 1);
+    quantities = day_quantities(*problem.campaign, values, sample_s);
+    const std::vector<int> further = further_rows(quantities, free);
+    simulated.insert(simulated.end(), further.begin(), further.end());
+  }
   const model::Simulation run =
-      model::simulate(condition.rig, problem.values_at(i, z), free, condition.inputs, score.time_s,
+      model::simulate(condition.rig, values, simulated, condition.inputs, score.time_s,
                       condition.outputs, problem.simulation_options());
   if (!run.ok()) return;
-  const Eigen::MatrixXd root =
-      (own != spread.own.end() ? own->root : spread.root)(rows, Eigen::all);
-  if (condition.condition->use != datasets::Use::fit && !free.empty())
-    explain(condition, run, static_cast<Eigen::Index>(free.size()), root, score);
+  Eigen::MatrixXd root = (own != spread.own.end() ? own->root : spread.root)(rows, Eigen::all);
+  std::vector<Eigen::MatrixXd> gradients;
   for (std::size_t k = 0; k < condition.channels.size(); ++k) {
-    const Eigen::MatrixXd gradient =
+    gradients.push_back(
         free.empty() ? Eigen::MatrixXd(run.outputs.rows(), 0)
-                     : run.sensitivities[k].leftCols(static_cast<Eigen::Index>(free.size()));
+                     : run.sensitivities[k].leftCols(static_cast<Eigen::Index>(free.size())));
+  }
+  if (!changes.empty() && changes.front().allFinite()) {
+    const auto first = static_cast<Eigen::Index>(estimates.size() - spread.estimates.size());
+    Eigen::MatrixXd moves = Eigen::MatrixXd::Zero(root.rows(), spread.effects.moves.cols());
+    for (std::size_t j = 0; j < rows.size(); ++j) {
+      if (rows[j] >= first)
+        moves.row(static_cast<Eigen::Index>(j)) = spread.effects.moves.row(rows[j] - first);
+    }
+    std::vector<Eigen::MatrixXd> off;
+    for (std::size_t k = 0; k < gradients.size(); ++k)
+      off.push_back(changes[k] - gradients[k] * moves);
+    append(off, spread.effects.root, gradients, root);
+  }
+  if (distance > 0.0) {
+    std::vector<Eigen::MatrixXd> by_day;
+    for (std::size_t k = 0; k < gradients.size(); ++k)
+      by_day.push_back(day_changes(condition, run, static_cast<Eigen::Index>(k), simulated,
+                                   score.time_s, quantities));
+    const auto count = static_cast<Eigen::Index>(quantities.size());
+    append(by_day, distance * Eigen::MatrixXd::Identity(count, count), gradients, root);
+  }
+  if (condition.condition->use != datasets::Use::fit && root.rows() > 0)
+    explain(condition, run, gradients, root, score);
+  for (std::size_t k = 0; k < condition.channels.size(); ++k) {
     score.prediction_sd[condition.channels[k].channel] =
-        prediction_sd(gradient, root, condition.channels[k].sd);
+        prediction_sd(gradients[k], root, condition.channels[k].sd);
   }
 }
 
@@ -226,11 +284,12 @@ std::vector<double> prediction_sd(const Eigen::MatrixXd& gradient, const Eigen::
 }
 
 void add_prediction_sd(const Problem& problem, std::span<const double> z,
-                       const EstimateSpread& spread, int threads,
-                       std::vector<ConditionScore>& scores) {
+                       const EstimateSpread& spread, const std::vector<EffectChanges>& changes,
+                       int threads, std::vector<ConditionScore>& scores) {
+  const EffectChanges none;
   parallel_for(scores.size(), threads, [&](std::size_t i) {
     if (scores[i].failure.empty() && scores[i].not_scored.empty())
-      add_to(problem, i, z, spread, scores[i]);
+      add_to(problem, i, z, spread, changes.empty() ? none : changes[i], scores[i]);
   });
 }
 

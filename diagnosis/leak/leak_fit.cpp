@@ -7,11 +7,13 @@
 #include <cmath>
 #include <limits>
 
+#include "calib/consider/effect_changes.hpp"
 #include "calib/problem/evaluation.hpp"
 #include "calib/problem/r_factor.hpp"
 #include "calib/problem/scaled_svd.hpp"
 #include "calib/search/search.hpp"
 #include "diagnosis/leak/phase_clusters.hpp"
+#include "diagnosis/leak/record_share.hpp"
 #include "diagnosis/leak/residual_rms.hpp"
 #include "diagnosis/leak/steady_leak.hpp"
 
@@ -26,6 +28,8 @@ constexpr const char* kLeak = "leakage_coefficient";
 /// For one leak and a few nuisance parameters, from the best point of a scan. A fit that takes more
 /// is reported as not converged.
 constexpr int kIterations = 40;
+/// Of the largest coefficient of a scan: where the effects are simulated with a leak.
+constexpr double kLeastOfLargest = 0.1;
 
 void erase_value(datasets::Overrides& overrides, int index) {
   std::erase_if(overrides, [index](const auto& entry) { return entry.first == index; });
@@ -145,10 +149,29 @@ void set_day_effects(const calib::ProblemCondition& condition, const model::Simu
                             static_cast<double>(std::max<Eigen::Index>(1, samples)));
 }
 
+/// Change of the coefficient per unit of each effect. What acts without a leak is in the healthy
+/// reference already, if there is one.
+///
+/// @param weight  of each weighted residual in the coefficient, channel after channel
+Eigen::VectorXd moves_by_effects(const calib::ProblemCondition& condition,
+                                 const LeakEffects& effects, const Eigen::VectorXd& weight,
+                                 double coefficient, bool has_reference) {
+  const std::vector<Eigen::Index> rows(condition.rows.begin(), condition.rows.end());
+  const auto samples = static_cast<Eigen::Index>(rows.size());
+  Eigen::VectorXd moves = Eigen::VectorXd::Zero(effects.healthy.front().cols());
+  for (std::size_t k = 0; k < condition.channels.size(); ++k) {
+    Eigen::MatrixXd change = std::max(0.0, coefficient) * effects.by_leak[k](rows, Eigen::all);
+    if (!has_reference) change += effects.healthy[k](rows, Eigen::all);
+    moves += change.transpose() * weight.segment(static_cast<Eigen::Index>(k) * samples, samples) /
+             condition.channels[k].sd;
+  }
+  return moves;
+}
+
 /// Results of simulations at the end of the fit, with and without the leak.
 void describe(const calib::Problem& problem, const RigFit& rig, const LeakProblem& leak_problem,
               int reference, const model::ParameterValues& values, const std::atomic<bool>* cancel,
-              LeakFit& fit) {
+              const LeakEffects* effects, LeakFit& fit) {
   const int leak_row = leak_problem.leak;
   const calib::ProblemCondition& condition = problem.conditions.front();
   std::vector<int> free = condition.free;
@@ -218,15 +241,20 @@ void describe(const calib::Problem& problem, const RigFit& rig, const LeakProble
 
   const Eigen::VectorXd weight = linear.jacobian * bread.col(leak);
   set_day_effects(condition, run, position, free, leak_problem.day_quantities, weight, fit);
-  fit.rig_moves = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(rig.indices.size()));
+  fit.rig_moves = Eigen::VectorXd::Zero(rig.covariance.rows());
+  if (effects != nullptr) {
+    const Eigen::Index count = static_cast<Eigen::Index>(rig.effects.keys.size());
+    fit.rig_moves.tail(count) =
+        moves_by_effects(condition, *effects, weight, fit.coefficient, reference > 0);
+  }
   if (!rig_columns.empty()) {
     // Effects of the rig's parameters without a leak are already in the healthy reference.
     const auto columns = static_cast<Eigen::Index>(rig_columns.size());
     Eigen::MatrixXd rig_jacobian = linear.rig_jacobian.leftCols(columns);
     if (reference > 0) rig_jacobian -= linearise(problem, healthy).rig_jacobian;
     fit.rig_moves(rig_columns) = -(rig_jacobian.transpose() * weight);
-    fit.rig_se = std::sqrt(std::max(0.0, fit.rig_moves.dot(rig.covariance * fit.rig_moves)));
   }
+  fit.rig_se = std::sqrt(std::max(0.0, fit.rig_moves.dot(rig.covariance * fit.rig_moves)));
   const Eigen::VectorXd effect = run.sensitivities[position].col(leak);
   double squares = 0.0;
   for (const std::size_t row : condition.rows) {
@@ -307,7 +335,90 @@ RigFit rig_fit_of(const calib::Fit& fit) {
   rig.covariance.diagonal().tail(all - known) =
       Eigen::Map<const Eigen::VectorXd>(undetermined.data(), all - known).cwiseAbs2();
   rig.indices.insert(rig.indices.end(), without_error.begin(), without_error.end());
+  if (!fit.considered) return rig;
+  calib::EstimateSpread spread;
+  std::vector<const calib::Budget95*> budgets;
+  for (const calib::FittedParameter& p : fit.parameters) {
+    if (!p.fitted || p.nuisance) continue;
+    spread.estimates.push_back({p.index, p.scope, p.level});
+    budgets.push_back(p.budget ? &*p.budget : nullptr);
+  }
+  spread.effects = calib::effect_spread(*fit.considered, budgets);
+  rig.consider(spread);
   return rig;
+}
+
+void RigFit::consider(const calib::EstimateSpread& spread) {
+  // What is looked for is no effect that is left out.
+  const calib::EffectSpread& all = spread.effects;
+  std::vector<Eigen::Index> kept;
+  effects = {};
+  for (std::size_t e = 0; e < all.keys.size(); ++e) {
+    if (all.keys[e] == kLeak) continue;
+    kept.push_back(static_cast<Eigen::Index>(e));
+    effects.keys.push_back(all.keys[e]);
+  }
+  if (kept.empty()) return;
+  effects.root = all.root(kept, Eigen::all);
+  const auto of_rig = static_cast<Eigen::Index>(indices.size());
+  const auto count = static_cast<Eigen::Index>(kept.size());
+  effects.moves = Eigen::MatrixXd::Zero(of_rig, count);
+  for (Eigen::Index j = 0; j < of_rig; ++j) {
+    const int index = indices[static_cast<std::size_t>(j)];
+    const auto place =
+        std::find_if(spread.estimates.begin(), spread.estimates.end(), [&](const auto& each) {
+          return each.index == index && each.scope == datasets::Scope::rig;
+        });
+    if (place != spread.estimates.end())
+      effects.moves.row(j) = all.moves.row(place - spread.estimates.begin())(kept);
+  }
+  const Eigen::MatrixXd moments = effects.root * effects.root.transpose();
+  Eigen::MatrixXd both(of_rig + count, of_rig + count);
+  both << covariance + effects.moves * moments * effects.moves.transpose(), effects.moves * moments,
+      moments * effects.moves.transpose(), moments;
+  covariance = std::move(both);
+}
+
+std::shared_ptr<const LeakEffects> leak_effects_of(const LeakProblem& leak_problem,
+                                                   const RigFit& rig, const Condition& condition,
+                                                   const Record& average, const LeakScan& scan) {
+  if (rig.effects.empty()) return nullptr;
+  const std::vector<Record> records{average};
+  const calib::Problem problem =
+      problem_of(leak_problem, own_condition(leak_problem, condition), records);
+  const calib::ProblemCondition& prepared = problem.conditions.front();
+  const auto acting = calib::considered_in(problem, problem.start(), rig.effects);
+  // A leak that is seen, so that the difference that it makes is that of effects.
+  const double leak = std::max(scan.best_coefficient, kLeastOfLargest * scan.largest_coefficient);
+  if (!(leak > 0.0)) return nullptr;
+  const auto values_at = [&](double coefficient) {
+    model::ParameterValues values = prepared.values;
+    values.set(leak_problem.leak, coefficient);
+    return values;
+  };
+  constexpr std::array kFlows{model::Output::servo_flow, model::Output::leakage_flow};
+  const auto changes_at = [&](double coefficient) {
+    return calib::changes_by(problem, 0, values_at(coefficient), acting, rig.effects,
+                             leak_problem.cancel, kFlows);
+  };
+  auto result = std::make_shared<LeakEffects>();
+  result->healthy = changes_at(0.0);
+  result->by_leak = changes_at(leak);
+  for (std::size_t k = 0; k < result->healthy.size(); ++k) {
+    if (!result->healthy[k].allFinite() || !result->by_leak[k].allFinite()) return nullptr;
+  }
+  // The share, by the flows of the record.
+  model::Simulation run =
+      model::simulate(prepared.rig, values_at(leak), std::vector<int>(), prepared.inputs,
+                      average.time_s, kFlows, problem.simulation_options(leak_problem.cancel));
+  if (!run.ok()) return nullptr;
+  run.sensitivities.assign(result->by_leak.end() - kFlows.size(), result->by_leak.end());
+  result->share = leak_in_record(prepared, run, 0).share_slope / leak;
+  result->healthy.resize(prepared.channels.size());
+  result->by_leak.resize(prepared.channels.size());
+  for (std::size_t k = 0; k < result->healthy.size(); ++k)
+    result->by_leak[k] = (result->by_leak[k] - result->healthy[k]) / leak;
+  return result;
 }
 
 LeakProblem::LeakProblem(const Campaign& original, const RigFit& rig)
@@ -342,7 +453,8 @@ LeakProblem LeakProblem::corrected_by(int reference, int repeats) const {
 
 LeakFit fit_leak(const LeakProblem& leak_problem, const RigFit& rig, const Condition& condition,
                  const Record& record, const std::optional<datasets::TimeWindow>& covered,
-                 int reference, const LeakScan* scan, const std::atomic<bool>* cancel) {
+                 int reference, const LeakScan* scan, const std::atomic<bool>* cancel,
+                 const LeakEffects* effects) {
   LeakFit fit;
   const Condition counted = within(own_condition(leak_problem, condition), record, covered);
   const std::vector<Record> records{record};
@@ -363,7 +475,7 @@ LeakFit fit_leak(const LeakProblem& leak_problem, const RigFit& rig, const Condi
     return fit;
   }
   const model::ParameterValues values = problem.values_at(0, best.z);
-  describe(problem, rig, leak_problem, reference, values, cancel, fit);
+  describe(problem, rig, leak_problem, reference, values, cancel, effects, fit);
   return fit;
 }
 
@@ -395,17 +507,21 @@ LeakCurve leak_curve_of(const LeakProblem& leak_problem, const Condition& condit
 
 double share_rig_error(const LeakProblem& leak_problem, const RigFit& rig,
                        const Condition& condition, const Record& average, const LeakFit& fit,
-                       double share_slope, double negligible) {
-  if (rig.indices.empty()) return 0.0;
+                       double share_slope, double negligible, const LeakEffects* effects) {
+  if (rig.covariance.rows() == 0) return 0.0;
   Eigen::VectorXd moves = share_slope * fit.rig_moves;
-  if (fit.coefficient > negligible) {  // else the share is zero for any rig
+  const auto of_rig = static_cast<Eigen::Index>(rig.indices.size());
+  if (effects != nullptr && effects->share.size() == moves.size() - of_rig)
+    moves.tail(moves.size() - of_rig) -= std::max(0.0, fit.coefficient) * effects->share;
+  if (of_rig > 0 && fit.coefficient > negligible) {  // else the share is zero for any rig
     const std::vector<Record> records{average};
     const calib::Problem problem =
         problem_of(leak_problem, own_condition(leak_problem, condition), records);
     const calib::ProblemCondition& prepared = problem.conditions.front();
     model::ParameterValues values = prepared.values;
     values.set(leak_problem.leak, fit.coefficient);
-    moves += steady_leak(problem, prepared, values, rig.indices, leak_problem.cancel).share_slope;
+    moves.head(of_rig) +=
+        steady_leak(problem, prepared, values, rig.indices, leak_problem.cancel).share_slope;
   }
   return std::sqrt(std::max(0.0, moves.dot(rig.covariance * moves)));
 }

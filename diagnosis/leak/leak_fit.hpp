@@ -3,12 +3,15 @@
 #include <Eigen/Core>
 #include <atomic>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "calib/fit.hpp"
 #include "calib/problem/day_effects.hpp"
+#include "calib/result/estimate_spread.hpp"
+#include "calib/trust/prediction_band.hpp"
 #include "datasets/campaign/campaign.hpp"
 #include "datasets/prepare/single_repeats.hpp"
 #include "diagnosis/leak/leak_curve.hpp"
@@ -20,8 +23,24 @@ namespace rigcal::diagnosis {
 /// Rig parameters of an earlier fit.
 struct RigFit {
   std::vector<datasets::FittedValue> values;  ///< fitted ones, without nuisance
-  std::vector<int> indices;    ///< table rows of fitted values of scope rig that have an error
-  Eigen::MatrixXd covariance;  ///< covariance of these, SI, shape (indices)^2
+  std::vector<int> indices;  ///< table rows of fitted values of scope rig that have an error
+  /// Covariance of the errors of these values and of the effects, SI, shape (indices + effects)^2.
+  Eigen::MatrixXd covariance;
+  /// Small effects that the fit considered, with the size by prior and records; moves: of the
+  /// values above.
+  calib::EffectSpread effects = {};
+
+  /// Takes over the effects of a fit: what the fit has mistaken for a change of a value, and the
+  /// effect itself, go together.
+  void consider(const calib::EstimateSpread& spread);
+};
+
+/// What the effects that a fit considered do to a record of a condition and to the share that
+/// leaks, about a leak, per unit of size.
+struct LeakEffects {
+  calib::EffectChanges healthy;  ///< without a leak
+  calib::EffectChanges by_leak;  ///< more of them per unit of the coefficient
+  Eigen::VectorXd share;         ///< change of the share per unit of the coefficient
 };
 
 /// The same from a fit in this process.
@@ -61,7 +80,8 @@ struct LeakFit {
   int white_freedom = 1;
   double noise_se = 0.0;  ///< the part of white_se that is the record's own, not its reference's
   double rig_se = 0.0;    ///< from the uncertainty of the rig's parameters
-  /// Change of the coefficient per unit of each of the rig's parameters, shape (RigFit::indices).
+  /// Change of the coefficient per unit of error of each of the rig's parameters, then of each
+  /// effect, shape (RigFit::covariance).
   Eigen::VectorXd rig_moves;
   /// Change of the coefficient by each day quantity, per standard deviation between days; empty
   /// where there are none.
@@ -92,10 +112,21 @@ struct LeakFit {
 ///                   rig's parameters then act only through the effect of the leak; 0: none
 /// @param scan  of the same condition, gives the start; may be null
 /// @param covered  times of the record that count, within the condition's windows
+/// @param effects  of the same condition; null: none
 LeakFit fit_leak(const LeakProblem& leak_problem, const RigFit& rig,
                  const datasets::Condition& condition, const datasets::Record& record,
                  const std::optional<datasets::TimeWindow>& covered, int reference,
-                 const LeakScan* scan, const std::atomic<bool>* cancel);
+                 const LeakScan* scan, const std::atomic<bool>* cancel,
+                 const LeakEffects* effects = nullptr);
+
+/// Effects in a condition, by simulations of the average with and without a leak.
+///
+/// @return  empty where the fit considered none, or where it cannot be simulated
+std::shared_ptr<const LeakEffects> leak_effects_of(const LeakProblem& leak_problem,
+                                                   const RigFit& rig,
+                                                   const datasets::Condition& condition,
+                                                   const datasets::Record& average,
+                                                   const LeakScan& scan);
 
 /// Per record and channel: record minus healthy model.
 using Residuals = std::vector<std::map<datasets::Channel, std::vector<double>>>;
@@ -135,9 +166,11 @@ LeakCurve leak_curve_of(const LeakProblem& leak_problem, const datasets::Conditi
 /// combines their direct effect on the share with their effect through the coefficient.
 ///
 /// @param negligible  below this coefficient the leak is not simulated
+/// @param effects     of the same condition; null: they act through the coefficient alone
 double share_rig_error(const LeakProblem& leak_problem, const RigFit& rig,
                        const datasets::Condition& condition, const datasets::Record& average,
-                       const LeakFit& fit, double share_slope, double negligible = 0.0);
+                       const LeakFit& fit, double share_slope, double negligible = 0.0,
+                       const LeakEffects* effects = nullptr);
 
 /// Change of the share by each day quantity, per standard deviation between days: by itself, and
 /// with the coefficient, which moves by `day_effects`.

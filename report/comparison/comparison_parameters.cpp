@@ -37,6 +37,34 @@ std::optional<StoredEstimate> estimate_of(const StoredFit& fit,
   return estimate;
 }
 
+/// Variance that the effects which both models leave out give the difference of two estimates of
+/// one rig: the effects are the same in both, and what they move both estimates by cancels. By the
+/// size that either result leaves them.
+double variance_by_effects(const StoredFit& first, const StoredFit& other,
+                           const StoredComparedParameter& wanted) {
+  const auto spread_of = [&](const StoredFit& fit) -> std::optional<calib::EffectSpread> {
+    const auto found = std::find_if(fit.parameters.begin(), fit.parameters.end(),
+                                    [&](const auto& each) { return same_parameter(each, wanted); });
+    if (!fit.considered || found == fit.parameters.end() || !found->budget) return std::nullopt;
+    return effect_spread_of(*fit.considered, {&*found->budget});
+  };
+  const auto a = spread_of(first);
+  const auto b = spread_of(other);
+  if (!a || !b) return 0.0;
+  // The change of the difference per unit of each effect of one, as its own moves less those of
+  // the other.
+  const auto variance_by = [](const calib::EffectSpread& own, const calib::EffectSpread& beside) {
+    Eigen::RowVectorXd moves = own.moves.row(0);
+    for (std::size_t e = 0; e < own.keys.size(); ++e) {
+      const auto place = std::find(beside.keys.begin(), beside.keys.end(), own.keys[e]);
+      if (place != beside.keys.end())
+        moves(static_cast<Eigen::Index>(e)) -= beside.moves(0, place - beside.keys.begin());
+    }
+    return (moves * own.root).squaredNorm();
+  };
+  return std::max(variance_by(*a, *b), variance_by(*b, *a));
+}
+
 /// Whether a value is zero or not significantly different from it, so that percentages of it mean
 /// nothing.
 bool may_be_zero(const StoredEstimate& estimate) {
@@ -48,7 +76,8 @@ bool may_be_zero(const StoredEstimate& estimate) {
 /// The difference, except for the adjustment that needs all parameters together.
 std::optional<StoredDifference> difference_of(const std::optional<StoredEstimate>& first,
                                               const std::optional<StoredEstimate>& other,
-                                              bool same_records, bool other_dates) {
+                                              bool same_records, bool other_dates,
+                                              double by_effects) {
   if (!first || !other) return std::nullopt;
   StoredDifference result;
   const auto untested = [&](const char* reason) {
@@ -71,7 +100,15 @@ std::optional<StoredDifference> difference_of(const std::optional<StoredEstimate
       return untested("an estimate has no standard error");
   if (first->fitted && other->fitted && same_records)
     return untested("estimated from the same data, so not independent of each other");
-  const metrics::EstimateError both = metrics::error_of_difference(error(*first), error(*other));
+  metrics::EstimateError both = metrics::error_of_difference(error(*first), error(*other));
+  if (by_effects > 0.0) {
+    const std::array parts{
+        metrics::ErrorPart{both.standard_error * both.standard_error, both.freedom},
+        metrics::ErrorPart{by_effects, metrics::kManyDegrees}};
+    both = {std::hypot(both.standard_error, std::sqrt(by_effects)),
+            metrics::effective_freedom(parts)};
+    result.by_effects = std::sqrt(by_effects);
+  }
   result.standard_error = both.standard_error;
   if (other_dates && (first->between_days_error || other->between_days_error))
     result.of_other_dates = true;
@@ -147,9 +184,10 @@ std::vector<StoredComparedParameter> compared_parameters(const std::vector<Compa
       parameter.estimates.push_back(estimate_of(compared.result, parameter));
     parameter.differences.emplace_back();
     for (std::size_t i = 1; i < results.size(); ++i) {
-      parameter.differences.push_back(difference_of(parameter.estimates[0], parameter.estimates[i],
-                                                    share_fitted_records(results[0], results[i]),
-                                                    of_other_dates(results[0], results[i])));
+      parameter.differences.push_back(difference_of(
+          parameter.estimates[0], parameter.estimates[i],
+          share_fitted_records(results[0], results[i]), of_other_dates(results[0], results[i]),
+          variance_by_effects(results[0].result, results[i].result, parameter)));
     }
   }
   for (std::size_t i = 1; i < results.size(); ++i) judge_together(list, i);

@@ -157,8 +157,9 @@ JobResult diagnosis_job(Campaign campaign, const DiagnosisRequest& request, cons
   settings.progress = [&](int done, int all) { terms.progress("records", done, all); };
   const LeakRecords records = load_leak_records(campaign, settings.threads);
   provenance.inputs = hash_inputs(campaign, records.averages(), more_inputs);
-  found = diagnosis::diagnose(campaign, records.conditions,
-                              {earlier.values, earlier.indices, earlier.covariance}, settings);
+  diagnosis::RigFit rig{earlier.values, earlier.indices, earlier.covariance};
+  if (earlier.spread) rig.consider(*earlier.spread);
+  found = diagnosis::diagnose(campaign, records.conditions, rig, settings);
   found.warnings.insert(found.warnings.end(), records.left_out.begin(), records.left_out.end());
   warn_of_validity(campaign, earlier.validity, found);
   warn_of_recordings(records.averages(), found);

@@ -1,5 +1,7 @@
 #include "report/run/write_result.hpp"
 
+#include <fmt/format.h>
+
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -8,6 +10,7 @@
 #include "common/parallel.hpp"
 #include "report/live/live_fit.hpp"
 #include "report/page/page.hpp"
+#include "report/run/missing_terms.hpp"
 #include "report/run/result_page.hpp"
 #include "report/store/csv.hpp"
 #include "report/store/draws_csv.hpp"
@@ -21,12 +24,32 @@ namespace {
 namespace fs = std::filesystem;
 using calib::FitStatus;
 
+/// The terms that the residuals ask for, as a next campaign may have them, in comments.
+std::string terms_in_comments(const Result& result) {
+  if (!result.fit.considered) return {};
+  std::vector<std::pair<std::string, double>> sizes;
+  for (const std::size_t position : result.fit.considered->missing) {
+    const calib::ConsideredEffect& effect = result.fit.considered->effects[position];
+    if (effect.alone) sizes.emplace_back(effect.key, *effect.alone);
+  }
+  std::string text;
+  for (const MissingTerm& each : missing_terms(result.campaign.rig.plant, sizes)) {
+    text += fmt::format("#   [rig.{}] {}\n", each.of_controller ? "controller" : "parameters",
+                        each.line);
+  }
+  if (text.empty()) return {};
+  return "# The residuals ask for a term that this model lacks. The next campaign may estimate "
+         "it:\n" +
+         text;
+}
+
 std::string fitted_toml(const fs::path& out, const Result& result) {
   std::vector<datasets::FittedValue> values;
   for (const calib::FittedParameter& p : result.fit.parameters) {
     if (p.fitted) values.push_back({p.index, p.scope, p.level, p.value});
   }
-  const std::string text = fitted_campaign_text(result.campaign, values, out);
+  const std::string text =
+      terms_in_comments(result) + fitted_campaign_text(result.campaign, values, out);
   if (result.fit.has_converged()) return text;
   return "# status: stopped: the best so far, not a fit that converged\n" + text;
 }

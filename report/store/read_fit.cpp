@@ -53,6 +53,7 @@ struct Estimates {
   Eigen::MatrixXd covariance;  ///< SI, by the larger of standard and robust error
   /// Those of conditions whose correlations are not stored, with their errors.
   std::map<std::string, std::vector<std::pair<calib::EstimateSpread::Estimate, double>>> own;
+  std::vector<const StoredBudget*> budgets;  ///< of `list`; null: none
   double widened = 1.0;  ///< the most by which an interval is wider than by its error
 };
 
@@ -117,6 +118,7 @@ Estimates estimates_of(const StoredFit& stored, const JsonNode& root, model::Pla
       continue;
     }
     result.list.push_back(estimate);
+    result.budgets.push_back(p.budget ? &*p.budget : nullptr);
     const bool determined = error && place != names.end();
     places.push_back(determined ? std::optional(static_cast<std::size_t>(place - names.begin()))
                                 : std::nullopt);
@@ -143,6 +145,18 @@ Estimates estimates_of(const StoredFit& stored, const JsonNode& root, model::Pla
   return result;
 }
 
+/// Dates of the conditions that a result was fitted to, each once; none where one has no date.
+std::vector<std::string> dates_of_fit(const StoredFit& stored) {
+  std::vector<std::string> dates;
+  for (const StoredCondition& condition : stored.conditions) {
+    if (condition.use != datasets::Use::fit) continue;
+    if (!condition.date) return {};
+    if (std::find(dates.begin(), dates.end(), *condition.date) == dates.end())
+      dates.push_back(*condition.date);
+  }
+  return dates;
+}
+
 void read_covariance(const StoredFit& stored, const JsonNode& root, model::PlantKind plant,
                      EarlierFit& fit) {
   const Estimates estimates = estimates_of(stored, root, plant);
@@ -156,6 +170,9 @@ void read_covariance(const StoredFit& stored, const JsonNode& root, model::Plant
   if (stored.status != calib::FitStatus::converged) return;
   fit.spread = calib::EstimateSpread{estimates.list,
                                      estimates.widened * calib::square_root(estimates.covariance)};
+  fit.spread->dates = dates_of_fit(stored);
+  if (stored.considered)
+    fit.spread->effects = effect_spread_of(*stored.considered, estimates.budgets);
   const Eigen::MatrixXd& shared = fit.spread->root;
   for (const auto& [condition, values] : estimates.own) {
     calib::EstimateSpread::Own& own = fit.spread->own.emplace_back();

@@ -16,7 +16,10 @@ struct HealthySine {
   datasets::Record record;
 };
 
-inline HealthySine healthy_sine(double leakage_coefficient = 0.0) {
+///
+/// @param further  other values of the rig that makes the record
+inline HealthySine healthy_sine(double leakage_coefficient = 0.0,
+                                const datasets::Overrides& further = {}) {
   HealthySine made;
   made.campaign =
       datasets::load_campaign(RIGCAL_SOURCE_DIR "/datasets/rigs/uis_shake_table/diagnosis.toml");
@@ -29,6 +32,8 @@ inline HealthySine healthy_sine(double leakage_coefficient = 0.0) {
     const int leak = model::parameter_index(leaking.rig.plant, "leakage_coefficient");
     leaking.conditions.front().overrides = {{leak, leakage_coefficient}};
   }
+  auto& overrides = leaking.conditions.front().overrides;
+  overrides.insert(overrides.end(), further.begin(), further.end());
   const datasets::Campaign truth = datasets::true_campaign(leaking);
   std::vector<datasets::Repeat> repeats;
   for (auto& each : datasets::synthetic_repeats(truth, truth.conditions.front(), nullptr, 1))

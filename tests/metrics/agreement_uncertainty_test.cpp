@@ -178,6 +178,25 @@ TEST_CASE("agreement_uncertainty: where repeats lack samples the others speak", 
   CHECK(part->one_sided.rmse != whole->one_sided.rmse);
 }
 
+TEST_CASE("agreement_uncertainty: another cause counts as a gain of the same effect", "[metrics]") {
+  const std::vector<double> truth = sine(500, 1.0);
+  std::mt19937_64 random(3);
+  const Repeats repeats = draw(truth, 5, 0.01, 0.01, random);
+  MeasuredMean by_gain = measured(repeats);
+  by_gain.gain_sd = 0.01;
+  MeasuredMean by_change = measured(repeats);
+  std::vector<double>& change = by_change.changes.emplace_back();
+  for (const double y : repeats.mean) change.push_back(0.01 * y);
+  const auto without = agreement_uncertainty(measured(repeats), truth);
+  const auto gain = agreement_uncertainty(by_gain, truth);
+  const auto other = agreement_uncertainty(by_change, truth);
+  for (const MetricSpec& metric : kMetrics) {
+    CAPTURE(metric.name);
+    CHECK_THAT(other->one_sided.*metric.value, WithinRel(gain->one_sided.*metric.value, 1e-6));
+  }
+  CHECK(other->one_sided.rmse > 1.05 * without->one_sided.rmse);
+}
+
 TEST_CASE("agreement_uncertainty: one repeat and copies tell nothing", "[metrics]") {
   const std::vector<double> truth = sine(100, 1.0);
   Repeats repeats{truth, {}};

@@ -2,7 +2,9 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/rigcal/options.hpp"
@@ -10,7 +12,11 @@
 #include "datasets/draft/draft_campaign.hpp"
 #include "datasets/draft/recordings_in.hpp"
 #include "datasets/read/record_reader.hpp"
+#include "report/json/read_json.hpp"
+#include "report/run/missing_terms.hpp"
 #include "report/store/folder.hpp"
+#include "report/store/stored.hpp"
+#include "report/store/stored/stored_fit.hpp"
 
 namespace rigcal::app {
 namespace {
@@ -18,6 +24,7 @@ namespace {
 struct InitRequest {
   std::vector<std::filesystem::path> files;
   std::filesystem::path out = "rigcal-out";
+  std::filesystem::path fit;
   bool force = false;
   PrintOptions print;
 };
@@ -29,22 +36,41 @@ std::size_t count_of(const std::string& text, const std::string& part) {
   return count;
 }
 
+/// The terms that the residuals of an earlier fit ask for.
+std::vector<report::MissingTerm> terms_of(const std::filesystem::path& file) {
+  const report::Json json = report::read_json(file, "the fit.json of an earlier fit");
+  const auto fit = report::as<report::StoredFit>(json, "", file.string());
+  const std::optional<model::PlantKind> plant = fit.model;
+  std::vector<std::pair<std::string, double>> sizes;
+  if (!plant || !fit.considered) return {};
+  for (const std::string& key : fit.considered->missing) {
+    for (const report::StoredEffect& effect : fit.considered->effects)
+      if (effect.key == key && effect.alone) sizes.emplace_back(key, *effect.alone);
+  }
+  return report::missing_terms(*plant, sizes);
+}
+
 ExitCode run_init(const InitRequest& options) {
   const auto path = options.out / "campaign.toml";
   report::HeldFolder held(options.out, holding("init", options.force, options.print));
   held.plan({{"campaign.toml"}, {}});
   const datasets::Draft draft =
       datasets::draft_campaign(datasets::recordings_in(options.files), options.out);
-  report::write_results(held, {{"campaign.toml", draft.text}}, {});
+  const auto terms =
+      options.fit.empty() ? std::vector<report::MissingTerm>() : terms_of(options.fit);
+  report::write_results(held, {{"campaign.toml", report::with_terms(draft.text, terms)}}, {});
   // The first blank is in the head, which explains them.
   const std::size_t blanks = count_of(draft.text, datasets::kBlank) - 1;
   report::Json json;
   json["campaign"] = path.string();
   json["blanks"] = blanks;
   json["left_out"] = draft.left_out;
+  json["terms"] = terms.size();
   std::string text;
   for (const std::string& file : draft.left_out)
     text += fmt::format("warning: left out: {}\n", file);
+  for (const report::MissingTerm& each : terms)
+    text += fmt::format("the earlier fit asks for: {}\n", each.line);
   print(options.print,
         text + fmt::format("files: {}\n{} blanks marked \"{}\"; then: rigcal check {}\n",
                            path.string(), blanks, datasets::kBlank, path.string()),
@@ -62,6 +88,9 @@ Run add_init(CLI::App& verb) {
   verb.add_option("--out", options->out, "Folder of the draft")
       ->check(not_empty())
       ->capture_default_str();
+  verb.add_option(
+      "--fit", options->fit,
+      "fit.json of an earlier fit: the draft estimates the terms that its residuals ask for");
   add_force_option(verb, options->force);
   add_print_options(verb, options->print);
   return [options](const Invocation&) { return run_init(*options); };

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "common/significant.hpp"
 #include "report/document/quantity.hpp"
 #include "report/page/calibration/fit_sections.hpp"
 #include "report/page/page_parts.hpp"
@@ -83,6 +84,55 @@ doc::Row effect_row(const StoredEffect& effect, bool missing) {
   return row;
 }
 
+/// Sizes of the effects of a refitted model: "valve_time_constant 0.21 ms, ki 5.0 V/(m s)".
+std::string refit_sizes(const StoredConsidered& considered, const StoredRefit& model) {
+  std::vector<std::string> words;
+  for (std::size_t i = 0; i < std::min(model.effects.size(), model.sizes.size()); ++i) {
+    const auto effect =
+        std::find_if(considered.effects.begin(), considered.effects.end(),
+                     [&](const StoredEffect& each) { return each.key == model.effects[i]; });
+    const RowUnit unit = effect == considered.effects.end() ? row_unit(model.sizes[i], "1")
+                                                            : row_unit(effect->size, effect->unit);
+    words.push_back(fmt::format("{} {}{}{}", model.effects[i],
+                                significant(model.sizes[i] / unit.si, kBudgetDigits),
+                                unit.name.empty() ? "" : " ", unit.name));
+  }
+  return words.empty() ? std::string("as it is") : fmt::format("{}", fmt::join(words, ", "));
+}
+
+/// The models that were refitted, and the estimates over them.
+void add_refits(const StoredFit& fit, doc::Blocks& blocks) {
+  const StoredConsidered& considered = *fit.considered;
+  if (considered.refitted.empty()) return;
+  doc::Table models{"Refitted models"};
+  models.caption = {"The fit made again with the effects that explain most"};
+  models.columns = {{"Model with"},
+                    {"Fall of the sum of squares", Kind::number},
+                    {"The same, each condition predicted from the others", Kind::number},
+                    {"Weight", Kind::number}};
+  for (const StoredRefit& each : considered.refitted) {
+    models.rows.push_back(
+        {{refit_sizes(considered, each), doc::in_unit(each.fall, 1.0, 3),
+          doc::in_unit(each.held_out_fall, 1.0, 3), doc::decimals(each.weight, 2)}});
+  }
+  blocks.emplace_back(std::move(models));
+  doc::Table averaged{"Estimates over these models"};
+  averaged.columns = {{"Parameter"},
+                      {"As it is", Kind::number},
+                      {"Averaged", Kind::number},
+                      {"u", Kind::number},
+                      {"Unit", Kind::unit}};
+  for (const StoredParameter& p : fit.parameters) {
+    if (!p.averaged) continue;
+    const RowUnit unit = unit_of(p);
+    averaged.rows.push_back(
+        {{parameter_label(p), doc::in_unit(p.value, unit.si),
+          doc::in_unit(p.averaged->value, unit.si),
+          doc::in_unit(p.averaged->standard_error, unit.si, kBudgetDigits), unit.name}});
+  }
+  if (!averaged.rows.empty()) blocks.emplace_back(std::move(averaged));
+}
+
 doc::Row stability_row(const StoredStability& check) {
   const RowUnit unit = row_unit(check.value, check.unit);
   return {{check.level ? fmt::format("{} ({})", check.key, *check.level) : check.key,
@@ -157,6 +207,7 @@ void add_considered(const StoredFit& fit, doc::Blocks& blocks) {
     const std::string summary = fmt::format("Effects ({})", table.rows.size());
     blocks.emplace_back(doc::Fold{summary, {std::move(table)}});
   }
+  add_refits(fit, blocks);
   if (!considered.left_out.empty())
     blocks.emplace_back(doc::reading(
         fmt::format("Left out by the campaign: {}.", fmt::join(considered.left_out, ", "))));

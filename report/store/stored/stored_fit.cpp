@@ -54,7 +54,9 @@ StoredProfileEnd stored(const calib::ProfileEnd& end) {
 StoredBudget stored(const calib::Budget95& budget) {
   StoredBudget result;
   for (const calib::BudgetLine& line : budget.lines)
-    result.lines.push_back({line.source, line.kind, line.uncertainty});
+    result.lines.push_back(
+        {line.source, line.kind, line.uncertainty,
+         line.kind == "effect" ? Omittable<double>(line.sensitivity) : Omittable<double>()});
   result.combined = budget.combined;
   result.degrees_of_freedom = budget.degrees_of_freedom;
   result.coverage_factor = budget.coverage_factor;
@@ -72,6 +74,17 @@ StoredConsidered stored(const calib::Considered& considered) {
                               e.alone_half_width, e.p_value, e.p_of_all, e.explains});
   for (const std::size_t position : considered.missing)
     result.missing.push_back(considered.effects[position].key);
+  for (const calib::RefittedModel& model : considered.refitted) {
+    StoredRefit& each = result.refitted.emplace_back();
+    for (const std::size_t position : model.effects)
+      each.effects.push_back(considered.effects[position].key);
+    each.sizes = model.sizes;
+    each.fall = model.fall;
+    each.held_out_fall = finite(model.held_out_fall);
+    each.weight = model.weight;
+  }
+  for (const auto& row : considered.correlation.rowwise())
+    result.correlation.emplace_back(row.begin(), row.end());
   return result;
 }
 
@@ -115,6 +128,7 @@ StoredParameter stored(const calib::FittedParameter& p, const model::ParameterSp
   result.ci95 = range_of(p.ci95);
   result.ci95_if_exact = range_of(p.ci95_if_exact);
   if (p.budget) result.budget = stored(*p.budget);
+  if (p.averaged) result.averaged = StoredAveraged{p.averaged->value, p.averaged->standard_error};
   if (p.between_days_error && std::isfinite(*p.between_days_error))
     result.between_days_error = *p.between_days_error;
   if (p.ci95) result.ci95_from = std::optional(p.interval);
@@ -449,6 +463,36 @@ std::optional<calib::Verdict> StoredCondition::verdict_of(const std::string& cha
   if (failure) return verdict;
   const calib::Verdict* found = find(channel_verdicts, channel);
   return found == nullptr ? std::nullopt : std::optional(*found);
+}
+
+calib::EffectSpread effect_spread_of(const StoredConsidered& considered,
+                                     const std::vector<const StoredBudget*>& budgets) {
+  calib::Considered result;
+  const std::size_t count = std::min(considered.correlation.size(), considered.effects.size());
+  const auto size = static_cast<Eigen::Index>(count);
+  result.correlation = Eigen::MatrixXd::Identity(size, size);
+  for (std::size_t k = 0; k < count; ++k) {
+    const StoredEffect& effect = considered.effects[k];
+    calib::ConsideredEffect& own = result.effects.emplace_back();
+    own.key = effect.key;
+    own.estimate = effect.estimate;
+    own.standard_error = effect.standard_error;
+    const std::vector<double>& row = considered.correlation[k];
+    for (std::size_t l = 0; l < std::min(count, row.size()); ++l) {
+      if (std::isfinite(row[l]))
+        result.correlation(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(l)) = row[l];
+    }
+  }
+  std::vector<calib::Budget95> own(budgets.size());
+  std::vector<const calib::Budget95*> places;
+  for (std::size_t j = 0; j < budgets.size(); ++j) {
+    places.push_back(budgets[j] == nullptr ? nullptr : &own[j]);
+    if (budgets[j] == nullptr) continue;
+    for (const StoredBudgetLine& line : budgets[j]->lines)
+      own[j].lines.push_back(
+          {line.source, line.kind, line.uncertainty, line.sensitivity.value_or(0.0)});
+  }
+  return calib::effect_spread(result, places);
 }
 
 double contribution(const StoredBudget& budget, std::string_view kind) {

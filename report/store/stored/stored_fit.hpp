@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "calib/fit.hpp"
+#include "calib/result/estimate_spread.hpp"
 #include "metrics/metric_table.hpp"
 #include "metrics/significance.hpp"
 #include "report/json/described.hpp"
@@ -107,7 +108,8 @@ struct StoredProfile {
 struct StoredBudgetLine {
   std::string source, kind;
   double uncertainty = 0.0;
-  RIGCAL_DESCRIBE(source, kind, uncertainty)
+  Omittable<double> sensitivity;  ///< change of the estimate per unit of an effect's size
+  RIGCAL_DESCRIBE(source, kind, uncertainty, sensitivity)
 };
 
 /// Uncertainty budget of an estimate: the squares of the lines add up to that of the combined
@@ -146,12 +148,39 @@ struct StoredStability {
   RIGCAL_DESCRIBE(key, unit, scope, level, value, difference, expanded, differs)
 };
 
+/// The fit made again with effects as further unknowns, SI.
+struct StoredRefit {
+  std::vector<std::string> effects;  ///< none: the model as it is
+  std::vector<double> sizes;
+  double fall = 0.0;  ///< of the sum of the squared residuals
+  /// The same where each condition is predicted from the others; null with one condition.
+  std::optional<double> held_out_fall;
+  double weight = 0.0;  ///< by which it counts in the averaged estimates
+  RIGCAL_DESCRIBE(effects, sizes, fall, held_out_fall, weight)
+};
+
 struct StoredConsidered {
   std::vector<StoredEffect> effects;
   std::vector<std::string> left_out;
   std::vector<std::string> missing;  ///< that the residuals ask for, the best explanation first
-  RIGCAL_DESCRIBE(effects, left_out, missing)
+  Later<std::vector<StoredRefit>> refitted;
+  /// Correlations of the sizes by prior and records, of the effects in their order; shorter where
+  /// the last could not be considered.
+  Later<std::vector<std::vector<double>>> correlation;
+  RIGCAL_DESCRIBE(effects, left_out, missing, refitted, correlation)
 };
+
+/// An estimate over the models that were refitted, each with its weight, SI.
+struct StoredAveraged {
+  double value = 0.0, standard_error = 0.0;
+  RIGCAL_DESCRIBE(value, standard_error)
+};
+
+/// The effects that a fit considered, beside some of its estimates.
+///
+/// @param budgets  of the estimates; null: none
+calib::EffectSpread effect_spread_of(const StoredConsidered& considered,
+                                     const std::vector<const StoredBudget*>& budgets);
 
 /// A parameter, fitted or known.
 struct StoredParameter {
@@ -169,6 +198,7 @@ struct StoredParameter {
   Later<std::optional<calib::IntervalSource>> ci95_from;  ///< basis of ci95_if_exact
   Later<std::optional<double>> degrees_of_freedom;  ///< of the error that ci95_if_exact rests on
   Omittable<StoredBudget> budget;
+  Omittable<StoredAveraged> averaged;    ///< where the residuals ask for an effect
   Omittable<double> between_days_error;  ///< standard error by what differs between days
   Omittable<StoredBootstrap> bootstrap;
   Omittable<StoredProfile> profile;
@@ -178,8 +208,8 @@ struct StoredParameter {
   std::string reason;
   RIGCAL_DESCRIBE(name, key, symbol, unit, scope, level, value, start, lower, upper, fitted,
                   nuisance, standard_error, robust_standard_error, ci95, ci95_if_exact, ci95_from,
-                  degrees_of_freedom, budget, between_days_error, bootstrap, profile, posterior,
-                  at_bound, identifiability, reason)
+                  degrees_of_freedom, budget, averaged, between_days_error, bootstrap, profile,
+                  posterior, at_bound, identifiability, reason)
 };
 
 /// What the parameters of a result of an earlier schema say today.

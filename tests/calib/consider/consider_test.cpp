@@ -5,6 +5,7 @@
 #include <set>
 
 #include "calib/consider/catalogue.hpp"
+#include "calib/consider/effect_changes.hpp"
 #include "calib/fit.hpp"
 #include "tests/calib/twin.hpp"
 #include "tests/datasets/campaign_fixture.hpp"
@@ -250,7 +251,8 @@ TEST_CASE("considered: a linkage has effects in radians and of its pilot", "[cal
   CHECK_THAT(column("angle_offset").minCoeff(), WithinAbs(4e-4 / 5e-4, 1e-9));
   // The bow is even about the middle between the stops, 0.4 rad, where it is 0.
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(effects.size()));
-  const Eigen::VectorXd reading = outputs_with(problem, 0, problem.start(), effects, none, nullptr);
+  const Eigen::VectorXd reading =
+      outputs_with(problem, 0, problem.start(), effects, none, Derivatives::none, nullptr).outputs;
   for (const Eigen::Index i : {0, 50, 170}) {
     const double turn = (reading(i) * 5e-4 - 0.4) / 2.0;
     CHECK_THAT(column("angle_bow")(i), WithinRel(2e-3 * 4.0 * turn * turn / 5e-4, 1e-6));
@@ -274,6 +276,128 @@ TEST_CASE("considered: what a linkage leaves out widens its intervals, or is a r
   campaign.considered.left_out = {"joint_friction", "angle_bow"};
   CHECK(fit(campaign, records, {}).considered->left_out ==
         std::vector<std::string>{"joint_friction", "angle_bow"});
+}
+
+TEST_CASE("considered: the missing effect is refitted, and the estimates with it are the rig's",
+          "[calib]") {
+  SmallRig rig;
+  rig.truth.parameters.push_back(known(Twin::index("laminar_leakage"), 2e-11));
+  const Fit found = rig.fitted();
+  const Considered& considered = found.considered.value();
+  REQUIRE_FALSE(considered.missing.empty());
+  REQUIRE_FALSE(considered.refitted.empty());
+  const ConsideredEffect& first = considered.effects[considered.missing.front()];
+  CHECK(first.key == "laminar_leakage");
+  CHECK_THAT(first.alone.value(), WithinAbs(2e-11, 1.5 * first.alone_half_width.value()));
+  double weights = 0.0;
+  double best = 0.0;
+  for (const RefittedModel& each : considered.refitted) {
+    weights += each.weight;
+    REQUIRE(each.sizes.size() == each.effects.size());
+    if (each.effects == considered.missing) best = each.fall;
+    if (each.effects.empty()) {
+      CHECK(each.fall == 0.0);
+      CHECK(each.weight < 1e-3);
+    }
+  }
+  CHECK_THAT(weights, WithinRel(1.0, 1e-12));
+  for (const RefittedModel& each : considered.refitted) {
+    if (each.effects.size() == 1) CHECK(each.fall <= best);
+    REQUIRE(each.held_out_fall);
+  }
+  const std::vector<std::pair<const char*, double>> truth{
+      {"mass", 85.0}, {"bulk_modulus", 689e6}, {"valve_gain", 4.06e-5}};
+  for (const auto& [key, value] : truth) {
+    for (const FittedParameter& each : found.parameters) {
+      if (each.index != Twin::index(key)) continue;
+      CAPTURE(key, each.value, each.averaged->value, each.averaged->standard_error);
+      CHECK(std::abs(each.averaged->value - value) < 3.5 * each.averaged->standard_error);
+      CHECK(each.ci95->first <= value);
+      CHECK(value <= each.ci95->second);
+    }
+  }
+}
+
+TEST_CASE("considered: nothing is refitted where the residuals ask for nothing", "[calib]") {
+  const SmallRig rig;
+  const Fit found = rig.fitted();
+  CHECK(found.considered->refitted.empty());
+  for (const FittedParameter& each : found.parameters) CHECK_FALSE(each.averaged);
+}
+
+TEST_CASE("considered: a band of prediction includes an effect less what the fit took for it",
+          "[calib]") {
+  SmallRig rig;
+  rig.add("faster", datasets::Waveform::sine, 6.0, 0.01).use = datasets::Use::validate;
+  // What estimates and effects add to the noise, over all samples.
+  const auto beyond_noise = [&](datasets::Use use) {
+    const Fit found = rig.fitted();
+    double sum = 0.0;
+    for (const ConditionScore& each : found.conditions) {
+      if (each.use != use) continue;
+      for (const double sd : each.prediction_sd.at(datasets::Channel::position))
+        sum += sd * sd - rig.noise_sd_m * rig.noise_sd_m;
+    }
+    return sum;
+  };
+  const double predicted = beyond_noise(datasets::Use::validate);
+  const double fitted = beyond_noise(datasets::Use::fit);
+  rig.campaign.considered.none = true;
+  CHECK(predicted > 5.0 * beyond_noise(datasets::Use::validate));
+  CHECK_THAT(fitted, WithinRel(beyond_noise(datasets::Use::fit), 1e-9));
+}
+
+TEST_CASE("effect_spread: second moments of the sizes, and moves by the lines of budgets",
+          "[calib]") {
+  Considered considered;
+  considered.effects.resize(2);
+  considered.effects[0].key = "ki";
+  considered.effects[0].estimate = 3.0;
+  considered.effects[0].standard_error = 4.0;
+  considered.effects[1].key = "laminar_leakage";
+  considered.effects[1].estimate = 0.0;
+  considered.effects[1].standard_error = 1e-12;
+  considered.correlation = Eigen::Matrix2d::Identity();
+  considered.correlation(0, 1) = considered.correlation(1, 0) = -0.5;
+  Budget95 budget;
+  budget.lines = {{"noise", "records", 1.0, 0.0}, {"laminar_leakage", "effect", 2.0, 7e12}};
+  const EffectSpread spread = effect_spread(considered, {&budget, nullptr});
+  CHECK_THAT(spread.size("ki"), WithinRel(5.0, 1e-12));
+  CHECK_THAT(spread.size("laminar_leakage"), WithinRel(1e-12, 1e-12));
+  CHECK(spread.size("kp") == 0.0);
+  const Eigen::MatrixXd moments = spread.root * spread.root.transpose();
+  CHECK_THAT(moments(0, 1), WithinRel(-0.5 * 4.0 * 1e-12, 1e-9));
+  CHECK(spread.moves(0, 1) == 7e12);
+  CHECK(spread.moves(0, 0) == 0.0);
+  CHECK(spread.moves.row(1).norm() == 0.0);
+}
+
+TEST_CASE("sensor_changes: gain, offset and lag of a sensor, each by its size", "[calib]") {
+  const SmallRig rig;
+  const auto records = rig.records(1000, 1000.0, 1);
+  std::vector<const datasets::Condition*> conditions;
+  for (const auto& each : rig.campaign.conditions) conditions.push_back(&each);
+  const Problem problem = make_problem(rig.campaign, records, conditions, false, nullptr);
+  EffectSpread spread;
+  spread.keys = {"position_gain", "position_offset", "position_lag", "ki"};
+  spread.root = Eigen::Vector4d(2e-3, 1e-5, 1e-3, 1.0).asDiagonal();
+  spread.moves = Eigen::MatrixXd::Zero(0, 4);
+  const auto acting = considered_in(problem, problem.start(), spread);
+  REQUIRE(acting.size() == 4);
+  const std::vector<double> reading{0.0, 0.01, 0.04};
+  const std::vector<double> time_s{0.0, 0.1, 0.2};
+  const auto changes = sensor_changes(datasets::Channel::position, acting, spread, reading, time_s);
+  REQUIRE(changes.size() == 3);
+  double gain = 0.0, offset = 0.0, lag = 0.0;
+  for (const auto& each : changes) {
+    if (each[0] == 0.0) gain = each[2];
+    if (each[0] > 0.0) offset = each[2];
+    if (each[0] < 0.0) lag = each[1];
+  }
+  CHECK_THAT(gain, WithinRel(2e-3 * 0.04, 1e-12));
+  CHECK_THAT(offset, WithinRel(1e-5, 1e-12));
+  CHECK_THAT(lag, WithinRel(-1e-3 * 0.2, 1e-9));
+  CHECK(sensor_changes(datasets::Channel::force, acting, spread, reading, time_s).empty());
 }
 
 }  // namespace

@@ -233,7 +233,7 @@ struct Band {
     std::vector<ConditionScore> scores(2);
     for (std::size_t i = 0; i < 2; ++i) scores[i].time_s = records[i].time_s;
     const std::vector<double> z{0.4};
-    add_prediction_sd(problem, z, spread, 1, scores);
+    add_prediction_sd(problem, z, spread, {}, 1, scores);
     const auto& band = scores[condition].prediction_sd.at(Channel::position);
     REQUIRE(band.size() == records[condition].time_s.size());
     const double noise = problem.conditions[condition].channels[0].sd;
@@ -301,7 +301,7 @@ TEST_CASE("prediction band: the noise is that of a measured sample of the channe
   const Band band;
   std::vector<ConditionScore> scores(2);
   for (std::size_t i = 0; i < 2; ++i) scores[i].time_s = band.records[i].time_s;
-  add_prediction_sd(band.problem, std::vector<double>{0.4}, {}, 1, scores);
+  add_prediction_sd(band.problem, std::vector<double>{0.4}, {}, {}, 1, scores);
   for (const double sd : scores[0].prediction_sd.at(Channel::position))
     CHECK_THAT(sd, WithinRel(band.twin.noise_sd_m, 1e-12));
 }

@@ -91,7 +91,7 @@ TEST_CASE("test_predictions: an estimate off by its error is no error of the mod
     EstimateSpread spread;
     spread.estimates = {{Twin::index("valve_gain"), datasets::Scope::rig, ""}};
     spread.root = Eigen::MatrixXd::Constant(1, 1, error * twin.setting("valve_gain").value / off);
-    add_prediction_sd(problem, {}, spread, 1, scores);
+    add_prediction_sd(problem, {}, spread, {}, 1, scores);
     const auto& channel = scores.front().channels.front();
     CHECK(channel.explained.size() == problem.conditions.front().rows.size());
     test_predictions(problem, scores);
@@ -128,6 +128,7 @@ TEST_CASE("prediction band: without noise it holds the truth 95 times in a hundr
 
 TEST_CASE("prediction band: grows with the covariance of the estimates", "[calib]") {
   Twin twin = predicting_twin();
+  twin.campaign.considered.none = true;  // small effects do not grow with the noise
   const Fit once = fit(twin.campaign, twin.records(500, 500.0, 1), FitOptions());
   const double before = from_estimates(once, "predicted", twin.noise_sd_m);
   CHECK(before > 0.0);
@@ -136,6 +137,7 @@ TEST_CASE("prediction band: grows with the covariance of the estimates", "[calib
   CHECK_THAT(from_estimates(noisier, "predicted", twin.noise_sd_m), WithinRel(3.0 * before, 0.3));
   // A known value takes its part away.
   Twin known_gain = predicting_twin();
+  known_gain.campaign.considered.none = true;
   known_gain.setting("bulk_modulus").fit = false;
   known_gain.setting("bulk_modulus").value = 689e6;
   const Fit fewer = fit(known_gain.campaign, known_gain.records(500, 500.0, 1), FitOptions());
@@ -159,7 +161,7 @@ TEST_CASE("prediction band: an estimate of another leak level does not count", "
   spread.root(1, 1) = 0.1;  // for the large one alone
   std::vector<ConditionScore> scores(2);
   for (std::size_t i = 0; i < 2; ++i) scores[i].time_s = records[i].time_s;
-  add_prediction_sd(problem, z, spread, 1, scores);
+  add_prediction_sd(problem, z, spread, {}, 1, scores);
   const auto widest = [&](std::size_t i) {
     const auto& sd = scores[i].prediction_sd.at(Channel::position);
     return *std::max_element(sd.begin(), sd.end());
@@ -175,7 +177,7 @@ TEST_CASE("prediction band: none of what was not scored or could not be simulate
   std::vector<ConditionScore> scores(2);
   scores[0].failure = "too many steps";
   scores[1].not_scored = "stopped";
-  add_prediction_sd(problem, problem.start(), {}, 1, scores);
+  add_prediction_sd(problem, problem.start(), {}, {}, 1, scores);
   CHECK(scores[0].prediction_sd.empty());
   CHECK(scores[1].prediction_sd.empty());
 }

@@ -145,6 +145,65 @@ TEST_CASE("rig_fit_of: what has no error counts with its whole range", "[diagnos
   CHECK((rig.covariance - Eigen::MatrixXd(variances.asDiagonal())).norm() < 1e-12);
 }
 
+TEST_CASE("RigFit: an effect and what the fit has mistaken for it go together", "[diagnosis]") {
+  diagnosis::RigFit rig;
+  rig.indices = {4, 1};
+  rig.covariance = Eigen::Vector2d(9.0, 4.0).asDiagonal();
+  calib::EstimateSpread spread;
+  spread.estimates = {{1, datasets::Scope::rig, ""},
+                      {1, datasets::Scope::condition, "sine"},
+                      {4, datasets::Scope::rig, ""}};
+  spread.effects.keys = {"leakage_coefficient", "ki"};
+  spread.effects.root = Eigen::Vector2d(0.1, 2.0).asDiagonal();
+  spread.effects.moves = Eigen::MatrixXd::Zero(3, 2);
+  spread.effects.moves.row(0) << 100.0, 5.0;
+  spread.effects.moves.row(1) << 100.0, 100.0;
+  spread.effects.moves.row(2) << 100.0, -3.0;
+  rig.consider(spread);
+  // The leak is what a diagnosis looks for: no effect beside it.
+  REQUIRE(rig.effects.keys == std::vector<std::string>{"ki"});
+  Eigen::Matrix3d expected;
+  expected << 9.0 + 36.0, -60.0, -12.0,  //
+      -60.0, 4.0 + 100.0, 20.0,          //
+      -12.0, 20.0, 4.0;
+  CHECK((rig.covariance - expected).norm() < 1e-12);
+}
+
+TEST_CASE("fit_leak: an effect that the model lacks moves a coefficient as far as is stated",
+          "[diagnosis]") {
+  constexpr double kSize = 1e-12;
+  const HealthySine made = healthy_sine(0.3);
+  const int laminar = model::parameter_index(made.campaign.rig.plant, "laminar_leakage");
+  const HealthySine with = healthy_sine(0.3, {{laminar, kSize}});
+  diagnosis::RigFit rig = rig_of(made.campaign);
+  calib::EstimateSpread spread;
+  spread.effects.keys = {"laminar_leakage"};
+  spread.effects.root = Eigen::MatrixXd::Constant(1, 1, kSize);
+  spread.effects.moves = Eigen::MatrixXd::Zero(0, 1);
+  rig.consider(spread);
+  const diagnosis::LeakProblem problem = diagnosis::LeakProblem(made.campaign, rig).up_to(1.0);
+  const datasets::Condition& condition = problem.campaign.conditions.front();
+  const auto scan = diagnosis::leak_scan_of(problem, condition, made.record);
+  const auto effects = diagnosis::leak_effects_of(problem, rig, condition, made.record, scan);
+  REQUIRE(effects != nullptr);
+  const auto fit = [&](const HealthySine& of, int reference) {
+    const auto found = diagnosis::fit_leak(problem, rig, condition, of.record, std::nullopt,
+                                           reference, &scan, nullptr, effects.get());
+    REQUIRE(found.ok());
+    return found;
+  };
+  const auto without = fit(made, 0);
+  REQUIRE(without.rig_moves.size() == 2);
+  const double moved = fit(with, 0).coefficient - without.coefficient;
+  CHECK_THAT(without.rig_moves(1) * kSize, WithinRel(moved, 0.1));
+  CHECK(moved > 0.0);
+  // A healthy reference has the effect, too.
+  CHECK(std::abs(fit(made, 5).rig_moves(1)) < 0.5 * std::abs(without.rig_moves(1)));
+  // Without the error of the valve gain only the effect is left.
+  rig.covariance(0, 0) = 0.0;
+  CHECK_THAT(fit(made, 0).rig_se, WithinRel(std::abs(without.rig_moves(1)) * kSize, 1e-9));
+}
+
 TEST_CASE("fit_leak: the noise of the reference is not the record's own", "[diagnosis]") {
   const HealthySine made = healthy_sine();
   const diagnosis::RigFit rig = rig_of(made.campaign);

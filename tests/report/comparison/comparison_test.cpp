@@ -97,6 +97,38 @@ TEST_CASE("comparison: the difference with the errors that the intervals rest on
   CHECK(difference["significant"] == false);
 }
 
+TEST_CASE("comparison: what both models leave out counts by how differently it moves them",
+          "[report]") {
+  const auto with = [](const std::string& name, double mass_kg, double moved_by) {
+    ComparedJson compared = compared_fit(name, mass_kg, 0.3);
+    compared.result["parameters"][0]["budget"] = Json::parse(
+        R"({"lines": [{"source": "noise", "kind": "records", "uncertainty": 0.4},
+                      {"source": "valve_time_constant", "kind": "effect", "uncertainty": 1.0}],
+            "combined": 1.1, "degrees_of_freedom": 1e6, "coverage_factor": 1.96, "expanded": 2.2,
+            "shift": 0.0})");
+    compared.result["parameters"][0]["budget"]["lines"][1]["sensitivity"] = moved_by;
+    compared.result["considered"] = Json::parse(
+        R"({"effects": [{"key": "valve_time_constant", "meaning": "lag of the valve", "unit": "s",
+            "size_from": "", "size": 5e-4, "one_sided": true, "problem": null, "estimate": 3e-4,
+            "standard_error": 4e-4, "alone": null, "alone_half_width": null, "p_value": null,
+            "p_of_all": null, "explains": 0.0}],
+            "left_out": [], "missing": [], "refitted": [], "correlation": [[1.0]]})");
+    return compared;
+  };
+  const auto difference = [&](double moved, double other_moved) {
+    const Json json =
+        comparison_json({with("before", 85.0, moved), with("after", 86.0, other_moved)}, {});
+    return json["parameters"][0]["differences"][1];
+  };
+  const Json same = difference(4e3, 4e3);
+  CHECK_THAT(same["standard_error"].get<double>(), WithinRel(std::hypot(0.4, 0.4), 1e-12));
+  CHECK_FALSE(same.contains("by_effects"));
+  // Root of the second moment 5e-4 s, times the difference of the moves per second.
+  const Json other = difference(4e3, 1e3);
+  CHECK_THAT(other["by_effects"].get<double>(), WithinRel(1.5, 1e-9));
+  CHECK_THAT(other["standard_error"].get<double>(), WithinRel(std::hypot(0.4, 0.4, 1.5), 1e-9));
+}
+
 TEST_CASE("comparison: a clear change is significant, and said so", "[report]") {
   const Json json =
       comparison_json({compared_fit("before", 85.0, 0.3), compared_fit("after", 85.0, 0.6)}, {});

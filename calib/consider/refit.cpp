@@ -1,0 +1,204 @@
+#include "calib/consider/refit.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "calib/problem/evaluation.hpp"
+#include "common/parallel.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr int kMostRefitSteps = 12;
+constexpr int kMostStepHalvings = 5;
+/// A step that lowers the squares by less, in variances of a weighted residual, is none.
+constexpr double kSettledFall = 0.02;
+/// Over the plausible size: step of the difference that gives the derivative by an effect.
+constexpr double kEffectStep = 0.1;
+/// Over the plausible size: a lag below it is stiff, and counts as none.
+constexpr double kLeastSize = 0.02;
+/// Of the scaled J^T J, so that what the records do not determine stays where it is.
+constexpr double kRidge = 1e-9;
+
+/// (J^T J)^-1 with columns scaled to 1.
+MatrixXd scaled_inverse(const MatrixXd& normal) {
+  const VectorXd scale =
+      normal.diagonal().cwiseSqrt().unaryExpr([](double d) { return d > 0.0 ? 1.0 / d : 1.0; });
+  MatrixXd scaled = scale.asDiagonal() * normal * scale.asDiagonal();
+  scaled.diagonal().array() += kRidge;
+  const MatrixXd inverse =
+      Eigen::LLT<MatrixXd>(scaled).solve(MatrixXd::Identity(normal.rows(), normal.cols()));
+  return scale.asDiagonal() * inverse * scale.asDiagonal();
+}
+
+/// The sizes that may be simulated.
+VectorXd within_signs(const std::vector<Effect>& effects, VectorXd sizes) {
+  for (std::size_t e = 0; e < effects.size(); ++e) {
+    double& size = sizes(static_cast<Index>(e));
+    if (effects[e].about.one_sided && size < kLeastSize) size = 0.0;
+  }
+  return sizes;
+}
+
+}  // namespace
+
+Refitter::Refitter(const Problem& problem, std::span<const double> z,
+                   const std::vector<ScoreRows>& scores, int threads,
+                   const std::atomic<bool>* cancel)
+    : problem_(problem),
+      scores_(scores),
+      threads_(threads),
+      cancel_(cancel),
+      base_(problem.conditions.size()) {
+  parallel_for(base_.size(), threads, [&](std::size_t i) {
+    base_[i] = outputs_with(problem, i, z, {}, VectorXd::Zero(0), Derivatives::of_unknowns, cancel)
+                   .outputs;
+  });
+}
+
+Refitter::Part Refitter::part_at(std::size_t condition, const std::vector<Effect>& effects,
+                                 std::span<const double> z, const VectorXd& sizes) const {
+  Part part;
+  const auto unknowns = static_cast<Index>(z.size());
+  const OutputsWith with =
+      outputs_with(problem_, condition, z, effects, sizes, Derivatives::of_unknowns, cancel_);
+  if (!with.ok() || base_[condition].size() == 0) return part;
+  const VectorXd residual = scores_[condition].residual + with.outputs - base_[condition];
+  const VectorXd slopes = acting_slopes(problem_, condition, z);
+  const std::vector<int>& acting = problem_.map.acting(condition);
+  MatrixXd jacobian = MatrixXd::Zero(residual.size(), unknowns + sizes.size());
+  for (std::size_t j = 0; j < acting.size(); ++j) {
+    const auto column = static_cast<Index>(j);
+    jacobian.col(acting[j]) = with.jacobian.col(column) * slopes(column);
+  }
+  // The difference is taken between runs that are alike: derivatives change the error control.
+  const auto plain = [&](const VectorXd& at) {
+    return outputs_with(problem_, condition, z, effects, at, Derivatives::none, cancel_);
+  };
+  const OutputsWith here = sizes.size() > 0 ? plain(sizes) : OutputsWith{};
+  for (Index e = 0; e < sizes.size(); ++e) {
+    VectorXd further = sizes;
+    further(e) += kEffectStep;
+    const OutputsWith there = plain(further);
+    if (!here.ok() || !there.ok()) return part;
+    jacobian.col(unknowns + e) = (there.outputs - here.outputs) / kEffectStep;
+  }
+  part.squares = residual.squaredNorm();
+  part.gradient = jacobian.transpose() * residual;
+  part.normal = jacobian.transpose() * jacobian;
+  part.ok = part.normal.allFinite() && part.gradient.allFinite();
+  return part;
+}
+
+Refitter::Part Refitter::priors_at(std::span<const double> z, Index unknowns) const {
+  Part part;
+  part.ok = true;
+  part.gradient = VectorXd::Zero(unknowns);
+  part.normal = MatrixXd::Zero(unknowns, unknowns);
+  for (std::size_t j = 0; j < z.size(); ++j) {
+    const auto k = static_cast<Index>(j);
+    const double residual = problem_.map.prior_residual(static_cast<int>(j), z[j]);
+    const double slope = problem_.map.prior_slope(static_cast<int>(j), z[j]);
+    part.squares += residual * residual;
+    part.gradient(k) += slope * residual;
+    part.normal(k, k) += slope * slope;
+  }
+  return part;
+}
+
+std::optional<Refit> Refitter::fit(const std::vector<Effect>& effects, std::vector<double> start,
+                                   VectorXd sizes) const {
+  const auto unknowns = static_cast<Index>(start.size());
+  const Index all = unknowns + sizes.size();
+  const std::size_t conditions = base_.size();
+  Refit best;
+  best.z = std::move(start);
+  best.sizes = within_signs(effects, std::move(sizes));
+  std::vector<Part> parts;
+  Part sum;
+  const auto evaluate = [&](std::span<const double> z, const VectorXd& at, std::vector<Part>& own) {
+    own.assign(conditions, {});
+    parallel_for(conditions, threads_, [&](std::size_t i) { own[i] = part_at(i, effects, z, at); });
+    Part total = priors_at(z, all);
+    for (const Part& each : own) {
+      total.ok = total.ok && each.ok;
+      if (!total.ok) return total;
+      total.squares += each.squares;
+      total.gradient += each.gradient;
+      total.normal += each.normal;
+    }
+    return total;
+  };
+  sum = evaluate(best.z, best.sizes, parts);
+  if (!sum.ok) return std::nullopt;
+  double count = 0.0;
+  for (const VectorXd& each : base_) count += static_cast<double>(each.size());
+  bool settled = false;
+  for (int step = 0; step < kMostRefitSteps && !settled; ++step) {
+    if (cancel_ != nullptr && cancel_->load()) return std::nullopt;
+    // An effect at zero that the records pull below, and an unknown at a bound, stay there.
+    std::vector<Index> moving;
+    for (Index j = 0; j < all; ++j) {
+      const bool is_unknown = j < unknowns;
+      const double value =
+          is_unknown ? best.z[static_cast<std::size_t>(j)] : best.sizes(j - unknowns);
+      const bool bounded =
+          is_unknown || effects[static_cast<std::size_t>(j - unknowns)].about.one_sided;
+      const bool low = bounded && value <= 0.0 && sum.gradient(j) > 0.0;
+      const bool high = is_unknown && value >= 1.0 && sum.gradient(j) < 0.0;
+      if (!low && !high) moving.push_back(j);
+    }
+    const MatrixXd inverse = scaled_inverse(sum.normal(moving, moving));
+    const VectorXd change = -inverse * sum.gradient(moving);
+    const double promised = -sum.gradient(moving).dot(change);
+    if (!(promised > kSettledFall * sum.squares / count)) {
+      settled = true;
+      break;
+    }
+    double part_of_step = 1.0;
+    bool lower = false;
+    for (int halving = 0; halving < kMostStepHalvings && !lower; ++halving, part_of_step *= 0.5) {
+      std::vector<double> z = best.z;
+      VectorXd next = best.sizes;
+      for (std::size_t m = 0; m < moving.size(); ++m) {
+        const double by = part_of_step * change(static_cast<Index>(m));
+        if (moving[m] < unknowns) {
+          double& each = z[static_cast<std::size_t>(moving[m])];
+          each = std::clamp(each + by, 0.0, 1.0);
+        } else {
+          next(moving[m] - unknowns) += by;
+        }
+      }
+      next = within_signs(effects, next);
+      std::vector<Part> own;
+      Part there = evaluate(z, next, own);
+      if (!there.ok || !(there.squares < sum.squares)) continue;
+      best.z = std::move(z);
+      best.sizes = std::move(next);
+      parts = std::move(own);
+      sum = std::move(there);
+      lower = true;
+    }
+    // The step promises less than the simulations resolve.
+    if (!lower) settled = promised < 1.0 * sum.squares / count;
+    if (!lower && !settled) return std::nullopt;
+  }
+  if (!settled) return std::nullopt;
+  best.squares = sum.squares;
+  best.covariance = scaled_inverse(sum.normal);
+  if (conditions < 2) return best;
+  double held_out = 0.0;
+  for (const Part& each : parts) {
+    const VectorXd move = scaled_inverse(sum.normal - each.normal) * each.gradient;
+    held_out += each.squares + 2.0 * each.gradient.dot(move) + move.dot(each.normal * move);
+  }
+  best.held_out = held_out;
+  return best;
+}
+
+}  // namespace rigcal::calib

@@ -1,0 +1,60 @@
+#include "report/run/missing_terms.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/plant/parameter_values.hpp"
+
+namespace rigcal::report {
+namespace {
+
+/// Bounds of a term about the size that the residuals ask for.
+constexpr double kWidestTerm = 10.0;
+
+}  // namespace
+
+std::vector<MissingTerm> missing_terms(model::PlantKind plant,
+                                       const std::vector<std::pair<std::string, double>>& sizes) {
+  std::vector<MissingTerm> terms;
+  for (const auto& [key, size] : sizes) {
+    const int index = model::parameter_index(plant, key);
+    if (index < 0) continue;
+    const auto& spec = model::parameter_table(plant)[static_cast<std::size_t>(index)];
+    // An error of a value that a campaign states anyway is no term.
+    if (!spec.default_value || key == "kp" || key == "kd") continue;
+    const auto number = [&](double value) {
+      return spec.unit == "1" ? fmt::format("{:.3g}", value)
+                              : fmt::format("\"{:.3g} {}\"", value, spec.unit);
+    };
+    // A gain is about its neutral value, all other terms are about none.
+    const double start = spec.default_value.value_or(0.0) + size;
+    const double reach = kWidestTerm * std::abs(size);
+    terms.push_back({spec.kind == model::ParameterKind::controller,
+                     fmt::format("{} = {{ start = {}, lower = {}, upper = {}, fit = true }}", key,
+                                 number(start), number(std::max(spec.lower, start - reach)),
+                                 number(std::min(spec.upper, start + reach)))});
+  }
+  return terms;
+}
+
+std::string with_terms(std::string campaign, const std::vector<MissingTerm>& terms) {
+  for (const bool of_controller : {false, true}) {
+    const std::string head = of_controller ? "\n[rig.controller]\n" : "\n[rig.parameters]\n";
+    const std::size_t place = campaign.find(head);
+    std::string lines;
+    for (const MissingTerm& each : terms) {
+      if (each.of_controller == of_controller) lines += each.line + "\n";
+    }
+    if (lines.empty()) continue;
+    if (place == std::string::npos) {
+      campaign += head + lines;
+    } else {
+      campaign.insert(place + head.size(), lines);
+    }
+  }
+  return campaign;
+}
+
+}  // namespace rigcal::report

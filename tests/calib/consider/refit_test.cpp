@@ -1,0 +1,139 @@
+#include "calib/consider/refit.hpp"
+
+#include <array>
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/normal_distribution.hpp>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "bench/foreign_campaign.hpp"
+#include "calib/fit.hpp"
+#include "calib/problem/evaluation.hpp"
+#include "datasets/prepare/load_record.hpp"
+#include "tests/calib/twin.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+using Catch::WithinAbs;
+using Catch::WithinRel;
+using datasets::Channel;
+
+/// A fit of five values to records of an integrator and a right-hand side of their own
+/// (bench/foreign_rig.hpp): a small study of what scripts/coverage-study --effects makes at length.
+struct ForeignFit {
+  static constexpr std::array<std::pair<const char*, double bench::ForeignRig::*>, 5> kFree{
+      {{"mass", &bench::ForeignRig::mass_kg},
+       {"damping", &bench::ForeignRig::damping_n_s_per_m},
+       {"bulk_modulus", &bench::ForeignRig::bulk_modulus_pa},
+       {"valve_gain", &bench::ForeignRig::valve_gain_m_per_v},
+       {"leakage_coefficient", &bench::ForeignRig::leak_coefficient}}};
+  Fit fit;
+  std::string named;  ///< the effect that the residuals ask for first
+  int held = 0;       ///< intervals that include the truth
+
+  ForeignFit(const bench::ForeignRig& rig, unsigned seed) {
+    const std::vector<bench::Reference> references{
+        {"square", 1.0, 0.05, 2.0}, {"square", 4.0, 0.02, 1.0}, {"sine", 5.0, 0.02, 1.0}};
+    datasets::Campaign campaign = bench::foreign_campaign(rig);
+    for (const auto& [key, value] : kFree) {
+      datasets::ParameterSetting setting = known(Twin::index(key), 1.1 * rig.*value);
+      setting.fit = true;
+      setting.lower = rig.*value / 5.0;
+      setting.upper = rig.*value * 5.0;
+      campaign.parameters.push_back(setting);
+    }
+    for (const bench::Reference& each : references) {
+      datasets::Condition& condition = campaign.conditions.emplace_back();
+      condition.id = each.waveform + std::to_string(each.frequency_hz);
+      condition.waveform =
+          each.waveform == "sine" ? datasets::Waveform::sine : datasets::Waveform::square;
+      condition.frequency_hz = each.frequency_hz;
+      condition.amplitude = each.amplitude_m;
+      condition.duration_s = each.duration_s;
+    }
+    boost::random::mt19937_64 stream(seed);
+    boost::random::normal_distribution<double> normal(0.0, 5e-5);
+    std::vector<datasets::Record> records;
+    for (std::size_t c = 0; c < references.size(); ++c) {
+      const std::vector<double> exact = bench::foreign_readings(rig, references[c]);
+      std::vector<datasets::Repeat> repeats(5);
+      for (datasets::Repeat& repeat : repeats) {
+        for (std::size_t k = 0; k < exact.size(); ++k) {
+          repeat.time_s.push_back(static_cast<double>(k) / 1000.0);
+          repeat.values[Channel::position].push_back(exact[k] + normal(stream));
+        }
+      }
+      records.push_back(datasets::average_of(campaign, campaign.conditions[c], repeats, true));
+    }
+    fit = calib::fit(campaign, records, {});
+    if (fit.considered && !fit.considered->missing.empty())
+      named = fit.considered->effects[fit.considered->missing.front()].key;
+    for (const auto& [key, value] : kFree) {
+      for (const FittedParameter& each : fit.parameters) {
+        if (each.index != Twin::index(key) || !each.ci95) continue;
+        held += each.ci95->first <= rig.*value && rig.*value <= each.ci95->second ? 1 : 0;
+      }
+    }
+  }
+};
+
+TEST_CASE("refit: of two effects that act alike the true one leaves less", "[calib]") {
+  bench::ForeignRig delayed;
+  delayed.delay_s = 0.5e-3;
+  const ForeignFit delay(delayed, 11);
+  CHECK(delay.named == "transport_delay");
+  CHECK(delay.held == 5);
+  bench::ForeignRig leaking;
+  leaking.laminar_m3_per_s_pa = 5e-12;
+  const ForeignFit leak(leaking, 12);
+  CHECK(leak.named == "laminar_leakage");
+  CHECK(leak.held == 5);
+  const ConsideredEffect& effect = leak.fit.considered->effects.at(leak.fit.considered->missing[0]);
+  CHECK_THAT(effect.alone.value(), WithinAbs(5e-12, 2.0 * effect.alone_half_width.value()));
+}
+
+TEST_CASE("refit: a rig without effects asks for none, and its values are held", "[calib]") {
+  const ForeignFit none(bench::ForeignRig{}, 13);
+  CHECK(none.named.empty());
+  CHECK(none.held == 5);
+}
+
+TEST_CASE("refit: unknowns and effect end at the truth of noiseless records", "[calib]") {
+  Twin twin;
+  twin.noise_sd_m = 0.0;
+  twin.free("mass", 85.0, 20.0, 400.0);
+  twin.free("valve_gain", 4.06e-5, 1e-5, 2e-4);
+  twin.add("square", datasets::Waveform::square, 2.0, 0.01);
+  twin.add("sine", datasets::Waveform::sine, 3.0, 0.02);
+  twin.truth.parameters.push_back(known(Twin::index("coulomb_friction"), 30.0));
+  const auto records = twin.records(1000, 1000.0, 1);
+  std::vector<const datasets::Condition*> conditions;
+  for (const auto& each : twin.campaign.conditions) conditions.push_back(&each);
+  Problem problem = make_problem(twin.campaign, records, conditions, false, nullptr);
+  for (ProblemCondition& condition : problem.conditions) {
+    for (ProblemChannel& channel : condition.channels) channel.sd = 1e-5;
+  }
+  const std::vector<double> z = problem.start();  // the values are the truth's, the model lacks it
+  std::vector<Effect> effects = effects_of(problem, z);
+  std::erase_if(effects, [](const Effect& each) { return each.about.key != "coulomb_friction"; });
+  REQUIRE(effects.size() == 1);
+  const Evaluation at = evaluate_at(problem, z, 1, {Fidelity::full, nullptr, true});
+  std::vector<ScoreRows> scores;
+  for (const ConditionRows& rows : *at.rows) {
+    ScoreRows& own = scores.emplace_back();
+    own.residual = rows.residual;
+  }
+  const Refitter refitter(problem, z, scores, 1, nullptr);
+  const auto found = refitter.fit(effects, z, Eigen::VectorXd::Constant(1, 1.0));
+  REQUIRE(found);
+  CHECK_THAT(found->sizes(0) * effects[0].about.size, WithinRel(30.0, 0.02));
+  const std::vector<double> values = problem.to_physical(found->z);
+  CHECK_THAT(values[0], WithinRel(85.0, 1e-3));
+  CHECK_THAT(values[1], WithinRel(4.06e-5, 1e-3));
+  REQUIRE(found->held_out);
+  CHECK(*found->held_out >= found->squares);
+}
+
+}  // namespace
+}  // namespace rigcal::calib
