@@ -422,12 +422,21 @@ Eigen::MatrixXd effect_rows(const Problem& problem, std::size_t condition,
   auto options = problem.simulation_options(cancel);
   options.tolerance = std::max(problem.tolerance_of(condition), kSecantTolerance);
   options.max_steps = data.max_steps;
-  const auto run_with = [&](const model::ParameterValues& at, const model::SimulationInputs& in) {
-    return model::simulate(data.rig, at, std::vector<int>(), in, data.fit_times(),
-                           outputs_and_flow(data), options);
+  const auto run_with = [&](const model::ParameterValues& at, const model::SimulationInputs& in,
+                            const std::vector<model::Output>& outputs) {
+    return model::simulate(data.rig, at, std::vector<int>(), in, data.fit_times(), outputs,
+                           options);
   };
-  const model::Simulation base = run_with(values, data.inputs);
+  const model::Simulation base = run_with(values, data.inputs, data.outputs);
   if (!base.ok()) return result;
+  // By itself: a flow makes a simulation take more steps, and its samples longer to read.
+  Eigen::VectorXd flow;
+  if (std::any_of(effects.begin(), effects.end(),
+                  [](const Effect& each) { return each.kind == EffectKind::supply_sag; })) {
+    const model::Simulation run = run_with(values, data.inputs, outputs_and_flow(data));
+    if (!run.ok()) return result;
+    flow = run.outputs.col(channels);
+  }
   for (std::size_t e = 0; e < effects.size(); ++e) {
     const Effect& effect = effects[e];
     const double size = effect.secant * effect.about.size;
@@ -438,12 +447,11 @@ Eigen::MatrixXd effect_rows(const Problem& problem, std::size_t condition,
       if (effect.kind == EffectKind::parameter) {
         changed.set(effect.index, values.value[static_cast<std::size_t>(effect.index)] + size);
       } else {
-        inputs.supply_pressure_pa =
-            sagging_supply(effect, values, data.fit_times(), base.outputs.col(channels), size);
+        inputs.supply_pressure_pa = sagging_supply(effect, values, data.fit_times(), flow, size);
       }
-      const model::Simulation run = run_with(changed, inputs);
+      const model::Simulation run = run_with(changed, inputs, data.outputs);
       if (!run.ok()) continue;
-      change = (run.outputs - base.outputs).leftCols(channels);
+      change = run.outputs - base.outputs;
     } else {
       for (Eigen::Index k = 0; k < channels; ++k) {
         if (data.channels[static_cast<std::size_t>(k)].channel == Channel::position)

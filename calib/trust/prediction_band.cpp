@@ -134,8 +134,11 @@ void explain(const ProblemCondition& condition, const model::Simulation& run, Ei
     effects(own, Eigen::all) =
         run.sensitivities[static_cast<std::size_t>(k)].leftCols(free)(counted, Eigen::all) * root /
         data.sd;
+    const std::vector<double>& simulated = score.series.at(data.channel).second;
+    const Eigen::Map<const Eigen::VectorXd> whole(simulated.data(),
+                                                  static_cast<Eigen::Index>(simulated.size()));
     const Eigen::Map<const Eigen::VectorXd> measured(data.measured.data(), samples);
-    residual(own) = (measured - run.outputs(counted, k)) / data.sd;
+    residual(own) = (measured - whole(counted)) / data.sd;
   }
   Eigen::MatrixXd normal = effects.transpose() * effects;
   normal.diagonal().array() += 1.0;
@@ -173,7 +176,7 @@ void add_to(const Problem& problem, std::size_t i, std::span<const double> z,
   }
   const model::Simulation run =
       model::simulate(condition.rig, problem.values_at(i, z), free, condition.inputs, score.time_s,
-                      condition.outputs, problem.simulation_options());
+                      condition.outputs, problem.derivative_options(i));
   if (!run.ok()) return;
   const Eigen::MatrixXd root =
       (own != spread.own.end() ? own->root : spread.root)(rows, Eigen::all);

@@ -74,6 +74,19 @@ struct LeakFit {
   bool ok() const { return failure.empty(); }
 };
 
+/// Simulations of a condition with sensitivities, with its leak and without: about them the repeats
+/// of a record are linearised that was fitted.
+struct LeakRuns {
+  model::ParameterValues values;  ///< with the leak
+  std::vector<int> free;          ///< table rows of the sensitivities
+  model::Simulation leaking;
+  model::Simulation healthy;  ///< without the rows of the days, which end `free`
+  std::vector<double> time_s;
+  /// Means of the channels that the model does not put out: what drives it.
+  std::map<datasets::Channel, std::vector<double>> driving;
+  model::InitialState initial = model::InitialState::rest;
+};
+
 /// Fits leak and nuisance parameters to one record; everything else is known.
 ///
 /// Standard error: residuals are correlated in time, and model errors return in every period, so
@@ -92,11 +105,13 @@ struct LeakFit {
 ///                   rig's parameters then act only through the effect of the leak; 0: none
 /// @param scan  of the same condition, gives the start; may be null
 /// @param covered  times of the record that count, within the condition's windows
-/// @param covered  times of the record that count, within the condition's windows
+/// @param runs  of the record's average: where a single step from there is as good as a fit, it is
+///              made; null: always a fit. Of a fit the runs are put there if it has none.
 LeakFit fit_leak(const LeakProblem& leak_problem, const RigFit& rig,
                  const datasets::Condition& condition, const datasets::Record& record,
                  const std::optional<datasets::TimeWindow>& covered, int reference,
-                 const LeakScan* scan, const std::atomic<bool>* cancel);
+                 const LeakScan* scan, const std::atomic<bool>* cancel,
+                 std::optional<LeakRuns>* runs = nullptr);
 
 /// Per record and channel: record minus healthy model.
 using Residuals = std::vector<std::map<datasets::Channel, std::vector<double>>>;
