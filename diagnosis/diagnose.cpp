@@ -382,7 +382,7 @@ Diagnosis diagnose(const Campaign& campaign, const std::vector<datasets::RepeatR
     if (options.progress) options.progress(done, static_cast<int>(tasks.size()));
   };
   begin.push_back(tasks.size());
-  // The average of a condition first, about which its repeats are linearised.
+  // The average of a condition first, whose simulation without a leak serves its repeats.
   parallel_for(prepared.size(), options.threads, [&](std::size_t condition) {
     std::optional<LeakRuns> runs;
     for (std::size_t i = begin[condition]; i < begin[condition + 1]; ++i) {

@@ -26,9 +26,6 @@ constexpr const char* kLeak = "leakage_coefficient";
 /// For one leak and a few nuisance parameters, from the best point of a scan. A fit that takes more
 /// is reported as not converged.
 constexpr int kIterations = 40;
-/// Part of a standard error that the curvature of the way from the average may move the leak of a
-/// repeat that is not fitted for itself.
-constexpr double kPartOfError = 0.01;
 
 void erase_value(datasets::Overrides& overrides, int index) {
   std::erase_if(overrides, [index](const auto& entry) { return entry.first == index; });
@@ -168,8 +165,11 @@ std::vector<model::Output> outputs_and_position(const calib::ProblemCondition& c
 }
 
 /// Simulations at the end of a fit, with and without the leak.
+///
+/// @param healthy  the one without, where it is known
 LeakRuns run_both(const calib::Problem& problem, const RigFit& rig, const LeakProblem& leak_problem,
-                  const model::ParameterValues& values, const std::atomic<bool>* cancel) {
+                  const model::ParameterValues& values, const model::Simulation* healthy,
+                  const std::atomic<bool>* cancel) {
   const calib::ProblemCondition& condition = problem.conditions.front();
   LeakRuns runs;
   runs.values = values;
@@ -186,53 +186,28 @@ LeakRuns run_both(const calib::Problem& problem, const RigFit& rig, const LeakPr
                            outputs_and_position(condition), problem.simulation_options(cancel));
   };
   runs.leaking = simulated(values[kLeak], runs.free);
-  runs.healthy = simulated(0.0, without_days);
+  runs.healthy = healthy != nullptr ? *healthy : simulated(0.0, without_days);
   runs.time_s = condition.record->time_s;
   runs.driving = driving_channels(condition);
   runs.initial = condition.rig.initial;
   return runs;
 }
 
-/// Whether simulations are those that a fit to another record of the condition would end with, but
-/// for the values of its unknowns, in which all outputs but for the leak's are linear.
-bool serve(const LeakRuns& runs, const calib::Problem& problem, int leak) {
+/// Whether the simulation without the leak is that of another record of the condition, whose values
+/// differ by the leak alone.
+bool serves(const LeakRuns& runs, const calib::Problem& problem, model::ParameterValues values,
+            int leak) {
   const calib::ProblemCondition& condition = problem.conditions.front();
-  const auto table = model::parameter_table(problem.campaign->rig.plant);
-  model::ParameterValues values = condition.values;
-  for (const int index : condition.free) {
-    const auto row = static_cast<std::size_t>(index);
-    if (index != leak && table[row].kind != model::ParameterKind::sensor) return false;
-    values.set(index, runs.values.value[row]);
-  }
-  return runs.leaking.ok() && runs.healthy.ok() && values.value == runs.values.value &&
+  values.set(leak, runs.values.value[static_cast<std::size_t>(leak)]);
+  return runs.healthy.ok() && values.value == runs.values.value &&
          std::equal(condition.free.begin(), condition.free.end(), runs.free.begin()) &&
          runs.initial == condition.rig.initial && runs.time_s == condition.record->time_s &&
          runs.driving == driving_channels(condition);
 }
 
-/// Error of a step of the leak to the second order: how far its sensitivity changes from no leak to
-/// that of the simulation, over its size.
-double error_of_step(const LeakRuns& runs, Eigen::Index leak, double step) {
-  const double coefficient = runs.values[kLeak];
-  if (!(coefficient > 0.0)) return std::numeric_limits<double>::infinity();
-  double change = 0.0;
-  double size = 0.0;
-  for (std::size_t k = 0; k < runs.leaking.sensitivities.size(); ++k) {
-    const auto here = runs.leaking.sensitivities[k].col(leak);
-    change += (here - runs.healthy.sensitivities[k].col(leak)).squaredNorm();
-    size += here.squaredNorm();
-  }
-  return 0.5 * step * step / coefficient * std::sqrt(change / size);
-}
-
-/// What the simulations tell of the record.
-///
-/// @param all_of_step  where the step from the simulations to the least squares may be long: the
-///                     part of a standard error that its curvature may cost
-/// @return  whether the simulations are near enough
-bool describe(const calib::Problem& problem, const RigFit& rig, const LeakProblem& leak_problem,
-              int reference, const LeakRuns& runs, std::optional<double> all_of_step,
-              LeakFit& fit) {
+/// What the simulations at the end of a fit tell of the record.
+void describe(const calib::Problem& problem, const RigFit& rig, const LeakProblem& leak_problem,
+              int reference, const LeakRuns& runs, LeakFit& fit) {
   const int leak_row = leak_problem.leak;
   const calib::ProblemCondition& condition = problem.conditions.front();
   const model::ParameterValues& values = runs.values;
@@ -245,7 +220,7 @@ bool describe(const calib::Problem& problem, const RigFit& rig, const LeakProble
     if (column_of(condition.free, rig.indices[j]) < 0) rig_columns.push_back(static_cast<int>(j));
   if (!run.ok() || !healthy.ok()) {
     fit.failure = in_words(run.ok() ? healthy : run);
-    return false;
+    return;
   }
   Linear linear = linearise(problem, run);
   set_priors(problem, values, linear);
@@ -254,7 +229,7 @@ bool describe(const calib::Problem& problem, const RigFit& rig, const LeakProble
   const calib::ScaledSvd svd(system.jacobian, std::numeric_limits<double>::epsilon());
   if (svd.rank() < system.jacobian.cols()) {
     fit.failure = "nothing that was recorded responds to a leak";
-    return false;
+    return;
   }
   const Eigen::VectorXd step = svd.step(system.residual);
   const Eigen::MatrixXd root = svd.root();
@@ -281,12 +256,10 @@ bool describe(const calib::Problem& problem, const RigFit& rig, const LeakProble
   // continuation, which must not be long. A record that is its own reference may have no residual,
   // so the error of white noise alone is allowed, too.
   const double error = std::max({fit.white_se, fit.cluster_se, root.row(leak).norm()});
-  if (all_of_step) {
-    if (!(error_of_step(runs, leak, step(leak)) <= *all_of_step * error)) return false;
-  } else if (values[kLeak] > 0.0 && std::abs(step(leak)) > error + 1e-3 * values[kLeak]) {
+  if (values[kLeak] > 0.0 && std::abs(step(leak)) > error + 1e-3 * values[kLeak]) {
     fit.failure = fmt::format("the leak did not converge: a step of {:.2g} standard errors is left",
                               std::abs(step(leak)) / error);
-    return false;
+    return;
   }
 
   const Eigen::VectorXd weight = linear.jacobian * bread.col(leak);
@@ -313,7 +286,6 @@ bool describe(const calib::Problem& problem, const RigFit& rig, const LeakProble
   fit.noise_rms_m = noise_rms(misfit);
   fit.parity_rms_m =
       rms(position_residual(condition, healthy.outputs.col(static_cast<Eigen::Index>(position))));
-  return true;
 }
 
 calib::Problem problem_of(const LeakProblem& leak_problem, const Condition& condition,
@@ -417,15 +389,11 @@ LeakProblem LeakProblem::corrected_by(int reference, int repeats) const {
 LeakFit fit_leak(const LeakProblem& leak_problem, const RigFit& rig, const Condition& condition,
                  const Record& record, const std::optional<datasets::TimeWindow>& covered,
                  int reference, const LeakScan* scan, const std::atomic<bool>* cancel,
-                 std::optional<LeakRuns>* runs) {
+                 std::optional<LeakRuns>* healthy) {
   LeakFit fit;
   const Condition counted = within(own_condition(leak_problem, condition), record, covered);
   const std::vector<Record> records{record};
   const calib::Problem problem = problem_of(leak_problem, counted, records);
-  if (runs != nullptr && *runs && serve(**runs, problem, leak_problem.leak)) {
-    if (describe(problem, rig, leak_problem, reference, **runs, kPartOfError, fit)) return fit;
-    fit = {};
-  }
   calib::Budget budget(cancel);
   calib::Evaluator evaluator(problem, budget);
   std::vector<double> z = problem.start();
@@ -441,9 +409,13 @@ LeakFit fit_leak(const LeakProblem& leak_problem, const RigFit& rig, const Condi
     fit.failure = solved.message;
     return fit;
   }
-  LeakRuns found = run_both(problem, rig, leak_problem, problem.values_at(0, best.z), cancel);
-  describe(problem, rig, leak_problem, reference, found, std::nullopt, fit);
-  if (runs != nullptr && !*runs) *runs = std::move(found);
+  const model::ParameterValues values = problem.values_at(0, best.z);
+  const bool known =
+      healthy != nullptr && *healthy && serves(**healthy, problem, values, leak_problem.leak);
+  LeakRuns found =
+      run_both(problem, rig, leak_problem, values, known ? &(*healthy)->healthy : nullptr, cancel);
+  describe(problem, rig, leak_problem, reference, found, fit);
+  if (healthy != nullptr && !*healthy) *healthy = std::move(found);
   return fit;
 }
 

@@ -74,8 +74,8 @@ struct LeakFit {
   bool ok() const { return failure.empty(); }
 };
 
-/// Simulations of a condition with sensitivities, with its leak and without: about them the repeats
-/// of a record are linearised that was fitted.
+/// Simulations of a condition with sensitivities, with its leak and without. The one without is the
+/// same for all records whose drive, state and other values are the same.
 struct LeakRuns {
   model::ParameterValues values;  ///< with the leak
   std::vector<int> free;          ///< table rows of the sensitivities
@@ -105,13 +105,14 @@ struct LeakRuns {
 ///                   rig's parameters then act only through the effect of the leak; 0: none
 /// @param scan  of the same condition, gives the start; may be null
 /// @param covered  times of the record that count, within the condition's windows
-/// @param runs  of the record's average: where a single step from there is as good as a fit, it is
-///              made; null: always a fit. Of a fit the runs are put there if it has none.
+/// @param healthy  of another record of the condition, whose simulation without a leak is taken if
+/// it
+///                 is the same; null or none: it is made, and put there if there is none
 LeakFit fit_leak(const LeakProblem& leak_problem, const RigFit& rig,
                  const datasets::Condition& condition, const datasets::Record& record,
                  const std::optional<datasets::TimeWindow>& covered, int reference,
                  const LeakScan* scan, const std::atomic<bool>* cancel,
-                 std::optional<LeakRuns>* runs = nullptr);
+                 std::optional<LeakRuns>* healthy = nullptr);
 
 /// Per record and channel: record minus healthy model.
 using Residuals = std::vector<std::map<datasets::Channel, std::vector<double>>>;

@@ -38,7 +38,7 @@ class Run {
       const SimulationOptions& options, const std::optional<SampledPeriod>& period,
       std::chrono::steady_clock::time_point started)
       : system_(std::move(system)),
-        norm_(system_.layout().states, scales(system_, outputs), parameter_scale, options.tolerance,
+        norm_(system_.layout().states, floors(system_.layout()), parameter_scale, options.tolerance,
               options.sensitivity_looseness),
         times_s_(times_s),
         outputs_(outputs),
@@ -90,33 +90,12 @@ class Run {
   }
 
  private:
-  /// Fraction of the supply pressure against which the error of a load pressure counts that nobody
-  /// sees; at all of the supply it moves an estimate (docs/decisions/0047).
-  static constexpr double kHiddenPressure = 0.3;
   /// Across kinks Dormand and Prince's formula sees less of its error than Rosenbrock's: at a fifth
   /// of the tolerance both are as far off on the six signals of bench/.
   static constexpr double kCare = 5.0;
   /// A step that was forced is let free where its error is less: it could be half as long again.
   static constexpr double kStillForced = 0.1;
   static constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-
-  /// Size of each state that its error is at least compared with. A load pressure that neither an
-  /// output nor the loop shows counts only by what it does to the piston, which does not depend on
-  /// how large it was before: in a slow sine it stays far below the supply.
-  static std::array<double, static_cast<std::size_t>(N)> scales(const Sys& system,
-                                                                std::span<const Output> outputs) {
-    auto scale = floors(system.layout());
-    if constexpr (requires { Plant::State::load_pressure; }) {
-      const bool hidden = !outputs.empty() && system.layout().position_alone() &&
-                          std::all_of(outputs.begin(), outputs.end(), [](Output output) {
-                            return output == Output::position || output == Output::velocity;
-                          });
-      double& pressure = scale[Plant::State::load_pressure];
-      if (hidden)
-        pressure = std::max(pressure, kHiddenPressure * system.parameters().supply_pressure_pa);
-    }
-    return scale;
-  }
 
   template <typename F>
   void for_each_track(F f) {
