@@ -29,7 +29,9 @@ struct Rig {
   T mass, bulk_modulus, valve_gain, leakage;
   double reference_m = 0.0;
   double amplitude_m = 0.0;
-  double omega = 0.0;  ///< angular frequency of a sine; 0: the reference is constant
+  double omega = 0.0;  ///< angular frequency of a sine; 0: the reference is constant or a line
+  double slope = 0.0;  ///< of the line [m/s], which begins at begin_s
+  double begin_s = 0.0;
 
   T signed_root(const T& p) const { return p / sqrt(sqrt(p * p + 1e8)); }
 
@@ -37,7 +39,8 @@ struct Rig {
     constexpr double kArea = 1.62e-3;
     constexpr double kVolume = kArea * 0.1524;
     constexpr double kDensity = 847.0;
-    const double r = omega > 0.0 ? amplitude_m * std::sin(omega * t) : reference_m;
+    const double r =
+        omega > 0.0 ? amplitude_m * std::sin(omega * t) : reference_m + slope * (t - begin_s);
     const T position = x[0] * kStroke;
     const T pressure = x[2] * kSupply;
     T u = 400.0 * (r - position);
@@ -62,41 +65,72 @@ double error_of(const Jet& e, const Jet& x, double tolerance) {
   return worst;
 }
 
+/// What drives the rig, in segments within which it is smooth.
+struct Drive {
+  double duration_s = 0.0;
+  double segment_s = 0.0;
+  double longest_step_s = std::numeric_limits<double>::infinity();
+  double first_step_s = std::numeric_limits<double>::infinity();  ///< of a segment, at most
+};
+
+Drive drive_of(const Reference& signal) {
+  if (signal.waveform == "sine")
+    return {signal.duration_s, signal.duration_s, 1.0 / (8.0 * signal.frequency_hz), 1e-4};
+  return {signal.duration_s, 0.5 / signal.frequency_hz, std::numeric_limits<double>::infinity(),
+          1e-4};
+}
+Drive drive_of(const Recorded& recorded) {
+  return {static_cast<double>(recorded.reference_m.size() - 1) / 1000.0, 1e-3};
+}
+
+template <typename T>
+void begin_segment(const Reference& signal, long segment, Rig<T>& rig) {
+  rig.amplitude_m = signal.amplitude_m;
+  if (signal.waveform == "sine") rig.omega = 2.0 * std::numbers::pi * signal.frequency_hz;
+  rig.reference_m = segment % 2 == 0 ? signal.amplitude_m : -signal.amplitude_m;
+}
+template <typename T>
+void begin_segment(const Recorded& recorded, long segment, Rig<T>& rig) {
+  const auto k = static_cast<std::size_t>(segment);
+  rig.begin_s = static_cast<double>(segment) / 1000.0;
+  rig.reference_m = recorded.reference_m[k];
+  if (recorded.linear) rig.slope = (recorded.reference_m[k + 1] - recorded.reference_m[k]) * 1000.0;
+}
+
 /// Dormand-Prince with dense output, started again at each edge of the reference.
-template <typename T, typename Emit>
-void integrate(const Reference& signal, const std::array<T, kFree>& factors, double tolerance,
+template <typename T, typename Signal, typename Emit>
+void integrate(const Signal& signal, const std::array<T, kFree>& factors, double tolerance,
                const Emit& emit) {
   namespace odeint = boost::numeric::odeint;
   const Values true_values = truth();
   Rig<T> rig{factors[0] * true_values[0], factors[1] * true_values[1], factors[2] * true_values[2],
              factors[3] * true_values[3]};
-  rig.amplitude_m = signal.amplitude_m;
-  const bool sine = signal.waveform == "sine";
-  if (sine) rig.omega = 2.0 * std::numbers::pi * signal.frequency_hz;
-  const double longest =
-      sine ? 1.0 / (8.0 * signal.frequency_hz) : std::numeric_limits<double>::infinity();
-  const double half_period = sine ? signal.duration_s : 0.5 / signal.frequency_hz;
+  const Drive drive = drive_of(signal);
 
   odeint::runge_kutta_dopri5<State<T>, double, State<T>, double, odeint::array_algebra> stepper;
-  const auto samples = static_cast<long>(signal.duration_s * 1000.0 + 0.5) + 1;
+  const auto samples = static_cast<long>(drive.duration_s * 1000.0 + 0.5) + 1;
   State<T> x{T(0.0), T(0.0), T(0.0)};
   State<T> x_new, f, f_new, error, between;
   double t = 0.0;
   double h = 1e-5;
   long next = 0;
   for (long segment = 0; next < samples; ++segment) {
-    rig.reference_m = segment % 2 == 0 ? signal.amplitude_m : -signal.amplitude_m;
-    const double stop = std::min(signal.duration_s, half_period * static_cast<double>(segment + 1));
-    h = std::min(h, 1e-4);
+    begin_segment(signal, segment, rig);
+    const double stop =
+        std::min(drive.duration_s, drive.segment_s * static_cast<double>(segment + 1));
+    h = std::min(h, drive.first_step_s);
     rig(x, f, t);
     while (t < stop) {
-      const double step = std::min({h, longest, stop - t});
-      const double t_new = step == stop - t ? stop : t + step;
+      const double step = std::min({h, drive.longest_step_s, stop - t});
+      const bool cut_short = step == stop - t;
+      const double t_new = cut_short ? stop : t + step;
       stepper.do_step(rig, x, f, t, x_new, f_new, step, error);
       double worst = 0.0;
       for (std::size_t i = 0; i < 3; ++i)
         worst = std::max(worst, error_of(error[i], x_new[i], tolerance));
-      h = step * std::clamp(0.9 * std::pow(std::max(worst, 1e-10), -0.2), 0.2, 5.0);
+      const double after =
+          step * std::clamp(0.9 * std::pow(std::max(worst, 1e-10), -0.2), 0.2, 5.0);
+      h = cut_short && worst <= 1.0 ? std::max(h, after) : after;
       if (!(worst <= 1.0)) continue;
       for (; next < samples && static_cast<double>(next) / 1000.0 <= t_new; ++next) {
         stepper.calc_state(static_cast<double>(next) / 1000.0, between, x, f, t, x_new, f_new,
@@ -107,8 +141,31 @@ void integrate(const Reference& signal, const std::array<T, kFree>& factors, dou
       f = f_new;
       t = t_new;
     }
-    if (stop >= signal.duration_s) break;
+    if (stop >= drive.duration_s) break;
   }
+}
+
+template <typename Signal>
+std::vector<double> positions(const Signal& signal, const Values& factors, double tolerance) {
+  std::vector<double> result(static_cast<std::size_t>(drive_of(signal).duration_s * 1000.0 + 1.5));
+  integrate<double>(signal, factors, tolerance,
+                    [&](long i, double x) { result[static_cast<std::size_t>(i)] = x; });
+  return result;
+}
+
+template <typename Signal>
+std::vector<double> rows_of(const Signal& signal, const Values& factors, double tolerance) {
+  const auto samples = static_cast<std::size_t>(drive_of(signal).duration_s * 1000.0 + 1.5);
+  std::vector<double> rows(samples * (1 + kFree));
+  std::array<Jet, kFree> jets;
+  for (int j = 0; j < kFree; ++j)
+    jets[static_cast<std::size_t>(j)] = Jet(factors[static_cast<std::size_t>(j)], j);
+  integrate<Jet>(signal, jets, tolerance, [&](long i, const Jet& x) {
+    double* row = rows.data() + i * (1 + kFree);
+    row[0] = x.a;
+    for (int j = 0; j < kFree; ++j) row[1 + j] = x.v[j];
+  });
+  return rows;
 }
 
 class Residuals final : public ceres::CostFunction {
@@ -155,25 +212,19 @@ class Residuals final : public ceres::CostFunction {
 Values truth() { return {85.0, 689e6, 4.06e-5, 0.35}; }
 
 std::vector<double> simulate(const Reference& signal, const Values& factors, double tolerance) {
-  std::vector<double> positions(static_cast<std::size_t>(signal.duration_s * 1000.0 + 1.5));
-  integrate<double>(signal, factors, tolerance,
-                    [&](long i, double x) { positions[static_cast<std::size_t>(i)] = x; });
-  return positions;
+  return positions(signal, factors, tolerance);
+}
+std::vector<double> simulate(const Recorded& drive, const Values& factors, double tolerance) {
+  return positions(drive, factors, tolerance);
 }
 
 std::vector<double> simulate_with_sensitivities(const Reference& signal, const Values& factors,
                                                 double tolerance) {
-  std::vector<double> rows(static_cast<std::size_t>(signal.duration_s * 1000.0 + 1.5) *
-                           (1 + kFree));
-  std::array<Jet, kFree> jets;
-  for (int j = 0; j < kFree; ++j)
-    jets[static_cast<std::size_t>(j)] = Jet(factors[static_cast<std::size_t>(j)], j);
-  integrate<Jet>(signal, jets, tolerance, [&](long i, const Jet& x) {
-    double* row = rows.data() + i * (1 + kFree);
-    row[0] = x.a;
-    for (int j = 0; j < kFree; ++j) row[1 + j] = x.v[j];
-  });
-  return rows;
+  return rows_of(signal, factors, tolerance);
+}
+std::vector<double> simulate_with_sensitivities(const Recorded& drive, const Values& factors,
+                                                double tolerance) {
+  return rows_of(drive, factors, tolerance);
 }
 
 Fit fit(const std::vector<std::vector<double>>& measured, double noise_sd_m, double tolerance) {

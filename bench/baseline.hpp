@@ -24,6 +24,16 @@ std::vector<double> simulate(const Reference& signal, const Values& factors, dou
 std::vector<double> simulate_with_sensitivities(const Reference& signal, const Values& factors,
                                                 double tolerance);
 
+/// A reference that was recorded at 1 kHz, held from sample to sample or joined by lines.
+struct Recorded {
+  std::vector<double> reference_m;
+  bool linear = false;
+};
+/// Positions at its samples, and with derivatives, as above.
+std::vector<double> simulate(const Recorded& drive, const Values& factors, double tolerance);
+std::vector<double> simulate_with_sensitivities(const Recorded& drive, const Values& factors,
+                                                double tolerance);
+
 struct Fit {
   Values factors;  ///< multiples of the true values
   double cost = 0.0;

@@ -74,7 +74,7 @@ std::vector<Reference> references_of(const Campaign& campaign, const std::vector
 
 RecordDiagnosis diagnose_record(const LeakProblem& problem, const RigFit& rig, const Task& task,
                                 const std::vector<Prepared>& all, const BetweenDays& between,
-                                const DiagnosisOptions& options) {
+                                const DiagnosisOptions& options, std::optional<LeakRuns>& runs) {
   const Prepared& prepared = *task.prepared;
   const datasets::RepeatRecords& records = *prepared.records;
   RecordDiagnosis result;
@@ -126,7 +126,7 @@ RecordDiagnosis diagnose_record(const LeakProblem& problem, const RigFit& rig, c
                                   .corrected_by(result.reference_repeats, record.repeats);
   result.fit =
       fit_leak(bounded, rig, *prepared.condition, record, covered, result.reference_repeats,
-               &prepared.scan, options.cancel, prepared.effects.get());
+               &prepared.scan, options.cancel, prepared.effects.get(), &runs);
   return result;
 }
 
@@ -370,7 +370,9 @@ Diagnosis diagnose(const Campaign& campaign, const std::vector<datasets::RepeatR
         between_days_of(campaign, rig_values(problem), shortest_interval(records));
   problem.day_quantities = result.between_days.quantities;
   std::vector<Task> tasks;
+  std::vector<std::size_t> begin;  // of each condition among the tasks
   for (const Prepared& each : prepared) {
+    begin.push_back(tasks.size());
     for (int single = -1; single < static_cast<int>(each.records->singles.size()); ++single)
       tasks.push_back({&each, single});
   }
@@ -381,10 +383,15 @@ Diagnosis diagnose(const Campaign& campaign, const std::vector<datasets::RepeatR
     const int done = ++halves / 2;
     if (options.progress) options.progress(done, static_cast<int>(tasks.size()));
   };
-  parallel_for(tasks.size(), options.threads, [&](std::size_t i) {
-    result.records[i] =
-        diagnose_record(problem, rig, tasks[i], prepared, result.between_days, options);
-    half_done();
+  begin.push_back(tasks.size());
+  // The average of a condition first, whose simulation without a leak serves its repeats.
+  parallel_for(prepared.size(), options.threads, [&](std::size_t condition) {
+    std::optional<LeakRuns> runs;
+    for (std::size_t i = begin[condition]; i < begin[condition + 1]; ++i) {
+      result.records[i] =
+          diagnose_record(problem, rig, tasks[i], prepared, result.between_days, options, runs);
+      half_done();
+    }
   });
 
   const auto signals = by_signal(campaign, result.records);

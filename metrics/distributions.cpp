@@ -5,6 +5,8 @@
 #include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <numbers>
 
 namespace rigcal::metrics {
 
@@ -12,7 +14,8 @@ double normal_quantile(double probability) {
   return boost::math::quantile(boost::math::normal(), probability);
 }
 
-double normal_cdf(double x) { return boost::math::cdf(boost::math::normal(), x); }
+// Boost computes it in long doubles, ten times as slowly.
+double normal_cdf(double x) { return 0.5 * std::erfc(-x * std::numbers::sqrt2 / 2.0); }
 
 double student_t_quantile(double probability, double freedom) {
   // For degrees of freedom near zero a quantile exceeds every double. The result is then infinity,

@@ -533,16 +533,24 @@ std::vector<Eigen::MatrixXd> effect_changes(const Problem& problem, std::size_t 
   std::vector<Output> outputs = data.outputs;
   outputs.insert(outputs.end(), further.begin(), further.end());
   const auto kept = static_cast<Eigen::Index>(outputs.size());
-  outputs.push_back(Output::servo_flow);  // what a sagging supply feeds
   std::vector<Eigen::MatrixXd> result(
       static_cast<std::size_t>(kept),
       Eigen::MatrixXd::Constant(samples, static_cast<Eigen::Index>(effects.size()), std::nan("")));
   const auto options = effect_options(problem, condition, cancel);
-  const auto run_with = [&](const model::ParameterValues& at, const model::SimulationInputs& in) {
-    return model::simulate(data.rig, at, std::vector<int>(), in, times_s, outputs, options);
+  const auto run_with = [&](const model::ParameterValues& at, const model::SimulationInputs& in,
+                            const std::vector<Output>& wanted) {
+    return model::simulate(data.rig, at, std::vector<int>(), in, times_s, wanted, options);
   };
-  const model::Simulation base = run_with(values, data.inputs);
+  const model::Simulation base = run_with(values, data.inputs, outputs);
   if (!base.ok()) return result;
+  // By itself: a flow makes a simulation take more steps, and its samples longer to read.
+  Eigen::VectorXd flow;
+  if (std::any_of(effects.begin(), effects.end(),
+                  [](const Effect& each) { return each.kind == EffectKind::supply_sag; })) {
+    const model::Simulation run = run_with(values, data.inputs, {Output::servo_flow});
+    if (!run.ok()) return result;
+    flow = run.outputs.col(0);
+  }
   for (std::size_t e = 0; e < effects.size(); ++e) {
     const Effect& effect = effects[e];
     const double size = effect.secant * effect.about.size;
@@ -558,12 +566,11 @@ std::vector<Eigen::MatrixXd> effect_changes(const Problem& problem, std::size_t 
       if (effect.kind == EffectKind::parameter) {
         changed.set(effect.index, values.value[static_cast<std::size_t>(effect.index)] + size);
       } else {
-        inputs.supply_pressure_pa =
-            sagging_supply(effect, values, times_s, base.outputs.col(kept), size);
+        inputs.supply_pressure_pa = sagging_supply(effect, values, times_s, flow, size);
       }
-      const model::Simulation run = run_with(changed, inputs);
+      const model::Simulation run = run_with(changed, inputs, outputs);
       if (!run.ok()) continue;
-      change = (run.outputs - base.outputs).leftCols(kept);
+      change = run.outputs - base.outputs;
     }
     for (Eigen::Index k = 0; k < kept; ++k)
       result[static_cast<std::size_t>(k)].col(static_cast<Eigen::Index>(e)) =

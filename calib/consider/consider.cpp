@@ -240,7 +240,8 @@ MatrixXd correlation_of(const MatrixXd& covariance) {
 /// Takes the secants of curved effects again, at the size that prior and records leave them.
 ///
 /// @return  whether any was; then their columns, and those of all others as they were, are in
-///          `columns`
+///          `columns`, and what is seen has no rows any more: both at once are half of a fit's
+///          memory
 bool take_again(const Problem& problem, std::span<const double> z, const Uncertainty& found,
                 const Sizes& sizes, int threads, const std::atomic<bool>* cancel, Seen& seen,
                 std::vector<MatrixXd>& columns) {
@@ -260,6 +261,7 @@ bool take_again(const Problem& problem, std::span<const double> z, const Uncerta
   parallel_for(columns.size(), threads, [&](std::size_t i) {
     columns[i] = seen.rows[i].jacobian * felt.transpose() +
                  found.scores[i].jacobian * taken_in(i, found, seen);
+    seen.rows[i].jacobian.resize(0, 0);
     const MatrixXd anew = effect_rows(problem, i, z, again, cancel);
     for (std::size_t a = 0; a < which.size(); ++a) {
       const auto column = static_cast<Index>(a);
@@ -279,7 +281,8 @@ bool take_again(const Problem& problem, std::span<const double> z, const Uncerta
 bool follow_curvature(const Problem& problem, std::span<const double> z, const Uncertainty& found,
                       const MatrixXd& directions, int threads, const std::atomic<bool>* cancel,
                       Seen& seen, Sizes& sizes, VectorXd& moved) {
-  Seen next = seen;
+  Seen next{seen.effects, seen.taken, seen.left, seen.score, seen.basis, {}};
+  std::vector<VectorXd> residuals(problem.conditions.size());
   Sizes at = sizes;
   VectorXd move = moved;
   const MatrixXd felt = seen.left * seen.basis;
@@ -305,11 +308,11 @@ bool follow_curvature(const Problem& problem, std::span<const double> z, const U
         return;
       }
       const ScoreRows& rows = found.scores[i];
-      next.rows[i].residual = rows.residual + outputs - base[i];
+      residuals[i] = rows.residual + outputs - base[i];
       const VectorXd linear =
           seen.rows[i].jacobian * (felt.transpose() * at.mean) +
           rows.jacobian * (taken_in(i, found, seen) * at.mean + move(found.root.directions(i))) -
-          next.rows[i].residual;
+          residuals[i];
       scores[i] = seen.rows[i].jacobian.transpose() * linear;
       taken[i] = rows.jacobian.transpose() * linear;
     });
@@ -325,7 +328,9 @@ bool follow_curvature(const Problem& problem, std::span<const double> z, const U
     const VectorXd last = move;
     move = free_move - seen.taken * at.mean;
     if ((move - last).norm() > kSettledMove) continue;
-    seen = std::move(next);
+    seen.score = std::move(next.score);
+    for (std::size_t i = 0; i < residuals.size(); ++i)
+      seen.rows[i].residual = std::move(residuals[i]);
     sizes = std::move(at);
     moved = move;
     return true;

@@ -29,6 +29,8 @@ constexpr double kDefaultTolerance = 1e-6;
 constexpr double kLeastTolerance = 1e-8;
 /// Largest of a record whose noise lets it be simulated less exactly than others.
 constexpr double kLargestTolerance = 1e-5;
+/// Of derivatives that only tell how uncertain something is.
+constexpr double kDerivativeTolerance = 1e-5;
 /// Far from an optimum: less buys no fewer steps of the optimiser.
 constexpr double kCoarseTolerance = 1e-4;
 /// Residuals below this share of the peak-to-peak are no noise: a sensor of 20 bits resolves as
@@ -199,6 +201,13 @@ double Problem::tolerance_of(std::size_t condition, const Fidelity& fidelity) co
   const double own = relative_noise(conditions[condition]);
   if (!(least > 0.0) || !std::isfinite(own)) return tolerance;
   return std::max(tolerance, std::min(tolerance * (own / least), kLargestTolerance));
+}
+
+model::SimulationOptions Problem::derivative_options(std::size_t condition) const {
+  model::SimulationOptions options = simulation_options();
+  options.tolerance = tolerance_of(condition);
+  if (!tolerance_fixed) options.tolerance = std::max(options.tolerance, kDerivativeTolerance);
+  return options;
 }
 
 double Problem::share_at(const Fidelity& fidelity) const {

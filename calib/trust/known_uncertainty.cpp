@@ -79,8 +79,9 @@ Eigen::MatrixXd known_rows(const Problem& problem, std::size_t i, std::span<cons
 Eigen::MatrixXd known_sensitivities(const Problem& problem, std::size_t condition,
                                     std::span<const double> z, const std::vector<int>& indices) {
   const ProblemCondition& each = problem.conditions[condition];
-  const auto run = model::simulate(each.rig, problem.values_at(condition, z), indices, each.inputs,
-                                   each.fit_times(), each.outputs, problem.simulation_options());
+  const auto run =
+      model::simulate(each.rig, problem.values_at(condition, z), indices, each.inputs,
+                      each.fit_times(), each.outputs, problem.derivative_options(condition));
   if (!run.ok()) return {};
   const auto samples = static_cast<Eigen::Index>(each.rows.size());
   const auto channels = static_cast<Eigen::Index>(each.channels.size());
@@ -168,7 +169,7 @@ Eigen::VectorXd day_errors(const Problem& problem, std::span<const double> z,
   const auto changes = [&](std::size_t i) -> Eigen::MatrixXd {
     const ProblemCondition& data = problem.conditions[i];
     const auto run = model::simulate(data.rig, problem.values_at(i, z), indices, data.inputs,
-                                     data.fit_times(), data.outputs, problem.simulation_options());
+                                     data.fit_times(), data.outputs, problem.derivative_options(i));
     if (!run.ok()) return {};
     const auto samples = static_cast<Eigen::Index>(data.rows.size());
     const std::vector<Eigen::Index> counted(data.rows.begin(), data.rows.end());

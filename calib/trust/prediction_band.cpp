@@ -123,9 +123,8 @@ bool acts(const Problem& problem, const ProblemCondition& condition,
 /// squares from the estimates, whose covariance is the prior.
 ///
 /// @param gradients  of each channel by what `root` is the spread of, shape (times, spread)
-void explain(const ProblemCondition& condition, const model::Simulation& run,
-             const std::vector<Eigen::MatrixXd>& gradients, const Eigen::MatrixXd& root,
-             ConditionScore& score) {
+void explain(const ProblemCondition& condition, const std::vector<Eigen::MatrixXd>& gradients,
+             const Eigen::MatrixXd& root, ConditionScore& score) {
   const std::vector<Eigen::Index> counted(condition.rows.begin(), condition.rows.end());
   const auto samples = static_cast<Eigen::Index>(counted.size());
   const auto channels = static_cast<Eigen::Index>(condition.channels.size());
@@ -137,8 +136,11 @@ void explain(const ProblemCondition& condition, const model::Simulation& run,
     const auto own = Eigen::seqN(k * samples, samples);
     effects(own, Eigen::all) =
         gradients[static_cast<std::size_t>(k)](counted, Eigen::all) * root / data.sd;
+    const std::vector<double>& simulated = score.series.at(data.channel).second;
+    const Eigen::Map<const Eigen::VectorXd> whole(simulated.data(),
+                                                  static_cast<Eigen::Index>(simulated.size()));
     const Eigen::Map<const Eigen::VectorXd> measured(data.measured.data(), samples);
-    residual(own) = (measured - run.outputs(counted, k)) / data.sd;
+    residual(own) = (measured - whole(counted)) / data.sd;
   }
   Eigen::MatrixXd normal = effects.transpose() * effects;
   normal.diagonal().array() += 1.0;
@@ -209,7 +211,7 @@ void add_to(const Problem& problem, std::size_t i, std::span<const double> z,
   }
   const model::Simulation run =
       model::simulate(condition.rig, values, simulated, condition.inputs, score.time_s,
-                      condition.outputs, problem.simulation_options());
+                      condition.outputs, problem.derivative_options(i));
   if (!run.ok()) return;
   Eigen::MatrixXd root = (own != spread.own.end() ? own->root : spread.root)(rows, Eigen::all);
   std::vector<Eigen::MatrixXd> gradients;
@@ -239,7 +241,7 @@ void add_to(const Problem& problem, std::size_t i, std::span<const double> z,
     append(by_day, distance * Eigen::MatrixXd::Identity(count, count), gradients, root);
   }
   if (condition.condition->use != datasets::Use::fit && root.rows() > 0)
-    explain(condition, run, gradients, root, score);
+    explain(condition, gradients, root, score);
   for (std::size_t k = 0; k < condition.channels.size(); ++k) {
     score.prediction_sd[condition.channels[k].channel] =
         prediction_sd(gradients[k], root, condition.channels[k].sd);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <vector>
 
@@ -18,6 +19,11 @@ constexpr int kDraws = 401;
 constexpr int kBlurs = 15;
 /// Below this an error is that of the arithmetic.
 constexpr double kLeastShareError = 1e-7;
+/// A quantile of the share is found to this, or after so many steps.
+constexpr double kQuantileError = 1e-15;
+constexpr int kQuantileSteps = 120;
+
+double squared(double x) { return x * x; }
 
 /// Distribution of the share for a given distribution of the coefficient: equally probable shares,
 /// each blurred by the error from the rig's parameters.
@@ -36,12 +42,7 @@ class ShareDistribution {
                   : 0.0;
       shares_.push_back(curve.share(std::max(0.0, coefficient)));
     }
-  }
-
-  /// Probability of a share below x, given that it is not negative.
-  double below(double x) const {
-    const double none = raw_below(0.0);
-    return none < 1.0 ? (raw_below(x) - none) / (1.0 - none) : 1.0;
+    std::sort(shares_.begin(), shares_.end());
   }
 
   /// Calls with equally probable shares, blurred ones too, which may be negative.
@@ -55,14 +56,26 @@ class ShareDistribution {
     }
   }
 
+  /// Share that is exceeded with the probability 1 - p, given that it is not negative: by
+  /// Newton's method from the share of that rank, between the bounds that its steps narrow: where
+  /// the blur is small the distribution is a staircase, and a step that leaves them is a bisection.
   double quantile(double p) const {
     double low = 0.0;
-    double high = std::min(1.0, *std::max_element(shares_.begin(), shares_.end()) + 10.0 * blur_);
-    for (int i = 0; i < 60; ++i) {
-      const double middle = 0.5 * (low + high);
-      (below(middle) < p ? low : high) = middle;
+    double high = std::min(1.0, shares_.back() + 10.0 * blur_);
+    const double none = raw_below(0.0);
+    if (!(none < 1.0)) return low;
+    const double wanted = none + p * (1.0 - none);
+    const auto rank = static_cast<std::size_t>(wanted * static_cast<double>(shares_.size()));
+    double x = std::clamp(shares_[std::min(rank, shares_.size() - 1)], low, high);
+    for (int i = 0; i < kQuantileSteps && high - low > kQuantileError; ++i) {
+      const double excess = raw_below(x) - wanted;
+      (excess < 0.0 ? low : high) = x;
+      const double next = x - excess / density(x);
+      const double last = x;
+      x = next > low && next < high ? next : 0.5 * (low + high);
+      if (std::abs(x - last) <= kQuantileError) break;
     }
-    return 0.5 * (low + high);
+    return x;
   }
 
  private:
@@ -72,11 +85,17 @@ class ShareDistribution {
     return sum / static_cast<double>(shares_.size());
   }
 
+  /// Derivative of raw_below().
+  double density(double x) const {
+    double sum = 0.0;
+    for (const double share : shares_) sum += std::exp(-0.5 * squared((x - share) / blur_));
+    return sum * std::numbers::inv_sqrtpi / std::numbers::sqrt2 /
+           (blur_ * static_cast<double>(shares_.size()));
+  }
+
   double blur_;
   std::vector<double> shares_;
 };
-
-double squared(double x) { return x * x; }
 
 /// Prior density of a share, up to a factor: 1 / (offset + share), decreasing and without a step at
 /// any limit. The offset makes a normal machine as probable as one with a slight leak: (offset +

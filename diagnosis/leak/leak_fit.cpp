@@ -168,33 +168,79 @@ Eigen::VectorXd moves_by_effects(const calib::ProblemCondition& condition,
   return moves;
 }
 
-/// Results of simulations at the end of the fit, with and without the leak.
-void describe(const calib::Problem& problem, const RigFit& rig, const LeakProblem& leak_problem,
-              int reference, const model::ParameterValues& values, const std::atomic<bool>* cancel,
-              const LeakEffects* effects, LeakFit& fit) {
-  const int leak_row = leak_problem.leak;
-  const calib::ProblemCondition& condition = problem.conditions.front();
-  std::vector<int> free = condition.free;
-  std::vector<int> rig_columns;  // in the covariance, for each rig parameter that is free here
-  for (std::size_t j = 0; j < rig.indices.size(); ++j) {
-    if (column_of(condition.free, rig.indices[j]) >= 0) continue;
-    free.push_back(rig.indices[j]);
-    rig_columns.push_back(static_cast<int>(j));
+/// Channels of the record that the model is not compared with: what drives it.
+std::map<datasets::Channel, std::vector<double>> driving_channels(
+    const calib::ProblemCondition& condition) {
+  std::map<datasets::Channel, std::vector<double>> driving;
+  for (const auto& [channel, series] : condition.record->channels) {
+    const bool compared = std::any_of(
+        condition.channels.begin(), condition.channels.end(),
+        [wanted = channel](const calib::ProblemChannel& own) { return own.channel == wanted; });
+    if (!compared) driving.emplace(channel, series.mean);
   }
-  const std::vector<int> without_days = free;
-  const std::vector<int> of_days = calib::further_rows(leak_problem.day_quantities, free);
-  free.insert(free.end(), of_days.begin(), of_days.end());
+  return driving;
+}
+
+std::vector<model::Output> outputs_and_position(const calib::ProblemCondition& condition) {
   std::vector<model::Output> outputs = condition.outputs;
-  const std::size_t position = outputs.size();
   outputs.push_back(model::Output::position);
+  return outputs;
+}
+
+/// Simulations at the end of a fit, with and without the leak.
+///
+/// @param healthy  the one without, where it is known
+LeakRuns run_both(const calib::Problem& problem, const RigFit& rig, const LeakProblem& leak_problem,
+                  const model::ParameterValues& values, const model::Simulation* healthy,
+                  const std::atomic<bool>* cancel) {
+  const calib::ProblemCondition& condition = problem.conditions.front();
+  LeakRuns runs;
+  runs.values = values;
+  runs.free = condition.free;
+  for (const int index : rig.indices)
+    if (column_of(condition.free, index) < 0) runs.free.push_back(index);
+  const std::vector<int> without_days = runs.free;
+  const std::vector<int> of_days = calib::further_rows(leak_problem.day_quantities, runs.free);
+  runs.free.insert(runs.free.end(), of_days.begin(), of_days.end());
   const auto simulated = [&](double coefficient, const std::vector<int>& rows) {
     model::ParameterValues at = values;
-    at.set(leak_row, coefficient);
+    at.set(leak_problem.leak, coefficient);
     return model::simulate(condition.rig, at, rows, condition.inputs, condition.record->time_s,
-                           outputs, problem.simulation_options(cancel));
+                           outputs_and_position(condition), problem.simulation_options(cancel));
   };
-  const auto run = simulated(values[kLeak], free);
-  const auto healthy = simulated(0.0, without_days);
+  runs.leaking = simulated(values[kLeak], runs.free);
+  runs.healthy = healthy != nullptr ? *healthy : simulated(0.0, without_days);
+  runs.time_s = condition.record->time_s;
+  runs.driving = driving_channels(condition);
+  runs.initial = condition.rig.initial;
+  return runs;
+}
+
+/// Whether the simulation without the leak is that of another record of the condition, whose values
+/// differ by the leak alone.
+bool serves(const LeakRuns& runs, const calib::Problem& problem, model::ParameterValues values,
+            int leak) {
+  const calib::ProblemCondition& condition = problem.conditions.front();
+  values.set(leak, runs.values.value[static_cast<std::size_t>(leak)]);
+  return runs.healthy.ok() && values.value == runs.values.value &&
+         std::equal(condition.free.begin(), condition.free.end(), runs.free.begin()) &&
+         runs.initial == condition.rig.initial && runs.time_s == condition.record->time_s &&
+         runs.driving == driving_channels(condition);
+}
+
+/// What the simulations at the end of a fit tell of the record.
+void describe(const calib::Problem& problem, const RigFit& rig, const LeakProblem& leak_problem,
+              int reference, const LeakRuns& runs, const LeakEffects* effects, LeakFit& fit) {
+  const int leak_row = leak_problem.leak;
+  const calib::ProblemCondition& condition = problem.conditions.front();
+  const model::ParameterValues& values = runs.values;
+  const model::Simulation& run = runs.leaking;
+  const model::Simulation& healthy = runs.healthy;
+  const std::vector<int>& free = runs.free;
+  const std::size_t position = condition.outputs.size();
+  std::vector<int> rig_columns;  // in the covariance, for each rig parameter that is free here
+  for (std::size_t j = 0; j < rig.indices.size(); ++j)
+    if (column_of(condition.free, rig.indices[j]) < 0) rig_columns.push_back(static_cast<int>(j));
   if (!run.ok() || !healthy.ok()) {
     fit.failure = in_words(run.ok() ? healthy : run);
     return;
@@ -454,7 +500,7 @@ LeakProblem LeakProblem::corrected_by(int reference, int repeats) const {
 LeakFit fit_leak(const LeakProblem& leak_problem, const RigFit& rig, const Condition& condition,
                  const Record& record, const std::optional<datasets::TimeWindow>& covered,
                  int reference, const LeakScan* scan, const std::atomic<bool>* cancel,
-                 const LeakEffects* effects) {
+                 const LeakEffects* effects, std::optional<LeakRuns>* healthy) {
   LeakFit fit;
   const Condition counted = within(own_condition(leak_problem, condition), record, covered);
   const std::vector<Record> records{record};
@@ -475,7 +521,12 @@ LeakFit fit_leak(const LeakProblem& leak_problem, const RigFit& rig, const Condi
     return fit;
   }
   const model::ParameterValues values = problem.values_at(0, best.z);
-  describe(problem, rig, leak_problem, reference, values, cancel, effects, fit);
+  const bool known =
+      healthy != nullptr && *healthy && serves(**healthy, problem, values, leak_problem.leak);
+  LeakRuns found =
+      run_both(problem, rig, leak_problem, values, known ? &(*healthy)->healthy : nullptr, cancel);
+  describe(problem, rig, leak_problem, reference, found, effects, fit);
+  if (healthy != nullptr && !*healthy) *healthy = std::move(found);
   return fit;
 }
 

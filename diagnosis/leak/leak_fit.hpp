@@ -94,6 +94,19 @@ struct LeakFit {
   bool ok() const { return failure.empty(); }
 };
 
+/// Simulations of a condition with sensitivities, with its leak and without. The one without is the
+/// same for all records whose drive, state and other values are the same.
+struct LeakRuns {
+  model::ParameterValues values;  ///< with the leak
+  std::vector<int> free;          ///< table rows of the sensitivities
+  model::Simulation leaking;
+  model::Simulation healthy;  ///< without the rows of the days, which end `free`
+  std::vector<double> time_s;
+  /// Means of the channels that the model does not put out: what drives it.
+  std::map<datasets::Channel, std::vector<double>> driving;
+  model::InitialState initial = model::InitialState::rest;
+};
+
 /// Fits leak and nuisance parameters to one record; everything else is known.
 ///
 /// Standard error: residuals are correlated in time, and model errors return in every period, so
@@ -113,11 +126,13 @@ struct LeakFit {
 /// @param scan  of the same condition, gives the start; may be null
 /// @param covered  times of the record that count, within the condition's windows
 /// @param effects  of the same condition; null: none
+/// @param healthy  of another record of the condition, whose simulation without a leak is taken if
+///                 it is the same; null or none: it is made, and put there if there is none
 LeakFit fit_leak(const LeakProblem& leak_problem, const RigFit& rig,
                  const datasets::Condition& condition, const datasets::Record& record,
                  const std::optional<datasets::TimeWindow>& covered, int reference,
                  const LeakScan* scan, const std::atomic<bool>* cancel,
-                 const LeakEffects* effects = nullptr);
+                 const LeakEffects* effects = nullptr, std::optional<LeakRuns>* healthy = nullptr);
 
 /// Effects in a condition, by simulations of the average with and without a leak.
 ///

@@ -12,6 +12,8 @@ using namespace rigcal::metrics;
 TEST_CASE("distributions: normal", "[metrics]") {
   CHECK_THAT(normal_quantile(0.975), WithinRel(1.959963985, 1e-9));
   CHECK_THAT(normal_cdf(-1.959963985), WithinRel(0.025, 1e-8));
+  CHECK_THAT(normal_cdf(-10.0), WithinRel(7.619853024160526e-24, 1e-13));
+  CHECK(normal_cdf(40.0) == 1.0);
   CHECK_THROWS_AS(normal_quantile(1.5), std::domain_error);
 }
 

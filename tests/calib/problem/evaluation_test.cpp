@@ -30,6 +30,18 @@ Twin twin_of_every_scope() {
 
 }  // namespace
 
+TEST_CASE("problem: derivatives of an uncertainty are coarser, unless the campaign says how exact",
+          "[calib]") {
+  Twin twin = twin_of_every_scope();
+  const auto records = twin.records(400, 1000.0, 3);
+  CHECK(problem_of(twin, records).derivative_options(0).tolerance == 1e-9);
+  twin.campaign.simulation.tolerance.reset();
+  Problem problem = problem_of(twin, records);
+  CHECK(problem.derivative_options(0).tolerance == 1e-5);
+  problem.tolerance = 2e-5;  // of records that ask for less
+  CHECK(problem.derivative_options(0).tolerance == 2e-5);
+}
+
 TEST_CASE("evaluation: Jacobian equals finite differences for every scope", "[calib]") {
   Twin twin = twin_of_every_scope();
   twin.campaign.fit.loss = GENERATE(datasets::Loss::squared, datasets::Loss::soft_l1);

@@ -259,8 +259,8 @@ EstimateSpread::Estimate gain(Scope scope = Scope::rig, const std::string& level
 
 TEST_CASE("prediction band: an estimate acts by its own sensitivity", "[calib]") {
   const Band band;
-  CHECK_THAT(band.part(0, {gain()}, {1e-5}), WithinRel(1e-5, 1e-6));
-  CHECK_THAT(band.part(1, {gain()}, {3e-5}), WithinRel(3e-5, 1e-6));
+  CHECK_THAT(band.part(0, {gain()}, {1e-5}), WithinRel(1e-5, 1e-4));
+  CHECK_THAT(band.part(1, {gain()}, {3e-5}), WithinRel(3e-5, 1e-4));
   CHECK_THAT(band.part(0, {}, {}), WithinAbs(0.0, 1e-12));
 }
 
@@ -284,17 +284,17 @@ TEST_CASE("prediction band: the value of a condition or level goes before that o
   const Band band;
   for (const auto& own : {gain(Scope::condition, "a"), gain(Scope::leak_level, "none")}) {
     CAPTURE(own.level);
-    CHECK_THAT(band.part(0, {gain(), own}, {1e-5, 2e-5}), WithinRel(2e-5, 1e-6));
-    CHECK_THAT(band.part(0, {own, gain()}, {2e-5, 1e-5}), WithinRel(2e-5, 1e-6));
-    CHECK_THAT(band.part(1, {gain(), own}, {1e-5, 2e-5}), WithinRel(1e-5, 1e-6));
-    CHECK_THAT(band.part(1, {own, gain()}, {2e-5, 1e-5}), WithinRel(1e-5, 1e-6));
+    CHECK_THAT(band.part(0, {gain(), own}, {1e-5, 2e-5}), WithinRel(2e-5, 1e-4));
+    CHECK_THAT(band.part(0, {own, gain()}, {2e-5, 1e-5}), WithinRel(2e-5, 1e-4));
+    CHECK_THAT(band.part(1, {gain(), own}, {1e-5, 2e-5}), WithinRel(1e-5, 1e-4));
+    CHECK_THAT(band.part(1, {own, gain()}, {2e-5, 1e-5}), WithinRel(1e-5, 1e-4));
   }
 }
 
 TEST_CASE("prediction band: a value that a condition knows is not uncertain there", "[calib]") {
   const Band band(true);
   CHECK_THAT(band.part(0, {gain()}, {1e-5}), WithinAbs(0.0, 1e-9));
-  CHECK_THAT(band.part(1, {gain()}, {1e-5}), WithinRel(1e-5, 1e-6));
+  CHECK_THAT(band.part(1, {gain()}, {1e-5}), WithinRel(1e-5, 1e-4));
 }
 
 TEST_CASE("prediction band: the noise is that of a measured sample of the channel", "[calib]") {

@@ -96,6 +96,55 @@ TEST_CASE("fit_leak: a supply that differs between repeats is part of the error"
   CHECK(rms_score(1) < score);
 }
 
+TEST_CASE("fit_leak: the simulation without a leak serves all records that have the same",
+          "[diagnosis]") {
+  HealthySine made = healthy_sine();
+  datasets::Campaign& campaign = made.campaign;
+  const int leak = model::parameter_index(campaign.rig.plant, "leakage_coefficient");
+  campaign.conditions.front().overrides = {{leak, 0.3}};
+  campaign.synthetic_settings->repeats = 3;
+  const datasets::Campaign truth = datasets::true_campaign(campaign);
+  std::vector<datasets::Repeat> repeats;
+  for (auto& each : datasets::synthetic_repeats(truth, truth.conditions.front(), nullptr, 3))
+    repeats.push_back(std::move(each.record));
+  const auto records = datasets::repeat_records(campaign, campaign.conditions.front(), repeats);
+  const diagnosis::RigFit rig = rig_of(campaign);
+  const diagnosis::LeakProblem problem = diagnosis::LeakProblem(campaign, rig).up_to(2.0);
+  const datasets::Condition& condition = problem.campaign.conditions.front();
+  const auto fit = [&](const datasets::Record& record, std::optional<diagnosis::LeakRuns>* runs) {
+    const auto result = diagnosis::fit_leak(problem, rig, condition, record, std::nullopt, 0,
+                                            nullptr, nullptr, runs);
+    REQUIRE(result.ok());
+    return result;
+  };
+  std::optional<diagnosis::LeakRuns> runs;
+  fit(records.average, &runs);
+  REQUIRE(runs);
+  for (const datasets::Record& single : records.singles) {
+    const diagnosis::LeakFit alone = fit(single, nullptr);
+    const diagnosis::LeakFit shared = fit(single, &runs);
+    CHECK(shared.coefficient == alone.coefficient);
+    CHECK_THAT(shared.parity_rms_m, WithinRel(alone.parity_rms_m, 1e-5));
+  }
+  // One that is marked shows where it is taken: not for another drive, state, time or value.
+  const datasets::Record& single = records.singles.front();
+  const double alone = fit(single, nullptr).parity_rms_m;
+  runs->healthy.outputs.array() += 0.1;
+  CHECK(fit(single, &runs).parity_rms_m > 10.0 * alone);
+  std::optional<diagnosis::LeakRuns> changed = runs;
+  changed->driving[datasets::Channel::supply_pressure] = {1.0};
+  CHECK(fit(single, &changed).parity_rms_m == alone);
+  changed = runs;
+  changed->initial = model::InitialState::given;
+  CHECK(fit(single, &changed).parity_rms_m == alone);
+  changed = runs;
+  changed->time_s.back() += 1e-3;
+  CHECK(fit(single, &changed).parity_rms_m == alone);
+  changed = runs;
+  changed->values.set(model::parameter_index(campaign.rig.plant, "mass"), 90.0);
+  CHECK(fit(single, &changed).parity_rms_m == alone);
+}
+
 TEST_CASE("rig_fit_of: the larger error of each value, and their correlation", "[diagnosis]") {
   calib::Fit fit;
   fit.parameters = {fitted(1, 2.0, 3.0), fitted(4, 5.0, 4.0), fitted(2, 7.0, std::nullopt)};
