@@ -113,7 +113,7 @@ TEST_CASE("fit_leak: the simulation without a leak serves all records that have 
   const datasets::Condition& condition = problem.campaign.conditions.front();
   const auto fit = [&](const datasets::Record& record, std::optional<diagnosis::LeakRuns>* runs) {
     const auto result = diagnosis::fit_leak(problem, rig, condition, record, std::nullopt, 0,
-                                            nullptr, nullptr, runs);
+                                            nullptr, nullptr, nullptr, runs);
     REQUIRE(result.ok());
     return result;
   };
