@@ -250,6 +250,12 @@ void bind_start(py::module_& module) {
       .def_readonly("iterations", &StartReport::iterations, "Of all its stages.");
 }
 
+/// Getter of a property that is a member of the fit.
+template <typename Value>
+auto of_fit(Value calib::Fit::*value) {
+  return [=](const FitResult& self) { return self.fit.*value; };
+}
+
 void bind_result(py::module_& module) {
   using Self = FitResult;
   py::class_<Self, FitResultPtr>(
@@ -267,7 +273,7 @@ void bind_result(py::module_& module) {
       .def_property_readonly(
           "status", [](const Self& self) { return to_string(report::status_of(self.fit)); },
           "\"converged\", \"stopped\" (the best so far) or \"failed\".")
-      .def_property_readonly("message", field(&Self::fit, &calib::Fit::message),
+      .def_property_readonly("message", of_fit(&calib::Fit::message),
                              "In words: why it stopped, what is not to be trusted.")
       .def_property_readonly(
           "verdict",
@@ -275,9 +281,9 @@ void bind_result(py::module_& module) {
             return self.fit.verdict ? std::optional(to_string(*self.fit.verdict)) : std::nullopt;
           },
           "\"PASS\", \"WARN\" or \"FAIL\"; None where nothing was judged.")
-      .def_property_readonly("assessment", field(&Self::fit, &calib::Fit::assessment),
+      .def_property_readonly("assessment", of_fit(&calib::Fit::assessment),
                              "The four aspects that the verdict follows from.")
-      .def_property_readonly("warnings", field(&Self::fit, &calib::Fit::warnings), "In words.")
+      .def_property_readonly("warnings", of_fit(&calib::Fit::warnings), "In words.")
       .def_property_readonly("parameters", &result_parameters, "Fitted and known ones.")
       .def("parameter", &parameter_of, py::arg("key"), py::arg("level") = py::none(),
            R"(One parameter.
@@ -299,36 +305,32 @@ Raises:
             return self.fit.rank > 0 ? std::optional(self.fit.reduced_chi_square) : std::nullopt;
           },
           "Twice the cost over the degrees of freedom: about 1 if the noise is all that is left.")
-      .def_property_readonly("residual_count", field(&Self::fit, &calib::Fit::residual_count),
-                             "That count.")
-      .def_property_readonly("evaluations", field(&Self::fit, &calib::Fit::evaluations),
-                             "Of all residuals.")
-      .def_property_readonly("wall_seconds", field(&Self::fit, &calib::Fit::wall_seconds), "[s]")
+      .def_property_readonly("residual_count", of_fit(&calib::Fit::residual_count), "That count.")
+      .def_property_readonly("evaluations", of_fit(&calib::Fit::evaluations), "Of all residuals.")
+      .def_property_readonly("wall_seconds", of_fit(&calib::Fit::wall_seconds), "[s]")
       .def_property_readonly(
-          "simulation_tolerance", field(&Self::fit, &calib::Fit::tolerance),
+          "simulation_tolerance", of_fit(&calib::Fit::tolerance),
           "Local error per step of the simulations, over the peak of each state.")
-      .def_property_readonly("correlation_names", field(&Self::fit, &calib::Fit::correlation_names),
+      .def_property_readonly("correlation_names", of_fit(&calib::Fit::correlation_names),
                              "Of the rows and columns of `correlation`.")
       .def_property_readonly(
           "correlation", [](const Self& self) { return array_of(self.fit.correlation); },
           "Of the estimates that have a standard error, shape (names, names).")
-      .def_property_readonly("rank", field(&Self::fit, &calib::Fit::rank),
+      .def_property_readonly("rank", of_fit(&calib::Fit::rank),
                              "Of the scaled Jacobian at the optimum.")
       .def_property_readonly(
           "singular_values",
           [](const FitResultPtr& self) { return view(self, self->fit.singular_values); },
           "Of the same, shape (unknowns).")
       .def_property_readonly(
-          "combinations", field(&Self::fit, &calib::Fit::combinations),
+          "combinations", of_fit(&calib::Fit::combinations),
           "What the records fix where they do not fix single parameters, in words.")
-      .def_property_readonly("interval_advice", field(&Self::fit, &calib::Fit::interval_advice),
+      .def_property_readonly("interval_advice", of_fit(&calib::Fit::interval_advice),
                              "Which interval to believe, and why, in words.")
-      .def_property_readonly("starts", field(&Self::fit, &calib::Fit::starts),
-                             "One report for each.")
-      .def_property_readonly("best_start", field(&Self::fit, &calib::Fit::best_start),
+      .def_property_readonly("starts", of_fit(&calib::Fit::starts), "One report for each.")
+      .def_property_readonly("best_start", of_fit(&calib::Fit::best_start),
                              "Number of the start that counts.")
-      .def_property_readonly("bootstrap_replicates",
-                             field(&Self::fit, &calib::Fit::bootstrap_replicates),
+      .def_property_readonly("bootstrap_replicates", of_fit(&calib::Fit::bootstrap_replicates),
                              "That converged.")
       .def_property_readonly(
           "draws", &draws_of,

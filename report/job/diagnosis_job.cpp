@@ -113,12 +113,12 @@ std::optional<std::vector<datasets::FittedValue>> truth_beside(const Campaign& c
   return read_truth(file, campaign.rig.plant);
 }
 
-/// @param live  live.json, if the rig can be simulated in the page
+/// @param live  diagnosis_live.json, if the rig can be simulated in the page
 JobResult finished(const DiagnosisResult& result, const std::optional<Json>& live = {}) {
   StoredDiagnosis diagnosis = stored(result);
   JobResult job;
   job.files = {{"diagnosis.csv", diagnosis_csv(result)}};
-  if (live) job.files.push_back({kLiveFile, json_line(*live)});
+  if (live) job.files.push_back({kLiveDiagnosisFile, json_line(*live)});
   name_files(job.files, diagnosis.provenance);
   job.files.push_back({"diagnosis.json", json_text(json_of(diagnosis))});
   job.first = {"diagnosis.json", "diagnosis.csv"};
@@ -141,7 +141,7 @@ JobResult diagnosis_job(Campaign campaign, const DiagnosisRequest& request, cons
     throw UsageError(
         "diagnose: --fit is missing: expected the fit.json of a fit to healthy records");
   }
-  terms.hold({{"diagnosis.json", "diagnosis.csv", kLiveFile, "report.html"}, {}});
+  terms.hold({{"diagnosis.json", "diagnosis.csv", kLiveDiagnosisFile, "report.html"}, {}});
   diagnosis::Diagnosis found;
   if (!reasons.empty()) {
     provenance.inputs = hash_inputs(campaign, {}, more_inputs);

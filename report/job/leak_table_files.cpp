@@ -46,7 +46,7 @@ calib::LeakTableOptions leak_table_options(const datasets::Campaign& campaign, i
 }
 
 PlannedFiles planned_leak_table(const datasets::LeakTableSettings& settings) {
-  PlannedFiles planned{{"leak_table.json", "leak_table.csv", "features.csv", kLiveFile,
+  PlannedFiles planned{{"leak_table.json", "leak_table.csv", "features.csv", kLiveLeakTableFile,
                         "report.html", kHealthySeries},
                        {kLevels}};
   for (const datasets::PrintedFeatures& features : settings.features)
@@ -69,7 +69,7 @@ std::vector<ResultFile> leak_table_files(const LeakTableResult& result) {
   }
   Json rig = live_rig(result.campaign, leak_table_cases(result.campaign, result.settings));
   rig["embedded"] = true;
-  files.push_back({kLiveFile, json_line(rig)});
+  files.push_back({kLiveLeakTableFile, json_line(rig)});
   StoredLeakTable stored = report::stored(result);
   name_files(files, stored.provenance);
   files.push_back({"leak_table.json", json_text(json_of(stored))});

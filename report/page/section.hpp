@@ -76,7 +76,7 @@ Part part_of(const Result& result, const char* link, const char* name, const std
   return part;
 }
 
-/// The rig of a result's own run in its page; nothing if the run wrote no live.json.
+/// The rig of a result's own run in its page; nothing if the run wrote none.
 std::optional<LiveSection> live_of(const StoredProvenance& provenance, const ResultFolder& folder,
                                    const std::string& file);
 

@@ -13,12 +13,13 @@ namespace rigcal::report {
 std::optional<LiveSection> live_of(const StoredProvenance& provenance, const ResultFolder& folder,
                                    const std::string& file) {
   if (!provenance.files) return std::nullopt;
-  const bool named = std::any_of(provenance.files->begin(), provenance.files->end(),
-                                 [](const InputFile& each) { return each.path == kLiveFile; });
-  if (!named) return std::nullopt;
-  const auto text = files_of_run(folder.read, provenance, folder.where, file)(kLiveFile);
+  const auto named =
+      std::find_if(provenance.files->begin(), provenance.files->end(),
+                   [](const InputFile& each) { return each.path.ends_with(kLiveFile); });
+  if (named == provenance.files->end()) return std::nullopt;
+  const auto text = files_of_run(folder.read, provenance, folder.where, file)(named->path);
   if (!text) return std::nullopt;
-  return live_section(*text, folder.where + "/" + kLiveFile);
+  return live_section(*text, folder.where + "/" + named->path);
 }
 
 const std::vector<Section>& sections() {

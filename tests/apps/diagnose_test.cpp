@@ -90,7 +90,7 @@ TEST_CASE("diagnose: from synthetic records to classes", "[apps]") {
   CHECK_THAT(folder.read("diagnosis/diagnosis.csv"), StartsWith("condition,repeat,signal,"));
   CHECK(violations(result, "diagnosis") == "");
   // The rig with the leak of each average, the largest first, for the page; the result names it.
-  const json live = json::parse(folder.read("diagnosis/live.json"));
+  const json live = json::parse(folder.read("diagnosis/diagnosis_live.json"));
   REQUIRE(!live["cases"].empty());
   CHECK(live["cases"][0]["name"] == "leaking");
   CHECK(live["cases"][0]["measured"].size() == 2);
@@ -103,7 +103,7 @@ TEST_CASE("diagnose: from synthetic records to classes", "[apps]") {
   CHECK(live["intervals"][0]["high"] == estimate["ci95"][1]);
   const json& named = result["provenance"]["files"];
   CHECK(std::any_of(named.begin(), named.end(),
-                    [](const json& file) { return file["path"] == "live.json"; }));
+                    [](const json& file) { return file["path"] == "diagnosis_live.json"; }));
   const std::string page = folder.read("diagnosis/report.html");
   CHECK_THAT(page, Contains("<title>LEAK") && Contains("id=\"diagnosis\"") &&
                        Contains("Against the known classes"));
