@@ -106,6 +106,10 @@ class Terminal {
                       2);
               },
               [&](const Rendered& rendered) { add(rendered.blocks); },
+              [&](const Sketches& all) {
+                for (const Sketches::Sketch& sketch : all.sketches)
+                  add_wrapped(sketch.badge.words + " " + text_of(sketch.line), 2);
+              },
               [&](const Article& article) {
                 text_ += "\n" + in_colour(text_of(article.title), "1") + "\n";
                 add(article.blocks);
@@ -163,6 +167,7 @@ class Terminal {
             [](const Doubts& doubts) { return !doubts.items.empty(); },
             [](const Aspects& aspects) { return !aspects.aspects.empty(); },
             [](const Article&) { return true; },
+            [](const Sketches& all) { return !all.sketches.empty(); },
             [&](const Rendered& rendered) { return shows(rendered.blocks); },
             [](const auto&) { return false; },
         },

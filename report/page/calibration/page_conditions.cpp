@@ -226,18 +226,20 @@ std::string plain_text(const doc::Line& line) {
   return text;
 }
 
-doc::Sketches::Sketch sketch_of(const StoredCondition& condition, const Table& series) {
+/// @param series  null: without its curves
+doc::Sketches::Sketch sketch_of(const StoredCondition& condition, const Table* series) {
   doc::Sketches::Sketch sketch{
       anchor(condition.id), doc::badge(condition.verdict), {doc::Strong{condition.id}}, {}};
   for (const auto& [channel, scores] : condition.metrics) {
     sketch.line.emplace_back(" · " + spaced(channel) + " ");
     sketch.line.emplace_back(doc::agreement(scores.rho2));
   }
+  if (series == nullptr) return sketch;
   std::vector<std::string> texts{plain_text(facts_of(condition))};
   texts.insert(texts.end(), condition.reasons.begin(), condition.reasons.end());
   for (const std::string& text : condition.warnings) texts.push_back("Recording: " + text);
   texts.push_back("From residuals/" + condition.id + ".csv: the last two periods, or all of it.");
-  sketch.json = Json{{"texts", texts}, {"series", sketched_series(condition, series)}}.dump(
+  sketch.json = Json{{"texts", texts}, {"series", sketched_series(condition, *series)}}.dump(
       -1, ' ', false, Json::error_handler_t::replace);
   return sketch;
 }
@@ -296,12 +298,12 @@ doc::Section conditions_section(const Calibration& stored, int threads, bool cur
     const StoredCondition& condition = conditions[i];
     const bool in_full = std::binary_search(shown.begin(), shown.end(), i);
     if (in_full) articles[i].blocks = {facts_article(condition)};
-    if (!curves) return;
-    const std::shared_ptr<const Table> series = stored.series(i);
+    const std::shared_ptr<const Table> series = curves ? stored.series(i) : nullptr;
     if (!in_full) {
-      sketches[i] = sketch_of(condition, *series);
+      sketches[i] = sketch_of(condition, series.get());
       return;
     }
+    if (!curves) return;
     const bool open = i == shown.front() || conditions.size() <= kFew;
     doc::Article article = std::get<doc::Article>(articles[i].blocks.front());
     add_curves(condition, *series, find(stored.curves.conditions, condition.id), points, open,
