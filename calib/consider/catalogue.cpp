@@ -22,7 +22,7 @@ struct RigScale {
   double flow_m3_per_s = 0.0;  ///< through the valve at full command and no load
   double travel_m = 0.0;       ///< stroke, or oil volume over piston area
   double turn_rad = 0.0;       ///< angle between the stops
-  double middle_rad = 0.0;     ///< in the middle between them
+  double middle_rad = 0.0;     ///< angle midway between the stops
   double pressure_pa = 0.0;    ///< supply
   double sample_s = 0.0;       ///< shortest sampling interval
   double kp_v_per_m = 0.0;
@@ -228,7 +228,7 @@ double value_of_key(const Problem& problem, const model::ParameterValues& values
   return index < 0 ? std::nan("") : values.value[static_cast<std::size_t>(index)];
 }
 
-/// Whether the model has a pump of limited flow, which gives way.
+/// Whether the model has a pump of limited flow.
 bool has_pump(const model::ParameterValues& values) {
   return model::parameter_index(values.plant, "pump_flow") >= 0 && values.is_given("pump_flow");
 }
@@ -290,7 +290,8 @@ bool is_curved(std::string_view key) {
          key == "pilot_dead_band" || key == "position_hysteresis" || key == "angle_hysteresis";
 }
 
-/// Whether a key is of the valve that a rig does not have: one driven by a voltage, or by a pilot.
+/// Whether a key belongs to the kind of valve that the rig lacks: driven by a voltage, or by a
+/// pilot.
 bool is_of_other_valve(std::string_view key, bool pilot) {
   if (key == "pilot_dead_band") return !pilot;
   return pilot && (key == "valve_dead_band" || key == "valve_offset");

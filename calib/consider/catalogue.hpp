@@ -22,18 +22,22 @@ enum class EffectKind {
   hysteresis,  ///< play of the sensor of the motion
 };
 
+/// Smallest secant as a multiple of the plausible size; a smaller one is lost in the tolerance of
+/// the simulation.
+inline constexpr double kLeastSecant = 0.02;
+
 /// One effect that may act in a problem, with its plausible size.
 struct Effect {
   EffectKind kind = EffectKind::parameter;
   int index = -1;       ///< row of the parameter table; -1: no parameter describes it
   double range = 0.0;   ///< range of the sensor or the flow to which the size relates, SI
-  double middle = 0.0;  ///< reading in the middle of this range
+  double middle = 0.0;  ///< reading at the middle of the sensor's range
   /// Whether its secant depends on the size at which it is taken: friction, overlap, play.
   bool curved = false;
   double secant = 1.0;  ///< size at which that is taken, over the plausible size
   ConsideredEffect about;
 
-  /// Whether it changes the reading of the position sensor, not the motion.
+  /// Whether it changes the reading of the sensor of the motion, not the motion itself.
   bool is_of_sensor() const {
     return kind != EffectKind::parameter && kind != EffectKind::supply_sag;
   }
@@ -52,7 +56,7 @@ std::vector<std::string> left_out_effects(const Problem& problem, std::span<cons
 /// The channel whose sensor a key names ("pressure_a_lag"); none if it names none.
 std::optional<datasets::Channel> sensor_channel(std::string_view key);
 
-/// Change of a reading by an error of the position sensor of a size.
+/// Change of a reading if the sensor of the motion has an error of a given size.
 Eigen::VectorXd reading_error(const Effect& effect, const Eigen::VectorXd& reading, double size);
 
 /// Change of the weighted outputs of one condition by each effect, per plausible size. It is a

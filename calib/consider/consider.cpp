@@ -34,8 +34,6 @@ constexpr double kMissingLevel = 0.02;
 constexpr double kUnexplainedLevel = 0.01;
 /// Sizes of which the logarithms differ by less have the same secant.
 constexpr double kSameSize = 0.5;
-/// Over the plausible size: a secant of less is lost in the tolerance of the simulation.
-constexpr double kLeastSecant = 0.02;
 /// Chord iterations, and a step, in standard errors of white noise, after which they have settled.
 constexpr int kMostChords = 12;
 constexpr double kSettledMove = 0.3;
@@ -46,7 +44,7 @@ constexpr std::size_t kMostMissing = 3;
 /// How many effects are refitted alone, and what part of the best explanation is worth it.
 constexpr std::size_t kMostCandidates = 6;
 constexpr double kWorthRefitting = 0.2;
-/// Over the plausible size: where the refit of a further effect begins.
+/// Size at which the refit of a further effect begins, as a multiple of its plausible size.
 constexpr double kFirstSize = 0.3;
 
 /// Effects and what the fit and the residuals see of them, each in units of its plausible size.

@@ -8,9 +8,6 @@
 namespace rigcal::calib {
 namespace {
 
-/// Over the plausible size: a secant of less is lost in the tolerance of the simulation.
-constexpr double kLeastSecantSize = 0.02;
-
 std::size_t place_of(const EffectSpread& effects, const std::string& key) {
   return static_cast<std::size_t>(std::find(effects.keys.begin(), effects.keys.end(), key) -
                                   effects.keys.begin());
@@ -38,7 +35,7 @@ std::vector<Effect> considered_in(const Problem& problem, std::span<const double
   });
   for (Effect& each : acting) {
     if (each.curved)
-      each.secant = std::max(effects.size(each.about.key) / each.about.size, kLeastSecantSize);
+      each.secant = std::max(effects.size(each.about.key) / each.about.size, kLeastSecant);
   }
   return acting;
 }

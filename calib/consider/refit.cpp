@@ -16,13 +16,15 @@ using Eigen::VectorXd;
 
 constexpr int kMostRefitSteps = 12;
 constexpr int kMostStepHalvings = 5;
-/// A step that lowers the squares by less, in variances of a weighted residual, is none.
+/// The search ends with a step that lowers the squares by less, in variances of a weighted
+/// residual.
 constexpr double kSettledFall = 0.02;
-/// Over the plausible size: step of the difference that gives the derivative by an effect.
+/// Step of the finite difference by an effect, as a multiple of its plausible size.
 constexpr double kEffectStep = 0.1;
-/// Over the plausible size: a lag below it is stiff, and counts as none.
+/// As a multiple of the plausible size. A shorter lag is stiff, and counts as none.
 constexpr double kLeastSize = 0.02;
-/// Of the scaled J^T J, so that what the records do not determine stays where it is.
+/// Added to the scaled J^T J, so that directions that the records do not determine stay where they
+/// are.
 constexpr double kRidge = 1e-9;
 
 /// (J^T J)^-1 with columns scaled to 1.
@@ -36,7 +38,7 @@ MatrixXd scaled_inverse(const MatrixXd& normal) {
   return scale.asDiagonal() * inverse * scale.asDiagonal();
 }
 
-/// The sizes that may be simulated.
+/// Sets a one-sided size to zero if it is negative or too small to simulate.
 VectorXd within_signs(const std::vector<Effect>& effects, VectorXd sizes) {
   for (std::size_t e = 0; e < effects.size(); ++e) {
     double& size = sizes(static_cast<Index>(e));

@@ -21,7 +21,8 @@ struct Refit {
   Eigen::VectorXd sizes;       ///< of the effects over their plausible sizes
   Eigen::MatrixXd covariance;  ///< (J^T J)^-1, unknowns in the unit box, then effects
   double squares = 0.0;        ///< sum of the squared weighted residuals and priors
-  /// The same of each condition predicted from the others, to first order; absent with one.
+  /// The same sum for each condition, predicted from the others to first order; absent with one
+  /// condition.
   std::optional<double> held_out;
 };
 

@@ -29,7 +29,7 @@ constexpr double kDefaultTolerance = 1e-6;
 constexpr double kLeastTolerance = 1e-8;
 /// Largest of a record whose noise lets it be simulated less exactly than others.
 constexpr double kLargestTolerance = 1e-5;
-/// Of derivatives that only tell how uncertain something is.
+/// Tolerance of derivatives that only state an uncertainty.
 constexpr double kDerivativeTolerance = 1e-5;
 /// Far from an optimum: less buys no fewer steps of the optimiser.
 constexpr double kCoarseTolerance = 1e-4;

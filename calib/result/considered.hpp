@@ -58,9 +58,9 @@ struct RefittedModel {
   std::vector<std::size_t> effects;  ///< positions; none: the model as it is
   std::vector<double> sizes;         ///< SI
   double fall = 0.0;                 ///< of the sum of the squared residuals
-  /// The same of conditions that are each predicted from the others; absent with one condition.
+  /// The same for conditions that are each predicted from the others; absent with one condition.
   std::optional<double> held_out_fall;
-  double weight = 0.0;  ///< by which its estimates count in the average (Akaike)
+  double weight = 0.0;  ///< weight of its estimates in the average (Akaike)
 };
 
 /// What was considered in a fit.

@@ -25,7 +25,7 @@ struct EffectSpread {
   double size(std::string_view key) const;
 };
 
-/// By prior and records.
+/// The effects that a fit considered, as prior and records leave them.
 ///
 /// @param budgets  of the estimates, in their order; null where there is none
 EffectSpread effect_spread(const Considered& considered,
@@ -52,7 +52,7 @@ struct EstimateSpread {
   /// Where there are many of them: no simulation knows those of two conditions.
   std::vector<Own> own = {};
   EffectSpread effects = {};  ///< moves: of `estimates`
-  /// Of the records that the fit was made from; empty where one has no date.
+  /// Dates of the fitted records; empty if one of them has none.
   std::vector<std::string> dates = {};
 };
 

@@ -28,7 +28,7 @@ constexpr const char* kLeak = "leakage_coefficient";
 /// For one leak and a few nuisance parameters, from the best point of a scan. A fit that takes more
 /// is reported as not converged.
 constexpr int kIterations = 40;
-/// Of the largest coefficient of a scan: where the effects are simulated with a leak.
+/// Fraction of the largest coefficient of a scan at which the effects are simulated with a leak.
 constexpr double kLeastOfLargest = 0.1;
 
 void erase_value(datasets::Overrides& overrides, int index) {

@@ -100,9 +100,9 @@ struct LeakRuns {
   model::ParameterValues values;  ///< with the leak
   std::vector<int> free;          ///< table rows of the sensitivities
   model::Simulation leaking;
-  model::Simulation healthy;  ///< without the rows of the days, which end `free`
+  model::Simulation healthy;  ///< without the sensitivities by days, which are the last of `free`
   std::vector<double> time_s;
-  /// Means of the channels that the model does not put out: what drives it.
+  /// Means of the channels that drive the model.
   std::map<datasets::Channel, std::vector<double>> driving;
   model::InitialState initial = model::InitialState::rest;
 };

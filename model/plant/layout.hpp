@@ -34,8 +34,8 @@ struct PresentTerms {
   bool return_band = false;     ///< the edges to the tank have their own dead band
   bool return_power = false;    ///< likewise, their own power law
   bool return_line = false;     ///< the line to the tank throttles, too
-  bool return_loss = false;     ///< likewise, in proportion to its flow
-  bool bypass = false;          ///< the closed valve lets the pump's flow by
+  bool return_loss = false;     ///< the line to the tank has a loss in proportion to its flow
+  bool bypass = false;          ///< a closed valve passes the pump's flow to the tank
   bool pump_flow = false;       ///< the flow of the pump is limited
   bool make_up = false;         ///< the tank fills a chamber that is pulled empty
   int pump = -1;                ///< index of the time of demand; -1: its limit is constant

@@ -364,7 +364,7 @@ struct LinkagePlant {
     return leak + opening_m * (area * p.conductance) * signed_sqrt(head_pa, p.leakage_smoothing_pa);
   }
 
-  /// The same of an edge to the tank, with the laminar loss of its line.
+  /// The same for an edge to the tank, whose line has a laminar loss.
   template <typename X, typename C>
   static X edge_to_tank(const X& opening_m, const C& area, const X& up_pa, const X& tank_pa,
                         const Coefficients<C>& p, const PresentTerms& terms) {

@@ -98,7 +98,7 @@ X series_opening(const X& y, const C& l) {
   return y / sqrt(share * share + 1.0);
 }
 
-/// Flow of an orifice before a line of laminar loss [m3/s], Q = G sgn(P) sqrt(|P - R Q|):
+/// Flow through an orifice and a line with laminar loss [m3/s], Q = G sgn(P) sqrt(|P - R Q|):
 /// 2 G P / (G R + sqrt((G R)^2 + 4 |P|)).
 ///
 /// @param head_pa      P, of orifice and line together

@@ -57,7 +57,7 @@ struct StoredDifference {
   std::optional<bool> significant;
   std::optional<std::string> reason;  ///< why it is not tested
   Omittable<bool> of_other_dates;     ///< the error includes what differs between days
-  /// Part of the error that is by small effects which both models leave out.
+  /// Part of the error due to small effects that both models leave out.
   Omittable<double> by_effects;
   RIGCAL_DESCRIBE(difference, percent, standard_error, degrees_of_freedom, p_value, p_value_of_all,
                   significant, reason, of_other_dates, by_effects)

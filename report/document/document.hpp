@@ -53,7 +53,7 @@ struct Strong {
 struct Code {
   std::string words;
 };
-/// What only a page has room for, or a picture.
+/// Text that only a page has room for, or that explains a picture.
 struct Aside {
   std::string words;
 };
@@ -265,7 +265,7 @@ struct Document {
   Verdict verdict;
   Blocks front = {};  ///< below the verdict, on the page that is signed
   std::vector<Section> sections = {};
-  bool synthetic = false;  ///< its records are
+  bool synthetic = false;  ///< whether its records are synthetic
 };
 
 }  // namespace rigcal::report::doc

@@ -214,7 +214,7 @@ void add(const Heading& heading, std::string& page) {
   page += fmt::format("<h{0}>{1}</h{0}>\n", heading.level, html(heading.line));
 }
 
-/// Nobody reads more reasons or warnings; those who make a list begin with the gravest.
+/// Most items of a list on a page; nobody reads more. Lists begin with the gravest.
 constexpr std::size_t kMostItems = 100;
 
 void add(const List& list, std::string& page) {
@@ -356,7 +356,7 @@ void add(const LiveSeries& series, std::string& page) {
   page += "<script type=\"application/json\" class=\"series\">" + series.json + "</script>\n";
 }
 
-/// One stream of so many sketches is unpacked when a reader opens any of them.
+/// Sketches in one packed stream. Opening one of them unpacks the stream.
 constexpr std::size_t kSketchesInStream = 40;
 
 void add(const Sketches& all, std::string& page) {

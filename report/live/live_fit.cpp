@@ -123,7 +123,7 @@ Json limits_of(const calib::ConditionScore& score, datasets::Channel channel) {
   return limits;
 }
 
-/// What was measured in a case.
+/// Measured means of a case.
 struct MeasuredCase {
   struct Measured {
     datasets::Channel channel;
@@ -152,7 +152,7 @@ MeasuredCase measured_case(const calib::ConditionScore& score) {
   return found;
 }
 
-/// @param every  of so many samples one is taken
+/// @param every  one sample in this many is taken
 Json json_of(const MeasuredCase::Measured& measured, std::size_t every) {
   std::vector<double> taken;
   taken.reserve(measured.mean->size() / every + 1);

@@ -10,7 +10,7 @@
 
 namespace rigcal::report {
 
-/// A result of a folder.
+/// A result in a folder.
 struct ResultDocument {
   std::string file;  ///< the result itself: "fit.json"
   doc::Document document;

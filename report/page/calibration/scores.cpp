@@ -95,7 +95,7 @@ doc::Tile summary_of(const std::vector<const StoredCondition*>& conditions,
   return tile;
 }
 
-/// More conditions than this in one cell are summed up.
+/// A cell with more conditions shows their number and the worst of them.
 constexpr std::size_t kMostTiles = 8;
 
 /// A table of signals by leak levels for each channel.

@@ -9,12 +9,12 @@ namespace {
 
 /// Each condition in full takes about 200 kB of a page and half a printed sheet.
 constexpr std::size_t kMostInFull = 40;
-/// Of more than that, so many show what is wrong; the others are sketches.
+/// With more conditions than that, this many are shown in full; the others are sketches.
 constexpr std::size_t kInFullOfMany = 20;
 /// Periods that a small picture has room for.
 constexpr double kPeriods = 2.0;
 
-/// Larger is worse.
+/// Orders conditions: the largest value is the worst condition.
 auto badness(const StoredCondition& condition) {
   const bool unusable = condition.failure.has_value() || condition.not_scored.has_value();
   double used = 0.0;
