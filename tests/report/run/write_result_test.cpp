@@ -23,7 +23,8 @@ TEST_CASE("written result: the JSON comes last, and names the others", "[report]
   const Json fit = Json::parse(written.json);
   REQUIRE(fit["provenance"]["files"].size() == 8);
   for (const Json& file : fit["provenance"]["files"])
-    CHECK(sha256_of_file(out / file["path"].get<std::string>()) == file["sha256"]);
+    CHECK(sha256_of_file(out / file["path"].get<std::string>()) ==
+          file["sha256"].get<std::string>());
   // What a terminal shows is what the page shows.
   REQUIRE(written.documents.size() == 1);
   CHECK(doc::render_terminal(written.documents[0], {}) ==
