@@ -30,7 +30,7 @@ struct Rig {
   double reference_m = 0.0;
   double amplitude_m = 0.0;
   double omega = 0.0;  ///< angular frequency of a sine; 0: the reference is constant or a line
-  double slope = 0.0;  ///< of the line [m/s], which begins at begin_s
+  double slope = 0.0;  ///< slope [m/s] of the line that begins at begin_s
   double begin_s = 0.0;
 
   T signed_root(const T& p) const { return p / sqrt(sqrt(p * p + 1e8)); }
@@ -70,7 +70,7 @@ struct Drive {
   double duration_s = 0.0;
   double segment_s = 0.0;
   double longest_step_s = std::numeric_limits<double>::infinity();
-  double first_step_s = std::numeric_limits<double>::infinity();  ///< of a segment, at most
+  double first_step_s = std::numeric_limits<double>::infinity();  ///< upper limit, in each segment
 };
 
 Drive drive_of(const Reference& signal) {

@@ -24,7 +24,7 @@ std::vector<double> simulate(const Reference& signal, const Values& factors, dou
 std::vector<double> simulate_with_sensitivities(const Reference& signal, const Values& factors,
                                                 double tolerance);
 
-/// A reference that was recorded at 1 kHz, held from sample to sample or joined by lines.
+/// A reference that was recorded at 1 kHz: constant between samples, or joined by lines.
 struct Recorded {
   std::vector<double> reference_m;
   bool linear = false;

@@ -1,5 +1,5 @@
 // How often 95 % intervals hold the truth where the rig has a small effect that the fitted model
-// lacks, and how often a plain PASS stands beside an interval that misses it by more than three
+// lacks, and how often a plain PASS comes with an interval that misses it by more than three
 // half widths (false assurance). The records are those of bench/foreign_rig.hpp, which shares no
 // line with the product. Prints the second table of docs/uncertainty.md.
 #include <fmt/format.h>
@@ -123,7 +123,8 @@ std::vector<Row> rows(int repeats) {
   const auto detectable = detectable_sizes(repeats);
   for (const ForeignEffect& each : kEffects) {
     const auto size = detectable.find(each.name);
-    // What acts as an estimate does, a hose as the bulk modulus, is never told from it.
+    // An effect that acts as an estimate does (a hose as the bulk modulus) is never separated from
+    // it.
     constexpr double kNeverFound = 10.0;
     if (size == detectable.end() || size->second > kNeverFound * each.plausible) continue;
     for (const double factor : {0.3, 1.0, 3.0}) {

@@ -1,7 +1,7 @@
 // Simulation-based calibration of the posterior (Talts et al., arXiv:1804.06788): truths are drawn
 // from the prior, records are made from them, and the rank of each truth among the draws of its
 // posterior must be uniform. Prints the table of docs/uncertainty.md. With --speed it samples the
-// six signals of the speed tests instead, and tells CPU time and effective draws. With --replay it
+// six signals of the speed tests instead, and prints CPU time and effective draws. With --replay it
 // answers lines of unit-box coordinates by the logarithm of the density at them, for samplers in
 // other languages (bench/ensemble.py).
 #include <fmt/format.h>

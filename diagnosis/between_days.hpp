@@ -19,7 +19,7 @@ enum class DaySource { usual, stated, estimated };
 /// quantity; they are independent, with the standard deviations of the quantities.
 struct BetweenDays {
   std::vector<calib::DayQuantity> quantities;
-  std::vector<std::string> days;  ///< a date, or what stands for one
+  std::vector<std::string> days;  ///< a date, or the text in its place
   DaySource source = DaySource::usual;
   double variance =
       1.0;  ///< factor on the variances of the quantities, estimated from healthy days
@@ -70,12 +70,12 @@ struct HealthyDay {
   double days_variance = 0.0;  ///< that the days would cause at the usual sizes
 };
 
-/// Least number of dates of healthy records that tell how days differ.
+/// Least number of dates of healthy records from which the variation between days is estimated.
 inline constexpr int kLeastHealthyDates = 4;
 
 /// Takes the factor on the variances from healthy averages: their squares less their own errors,
-/// over what the usual sizes would cause, weighted by what each tells. Unless the campaign states
-/// sizes, or has too few dates.
+/// over what the usual sizes would cause, weighted by the information in each. Unless the campaign
+/// states sizes, or has too few dates.
 void estimate_days(const std::vector<HealthyDay>& healthy, BetweenDays& between);
 
 /// What was taken, in words: "records of 2026-03-02 are of another day than the reference ...".

@@ -7,13 +7,14 @@
 namespace rigcal::diagnosis {
 namespace {
 
-/// The largest component of noise scatters about the edge; this much above it stands out. (A weak
-/// cause that is missed raises alarms; noise taken for a cause makes a threshold a little higher.)
+/// The largest component of noise scatters about the edge; this much above it is significant. (A
+/// weak cause that is missed raises alarms; noise taken for a cause makes a threshold a little
+/// higher.)
 constexpr double kBeyondEdge = 1.05;
 /// Autocorrelations below this are those of noise.
 constexpr double kNoCorrelation = 0.05;
 
-/// Number of independent squares that tell a variance as well as the samples of all columns do:
+/// Number of independent squares that estimate a variance as precisely as all samples do:
 /// n / (1 + 2 sum rho^2), up to the first autocorrelation that is none.
 double independent_samples(const Eigen::MatrixXd& series) {
   const Eigen::Index n = series.rows();

@@ -314,7 +314,7 @@ std::vector<std::string> days_off_reference(const Campaign& campaign,
   return days;
 }
 
-/// What healthy averages tell of the days.
+/// Quantities of the days on which healthy averages were recorded.
 std::vector<HealthyDay> healthy_days(const Campaign& campaign,
                                      const std::vector<RecordDiagnosis>& records,
                                      const std::map<std::string, SignalErrors>& errors) {
@@ -370,7 +370,7 @@ Diagnosis diagnose(const Campaign& campaign, const std::vector<datasets::RepeatR
         between_days_of(campaign, rig_values(problem), shortest_interval(records));
   problem.day_quantities = result.between_days.quantities;
   std::vector<Task> tasks;
-  std::vector<std::size_t> begin;  // of each condition among the tasks
+  std::vector<std::size_t> begin;  // index of each condition among the tasks
   for (const Prepared& each : prepared) {
     begin.push_back(tasks.size());
     for (int single = -1; single < static_cast<int>(each.records->singles.size()); ++single)

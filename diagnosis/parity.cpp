@@ -369,7 +369,7 @@ class Work {
   const std::vector<RepeatRecords>& records_;
   const ParityOptions& options_;
   Parity& result_;
-  // Of the signal that is being judged.
+  // Belongs to the signal that is being judged.
   HealthyScatter scatter_;
   std::vector<const Condition*> conditions_;  ///< one for each reference
 };

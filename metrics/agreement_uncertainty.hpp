@@ -24,7 +24,7 @@ struct MeasuredMean {
 struct ScoreUncertainty {
   /// The score is falsely better by more in at most 2.5 % of cases: the guard band of a limit.
   Agreement one_sided;
-  /// The score differs by no more, in either direction, in 95 %: what stands behind +-.
+  /// The score differs by no more, in either direction, in 95 %: printed after +-.
   Agreement two_sided;
 };
 
@@ -44,7 +44,7 @@ struct ScoreUncertainty {
 /// a limit that is kept in spite of it is kept. Two-sided it is: by the bias of the jackknife, of
 /// the score (fractions such as rho2), or of its square (rms and absolute errors), as the noise
 /// enters. The largest error moves by no more than the largest noise of the
-/// mean, which the largest deviation of the repeats tells: it adds as a square.
+/// mean, estimated by the largest deviation of the repeats; its square is added.
 ///
 /// @return nothing with fewer than two repeats, if all are equal (copies carry no information), or
 ///         if a score does not exist without one of them

@@ -45,7 +45,7 @@ void add_print_options(CLI::App& verb, PrintOptions& options);
 void add_force_option(CLI::App& verb, bool& force);
 void add_campaign_options(CLI::App& verb, CampaignOptions& options);
 
-/// Terms on which a verb holds its folder of results.
+/// How a verb takes its folder of results.
 report::Holding holding(std::string verb, bool force, const PrintOptions& print);
 
 /// Columns of the terminal behind a stream; 0 if it is redirected.

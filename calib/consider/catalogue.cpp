@@ -437,7 +437,8 @@ std::optional<Channel> sensor_channel(std::string_view key) {
 }
 
 Eigen::VectorXd reading_error(const Effect& effect, const Eigen::VectorXd& reading, double size) {
-  const Eigen::ArrayXd turn = (reading.array() - effect.middle) / effect.range;  // of the range
+  const Eigen::ArrayXd turn =
+      (reading.array() - effect.middle) / effect.range;  // fraction of the range
   if (effect.kind == EffectKind::bow) return size * (2.0 * turn).square();
   if (effect.kind == EffectKind::wave) return size * (2.0 * std::numbers::pi * turn).sin();
   return with_play(reading, size) - reading;

@@ -269,8 +269,8 @@ bool take_again(const Problem& problem, std::span<const double> z, const Uncerta
   return true;
 }
 
-/// Sizes of the effects and move of the estimate where the effects are not small against what the
-/// linear model holds for: simulations with all of them, at moved parameters, in place of the
+/// Sizes of the effects and move of the estimate where the effects exceed the range in which the
+/// linear model is accurate: simulations with all of them, at moved parameters, in place of the
 /// secants, the sensitivities being those of the fit (chord iterations). With the sizes come the
 /// scores and the residuals as they would be if all were linear about the optimum.
 ///
@@ -703,7 +703,7 @@ void consider_effects(const Problem& problem, std::span<const double> z, const U
   double scale = 1.0;
   if (!effects.empty()) {
     seen = look_at(std::move(effects), columns, found);
-    // White noise tells well enough at which size to take a secant.
+    // White noise is accurate enough to choose the size of a secant.
     sizes = sizes_of(*seen, white_covariance(*seen));
     for (int i = 0; i < kMostSecants; ++i) {
       if (!take_again(problem, z, found, sizes, threads, cancel, *seen, columns)) break;

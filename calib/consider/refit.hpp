@@ -18,7 +18,7 @@ inline constexpr std::size_t kMostRefitted = 64;
 /// Minimum of a problem with some effects as further unknowns.
 struct Refit {
   std::vector<double> z;
-  Eigen::VectorXd sizes;       ///< of the effects over their plausible sizes
+  Eigen::VectorXd sizes;       ///< effects, as multiples of their plausible sizes
   Eigen::MatrixXd covariance;  ///< (J^T J)^-1, unknowns in the unit box, then effects
   double squares = 0.0;        ///< sum of the squared weighted residuals and priors
   /// The same sum for each condition, predicted from the others to first order; absent with one

@@ -28,7 +28,7 @@ const FittedParameter* same_unknown(const std::vector<FittedParameter>& paramete
   return found == parameters.end() ? nullptr : &*found;
 }
 
-/// Where neither repeats nor `sd` tell a noise, the residual at the fit's values does.
+/// Without repeats and without `sd` the noise comes from the residual at the fit's values.
 void weigh_by_residuals(const Evaluation& at, Problem& problem) {
   for (std::size_t i = 0; i < problem.conditions.size(); ++i) {
     auto& channels = problem.conditions[i].channels;

@@ -60,8 +60,8 @@ class ShiftedDense {
   double least_ = 0.0;
 };
 
-/// The same of an arrow: own unknowns are eliminated, by the eigenvectors of their blocks, and the
-/// eigenvalues of what is left of the shared ones tell the rest.
+/// The same of an arrow: own unknowns are eliminated by the eigenvectors of their blocks; the rest
+/// are eigenvalues of the reduced matrix of the shared ones.
 class ShiftedArrow {
  public:
   explicit ShiftedArrow(const ArrowSquare& b)

@@ -217,8 +217,8 @@ bool is_comparable(const datasets::Condition& condition, const datasets::Conditi
          condition.specimen == of.specimen;
 }
 
-/// What the campaign's own signals would tell in the time of the test: each counts with its share
-/// of their time, by sample, so that records of other rates compare.
+/// Information from the campaign's own signals in the time of the test. Each gets its fraction
+/// of that time, by sample, so that records of other rates compare.
 void add_own_signals(const Campaign& campaign, const std::vector<Record>& records,
                      const std::vector<datasets::FittedValue>* values, int threads,
                      Design& design) {

@@ -57,14 +57,15 @@ struct DesignOptions {
   std::function<void(datasets::DriveFamily, int, int)> progress = {};
 };
 
-/// Looks for the drive that tells most about the named parameters (datasets::DesignSettings); all
-/// other unknowns are estimated beside them. The same numbers for any number of threads.
+/// Looks for the drive that is most informative about the named parameters
+/// (datasets::DesignSettings); all other unknowns are estimated beside them. The same numbers for
+/// any number of threads.
 ///
 /// @param records  of the campaign's own conditions that have one
 /// @param names    keys of parameters that are fitted: "bulk_modulus"
 /// @param values   of an earlier fit, or null: the campaign's own
 /// @throws InputError, UsageError  no [design]; an unknown name, or one that is not fitted; noise
-///                     that nothing tells; a limit that the rig breaks at rest
+///                     that no record determines; a limit that the rig breaks at rest
 /// @throws NoResultError  the rig cannot be simulated, or no drive that was tried keeps the limits
 /// @throws Error  stopped before there was any drive
 Design design(const datasets::Campaign& campaign, const std::vector<datasets::Record>& records,

@@ -17,7 +17,7 @@ namespace rigcal::calib {
 /// Noise of a sample of one repeat, SI: that of [design], the channel's `sd`, that of [synthetic],
 /// or that of the records.
 ///
-/// @throws InputError  nothing tells it
+/// @throws InputError  the noise is unknown
 std::map<datasets::Channel, double> noise_of_one_repeat(
     const datasets::Campaign& campaign, const std::vector<datasets::Record>& records);
 

@@ -101,7 +101,7 @@ double autocovariance_at(const std::vector<double>& chain, double mean, std::siz
   return sum / static_cast<double>(chain.size());
 }
 
-/// Of split chains: Geyer's initial monotone sequence over all of them.
+/// Effective sample size of split chains: Geyer's initial monotone sequence over all of them.
 double effective_of(const Chains& chains) {
   const auto count = static_cast<double>(total(chains));
   const std::size_t draws = chains.front().size();

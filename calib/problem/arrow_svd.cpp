@@ -47,7 +47,7 @@ ArrowSvd::ArrowSvd(const Linearisation& system, double threshold)
   VectorXd residual(left);
   jacobian.topRows(system.jacobian.rows()) = system.jacobian;
   residual.head(system.jacobian.rows()) = system.residual;
-  // What the own unknowns of a condition cannot follow tells the shared ones.
+  // The residual that a condition's own unknowns cannot follow determines the shared ones.
   Index row = system.jacobian.rows();
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     if (!blocks_[i].svd) continue;

@@ -80,7 +80,7 @@ struct Problem {
   double coarse_tolerance() const;
   /// Options of a simulation at the smallest tolerance, with the campaign's method and time limit.
   model::SimulationOptions simulation_options(const std::atomic<bool>* cancel = nullptr) const;
-  /// Options of a simulation whose derivatives tell how uncertain something is: a thousandth of
+  /// Options of a simulation whose derivatives serve an uncertainty: a thousandth of
   /// their size is nothing there.
   model::SimulationOptions derivative_options(std::size_t condition) const;
   /// Fraction of all residuals within the horizon of a fidelity.

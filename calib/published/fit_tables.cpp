@@ -27,7 +27,8 @@ constexpr int kMostCalls = 10;
 constexpr double kTablesTrustRadius = 10.0;
 /// The flows themselves are good to 2e-4 only.
 constexpr double kTablesTolerance = 1e-6;
-constexpr double kRankThreshold = 1e-6;  ///< of singular values, columns scaled to length 1
+constexpr double kRankThreshold =
+    1e-6;  ///< smallest over largest singular value, columns of length 1
 
 std::vector<double> values_at(const std::vector<UnitInterval>& intervals,
                               std::span<const double> z) {

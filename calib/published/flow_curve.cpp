@@ -11,7 +11,7 @@
 namespace rigcal::calib {
 namespace {
 
-/// Of ln coefficient: well below the resolution of three printed digits, above the noise of the
+/// Width of a root in ln coefficient: well below three printed digits, above the noise of the
 /// flows.
 constexpr double kRootWidth = 1e-4;
 /// Bisection alone would come from two decades to the root's width in sixteen.

@@ -23,9 +23,9 @@ struct ChannelScore {
   datasets::Channel channel = datasets::Channel::position;
   std::optional<metrics::Agreement> agreement;     ///< absent: see `problem`
   std::optional<metrics::NoiseFloor> noise_floor;  ///< absent where the noise is unknown
-  /// Of each score, from repeats and sensor; absent with fewer than two repeats.
+  /// One-sided, from repeats and sensor; absent with fewer than two repeats.
   std::optional<metrics::Agreement> expanded_uncertainty;
-  /// The same two-sided: what stands behind +-.
+  /// Two-sided, as printed after +-.
   std::optional<metrics::Agreement> two_sided_uncertainty;
   std::optional<double> gain_ratio, phase_deg, delay_s;  ///< at the fundamental (sine, square)
   std::string problem;                                   ///< why a metric does not exist, in words

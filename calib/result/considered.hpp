@@ -57,7 +57,7 @@ struct Budget95 {
 struct RefittedModel {
   std::vector<std::size_t> effects;  ///< positions; none: the model as it is
   std::vector<double> sizes;         ///< SI
-  double fall = 0.0;                 ///< of the sum of the squared residuals
+  double fall = 0.0;                 ///< decrease of the sum of squared residuals
   /// The same for conditions that are each predicted from the others; absent with one condition.
   std::optional<double> held_out_fall;
   double weight = 0.0;  ///< weight of its estimates in the average (Akaike)

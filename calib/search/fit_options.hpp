@@ -22,8 +22,8 @@ struct FitOptions {
   std::uint64_t seed = 1;               ///< for the latin hypercube
   int threads = 1;                      ///< results are the same bits for any number
   int max_iterations = 200;             ///< per start
-  std::optional<long> max_evaluations;  ///< of all residuals, of the whole job; then: `stopped`
-  std::optional<double> max_seconds;    ///< of the whole job; then: status `stopped`
+  std::optional<long> max_evaluations;  ///< limit for the whole job; then: `stopped`
+  std::optional<double> max_seconds;    ///< limit for the whole job; then: `stopped`
   bool consider = true;                 ///< the small effects that the model leaves out
   int bootstrap = 0;                    ///< replicates, each fitted from the optimum; 0: none
   int posterior = 0;                    ///< draws of each chain of the posterior; 0: none

@@ -19,7 +19,7 @@ constexpr double kValley = 0.1;
 /// A parameter is named if it has at least this fraction of the squared direction of a valley.
 constexpr double kPart = 0.1;
 
-/// Unknowns of the direction in which most of the remaining step lies, if that is a valley; else
+/// Unknowns of the direction in which most of the remaining step points, if that is a valley; else
 /// empty.
 std::vector<std::size_t> valley(const Problem& problem, Linearisation system,
                                 const OptimumCheck& check) {

@@ -18,7 +18,7 @@
 namespace rigcal::calib {
 namespace {
 
-/// Of all unknowns that have an error but those that a condition has for itself where there are
+/// Correlation of all unknowns that have an error, except a condition's own ones where there are
 /// many: their number squared would be most of a result.
 void add_correlation(const Problem& problem, const Uncertainty& found, Fit& fit) {
   std::vector<Eigen::Index> rows;
@@ -136,7 +136,7 @@ void add_remedies(const Problem& problem, const Evaluation& optimum,
   constexpr int kMostTried = 4;  // each takes the simulations of some records
   int tried = 0;
   const Linearisation system = linearise(problem, optimum);
-  if (!system.own.empty()) return;  // what is tried is held dense over all unknowns
+  if (!system.own.empty()) return;  // the trial uses a dense matrix over all unknowns
   for (std::size_t j = 0; j < parameters.size() && tried < kMostTried; ++j) {
     FittedParameter& each = parameters[j];
     if (each.nuisance || each.identifiability != Identifiability::not_identifiable) continue;

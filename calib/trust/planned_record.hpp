@@ -18,7 +18,7 @@ std::vector<datasets::Channel> compared_channels(const datasets::Campaign& campa
 /// repeats, or that of the records; with `planned_repeats` that of a single repeat divided by its
 /// root.
 ///
-/// @throws InputError  nothing tells it
+/// @throws InputError  the noise is unknown
 double planned_sd(const datasets::Campaign& campaign, const datasets::Condition& condition,
                   datasets::Channel channel, const std::vector<datasets::Record>& records);
 

@@ -189,7 +189,7 @@ void add_to(const Problem& problem, std::size_t i, std::span<const double> z,
   for (std::size_t j = 0; j < estimates.size(); ++j) {
     const int index = estimates[j].index;
     if (!acts(problem, condition, estimates[j])) continue;
-    // A value of the condition or level goes before that of the rig: it stands behind it here.
+    // A value of the condition or level replaces that of the rig, so it comes later here.
     const auto same = std::find(free.begin(), free.end(), index);
     if (same == free.end()) {
       free.push_back(index);

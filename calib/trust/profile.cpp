@@ -319,7 +319,7 @@ void profiles(const Problem& problem, const std::vector<datasets::Record>& recor
                     below && above ? "on both sides" : (above ? "above" : "below"),
                     profile.low.value.value_or(profile.low.reached), unit,
                     profile.high.value.value_or(profile.high.reached), unit));
-    // A bound within `ci95` cuts off what the records tell; beyond it they tell less than it says.
+    // A bound within `ci95` is tighter than the records; a bound beyond it is looser.
     const double half_width = parameter.ci95_if_exact
                                   ? std::max(parameter.ci95_if_exact->second - parameter.value,
                                              parameter.value - parameter.ci95_if_exact->first)

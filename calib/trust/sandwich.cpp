@@ -117,7 +117,7 @@ ArrowMatrix total_of(const ArrowMatrix& priors, const std::vector<ChannelNoise>&
 }
 
 /// Autoregressions of all channels, corrected for what the fit has removed. The rows of a channel
-/// are taken twice: those of all of them at once would be the most memory that a fit holds.
+/// are taken twice: all of them at once would be the largest memory of a fit.
 std::vector<ChannelNoise> noise_models(const std::vector<ScoreRows>& rows,
                                        const ArrowMatrix& priors, int threads) {
   std::vector<ChannelNoise> channels = channels_of(rows);
@@ -138,7 +138,7 @@ std::vector<ChannelNoise> noise_models(const std::vector<ScoreRows>& rows,
     std::vector<double>& gamma = each.gamma;
     const auto removed =
         bias(own, each.noise, total.of(each.condition), static_cast<Index>(gamma.size()) - 1);
-    // More than half taken away: the fit has left too little to tell the noise by.
+    // More than half taken away: the fit has left too little to estimate the noise from.
     if (removed.front() < 0.5 * (gamma.front() + removed.front())) {
       for (std::size_t h = 0; h < gamma.size(); ++h) gamma[h] += removed[h];
       // Far from an optimum residuals are not the noise that the correction supposes.

@@ -62,8 +62,8 @@ std::vector<ScoreScatter> score_scatter(const std::vector<ScoreRows>& rows,
                                         const ArrowMatrix& priors, const ArrowRoot& combinations,
                                         int threads = 1);
 
-/// Degrees of freedom with which a condition knows its part of the variance of an unknown. What it
-/// tells of an own unknown of another condition it tells by way of the shared ones: the least of
+/// Degrees of freedom of a condition's part in the variance of an unknown. For an own unknown of
+/// another condition that part comes through the shared unknowns, and the result is the least of
 /// theirs.
 double freedom_in(const ScoreScatter& scatter, const ArrowRoot& combinations, Eigen::Index unknown,
                   std::size_t condition);

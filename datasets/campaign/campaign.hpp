@@ -158,7 +158,7 @@ enum class SpikeTreatment { report, exclude };
 
 enum class Loss { squared, huber, cauchy, soft_l1 };
 
-/// Draws of each chain of the posterior: fewer tell no quantiles.
+/// Draws of each chain of the posterior: fewer give no quantiles.
 inline constexpr int kLeastPosteriorDraws = 100;
 inline constexpr int kMostPosteriorDraws = 100'000;
 

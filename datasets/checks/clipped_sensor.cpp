@@ -21,7 +21,8 @@ constexpr std::size_t kFewestDips = 10;
 constexpr double kShareOfStep = 0.5;
 constexpr double kFallSteps = 2.0;  // one of a converter's rounding is not enough
 
-/// Typical duration of a value that is not extreme: 1, or more if samples are held.
+/// Typical duration of a value that is not extreme: 1, or more where a converter repeats its
+/// samples.
 double typical_length(const std::vector<EqualRun>& runs, double low, double high) {
   std::size_t count = 0;
   std::size_t samples = 0;

@@ -108,7 +108,7 @@ ColumnGuess guess_column(const std::string& name) {
     guess.unit = unit->unit;
     own.replace(unit->begin, unit->end - unit->begin, " ");
   }
-  // Of a path only the last part names the quantity.
+  // Only the last part of a path names the quantity.
   if (own.starts_with('/')) own = own.substr(own.rfind('/') + 1);
   for (const char before : {'!', '.'}) own = own.substr(own.rfind(before) + 1);
   std::vector<std::string> words;

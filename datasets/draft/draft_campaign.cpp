@@ -59,7 +59,7 @@ struct FileColumns {
   std::string time_unit;
   std::vector<ChannelColumns> channels;
   std::vector<std::string> unknown;
-  std::map<std::string, std::string> units;  ///< of `unknown`, where the file gives one
+  std::map<std::string, std::string> units;  ///< unit of `unknown`, where the file gives one
   /// Lines of a matrix behind its time, which have no names: rows of an array of Simulink's "To
   /// File", or columns.
   std::vector<std::string> rows;

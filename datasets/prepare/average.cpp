@@ -26,7 +26,7 @@ struct Stack {
   std::vector<std::vector<double>> rows;
 };
 
-/// A held signal must not ring at its edges; a measured one must keep its noise and amplitude.
+/// A drive must not ring at its edges; a measured signal must keep its noise and amplitude.
 Interpolator interpolator_of(Channel channel) {
   return is_drive(channel) ? Interpolator::linear : Interpolator::band_limited;
 }

@@ -11,8 +11,8 @@ namespace rigcal::datasets {
 /// Inserts the missing samples of a repeat if the campaign bridges holes (`holes = "bridge"`). A
 /// step of time between 1.5 times the median and `longest_hole` gets as many evenly spaced samples
 /// as are missing. They are marked as `bridged` and are compared with nothing. Their values, a line
-/// between the neighbours or a held input, only keep filters and shifts going. Does nothing if the
-/// campaign does not bridge holes.
+/// between the neighbours or a constant input, only keep filters and shifts going. Does nothing if
+/// the campaign does not bridge holes.
 ///
 /// @throws InputError  more samples are missing than the record has
 void bridge_holes(const Campaign& campaign, Repeat& repeat);

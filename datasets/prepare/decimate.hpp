@@ -28,8 +28,8 @@ AntiAliasFilter anti_alias_filter(std::size_t factor);
 /// through its last sample, which continues a slope.
 std::vector<double> decimated(const std::vector<double>& x, const AntiAliasFilter& filter);
 
-/// Mean of each `factor` samples from k * factor on. A held signal keeps its integral, and an edge
-/// its place, without the ringing of a sharp filter.
+/// Mean of each `factor` samples from k * factor on. A piecewise constant signal keeps its
+/// integral, and an edge its place, without the ringing of a sharp filter.
 std::vector<double> decimated_hold(const std::vector<double>& x, std::size_t factor);
 
 /// Whole factor between the sample rate of a record and a wanted rate, 1 if it is no denser.

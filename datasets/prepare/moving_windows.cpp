@@ -11,12 +11,13 @@ namespace {
 
 constexpr double kHeldShare = 0.02;         // fraction of the command's range
 constexpr double kStepShare = 0.05;         // fraction of the command's range
-constexpr double kLongestRise = 0.1;        // fraction of the time that the command is held
+constexpr double kLongestRise = 0.1;        // fraction of the time in which the command is constant
 constexpr double kLeastTravelShare = 0.05;  // fraction of the range of positions
 constexpr double kArrivedShare = 0.01;      // fraction of the travel
 constexpr double kNoiseFactor = 6.0;        // standard deviations
 constexpr double kSpreadFactor = 2.0;       // standard deviations over the repeats
-constexpr double kTailShare = 0.05;  // fraction of a held command that shows where the motion ends
+constexpr double kTailShare =
+    0.05;  // fraction of a constant command that shows where the motion ends
 constexpr std::size_t kFewestHeld = 5;  // samples
 
 /// Samples [begin, end).
@@ -71,7 +72,7 @@ std::vector<SampleSpan> held_levels(std::span<const double> command) {
   return levels;
 }
 
-/// Held levels that a step leads to, from the first sample that leaves the level before.
+/// Constant levels that a step leads to, from the first sample that leaves the level before.
 std::vector<SampleSpan> stepped_levels(std::span<const double> time_s,
                                        std::span<const double> command) {
   const double least =
@@ -93,7 +94,7 @@ std::vector<SampleSpan> stepped_levels(std::span<const double> time_s,
   return stepped;
 }
 
-/// Motion of the piston under one held command; empty if it stayed.
+/// Motion of the piston under one constant command; empty if it stayed.
 std::vector<Motion> motion_in(SampleSpan held, std::span<const double> time_s,
                               std::span<const double> position_m, std::span<const double> spread_m,
                               double least_travel_m, double noise_m) {

@@ -11,19 +11,19 @@ namespace rigcal::datasets {
 struct Motion {
   TimeWindow window;      ///< first sample of the new command to the first sample at the stop
   double from_m = 0.0;    ///< position at the step
-  double to_m = 0.0;      ///< position at the end of the held command
+  double to_m = 0.0;      ///< position at the end of the constant command
   bool arrived = false;   ///< false: still moving where the command changes or the record ends
   double margin_m = 0.0;  ///< distance from `to_m` that counts as arrived
 };
 
 /// Motions of a record, from its own samples.
 ///
-/// A command is held while it stays within 2 % of its range, or six standard deviations of its
-/// noise, of its first sample. A step goes from one held level to another, by more than 5 % of the
-/// range, in less than a tenth of the time for which it is held afterwards. A sine or a ramp has no
-/// steps. The first held level counts, too, if the piston moves in it.
+/// A command is constant while it stays within 2 % of its range, or six standard deviations of its
+/// noise, of its first sample. A step goes from one such level to another, by more than 5 % of the
+/// range, in less than a tenth of the time for which the new level lasts. A sine or a ramp has no
+/// steps. The first level counts, too, if the piston moves in it.
 ///
-/// The piston moves under a held command if its end is farther from its start than 5 % of the
+/// The piston moves under a constant command if its end is farther from its start than 5 % of the
 /// record's range of positions and six standard deviations of the noise. It has arrived when it is
 /// first closer to the end than 1 % of the travel or twice the standard deviation over the repeats,
 /// whichever is larger: while only some repeats have arrived, their mean is no motion. Positions

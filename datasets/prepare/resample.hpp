@@ -7,7 +7,7 @@ namespace rigcal::datasets {
 
 enum class Interpolator {
   band_limited,  ///< sinc of 16 samples to each side under a Hann window
-  linear,        ///< no overshoot at the edges of a held signal
+  linear,        ///< no overshoot at the edges of a piecewise constant signal
 };
 
 /// y[i] = x(i + shift) for i = 0..samples-1; NaN outside x. A shift within 1e-6 of a whole number

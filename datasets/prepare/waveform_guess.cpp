@@ -90,7 +90,7 @@ void judge_periodic(std::span<const double> time_s, std::span<const double> sign
   guess.description = fmt::format("a {} of {:.4g} Hz", to_string(guess.waveform), f);
 }
 
-/// Describes the levels of a signal if it changes so rarely that it is held between steps.
+/// Describes the levels of a signal if it changes so rarely that it is constant between steps.
 std::string steps_text(std::span<const double> signal, const Level& level) {
   std::size_t steps = 0;
   for (std::size_t i = 1; i < signal.size(); ++i)

@@ -228,7 +228,7 @@ bool serves(const LeakRuns& runs, const calib::Problem& problem, model::Paramete
          runs.driving == driving_channels(condition);
 }
 
-/// What the simulations at the end of a fit tell of the record.
+/// Describes the record by the simulations at the end of a fit.
 void describe(const calib::Problem& problem, const RigFit& rig, const LeakProblem& leak_problem,
               int reference, const LeakRuns& runs, const LeakEffects* effects, LeakFit& fit) {
   const int leak_row = leak_problem.leak;
@@ -358,7 +358,7 @@ RigFit rig_fit_of(const calib::Fit& fit) {
     if (!p.fitted) continue;
     if (!p.nuisance) rig.values.push_back({p.index, p.scope, p.level, p.value});
     const bool of_rig = !p.nuisance && p.scope == datasets::Scope::rig;
-    if (p.standard_error && !p.correlated) continue;  // of a condition, and without a row
+    if (p.standard_error && !p.correlated) continue;  // a condition's own, without a row
     if (!p.standard_error || row >= fit.correlation.rows()) {
       if (!of_rig) continue;
       without_error.push_back(p.index);

@@ -16,10 +16,10 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
 from result_files import print_table  # noqa: E402
 
 RHO2, R, CCC = 0.9994, 0.9997, 0.9996
-ROUNDING = 0.5e-4  # of a percentage with two digits
-STEPS = 40  # of each score, from one end of its rounding to the other
+ROUNDING = 0.5e-4  # half the last digit of a percentage with two
+STEPS = 40  # points of each score, from one end of its rounding to the other
 PUBLISHED_PERCENT = 0.845
-# Of a residual a sin(.) + o and a measured sine of amplitude 1.
+# For a residual a sin(.) + o and a measured sine of amplitude 1.
 ERRORS = {
     "mean of \\|e\\| over peak to peak": lambda a, o: mean_magnitude(a, o) / 2.0,
     "mean of \\|e\\| over amplitude": lambda a, o: mean_magnitude(a, o),

@@ -78,9 +78,10 @@ X integral_rate(const X& error, const ControllerOutput<X>& u, const P& p) {
   return error * p.ki_v_per_m_s + (u.limited - u.wanted) * anti_windup_rate(p);
 }
 
-/// One tick of the sampled controller. The filter advances by backward Euler, the output is held
-/// until the next tick, and the integral advances by forward Euler with the same back-calculation.
-/// Back-calculation takes at least one period to reach the limit, so it cannot overshoot it.
+/// One tick of the sampled controller. The filter advances by backward Euler, the output is
+/// constant until the next tick, and the integral advances by forward Euler with the same
+/// back-calculation. Back-calculation takes at least one period to reach the limit, so it cannot
+/// overshoot it.
 template <typename X, typename State, typename P>
 void controller_tick(const LoopError<X>& loop, State& state, const P& p, const Layout& layout) {
   const X& error = loop.error;

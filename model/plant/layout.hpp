@@ -110,7 +110,7 @@ struct Layout {
   bool pressure_feedback = false;          ///< the load pressure is fed back inside the loop
   int integral = -1;                       ///< integral action [V]
   int filter = -1;                         ///< filtered error, in the unit of `feedback`
-  int held = -1;                           ///< output of a sampled controller, held [V]
+  int held = -1;  ///< output of a sampled controller, constant between ticks [V]
   PresentTerms terms;
   int states = 0;
 

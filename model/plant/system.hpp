@@ -400,7 +400,7 @@ class System {
     return linearise_by_calls(x, t);
   }
 
-  /// Command to the valve: the held output, the controller's output, or the recorded command.
+  /// Command to the valve: the sampled output, the controller's output, or the recorded command.
   template <typename K>
   Number<K> valve_command(K by, const Numbers<K>& x, const Number<K>& drive, double t) const {
     if (!layout_.pid) return drive;

@@ -109,7 +109,7 @@ Signal Signal::linear(std::vector<double> time_s, std::vector<double> value) {
 }
 
 // Segments. square: half period k (segment 0 also covers t < 0); shaped: the same with its pieces.
-// chirp: the sweep, then the constant end frequency. held, linear: segment 0 before the first
+// chirp: the sweep, then the constant end frequency. hold, linear: segment 0 before the first
 // sample, k + 1 from sample k.
 std::size_t Signal::segment_at(double t) const {
   switch (kind_) {

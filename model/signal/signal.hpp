@@ -46,7 +46,7 @@ class Signal {
   /// A sin(phase) whose frequency goes from f0 to f1 over `sweep_s`, then stays at f1.
   static Signal chirp(double amplitude, double start_hz, double end_hz, double sweep_s,
                       bool logarithmic);
-  /// Each sample is held until the next one (zero-order hold); the first also applies before its
+  /// Each sample lasts until the next one (zero-order hold); the first also applies before its
   /// time.
   static Signal held(std::vector<double> time_s, std::vector<double> value);
   /// Samples joined by straight lines, constant outside.

@@ -10,7 +10,7 @@
 
 namespace rigcal::model {
 
-/// Moves a state to the point at which the rig settles, with the inputs of its first sample held
+/// Moves a state to the point at which the rig settles, with the inputs of its first sample kept
 /// constant. Implicit Euler steps grow until they are Newton steps (pseudo-transient continuation;
 /// Kelley and Keyes, 1998). In an open loop the piston keeps its position and gets the speed of its
 /// command. Quantities that nothing restores, such as the mean pressure behind edges that do not

@@ -8,7 +8,7 @@ Results go to FOLDER (demo). Each cell begins with "# %%", as editors for notebo
 
 # %% [markdown]
 # The rig is the shake table of the source paper: 6 signals at 4 openings of the leak valve, 5 repeats each, sampled at
-# 1 kHz. Its parameters are known, so that the estimates can be held against the truth.
+# 1 kHz. Its parameters are known, so that the estimates can be compared with the truth.
 
 # %%
 import json

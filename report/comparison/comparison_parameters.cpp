@@ -159,7 +159,7 @@ std::set<std::string> fitted_dates(const Compared& compared) {
   return dates;
 }
 
-/// Whether two results are stated to be of different dates. Where one has no date nothing tells.
+/// Whether two results are stated to be of different dates. Unknown where one has no date.
 bool of_other_dates(const Compared& first, const Compared& other) {
   const auto a = fitted_dates(first);
   const auto b = fitted_dates(other);

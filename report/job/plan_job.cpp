@@ -30,7 +30,7 @@ std::vector<datasets::Record> records_of(const datasets::Campaign& campaign) {
   return records;
 }
 
-/// What the records tell; nothing where a design is asked for and the campaign has no condition.
+/// Plan from the records; empty where a design is asked for and the campaign has no condition.
 StoredPlan plan_of_records(const datasets::Campaign& campaign,
                            const std::vector<datasets::Record>& records,
                            const std::vector<datasets::FittedValue>* values, bool has_design,

@@ -12,15 +12,15 @@
 
 namespace rigcal::report {
 
-/// Of a fit or validation. Results of several kinds may be in one folder, so others have names of
-/// their own, which end alike.
+/// File of a fit or validation. Results of several kinds may be in one folder, so others have names
+/// of their own, which end alike.
 inline constexpr const char* kLiveFile = "live.json";
 inline constexpr const char* kLiveDiagnosisFile = "diagnosis_live.json";
 inline constexpr const char* kLiveLeakTableFile = "leak_table_live.json";
 
-/// Contents of live.json: the rig with the estimates, and conditions with their measured means, the
-/// held back and worst first. Nothing if no condition was scored, or if the search did not
-/// converge.
+/// Contents of live.json: the rig with the estimates, and conditions with their measured means,
+/// validation conditions and worst ones first. Nothing if no condition was scored, or if the search
+/// did not converge.
 std::optional<Json> live_fit(const Result& result);
 
 /// Contents of diagnosis_live.json: the healthy rig with the leak that was found in each average,

@@ -19,7 +19,7 @@ namespace {
 using Kind = doc::Column::Kind;
 
 constexpr std::size_t kDesignPoints = 1200;
-/// Bins of a spectrum per decade: narrow enough to tell the lines of a multisine apart.
+/// Bins of a spectrum per decade: narrow enough to separate the lines of a multisine.
 constexpr double kBinsPerDecade = 60.0;
 
 std::optional<double> half_width_percent(const std::optional<double>& sd, double value) {

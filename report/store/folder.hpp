@@ -27,7 +27,7 @@ struct PlannedFiles {
   std::vector<std::filesystem::path> folders;
 };
 
-/// Verb that holds a folder of results, and its terms.
+/// Verb that takes a folder of results, and how.
 struct Holding {
   std::string verb;
   bool force = false;  ///< also replace files that are not rigcal's, or that were changed
@@ -45,7 +45,7 @@ struct Holding {
 class HeldFolder {
  public:
   /// @throws WriteError  with path and reason
-  /// @throws UsageError  another run holds it
+  /// @throws UsageError  another run has taken it
   /// @throws InputError  the file in the place of its manifest is none
   HeldFolder(const std::filesystem::path& out, Holding holding);
   HeldFolder(const HeldFolder&) = delete;
@@ -110,7 +110,7 @@ void require_inputs_kept(const std::filesystem::path& out,
 /// disk leaves the files of an earlier run unchanged.
 class ResultsInWriting {
  public:
-  /// @param held, inputs  folder and inputs of the run; both outlive the object
+  /// Both arguments outlive the object.
   ResultsInWriting(HeldFolder& held, const std::vector<InputFile>& inputs)
       : held_(held), inputs_(inputs) {}
 

@@ -53,7 +53,7 @@ struct Estimates {
   Eigen::MatrixXd covariance;  ///< SI, by the larger of standard and robust error
   /// Those of conditions whose correlations are not stored, with their errors.
   std::map<std::string, std::vector<std::pair<calib::EstimateSpread::Estimate, double>>> own;
-  std::vector<const StoredBudget*> budgets;  ///< of `list`; null: none
+  std::vector<const StoredBudget*> budgets;  ///< parallel to `list`; null: none
   double widened = 1.0;  ///< the most by which an interval is wider than by its error
 };
 

@@ -13,10 +13,10 @@ constexpr std::size_t kMostNamed = 3;
 }  // namespace
 
 std::vector<std::string> gathered_by_text(
-    const std::vector<std::pair<std::string, std::string>>& told) {
+    const std::vector<std::pair<std::string, std::string>>& warnings) {
   std::vector<std::string> order;
   std::map<std::string, std::vector<std::string>> records;
-  for (const auto& [record, text] : told) {
+  for (const auto& [record, text] : warnings) {
     if (!records.contains(text)) order.push_back(text);
     records[text].push_back(record);
   }

@@ -138,7 +138,7 @@ TEST_CASE("recordings: all repeats of a condition end half way", "[apps]") {
     rows.resize(201);
     twin.write("sine", repeat, text_of_rows(rows));
   }
-  CHECK_THAT(twin.run("check").out, !Contains("warning"));  // nothing tells what was meant
+  CHECK_THAT(twin.run("check").out, !Contains("warning"));  // what was meant is unknown
   const std::string campaign = twin.folder.read("twin/campaign.toml");
   twin.folder.write("twin/campaign.toml",
                     replaced(campaign, "id = \"sine\"", "id = \"sine\"\nduration = \"2 s\""));

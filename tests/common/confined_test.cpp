@@ -134,7 +134,7 @@ TEST_CASE("confined: what ends the process ends the work", "[common]") {
   CHECK(::read(ends[0], &byte, 1) == 1);
   ::kill(process, SIGKILL);
   ::waitpid(process, nullptr, 0);
-  // It held the other end of the pipe.
+  // It had the other end of the pipe open.
   pollfd closed{ends[0], POLLIN, 0};
   REQUIRE(::poll(&closed, 1, 60'000) == 1);
   CHECK(::read(ends[0], &byte, 1) == 0);

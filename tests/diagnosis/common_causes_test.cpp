@@ -48,7 +48,7 @@ TEST_CASE("common_causes: noise has none, a sine that differs is one", "[diagnos
   }
   CHECK(in_noise <= 12);
   CHECK(found >= 90);
-  // 1.5^2 / 2, as far as four degrees of freedom in a hundred trials tell it.
+  // 1.5^2 / 2, within what four degrees of freedom in a hundred trials allow.
   CHECK(power > 0.85);
   CHECK(power < 1.45);
 }

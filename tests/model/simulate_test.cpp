@@ -338,7 +338,7 @@ TEST_CASE("simulate: sensor offsets shift their output and nothing else", "[mode
 
 TEST_CASE("simulate: equilibria stay put", "[model]") {
   CHECK(peak(ok(paper(Signal::constant(0.0))).outputs) == 0.0);
-  // Held by pressure against force and spring, at the recorded position less its offset.
+  // At rest under pressure, force and spring, at the recorded position less its offset.
   Experiment e = paper(Signal::constant(0.0));
   e.rig.initial = InitialState::given;
   e.inputs.drive = Signal::constant(0.02);

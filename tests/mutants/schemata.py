@@ -63,8 +63,8 @@ class Mutant:
     function: str = ""  # every function of this name in the file; empty: the whole file
     original: str = ""
     mutated: str | None = None
-    equivalent: str = ""  # why no test can tell, if none can
-    type: str = ""  # of both expressions, where the compiler needs to be told
+    equivalent: str = ""  # why no test can notice, if none can
+    type: str = ""  # common type of the expressions, where the compiler needs it
 
     @property
     def id(self):
@@ -310,7 +310,7 @@ def expression_around(text, begin, end):
         depth += (text[right] in OPEN) - (text[right] in CLOSE)
         right += 1
     if "," in inner and text[right] in CLOSE and text[left - 1] in OPEN:
-        return expression_around(text, left - 1, right + 1)  # of the call
+        return expression_around(text, left - 1, right + 1)  # the whole call
     if is_assignment(text, right):
         return None
     left += len(text[left:right]) - len(text[left:right].lstrip())

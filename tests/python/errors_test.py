@@ -178,7 +178,7 @@ def test_a_validation_of_what_is_no_fit(campaign: rigcal.Campaign, data: pathlib
     with pytest.raises(TypeError):
         campaign.validate(3)  # type: ignore[arg-type]
     with pytest.raises(rigcal.InputError, match="schema"):
-        campaign.validate(campaign.validate())  # of a validation, which estimated nothing
+        campaign.validate(campaign.validate())  # from a validation, which estimated nothing
 
 
 def test_a_parameter_that_is_not_there(fit: rigcal.Fit) -> None:

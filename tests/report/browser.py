@@ -45,7 +45,7 @@ class Browser:
         self.number = 0
         self.problems = []
         self.requests = []
-        self.contexts = {}  # of scripts, by frame
+        self.contexts = {}  # contexts of scripts, by frame
         self.loaded = False
         target = next(t for t in self.call("Target.getTargets")["targetInfos"] if t["type"] == "page")
         self.session = self.call("Target.attachToTarget", targetId=target["targetId"], flatten=True)["sessionId"]

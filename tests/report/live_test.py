@@ -199,7 +199,7 @@ def the_papers_rig(rigcal, sources, folder):
         check(browser.run("document.getElementById('live-of-mass').checkValidity()") is False, "a negative mass is taken")
         moved(browser, "document.getElementById('live-reset').click()")
         check(browser.run("document.getElementById('live-problem').hidden"), "a problem is left")
-        # Every field has a label, and assistive technology is told the numbers.
+        # Every field has a label, and assistive technology gets the numbers.
         unnamed = browser.run("[...document.querySelectorAll('#live input, #live select')].filter((n) => !n.labels.length && !n.getAttribute('aria-label')).length")
         check(unnamed == 0, f"{unnamed} fields without a name")
         browser.wait_for("document.getElementById('live-said').textContent.includes('servo flow')", "nothing is said")
@@ -297,7 +297,7 @@ def fitted_rigs(rigcal, sources, folder):
     replace_live("{")
     done = run(rigcal, "report", fit, "--force", cwd=folder, code=2)
     check("live.json" in done.stderr, done.stderr)
-    (fit / "live.json").write_text("{}")  # of another run
+    (fit / "live.json").write_text("{}")  # from another run
     done = run(rigcal, "report", fit, "--force", cwd=folder, code=2)
     check("live.json" in done.stderr, done.stderr)
     recordings = sources.parent / "shared" / "data"

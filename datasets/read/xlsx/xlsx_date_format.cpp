@@ -16,7 +16,7 @@ bool is_date_format(std::string_view code) {
   if (code == "General" || code == "GENERAL" || code == "Standard") return false;
   for (std::size_t i = 0; i < code.size(); ++i) {
     const char c = code[i];
-    if (c == '"') {  // text as it stands
+    if (c == '"') {  // literal text
       i = code.find('"', i + 1);
       if (i == std::string_view::npos) return false;
     } else if (c == '\\' || c == '_' || c == '*') {

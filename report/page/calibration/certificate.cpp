@@ -51,7 +51,7 @@ struct Judged {
   Verdict verdict() const { return check != nullptr ? check->verdict : Verdict::fail; }
 };
 
-/// All judged signals: held-back ones first, then by how bad they are.
+/// All judged signals: those of validation records first, then by how bad they are.
 std::vector<Judged> judged_signals(const StoredFit& fit) {
   std::vector<Judged> signals;
   for (std::size_t i = 0; i < fit.conditions.size(); ++i) {

@@ -29,7 +29,7 @@ std::string end_words(const StoredProfileEnd& end, const RowUnit& unit, const ch
                   : std::string());
 }
 
-/// Rise of the cost with a parameter held at each value; a rise of 1 ends the 95 % interval.
+/// Rise of the cost with a parameter fixed at each value; a rise of 1 ends the 95 % interval.
 Plot profile_plot(const StoredParameter& parameter, const StoredProfile& profile) {
   const RowUnit unit = unit_of(parameter);
   Plot plot;

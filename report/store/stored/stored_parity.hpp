@@ -21,7 +21,7 @@ struct StoredParitySignal {
   std::optional<double> threshold_m;
   ByFeature<std::optional<double>> feature_thresholds;
   std::optional<std::string> reason;  ///< why there is no threshold
-  /// Of a record of a day that the healthy records do not have.
+  /// The record is of a day that the healthy records do not have.
   Omittable<double> threshold_of_another_day_m;
   Omittable<int> common_causes;  ///< by which the healthy records differ beyond noise
   RIGCAL_DESCRIBE(signal, window_s, healthy_records, threshold_m, feature_thresholds, reason,

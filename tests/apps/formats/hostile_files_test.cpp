@@ -85,7 +85,7 @@ TEST_CASE("hostile files: a pipe, device or folder is no input", "[apps]") {
     check_no_input(folder, {"fit", "twin/campaign.toml", "--resume", "--out", "bad", "--quiet"},
                    "bad", "checkpoint.json");
     for (const std::string kind : {"csv", "mat", "h5", "xlsx"}) {
-      if (damage.name != "a folder") {  // of which `init` reads what is in it
+      if (damage.name != "a folder") {  // read by `init`
         put_in_place(folder, "no." + kind, damage);
         check_no_input(folder, {"init", "no." + kind, "--out", "i"}, "no." + kind, damage.word);
       }

@@ -63,7 +63,7 @@ TEST_CASE("truncated normal: two correlated constraints, against draws", "[calib
     ++kept;
   }
   const double mean = sum / kept;
-  // Of two constraints the moments are near, not exact.
+  // The moments under two constraints are approximate.
   CHECK_THAT(cut.mean(0), WithinRel(mean, 0.03));
   CHECK_THAT(cut.covariance(0, 0), WithinRel(squares / kept - mean * mean, 0.1));
 }

@@ -104,9 +104,10 @@ TEST_CASE("posterior density: white noise of known size gives the cost of the fi
 }
 
 TEST_CASE("posterior density: its gradient is that of its value", "[calib]") {
-  // Simulations as exact as they can be, so that differences tell slopes.
+  // Simulations as exact as they can be, so that finite differences are accurate.
   Scene scene(1e-12);
-  // Correlated residuals: unknowns know less than white noise would tell, each in its own measure.
+  // Correlated residuals: each unknown is less certain than white noise would make it, by a factor
+  // of its own.
   const double stretched[] = {1.5, 1.2, 3.0, 2.0, 1.1};
   for (std::size_t j = 0; j < scene.parameters.size(); ++j)
     scene.found.standard_error[j] = stretched[j] * scene.white_error(j);
@@ -132,7 +133,7 @@ TEST_CASE("posterior density: its gradient is that of its value", "[calib]") {
 TEST_CASE("posterior density: its curvature is that of the errors that the fit states", "[calib]") {
   Scene scene;
   const std::size_t j = 2;  // valve gain
-  // All unknowns but one are held by the search direction: the curvature along an unknown is the
+  // All unknowns but one are fixed by the search direction: the curvature along an unknown is the
   // inverse of the covariance, whose shape a common stretch keeps.
   const auto curvature = [&](const PosteriorDensity& density) {
     const VectorXd centre = density.from_unit(scene.optimum.z);

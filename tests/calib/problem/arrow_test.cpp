@@ -163,7 +163,7 @@ TEST_CASE("arrow: an own unknown that nothing tells is left out, its rows tell t
   REQUIRE(arrow.undetermined().size() == 1);
   CHECK(arrow.undetermined()[0].unknowns == own.unknowns);
   const VectorXd open = arrow.undetermined()[0].parts.cwiseAbs();
-  CHECK(open(0) == Approx(open(1)));  // of columns of length 1
+  CHECK(open(0) == Approx(open(1)));  // for columns of length 1
 }
 
 TEST_CASE("arrow: a shared unknown that own ones replace is undetermined with them", "[calib]") {

@@ -38,7 +38,7 @@ TEST_CASE("problem: derivatives of an uncertainty are coarser, unless the campai
   twin.campaign.simulation.tolerance.reset();
   Problem problem = problem_of(twin, records);
   CHECK(problem.derivative_options(0).tolerance == 1e-5);
-  problem.tolerance = 2e-5;  // of records that ask for less
+  problem.tolerance = 2e-5;  // records with less accuracy
   CHECK(problem.derivative_options(0).tolerance == 2e-5);
 }
 

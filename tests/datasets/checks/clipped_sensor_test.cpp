@@ -80,7 +80,7 @@ TEST_CASE("clipped_runs: nothing of what is whole", "[datasets]") {
         const Samples drive = square_signal(10000, 500.0);
         CHECK(both_ends(quantised(with_noise(lagged(drive, tau), noise), step), drive) == 0);
       }
-      // A ramp that is held at both ends.
+      // A ramp that is constant at both ends.
       const Samples ramps = clipped(
           samples(
               10000,

@@ -14,7 +14,7 @@ TEST_CASE("drive_motion: share of the drive's range that it passes in a run", "[
   CHECK_THAT(drive_motion(ramp, {10, 40, 0.0}), WithinAbs(0.30, 1e-12));
   CHECK_THAT(drive_motion(ramp, {10, 5, 0.0}), WithinAbs(0.04, 1e-12));  // too short for parts
   CHECK(drive_motion(Samples(50, 2.0), {10, 20, 0.0}) == 0.0);
-  // What is held does not move; an edge in its last tenth is not yet answered.
+  // What is constant does not move; an edge in its last tenth is not yet answered.
   const Samples held = square_signal(200, 100.0);
   CHECK(drive_motion(held, {50, 50, 0.0}) == 0.0);
   CHECK(drive_motion(held, {55, 50, 0.0}) == 0.0);

@@ -47,7 +47,7 @@ TEST_CASE("frozen_runs: nothing where the rig may be at rest", "[datasets]") {
   const Samples x = with_noise(lagged(held, 30.0), 0.005);
   CHECK(frozen_runs(frozen(x, 600, 300), held).empty());
   CHECK(frozen_runs(frozen(x, 600, 600), held).size() == 1);  // over an edge
-  // Quiet squares, coarse and slow signals, samples that are held, friction.
+  // Quiet squares, coarse and slow signals, repeated samples, friction.
   CHECK(frozen_runs(quantised(lagged(held, 5.0), 0.001), held).empty());
   const Samples slow = sine_signal(40000, 20000.0);
   for (const double step : {0.001, 0.02, 0.2})

@@ -56,7 +56,7 @@ TEST_CASE("bridge_holes: what is missing is put in and marked", "[datasets]") {
     CHECK(std::abs(repeat.time_s[i] - 0.1 * static_cast<double>(i)) < 1e-12);
     CHECK(repeat.bridged[i] == (i >= 45 && i <= 48));
   }
-  // A held input keeps its value; a measured signal is interpolated.
+  // A stepwise input keeps its value; a measured signal is interpolated.
   CHECK(repeat.values.at(Channel::command)[48] == 1.0);
   const auto& x = repeat.values.at(Channel::position);
   CHECK(std::abs(x[45] - (0.8 * x[44] + 0.2 * x[49])) < 1e-12);

@@ -68,7 +68,7 @@ TEST_CASE("condition_repeats: decimation is stated and keeps signals in place", 
   CHECK_THAT(repeats[0].time_s[1], WithinAbs(5e-3, 1e-12));
   CHECK_THAT(repeats[0].values[Channel::position][100], WithinAbs(0.1 * std::sin(5.0), 4e-4));
   const auto& reference = repeats[0].values[Channel::reference];
-  CHECK(reference[199] == 0.0);  // held: no ringing beside the edge
+  CHECK(reference[199] == 0.0);  // no ringing beside the edge
   CHECK(reference[200] == 1.0);
 }
 

@@ -141,7 +141,7 @@ TEST_CASE("find_motions: a step rises within a tenth of the time that it is held
     StepTest test;
     double x = 0.0;
     for (int i = 0; i < 150 + held + 1500; ++i) {
-      // 0 V; a rise of 50 ms; `held` samples of 2 V; then at once -2 V.
+      // 0 V; a rise of 50 ms; then 2 V for so many samples; then at once -2 V.
       const double u = i < 100 ? 0.0 : i < 150 ? 0.04 * (i - 100) : i < 150 + held ? 2.0 : -2.0;
       x += 0.05 * u / kRate_hz;
       test.time_s.push_back(i / kRate_hz);

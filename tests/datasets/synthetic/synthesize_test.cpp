@@ -349,7 +349,7 @@ TEST_CASE("synthesize: a recorded drive is driven again", "[datasets]") {
   const Campaign made = load_campaign(second.campaign_file);
   const auto original = load_record(again, again.conditions[0]);
   const auto repeated = load_record(made, made.conditions[0]);
-  // A held square reference is the square itself; edges are on samples up to rounding.
+  // A square reference of steps is the square itself; edges are on samples up to rounding.
   for (std::size_t i = 0; i < original.time_s.size(); ++i)
     CHECK_THAT(position_of(repeated).mean[i], WithinAbs(position_of(original).mean[i], 1e-8));
 }

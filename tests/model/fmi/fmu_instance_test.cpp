@@ -353,7 +353,7 @@ TEST_CASE("fmu instance: ticks of a sampled controller, a period apart from the 
   CHECK(instance.real(command) == Approx(kp * 0.001));
   CHECK_FALSE(instance.new_discrete_states());
   instance.set_real(kReference, 0.002);
-  CHECK(instance.real(command) == Approx(kp * 0.001));  // the output is held
+  CHECK(instance.real(command) == Approx(kp * 0.001));  // the output keeps its value
   instance.set_time(2.01 - 0.01 * 1e-4);
   CHECK_FALSE(instance.new_discrete_states());
   instance.set_time(2.01 - 0.01 * 1e-7);  // importers add up times, so they are rounded

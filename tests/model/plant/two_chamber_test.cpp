@@ -300,7 +300,7 @@ TEST_CASE("two_chamber: a closed valve that leaks balances the chambers", "[mode
   Experiment e = single_rod_rig();
   e.rig.initial = InitialState::given;
   e.inputs.drive = Signal::constant(0.0);
-  e.set("retracted_position", 0.0).set("initial_position", 0.25);  // held by the extended stop
+  e.set("retracted_position", 0.0).set("initial_position", 0.25);  // at rest on the extended stop
   e.set("initial_pressure_a", 4.4e6).set("initial_pressure_b", 1e5);
   e.times_s = {0.0, 100.0};
   e.outputs = {Output::pressure_a, Output::pressure_b};

@@ -157,7 +157,7 @@ TEST_CASE("signal: refuses what is not a signal", "[model]") {
 }
 
 TEST_CASE("Signal::shaped: a shape in pieces, of any amplitude and frequency", "[model]") {
-  // Up, then held, then down twice as far in half a period: 0, 1, 1, -1 at the ends of pieces.
+  // Up, then constant, then down twice as far in half a period: 0, 1, 1, -1 at the ends of pieces.
   static constexpr PeriodicShape kShape{4,
                                         [](int piece, double phase) {
                                           if (piece == 0) return SignalSample{4.0 * phase, 4.0};

@@ -72,7 +72,7 @@ TEST_CASE("live rig: the published table is there for its own rig and drive", "[
   CHECK(slight.at("printed").at("std").at("left_out") == true);
   CHECK_THAT(slight.at("reason").get<std::string>(), Catch::Contains("printed std"));
   CHECK(rig.at("residual_scale") == 55.35);
-  // Of another drive, or with the values of a fit, the levels remain, but not what was published.
+  // With another drive, or with the values of a fit, the levels remain, but not what was published.
   cases.erase(cases.begin(), cases.begin() + 6);
   const Json other = live_rig(campaign, cases);
   REQUIRE(other.at("levels").size() == 5);

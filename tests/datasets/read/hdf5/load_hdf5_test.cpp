@@ -171,7 +171,7 @@ TEST_CASE("load_hdf5: time by the distance of samples", "[datasets]") {
     file.array("/log/short", {4, 5});
     file.number("/log/short", "dt", 0.5);
     file.array("/log/none", {4, 5});
-    file.number("/log/none", "dt", 0.0);  // tells nothing
+    file.number("/log/none", "dt", 0.0);  // says nothing
   }
   CHECK(read_columns(path, {"/log/x@wf_increment", "/log/x"}, "/log/x@wf_increment") ==
         Table{{10, 10.25, 10.5}, {1, 2, 3}});
