@@ -167,7 +167,7 @@ void refuse_control_characters(std::string_view text) {
   std::string shown(text);
   std::replace_if(shown.begin(), shown.end(), is_control, '?');
   throw QuantityError(
-      fmt::format("'{}' holds a control character (here '?'); expected text", shown));
+      fmt::format("'{}' contains a control character (here '?'); expected text", shown));
 }
 
 /// Whether the text has a number that is no exponent ("2 mm", "bar 5"): UDUNITS would multiply by
@@ -209,7 +209,7 @@ Unit parse_unit(std::string_view text) {
   text = trimmed(text);
   if (text.empty()) return {};
   if (has_factor(text))
-    throw QuantityError(fmt::format("'{}' holds a number where a unit was expected", text));
+    throw QuantityError(fmt::format("'{}' has a number where a unit was expected", text));
   // '@' and "since" move the origin of a unit; no physical quantity here has such a unit.
   const auto unit = text.find('@') == std::string_view::npos
                         ? unit_system().parse(std::string(text))

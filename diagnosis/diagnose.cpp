@@ -297,7 +297,7 @@ SignalDiagnosis limits_of(const SignalRecords& records, const SignalErrors& erro
   if (records.healthy.empty()) {
     result.reason = "no healthy record of this signal";
   } else if (!result.smallest_leak) {
-    result.reason = "no repeats tell how healthy records of this signal scatter";
+    result.reason = "without repeats the variation of healthy records of this signal is unknown";
   }
   return result;
 }

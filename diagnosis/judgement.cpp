@@ -47,17 +47,18 @@ void warn(RecordDiagnosis& record, const SignalErrors& errors, double healthy_m)
         fit.coefficient, estimate.ci95.first, estimate.ci95.second));
   }
   if (!estimate.has_share()) {
-    record.warnings.push_back(fmt::format(
-        "a coefficient of {:.3g} would leak more than the servo valve delivers, so no share and no "
-        "class is told",
-        fit.coefficient));
+    record.warnings.push_back(
+        fmt::format("a coefficient of {:.3g} would leak more than the servo valve delivers, so it "
+                    "has no share and no "
+                    "class",
+                    fit.coefficient));
   }
   const double log_slope =
       estimate.share > 0.0 ? estimate.share_slope * fit.coefficient / estimate.share : 1.0;
   if (std::abs(log_slope) < kFlat) {
     record.warnings.push_back(fmt::format(
         "the share hardly depends on the coefficient here (d ln share / d ln C = {:.2g}): a "
-        "coefficient cannot be told from a share of this signal",
+        "share of this signal cannot give a coefficient",
         log_slope));
   }
   if (!errors.repeat_m)

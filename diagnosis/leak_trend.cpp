@@ -129,7 +129,7 @@ std::vector<std::string> too_few_dates(const std::vector<MachineState>& states) 
     const std::string name = key.name();
     texts.push_back(fmt::format(
         "{}{} and {} are two dates, which make no trend: their difference may be that of two days "
-        "(supply, oil); a third date tells how dates scatter",
+        "(supply, oil); a third date shows the variation between dates",
         name.empty() ? "" : name + ": ", machine.states[0].state->key.date,
         machine.states[1].state->key.date));
   }

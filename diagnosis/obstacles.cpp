@@ -134,7 +134,7 @@ std::vector<std::string> obstacles(const Campaign& campaign, bool has_fit) {
   std::vector<std::string> result = reasons.in_words(conditions.size());
   if (!has_fit) {
     result.emplace_back(
-        "nothing tells what the healthy rig is: expected --fit with the fit.json of a fit to "
+        "the healthy rig is unknown: expected --fit with the fit.json of a fit to "
         "healthy records");
   }
   for (const std::string& each : confounded(campaign)) result.push_back(each);

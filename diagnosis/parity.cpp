@@ -282,8 +282,8 @@ class Work {
       signal.threshold_of_another_day_m = threshold(kPeak, days.norm_of_another_day());
     if (!signal.threshold_m)
       signal.reason =
-          "healthy records do not differ from one another, so nothing tells how much "
-          "such records scatter";
+          "healthy records do not differ from one another, so the variation of "
+          "such records is unknown";
   }
 
   using ValueOf = double (*)(const ResidualValues&);

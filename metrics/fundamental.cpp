@@ -109,7 +109,7 @@ Fundamental fit(std::span<const double> time_s, std::span<const double> signal,
   if (basis->eigenvalues[0] < 1e-9L * basis->eigenvalues[2])
     throw std::invalid_argument(
         fmt::format("fundamental: the {} samples of the {} signal in whole periods of {} s cannot "
-                    "tell this frequency from an offset, expected more per period",
+                    "separate this frequency from an offset, expected more per period",
                     n, name, 1.0 / frequency_hz));
   const Vector3 solution = basis->normal.ldlt().solve(right);
   const Extended amplitude = std::hypot(solution[0], solution[1]);

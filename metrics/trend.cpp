@@ -66,7 +66,7 @@ Trend weighted_trend(std::span<const double> x, std::span<const double> y,
   if (!of_line.allFinite() || !(trend.chi_square < kMostChiSquare))
     throw std::domain_error(
         "weighted_trend: the errors are too far from each other, or from the "
-        "scatter about the line");
+        "residuals about the line");
   const auto scatter_freedom = static_cast<double>(n - 2);
   trend.reduced_chi_square = trend.chi_square / scatter_freedom;
   if (chi_squared_exceedance(trend.chi_square, scatter_freedom) < kUpperQuartile) {

@@ -56,8 +56,8 @@ std::string bad_parameter(const ParameterValues& values, const Layout& layout) {
     if (!in_use) continue;
     const double v = values.value[i];
     if (!(v >= spec.lower && v <= spec.upper)) {
-      return fmt::format("{} = {:g} {} lies outside [{:g}, {:g}]", spec.key, v, spec.unit,
-                         spec.lower, spec.upper);
+      return fmt::format("{} = {:g} {} is outside [{:g}, {:g}]", spec.key, v, spec.unit, spec.lower,
+                         spec.upper);
     }
   }
   return {};
@@ -264,7 +264,7 @@ Simulation simulate_either(const Eigen::VectorXd* state, const Rig& rig,
   if (too_fast(inputs, times_s)) {
     result.status = SimulationStatus::step_too_small;
     result.failed_at_s = times_s.front();
-    result.reason = "an input changes faster than the times of its samples can be told apart";
+    result.reason = "an input changes faster than the times of its samples are resolved";
     return result;
   }
   const std::optional<SensorTimes> at = sensor_times(outputs, parameters, times_s);

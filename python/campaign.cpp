@@ -77,7 +77,7 @@ void bind_parameter(py::module_& module) {
                              "Whether it is fitted.")
       .def_property_readonly("scope",
                              named(&Parameter::setting, &datasets::ParameterSetting::scope),
-                             "For whom one value holds: \"rig\", \"leak_level\" or \"condition\".")
+                             "Scope of one value: \"rig\", \"leak_level\" or \"condition\".")
       .def_property_readonly("nuisance",
                              field(&Parameter::setting, &datasets::ParameterSetting::nuisance),
                              "Fitted, but of no interest itself: validation estimates it again.")

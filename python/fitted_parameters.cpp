@@ -76,7 +76,7 @@ void bind_fitted_parameters(py::module_& module) {
   bind_spec(parameter);
   parameter
       .def_property_readonly("scope", named(&Self::value, &calib::FittedParameter::scope),
-                             "For whom it holds: \"rig\", \"leak_level\" or \"condition\".")
+                             "Scope of the value: \"rig\", \"leak_level\" or \"condition\".")
       .def_property_readonly(
           "level",
           [](const Self& self) -> std::optional<std::string> {
@@ -110,7 +110,7 @@ void bind_fitted_parameters(py::module_& module) {
           "determine it.")
       .def_property_readonly("robust_standard_error",
                              field(&Self::value, &calib::FittedParameter::robust_standard_error),
-                             "From the scatter of the residuals themselves, in `unit`; or None.")
+                             "From the variation of the residuals themselves, in `unit`; or None.")
       .def_property_readonly("ci95", field(&Self::value, &calib::FittedParameter::ci95),
                              "95 % interval (low, high), in `unit`, with what the model leaves\n"
                              "out; or None.")
@@ -139,7 +139,7 @@ void bind_fitted_parameters(py::module_& module) {
           },
           "Its profile likelihood, where the fit was asked for one.")
       .def_property_readonly("at_bound", field(&Self::value, &calib::FittedParameter::at_bound),
-                             "Whether the estimate lies at one of its bounds.")
+                             "Whether the estimate is at one of its bounds.")
       .def_property_readonly(
           "identifiability",
           [](const Self& self) {
@@ -147,9 +147,8 @@ void bind_fitted_parameters(py::module_& module) {
                                      : std::nullopt;
           },
           "\"identified\", \"weak\", \"bounded\" or \"not_identifiable\"; None of a known value.")
-      .def_property_readonly(
-          "reason", field(&Self::value, &calib::FittedParameter::reason),
-          "In words: why it has no error, why it is weak, at which bound it lies.")
+      .def_property_readonly("reason", field(&Self::value, &calib::FittedParameter::reason),
+                             "In words: why it has no error, why it is weak, at which bound it is.")
       .def("__repr__", [](const Self& self) {
         return fmt::format("<rigcal.FittedParameter {}{}: {:g} {}>", self.spec.key,
                            self.value.level.empty() ? "" : " of " + self.value.level,

@@ -39,7 +39,8 @@ void Progress::rethrow() const {
 }
 
 void bind_progress(py::module_& module) {
-  py::class_<Iteration>(module, "Iteration", "What a fit tells its `progress` of one iteration.")
+  py::class_<Iteration>(module, "Iteration",
+                        "What a fit reports to its `progress` about one iteration.")
       .def_readonly("start", &Iteration::start, "Which start, from 1.")
       .def_readonly("iteration", &Iteration::iteration, "Of this call of the solver, from 0.")
       .def_readonly("cost", &Iteration::cost, "Half the sum of squared weighted residuals.")
@@ -49,7 +50,8 @@ void bind_progress(py::module_& module) {
         return fmt::format("<rigcal.Iteration {} of start {}: cost {:.6g}>", self.iteration,
                            self.start, self.cost);
       });
-  py::class_<Pieces>(module, "Pieces", "What a fit tells its `progress` of the work beside it.")
+  py::class_<Pieces>(module, "Pieces",
+                     "What a fit reports to its `progress` about the work beside it.")
       .def_readonly("work", &Pieces::work, "\"replicates of the bootstrap\"...")
       .def_readonly("done", &Pieces::done, "How many are done.")
       .def_readonly("all", &Pieces::all, "Of how many.")

@@ -118,7 +118,7 @@ void bind_channel(py::module_& module) {
           "pooled_sd",
           [](const RecordedChannel& self) { return none_if_nan(self.series->pooled_sd); },
           "Standard deviation of one repeat, over all samples, in `unit`; None where neither\n"
-          "repeats nor the campaign tell it.")
+          "repeats nor the campaign give it.")
       .def_property_readonly(
           "sd_of_mean",
           [](const RecordedChannel& self) { return none_if_nan(self.series->sd_of_mean); },

@@ -56,7 +56,7 @@ constexpr std::array kVerbs{
             rigcal::app::add_diagnose},
     VerbRow{"parity", "Residuals against the healthy model, and alarms at a stated rate",
             rigcal::app::add_parity},
-    VerbRow{"plan", "What each record, and each planned one, tells about each parameter",
+    VerbRow{"plan", "What each record, and each planned one, reveals about each parameter",
             rigcal::app::add_plan},
     VerbRow{"explore", "Write a page in which the rig runs: values move, curves follow",
             rigcal::app::add_explore},

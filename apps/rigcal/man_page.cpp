@@ -76,7 +76,7 @@ std::string man_page(const CLI::App& app) {
       ".SH NAME\nrigcal \\- {1}\n"
       ".SH SYNOPSIS\n.B rigcal\n\\fIVERB\\fR [\\fIoptions\\fR] \\fICAMPAIGN\\fR\n.br\n"
       ".B rigcal\n\\fIVERB\\fR \\fB\\-\\-help\\fR\n"
-      ".SH DESCRIPTION\n{1}.\nEverything that a calibration depends on stands in one campaign "
+      ".SH DESCRIPTION\n{1}.\nOne campaign file has all that a calibration depends on; "
       "file; results go to a "
       "folder.\n"
       ".SH OPTIONS\n{2}"

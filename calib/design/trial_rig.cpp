@@ -93,7 +93,7 @@ std::map<Channel, double> noise_of_one_repeat(const Campaign& campaign,
     if (noise.contains(channel)) continue;
     throw InputError(
         campaign.design->where,
-        fmt::format("key 'design': nothing tells the noise of channel {0}: expected noise = {{ "
+        fmt::format("key 'design': the noise of channel {0} is unknown: expected noise = {{ "
                     "{0} = \"...\" }}, the standard deviation of a sample",
                     datasets::info(channel).key));
   }
@@ -173,11 +173,10 @@ void TrialRig::rest(const std::map<Channel, double>& noise_sd) {
 void TrialRig::require_limits_at_rest(const Eigen::MatrixXd& run) const {
   for (const LimitUse& use : limit_uses(settings(), run, {})) {
     if (!(use.share > 1.0)) continue;
-    throw InputError(
-        use.where,
-        fmt::format("key 'design.{}': no drive can keep this limit: with a drive that stands "
-                    "still the {} reaches {:.4g} {}, the limit is {:.4g} {}",
-                    use.key, use.words, use.reached, use.unit, use.limit, use.unit));
+    throw InputError(use.where,
+                     fmt::format("key 'design.{}': no drive can keep this limit: with a drive at "
+                                 "still the {} reaches {:.4g} {}, the limit is {:.4g} {}",
+                                 use.key, use.words, use.reached, use.unit, use.limit, use.unit));
   }
 }
 

@@ -39,7 +39,7 @@ void check(const Unknown& unknown, std::string_view key, const Location& where) 
                                         key, unknown.lower, unknown.upper));
   }
   if (!(unknown.start >= unknown.lower && unknown.start <= unknown.upper)) {
-    throw InputError(where, fmt::format("{}: the start {:g} lies outside the bounds {:g} to {:g}",
+    throw InputError(where, fmt::format("{}: the start {:g} is outside the bounds {:g} to {:g}",
                                         key, unknown.start, unknown.lower, unknown.upper));
   }
   if (unknown.prior && !(unknown.prior->sd > 0.0 && std::isfinite(unknown.prior->mean))) {

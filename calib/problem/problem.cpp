@@ -102,9 +102,10 @@ void guess_unknown_sd(std::vector<ProblemCondition>& conditions) {
       if (!(range > 0.0)) {
         throw InputError(
             condition.condition->where,
-            fmt::format("condition \"{}\": channel {} is constant and neither repeats nor `sd` "
-                        "tell its noise, so it has no weight: expected `sd`, or role = \"ignore\"",
-                        condition.condition->id, datasets::info(channel.channel).key));
+            fmt::format(
+                "condition \"{}\": channel {} is constant, and without repeats or `sd` its "
+                "noise is unknown, so it has no weight: expected `sd`, or role = \"ignore\"",
+                condition.condition->id, datasets::info(channel.channel).key));
       }
       channel.sd = kGuessedNoise * range;
     }
@@ -311,7 +312,7 @@ std::vector<std::size_t> samples_that_count(const Condition& condition, const Re
   }
   if (rows.empty()) {
     throw InputError(condition.where,
-                     fmt::format("condition \"{}\": no sample lies inside its windows; the record "
+                     fmt::format("condition \"{}\": no sample is inside its windows; the record "
                                  "goes from {:g} s to {:g} s",
                                  condition.id, record.time_s.front(), record.time_s.back()));
   }

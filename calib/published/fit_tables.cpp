@@ -153,9 +153,10 @@ TablesFit fit_tables(const datasets::Campaign& campaign,
   if (residuals.size() < free.size()) {
     throw InputError(
         {campaign.file.string()},
-        fmt::format("{} published numbers cannot tell {} values: expected printed coefficients in "
-                    "[[leak_table.signal]] or rows in [leak_table.features]",
-                    residuals.size(), free.size()));
+        fmt::format(
+            "{} published numbers cannot determine {} values: expected printed coefficients in "
+            "[[leak_table.signal]] or rows in [leak_table.features]",
+            residuals.size(), free.size()));
   }
 
   const Descent descent = minimise(residuals, intervals, z, fit.evaluations);

@@ -172,8 +172,9 @@ void judge_residuals(const std::vector<UnjudgedSignal>& signals, std::vector<Rea
   const std::vector<std::pair<std::string, double>> numbers{
       {"signals", static_cast<double>(signals.size())},
       {"autocorrelated", static_cast<double>(coloured)}};
-  const std::string unknown = fmt::format("neither repeats nor `sd` tell the noise of {} signal{}",
-                                          signals.size(), signals.size() == 1 ? "" : "s");
+  const std::string unknown =
+      fmt::format("without repeats and without `sd` the noise is unknown for {} signal{}",
+                  signals.size(), signals.size() == 1 ? "" : "s");
   if (judged == 0) {
     reasons.push_back(reason(AspectState::not_assessed, "noise_unknown",
                              unknown + ", and their residuals are too few to be tested", {},

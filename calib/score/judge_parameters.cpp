@@ -143,7 +143,7 @@ std::string alternatives_text(const Considered& considered) {
         fmt::format("{} (weight {})", fmt::join(names, " with "), significant(each.weight, 2)));
   }
   if (words.empty()) return {};
-  return fmt::format("; the records hardly tell it from {}", fmt::join(words, ", "));
+  return fmt::format("; the records hardly separate it from {}", fmt::join(words, ", "));
 }
 
 /// What the residuals ask for. It is a reservation where the effect would move an estimate beyond
@@ -168,7 +168,7 @@ void judge_missing(const Campaign& campaign, const Fit& fit, std::vector<Reason>
             readable_size(alone - half, effect.unit), readable_size(alone + half, effect.unit),
             moved.empty() ? std::string()
                           : fmt::format("; it would move {} by more than half of the "
-                                        "interval that holds if the model is exact",
+                                        "interval for an exact model",
                                         fmt::join(moved, ", ")),
             position == fit.considered->missing.front() ? alternatives_text(*fit.considered)
                                                         : std::string()),

@@ -77,7 +77,7 @@ std::string agreement_of(const std::vector<StartReport>& starts, const std::vect
     return fmt::format(
         "start {} of {} has the lowest cost and did not converge; the best of those that did, "
         "start "
-        "{}, lies higher by {:.3g} (2 would be one parameter's 95 % interval)",
+        "{}, is higher by {:.3g} (2 would be one parameter's 95 % interval)",
         lowest->number, starts.size(), basins.front().starts.front(),
         (basins.front().cost - lowest->final_cost) / std::max(variance, 1e-300));
   }

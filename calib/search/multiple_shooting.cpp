@@ -75,7 +75,7 @@ std::vector<std::size_t> cuts(const ProblemCondition& condition, double interval
   const double wanted = std::max(1.0, std::round(span_s / interval_s));
   const auto refuse = [&] {
     throw InputError(condition.condition->where,
-                     fmt::format("condition \"{}\": [fit] shooting_interval = \"{:g} s\" holds "
+                     fmt::format("condition \"{}\": [fit] shooting_interval = \"{:g} s\" has "
                                  "fewer than {} samples of its record",
                                  condition.condition->id, interval_s, kLeastSamples));
   };

@@ -60,7 +60,7 @@ std::string far_from_minimum(const Problem& problem, const Evaluation& evaluatio
         names(along));
   } else if (along.size() > 1) {
     words += fmt::format(
-        "; what is left of the way is a valley along {}, which the records hardly tell apart: a "
+        "; what is left of the way is a valley along {}, which the records hardly separate: a "
         "prior or a known value of one of them would end it",
         names(along));
   }

@@ -89,7 +89,7 @@ void warn(Problem& problem, const Evaluation& optimum, bool settled,
       where.push_back(fmt::format("\"{}\"", each.condition->id));
   }
   warnings.push_back(fmt::format(
-      "neither repeats nor `sd` tell the noise of {}: it was estimated from the residuals of the "
+      "without repeats and without `sd` the noise of {} was estimated from the residuals of the "
       "fit, one value a channel, over {}{}; errors of the model count as noise",
       fmt::join(names, ", "),
       where.size() == problem.conditions.size() ? std::string("all conditions")

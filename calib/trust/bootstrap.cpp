@@ -304,7 +304,7 @@ void bootstrap(const Problem& problem, const Evaluation& optimum, const Uncertai
       drawn_from(sources);
   if (values.size() < kLeastReplicates) {
     fit.bootstrap_message +=
-        fmt::format("; too few to tell an interval, expected at least {}", kLeastReplicates);
+        fmt::format("; too few for an interval, expected at least {}", kLeastReplicates);
     return;
   }
   for (std::size_t j = 0; j < optimum.z.size(); ++j) {

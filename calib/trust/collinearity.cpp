@@ -60,7 +60,7 @@ std::string collinearity_words(const std::vector<std::string>& names,
   std::string text =
       fmt::format("Strongest: {:.3f} between {} and {}", strongest, name(first), name(second));
   if (std::abs(strongest) > kCombination) {
-    text += ": these records tell a combination of the two far better than each alone";
+    text += ": the records determine a combination of the two far better than each alone";
   } else if (std::abs(strongest) > kMadeUp) {
     text += ": an error of one is mostly made up by the other";
   }
@@ -74,11 +74,11 @@ std::string collinearity_words(const std::vector<std::string>& names,
   }
   if (!inflated.empty()) {
     text += fmt::format(
-        "; not told apart from the others together (variance above that with the "
+        "; not separated from the others together (variance above that with the "
         "others known): {}",
         fmt::join(inflated, ", "));
   } else if (std::abs(strongest) <= kMadeUp) {
-    text += "; all can be told apart";
+    text += "; all can be separated";
   }
   return text + ".";
 }

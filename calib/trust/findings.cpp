@@ -40,7 +40,7 @@ void warn_of_noise(const Problem& problem, const Uncertainty& found, Fit& fit) {
   const double scatter = 5.0 * std::sqrt(2.0 / freedom);
   if (fit.residual_count <= found.rank) {
     fit.warnings.push_back(
-        fmt::format("{} residuals for {} unknowns: nothing is left to tell the noise by",
+        fmt::format("{} residuals for {} unknowns: nothing is left to estimate the noise from",
                     fit.residual_count, problem.map.unknowns().size()));
   } else if (chi > 1.0 + std::max(0.1, scatter)) {
     fit.warnings.push_back(fmt::format(
@@ -144,7 +144,7 @@ void add_remedies(const Problem& problem, const Evaluation& optimum,
     if (rests_on_known(problem, spread, optimum.z, j)) {
       each.reason += fmt::format(
           "; most of that is what is uncertain of {}: as a free parameter with its prior (of a "
-          "sensor: its gain or offset) the records may tell more",
+          "sensor: its gain or offset) the records may determine more",
           fmt::join(spread.known.names, ", "));
       continue;
     }

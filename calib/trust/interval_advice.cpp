@@ -79,7 +79,8 @@ std::string interval_advice(const Problem& problem, const OptimumCheck& check,
   if (found.detail == Detail::plain)
     return "only the plain standard errors exist: the search was stopped on request";
   if (found.scatter.empty()) {
-    return "only the plain standard errors exist: too few residuals to tell their correlation, or "
+    return "only the plain standard errors exist: too few residuals to estimate their correlation, "
+           "or "
            "a record that could not be simulated again";
   }
   const double share = found.independent_residuals / static_cast<double>(problem.residual_count());
@@ -98,11 +99,11 @@ std::string interval_advice(const Problem& problem, const OptimumCheck& check,
   }
   if (!flagged) {
     return text +
-           "; neither repeats nor `sd` tell the noise, so errors of the model and noise "
-           "cannot be told apart";
+           "; without repeats and without `sd` errors of the model and noise "
+           "cannot be separated";
   }
   const LackOfFit& test = *least_likely(tests);
-  const std::string against = test.by_repeats ? "the scatter of the repeats" : "the stated `sd`";
+  const std::string against = test.by_repeats ? "the variation between repeats" : "the stated `sd`";
   if (*flagged) {
     return text + fmt::format(
                       "; significant lack of fit (condition \"{}\", {}: residual variance {:.3g} "
@@ -137,12 +138,11 @@ std::optional<BetweenRepeats> between_repeats(const Problem& problem, const Unce
 std::string between_repeats_warning(const BetweenRepeats& repeats) {
   if (!repeats.differ) return {};
   std::string text = fmt::format(
-      "repeats differ from one another by more than their noise (p = {:.2g}): errors by their "
-      "spread are up to {:.2g} times those by the residuals of their mean",
+      "repeats differ from one another by more than their noise (p = {:.2g}): standard errors from "
+      "these differences are up to {:.2g} times those from the residuals of their mean",
       repeats.p, repeats.ratio);
   if (!repeats.parameters.empty())
-    text += fmt::format(", and the intervals of {} rest on the spread",
-                        fmt::join(repeats.parameters, ", "));
+    text += fmt::format(", and the intervals of {} use them", fmt::join(repeats.parameters, ", "));
   if (repeats.cause.empty()) return text;
   if (repeats.cause == "start") {
     return text + fmt::format(
@@ -166,9 +166,10 @@ std::string noiseless_warning(const Problem& problem, const Uncertainty& found) 
   std::size_t all = 0;
   for (const ProblemCondition& condition : problem.conditions) all += condition.channels.size();
   return fmt::format(
-      "in {} of {} records the residual is too small to be noise: it holds errors of the model and "
+      "in {} of {} records the residual is too small to be noise: it contains errors of the model "
+      "and "
       "of its solver, which do not average out. Standard errors there count every condition as one "
-      "observation; they tell how far such errors may move a value, not how it scatters",
+      "observation; they show how far such errors may move a value, not its variation",
       found.noiseless, all);
 }
 

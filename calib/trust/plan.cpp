@@ -100,7 +100,7 @@ Plan plan(const Campaign& campaign, const std::vector<Record>& records,
   if (values == nullptr) {
     result.messages.push_back(
         "these are figures at the campaign's start values; with --fit at those of a fit, which "
-        "tell more where the starts are far off");
+        "are better where the starts are far off");
   }
   const auto symmetry = at.ok ? scaling_symmetry(problem, z, 1.0, threads) : std::nullopt;
   const std::string symmetric = symmetry ? describe(problem, *symmetry) : "";

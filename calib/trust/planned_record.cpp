@@ -42,8 +42,8 @@ double planned_sd(const datasets::Campaign& campaign, const datasets::Condition&
     return of_mean(sd * std::sqrt(static_cast<double>(record.repeats)), sd);
   }
   throw InputError(condition.where,
-                   fmt::format("condition \"{}\": nothing tells the noise of channel {}, so what "
-                               "the planned record tells cannot be said: expected `sd`",
+                   fmt::format("condition \"{}\": the noise of channel {} is unknown, so the "
+                               "information of the planned record is, too: expected `sd`",
                                condition.id, datasets::info(channel).key));
 }
 

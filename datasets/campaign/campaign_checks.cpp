@@ -186,7 +186,7 @@ void add_counted(const Campaign& campaign, const Condition& condition,
   lacks.push_back(
       fmt::format("{} {} raw counts of a converter: without a calibration (unit and gain) they "
                   "cannot be compared with the model",
-                  fmt::join(counted, ", "), counted.size() == 1 ? "holds" : "hold"));
+                  fmt::join(counted, ", "), counted.size() == 1 ? "has" : "have"));
 }
 
 void add_missing_drive(const Campaign& campaign, const Condition& condition,
@@ -194,7 +194,7 @@ void add_missing_drive(const Campaign& campaign, const Condition& condition,
   const Channel drive = drive_channel(campaign);
   if (condition.waveform != Waveform::recorded || carries(campaign, condition, drive)) return;
   lacks.push_back(fmt::format(
-      "the waveform is recorded, but no channel {} holds it: what the machine was told to do is "
+      "the waveform is recorded, but no channel {} has it: the command to the machine is "
       "not known, so the healthy model cannot be run under the same {}",
       info(drive).key, info(drive).key));
 }
@@ -223,7 +223,7 @@ std::vector<std::string> lacks_for_model(const Campaign& campaign, const Conditi
   std::vector<std::string> lacks;
   const auto values = values_in(campaign, condition);
   if (const auto missing = values.missing(); !missing.empty()) {
-    lacks.push_back(fmt::format("nothing tells {} of the rig: expected values in [rig.parameters]",
+    lacks.push_back(fmt::format("{} of the rig is unknown: expected values in [rig.parameters]",
                                 fmt::join(missing, ", ")));
   } else if (const auto conflict = find_conflict(campaign.rig, values)) {
     lacks.push_back(fmt::format("{}: {}", conflict->key, conflict->message));
@@ -234,9 +234,9 @@ std::vector<std::string> lacks_for_model(const Campaign& campaign, const Conditi
     return lacks;
   }
   if (campaign.time_column.empty()) {
-    lacks.emplace_back("no column holds the time of its samples");
+    lacks.emplace_back("no column has the time of its samples");
   } else if (campaign.time_in_counts) {
-    lacks.emplace_back("its samples are numbered, but nothing tells the sampling rate");
+    lacks.emplace_back("its samples are numbered, but the sampling rate is unknown");
   }
   const auto outputs = output_channels(campaign);
   if (std::none_of(outputs.begin(), outputs.end(),

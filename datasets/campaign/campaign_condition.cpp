@@ -52,7 +52,7 @@ std::vector<std::string> read_numbers(const TomlNode& node) {
   if (!node.is_array()) return read_range(node);
   std::vector<std::string> numbers;
   for (const TomlNode& item : node.items()) {
-    numbers.push_back(item.name("a text to stand for {n}"));
+    numbers.push_back(item.name("a text in place of {n}"));
     if (std::count(numbers.begin(), numbers.end(), numbers.back()) > 1) {
       item.fail_type("every number once");
     }
@@ -92,7 +92,7 @@ RepeatPattern read_repeat(const TomlNode& node, const Campaign& campaign) {
         "expected columns such as position = \"x_mm_{n}\"");
   }
   if (!numbers && uses_number) {
-    node.fail("holds {n} but does not say what it stands for: expected n = \"01..10\" beside it");
+    node.fail("contains {n} but does not say what replaces it: expected n = \"01..10\" beside it");
   }
   return pattern;
 }
@@ -101,7 +101,7 @@ void read_records(const TomlNode& node, const Campaign& campaign, Condition& con
   const auto repeats = node.find("repeats");
   const auto averaged = node.find("averaged");
   if (repeats && averaged) {
-    averaged->fail("stands together with repeats: expected one of them");
+    averaged->fail("cannot be combined with repeats: expected one of them");
   }
   if (repeats) {
     if (!repeats->is_array()) {
@@ -120,7 +120,7 @@ void read_records(const TomlNode& node, const Campaign& campaign, Condition& con
   if (const auto count = node.find("planned_repeats")) {
     condition.planned_repeats = count->integer(1, 1'000'000);
     if (repeats || averaged)
-      count->fail("stands beside a record: expected it where none exists yet, for plan");
+      count->fail("is combined with a record: expected it where none exists yet, for plan");
   }
 }
 
@@ -233,7 +233,7 @@ void read_time(const TomlNode& node, Condition& condition) {
   if (const auto windows = node.find("windows")) {
     condition.moving_windows = windows->choice<bool>({{"moving", true}});
     if (!condition.windows.empty()) {
-      windows->fail("stands together with window: expected one of them");
+      windows->fail("cannot be combined with window: expected one of them");
     }
     if (!condition.has_record()) {
       windows->fail(

@@ -79,8 +79,7 @@ void read_setting_table(const TomlNode& node, const model::ParameterSpec& spec,
                             with_unit(spec, setting.upper)));
   }
   if ((lower && setting.value < setting.lower) || (upper && setting.value > setting.upper)) {
-    start.fail(fmt::format("{} lies outside its own bounds {} to {}",
-                           with_unit(spec, setting.value),
+    start.fail(fmt::format("{} is outside its own bounds {} to {}", with_unit(spec, setting.value),
                            lower ? with_unit(spec, setting.lower) : "(not given)",
                            upper ? with_unit(spec, setting.upper) : "(not given)"));
   }
@@ -101,7 +100,7 @@ void read_setting_table(const TomlNode& node, const model::ParameterSpec& spec,
     for (const char* key : {"fit", "scope", "prior", "prior_sd", "nuisance"}) {
       if (const auto other = node.find(key))
         other->fail(
-            "stands beside between_repeats, which says it already: the value differs at "
+            "is combined with between_repeats, which says it already: the value differs at "
             "random from repeat to repeat about `start`, and is estimated per condition");
     }
     read_between_repeats(*between, spec, setting);
@@ -157,7 +156,7 @@ std::optional<std::string> complete_bounds(const model::ParameterSpec& spec,
       setting.value <= setting.upper) {
     return std::nullopt;
   }
-  return fmt::format("{} lies outside the bounds {} to {}", with_unit(spec, setting.value),
+  return fmt::format("{} is outside the bounds {} to {}", with_unit(spec, setting.value),
                      with_unit(spec, setting.lower), with_unit(spec, setting.upper));
 }
 
@@ -199,7 +198,7 @@ Overrides read_overrides(const TomlNode& table, model::PlantKind plant, Paramete
     const int index = read_index(table, key, plant, group, {});
     if (node.is_table()) {
       node.fail_type(
-          "a known value: what is fitted stands in [rig.parameters] or [rig.controller], "
+          "a known value: fitted ones belong in [rig.parameters] or [rig.controller], "
           "with scope = \"leak_level\" or \"condition\" if it differs from run to run");
     }
     overrides.emplace_back(index, read_value(node, spec_of(plant, index)));
@@ -229,8 +228,8 @@ std::optional<ParameterConflict> find_pilot_conflict(const model::Rig& rig,
         pilot ? "pilot_gain" : "",
         fmt::format("{}: expected valve_gain (an electric valve, driven by the channel command) or "
                     "pilot_gain (a pilot-operated one, driven by pilot_pressure)",
-                    pilot ? "pilot_gain stands together with valve_gain"
-                          : "nothing tells the gain of the valve")};
+                    pilot ? "pilot_gain and valve_gain are both given"
+                          : "the gain of the valve is unknown")};
   if (pilot != rig.pilot)
     return ParameterConflict{"pilot_gain",
                              "pilot_gain decides what drives the rig, and some conditions alone "
@@ -341,7 +340,7 @@ std::optional<ParameterConflict> find_payload_conflict(const model::ParameterVal
                                          absent)};
   for (const char* hose : {"hose_yield", "hose_yield_ratio"}) {
     if (!given(hose)) continue;
-    return ParameterConflict{hose, fmt::format("{} (hoses that yield) stands together with "
+    return ParameterConflict{hose, fmt::format("{} (hoses that yield) is combined with "
                                                "payload_mass, and the solver has no room for the "
                                                "states of both: expected one of them",
                                                hose)};
@@ -402,7 +401,7 @@ std::optional<ParameterConflict> find_conflict(const model::Rig& rig,
   }
   if (given("valve_time_constant") && given("valve_frequency")) {
     return ParameterConflict{"valve_time_constant",
-                             "valve_time_constant (a first-order valve) stands together with "
+                             "valve_time_constant (a first-order valve) is combined with "
                              "valve_frequency (a second-order one): expected one of them"};
   }
   if (given("valve_frequency") != given("valve_damping_ratio")) {

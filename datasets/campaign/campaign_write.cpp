@@ -249,7 +249,7 @@ std::string fitted_campaign_text(const Campaign& campaign, const std::vector<Fit
   rebase_records(root, resolved(campaign.data_dir),
                  out_dir.empty() ? fs::path() : resolved(out_dir));
   return fmt::format(
-      "# Written by rigcal fit from {}: the fitted values stand in place of the starts.\n"
+      "# Written by rigcal fit from {}: the fitted values replace the starts.\n"
       "# Nuisance parameters stay free. Record paths start at the folder of this file.\n\n{}",
       toml_quoted(campaign.file.filename().string()), toml_text(root));
 }
@@ -293,7 +293,7 @@ std::string fitted_leak_table_text(const Campaign& campaign, const LeakTableSett
   rebase_records(root, resolved(campaign.data_dir),
                  out_dir.empty() ? fs::path() : resolved(out_dir));
   return fmt::format(
-      "# Written by rigcal fit-tables from {}: the estimated values stand in\n"
+      "# Written by rigcal fit-tables from {}: the estimated values are in\n"
       "# [leak_table.assumptions]. Record paths start at the folder of this file.\n\n{}",
       toml_quoted(campaign.file.filename().string()), toml_text(root));
 }

@@ -87,9 +87,8 @@ LeakSignal read_signal(const TomlNode& node, const Campaign& campaign,
   if (const auto printed = node.find("printed")) {
     const auto items = printed->items();
     if (items.size() != targets.size()) {
-      printed->fail(
-          fmt::format("holds {} coefficients, but there are {} targets: expected one each",
-                      items.size(), targets.size()));
+      printed->fail(fmt::format("has {} coefficients, but there are {} targets: expected one each",
+                                items.size(), targets.size()));
     }
     for (std::size_t i = 0; i < items.size(); ++i) {
       signal.printed[targets[i]] = read_printed(items[i]);
@@ -276,7 +275,7 @@ LeakTableSettings read_leak_table(const TomlNode& node, const Campaign& campaign
       const LeakSignal& added = settings.signals.back();
       for (std::size_t i = 0; i + 1 < settings.signals.size(); ++i) {
         if (same_drive(settings.signals[i], added)) {
-          item.fail(fmt::format("{} stands here twice: expected each signal once", added.name()));
+          item.fail(fmt::format("{} appears twice: expected each signal once", added.name()));
         }
       }
     }
@@ -380,9 +379,9 @@ void override_assumption(LeakTableSettings& settings, const Campaign& campaign,
   for (Assumption& assumption : settings.assumptions) {
     if (assumption.index != index) continue;
     if (assumption.fit && (value < assumption.lower || value > assumption.upper)) {
-      throw UsageError(fmt::format(
-          "--set {}: lies outside the bounds {:g} to {:g} {} of fit-tables", assignment,
-          assumption.lower, assumption.upper, assumption_spec(campaign.rig.plant, index).unit));
+      throw UsageError(fmt::format("--set {}: is outside the bounds {:g} to {:g} {} of fit-tables",
+                                   assignment, assumption.lower, assumption.upper,
+                                   assumption_spec(campaign.rig.plant, index).unit));
     }
     assumption.value = value;
     assumption.start = value;

@@ -26,10 +26,9 @@ void require_within(const fs::path& root, const fs::path& path) {
   if (!fs::is_directory(root, error))
     throw InputError({root.string()}, "is no folder; expected that of --root");
   if (!lies_within(root, path))
-    throw InputError(
-        {path.string()},
-        fmt::format("leads out of '{}', the folder of --root; expected what lies in it",
-                    root.string()));
+    throw InputError({path.string()},
+                     fmt::format("leads out of '{}', the folder of --root; expected a file in it",
+                                 root.string()));
 }
 
 }  // namespace rigcal::datasets

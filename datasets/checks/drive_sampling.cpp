@@ -40,7 +40,7 @@ std::string drive_sampling_warning(const Condition& condition, const Record& rec
   const double periods = seconds * fastest_hz;
   if (periods >= kShortestFraction) return {};
   return fmt::format(
-      "the record holds {:.2g} of a period of the {} of {:.4g} Hz: is its time in s, not in ms?",
+      "the record has {:.2g} of a period of the {} of {:.4g} Hz: is its time in s, not in ms?",
       periods, to_string(condition.waveform), fastest_hz);
 }
 

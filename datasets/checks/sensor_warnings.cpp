@@ -58,13 +58,13 @@ bool counts(const SensorFault& fault, const std::vector<TimeWindow>& windows) {
 std::string_view words(Kind kind) {
   switch (kind) {
     case Kind::clipped_at_highest:
-      return "stands at exactly its highest value, as a clipped sensor or amplifier does";
+      return "stays at exactly its highest value, as a clipped sensor or amplifier does";
     case Kind::clipped_at_lowest:
-      return "stands at exactly its lowest value, as a clipped sensor or amplifier does";
+      return "stays at exactly its lowest value, as a clipped sensor or amplifier does";
     case Kind::frozen:
       break;
   }
-  return "stands still while the drive moves on, as an interrupted sensor or line does";
+  return "does not change while the drive moves on, as an interrupted sensor or line does";
 }
 
 std::string text(const std::vector<const SensorFault*>& faults) {

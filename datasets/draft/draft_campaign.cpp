@@ -123,11 +123,11 @@ void without_time(const fs::path& file, const std::vector<RecordColumn>& columns
     });
     return;
   }
-  found.lacks =
-      columns.empty()
-          ? fmt::format("it holds no vector or matrix of numbers; {}", record_reader(file).if_empty)
-          : fmt::format("no column looks like a time (t, time, ...); the columns are {}",
-                        names_text(columns));
+  found.lacks = columns.empty()
+                    ? fmt::format("it contains no vector or matrix of numbers; {}",
+                                  record_reader(file).if_empty)
+                    : fmt::format("no column looks like a time (t, time, ...); the columns are {}",
+                                  names_text(columns));
 }
 
 FileColumns columns_of(const fs::path& file) {
@@ -331,8 +331,7 @@ std::string unknown_columns_text(const fs::path& file, const FileColumns& column
 
 /// Text for a file in which no channel, or not even a time, is recognised.
 std::string blank_channels_text(const fs::path& file, const FileColumns& columns) {
-  std::string text =
-      "[recording.channels]\n# Nothing told which column is which: see those below.\n";
+  std::string text = "[recording.channels]\n# No column was recognised: see those below.\n";
   text += columns.time.empty()
               ? fmt::format("time = {{ column = \"{}\", unit = \"s\" }}{}\n", kBlank,
                             comment("one of the columns below"))
@@ -353,7 +352,7 @@ std::string channels_text(const fs::path& file, const FileColumns& columns) {
   std::string text = "[recording.channels]\n";
   text += fmt::format("time = {{ column = {}, unit = {} }}{}\n", toml_quoted(columns.time),
                       toml_quoted(columns.time_unit.empty() ? "s" : columns.time_unit),
-                      columns.time_unit.empty() ? comment("assumed: its name tells no unit") : "");
+                      columns.time_unit.empty() ? comment("assumed: its name has no unit") : "");
   std::vector<Channel> done;
   for (const ChannelColumns& column : columns.channels) {
     if (column.channel == Channel::pilot_pressure && !has_pilot(columns)) {
@@ -471,7 +470,7 @@ std::string rig_text(model::PlantKind plant, std::optional<model::Feedback> loop
                      bool pilot) {
   std::string text = "[rig]\n" + model_text(plant);
   text +=
-      "# What a data sheet does not tell is fitted: { start = ..., lower = ..., upper = ..., fit = "
+      "# What no data sheet gives is fitted: { start = ..., lower = ..., upper = ..., fit = "
       "true }\n"
       "[rig.parameters]\n";
   for (const model::ParameterSpec& spec : model::parameter_table(plant)) {

@@ -35,7 +35,7 @@ std::vector<std::filesystem::path> recordings_in(const std::vector<std::filesyst
     // The reader of these formats explains what to do with them.
     if (files.size() == before) files.insert(files.end(), unread.begin(), unread.end());
     if (files.size() == before) {
-      throw UsageError(fmt::format("{}: this folder holds no {} file; expected recordings",
+      throw UsageError(fmt::format("{}: this folder has no {} file; expected recordings",
                                    path.string(), record_extensions()));
     }
     std::sort(files.begin() + static_cast<std::ptrdiff_t>(before), files.end());

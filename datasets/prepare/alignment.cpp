@@ -225,7 +225,7 @@ AlignedRepeats align(const std::vector<Repeat>& repeats, bool correlate) {
   const auto offsets = correlate_offsets(repeats);
   if (!offsets) {
     result.warnings.emplace_back(
-        "no channel tells the offsets of all repeats (none common to all, constant, too noisy, too "
+        "no channel shows the offsets of all repeats (none common to all, constant, too noisy, too "
         "far apart, or faster than 0.35 of the sample rate): repeats are not aligned");
     return result;
   }

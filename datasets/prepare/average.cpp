@@ -168,7 +168,7 @@ void conclude_sd(Series& series, Channel channel, const AverageOptions& options,
   }
   if (series.pooled_sd == 0.0 && info(channel).is_output)
     warnings.push_back(fmt::format(
-        "{}: the repeats are identical, so they tell nothing about the noise", info(channel).key));
+        "{}: the repeats are identical, so they say nothing about the noise", info(channel).key));
   series.pooled_sd = known == options.known_sd.end() ? kNan : known->second;
   series.sd_of_mean = series.pooled_sd;
 }
@@ -235,8 +235,9 @@ void warn_of_pair(const Stack& stack, const Series& series, Channel channel, Spa
   const auto [low, high] = std::minmax_element(series.mean.begin(), series.mean.end());
   if (distance <= options.outlier_ratio * expected || distance <= 0.01 * (*high - *low)) return;
   warnings.push_back(fmt::format(
-      "{}: {} and {} differ by {:.3g} {} rms, {:.3g} % of the range; with two repeats it cannot be "
-      "told which one is wrong",
+      "{}: {} and {} differ by {:.3g} {} rms, {:.3g} % of the range; with two repeats it is "
+      "unknown "
+      "which one is wrong",
       info(channel).key, repeats[stack.carriers[0]].source, repeats[stack.carriers[1]].source,
       distance, info(channel).unit, 100.0 * distance / (*high - *low)));
 }
@@ -276,7 +277,7 @@ void warn_of_outliers(const Stack& stack, Channel channel, Span span, const Aver
     RepeatReport& report = record.repeat_reports[stack.carriers[k]];
     report.outlier = true;
     record.warnings.push_back(fmt::format(
-        "{}: {} lies {:.3g} {} rms from the median of the {} repeats, {}; {}", info(channel).key,
+        "{}: {} is {:.3g} {} rms from the median of the {} repeats, {}; {}", info(channel).key,
         report.source, from_median[k], info(channel).unit, stack.rows.size(),
         typical > 0.0 ? fmt::format("{:.3g} times as far as is typical", from_median[k] / typical)
                       : std::string("where the others agree exactly"),
@@ -321,8 +322,8 @@ void warn_of_noise(const std::vector<std::vector<double>>& deviations, const Ser
   }
   if (const auto step = coarse_step(repeats, channel, series.pooled_sd)) {
     warnings.push_back(fmt::format(
-        "{}: readings come in steps of {:.3g} {}, and the repeats scatter by {:.2g} {} only: each "
-        "is rounded alike, which their mean does not remove and their scatter does not show",
+        "{}: readings come in steps of {:.3g} {}, and the repeats differ by {:.2g} {} only: each "
+        "is rounded alike, which their mean does not remove and their differences do not show",
         about.key, *step, about.unit, series.pooled_sd, about.unit));
   }
 }

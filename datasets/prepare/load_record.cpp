@@ -69,9 +69,9 @@ RecordTable read_columns(const Campaign& campaign, const std::filesystem::path& 
     if (may_be_shown(campaign, path)) throw;
     throw InputError(
         error.where(),
-        "is no recording that this campaign fits. What stands in the file is not shown, "
-        "since it lies neither in the campaign's folder nor in that of --data and is not "
-        "named like a recording; expected one (`rigcal init` and its name tell more)");
+        "is no recording that this campaign fits. The content of the file is not shown, "
+        "since it is neither in the campaign's folder nor in that of --data and is not "
+        "named like a recording; expected one (`rigcal init` and its name may help)");
   }
 }
 
@@ -123,7 +123,7 @@ void find_moving_windows(const Campaign& campaign, const Condition& condition, R
   if (motions.empty())
     refuse(condition,
            fmt::format("windows = \"moving\": no step of the {} moves the piston in its record; "
-                       "expected a command that steps and is held, or window = [\"0.5 s\", \"12 "
+                       "expected a command of steps, or window = [\"0.5 s\", \"12 "
                        "s\"]",
                        info(drive_channel(campaign)).key));
   const bool turns = moving == Channel::angle;

@@ -50,7 +50,7 @@ std::vector<std::string> holes_in_what_counts(const Campaign& campaign, const Co
                                    : fmt::format(", and {} more such step{}", holes.size() - 1,
                                                  holes.size() == 2 ? "" : "s");
     texts.push_back(fmt::format(
-        "{}: samples are missing before sample {}: nothing stands between {:.6g} s and {:.6g} s{}; "
+        "{}: samples are missing before sample {}: nothing between {:.6g} s and {:.6g} s{}; "
         "{}",
         repeat.source, first.row, first.from_s, first.to_s, others,
         is_felt_later

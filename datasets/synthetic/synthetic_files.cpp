@@ -150,10 +150,11 @@ std::string synthetic_csv(const Campaign& campaign, const Repeat& repeat, std::u
   std::string text = label(seed);
   const auto put_name = [&](const std::string& name) {
     if (name.find(separator) != std::string::npos)
-      throw InputError({campaign.file.string()},
-                       fmt::format("column '{}' holds the separator '{}' of the records; expected "
-                                   "another name or separator",
-                                   name, separator));
+      throw InputError(
+          {campaign.file.string()},
+          fmt::format("column '{}' contains the separator '{}' of the records; expected "
+                      "another name or separator",
+                      name, separator));
     text += name;
   };
   put_name(campaign.time_column);

@@ -60,7 +60,7 @@ LeakScan scan_leaks(const calib::Problem& problem, const calib::ProblemCondition
   if (!(condition.values["leakage_area"] > 0.0)) {
     throw NoResultError(fmt::format(
         "condition \"{}\": leakage_area is 0 m2, and a leak is the coefficient times this area, so "
-        "no leakage coefficient can be told; expected the area of an orifice, such as --set "
+        "no leakage coefficient can be estimated; expected the area of an orifice, such as --set "
         "leakage_area=\"1 mm2\"",
         condition.condition->id));
   }

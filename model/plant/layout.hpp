@@ -77,11 +77,11 @@ inline constexpr StateRow kPayloadVelocity{"payload_velocity", "m/s", "velocity 
                                            1e-5, 0.1};
 inline constexpr StateRow kValveSupply{"valve_supply_pressure", "Pa",
                                        "supply pressure at the valve", 100.0, 0.1};
-inline constexpr StateRow kValveSignal{"valve_signal", "V", "signal that the spool stands at", 1e-3,
-                                       1.0};
+inline constexpr StateRow kValveSignal{"valve_signal", "V", "signal that the spool has reached",
+                                       1e-3, 1.0};
 inline constexpr StateRow kValveSignalRate{"valve_signal_rate", "V/s", "its rate", 1.0, 100.0};
 inline constexpr StateRow kPilotSignal{"valve_signal", "Pa",
-                                       "pilot pressure that the spool stands at", 100.0, 0.01};
+                                       "pilot pressure that the spool has reached", 100.0, 0.01};
 inline constexpr StateRow kPilotSignalRate{"valve_signal_rate", "Pa/s", "its rate", 1e5, 1e7};
 inline constexpr StateRow kPumpDemand{"pump_demand", "s",
                                       "time for which the pump has been asked for flow", 1e-3, 1.0};

@@ -132,7 +132,7 @@ constexpr auto linkage_term_rows() {
       F{&P::make_up_conductance_m3_per_s_pa, {"make_up_conductance", "make_up_conductance_m3_per_s_pa", "G_m", "m3/(s Pa)", "flow per pressure of the check valve through which the tank fills each chamber", "docs/model.md", K::term, 0, 1, 0.0}},
       F{&P::angle_gain, {"angle_gain", "angle_gain", "s_theta", "1", "recorded angle per angle", "docs/model.md", K::sensor, 0.1, 10, 1.0}},
       F{&P::angle_lag_s, {"angle_lag", "angle_lag_s", "tau_theta", "s", "first-order lag of the angle sensor", "docs/model.md", K::sensor, 1e-6, 10, 0.0}},
-      F{&P::angle_maximum_rad, {"angle_maximum", "angle_maximum_rad", "max_theta", "rad", "largest angle that its sensor and converter can tell", "docs/model.md", K::sensor, -1000, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(), false}},
+      F{&P::angle_maximum_rad, {"angle_maximum", "angle_maximum_rad", "max_theta", "rad", "largest angle that its sensor and converter can show", "docs/model.md", K::sensor, -1000, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(), false}},
       F{&P::angle_offset_rad, {"angle_offset", "angle_offset_rad", "theta_off", "rad", "recorded angle minus angle", "docs/model.md", K::sensor, -1000, 1000, 0.0}},
       F{&P::initial_angle_rad, {"initial_angle", "initial_angle_rad", "theta(0)", "rad", "recorded angle at the first sample", "docs/model.md", K::initial, -1000, 1000, 0.0}},
       F{&P::initial_angular_velocity_rad_per_s, {"initial_angular_velocity", "initial_angular_velocity_rad_per_s", "omega(0)", "rad/s", "angular velocity at the first sample", "docs/model.md", K::initial, -1000, 1000, 0.0}},

@@ -74,7 +74,7 @@ std::vector<std::string> comparison_warnings(const std::vector<Compared>& result
       list.push_back(repeats_warning(compared.name, *repeats));
     if (lacks_degrees(fit))
       list.push_back(
-          fmt::format("{}: written by a version that does not tell the degrees of "
+          fmt::format("{}: written by a version that does not state the degrees of "
                       "freedom of its errors; they are taken from its intervals",
                       compared.name));
   }

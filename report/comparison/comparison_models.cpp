@@ -119,7 +119,7 @@ std::string not_contained(const StoredFit& smaller_result, const StoredFit& larg
     const std::string& key = std::get<0>(id);
     if (const auto bound = larger.bounds.find(key); bound != larger.bounds.end()) {
       if (value < bound->second.first || value > bound->second.second)
-        return fmt::format("the value of {} lies outside the bounds of the other fit", key);
+        return fmt::format("the value of {} is outside the bounds of the other fit", key);
       continue;
     }
     const auto found = larger.known.find(id);

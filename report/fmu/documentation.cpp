@@ -54,7 +54,7 @@ std::string fmu_documentation(const FmuRequest& request, const std::vector<FmuVa
                  variable.start ? fmt::format("{}", *variable.start) : "", variable.unit,
                  variable.meaning});
   }
-  return text + "</table>\n<h2>Sources</h2>\n<p>The folder sources/ holds the equations, the " +
+  return text + "</table>\n<h2>Sources</h2>\n<p>The folder sources/ contains the equations, the " +
          "solver and the FMI functions in C++20. They need nothing but a compiler:</p>\n<pre>" +
          escaped(compile) + "</pre>\n</body>\n</html>\n";
 }

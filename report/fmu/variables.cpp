@@ -27,7 +27,7 @@ constexpr std::array kOutputs{
     OutputRow{Output::pressure_a, "pressure_a", "Pa", "pressure of chamber A"},
     OutputRow{Output::pressure_b, "pressure_b", "Pa", "pressure of chamber B"},
     OutputRow{Output::force, "force", "N", "what a load cell in the rod reads"},
-    OutputRow{Output::command, "command", "V", "what the valve is told"},
+    OutputRow{Output::command, "command", "V", "command to the valve"},
     OutputRow{Output::spool, "spool", "m", "travel of the valve's spool"},
     OutputRow{Output::servo_flow, "servo_flow", "m3/s", "flow of the servo valve to the load"},
     OutputRow{Output::leakage_flow, "leakage_flow", "m3/s", "internal leakage across the piston"},
@@ -61,7 +61,7 @@ void add_inputs(const ExportedRig& rig, std::vector<FmuVariable>& variables) {
   } else if (has_output(rig.values, Output::pilot_pressure)) {
     variables.push_back(input(0, "pilot_pressure", "Pa", "pilot pressure of the spool", 0.0));
   } else {
-    variables.push_back(input(0, "command", "V", "what the valve is told", 0.0));
+    variables.push_back(input(0, "command", "V", "command to the valve", 0.0));
   }
   if (model::parameter_index(rig.rig.plant, "external_force") >= 0)
     variables.push_back(input(1, "external_force", "N", "load against positive travel",

@@ -99,7 +99,7 @@ ParameterValues values_of(const std::vector<std::string>& set, const Campaign& c
   set_over_fit(set, campaign, condition, values);
   if (const auto missing = values.missing(); !missing.empty())
     throw InputError({campaign.file.string()},
-                     fmt::format("no value of {} holds for the whole rig: expected --condition "
+                     fmt::format("no value of {} applies to the whole rig: expected --condition "
                                  "with a condition that has them",
                                  fmt::join(missing, ", ")));
   return values;

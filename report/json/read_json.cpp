@@ -125,7 +125,7 @@ Json parse_json(std::string_view text, const std::string& file, const JsonLimits
         place_of_byte(file, text, std::min(std::max<std::size_t>(error.byte, 1) - 1, text.size())),
         "this is not JSON");
   } catch (const Json::out_of_range&) {
-    throw InputError({file}, "holds a number that is too large; expected a result of rigcal");
+    throw InputError({file}, "contains a number that is too large; expected a result of rigcal");
   }
 }
 

@@ -53,8 +53,9 @@ std::string state_sentence(const MachineState& state) {
   if (state.is_reference)
     return fmt::format("{}: the healthy reference, whose leak is zero by construction.", name);
   if (!state.ok()) {
-    return fmt::format("{}: no verdict: {}.", name,
-                       state.failure.empty() ? "no condition of it tells its leak" : state.failure);
+    return fmt::format(
+        "{}: no verdict: {}.", name,
+        state.failure.empty() ? "none of its conditions gives its leak" : state.failure);
   }
   const diagnosis::LeakEstimate& e = state.estimate;
   if (e.incompatible) {

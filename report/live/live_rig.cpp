@@ -327,7 +327,7 @@ std::vector<LiveCase> live_cases(const Campaign& campaign,
     if (const auto missing = values.missing(); !missing.empty()) {
       if (!problem)
         problem.emplace(condition.where,
-                        fmt::format("condition \"{}\": nothing tells {} of the rig: expected "
+                        fmt::format("condition \"{}\": {} of the rig is unknown: expected "
                                     "values in [rig.parameters]",
                                     condition.id, fmt::join(missing, ", ")));
       continue;

@@ -228,7 +228,7 @@ std::vector<Figure> design_figures(const PlanFiles& files) {
   Plot spectrum;
   spectrum.title = "Spectrum of drive and predicted position";
   spectrum.x_label = "frequency [Hz]";
-  spectrum.y_label = "share of the largest";
+  spectrum.y_label = "fraction of the largest";
   spectrum.width = 720.0;
   spectrum.height = 190.0;
   spectrum.log_x = true;
@@ -261,9 +261,10 @@ doc::Verdict design_headline(const StoredDesign& design) {
   }
   doc::Verdict verdict{
       {told && !design.stopped() ? doc::State::good : doc::State::warn, "DESIGN"},
-      {fmt::format("A {} of {:g} s with {} repeat{} tells {}. Every limit that is stated is kept.",
-                   words_of(design.family), design.duration_s, design.repeats,
-                   design.repeats == 1 ? "" : "s", words)}};
+      {fmt::format(
+          "A {} of {:g} s with {} repeat{} determines {}. Every limit that is stated is kept.",
+          words_of(design.family), design.duration_s, design.repeats,
+          design.repeats == 1 ? "" : "s", words)}};
   if (design.stopped())
     add_reason(verdict, "stopped by a signal: the best drive until then", "design");
   for (const StoredDesignedParameter& parameter : design.parameters) {

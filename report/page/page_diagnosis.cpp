@@ -383,7 +383,7 @@ void add_smallest_leaks(const StoredDiagnosis& diagnosis, doc::Blocks& blocks) {
   if (diagnosis.smallest_leak_l_per_min.empty()) return;
   doc::Table table{"Smallest leaks"};
   table.caption = {
-      fmt::format("Smallest leak told from none ({:g} % false alarms, found in {:g} % of cases)",
+      fmt::format("Smallest leak detected ({:g} % false alarms, found in {:g} % of cases)",
                   100.0 * diagnosis.settings.false_alarms, 100.0 * diagnosis.settings.detection)};
   table.columns = {{"Signal"},
                    {"Single record, L/min", Kind::number},

@@ -19,11 +19,10 @@ constexpr std::array kFormulas{
     Formula{"gain ratio, phase, delay",
             "simulated over measured amplitude, and phase, of the least-squares sine at the "
             "fundamental; delay = -phase / (360 f)"},
-    Formula{
-        "verdict",
-        "of a condition: the worst of its limits; FAIL beyond a limit, WARN beyond its warning; "
-        "of the whole: the worst of its conditions"},
-    Formula{"share of a limit that is used",
+    Formula{"verdict",
+            "condition: the worst of its limits; FAIL beyond a limit, WARN beyond its warning; "
+            "whole: the worst of its conditions"},
+    Formula{"used fraction of a limit",
             "distance of the metric from its ideal (1, 100 % or 0) over that of the limit"},
     Formula{"cost",
             "half the sum over all samples and channels of ((s - y) / sigma)^2, priors included"},
@@ -41,9 +40,10 @@ constexpr std::array kFormulas{
     Formula{
         "95 % interval",
         "value ± q times the robust standard error, cut at the limits of the parameter; q = t / "
-        "root of (1 - b + b t^2), t Student's with the freedom of that error, b the share of it "
-        "that the error of the value itself makes up; where residuals are below half of the "
-        "noise, or too few to tell their correlation, value ± t times the plain error; half "
+        "root of (1 - b + b t^2), t Student's with the degrees of freedom of that error, b the "
+        "fraction of it that the error of the value itself makes up; where residuals are below "
+        "half of the "
+        "noise, or too few to estimate their correlation, value ± t times the plain error; half "
         "width: over the value"},
     Formula{"identified, weak, not identifiable",
             "half width of the interval up to 20 %, up to 100 %, above 100 % of the value; of the "
@@ -53,15 +53,16 @@ constexpr std::array kFormulas{
             "standard errors"},
     Formula{"singular values",
             "of J with columns of length 1; a direction whose value is nil is not determined"},
-    Formula{"profile",
-            "(lowest cost with the parameter held - cost) over the rise at which the 95 % interval "
-            "ends: 1/2 (half width / standard error)^2 max(1, chi-square)"},
+    Formula{
+        "profile",
+        "(lowest cost with the parameter fixed - cost) over the rise at which the 95 % interval "
+        "ends: 1/2 (half width / standard error)^2 max(1, chi-square)"},
     Formula{"bootstrap",
             "percentiles of fits to redrawn repeats, or residuals in blocks, widened by t over the "
             "normal quantile; bias: their mean - value"},
     Formula{"lack of fit",
             "F = variance of the residual / variance of the mean of the repeats; each sum of n "
-            "squares counts n / (1 + 2 sum rho^2) degrees of freedom; all tests together at 5 % "
+            "squares has n / (1 + 2 sum rho^2) degrees of freedom; all tests together at 5 % "
             "(Bonferroni)"},
     Formula{"AIC, BIC",
             "2 cost w + 2 rank, 2 cost w + rank ln(n_e); n_e of n residuals independent, w = "
@@ -96,7 +97,7 @@ constexpr std::array kFormulas{
             "by the share's place between the limits; probabilities by the share's interval, given "
             "that it is not negative (docs/diagnosis.md)"},
     Formula{"smallest leak",
-            "told from none with the stated false alarms, and found in the stated share of cases "
+            "detected with the stated false alarms, and found in the stated fraction of cases "
             "(Currie's detection limit)"},
     Formula{"accuracy", "right / all; interval of Wilson"},
     Formula{"difference, p",

@@ -110,7 +110,7 @@ doc::Section records_section(const StoredPlan& plan) {
                     {"Unit", Kind::unit},
                     {"sd, recorded", Kind::number},
                     {"sd, planned ones too", Kind::number},
-                    {"What would tell it"}};
+                    {"What would determine it"}};
   for (const StoredPlannedParameter& parameter : plan.parameters) {
     const RowUnit unit = row_unit(parameter.value.value_or(0.0), parameter.unit);
     totals.rows.push_back(
@@ -140,7 +140,7 @@ doc::Section records_section(const StoredPlan& plan) {
   for (Figure& figure : share_figures(plan))
     gallery.figures.push_back(figure_of(std::move(figure.plot)));
   return {"plan",
-          "What the records tell",
+          "What the records determine",
           {doc::reading("Standard deviations at best: white noise, the model right, every "
                         "parameter free (Cramér and Rao). A fit reaches rather more. A dash: "
                         "nothing determines the parameter."),

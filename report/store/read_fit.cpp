@@ -204,7 +204,7 @@ calib::Aspect judged(const StoredFit& stored, StoredAspect StoredAssessment::*me
                             "no_assessment",
                             "",
                             {},
-                            "the fit.json of the values holds no assessment of its parameters"});
+                            "the fit.json of the values has no assessment of its parameters"});
   return aspect;
 }
 

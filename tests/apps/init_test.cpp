@@ -152,7 +152,7 @@ TEST_CASE("init: what it refuses", "[apps]") {
   const CommandFolder folder;
   write_campaign(folder);
   folder.write("empty/notes.md", "none");
-  CHECK_THAT(folder.run({"init", "empty"}).err, Contains("empty: this folder holds no .csv"));
+  CHECK_THAT(folder.run({"init", "empty"}).err, Contains("empty: this folder has no .csv"));
   CHECK(folder.run({"init"}).exit_code == 2);
   const Outcome missing = folder.run({"init", "records/none.csv"});
   CHECK(missing.exit_code == 2);

@@ -315,6 +315,6 @@ TEST_CASE("fit-tables: bad input is refused", "[apps]") {
   write_rig(folder);
   check_refused(folder, {"fit-tables", "campaign.toml"}, "no assumption of [leak_table]");
   check_refused(folder, {"fit-tables", "campaign.toml", "--free", "kp"},
-                "0 published numbers cannot tell 1 values");
+                "0 published numbers cannot determine 1 values");
   check_refused(folder, {"fit-tables", "campaign.toml", "--free", "kpp"}, "did you mean 'kp'");
 }

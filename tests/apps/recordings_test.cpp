@@ -99,7 +99,7 @@ TEST_CASE("recordings: a clipped sensor is told wherever its record is used", "[
   const Twin twin;
   const int position = column_of(twin, "x_mm");
   twin.change("sine", position, [](std::size_t, double x) { return std::min(x, 3.0); });
-  const std::string words = "position: stands at exactly its highest value";
+  const std::string words = "position: stays at exactly its highest value";
   CHECK_THAT(twin.run("check").out, Contains("  warning: " + words));
   CHECK_THAT(twin.run("average", {"--out", "a"}).out, Contains(words));
 
@@ -127,8 +127,9 @@ TEST_CASE("recordings: a sensor that stands still for a while", "[apps]") {
   const int position = column_of(twin, "x_mm");
   twin.change("sine", position,
               [](std::size_t i, double x) { return i > 100 && i < 150 ? 1.25 : x; });
-  CHECK_THAT(twin.run("check").out,
-             Contains("position: stands still while the drive moves on") && Contains("0.00125 m"));
+  CHECK_THAT(
+      twin.run("check").out,
+      Contains("position: does not change while the drive moves on") && Contains("0.00125 m"));
 }
 
 TEST_CASE("recordings: all repeats of a condition end half way", "[apps]") {

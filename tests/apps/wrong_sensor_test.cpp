@@ -155,9 +155,8 @@ TEST_CASE("wrong sensor: a clipped one is named, even under limits that it keeps
   CHECK(result.verdict() == "WARN");
   CHECK(result.names("agreement", "recording_doubtful"));
   CHECK(result.names("adequacy", "lack_of_fit"));
-  CHECK_THAT(
-      result.run.out,
-      Contains("stands at exactly its highest value, as a clipped sensor or amplifier does"));
+  CHECK_THAT(result.run.out,
+             Contains("stays at exactly its highest value, as a clipped sensor or amplifier does"));
 }
 
 TEST_CASE("wrong sensor: a limit that cannot be evaluated fails", "[apps]") {

@@ -133,10 +133,11 @@ Header read_header(HeadedLines& lines, const std::string& file, char separator) 
   const char* text = lines.next();
   while (text != nullptr && is_comment(text)) text = lines.next();
   if (text == nullptr)
-    throw InputError({file}, lines.number() == 0
-                                 ? "is empty; expected a header line with the names of the columns"
-                                 : "holds comments only; expected a header line with the names of "
-                                   "the columns");
+    throw InputError({file},
+                     lines.number() == 0
+                         ? "is empty; expected a header line with the names of the columns"
+                         : "contains comments only;  expected a header line with the names of "
+                           "the columns");
   const std::string_view line = text;
   const auto fail = [&](const std::string& message) {
     throw InputError({file, lines.number(), 1}, message);
@@ -145,7 +146,7 @@ Header read_header(HeadedLines& lines, const std::string& file, char separator) 
   if (line.find('\r') != std::string_view::npos)
     fail("lines end with a carriage return alone; expected line ends of Unix or Windows");
   if (std::any_of(line.begin(), line.end(), [](char c) { return c >= 0 && c < ' ' && c != '\t'; }))
-    fail("holds control characters; expected the names of the columns of a CSV file as text");
+    fail("contains control characters; expected the names of the columns of a CSV file as text");
 
   Header header{file, lines.number(), separator != 0 ? separator : find_separator(line), {}};
   if (const auto columns = std::count(line.begin(), line.end(), header.separator) + 1;
@@ -157,7 +158,9 @@ Header read_header(HeadedLines& lines, const std::string& file, char separator) 
         return csv_number(name.full, header.separator != ',').has_value();
       });
   if (numbers_only)
-    fail("holds numbers; expected the header with the names of the columns, without '#' in front");
+    fail(
+        "contains numbers; expected the header with the names of the columns, without '#' in "
+        "front");
   return header;
 }
 
@@ -359,7 +362,7 @@ class RowReader {
       throw error(
           line, line_number, field.begin,
           fmt::format("no numbers in the first row ('{}' in column '{}'), as in a second header "
-                      "line; expected numbers. Units stand behind the names (\"x [mm]\") or "
+                      "line; expected numbers. Units follow the names (\"x [mm]\") or "
                       "in the campaign file: remove such a line",
                       shown(field.text), shown(name)));
     if (field.text.empty())

@@ -265,7 +265,7 @@ void Hdf5File::list_group(hid_t group, const std::string& path, std::vector<hadd
                      hdf5_reason()));
   for (const std::string& name : links) {
     if (++objects_ > kMostObjects)
-      fail(fmt::format("holds more than {} groups and datasets", kMostObjects));
+      fail(fmt::format("contains more than {} groups and datasets", kMostObjects));
     if (!is_printable(name)) continue;
     const std::string own = fmt::format("{}/{}", path, name);
     const Hdf5Id object(H5Oopen(group, name.c_str(), H5P_DEFAULT), H5Oclose);
@@ -315,7 +315,7 @@ void Hdf5File::list_dataset(hid_t dataset, const std::string& path) {
     own.kind = cell ? kind_of(cell.get()) : "of a damaged type";
     if (units.size() == static_cast<std::size_t>(members)) own.units = {units[i]};
     if (++objects_ > kMostObjects)
-      fail(fmt::format("holds more than {} datasets and members of tables", kMostObjects));
+      fail(fmt::format("contains more than {} datasets and members of tables", kMostObjects));
     series_.push_back(std::move(own));
   }
 }
@@ -384,7 +384,7 @@ void Hdf5File::require_written(hid_t dataset, const Hdf5Series& series, const Hd
         address != HADDR_UNDEF)
       continue;
     fail(
-        fmt::format("rows {} to {} of '{}' were never written: the file holds no numbers there; "
+        fmt::format("rows {} to {} of '{}' were never written: the file has no numbers there; "
                     "expected a number in each row",
                     row + 1, std::min(row + step, rows), column));
   }
@@ -421,7 +421,7 @@ std::vector<double> Hdf5File::unpacked(hid_t dataset, std::vector<double> values
     if (std::find(packing.missing.begin(), packing.missing.end(), values[i]) !=
         packing.missing.end())
       fail(
-          fmt::format("row {} of '{}' is {}, which stands for a missing value there; expected a "
+          fmt::format("row {} of '{}' is {}, which means a missing value there; expected a "
                       "number in each row",
                       i + 1, column, values[i]));
     if (packing.is_given) values[i] = packing.factor * values[i] + packing.offset;
@@ -441,8 +441,8 @@ std::vector<double> Hdf5File::numbers(const Hdf5Series& series, const Hdf5Line& 
   require_written(dataset.get(), series, line, column);
   const CellChoice choice = choice_of(series, line);
   if (choice.width > kMostValues / std::max<std::size_t>(choice.cells, 1))
-    fail(fmt::format("'{}' stands in arrays of {} numbers each, {} of them: more than {} in all",
-                     column, choice.width, choice.cells, kMostValues));
+    fail(fmt::format("'{}' has arrays of {} numbers each, {} of them: more than {} in all", column,
+                     choice.width, choice.cells, kMostValues));
   const Hdf5Id space(H5Dget_space(dataset.get()), H5Sclose);
   const Hdf5Id type = number_type(dataset.get(), series);
   if (!type || !select_cells(space.get(), series, line)) damaged();

@@ -134,7 +134,7 @@ class Hdf5Columns {
     if (found != nullptr) return *found;
     std::vector<std::string> known;
     for (const RecordColumn& each : list()) known.push_back(each.name);
-    if (known.empty()) fail(fmt::format("holds no numbers; {}", kHowToSaveHdf5));
+    if (known.empty()) fail(fmt::format("contains no numbers; {}", kHowToSaveHdf5));
     constexpr std::size_t kMostNamed = 40;
     if (known.size() > kMostNamed) known.resize(kMostNamed);
     fail(unknown_name_message("dataset", column, known));

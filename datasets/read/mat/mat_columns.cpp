@@ -92,7 +92,7 @@ class ColumnOfMat {
     std::string message = unknown_name_message("variable", name, known);
     if (holds_objects)
       message += fmt::format(
-          "; the file also holds objects, such as a timeseries, a table or a string, which only "
+          "; the file also contains objects, such as a timeseries, a table or a string, which only "
           "MATLAB can read: {}",
           kHowToSaveMat);
     fail(message);

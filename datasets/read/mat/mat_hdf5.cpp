@@ -61,7 +61,7 @@ struct Hdf5Source::Open {
     array.place = arrays.size();
     arrays.push_back(&variable);
     if (arrays.size() > kMostHdf5Arrays || depth > kDeepestHdf5Struct)
-      fail(fmt::format("holds more than {} arrays, or {} structs within each other",
+      fail(fmt::format("contains more than {} arrays, or {} structs within each other",
                        kMostHdf5Arrays, kDeepestHdf5Struct));
     std::size_t count = 1;
     for (int i = 0; variable.dims != nullptr && i < variable.rank; ++i) {

@@ -148,7 +148,7 @@ class Level5Parser {
       element.next = begin + kTagBytes;
       element.is_held_in_tag = true;
       if (element.bytes > element.held_in_tag.size())
-        throw DamagedBytes("an element of more bytes than its tag holds");
+        throw DamagedBytes("an element of more bytes than its tag says");
       std::copy(raw.begin() + 4, raw.end(), element.held_in_tag.begin());
       return element;
     }
@@ -156,7 +156,7 @@ class Level5Parser {
     element.bytes = word(raw.data() + 4);
     element.begin = begin + kTagBytes;
     if (element.bytes > end - element.begin)
-      throw DamagedBytes("an element that is longer than what it stands in");
+      throw DamagedBytes("an element that is longer than its container");
     // Elements begin at multiples of eight bytes; some writers omit the padding of the last one.
     element.next = std::min(end, element.begin + (element.bytes + 7) / 8 * 8);
     return element;
@@ -218,7 +218,7 @@ class Level5Parser {
       return static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
     };
     if (std::any_of(name.begin(), name.end(), is_control))
-      throw DamagedBytes("a name that holds what is no character");
+      throw DamagedBytes("a name with a byte that is no character");
     return std::string(name);
   }
 
@@ -342,7 +342,7 @@ Level5Source::Level5Source(const std::filesystem::path& path, std::uint64_t most
     throw InputError({name_}, "is shorter than the header of a MAT file: it is truncated");
   const std::string_view order(header.data() + 126, 2);
   if (order != "IM" && order != "MI")
-    throw InputError({name_}, "is damaged: its header does not tell the order of the bytes");
+    throw InputError({name_}, "is damaged: its header does not give the order of the bytes");
   swapped_ = order == "MI";
   for (std::uint64_t at = kHeaderBytes; at < file_bytes;) {
     const std::size_t number = ranges_.size() + 1;
@@ -361,7 +361,7 @@ Level5Source::Level5Source(const std::filesystem::path& path, std::uint64_t most
                                             number, at + 1, damage.what()));
     }
   }
-  if (variables_.empty()) throw InputError({name_}, "holds no variables; expected at least one");
+  if (variables_.empty()) throw InputError({name_}, "contains no variables; expected at least one");
 }
 
 std::unique_ptr<ByteStream> Level5Source::open(const Range& range) {

@@ -121,7 +121,7 @@ class SharedTextsHandler : public XmlHandler {
     bytes_ += text.size();
     if (bytes_ > kMostSharedBytes)
       throw InputError({name_},
-                       fmt::format("holds more than {} MB of text", kMostSharedBytes >> 20));
+                       fmt::format("contains more than {} MB of text", kMostSharedBytes >> 20));
   }
   std::vector<std::string> texts;
 
@@ -170,7 +170,7 @@ class SheetHandler : public XmlHandler {
         take_(take) {}
 
   void start(std::string_view element, const XmlAttributes& attributes) override {
-    if (gathers_) fail("holds an element within its value");
+    if (gathers_) fail("has an element within its value");
     if (element == "sheetData") in_table_ = true;
     if (element == "extLst") in_extension_ = true;
     if (element == "row") start_row(attributes);
@@ -178,7 +178,7 @@ class SheetHandler : public XmlHandler {
     if (element == "f") has_formula_ = true;
     gathers_ = in_cell_ && (element == "v" || (element == "t" && !in_aid_));
     if (element == "v" || element == "is") {
-      if (has_value_) fail("holds two values");
+      if (has_value_) fail("has two values");
       has_value_ = true;
     }
     if (element == "rPh") in_aid_ = true;
@@ -204,7 +204,7 @@ class SheetHandler : public XmlHandler {
   void text(std::string_view text) override {
     if (!gathers_) return;
     cell_.text += text;
-    if (cell_.text.size() > kLongestCell) fail("holds more text than a cell can");
+    if (cell_.text.size() > kLongestCell) fail("has more text than a cell may have");
   }
 
   bool is_done() const override { return done_; }
@@ -320,13 +320,12 @@ std::string workbook_part(const XlsxArchive& archive) {
     if (relation.kind != "officeDocument") continue;
     const std::string part = resolved("", relation.target);
     if (part.ends_with(".xml")) return part;
-    throw InputError(
-        {archive.name()},
-        fmt::format("holds its workbook in '{}', in another format (.xlsb); save it as "
-                    ".xlsx",
-                    shown(part)));
+    throw InputError({archive.name()},
+                     fmt::format("has its workbook in '{}', in another format (.xlsb); save it as "
+                                 ".xlsx",
+                                 shown(part)));
   }
-  throw InputError({archive.name()}, "holds no workbook; expected an .xlsx file of Excel");
+  throw InputError({archive.name()}, "contains no workbook; expected an .xlsx file of Excel");
 }
 
 }  // namespace
@@ -359,7 +358,7 @@ XlsxBook::XlsxBook(const std::filesystem::path& path) : archive_(path) {
     sheets_.push_back({sheet, part});
   }
   if (sheets_.empty())
-    throw InputError({name()}, "holds no worksheet; expected one with a table of numbers");
+    throw InputError({name()}, "contains no worksheet; expected one with a table of numbers");
   for (const auto& [id, relation] : parts) {
     if (relation.kind == "sharedStrings") {
       SharedTextsHandler texts(name());

@@ -306,11 +306,10 @@ class SheetReader {
     const auto [row, column] = *gap_;
     for (const XlsxMerged& cells : merged)
       if (cells.holds(row, column))
-        fail(
-            row, column,
-            fmt::format("belongs to the merged cells {}, of which the first alone holds something; "
-                        "expected a number in each cell",
-                        cells.range));
+        fail(row, column,
+             fmt::format("belongs to the merged cells {}, of which only the first has content; "
+                         "expected a number in each cell",
+                         cells.range));
     fail(row, column, "is empty, but rows follow or other columns go on; expected a number");
   }
 

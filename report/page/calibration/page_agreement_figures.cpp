@@ -121,7 +121,7 @@ Response response_of(std::optional<double> frequency_hz, const Table& series,
   };
   if (part.size < kLeastSamples) return {{}, "Gain and phase: too few samples."};
   if (!all_finite(cut(*input)) || !all_finite(cut(measured)) || !all_finite(cut(simulated)))
-    return {{}, "Gain and phase: not told of signals with gaps."};
+    return {{}, "Gain and phase: unknown for signals with gaps."};
   ResponseCurves curves;
   curves.of = fmt::format("{} over {}", spaced(std::string(about.key)), drive->name);
   set_gain_unit(curves, about.unit, drive->unit, largest(cut(measured)), largest(cut(*input)));
@@ -158,7 +158,7 @@ Response response_of(std::optional<double> frequency_hz, const Table& series,
       fmt::format("Gain and phase of {} {}, where the coherence is {:g} or more; {}.", curves.of,
                   where, metrics::kLeastCoherence,
                   scatter ? "bars are 95 % intervals by coherence"
-                          : "a single period, which tells no scatter and so no interval");
+                          : "a single period, without variation and so without an interval");
   return {std::move(curves), std::move(words)};
 }
 

@@ -33,9 +33,10 @@ void add_scores(const StoredCondition& condition, doc::Blocks& blocks) {
       condition.metrics.begin(), condition.metrics.end(),
       [&](const auto& each) { return uncertainty_of(condition, each.first) != nullptr; });
   if (uncertain)
-    blocks.emplace_back(doc::reading(
-        "± expanded uncertainty of a score (95 %), by the scatter of the repeats and the stated "
-        "uncertainty of the sensors."));
+    blocks.emplace_back(
+        doc::reading("± expanded uncertainty of a score (95 %), from the variation between repeats "
+                     "and the stated "
+                     "uncertainty of the sensors."));
   doc::Table table{"Scores of " + condition.id};
   table.columns = {{"Channel"}};
   for (doc::Column& column : score_columns()) table.columns.push_back(std::move(column));
@@ -174,7 +175,7 @@ void add_curves(const StoredCondition& condition, const Table& series,
   // Every scored condition must have a series; without it the page would only look complete.
   if (!condition.metrics.empty() && plots == 0)
     blocks.emplace_back(doc::Paragraph{
-        {fmt::format("residuals/{}.csv is missing or holds no rows: nothing can be drawn.",
+        {fmt::format("residuals/{}.csv is missing or has no rows: nothing can be drawn.",
                      condition.id)},
         doc::Paragraph::Tone::problem});
   doc::Blocks agreement = agreement_blocks(condition.id, periodic_frequency(condition), series);

@@ -36,7 +36,7 @@ std::string further_starts_of(const StoredFit& fit) {
       if (reason.code == "further_starts") return reason.words + ".";
     }
   }
-  return "One start alone: whether another minimum lies lower was not looked for.";
+  return "One start alone: whether another minimum is lower was not looked for.";
 }
 
 /// Summary of all starts.

@@ -165,7 +165,7 @@ void add_profiles(const StoredFit& fit, doc::Blocks& blocks) {
   if (gallery.figures.empty()) return;
   blocks.emplace_back(doc::Heading{{"Profiles"}});
   blocks.emplace_back(doc::reading(
-      "How much worse the fit becomes with one parameter held and all others fitted again; at 1 "
+      "How much worse the fit becomes with one parameter fixed and all others fitted again; at 1 "
       "the 95 % interval ends."));
   blocks.emplace_back(std::move(gallery));
 }

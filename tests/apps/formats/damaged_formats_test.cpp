@@ -95,7 +95,7 @@ TEST_CASE("check: a workbook that inflates without end is refused", "[apps]") {
   CHECK(bomb.size() < names.size() / 100);
   const Outcome outcome = scene.check(bomb);
   check_refused(scene, outcome);
-  CHECK_THAT(outcome.err, Contains("holds more than 64 MB of text"));
+  CHECK_THAT(outcome.err, Contains("contains more than 64 MB of text"));
 }
 
 TEST_CASE("check: a cell that is no number is named with file, sheet and address", "[apps]") {
@@ -150,7 +150,7 @@ TEST_CASE("init: a draft from HDF5 and from a workbook, with their units", "[app
                  "../book/sine_1.xlsx", "../h5/sine_1.h5") == from_h5);
   const Outcome none = folder.run({"init", "twin", "--out", "none"});
   CHECK(none.exit_code == 2);
-  CHECK_THAT(none.err, Contains("this folder holds no .csv, "));
+  CHECK_THAT(none.err, Contains("this folder has no .csv, "));
 }
 
 }  // namespace rigcal::test

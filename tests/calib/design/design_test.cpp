@@ -222,7 +222,7 @@ TEST_CASE("design: what it refuses", "[calib]") {
       {"noise",
        [](auto& c) { c.design->noise_sd.clear(); },
        {"mass"},
-       "nothing tells the noise of channel position"},
+       "the noise of channel position"},
       {"stroke beside the rig",
        [](auto& c) { c.design->lowest_m.value = 0.01; },
        {"mass"},

@@ -125,7 +125,7 @@ TEST_CASE("fit_tables: too little to fit is said", "[calib]") {
   rig.settings.signals[0].printed.clear();
   rig.settings.features.clear();
   CHECK_THROWS_WITH(calib::fit_tables(rig.campaign, rig.settings, {}),
-                    Contains("0 published numbers cannot tell 4 values"));
+                    Contains("0 published numbers cannot determine 4 values"));
   for (auto& assumption : rig.settings.assumptions) assumption.fit = false;
   CHECK_THROWS_AS(calib::fit_tables(rig.campaign, rig.settings, {}), InputError);
 }

@@ -159,7 +159,7 @@ TEST_CASE("lack of fit: without repeats the stated sd is compared, without it no
       fit(twin.campaign, twin.records(500, 500.0, 3, model::InitialState::rest, false), {});
   CHECK(unknown.lack_of_fit.empty());
   CHECK_FALSE(unknown.misfit.has_value());
-  CHECK_THAT(unknown.interval_advice, Contains("cannot be told apart"));
+  CHECK_THAT(unknown.interval_advice, Contains("cannot be separated"));
 }
 
 TEST_CASE("lack of fit: one failure is a misfit, one that cannot be judged leaves it open",

@@ -110,35 +110,35 @@ TEST_CASE("load_campaign: what does not go together on a linkage", "[datasets]")
     const char* message;
   };
   const char* const gain = "pilot_gain = \"0.3 mm/bar\"";
-  for (
-      const Row& row : {
-          Row{gain, "pilot_gain = \"0.3 mm/bar\"\nvalve_gain = \"0.1 mm/V\"",
-              "pilot_gain stands together with valve_gain: expected valve_gain (an electric valve"},
-          Row{gain, "", "nothing tells the gain of the valve"},
-          Row{gain, "valve_gain = \"0.1 mm/V\"", "pilot_dead_band is of a pilot-operated valve"},
-          Row{gain, "pilot_gain = \"0.3 mm/bar\"\nvalve_offset = \"0.1 V\"",
-              "valve_offset is in volts"},
-          Row{gain, "pilot_gain = \"0.3 mm/bar\"\npump_flow = \"100 L/min\"",
-              "a pump of limited flow needs supply_resistance"},
-          Row{gain,
-              "pilot_gain = \"0.3 mm/bar\"\npump_flow = \"100 L/min\"\nsupply_resistance = \"1e9 "
-              "Pa s/m3\"\nsupply_capacity = \"1e-12 m3/Pa\"\npump_second_flow = \"150 L/min\"",
-              "expected pump_delay as well"},
-          Row{gain, "pilot_gain = \"0.3 mm/bar\"\npump_delay = \"1 s\"",
-              "pump_delay without a first flow: expected pump_flow"},
-          Row{gain, "pilot_gain = \"0.3 mm/bar\"\nbypass_opening = \"0.4 mm\"",
-              "expected supply_resistance and supply_capacity"},
-          Row{gain, "pilot_gain = \"0.3 mm/bar\"\nbypass_range = \"8 bar\"",
-              "bypass_range without a bypass: expected bypass_opening"},
-          Row{gain, "pilot_gain = \"0.3 mm/bar\"\nmass = \"5 kg\"", "mass"},
-          Row{"upper_stop = \"-30 deg\"", "upper_stop = \"-160 deg\"", "is not above lower_stop"},
-          Row{"lever = \"12 mm/deg\"", "lever = \"12 mm/deg\"\nlever_gradient = \"-1 m/rad2\"",
-              "expected one above 0 in all of the range"},
-          Row{"type = \"none\"", "type = \"pid\"", "the plant linkage has no controller yet"},
-          Row{"angle = { column", "position = { column = \"x_m\", unit = \"m\" }\nangle = { column",
-              "the plant linkage turns an arm, and its motion is the angle of the joint"},
-          Row{"unit = \"deg\", sd", "unit = \"mm\", sd", "angle"},
-      }) {
+  for (const Row& row : {
+           Row{gain, "pilot_gain = \"0.3 mm/bar\"\nvalve_gain = \"0.1 mm/V\"",
+               "pilot_gain and valve_gain are both given: expected valve_gain (an electric valve"},
+           Row{gain, "", "the gain of the valve is unknown"},
+           Row{gain, "valve_gain = \"0.1 mm/V\"", "pilot_dead_band is of a pilot-operated valve"},
+           Row{gain, "pilot_gain = \"0.3 mm/bar\"\nvalve_offset = \"0.1 V\"",
+               "valve_offset is in volts"},
+           Row{gain, "pilot_gain = \"0.3 mm/bar\"\npump_flow = \"100 L/min\"",
+               "a pump of limited flow needs supply_resistance"},
+           Row{gain,
+               "pilot_gain = \"0.3 mm/bar\"\npump_flow = \"100 L/min\"\nsupply_resistance = \"1e9 "
+               "Pa s/m3\"\nsupply_capacity = \"1e-12 m3/Pa\"\npump_second_flow = \"150 L/min\"",
+               "expected pump_delay as well"},
+           Row{gain, "pilot_gain = \"0.3 mm/bar\"\npump_delay = \"1 s\"",
+               "pump_delay without a first flow: expected pump_flow"},
+           Row{gain, "pilot_gain = \"0.3 mm/bar\"\nbypass_opening = \"0.4 mm\"",
+               "expected supply_resistance and supply_capacity"},
+           Row{gain, "pilot_gain = \"0.3 mm/bar\"\nbypass_range = \"8 bar\"",
+               "bypass_range without a bypass: expected bypass_opening"},
+           Row{gain, "pilot_gain = \"0.3 mm/bar\"\nmass = \"5 kg\"", "mass"},
+           Row{"upper_stop = \"-30 deg\"", "upper_stop = \"-160 deg\"", "is not above lower_stop"},
+           Row{"lever = \"12 mm/deg\"", "lever = \"12 mm/deg\"\nlever_gradient = \"-1 m/rad2\"",
+               "expected one above 0 in all of the range"},
+           Row{"type = \"none\"", "type = \"pid\"", "the plant linkage has no controller yet"},
+           Row{"angle = { column",
+               "position = { column = \"x_m\", unit = \"m\" }\nangle = { column",
+               "the plant linkage turns an arm, and its motion is the angle of the joint"},
+           Row{"unit = \"deg\", sd", "unit = \"mm\", sd", "angle"},
+       }) {
     CAPTURE(row.with);
     CHECK_THROWS_WITH(load_text(replaced(kArm, row.part, row.with)), Catch::Contains(row.message));
   }

@@ -71,7 +71,7 @@ TEST_CASE("page: the repeats of every condition, their offsets and the noise flo
   CHECK_THAT(html, !Contains("data-label=\"Channel\">reference"));
 }
 
-TEST_CASE("average_figures: the band is the scatter of the repeats", "[report]") {
+TEST_CASE("average_figures: the band is the variation between repeats", "[report]") {
   const Table series = parse_table(
       "time_s,position_m_mean,position_m_sd,position_m_count\n0,0.01,1e-3,3\n0.1,0.02,2e-3,3\n",
       "sine.csv");

@@ -235,7 +235,7 @@ TEST_CASE("load_csv: a second header line that is none of units", "[datasets]") 
 }
 
 TEST_CASE("load_csv: numbers where the header should be", "[datasets]") {
-  CHECK_THAT(refusal("0,1\n1,2\n"), StartsWith("a.csv:1:1: holds numbers; expected the header"));
+  CHECK_THAT(refusal("0,1\n1,2\n"), StartsWith("a.csv:1:1: contains numbers; expected the header"));
   CHECK_THAT(refusal("# a rig\n0,1\n"), StartsWith("a.csv:2:1: ") && Contains("'#'"));
 }
 

@@ -441,7 +441,7 @@ TEST_CASE("load_hdf5: a file without numbers says what is expected", "[datasets]
     file.number("/", "dt", 0.25);
   }
   CHECK_THAT(read_refusal(folder / "run.h5", {"/x"}),
-             Contains("holds no numbers; expected datasets"));
+             Contains("contains no numbers; expected datasets"));
   CHECK(hdf5_record_columns(folder / "run.h5").empty());
 }
 

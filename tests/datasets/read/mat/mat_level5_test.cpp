@@ -175,16 +175,16 @@ TEST_CASE("level 5: nothing that a file says of itself is believed", "[datasets]
     std::string variables, word;
   };
   const std::vector<Case> cases{
-      {kLittle.tag(14, 0xFFFFFFF0U) + eight_zeros, "longer than what it stands in"},
+      {kLittle.tag(14, 0xFFFFFFF0U) + eight_zeros, "longer than its container"},
       {kLittle.tag(9, 8) + eight_zeros, "which is no variable"},
       {kLittle.raw(std::uint32_t{14} | 4U << 16U) + "abcd", "which is no variable"},
       {kLittle.numbers("x", {1, 2}, three), "not as many numbers"},
       {kLittle.numbers("x", {1, 4}, three), "not as many numbers"},
       {kLittle.numbers("x", {1, 5}, kLittle.raw(std::uint32_t{2} | 5U << 16U) + "abcd"),
-       "more bytes than its tag holds"},
+       "more bytes than its tag says"},
       {kLittle.element(14,
                        kLittle.array_head(6, {1, 4}, "x") + kLittle.tag(9, 32) + three.substr(8)),
-       "longer than what it stands in"},
+       "longer than its container"},
       {kLittle.numbers("x", {kLargest, kLargest, kLargest}, three), "beyond any file"},
       {kLittle.numbers("x", {-1, 3}, three), "below zero"},
       {kLittle.numbers("x", std::vector<std::int32_t>(40, 1), three), "description of 160 bytes"},

@@ -182,7 +182,7 @@ TEST_CASE("load_xlsx: a cell holds four times 32 767 bytes of text at most", "[d
                                               text_cell("C2", std::string(bytes, 'n')))));
   };
   CHECK(with_note(131'068).read() == Table{{0}, {1}});
-  CHECK_THAT(with_note(131'069).refusal(), Contains("Log!C2 holds more text than a cell can"));
+  CHECK_THAT(with_note(131'069).refusal(), Contains("Log!C2 has more text than a cell may have"));
 }
 
 TEST_CASE("load_xlsx: a sheet may have more than a part and a tag may", "[datasets]") {
