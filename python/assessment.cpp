@@ -31,7 +31,7 @@ void bind_assessment(py::module_& module) {
       .def_readonly("words", &Reason::words, "The same in words.")
       .def("__repr__",
            [](const Reason& self) { return fmt::format("<rigcal.Reason {}>", self.code); });
-  py::class_<Aspect>(module, "Aspect", "One of the four things that are judged apart.")
+  py::class_<Aspect>(module, "Aspect", "One of the four separate judgements.")
       .def_property_readonly(
           "state", named(&Aspect::state),
           "That of its gravest reason: \"pass\", \"reservation\", \"fail\" or \"not_assessed\".")

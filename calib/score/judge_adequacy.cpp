@@ -99,7 +99,7 @@ void judge_lack_of_fit(const Campaign& campaign, const Fit& fit, std::vector<Rea
   if (beyond.empty() && overstated.empty() && powerless.empty()) {
     reasons.push_back(reason(
         AspectState::pass, "no_lack_of_fit",
-        fmt::format("no lack of fit beyond what is allowed in {} signal{} of known noise: {}",
+        fmt::format("no significant lack of fit beyond the limit in {} signal{} of known noise: {}",
                     tests.size(), tests.size() == 1 ? "" : "s",
                     error_words(largest, significant_error, bound)),
         {},

@@ -79,9 +79,8 @@ void judge_limits(const std::vector<const ConditionScore*>& scores, std::vector<
       scores.size() == 1
           ? fmt::format("{} keeps its limits: {} of the tolerance used", nearest->id,
                         tolerance_used_text(used))
-          : fmt::format("{} of {} keep their limits; closest to one: {}, {} of the tolerance used",
-                        kept, conditions_text(scores.size()), nearest->id,
-                        tolerance_used_text(used)),
+          : fmt::format("{} of {} keep their limits; tightest: {}, {} of the tolerance used", kept,
+                        conditions_text(scores.size()), nearest->id, tolerance_used_text(used)),
       nearest->id,
       {{"conditions", static_cast<double>(scores.size())},
        {"kept", static_cast<double>(kept)},

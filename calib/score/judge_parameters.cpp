@@ -103,11 +103,11 @@ void note_further_starts(const Fit& fit, std::vector<Reason>& reasons) {
       fmt::format("{} further start{} looked at with coarse simulations: ", looks.looked_at,
                   looks.looked_at == 1 ? " was" : "s were");
   if (fit.best_start > 1) {
-    words += "one led lower than that of the campaign, and is the result";
+    words += "one reached a lower cost than that of the campaign, and is the result";
   } else {
-    words += "none led lower";
+    words += "none reached a lower cost";
   }
-  if (looks.as_low > 0) words += fmt::format(", {} as low", looks.as_low);
+  if (looks.as_low > 0) words += fmt::format(", {} the same", looks.as_low);
   reasons.push_back(reason(AspectState::note, "further_starts", words, {},
                            {{"looked_at", static_cast<double>(looks.looked_at)},
                             {"followed", static_cast<double>(looks.followed)},

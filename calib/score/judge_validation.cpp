@@ -13,9 +13,9 @@ Aspect judge_validation(const datasets::Campaign& campaign, const Fit& fit,
   }
   if (independent.empty()) {
     std::string words =
-        "none: every condition that was scored is one that the values were estimated from";
+        "not assessed: every condition with a score was also used to estimate the values";
     if (!fit.cross_validation.empty())
-      words += "; left out one after the other, see the cross-validation";
+      words += "; see the cross-validation, which leaves out one after the other";
     reasons.push_back(
         reason(AspectState::not_assessed, "no_validation", words, {}, {{"conditions", 0.0}}));
   } else if (!has_limits(campaign, fit)) {

@@ -5,6 +5,7 @@
 
 #include "report/batch/batch.hpp"
 #include "report/store/csv_fields.hpp"
+#include "report/text/readable.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -66,7 +67,7 @@ std::string trend_sentence(const StoredRigTrend& trend) {
   const StoredTrend& along = trend.series.along_date;
   if (!along.slope || !along.ci95)
     return fmt::format("{}: {}.", trend_name(trend), along.reason.value_or(""));
-  const std::string unit = trend.unit == "1" ? "" : trend.unit + " ";
+  const std::string unit = trend.unit == "1" ? "" : typographic(trend.unit) + " ";
   return fmt::format("{}: {:+.3g} {}per day ({:.3g} to {:.3g}): {}.", trend_name(trend),
                      *along.slope, unit, along.ci95->low, along.ci95->high,
                      is_significant(trend) ? "significant trend" : "no significant trend");

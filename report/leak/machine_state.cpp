@@ -28,15 +28,16 @@ std::string agreement_of(const MachineState& state) {
       state.members.begin(), state.members.end(),
       [](const auto& a, const auto& b) { return a.coefficient < b.coefficient; });
   return fmt::format(
-      " {} disagree (coefficients {:.3g} to {:.3g}, {}): no one leak explains them, or the fit is "
-      "wrong; the interval is widened for it.",
+      " {} disagree (coefficients {:.3g} to {:.3g}, {}): one leak cannot explain all, or the fit "
+      "is "
+      "wrong. Interval widened (Birge).",
       signals_of(state), low->coefficient, high->coefficient, p_value_text(state.pooled.p));
 }
 
 std::string limit_of(const LimitDistance& limit) {
   const std::string name(to_string(limit.above));
   if (limit.on_limit) {
-    return fmt::format(", on the limit between {} and {} ({:g} %)",
+    return fmt::format(", interval includes the limit between {} and {} ({:g} %)",
                        to_string(datasets::kLeakClasses[static_cast<std::size_t>(limit.above) - 1]),
                        name, kInPercent * limit.limit);
   }

@@ -200,9 +200,9 @@ std::vector<doc::Section> average_sections(const AverageFiles& stored) {
   doc::Section section{
       "repeatability",
       "Repeatability",
-      {doc::reading("How the repeats of each condition agree. Floor: what the noise of their mean "
-                    "leaves to any model, however right. Offsets: how far apart the repeats "
-                    "started."),
+      {doc::reading(
+           "Agreement of the repeats of each condition. Noise floor: the best score that a "
+           "perfect model could reach. Offsets: how far apart the repeats started."),
        std::move(table)}};
   const std::vector<std::string> warnings = texts_of(stored.result, &StoredRecord::warnings);
   if (!warnings.empty())

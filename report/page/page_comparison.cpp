@@ -430,10 +430,9 @@ std::vector<doc::Section> comparison_sections(const StoredComparison& comparison
   sections.push_back(
       {"models",
        "Which model the records prefer",
-       {doc::reading("Information criteria against the first result, below zero where this one is "
-                     "the better, and the likelihood-ratio test where one model contains the "
-                     "other. Where residuals are autocorrelated, the likelihood counts as many of "
-                     "them as are independent."),
+       {doc::reading("Difference in AIC and BIC from the first result (negative favours this one), "
+                     "and the likelihood-ratio test of nested models. Autocorrelated residuals "
+                     "count with their effective sample size."),
         model_table(comparison)},
        "Models"});
   doc::Gallery trends;

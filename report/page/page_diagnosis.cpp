@@ -350,8 +350,7 @@ void add_averages(const StoredDiagnosis& diagnosis, doc::Blocks& blocks) {
   if (table.rows.empty()) return;
   blocks.emplace_back(figure_of(share_plot(diagnosis)));
   blocks.emplace_back(doc::about_picture(
-      "Dashed: the limits of the classes. The class is that of the share; shaded: how probable "
-      "each class is."));
+      "Dashed: limits of the classes. Class by share; shading: probability of each class."));
   blocks.emplace_back(std::move(table));
 }
 
@@ -372,10 +371,11 @@ void add_methods(const StoredMethods& methods, doc::Blocks& blocks) {
   if (accuracies.rows.empty()) return;
   blocks.emplace_back(doc::Heading{{"Against the known classes"}});
   blocks.emplace_back(doc::reading(
-      "Undecided counts as wrong. Intervals are for as many trials as there are conditions."));
+      "Undecided counts as an error. Intervals are those of as many trials as conditions."));
   blocks.emplace_back(std::move(accuracies));
-  confusions.blocks.insert(confusions.blocks.begin(),
-                           doc::about_picture("Rows: known class; columns: found. Blue is right."));
+  confusions.blocks.insert(
+      confusions.blocks.begin(),
+      doc::about_picture("Rows: known class; columns: assigned class. Blue is correct."));
   blocks.emplace_back(std::move(confusions));
 }
 

@@ -324,7 +324,7 @@ void add_features(const LeakTableFiles& stored, doc::Blocks& blocks) {
   blocks.emplace_back(doc::reading("Residual: " + table.residual + "."));
   if (!stored.levels.empty()) {
     blocks.emplace_back(figure_of(levels_plot(stored.levels)));
-    blocks.emplace_back(doc::reading("What the motion loses at each level, and what flows:"));
+    blocks.emplace_back(doc::reading("Position and flows at each leak level"));
     blocks.emplace_back(figure_of(positions_plot(stored.levels)));
     doc::Fold flows{"Servo, work and leakage flow at each level", {}};
     for (const auto& [level, series] : stored.levels)
@@ -358,7 +358,8 @@ doc::Fold assumptions_fold(const StoredLeakTable& table) {
   combinations.caption = {"Combinations that the shares depend on, and not on the values in them"};
   combinations.columns = {{"Combination"}, {"Value", Kind::number}, {"Unit"}};
   for (const StoredCombination& each : table.fixed_combinations)
-    combinations.rows.push_back({{each.formula, doc::in_unit(each.value, 1.0, 5), each.unit}});
+    combinations.rows.push_back(
+        {{each.formula, doc::in_unit(each.value, 1.0, 5), typographic(each.unit)}});
   fold.blocks.emplace_back(std::move(combinations));
   return fold;
 }

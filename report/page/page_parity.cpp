@@ -125,16 +125,17 @@ std::string sentence_of(const StoredParity& parity, const std::vector<Summary>& 
   }
   if (judged == 0) return "Nothing could be judged: no signal has enough healthy records.";
   return fmt::format(
-      "{} of {} conditions raise an alarm; a healthy record does with a probability "
-      "of {:g} %.",
+      "{} of {} conditions raise an alarm (threshold: {:g} % false alarms per healthy "
+      "record).",
       alarmed, judged, 100.0 * parity.false_alarm_probability);
 }
 
 std::string check_sentence(const StoredFalseAlarmCheck& check) {
   if (check.records == 0)
-    return "No healthy record is left to check the thresholds with: all of them set one.";
+    return "The rate of false alarms is unverified: all healthy records were used to set the "
+           "thresholds.";
   return fmt::format(
-      "Of {} healthy records that set no threshold {} raise{} an alarm; {:.3g} would be expected.",
+      "Of {} healthy records that set no threshold {} raise{} an alarm ({:.3g} expected).",
       check.records, check.alarms, check.alarms == 1 ? "s" : "", check.expected.value_or(0.0));
 }
 

@@ -141,14 +141,14 @@ doc::Section records_section(const StoredPlan& plan) {
     gallery.figures.push_back(figure_of(std::move(figure.plot)));
   return {"plan",
           "What the records determine",
-          {doc::reading("Standard deviations at best: white noise, the model right, every "
-                        "parameter free (Cramér and Rao). A fit reaches rather more. A dash: "
-                        "nothing determines the parameter."),
+          {doc::reading("Smallest possible standard deviations: white noise, an exact model, "
+                        "every parameter free (Cramér and Rao). Real fits are somewhat less "
+                        "precise. A dash: not determined."),
            list_of(plan.messages), list_of(problems, doc::State::bad), std::move(totals),
-           doc::Heading{{"Share of each record"}},
+           doc::Heading{{"Information of each record"}},
            doc::about_picture(
-               "How much of the precision (one over the variance) of all records each has by "
-               "itself: blue recorded, orange planned. Numbers are those of the table."),
+               "Fraction of the total information (1/variance) that each record alone provides: "
+               "blue recorded, orange planned. The table has the numbers."),
            std::move(gallery), std::move(alone),
            doc::Fold{fmt::format("From all records but one ({})", plan.records.size()),
                      {std::move(without)}}},

@@ -7,9 +7,12 @@ namespace rigcal::report {
 
 /// A unit for people: value in it = SI value / si.
 struct ReadableUnit {
-  std::string_view name;
+  std::string name;
   double si = 1.0;
 };
+
+/// A unit as one prints it: "m3/s" -> "m³/s", "um" -> "µm".
+std::string typographic(std::string_view unit);
 
 /// The usual engineering unit in which a value is a number of few digits: 6.2e6 Pa -> MPa,
 /// 0.0508 m -> mm. Units that have no such relatives stay SI; "1" has an empty name.

@@ -15,7 +15,7 @@ inline std::string stopped_sentence(calib::StoppedIn stage) {
   if (stage == StoppedIn::starts || stage == StoppedIn::nothing)
     return "Ended before it converged: these are the best values so far, not a calibration.";
   if (stage == StoppedIn::validation) return "Some conditions were not scored.";
-  return "The fit converged and was scored; not all that was asked for beside it was finished.";
+  return "The fit converged and was scored; further work that was requested is not finished.";
 }
 
 }  // namespace rigcal::report

@@ -78,9 +78,9 @@ doc::Section assessment_section(const StoredFit& fit) {
   doc::Section section{"assessment", "Assessment"};
   if (fit.assessment) {
     section.blocks.emplace_back(doc::reading(
-        "Four things judged apart. What is said of the adequacy of the model is an opinion and "
-        "interpretation (ISO/IEC 17025, 7.8.7)."));
-    doc::Table table{"Assessment: four things judged apart"};
+        "Four separate judgements. The adequacy of the model is an opinion and interpretation "
+        "(ISO/IEC 17025, 7.8.7)."));
+    doc::Table table{"Assessment: four separate judgements"};
     table.style = "aspects";
     table.columns = {{"Judged"},
                      {"State"},

@@ -599,11 +599,10 @@ void add_scope(const StoredFit& fit, doc::Blocks& blocks) {
   const bool valid = is_fit_schema(fit.schema) && fit.assessment &&
                      calib::has_range_of_validity(fit.assessment->agreement.state,
                                                   fit.assessment->validation.state);
-  blocks.emplace_back(doc::Paragraph{
-      {doc::Strong{valid ? "Range of validity, outside it the model is not validated: "
-                         : "Conditions tested: "},
-       fmt::format("{}.", fmt::join(ranges, "; "))},
-      doc::Paragraph::Tone::small});
+  blocks.emplace_back(
+      doc::Paragraph{{doc::Strong{valid ? "Validated for: " : "Conditions tested: "},
+                      fmt::format("{}.", fmt::join(ranges, "; "))},
+                     doc::Paragraph::Tone::small});
 }
 
 }  // namespace

@@ -144,8 +144,8 @@ std::optional<doc::Section> overview_section(const Calibration& stored) {
                                        : "All conditions"};
   section.blocks.emplace_back(three_numbers(stored.result));
   section.blocks.emplace_back(doc::reading(
-      fmt::format("The {} over the last two periods, or the whole record: measured dark and wide, "
-                  "model orange. Each leads to its condition.",
+      fmt::format("The {} over the last two periods (recorded drives: the whole record): measured "
+                  "dark and wide, simulated orange. Select one to see its curves.",
                   spaced(channel))));
   doc::Tiles tiles;
   for (const std::size_t i : shown) {

@@ -61,7 +61,7 @@ TEST_CASE("further starts: where the campaign's misleads, one that leads lower i
   CHECK(found.further_starts->looked_at == 3);
   CHECK(found.further_starts->followed >= 1);
   REQUIRE(further_starts_reason(found) != nullptr);
-  CHECK_THAT(further_starts_reason(found)->words, Contains("led lower"));
+  CHECK_THAT(further_starts_reason(found)->words, Contains("reached a lower cost"));
   // Any number of threads gives the same bits.
   options.threads = 2;
   const Fit threaded = fit(boom->campaign, boom->records, options);
@@ -97,7 +97,7 @@ TEST_CASE("further starts: where none leads lower the result is that of one star
   CHECK(found.further_starts->as_low > 0);
   REQUIRE(further_starts_reason(found) != nullptr);
   CHECK(further_starts_reason(found)->state == AspectState::note);
-  CHECK_THAT(further_starts_reason(found)->words, Contains("none led lower"));
+  CHECK_THAT(further_starts_reason(found)->words, Contains("none reached a lower cost"));
   CHECK(found.evaluations > alone.evaluations);
   // Nor are they evaluated if the user states the number of starts.
   options.starts = 2;

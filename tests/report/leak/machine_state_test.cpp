@@ -54,7 +54,7 @@ TEST_CASE("state_sentence: what leaks, how surely, how far from the next class",
   state.estimate.share_ci95 = {0.09, 0.13};
   state.limit = diagnosis::nearest_limit(state.estimate, {});
   CHECK_THAT(report::state_sentence(state),
-             Contains("on the limit between slight and medium (10 %)"));
+             Contains("interval includes the limit between slight and medium (10 %)"));
 }
 
 TEST_CASE("state_sentence: no leak, no verdict, the reference", "[report]") {

@@ -46,7 +46,7 @@ TEST_CASE("live rig: ranges are the bounds of the campaign, else around the valu
   CHECK(parameter(rig, "leakage_coefficient").at("slider").at("scale") == "cubic");
   // An absent spring has neither bounds nor a value from which a range could follow.
   CHECK(parameter(rig, "stiffness").at("slider").is_null());
-  CHECK(parameter(rig, "valve_gain").at("unit") == "um/V");
+  CHECK(parameter(rig, "valve_gain").at("unit") == "µm/V");
 }
 
 TEST_CASE("live rig: the levels of the published table are the buttons", "[report][live]") {

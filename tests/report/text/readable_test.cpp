@@ -11,9 +11,9 @@ TEST_CASE("readable: engineering units of few digits", "[report]") {
   CHECK(readable(-1.5e9, "Pa") == "-1.5 GPa");
   CHECK(readable(20.0, "Pa") == "20 Pa");
   CHECK(readable(0.0508, "m") == "50.8 mm");
-  CHECK(readable(1e-9, "m") == "0.001 um");
-  CHECK(readable(633e-6, "m2") == "6.33 cm2");
-  CHECK(readable(468e-6, "m3") == "468 cm3");
+  CHECK(readable(1e-9, "m") == "0.001 µm");
+  CHECK(readable(633e-6, "m2") == "6.33 cm²");
+  CHECK(readable(468e-6, "m3") == "468 cm³");
   CHECK(readable(1e-3 / 60.0, "m3/s") == "1 L/min");
 }
 
