@@ -3,18 +3,8 @@
 include(CMakePackageConfigHelpers)
 set(config ${CMAKE_INSTALL_LIBDIR}/cmake/rigcal)
 
-# Without the headers that need a package which the libraries use only internally; no other header includes one of them.
-install(DIRECTORY common model metrics datasets calib diagnosis report
-  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/rigcal COMPONENT development
-  FILES_MATCHING PATTERN *.hpp
-  PATTERN rigs EXCLUDE
-  PATTERN toml_*.hpp EXCLUDE
-  PATTERN campaign_parameters.hpp EXCLUDE
-  PATTERN campaign_sections.hpp EXCLUDE
-  PATTERN byte_stream.hpp EXCLUDE
-  PATTERN hdf5_*.hpp EXCLUDE
-  PATTERN mat_*.hpp EXCLUDE
-  PATTERN xlsx_*.hpp EXCLUDE)
+install(CODE "set(ROOT [==[${PROJECT_SOURCE_DIR}]==])\nset(INCLUDEDIR [==[${CMAKE_INSTALL_INCLUDEDIR}]==])" COMPONENT development)
+install(SCRIPT cmake/install_headers.cmake COMPONENT development)
 install(EXPORT rigcal NAMESPACE rigcal:: FILE rigcalTargets.cmake DESTINATION ${config} COMPONENT development)
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/rigcalConfig.cmake.in
   ${PROJECT_BINARY_DIR}/rigcalConfig.cmake INSTALL_DESTINATION ${config})

@@ -40,7 +40,7 @@ function(rigcal_library name)
   foreach(part IN LISTS parts)
     target_compile_features(${part} PUBLIC cxx_std_20)
     target_include_directories(${part} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
-      $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/rigcal>)
+      $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
     if(name IN_LIST rigcal_light OR part MATCHES "_light$")
       target_compile_options(${part} PRIVATE ${rigcal_less_optimised})
     else()

@@ -1,4 +1,4 @@
-"""The reference of the C++ libraries: what Doxygen reads from the headers, as a page per library."""
+"""The reference of the C++ libraries: what Doxygen reads from the headers that are installed, as a page per library."""
 import html
 import re
 import subprocess
@@ -34,6 +34,17 @@ ALIASES = "source=\\par Source^^" "deviation=\\par Deviation^^"
 """
 SECTIONS = {"throws": "Throws", "exception": "Throws", "return": "Returns", "note": "Note", "see": "See", "warning": "Warning",
             "pre": "Before the call", "post": "After the call"}
+
+
+def public_headers(root):
+    """rigcal.hpp and the headers that it includes, directly or by way of others: those that are installed."""
+    waiting, found = ["rigcal.hpp"], set()
+    while waiting:
+        header = waiting.pop()
+        if header not in found:
+            found.add(header)
+            waiting += re.findall(r'^#include "([^"]+)"', (root / header).read_text(encoding="utf-8"), re.MULTILINE)
+    return found
 
 
 class Stale(Exception):
@@ -239,7 +250,7 @@ def page(library, about, headers):
     for room in sorted(of_room):
         text.append(f"\n## {room}\n")
         for header in sorted(of_room[room]):
-            text.append(f"\n### {header.rpartition('/')[2]}\n\n<p class=\"include\"><code>#include \"{header}\"</code></p>\n")
+            text.append(f"\n### {header.rpartition('/')[2]}\n\n<p class=\"include\"><code>rigcal/{header}</code></p>\n")
             text += of_room[room][header]
     return "".join(text)
 
@@ -262,7 +273,9 @@ def write(root, out):
             raise Missing("doxygen is missing: scripts/setup --dev") from None
         if stale := list(stale_comments(done.stderr, root)):
             raise Stale("no such argument, or it is told of twice: " + ", ".join(stale))
-        headers = {re.sub(f"^{re.escape(str(root))}/", "", header): parts for header, parts in headers_of(Path(folder) / "xml").items()}
+        public = public_headers(root)
+        headers = {name: parts for header, parts in headers_of(Path(folder) / "xml").items()
+                   if (name := re.sub(f"^{re.escape(str(root))}/", "", header)) in public}
     rows = ""
     for name, about in LIBRARIES.items():
         text = page(name, about, headers)
@@ -271,5 +284,5 @@ def write(root, out):
         rows += f"| [`rigcal::{name}`](cpp-{name}.md) | {about} | {count} |\n"
     (out / "cpp.md").write_text(
         "# The C++ libraries\n\nMade from the comments of the headers. [Installing](../install.md#libraries) tells how a program finds "
-        "and links them, [architecture](../architecture.md) how they depend on each other. A program that reads a campaign and fits "
-        "it is in `tests/package/consumer/`.\n\n| library | holds | headers |\n| --- | --- | ---: |\n" + rows, encoding="utf-8")
+        "and links them, [architecture](../architecture.md) how they depend on each other. A program that fits a campaign is shown "
+        "there, too.\n\n| library | contents | headers |\n| --- | --- | ---: |\n" + rows, encoding="utf-8")

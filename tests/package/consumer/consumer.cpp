@@ -1,27 +1,28 @@
-// What a program of one's own does with the installed libraries: reads a campaign and fits it.
-#include <cstddef>
+// Fits a campaign, prints the estimates and writes the report: consumer campaign.toml results
+#include <atomic>
 #include <cstdio>
 #include <exception>
-
-#include "calib/fit.hpp"
-#include "datasets/campaign/campaign.hpp"
-#include "datasets/prepare/load_record.hpp"
-#include "model/plant/parameter.hpp"
-#include "report/store/provenance.hpp"
+#include <memory>
+#include <rigcal/rigcal.hpp>
+#include <utility>
 
 int main(int argc, char** argv) {
-  if (argc != 2) return 2;
+  if (argc != 3) return 2;
   try {
-    using rigcal::datasets::Use;
-    const rigcal::datasets::Campaign campaign = rigcal::datasets::load_campaign(argv[1]);
-    const auto records = rigcal::datasets::load_records(campaign, {Use::fit, Use::validate}, 1);
-    const rigcal::calib::Fit fit = rigcal::calib::fit(campaign, records, {});
-    std::printf("%s by rigcal %s:\n", campaign.name.c_str(), rigcal::report::version().data());
-    const auto table = rigcal::model::parameter_table(campaign.rig.plant);
-    for (const auto& parameter : fit.parameters) {
-      const auto& spec = table[static_cast<std::size_t>(parameter.index)];
-      if (parameter.fitted) std::printf("%s %.6g\n", spec.key.data(), parameter.value);
+    using namespace rigcal;
+    const auto campaign =
+        std::make_shared<const datasets::Campaign>(datasets::load_campaign(argv[1]));
+    report::HeldFolder results(argv[2], {"fit"});
+    const std::atomic<bool> cancel = false;  // set it from another thread to end the fit
+    report::JobTerms terms{.command = "consumer", .options = {}, .threads = 2, .cancel = cancel};
+    terms.hold = [&](report::PlannedFiles planned) { results.plan(std::move(planned)); };
+    report::JobResult job = report::fit_job(campaign, {}, terms);
+    const auto table = model::parameter_table(campaign->rig.plant);
+    for (const calib::FittedParameter& each : job.fit->fit.parameters) {
+      const model::ParameterSpec& spec = table[static_cast<std::size_t>(each.index)];
+      if (each.fitted) std::printf("%s %.6g %s\n", spec.key.data(), each.value, spec.unit.data());
     }
+    report::write_job(results, 2, std::move(job));
   } catch (const std::exception& error) {
     std::fprintf(stderr, "consumer: %s\n", error.what());
     return 1;

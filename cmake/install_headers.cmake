@@ -1,0 +1,23 @@
+# Installs rigcal.hpp and the headers that it includes, directly or by way of others, into include/rigcal. All others are
+# internal. Includes get the prefix rigcal/, so that a program needs no folder of include paths with names such as common.
+#
+#   set(ROOT sources) set(INCLUDEDIR include) include(install_headers.cmake)   when cmake --install runs
+set(destination "$ENV{DESTDIR}${CMAKE_INSTALL_PREFIX}/${INCLUDEDIR}/rigcal")
+set(waiting rigcal.hpp)
+set(installed)
+while(waiting)
+  list(POP_FRONT waiting header)
+  list(FIND installed "${header}" place)  # IN_LIST needs a policy, which an installing script does not set
+  if(NOT place EQUAL -1)
+    continue()
+  endif()
+  list(APPEND installed "${header}")
+  file(READ "${ROOT}/${header}" text)
+  string(REGEX MATCHALL "#include \"[^\"]+\"" included "${text}")
+  list(TRANSFORM included REPLACE "#include \"([^\"]+)\"" "\\1")
+  list(APPEND waiting ${included})
+  string(REGEX REPLACE "#include \"" "#include \"rigcal/" text "${text}")
+  file(WRITE "${destination}/${header}" "${text}")
+endwhile()
+list(LENGTH installed count)
+message(STATUS "Installed: ${destination} (${count} headers)")
