@@ -411,7 +411,7 @@ int main(int argc, char** argv) {
   std::cout << fmt::format(
       "| {} campaigns from seed {} | alarms of healthy averages, % | of single repeats, % | of "
       "states, % | incompatible averages, % | smallest leak, L/min | found at that size, % | "
-      "intervals that hold it, % |\n| --- | --- | --- | --- | --- | --- | --- | --- |\n",
+      "intervals that cover it, % |\n| --- | --- | --- | --- | --- | --- | --- | --- |\n",
       campaigns, first);
   for (const DaysRow& row : days_rows()) {
     if (row.name.find(only) == std::string::npos) continue;

@@ -345,8 +345,9 @@ void study_smallest(const Campaign& base, int first, int last) {
       diagnosis::RigFit wrong = exact;
       for (auto& value : wrong.values)
         if (value.index == row_of(campaign, key)) value.value *= 1.05;
-      collect(campaign, sines, wrong, scale, row(fmt::format("{} 5 % off, with reference", key)));
-      collect(no_reference, sines, wrong, scale, row(fmt::format("{} 5 % off, model alone", key)));
+      collect(campaign, sines, wrong, scale, row(fmt::format("`{}` 5 % off, with reference", key)));
+      collect(no_reference, sines, wrong, scale,
+              row(fmt::format("`{}` 5 % off, model alone", key)));
     }
   }
   fmt::print(

@@ -38,7 +38,7 @@ def main():
     for name, words in NOISES.items():
         cells = row("uncertainty.md", name)
         held, plain = (sorted(map(float, cell.split())) for cell in (cells[0], cells[3]))
-        print(f"| 95 % intervals that hold the truth: {words} | {held[0]:.0f} to {held[-1]:.0f} % | {plain[0]:.0f} to {plain[-1]:.0f} % "
+        print(f"| 95 % intervals that cover the truth: {words} | {held[0]:.0f} to {held[-1]:.0f} % | {plain[0]:.0f} to {plain[-1]:.0f} % "
               "| `scripts/coverage-study` |")
 
 

@@ -38,7 +38,8 @@ def verdict_of(result):
 
 def message_of(result):
     """Without the number of iterations, which the last bits may change."""
-    return re.sub(r" after \d+ iterations?", "", result["message"])
+    message = re.sub(r" after \d+ iterations?", "", result["message"])
+    return re.sub(r"\b[a-z0-9]+(?:_[a-z0-9]+)+\b", r"`\g<0>`", message)
 
 
 def reason_text(reason):
@@ -74,7 +75,7 @@ def estimate(parameter):
 
 def parameters(*folders):
     found = [{(each["key"], each["level"]): each for each in fitted_parameters(folder)} for folder in folders]
-    names = [pathlib.Path(folder).name for folder in folders]
+    names = [f"`{pathlib.Path(folder).name}`" for folder in folders]
     several = len(folders) > 1
     rows = [[f"`{key}`" + (f", {level}" if level else "")] + ([where] if several else []) + estimate(each)
             for key, level in dict.fromkeys(name for fit in found for name in fit)

@@ -3,12 +3,13 @@ import csv
 import json
 import math
 import pathlib
+import re
 import subprocess
 import sys
 
 SIGNALS = {"position": "x", "pressure_a": "p_A", "pressure_b": "p_B", "load_pressure": "P_L", "force": "F",
-           "acceleration": "a", "payload_acceleration": "a_2", "angle": "theta"}
-PREFIXES = {-12: "p", -9: "n", -6: "u", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
+           "acceleration": "a", "payload_acceleration": "a₂", "angle": "theta"}
+PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 
 
 def rows_of(path):
@@ -52,16 +53,21 @@ def fit(rigcal, campaign, data, out, *options):
         sys.exit(f"exit code {code}: {' '.join(map(str, command))}")
 
 
+def written(unit):
+    """A unit of a result file as one prints it: m³/Pa."""
+    return re.sub(r"(?<=[a-z])[23]\b", lambda power: {"2": "²", "3": "³"}[power[0]], unit)
+
+
 def scaled(value, unit):
     """The factor, and the unit with its prefix, with which a value is read with ease. A unit that begins with a power
     or a kilogram takes no prefix."""
     if unit == "1":
         return 1.0, ""
     if value == 0.0 or unit.startswith(("kg", "m2", "m3", "1")):
-        return 1.0, unit
+        return 1.0, written(unit)
     exponent = 3 * math.floor(math.log10(abs(value)) / 3)
     exponent = min(max(exponent, min(PREFIXES)), max(PREFIXES))
-    return 10.0 ** -exponent, PREFIXES[exponent] + unit
+    return 10.0 ** -exponent, PREFIXES[exponent] + written(unit)
 
 
 def in_steps_of(uncertainty, *values):

@@ -35,7 +35,7 @@ def main(folder):
         t = r["time_s"]
         taken = taken_up(t, r["measured_position_m"], r["measured_pressure_a_pa"], back, t[-1])
         rows.append([f"{volts} V", *(f"{1e13 * each:.2f}" for each in taken), f"{taken[0] / taken[1]:.2f}"])
-    print_table(["record", "near 33 bar, 1e-13 m3/Pa", "near 16 bar, 1e-13 m3/Pa", "ratio"], rows)
+    print_table(["record", "near 33 bar, 1e-13 m³/Pa", "near 16 bar, 1e-13 m³/Pa", "ratio"], rows)
 
 
 if __name__ == "__main__":

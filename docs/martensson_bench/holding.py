@@ -42,7 +42,7 @@ def main(data):
     left = np.std(u - terms @ found)
     print(f"Controller: u = {found[0]:.4f} (r - y) {found[1]:+.4f} V, rms {1e3 * left:.0f} mV.\n")
 
-    print_table(["step", "stairs", "y - r, V", "u that holds, V"],
+    print_table(["step", "stairs", "y - r, V", "u at rest, V"],
                 [[sense, f"{errors.size}", f"{errors.min():+.3f} to {errors.max():+.3f}",
                   f"{commands.min():+.3f} to {commands.max():+.3f}"]
                  for sense, (errors, commands) in held_on_stairs(t, r, y, u).items()])

@@ -13,7 +13,7 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
-from result_files import fitted_parameters, in_steps_of, print_table, read_json, rows_of, scaled  # noqa: E402
+from result_files import fitted_parameters, in_steps_of, print_table, read_json, rows_of, scaled, written  # noqa: E402
 
 FLOWS_AND_FEATURES = {"servo_flow_l_per_min": "servo flow L/min", "leak_flow_l_per_min": "leak flow L/min",
                       "mean": "mean", "rms": "rms", "std": "std"}
@@ -24,7 +24,7 @@ def name_of(signal):
 
 
 def combinations(folder):
-    print_table(["combination", "value"], [[f"`{each['formula']}`", f"{each['value']:.4g} {each['unit']}"]
+    print_table(["combination", "value"], [[f"`{each['formula']}`", f"{each['value']:.4g} {written(each['unit'])}"]
                                            for each in read_json(folder, "leak_table.json")["fixed_combinations"]])
 
 
@@ -113,7 +113,7 @@ def fitted(folder):
         low, high = each["ci95"]
         factor, unit = scaled(high, each["unit"])
         value, low, high = in_steps_of(factor * each["standard_error"], *(factor * x for x in (each["value"], low, high)))
-        rows.append([f"`{each['key']}`", f"{value} {unit}", f"{low} to {high}", f"{each['start']:.4g} {each['unit']}"])
+        rows.append([f"`{each['key']}`", f"{value} {unit}", f"{low} to {high}", f"{each['start']:.4g} {written(each['unit'])}"])
     print_table(["value", "estimate", "95 % interval", "start"], rows)
     names, matrix = result["correlation"]["names"], result["correlation"]["matrix"]
     strength, first, second = max((abs(matrix[i][j]), names[j], names[i]) for i in range(len(names)) for j in range(i))

@@ -85,8 +85,8 @@ def behind_hashes(rigcal, folder, fit, rounds):
             ("fit.json by value, diagnose", fit / "fit.json", replaced, diagnose),
             ("fit.json by value, compare", fit / "fit.json", replaced,
              ["compare", fit, other, "--out", folder / "compared", "--quiet"]),
-            ("residual_tests.json, hash made right", fit / "residual_tests.json", replaced, ["report", fit]),
-            ("residual_tests.json by byte, hash made right", fit / "residual_tests.json", damaged, ["report", fit]),
+            ("`residual_tests.json`, hash made right", fit / "residual_tests.json", replaced, ["report", fit]),
+            ("`residual_tests.json` by byte, hash made right", fit / "residual_tests.json", damaged, ["report", fit]),
             ("residuals/*.csv, hash made right", sorted((fit / "residuals").glob("*.csv"))[0], cells_replaced,
              ["report", fit])):
         row = Count(f"inputs: {name}")
@@ -125,7 +125,7 @@ def study(rigcal, folder, size):
             *((f"MAT record, {kind}", file, ["init", file, "--out", folder / "new"]) for kind, file in mat.items()),
             ("fit.json, validate", fit / "fit.json", validate),
             ("fit.json, report", fit / "fit.json", ["report", fit]),
-            ("residual_tests.json", fit / "residual_tests.json", ["report", fit])):
+            ("`residual_tests.json`", fit / "residual_tests.json", ["report", fit])):
         row = Count(f"inputs: {name}, damaged")
         whole = file.read_bytes()
         for what, data in damaged(whole, rounds):

@@ -22,6 +22,7 @@ ELSEWHERE = {
     "docs": "scripts/lint",
     "gallery": "tests/docs/pages_test.py",
     "docs-numbers": "tests/docs/numbers_test.py",
+    "prose": "tests/docs/prose_test.py",
     "mutation-study": "tests/CMakeLists.txt",
     "performance-job": "scripts/performance",
     "reliability": "tests/CMakeLists.txt",
