@@ -11,8 +11,9 @@
 #include <string>
 #include <tuple>
 
-// Values as bytes that read back to the same bits, for exchange between processes. A struct takes
-// part by a `template <typename Archive> void serialize(Archive&, Struct&)` beside it.
+// Converts values to bytes that read back to the same bits, for exchange between processes. A
+// struct can be converted if there is a `template <typename Archive> void serialize(Archive&,
+// Struct&)` for it.
 
 namespace rigcal {
 
@@ -24,7 +25,7 @@ std::string to_bytes(const Values&... values) {
   return stream.str();
 }
 
-/// @throws cereal::Exception  these are no such bytes
+/// @throws cereal::Exception  if the bytes do not represent such values
 template <typename... Values>
 void from_bytes(const std::string& bytes, Values&... values) {
   std::istringstream stream(bytes);

@@ -24,7 +24,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// AddressSanitizer reserves terabytes of address space, beyond any limit.
+/// AddressSanitizer reserves terabytes of address space, more than any limit.
 #if defined(__SANITIZE_ADDRESS__)
 constexpr bool kLimitsMemory = false;
 #elif defined(__has_feature)
@@ -44,7 +44,7 @@ std::size_t address_bytes() {
   return pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
 }
 
-/// Sets the limit of a resource, but never raises one that is in force.
+/// Limits a resource, but never raises a limit that is already in force.
 void limit(decltype(RLIMIT_AS) resource, rlim_t soft, rlim_t hard) {
   rlimit now{};
   ::getrlimit(resource, &now);
@@ -63,14 +63,14 @@ bool write_all(int descriptor, const char* bytes, std::size_t count) {
   return true;
 }
 
-/// The child's part: never returns. An exception ends it here, before it could unwind a copy of the
-/// parent's stack and remove the parent's files.
+/// Runs in the child and never returns. An exception ends the process here, before it could unwind
+/// a copy of the parent's stack and remove the parent's files.
 [[noreturn]] void work_in_child(const std::function<std::string()>& work,
                                 const Confinement& confinement, std::size_t addresses, pid_t parent,
                                 int out) noexcept {
-  // The handler of the parent may remove its files; `work` gets std::bad_alloc.
+  // The parent's handler may remove its files. Without it, `work` gets std::bad_alloc.
   std::set_new_handler(nullptr);
-  // The parent handles signals from the terminal; this process ends with it.
+  // The parent handles signals from the terminal. This process ends when the parent does.
   std::signal(SIGINT, SIG_IGN);
   std::signal(SIGTERM, SIG_IGN);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -82,7 +82,7 @@ bool write_all(int descriptor, const char* bytes, std::size_t count) {
   }
   limit(RLIMIT_CORE, 0, 0);
   const auto seconds = static_cast<rlim_t>(confinement.cpu_seconds);
-  limit(RLIMIT_CPU, seconds, seconds + 2);  // SIGXCPU first; SIGKILL means lack of memory
+  limit(RLIMIT_CPU, seconds, seconds + 2);  // SIGXCPU comes first; SIGKILL means lack of memory
   const rlim_t bytes = addresses + confinement.bytes;
   if (kLimitsMemory) limit(RLIMIT_AS, bytes, bytes);
   const std::string result = work();
@@ -96,7 +96,7 @@ std::string no_process(int error) {
       std::strerror(error));
 }
 
-/// Starts the child. Its end of the pipe is closed here before another child can inherit it.
+/// Starts the child. Closes its end of the pipe before another child can inherit it.
 pid_t start_child(const std::function<std::string()>& work, const Confinement& confinement,
                   int& from_child) {
   static std::mutex mutex;
@@ -115,7 +115,7 @@ pid_t start_child(const std::function<std::string()>& work, const Confinement& c
   throw NoResources(no_process(error));
 }
 
-/// Appends all that the child writes; false if it has not finished by the deadline.
+/// Appends everything that the child writes. Returns false if it has not finished by the deadline.
 bool read_until(Clock::time_point deadline, int descriptor, std::string& text) {
   std::array<char, std::size_t{1} << 16> block;
   for (;;) {

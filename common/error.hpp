@@ -26,19 +26,19 @@ class Error : public std::runtime_error {
   ExitCode code_;
 };
 
-/// The command line is wrong.
+/// Thrown if the command line is wrong.
 class UsageError : public Error {
  public:
   explicit UsageError(const std::string& message) : Error(ExitCode::bad_input, message) {}
 };
 
-/// Place of an error in a file; line and column count from 1, 0 means unknown.
+/// Place of an error in a file. Line and column count from 1; 0 means unknown.
 struct Location {
   std::string file;
   long line = 0;
   long column = 0;
 
-  /// "file:line:column", as far as known.
+  /// Returns "file:line:column", as far as known.
   std::string text() const {
     std::string result = file;
     if (line > 0) result.append(":").append(std::to_string(line));
@@ -47,7 +47,7 @@ struct Location {
   }
 };
 
-/// A campaign or record file is wrong. what() reads "file:line:column: message".
+/// Thrown if a campaign or record file is wrong. what() reads "file:line:column: message".
 class InputError : public Error {
  public:
   InputError(Location where, const std::string& message)
@@ -58,13 +58,13 @@ class InputError : public Error {
   Location where_;
 };
 
-/// No usable result: every start failed, nothing could be simulated.
+/// Thrown if there is no usable result: every start failed, or nothing could be simulated.
 class NoResultError : public Error {
  public:
   explicit NoResultError(const std::string& message) : Error(ExitCode::no_result, message) {}
 };
 
-/// A result file could not be written.
+/// Thrown if a result file could not be written.
 class WriteError : public Error {
  public:
   explicit WriteError(const std::string& message) : Error(ExitCode::internal, message) {}

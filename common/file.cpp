@@ -37,7 +37,8 @@ std::string reason(int error_number) { return std::generic_category().message(er
 class RegularFile {
  public:
   RegularFile(const fs::path& path, const std::string& expected) : where_{path.string()} {
-    // O_NONBLOCK: opening a pipe does not wait for its writer. It has no effect on regular files.
+    // O_NONBLOCK keeps open() from waiting for the writer of a pipe. It has no effect on regular
+    // files.
     descriptor_ = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
     if (descriptor_ < 0)
       throw InputError(where_,
@@ -56,10 +57,10 @@ class RegularFile {
   RegularFile& operator=(const RegularFile&) = delete;
   ~RegularFile() { ::close(descriptor_); }
 
-  /// At the time it was opened.
+  /// Size when the file was opened.
   std::size_t bytes() const { return bytes_; }
 
-  /// Reads into a buffer; fewer bytes than its size at the end alone.
+  /// Reads into a buffer. Returns fewer bytes than its size only at the end of the file.
   std::size_t read(char* buffer, std::size_t size) const {
     std::size_t count = 0;
     while (count < size) {
@@ -82,8 +83,8 @@ class RegularFile {
   std::size_t bytes_ = 0;
 };
 
-/// OpenSSL's SHA-256, from a separate context: in the default one OpenSSL 3.0 does not check its
-/// allocation.
+/// OpenSSL's SHA-256 in a separate context, because OpenSSL 3.0 does not check the allocation in
+/// the default one.
 class Sha256Algorithm {
  public:
   Sha256Algorithm() : context_(OSSL_LIB_CTX_new()) {
@@ -114,7 +115,7 @@ class Sha256 {
     if (EVP_DigestUpdate(digest_.get(), bytes.data(), bytes.size()) != 1) throw std::bad_alloc();
   }
 
-  /// 64 lower-case hex digits.
+  /// Returns 64 lower-case hex digits.
   std::string hex() {
     std::array<unsigned char, EVP_MAX_MD_SIZE> sum{};
     unsigned int length = 0;
@@ -133,12 +134,13 @@ class Sha256 {
 
 }  // namespace
 
-/// A new file next to its target; removed unless it is renamed to the target. The file that it
-/// replaces is kept until all files of a set have been renamed, so that each can be restored.
+/// A new file next to its target, which is removed unless it is renamed to the target. The file
+/// that it replaces is kept until all files in a set have been renamed, so that each one can be
+/// restored.
 class TemporaryFile {
  public:
   TemporaryFile(const fs::path& target, std::string_view content) : target_(target) {
-    // O_EXCL skips files that a killed process with the same number left behind. That happens in
+    // O_EXCL skips files left behind by a killed process with the same number. This happens in
     // containers, where every process has number 1.
     for (int tries = 0; descriptor_ < 0; ++tries) {
       path_ = temporary_name(target);
@@ -163,8 +165,8 @@ class TemporaryFile {
     if (!renamed_) ::unlink(path_.c_str());
   }
 
-  /// Keeps the earlier file under a second name, for take_back(). Where the file system has no hard
-  /// links rename_into_place() will rename it.
+  /// Keeps the earlier file under a second name, for take_back(). If the file system has no hard
+  /// links, rename_into_place() renames it instead.
   void keep_earlier() {
     struct stat status {};
     if (::lstat(target_.c_str(), &status) != 0 || S_ISDIR(status.st_mode)) return;
@@ -176,7 +178,8 @@ class TemporaryFile {
     kept_ = failed == 0;
   }
 
-  /// Takes no memory, so that of several files none is renamed unless all can be taken back.
+  /// Renames the file to its target. Allocates no memory, so that none of several files is renamed
+  /// unless all can be taken back.
   ///
   /// @return  0, or errno
   int rename_into_place() noexcept {
@@ -195,7 +198,7 @@ class TemporaryFile {
       if (renamed_) ::unlink(target_.c_str());
       return;
     }
-    // rename() does nothing if both names are of one file, so the second name is removed.
+    // rename() does nothing if both names refer to one file, so the second name is removed.
     if (::rename(earlier_.c_str(), target_.c_str()) == 0) ::unlink(earlier_.c_str());
   }
 
@@ -216,9 +219,9 @@ class TemporaryFile {
     }
   }
 
-  /// Whole, but not in its place yet.
+  /// Flushes the complete file to disk and closes it; rename_into_place() comes later.
   void finish() {
-    // Without fsync a power cut can leave the new name on an empty file.
+    // Without fsync, a power failure can leave an empty file under the new name.
     if (::fsync(descriptor_) != 0 && errno != EINVAL && errno != EROFS)
       fail_to_write(target_, reason(errno));
     const int closed = ::close(descriptor_);
@@ -235,7 +238,7 @@ class TemporaryFile {
   fs::path path_;
   fs::path earlier_;  ///< second name of the earlier file; empty if there was none
   int descriptor_ = -1;
-  bool kept_ = false;  ///< the earlier file has its second name
+  bool kept_ = false;  ///< whether the earlier file has its second name
   bool renamed_ = false;
 };
 
@@ -251,7 +254,7 @@ void write_files_atomically(const std::vector<std::pair<fs::path, std::string_vi
 
 namespace {
 
-/// Living objects, newest first. A signal handler can access only globals.
+/// Existing objects, newest first. A signal handler can access only globals.
 FilesInWriting* in_writing = nullptr;
 std::mutex change_in_writing;
 
@@ -303,8 +306,8 @@ void FilesInWriting::add(const fs::path& path, std::string_view content) {
   written_.push_back(std::make_unique<TemporaryFile>(path, content));
 }
 
-// If one file cannot be renamed, those before it are restored: a set is never a mixture of two
-// runs. All memory is taken before the first is renamed.
+// If one file cannot be renamed, those before it are restored, so that a set is never a mixture of
+// two runs. All memory is allocated before the first file is renamed.
 void FilesInWriting::rename_into_place() {
   const Uninterrupted whole;
   const auto take_back = [&] {
@@ -335,7 +338,7 @@ std::string read_file(const fs::path& path, std::size_t most_bytes, const std::s
                                                     bytes, expected, most_bytes >> 20));
   };
   check(file.bytes());
-  // One byte more than the file has, to detect whether it has grown.
+  // Asks for one byte more than the file has, to detect whether it has grown.
   std::string text(file.bytes() + 1, '\0');
   std::size_t count = 0;
   for (;;) {

@@ -11,20 +11,21 @@
 
 namespace rigcal {
 
-/// Writes `content` beside `path` and renames it into place, so that a reader sees the old file or
-/// the whole new one. Creates missing folders.
+/// Writes `content` to a temporary file next to `path` and renames it into place, so that a reader
+/// sees either the old file or the complete new one. Creates missing folders.
 ///
-/// @throws WriteError  with path and reason; no partial file stays behind
+/// @throws WriteError  if this fails, with path and reason; no partial file is left behind
 void write_file_atomically(const std::filesystem::path& path, std::string_view content);
 
-/// The same for several files: all are written before the first is renamed to its target.
+/// Like write_file_atomically(), but for several files: all are written before the first is
+/// renamed.
 void write_files_atomically(
     const std::vector<std::pair<std::filesystem::path, std::string_view>>& files);
 
 class TemporaryFile;
 
-/// Files in writing: add() writes each next to its target, and all are renamed together. The
-/// destructor removes those that were not renamed.
+/// Files that are being written. add() writes each file next to its target, and rename_into_place()
+/// renames all of them together. The destructor removes those that were not renamed.
 class FilesInWriting {
  public:
   FilesInWriting();
@@ -32,15 +33,16 @@ class FilesInWriting {
   FilesInWriting& operator=(const FilesInWriting&) = delete;
   ~FilesInWriting();
 
-  /// Creates missing folders, which are removed again if they stay empty.
-  /// @throws WriteError  with path and reason
+  /// Writes a file. Creates missing folders, which are removed again if they remain empty.
+  /// @throws WriteError  if this fails, with path and reason
   void add(const std::filesystem::path& path, std::string_view content);
 
-  /// @throws WriteError  with path and reason
+  /// Renames all files to their targets.
+  /// @throws WriteError  if this fails, with path and reason
   void rename_into_place();
 
-  /// Removes the files that no object has renamed yet, for a process that ends before their
-  /// destructors can run. Safe within a signal handler, as long as there is no Uninterrupted.
+  /// Removes all files that have not been renamed, for a process that ends before the destructors
+  /// of its objects can run. Safe within a signal handler as long as no Uninterrupted exists.
   static void remove_all();
 
  private:
@@ -52,40 +54,40 @@ class FilesInWriting {
   FilesInWriting* next_ = nullptr;
 };
 
-/// The content of a regular file. Never waits for a pipe.
+/// Returns the content of a regular file. Never waits for a pipe.
 ///
 /// @param expected  what the file should be, in words: "a campaign file (TOML)"
-/// @throws InputError  there is none, it is a folder, pipe or device, has more than `most_bytes`,
-/// or
-///                     cannot be read
+/// @throws InputError  if there is no such file, or if it is a folder, pipe or device, has more
+///                     than `most_bytes`, or cannot be read
 std::string read_file(const std::filesystem::path& path, std::size_t most_bytes,
                       const std::string& expected);
 
-/// Refuses a file that is not regular before some code opens it and waits for a pipe.
+/// Rejects a file that is not regular, before other code opens it and waits for a pipe.
 ///
-/// @throws InputError  as read_file()
+/// @throws InputError  under the conditions of read_file()
 void require_regular_file(const std::filesystem::path& path, const std::string& expected);
 
-/// State of a file at one moment: any change or replacement gives another state.
+/// State of a file at one moment. Any change or replacement gives a different state.
 struct FileState {
   std::string path;
   std::uint64_t inode = 0;
   std::uint64_t bytes = 0;
-  std::int64_t changed_ns = 0;  ///< since 1970: when its content or its inode changed last
+  std::int64_t changed_ns = 0;  ///< since 1970: last change of its content or inode
   bool operator==(const FileState&) const = default;
 };
 
-/// State of an existing file; of a missing one only its path.
+/// Returns the state of a file; for a missing file, only its path.
 FileState state_of_file(const std::filesystem::path& path);
 
-/// SHA-256 of a file that was read since `before`, so that the hash is of the bytes that were read.
+/// SHA-256 of a file that was read after `before`. The file is unchanged, so this is the hash of
+/// the bytes that were read.
 ///
-/// @throws InputError  it cannot be read, or has changed since
+/// @throws InputError  if it cannot be read, or has changed since then
 std::string sha256_of_unchanged(const FileState& before);
 
 /// SHA-256 of a file, 64 lower-case hex digits. Reads in blocks.
 ///
-/// @throws InputError  the file cannot be read
+/// @throws InputError  if the file cannot be read
 std::string sha256_of_file(const std::filesystem::path& path);
 
 /// SHA-256 of a text.

@@ -5,10 +5,10 @@
 
 namespace rigcal {
 
-/// A file of `share/` beside the folder `bin/` of the running program, if there is one. An archive
-/// that was unpacked anywhere finds its data so.
+/// Returns a file in `share/`, next to the `bin/` folder of the running program, if it exists. An
+/// archive that is unpacked anywhere can thus find its data.
 ///
-/// @param path  below `share/`
+/// @param path  relative to `share/`
 std::optional<std::filesystem::path> installed_file(const std::filesystem::path& path);
 
 }  // namespace rigcal

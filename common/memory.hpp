@@ -8,11 +8,11 @@
 
 namespace rigcal {
 
-/// Keeps freed memory in the process. The C library would return large blocks to the system, and
-/// fetching their pages again for the results of every simulation takes a tenth of a fit. All
-/// threads share one heap: with one heap each, memory that one thread has freed is useless to the
-/// others, which costs 15 MB in a fit of the demo. The threads do not measurably wait for each
-/// other.
+/// Keeps freed memory in the process. Otherwise the C library would return large blocks to the
+/// system, and fetching their pages again for the results of every simulation takes a tenth of the
+/// time of a fit. All threads share one heap. With one heap per thread, memory freed by one thread
+/// would be useless to the others, which costs 15 MB in a fit of the demo. The threads do not
+/// measurably wait for each other.
 inline void keep_freed_memory() {
 #ifdef __GLIBC__
   constexpr int kLargest = 1 << 30;
@@ -22,15 +22,16 @@ inline void keep_freed_memory() {
 #endif
 }
 
-/// Returns memory that was kept for one task and is too fragmented for the next: after the records
-/// are read, or a search has ended.
+/// Returns memory to the system that was kept for one task and is too fragmented for the next:
+/// after the records have been read, or after a search.
 inline void give_freed_memory_back() {
 #ifdef __GLIBC__
   malloc_trim(0);
 #endif
 }
 
-/// From now on returns the largest blocks at once, which are rare: the texts of a result.
+/// From now on, returns the largest blocks to the system immediately. These are rare: the texts of
+/// a result.
 inline void give_large_blocks_back() {
 #ifdef __GLIBC__
   constexpr int kLarge = 1 << 22;

@@ -10,11 +10,11 @@
 
 namespace rigcal {
 
-/// Calls task(i) once for each i in [0, count) on up to `threads` threads, including the caller's,
-/// or as many as the system provides. Each task must write to a separate place and read nothing
-/// that another one writes; then the results are the same bits for any number of threads.
+/// Calls task(i) once for each i in [0, count), on up to `threads` threads including the caller's,
+/// or on as many as the system provides. Each task must write to a separate place and must not read
+/// what another task writes. The results are then identical to the bit for any number of threads.
 ///
-/// @throws  the exception of the task with the lowest index; the other tasks are completed
+/// @throws  the exception of the task with the lowest index, after the other tasks are completed
 template <typename Task>
 void parallel_for(std::size_t count, int threads, Task task) {
   std::vector<std::exception_ptr> errors(count);
@@ -34,7 +34,7 @@ void parallel_for(std::size_t count, int threads, Task task) {
   try {
     while (pool.size() + 1 < helpers) pool.emplace_back(work);
   } catch (const std::system_error&) {
-    // The system has no more threads: those there are do the work.
+    // The system has no more threads, so the existing ones do the work.
   }
   work();
   pool.clear();

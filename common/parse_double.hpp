@@ -9,11 +9,11 @@
 namespace rigcal {
 
 /// Like std::from_chars(first, last, value), to the last bit, but three times as fast for plain
-/// decimal numbers of few digits, which are most of what loggers write.
+/// decimal numbers with few digits, which loggers write most of the time.
 ///
 /// A whole number below 2^53 and a power of ten up to 22 are exact doubles, so their quotient is
 /// rounded only once, and correctly (Clinger, How to read floating point numbers accurately, 1990).
-/// All other numbers go to std::from_chars.
+/// All other numbers are left to std::from_chars.
 inline std::from_chars_result parse_double(const char* first, const char* last, double& value) {
   constexpr std::array kPowers{1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8, 1e9,
                                1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18};

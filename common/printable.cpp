@@ -12,10 +12,10 @@ namespace {
 
 struct Character {
   std::uint32_t code = 0;
-  std::size_t bytes = 0;  ///< 0: the first byte starts no character
+  std::size_t bytes = 0;  ///< 0: the first byte does not start a character
 };
 
-/// Returns the UTF-8 character (RFC 3629) at the start of a text that is not empty.
+/// Returns the UTF-8 character (RFC 3629) at the start of a non-empty text.
 Character first_character(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned lead = byte(0);

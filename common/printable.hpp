@@ -7,13 +7,14 @@ namespace rigcal {
 
 /// Makes a text safe for a terminal. Names of files, columns and campaigns may contain characters
 /// that move the cursor, set the title or reverse the order of the text. Control characters (C0
-/// except line ends, DEL, C1), marks of direction and of lines, and bytes that are not UTF-8 become
-/// "\u001B" or "\xFF". Other texts stay unchanged. Valid JSON stays valid, with the same strings.
+/// except line ends, DEL, C1), direction marks, line separators, and bytes that are not UTF-8
+/// become "\u001B" or "\xFF". Other text is unchanged. Valid JSON remains valid, with the same
+/// strings.
 ///
-/// @param coloured  keep the escape sequences for bold and colours
+/// @param coloured  whether to keep the escape sequences for bold and colours
 std::string printable(std::string_view text, bool coloured = false);
 
-/// Writes printable() text to stderr; every message goes through here.
+/// Writes printable(text) to stderr. Every message goes through this function.
 void say(std::string_view text);
 
 }  // namespace rigcal

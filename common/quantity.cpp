@@ -23,8 +23,8 @@
 namespace rigcal {
 namespace {
 
-/// A unit as powers of basic units (radian counts as one) and its map to their product:
-/// basic = scale * value + offset.
+/// A unit as powers of basic units (radian counts as one), with the map to their product: basic =
+/// scale * value + offset.
 struct Unit {
   double scale = 1.0;
   double offset = 0.0;
@@ -44,7 +44,8 @@ struct FreeLocale {
 };
 using UnitPtr = std::unique_ptr<ut_unit, FreeUnit>;
 
-/// The "C" locale for the calling thread: UDUNITS reads its database with the locale's strtod.
+/// Sets the "C" locale for the calling thread, because UDUNITS reads its database with the locale's
+/// strtod.
 class PlainLocale {
  public:
   PlainLocale()
@@ -65,7 +66,7 @@ void add_power(Unit& unit, const ut_unit* basic, int power) {
   unit.powers[name == nullptr ? "?" : name] += power;
 }
 
-/// Takes a parsed unit apart into a Unit.
+/// Breaks a parsed unit down into a Unit.
 constexpr ut_visitor kTakeApart{
     [](const ut_unit* basic, void* result) {
       add_power(*static_cast<Unit*>(result), basic, 1);
@@ -86,27 +87,28 @@ constexpr ut_visitor kTakeApart{
     [](const ut_unit*, double, const ut_unit*, void*) { return UT_VISIT_ERROR; },  // logarithms
 };
 
-/// Our names in addition to the database's: value, and its meaning there.
+/// A name that is added to the database, and its meaning there.
 struct Alias {
   const char* name;
   const char* meaning;
 };
 constexpr std::array kAliases{
-    // UDUNITS takes Hz for 1/s. As one cycle (2 pi rad) a second it converts to rad/s by 2 pi,
-    // and no longer to 1/s.
+    // UDUNITS takes Hz for 1/s. As one cycle (2 pi rad) per second, it converts to rad/s with a
+    // factor of 2 pi, and no longer to 1/s.
     Alias{"Hz", "cycle/s"}, Alias{"hertz", "cycle/s"},
     Alias{"lpm", "L/min"},  Alias{"gpm", "US_liquid_gallon/min"},
     Alias{"rev", "cycle"},  Alias{"deg", "degree"},
 };
 
-/// The unit database. UDUNITS keeps its status in a global, hence one instance and a lock.
+/// The unit database. UDUNITS keeps its status in a global, so there is a single instance with a
+/// lock.
 class UnitSystem {
  public:
   UnitSystem() {
     const PlainLocale plain;
-    ut_set_error_message_handler(ut_ignore);  // it would write to stderr
-    // Debian's database is where the library expects it; the archive of scripts/package contains
-    // its own.
+    ut_set_error_message_handler(ut_ignore);  // would write to stderr
+    // Debian's database is where the library expects it. The archive made by scripts/package
+    // contains its own.
     const auto own = std::getenv("UDUNITS2_XML_PATH") == nullptr
                          ? installed_file("rigcal/udunits/udunits2.xml")
                          : std::nullopt;
@@ -125,7 +127,7 @@ class UnitSystem {
     }
   }
 
-  /// Nothing if the text is no unit, or a date or a logarithm.
+  /// Returns nullopt if the text is not a unit, or is a date or a logarithm.
   std::optional<Unit> parse(const std::string& text) const {
     const std::lock_guard<std::mutex> lock(mutex_);
     const PlainLocale plain;
@@ -133,7 +135,7 @@ class UnitSystem {
     Unit unit;
     const ut_status status =
         parsed ? ut_accept_visitor(parsed.get(), &kTakeApart, &unit) : ut_get_status();
-    if (status == UT_OS) throw std::bad_alloc();  // not a fault of the text
+    if (status == UT_OS) throw std::bad_alloc();  // not the fault of the text
     if (!parsed || status != UT_SUCCESS) return std::nullopt;
     std::erase_if(unit.powers, [](const auto& entry) { return entry.second == 0; });
     return unit;
@@ -160,7 +162,7 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-/// UDUNITS would read up to a NUL alone, and messages would end there.
+/// Rejects control characters. UDUNITS would read only up to a NUL, and messages would end there.
 void refuse_control_characters(std::string_view text) {
   const auto is_control = [](char c) { return c >= 0 && c < ' ' && c != '\t'; };
   if (std::none_of(text.begin(), text.end(), is_control)) return;
@@ -170,8 +172,8 @@ void refuse_control_characters(std::string_view text) {
       fmt::format("'{}' contains a control character (here '?'); expected text", shown));
 }
 
-/// Whether the text has a number that is no exponent ("2 mm", "bar 5"): UDUNITS would multiply by
-/// it. The "1" of "1/s" does not count.
+/// Whether the text has a number that is not an exponent ("2 mm", "bar 5"), by which UDUNITS would
+/// multiply. The "1" in "1/s" does not count.
 bool has_factor(std::string_view text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (!is_digit(text[i])) continue;
@@ -194,7 +196,7 @@ bool has_factor(std::string_view text) {
   return false;
 }
 
-/// Units to propose when a name is unknown.
+/// Units to suggest if a name is unknown.
 const std::vector<std::string>& common_units() {
   static const std::vector<std::string> units{
       "Pa",  "kPa",   "MPa", "GPa", "bar",   "mbar", "psi",   "m",    "mm",    "cm",  "um",
@@ -210,7 +212,7 @@ Unit parse_unit(std::string_view text) {
   if (text.empty()) return {};
   if (has_factor(text))
     throw QuantityError(fmt::format("'{}' has a number where a unit was expected", text));
-  // '@' and "since" move the origin of a unit; no physical quantity here has such a unit.
+  // '@' and "since" shift the origin of a unit; no physical quantity here has such a unit.
   const auto unit = text.find('@') == std::string_view::npos
                         ? unit_system().parse(std::string(text))
                         : std::nullopt;
@@ -221,7 +223,7 @@ Unit parse_unit(std::string_view text) {
                   nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest)));
 }
 
-/// Name of a dimension, and an example of a quantity.
+/// Name of a dimension, with an example of a quantity.
 struct Kind {
   std::string_view unit;
   std::string_view name;
@@ -261,7 +263,7 @@ const Kind* kind_of(const Unit& unit) {
   return nullptr;
 }
 
-/// "a pressure such as "6.2 MPa"".
+/// Describes what was expected: "a pressure such as "6.2 MPa"".
 std::string expected(const Unit& unit, std::string_view text) {
   const Kind* kind = kind_of(unit);
   return kind != nullptr ? fmt::format("{} such as \"{}\"", kind->name, kind->example)
@@ -291,8 +293,8 @@ std::string mismatch(const Unit& from, std::string_view from_text, const Unit& t
                          : fmt::format("'{}' has another dimension", from_text);
 }
 
-/// A factor between units is nearly always a short decimal number. This removes the rounding of its
-/// computation, so that "1 kHz" is 1000 Hz and not 999.9999999999999.
+/// A factor between units is almost always a short decimal number. Removes the rounding error of
+/// its computation, so that "1 kHz" is 1000 Hz and not 999.9999999999999.
 double without_rounding(double factor) {
   const std::string digits = fmt::format("{:.13e}", factor);
   double rounded = factor;
@@ -311,7 +313,7 @@ struct Split {
   std::string_view unit;
 };
 
-/// @throws QuantityError  says what is wrong with the number
+/// @throws QuantityError  if the number is wrong; what() says in what way
 Split split_number(std::string_view text) {
   if (text.empty()) throw QuantityError("the text is empty");
   const bool plus = text.size() > 1 && text[0] == '+' && (is_digit(text[1]) || text[1] == '.');

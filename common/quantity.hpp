@@ -6,8 +6,8 @@
 
 namespace rigcal {
 
-/// A text is not a quantity, or not one of the expected dimension. what() names it and what was
-/// expected; the reader of a file adds the place.
+/// Thrown if a text is not a quantity, or not one of the expected dimension. what() gives the text
+/// and what was expected; code that reads a file adds the location.
 class QuantityError : public std::invalid_argument {
  public:
   using std::invalid_argument::invalid_argument;
@@ -20,17 +20,18 @@ struct UnitConversion {
   double operator()(double value) const { return scale * value + offset; }
 };
 
-/// Conversion between units of the same dimension, by UDUNITS-2. Cycles (Hz) and radians (rad/s)
-/// are different kinds here and convert by 2 pi; plain 1/s is neither and converts to neither.
-/// "lpm" (L/min) and "gpm" (US gallon/min) are accepted; "1" or "" is dimensionless.
+/// Conversion between units of the same dimension, using UDUNITS-2. Cycles (Hz) and radians (rad/s)
+/// are different kinds here, and differ by a factor of 2 pi. Plain 1/s is neither, and converts to
+/// neither. "lpm" (L/min) and "gpm" (US gallon/min) are accepted; "1" or "" is dimensionless.
 ///
-/// @throws QuantityError  unknown unit, or different dimensions
+/// @throws QuantityError  if a unit is unknown, or if the dimensions differ
 UnitConversion unit_conversion(std::string_view from, std::string_view to);
 
-/// Number and unit, "6.2 MPa", converted to `unit` (Pa -> 6.2e6). The number must be finite, with
-/// a decimal point; locale-independent.
+/// Parses a number with a unit, such as "6.2 MPa", and converts it to `unit` (Pa -> 6.2e6). The
+/// number must be finite and have a decimal point, whatever the locale.
 ///
-/// @throws QuantityError  no number, no unit though `unit` has a dimension, wrong dimension
+/// @throws QuantityError  if there is no number, no unit although `unit` has a dimension, or if the
+///                        dimension is wrong
 double parse_quantity(std::string_view text, std::string_view unit);
 
 }  // namespace rigcal

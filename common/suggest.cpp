@@ -18,8 +18,8 @@ std::string lower(std::string_view text) {
   return result;
 }
 
-/// Edit distance with insertion, deletion, substitution and exchange of neighbours, each 1
-/// ("optimal string alignment").
+/// Edit distance with insertion, deletion, substitution and transposition of neighbours, each
+/// costing 1 ("optimal string alignment").
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before_last(b.size() + 1);
   std::vector<std::size_t> last(b.size() + 1);
@@ -46,7 +46,7 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
   std::string nearest;
   std::size_t nearest_distance = 0;
   for (const std::string& candidate : known) {
-    // More than a third of the letters wrong is another word, not a slip.
+    // If more than a third of the letters are wrong, it is a different word rather than a typo.
     const std::size_t limit = std::max<std::size_t>(1, std::max(name.size(), candidate.size()) / 3);
     const std::size_t lengths = std::max(name.size(), candidate.size());
     if (lengths - std::min(name.size(), candidate.size()) > limit) continue;

@@ -6,10 +6,10 @@
 
 namespace rigcal {
 
-/// The known name nearest to `name` by edit distance, or empty if none is near.
+/// Returns the known name closest to `name` by edit distance; empty if none is close.
 std::string nearest_name(std::string_view name, const std::vector<std::string>& known);
 
-/// "unknown <what> 'nmae'; did you mean 'name'? (known: a, b, c)".
+/// Returns a message such as "unknown <what> 'nmae'; did you mean 'name'? (known: a, b, c)".
 std::string unknown_name_message(std::string_view what, std::string_view name,
                                  const std::vector<std::string>& known);
 

@@ -13,14 +13,14 @@ namespace rigcal {
 
 /// Independent tasks whose results are bytes.
 struct FarmJob {
-  std::string name;       ///< "profiles"; the same job is run once at most
-  std::string state;      ///< serialised inputs of its tasks: another state, other results
+  std::string name;       ///< "profiles"; the same job runs at most once
+  std::string state;      ///< serialised inputs of its tasks; another state gives other results
   std::size_t count = 0;  ///< number of tasks
-  int lanes = 1;          ///< tasks at a time in each process
+  int lanes = 1;          ///< number of tasks that run at a time in each process
   std::map<std::size_t, std::string> known = {};  ///< results that exist already
 };
 
-/// The first process has ended without this job.
+/// Thrown if the first process has ended without this job.
 class FarmEnded : public std::runtime_error {
  public:
   FarmEnded() : std::runtime_error("the first process has ended without this job") {}
@@ -29,16 +29,17 @@ class FarmEnded : public std::runtime_error {
 /// Result of a task.
 struct TaskResult {
   std::string bytes;
-  bool whole = true;  ///< false: a limit or a signal cut it short, or it did not begin
+  bool whole = true;  ///< false: a limit or a signal cut the task short, or it did not start
 };
 
-/// Runs jobs: in the threads of this process, or in other processes too. Each task must depend on
-/// its number and on the job's state alone, so that it may run anywhere, and more than once.
+/// Runs jobs, in the threads of this process and possibly in other processes, too. Each task must
+/// depend only on its number and on the job's state, so that it can run anywhere, and more than
+/// once.
 class TaskFarm {
  public:
   using Task = std::function<TaskResult(std::size_t)>;
   /// Called with each result as soon as it is available, in any order and from any thread, possibly
-  /// concurrently. Among cooperating processes only the first one is called.
+  /// concurrently. If several processes cooperate, it is called only in the first one.
   using Done = std::function<void(std::size_t, const TaskResult&)>;
 
   TaskFarm() = default;
@@ -46,12 +47,12 @@ class TaskFarm {
   TaskFarm& operator=(const TaskFarm&) = delete;
   virtual ~TaskFarm() = default;
 
-  /// Results of tasks 0 to count - 1, in order, for every process that runs the job.
+  /// Returns the results of tasks 0 to count - 1, in order, in every process that runs the job.
   ///
-  /// @throws  the exception of the task with the lowest index; FarmEnded
+  /// @throws  the exception of the task with the lowest index, or FarmEnded
   virtual std::vector<TaskResult> run(const FarmJob& job, const Task& task, const Done& done) = 0;
 
-  /// Number of this process, from 0, and of all.
+  /// Number of this process, from 0, and number of all processes.
   virtual int rank() const { return 0; }
   virtual int processes() const { return 1; }
 };

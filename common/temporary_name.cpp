@@ -19,13 +19,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Target name and process number in a name from temporary_name().
+/// Target name and process number in a name made by temporary_name().
 struct Temporary {
   std::string_view name;
   pid_t process = 0;
 };
 
-/// Takes ".NUMBER" off the end; nothing if the text does not end so.
+/// Removes ".NUMBER" from the end and returns the number; nullopt if the text does not end like
+/// this.
 std::optional<unsigned long> take_number(std::string_view& text) {
   const std::size_t dot = text.rfind('.');
   if (dot == std::string_view::npos) return std::nullopt;
@@ -48,7 +49,7 @@ std::optional<Temporary> temporary(std::string_view name) {
   return Temporary{name, static_cast<pid_t>(*process)};
 }
 
-/// Whether another process of this number is running.
+/// Whether another process with this number is running.
 bool lives(pid_t process) {
   return process != ::getpid() && (::kill(process, 0) == 0 || errno == EPERM);
 }

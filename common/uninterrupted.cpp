@@ -17,7 +17,7 @@ static_assert(std::atomic<int>::is_always_lock_free, "a signal handler must not 
 }  // namespace
 
 Uninterrupted::Uninterrupted() {
-  // The order matters: the handler either counts this object, or is seen here.
+  // The order matters: either the handler counts this object, or this loop sees that it is ending.
   ++uninterrupted;
   while (ending) {
     --uninterrupted;

@@ -2,22 +2,23 @@
 
 namespace rigcal {
 
-/// While one lives, in whatever thread, the end that a signal brings waits: for work that must not
-/// be left half done, such as files that are written beside their places.
+/// While an object of this class exists, in any thread, a signal does not end the process. Meant
+/// for work that must not be left half done, such as moving a set of files into place.
 class Uninterrupted {
  public:
-  /// Waits for ever where the end has come.
+  /// Never returns if the process is already ending.
   Uninterrupted();
   Uninterrupted(const Uninterrupted&) = delete;
   Uninterrupted& operator=(const Uninterrupted&) = delete;
-  /// Raises the signal that had to wait, if this was the last one.
+  /// Raises the signal that was postponed, if this was the last object.
   ~Uninterrupted();
 
-  /// Whether one lives.
+  /// Whether any object exists.
   static bool any();
 
-  /// For a signal handler, and safe within one: whether `signal` has to wait, as it then will. If
-  /// not, no other thread begins anything, and the handler must end the process.
+  /// For use within a signal handler, where it is safe. Returns whether `signal` must wait, and if
+  /// so, postpones it. If not, no other thread can begin such work, and the handler must end the
+  /// process.
   static bool postpones(int signal);
 };
 

@@ -11,22 +11,22 @@
 
 namespace rigcal::datasets {
 
-/// A quantity that differs between days, as [between_days] names it.
+/// Name of a quantity that may differ between days, as used in [between_days].
 struct DayQuantityName {
   std::string key;
   std::string unit;  ///< SI
 };
 
-/// The start of a record against its drive, which no parameter of the rig describes.
+/// Key for the start time of a record relative to its drive. No parameter of the rig describes it.
 inline constexpr const char* kTriggerKey = "trigger";
 
-/// Supply, oil, zero of the position sensor, and trigger, as far as the plant has them.
+/// Returns those of supply, oil, zero of the position sensor and trigger that the plant has.
 std::vector<DayQuantityName> day_quantity_names(model::PlantKind plant);
 
-/// [between_days]: by how much quantities differ between days.
+/// Section [between_days]: how much quantities vary between days.
 struct BetweenDaysSettings {
-  bool none = false;                  ///< `between_days = false`: every day is like the others
-  std::map<std::string, double> sds;  ///< standard deviation between days, SI, by key
+  bool none = false;                  ///< `between_days = false`: days do not differ
+  std::map<std::string, double> sds;  ///< standard deviation between days in SI units, by key
   std::set<std::string> left_out;     ///< quantities that the campaign sets to `false`
 
   bool leaves_out(const std::string& key) const { return none || left_out.contains(key); }
@@ -34,7 +34,7 @@ struct BetweenDaysSettings {
     const auto found = sds.find(key);
     return found == sds.end() ? std::nullopt : std::optional(found->second);
   }
-  /// Whether the campaign states any size, so that none is estimated.
+  /// Whether the campaign makes any statement here. If so, no standard deviation is estimated.
   bool is_stated() const { return none || !sds.empty() || !left_out.empty(); }
 };
 

@@ -5,7 +5,7 @@
 namespace rigcal::datasets {
 namespace {
 
-/// Keys of parameters; a plant without one of them has no such effect.
+/// Keys of parameters that describe an effect. A plant without the parameter has no such effect.
 constexpr std::array kOfParameters{"valve_time_constant",
                                    "valve_offset",
                                    "valve_dead_band",

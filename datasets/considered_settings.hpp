@@ -11,21 +11,21 @@
 
 namespace rigcal::datasets {
 
-/// A small effect that a model may leave out, as [considered] names it.
+/// A small effect that a model may leave out, as named in [considered].
 struct EffectName {
   std::string key;
   std::string unit;  ///< SI unit of its size
 };
 
-/// Effects that may be considered with a plant: optional terms by the key of their parameter,
-/// volumes that hoses may enlarge, and what no parameter describes ("supply_sag",
-/// "position_hysteresis").
+/// Returns the effects that can be considered for a plant: optional terms, by the key of their
+/// parameter; volumes that hoses may enlarge; and effects that no parameter describes
+/// ("supply_sag", "position_hysteresis").
 std::vector<EffectName> effect_names(model::PlantKind plant);
 
-/// [considered]: what the campaign says of the small effects that its model leaves out.
+/// Section [considered]: the small effects that the model leaves out.
 struct ConsideredSettings {
-  bool none = false;                    ///< `considered = false`: the model counts as exact
-  std::map<std::string, double> sizes;  ///< standard deviation, SI, in place of the usual one
+  bool none = false;                    ///< `considered = false`: the model is taken to be exact
+  std::map<std::string, double> sizes;  ///< standard deviations (SI) that replace defaults
   std::set<std::string> left_out;       ///< effects that the campaign sets to `false`
 
   bool leaves_out(const std::string& effect) const { return none || left_out.contains(effect); }

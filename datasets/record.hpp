@@ -13,7 +13,7 @@
 
 namespace rigcal::datasets {
 
-/// Quantity in a column of a record.
+/// Quantity that a column of a record contains.
 enum class Channel {
   reference,                ///< reference of a position loop [m]
   command,                  ///< valve command [V]
@@ -47,50 +47,52 @@ const std::vector<ChannelInfo>& channel_table();
 const ChannelInfo& info(Channel channel);
 std::optional<Channel> channel_from_key(std::string_view key);
 
-/// Whether a channel drives the rig: a command, or the reference of a loop.
+/// Whether a channel drives the rig, as a command or the reference of a loop does.
 bool is_drive(Channel channel);
 
-/// Step of time in which samples are missing.
+/// A gap in the sample times.
 struct TimeHole {
-  std::size_t row = 0;  ///< number of the sample after it, from 1
+  std::size_t row = 0;  ///< number of the first sample after the gap, counted from 1
   double from_s = 0.0;
   double to_s = 0.0;
 };
 
-/// One recorded run as it came from a file, in SI.
+/// One recorded run as read from its file, in SI units.
 struct Repeat {
   std::string source;  ///< file, and the set of columns if one file has several repeats
   std::vector<double> time_s;
   std::map<Channel, std::vector<double>> values;  ///< each of the shape of time_s
   std::vector<std::string> warnings{};            ///< doubts about its files, in words
-  std::vector<TimeHole> holes{};                  ///< holes in the times of its file, increasing
-  /// Marks the samples that its file lacks, shape of time_s; empty: none. They are never compared.
+  std::vector<TimeHole> holes{};  ///< gaps in the times of its file, in increasing order
+  /// Marks samples that are missing from the file, shape of time_s; empty if none are. They are
+  /// never compared with the model.
   std::vector<bool> bridged{};
 };
 
-/// Mean over the repeats of one channel.
+/// One channel, averaged over its repeats.
 struct Series {
   std::vector<double> mean;  ///< shape (samples)
-  /// Sample standard deviation (n - 1) over repeats; NaN at the ends where only one repeat has a
-  /// sample; empty for a single repeat.
+  /// Sample standard deviation (n - 1) over the repeats. NaN at the ends where only one repeat has
+  /// a sample; empty for a single repeat.
   std::vector<double> sd;
-  std::vector<int> count;  ///< repeats that carry this sample
-  /// Standard deviation of one repeat, pooled over the samples: sqrt(mean of sd^2). NaN without
-  /// both repeats and the campaign's `sd`.
+  std::vector<int> count;  ///< number of repeats that have this sample
+  /// Standard deviation of one repeat, pooled over the samples: sqrt(mean of sd^2). NaN if there is
+  /// only one repeat and the campaign states no `sd`.
   double pooled_sd = std::numeric_limits<double>::quiet_NaN();
   /// Standard deviation of the mean, by which residuals are divided. NaN if unknown.
   double sd_of_mean = std::numeric_limits<double>::quiet_NaN();
-  int repeats = 1;  ///< repeats that carry this channel
-  /// Each repeat minus the mean, NaN without a sample, shape (repeats, samples); empty unless
-  /// requested, and for a reference that all repeats share.
+  int repeats = 1;  ///< number of repeats that have this channel
+  /// Each repeat minus the mean, shape (repeats, samples); NaN where a repeat has no sample. Empty
+  /// unless requested, and for a reference that all repeats share.
   std::vector<std::vector<double>> deviations;
 };
 
-/// Result of averaging for one repeat.
+/// Timing of one repeat, and how well it agrees with the others.
 struct RepeatReport {
   std::string source;
-  double offset_s = 0.0;  ///< delay of this repeat against their mean
-  /// rms distance from the mean of the others over the pooled sd; of its worst channel
+  double offset_s = 0.0;  ///< delay of this repeat relative to the mean delay
+  /// rms distance from the mean of the other repeats, divided by the pooled sd; for the worst
+  /// channel
   double deviation = 0.0;
   bool outlier = false;
   double shifted_s = 0.0;  ///< offset_s if it was subtracted to align the repeat, else 0
@@ -101,22 +103,22 @@ struct TimeWindow {
   double end_s = 0.0;
 };
 
-/// The averaged record of one condition, which the model is compared with.
+/// The averaged record of one condition, with which the model is compared.
 struct Record {
   std::string condition;
   std::vector<double> time_s;  ///< shape (samples), increasing
   std::map<Channel, Series> channels;
   int repeats = 1;
   std::vector<RepeatReport> repeat_reports;
-  /// Windows in order: the campaign's, or those found; empty: the whole record.
+  /// Windows in order, from the campaign or found in the record. Empty: the whole record.
   std::vector<TimeWindow> windows;
-  /// Generated signal that equals its recorded drive.
+  /// Generated signal that equals the recorded drive.
   std::optional<model::Signal> generated_drive{};
   std::vector<std::string> notes;     ///< in words: changes to the record, such as decimation
   std::vector<std::string> warnings;  ///< in words: outliers, gaps, spikes, sensors
-  /// In words: samples missing in the windows, so that nothing can be compared with the record.
+  /// In words: samples missing within the windows, which rule out any comparison with the record.
   std::vector<std::string> holes;
-  std::vector<FileState> files;  ///< every file that was read for it, with its state before reading
+  std::vector<FileState> files;  ///< every file read for this record, with its state before reading
 };
 
 }  // namespace rigcal::datasets

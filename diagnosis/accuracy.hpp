@@ -10,16 +10,16 @@
 
 namespace rigcal::diagnosis {
 
-/// One classified record whose class is known.
+/// A classified record whose true class is known.
 struct Judged {
   std::string condition;
   datasets::LeakClass truth = datasets::LeakClass::normal;
   std::optional<datasets::LeakClass> found;  ///< empty: undecided
 };
 
-/// Accuracy of a method.
+/// Accuracy of a classification method.
 struct Accuracy {
-  /// Counts: row of the truth, column of the class found, the last one undecided.
+  /// Counts. The row is the true class, the column the class found; the last column is undecided.
   std::array<std::array<int, datasets::kLeakClasses.size() + 1>, datasets::kLeakClasses.size()>
       confusion{};
   int records = 0;
@@ -28,15 +28,15 @@ struct Accuracy {
   int undecided = 0;   ///< counted as wrong
   int conditions = 0;
   double accuracy = 0.0;  ///< right / records
-  /// Wilson's 95 % interval for as many independent trials as there are conditions: repeats of one
-  /// condition have common errors.
+  /// Wilson's 95 % interval, with as many independent trials as there are conditions, because
+  /// repeats of one condition have errors in common.
   std::pair<double, double> ci95{0.0, 1.0};
 };
 
-/// @param judged  may be empty; then everything is zero and the interval means nothing
+/// @param judged  may be empty; everything is then zero and the interval is meaningless
 Accuracy accuracy_of(const std::vector<Judged>& judged);
 
-/// Wilson's score interval of a proportion at 95 %. E. B. Wilson, J. Am. Stat. Assoc. 22 (1927).
+/// Wilson's 95 % score interval for a proportion. E. B. Wilson, J. Am. Stat. Assoc. 22 (1927).
 ///
 /// @param proportion  in [0, 1]
 /// @param trials      > 0

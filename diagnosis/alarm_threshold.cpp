@@ -44,7 +44,7 @@ double threshold_with(double own, std::span<const CausePart> causes, double fals
 std::vector<double> moving_rms(std::span<const double> x, std::size_t window) {
   std::vector<double> result(x.size(), std::numeric_limits<double>::quiet_NaN());
   double sum = 0.0;
-  std::size_t run = 0;  // samples in a row that are numbers
+  std::size_t run = 0;  // number of consecutive samples that are not NaN
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (std::isnan(x[i])) {
       run = 0;
@@ -54,7 +54,7 @@ std::vector<double> moving_rms(std::span<const double> x, std::size_t window) {
     sum += x[i] * x[i];
     ++run;
     if (run > window) sum -= x[i - window] * x[i - window];
-    // Adding and subtracting rounds, so the sum is kept at zero or above.
+    // Adding and subtracting rounds, so the sum could become negative.
     result[i] = std::sqrt(std::max(0.0, sum) / static_cast<double>(window));
   }
   return result;

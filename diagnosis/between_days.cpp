@@ -101,7 +101,7 @@ DayWeights day_weights(const BetweenDays& between, const datasets::Campaign& cam
   const auto& of = references.empty() ? fitted_conditions(campaign) : references;
   for (const datasets::Condition* each : of)
     weights.reference(place(*each)) += 1.0 / static_cast<double>(of.size());
-  if (of.empty()) weights.reference(0) = 1.0;  // a fit to other records
+  if (of.empty()) weights.reference(0) = 1.0;  // the fit used other records
   return weights;
 }
 

@@ -12,79 +12,78 @@
 
 namespace rigcal::diagnosis {
 
-/// Where the size of the variation between days is from.
+/// Source of the size of the variation between days.
 enum class DaySource { usual, stated, estimated };
 
-/// The variation between the days of a campaign. Each day has a deviation of its own of each
-/// quantity; they are independent, with the standard deviations of the quantities.
+/// Variation between the days of a campaign. Each quantity has a separate deviation on each day.
+/// The deviations are independent, with the standard deviations of the quantities.
 struct BetweenDays {
   std::vector<calib::DayQuantity> quantities;
-  std::vector<std::string> days;  ///< a date, or the text in its place
+  std::vector<std::string> days;  ///< a date, or the text that replaces it
   DaySource source = DaySource::usual;
-  double variance =
-      1.0;  ///< factor on the variances of the quantities, estimated from healthy days
+  double variance = 1.0;  ///< factor on the variances of quantities, from healthy days
   double freedom = metrics::kManyDegrees;  ///< degrees of freedom of that factor
   int dates = 0;                           ///< stated dates of healthy records
 
-  /// Error that the days cause where a coefficient moves by `effects` per standard deviation.
+  /// Error that the days cause in a coefficient that changes by `effects` per standard deviation.
   double error(double weight, const Eigen::VectorXd& effects) const;
 };
 
-/// Day of a condition: its date. Without one a condition of use `fit` is of the day of the fit, and
-/// the others are of a day of their own for each state of the machine.
+/// Day of a condition: its date, if it has one. Otherwise, conditions with use `fit` belong to the
+/// day of the fit, and the others to a separate day for each state of the machine.
 std::string day_label(const datasets::Condition& condition);
 
-/// How far the day of a record is from those of its reference: 1 for its own day, less the fraction
-/// of the reference that each day has. All zero where both are of one day.
+/// How the day of a record differs from the days of its reference: 1 for the day of the record,
+/// minus the fraction of the reference recorded on each day. All zero if both are from one day.
 struct DayWeights {
   Eigen::VectorXd own;        ///< shape (days)
   Eigen::VectorXd reference;  ///< fractions, shape (days)
   Eigen::VectorXd difference() const { return own - reference; }
   double norm() const { return own.size() > 0 ? difference().norm() : 0.0; }
-  /// The same of a record of a day that the reference does not have.
+  /// Norm of the difference for a record from a day on which none of the reference was recorded.
   double norm_of_another_day() const { return std::sqrt(1.0 + reference.squaredNorm()); }
 };
 
-/// @param references  conditions of the reference, one for each of its repeats; empty: the
+/// @param references  conditions of the reference, one for each repeat in it; if empty, the
 ///                    conditions of the fit
 DayWeights day_weights(const BetweenDays& between, const datasets::Campaign& campaign,
                        const datasets::Condition& condition,
                        const std::vector<const datasets::Condition*>& references);
 
-/// The rig's values in the first condition of a campaign, those of the fit among them.
+/// Values of the rig in the first condition of a campaign, including the fitted ones.
 model::ParameterValues rig_values(const LeakProblem& problem);
 /// Shortest sampling interval of the records.
 double shortest_interval(const std::vector<datasets::RepeatRecords>& records);
 
-/// Days and quantities of a campaign, at the stated or usual sizes.
+/// Returns the days and quantities of a campaign, with the stated or usual sizes.
 ///
-/// @param values    of the rig
+/// @param values    values of the rig
 /// @param sample_s  shortest sampling interval
 BetweenDays between_days_of(const datasets::Campaign& campaign,
                             const model::ParameterValues& values, double sample_s);
 
-/// A healthy average that is compared with those of other days.
+/// A healthy average that is compared with averages from other days.
 struct HealthyDay {
   double coefficient = 0.0;
   double variance = 0.0;       ///< variance of its own error
-  double days_variance = 0.0;  ///< that the days would cause at the usual sizes
+  double days_variance = 0.0;  ///< variance that the days would cause at the usual sizes
 };
 
-/// Least number of dates of healthy records from which the variation between days is estimated.
+/// Minimum number of dates of healthy records from which to estimate the variation between days.
 inline constexpr int kLeastHealthyDates = 4;
 
-/// Takes the factor on the variances from healthy averages: their squares less their own errors,
-/// over what the usual sizes would cause, weighted by the information in each. Unless the campaign
-/// states sizes, or has too few dates.
+/// Estimates the factor on the variances from healthy averages: their squares minus the variances
+/// of their own errors, divided by what the usual sizes would cause, and weighted by the
+/// information in each. Does nothing if the campaign states sizes or has too few dates.
 void estimate_days(const std::vector<HealthyDay>& healthy, BetweenDays& between);
 
-/// What was taken, in words: "records of 2026-03-02 are of another day than the reference ...".
-/// Empty where no record is of another day.
+/// Describes, in words, how much days are assumed to differ: "records of 2026-03-02: another day
+/// than their reference's ...". Empty if no record is from another day.
 ///
-/// @param other_days  conditions of another day than their reference
+/// @param other_days  days of records that differ from the days of their references
 std::string in_words(const BetweenDays& between, const std::vector<std::string>& other_days);
 
-/// The error with that by the days.
+/// Returns an error increased by the contribution of the days.
 CoefficientError with_days(CoefficientError error, double days_se, double freedom);
 
 }  // namespace rigcal::diagnosis

@@ -7,15 +7,15 @@
 namespace rigcal::diagnosis {
 namespace {
 
-/// The largest component of noise scatters about the edge; this much above it is significant. (A
-/// weak cause that is missed raises alarms; noise taken for a cause makes a threshold a little
-/// higher.)
+/// The largest component of noise varies around the edge. Above this multiple of the edge, a
+/// component is significant. (A weak cause that is missed raises alarms; noise mistaken for a cause
+/// makes a threshold slightly higher.)
 constexpr double kBeyondEdge = 1.05;
-/// Autocorrelations below this are those of noise.
+/// Autocorrelations below this are attributed to noise.
 constexpr double kNoCorrelation = 0.05;
 
-/// Number of independent squares that estimate a variance as precisely as all samples do:
-/// n / (1 + 2 sum rho^2), up to the first autocorrelation that is none.
+/// Number of independent squares that would estimate a variance as precisely as all samples do: n /
+/// (1 + 2 sum rho^2), summed up to the first autocorrelation below kNoCorrelation.
 double independent_samples(const Eigen::MatrixXd& series) {
   const Eigen::Index n = series.rows();
   const double power = series.squaredNorm();

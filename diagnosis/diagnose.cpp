@@ -47,16 +47,16 @@ Prepared prepare(const LeakProblem& problem, const RigFit& rig,
   return result;
 }
 
-/// One fit that is to be made.
+/// A fit to be made.
 struct Task {
   const Prepared* prepared = nullptr;
   int single = -1;  ///< index of the repeat; -1: the average
 };
 
-/// A repeat of a healthy condition, or its average where it has no repeats.
+/// A repeat of a healthy condition, or its average if it has no repeats.
 struct Reference {
   const Prepared* prepared = nullptr;
-  std::size_t index = 0;  ///< in the residuals
+  std::size_t index = 0;  ///< index in the residuals
 };
 
 std::vector<Reference> references_of(const Campaign& campaign, const std::vector<Prepared>& all,
@@ -133,7 +133,7 @@ RecordDiagnosis diagnose_record(const LeakProblem& problem, const RigFit& rig, c
 struct SignalRecords {
   std::map<std::string, std::vector<RecordDiagnosis*>> singles;  ///< by condition
   std::vector<RecordDiagnosis*> healthy;                         ///< averages and singles
-  std::vector<const LeakFit*> averages;                          ///< but for references
+  std::vector<const LeakFit*> averages;                          ///< except for references
 };
 
 std::map<std::string, SignalRecords> by_signal(const Campaign& campaign,
@@ -163,7 +163,8 @@ SignalErrors errors_of(const SignalRecords& records) {
   return signal_errors(singles, healthy, records.averages);
 }
 
-/// Structured parity residual that the healthy model leaves in healthy records of the signal [m].
+/// Largest structured parity residual that the healthy model leaves in a signal's healthy records
+/// [m].
 double healthy_misfit(const SignalRecords& records) {
   double largest = 0.0;
   for (const RecordDiagnosis* each : records.healthy)
@@ -171,7 +172,7 @@ double healthy_misfit(const SignalRecords& records) {
   return largest;
 }
 
-/// The class that the record is known to have, if any.
+/// Sets the class that the record is known to have, if any.
 void set_truth(const Campaign& campaign, RecordDiagnosis& record) {
   const Condition& condition = *campaign.find(record.condition);
   const auto& known = campaign.diagnosis.level_class;
@@ -199,7 +200,8 @@ void classify_by_features(std::vector<RecordDiagnosis>& records) {
 
 enum class Method { fitted_leak, features };
 
-/// Features without a reference are no judgement; a search without a leak is one.
+/// Skips records that features could not classify, since they had no reference. A fitted leak
+/// counts even if it leaves the class undecided.
 template <typename Found>
 Accuracy accuracy(const std::vector<RecordDiagnosis>& records, Method method, bool single,
                   Found found) {
@@ -212,8 +214,8 @@ Accuracy accuracy(const std::vector<RecordDiagnosis>& records, Method method, bo
   return accuracy_of(judged);
 }
 
-/// Estimates the share of each record, and the smallest detectable leak of healthy ones. A record
-/// whose share cannot be simulated counts as not diagnosed.
+/// Estimates the share of each record, and for healthy records the smallest detectable leak. A
+/// record whose share cannot be simulated counts as not diagnosed.
 void estimate(const LeakProblem& problem, const RigFit& rig, const Prepared& prepared,
               const SignalErrors& errors, const BetweenDays& between, RecordDiagnosis& record) {
   const CoefficientError of_its_day =
@@ -240,7 +242,7 @@ void estimate(const LeakProblem& problem, const RigFit& rig, const Prepared& pre
         estimate_leak(record.fit.coefficient, error, curve, std::hypot(share_rig_se, share_days_se),
                       problem.campaign.diagnosis);
     if (!prepared.is_healthy) return;
-    // A record that is its own reference has no deviation from it.
+    // A record that is its own reference does not deviate from it.
     const auto of_healthy =
         record.is_reference
             ? error_of_averages(record.fit, errors, record.repeats, record.reference_repeats)
@@ -263,7 +265,8 @@ void estimate(const LeakProblem& problem, const RigFit& rig, const Prepared& pre
   }
 }
 
-/// The largest limits of the healthy records of a signal, of averages and of single repeats.
+/// Finds the largest limits among the healthy records of a signal, for averages and for single
+/// repeats.
 void take_limits(const SignalRecords& records,
                  std::optional<DetectionLimit> RecordDiagnosis::*limit, bool others,
                  std::optional<DetectionLimit>& averaged, std::optional<DetectionLimit>& single) {
@@ -302,7 +305,7 @@ SignalDiagnosis limits_of(const SignalRecords& records, const SignalErrors& erro
   return result;
 }
 
-/// Days of records that are not those of their reference, in order of their first appearance.
+/// Days of records that differ from those of their references, in order of first appearance.
 std::vector<std::string> days_off_reference(const Campaign& campaign,
                                             const std::vector<RecordDiagnosis>& records) {
   std::vector<std::string> days;
@@ -314,7 +317,7 @@ std::vector<std::string> days_off_reference(const Campaign& campaign,
   return days;
 }
 
-/// Quantities of the days on which healthy averages were recorded.
+/// Collects the healthy averages that have a date, for estimating the variation between days.
 std::vector<HealthyDay> healthy_days(const Campaign& campaign,
                                      const std::vector<RecordDiagnosis>& records,
                                      const std::map<std::string, SignalErrors>& errors) {
@@ -362,7 +365,7 @@ Diagnosis diagnose(const Campaign& campaign, const std::vector<datasets::RepeatR
   std::vector<Prepared> prepared(records.size());
   parallel_for(prepared.size(), options.threads,
                [&](std::size_t i) { prepared[i] = prepare(problem, rig, records[i], options); });
-  // The problem's own campaign no longer has the known leaks.
+  // The campaign in `problem` no longer contains the known leaks.
   for (Prepared& each : prepared)
     each.is_healthy = is_healthy(campaign, *campaign.find(each.condition->id));
   if (!campaign.conditions.empty())
@@ -370,7 +373,7 @@ Diagnosis diagnose(const Campaign& campaign, const std::vector<datasets::RepeatR
         between_days_of(campaign, rig_values(problem), shortest_interval(records));
   problem.day_quantities = result.between_days.quantities;
   std::vector<Task> tasks;
-  std::vector<std::size_t> begin;  // index of each condition among the tasks
+  std::vector<std::size_t> begin;  // index of the first task of each condition
   for (const Prepared& each : prepared) {
     begin.push_back(tasks.size());
     for (int single = -1; single < static_cast<int>(each.records->singles.size()); ++single)
@@ -384,7 +387,8 @@ Diagnosis diagnose(const Campaign& campaign, const std::vector<datasets::RepeatR
     if (options.progress) options.progress(done, static_cast<int>(tasks.size()));
   };
   begin.push_back(tasks.size());
-  // The average of a condition first, whose simulation without a leak serves its repeats.
+  // The average of a condition comes first, because its simulation without a leak is reused for the
+  // repeats.
   parallel_for(prepared.size(), options.threads, [&](std::size_t condition) {
     std::optional<LeakRuns> runs;
     for (std::size_t i = begin[condition]; i < begin[condition + 1]; ++i) {
@@ -413,7 +417,7 @@ Diagnosis diagnose(const Campaign& campaign, const std::vector<datasets::RepeatR
     const double healthy_m = healthy_misfit(members);
     for (RecordDiagnosis& record : result.records) {
       if (!record.fit.ok() || record.signal != signal) continue;
-      // What days may differ by is no other fault.
+      // A difference that days may cause is not another fault.
       const double of_days_m =
           record.days.norm() * std::sqrt(between.variance) * record.fit.day_rms_m;
       judge(record, errors.at(signal), std::hypot(healthy_m, of_days_m), campaign.diagnosis);

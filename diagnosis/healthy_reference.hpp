@@ -11,20 +11,20 @@
 
 namespace rigcal::diagnosis {
 
-/// Difference of one healthy record from the healthy model, on its own time base.
+/// Difference between one healthy record and the healthy model, on its own time base.
 struct TimedResidual {
   const std::map<datasets::Channel, std::vector<double>>* channels = nullptr;
   const std::vector<double>* time_s = nullptr;
 };
 
-/// Takes the mean residual of healthy records, each at its sample nearest in time, off every
-/// channel of a record.
+/// Subtracts the mean residual of healthy records from every channel of a record. Each healthy
+/// record contributes its sample nearest in time.
 void take_off(std::span<const TimedResidual> healthy, datasets::Record& record);
 
-/// Features of a parity residual over the times that a record covers, ends included.
+/// Features of a parity residual within the times that a record covers, ends included.
 ///
 /// @param residual  shape (time_s)
-/// @param covered   none: all of it
+/// @param covered   nullopt: all of it
 metrics::ResidualFeatures features_within(const std::vector<double>& residual,
                                           const std::vector<double>& time_s,
                                           const std::optional<datasets::TimeWindow>& covered);

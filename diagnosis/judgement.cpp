@@ -7,14 +7,15 @@
 namespace rigcal::diagnosis {
 namespace {
 
-/// Share changes by less than this fraction of a relative change of the coefficient: a plateau.
+/// If a relative change of the coefficient changes the share by less than this fraction, it is a
+/// plateau.
 constexpr double kFlat = 0.1;
-/// Fractions of a difference from the healthy model that a leak leaves unexplained: one that is
-/// reported, and one that is too large for a class.
+/// Fractions of the difference from the healthy model that a leak leaves unexplained: one that is
+/// reported, and one that is too large to assign a class.
 constexpr double kNoticeable = 0.05;
 constexpr double kTooMuch = 1.0 / 3.0;
 
-/// Adds warnings to a record. A record that is the healthy reference gets only a note that it is.
+/// Adds warnings to a record. The healthy reference gets only a note that it is the reference.
 void warn(RecordDiagnosis& record, const SignalErrors& errors, double healthy_m) {
   if (record.is_reference) {
     record.warnings.emplace_back(

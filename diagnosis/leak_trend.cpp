@@ -13,7 +13,7 @@ namespace {
 /// A trend with a p-value below this is significant.
 constexpr double kSignificantTrend = 0.05;
 
-/// A state with the day of its date.
+/// A state, and the day of its date.
 struct DatedState {
   const MachineState* state = nullptr;
   int day = 0;
@@ -60,14 +60,14 @@ metrics::Trend line_through(const std::vector<DatedState>& states,
     coefficients.push_back(pooled.coefficient);
     errors.push_back({pooled.error.own_se, pooled.error.freedom});
   }
-  // Errors of the rig's parameters shift the coefficients of all dates together, and so do those of
-  // the reference's day; each date has a day of its own.
+  // Errors in the rig's parameters shift the coefficients for all dates together, and so does the
+  // day of the reference. In addition, each date has its own day.
   return metrics::weighted_trend(
       days, coefficients, errors,
       moves * rig_covariance * moves.transpose() + days_factor * day_moves * day_moves.transpose());
 }
 
-/// When the line reaches the next limit.
+/// Predicts when the line reaches the next limit.
 void foresee(const MachineState& last, const datasets::DiagnosisSettings& settings,
              LeakTrend& trend) {
   const double share = last.estimate.share;

@@ -17,15 +17,16 @@ struct LeakTrend {
   int first_day = 0, last_day = 0;   ///< since 1970-01-01
   int dates = 0;
   double coefficient_per_day = 0.0;
-  double share_per_day = 0.0;  ///< at the duty, about the last date
+  double share_per_day = 0.0;  ///< at the duty, close to the last date
   std::pair<double, double> share_per_day_ci95{};
   double p = 1.0;            ///< p-value, two-sided, for no change
   bool significant = false;  ///< at 5 %
-  double chi_squared = 0.0;  ///< scatter of the states about the line
+  double chi_squared = 0.0;  ///< variation of the states around the line
   double freedom = 0.0;      ///< dates - 2
-  double widened = 1.0;      ///< factor on the error; above 1 if the points scatter about the line
-  /// If the leak rises significantly: the next limit above its share on the last date, and the day
-  /// on which the line reaches it, with the days of the interval's ends. An open end means never.
+  double widened = 1.0;      ///< factor on the error; above 1 if states are too far from the line
+  /// Set if the leak rises significantly: the next limit above its share on the last date, and the
+  /// day on which the line reaches it, with the days for the ends of the interval. An open end
+  /// means never.
   std::optional<LeakClass> next_class;
   double next_limit = 0.0;
   double reached_day = 0.0;
@@ -34,20 +35,21 @@ struct LeakTrend {
 };
 
 /// Returns the trend of every machine that was diagnosed on three or more dates, in order of
-/// appearance. A machine is the states of one leak level and specimen.
+/// appearance. A machine consists of the states with one leak level and specimen.
 ///
-/// The trend is metrics::weighted_trend() of the coefficients; each has its own error, and all have
-/// that of the rig's parameters in common. What differs between days is in the covariance, too.
+/// The trend is metrics::weighted_trend() of the coefficients. Each coefficient has its own error,
+/// and all share the error from the rig's parameters. The covariance also includes differences
+/// between days.
 ///
-/// @param rig_covariance  of the rig's parameters, shape (rig_moves)^2
-/// @param days_factor     variance between days over the squares of PooledLeak::day_moves
+/// @param rig_covariance  covariance of the rig's parameters, shape (rig_moves)^2
+/// @param days_factor     variance between days relative to the squares of PooledLeak::day_moves
 std::vector<LeakTrend> leak_trends(const std::vector<MachineState>& states,
                                    const Eigen::MatrixXd& rig_covariance,
                                    const datasets::DiagnosisSettings& settings,
                                    double days_factor = 0.0);
 
-/// Lists, in words, machines that were diagnosed on two dates only. Their difference could be the
-/// usual one between two days, so they get no trend.
+/// Lists, in words, machines that were diagnosed on only two dates. They get no trend, because
+/// their difference could be the usual one between two days.
 std::vector<std::string> too_few_dates(const std::vector<MachineState>& states);
 
 }  // namespace rigcal::diagnosis

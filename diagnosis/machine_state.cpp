@@ -14,7 +14,7 @@ namespace {
 
 /// A share within this fraction of a limit counts as being on it.
 constexpr double kOnLimit = 0.05;
-/// Disagreement of less probability widens the error.
+/// Disagreement that is less probable than this widens the error.
 constexpr double kDisagree = 0.05;
 
 double square_of(double x) { return x * x; }
@@ -87,7 +87,7 @@ PooledLeak pooled_leak(const std::vector<StateMember>& members,
     pooled.widened = std::max(1.0, std::sqrt(pooled.chi_squared / pooled.freedom));
 
   double variance = 0.0;
-  double squares = 0.0;  // sum by Welch and Satterthwaite
+  double squares = 0.0;  // sum for the Welch-Satterthwaite formula
   for (Eigen::Index i = 0; i < n; ++i) {
     const double part = square_of(weights(i)) * own(i);
     variance += part;

@@ -18,8 +18,8 @@ using datasets::Condition;
 
 bool is_sine(const Condition& condition) { return condition.waveform == datasets::Waveform::sine; }
 
-/// The duty at which shares of states are stated: the campaign's own choice, else the slowest
-/// generated sine, of these the largest, else the first condition.
+/// Returns the duty at which the shares of states are stated: the campaign's own choice, else the
+/// slowest generated sine (the largest, if several are equally slow), else the first condition.
 const Prepared& duty_of(const Campaign& campaign, const std::vector<Prepared>& all) {
   const std::string& wanted = campaign.diagnosis.duty;
   const Prepared* best = &all.front();
@@ -41,7 +41,7 @@ const Prepared& duty_of(const Campaign& campaign, const std::vector<Prepared>& a
                   wanted));
 }
 
-/// Members, or why a condition is none.
+/// Adds the average of a condition to the members, or the reason why it is left out.
 void add_average(const RecordDiagnosis& record, const SignalErrors& errors, MachineState& state) {
   const auto leave_out = [&](const std::string& why) {
     state.left_out.push_back(record.condition + ": " + why);
@@ -57,8 +57,8 @@ void add_average(const RecordDiagnosis& record, const SignalErrors& errors, Mach
                            record.days.difference()});
 }
 
-/// Error of the share at the duty from what differs between days: with the coefficient, and by
-/// itself.
+/// Error of the share at the duty from differences between days: through the coefficient, and
+/// directly.
 double share_days_error(const LeakProblem& problem, const Prepared& duty, const DayVariance& days,
                         const LeakFit& leak, const MachineState& state) {
   const Eigen::VectorXd& weights = state.pooled.day_weights;

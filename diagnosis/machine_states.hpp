@@ -10,12 +10,12 @@
 
 namespace rigcal::diagnosis {
 
-/// Verdicts on the machine in each of its states, from the averages of all conditions of a state
-/// together; its share is stated at one duty, the same for all.
+/// Returns a verdict on the machine in each of its states, based on the averages of all conditions
+/// in that state. The share is stated at one duty, the same for all states.
 ///
 /// @param records  fitted and judged
 /// @param errors   by signal
-/// @throws InputError  the campaign names a duty that cannot be diagnosed
+/// @throws InputError  if the campaign names a duty that cannot be diagnosed
 std::vector<MachineState> machine_states(const LeakProblem& problem, const RigFit& rig,
                                          const std::vector<Prepared>& all,
                                          const std::vector<RecordDiagnosis>& records,

@@ -15,7 +15,7 @@ using datasets::Campaign;
 using datasets::Channel;
 using datasets::Condition;
 
-/// Reasons with their conditions, in order of their first appearance.
+/// Collects reasons with their conditions, in order of first appearance.
 class Reasons {
  public:
   void add(const std::string& reason, const std::string& condition) {
@@ -39,7 +39,7 @@ class Reasons {
   std::vector<std::string> order_;
 };
 
-/// The values of a factor that conditions of either kind have.
+/// Values that a factor has in healthy and in leaking conditions.
 struct FactorValues {
   std::set<std::string> healthy;
   std::set<std::string> leaking;

@@ -25,11 +25,11 @@ using datasets::Condition;
 using datasets::RepeatRecords;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-/// Length of the moving root mean square for a record without a period, as a fraction of the
+/// Window of the moving root mean square for a record without a period, as a fraction of the
 /// record.
 constexpr double kWindowShare = 0.1;
 
-/// Parity residuals of a condition's repeats, or of its average where there are none.
+/// Computes the parity residuals of a condition's repeats, or of its average if it has none.
 ParityCondition residuals_of(const LeakProblem& problem, const Condition& condition,
                              const RepeatRecords& records) {
   ParityCondition result;
@@ -71,7 +71,7 @@ struct Healthy {
   const ParityRecord* record = nullptr;
 };
 
-/// Whether a sample of a record counts: it was recorded, within the condition's windows.
+/// Whether a sample of a record counts: it was recorded, and is within the condition's windows.
 bool counts(const RepeatRecords& records, std::size_t repeat, double t) {
   const auto holds = [t](const datasets::TimeWindow& window) {
     return window.start_s <= t && t <= window.end_s;
@@ -81,7 +81,7 @@ bool counts(const RepeatRecords& records, std::size_t repeat, double t) {
   return windows.empty() || std::any_of(windows.begin(), windows.end(), holds);
 }
 
-/// The residual less the mean of those of healthy records.
+/// Returns the residual minus the mean residual of the healthy records.
 std::vector<double> corrected(const ParityCondition& condition, const ParityRecord& record,
                               std::size_t repeat, const RepeatRecords& records,
                               const std::vector<Healthy>& references) {
@@ -99,14 +99,14 @@ std::vector<double> corrected(const ParityCondition& condition, const ParityReco
   return result;
 }
 
-/// What is compared of a residual: its largest moving root mean square, and its features.
+/// Values of a residual that are compared: its largest moving root mean square, and its features.
 struct ResidualValues {
   std::vector<double> moving_rms_m;
   double peak_m = 0.0;
   metrics::ResidualFeatures features;
 };
 
-/// Empty where fewer than two samples count.
+/// Empty if fewer than two samples count.
 std::optional<ResidualValues> values_of(const std::vector<double>& residual_m,
                                         const std::vector<double>& time_s, double window_s) {
   std::vector<double> counted;
@@ -122,7 +122,7 @@ std::optional<ResidualValues> values_of(const std::vector<double>& residual_m,
   return values;
 }
 
-/// Fills in the description of a residual except for the alarm.
+/// Sets all values of a record that describe its residual, except for the alarm.
 void describe(const std::vector<double>& time_s, double window_s, ParityRecord& record) {
   const auto values = values_of(record.residual_m, time_s, window_s);
   if (!values) {
@@ -134,7 +134,7 @@ void describe(const std::vector<double>& time_s, double window_s, ParityRecord& 
   record.peak_m = values->peak_m;
 }
 
-/// The values of patterns, NaN where a sample does not count.
+/// Returns the values for each pattern; samples that do not count are NaN.
 std::vector<ResidualValues> values_of_patterns(const Eigen::MatrixXd& patterns,
                                                const std::vector<double>& like,
                                                const std::vector<double>& time_s, double window_s) {
@@ -148,11 +148,11 @@ std::vector<ResidualValues> values_of_patterns(const Eigen::MatrixXd& patterns,
   return values;
 }
 
-/// What the healthy records of a signal differ by, as far as the thresholds need it.
+/// How the healthy records of a signal differ, as needed for the thresholds.
 struct HealthyScatter {
-  std::vector<ResidualValues> own;     ///< one for each record, without the causes
-  std::vector<ResidualValues> causes;  ///< per standard deviation of each
-  std::vector<ResidualValues> days;    ///< per standard deviation of each quantity between days
+  std::vector<ResidualValues> own;     ///< one for each record, without common causes
+  std::vector<ResidualValues> causes;  ///< for one standard deviation of each common cause
+  std::vector<ResidualValues> days;    ///< for one standard deviation of each day quantity
   double records = 0.0;
 };
 
@@ -163,7 +163,7 @@ double window_of(const Condition& condition, const std::vector<double>& time_s) 
   return kWindowShare * length_s;
 }
 
-/// One signal: its conditions by their place in the campaign's order.
+/// One signal, with the positions of its conditions in the campaign.
 struct Group {
   std::string signal;
   std::vector<std::size_t> places;
@@ -218,7 +218,7 @@ class Work {
     return record.failure.empty() && signal != result_.signals.end() && signal->threshold_m;
   }
 
-  /// Marks the healthy records that thresholds rest on, and returns them.
+  /// Marks and returns the healthy records on which the thresholds are based.
   std::vector<Healthy> references_of(const Group& group) {
     std::vector<Healthy> of_fit;
     std::vector<Healthy> all;
@@ -253,7 +253,7 @@ class Work {
     for (const Healthy& each : others) of.push_back(campaign_.find(each.condition->condition));
     const Condition& own = *campaign_.find(condition.condition);
     record.days = day_weights(result_.between_days, campaign_, own, of);
-    // Only dates say that a record is of another day.
+    // Only a date shows that a record is from another day.
     if (!own.date ||
         std::any_of(of.begin(), of.end(), [](const auto* each) { return !each->date; }))
       record.days.own = record.days.reference;
@@ -261,8 +261,9 @@ class Work {
     describe(condition.time_s, window_s, record);
   }
 
-  /// A healthy record less the mean of the n - 1 others varies by 1 + 1 / (n - 1), a new one less
-  /// the mean of all n by 1 + 1 / n of the variance of one.
+  /// Scales variances: a healthy record minus the mean of the n - 1 others has 1 + 1 / (n - 1)
+  /// times the variance of one record, and a new record minus the mean of all n has 1 + 1 / n times
+  /// that variance.
   void set_thresholds(const std::vector<Healthy>& references, ParitySignal& signal) {
     if (references.size() < kLeastHealthyRecords) {
       signal.reason = fmt::format(
@@ -289,8 +290,8 @@ class Work {
   using ValueOf = double (*)(const ResidualValues&);
   static constexpr ValueOf kPeak = [](const ResidualValues& v) { return v.peak_m; };
 
-  /// Residuals of records on one time base are separated into causes and what each has of its own;
-  /// others are taken as they are.
+  /// Separates the residuals of records on one time base into common causes and what each record
+  /// has of its own. Residuals on different time bases are used unchanged.
   HealthyScatter scatter_of(const std::vector<Healthy>& references, double window_s) const {
     HealthyScatter scatter;
     scatter.records = static_cast<double>(references.size());
@@ -325,7 +326,8 @@ class Work {
     return scatter;
   }
 
-  /// @param day_norm  how far the day of a record is from those of the healthy ones; 0: no distance
+  /// @param day_norm  distance of the day of a record from those of the healthy ones; 0: no
+  ///                  distance
   std::optional<double> threshold(ValueOf value, double day_norm) const {
     const double n = scatter_.records;
     const double scale = std::sqrt((1.0 + 1.0 / n) / (1.0 + 1.0 / (n - 1.0)));
@@ -369,12 +371,12 @@ class Work {
   const std::vector<RepeatRecords>& records_;
   const ParityOptions& options_;
   Parity& result_;
-  // Belongs to the signal that is being judged.
+  // These belong to the signal that is being judged.
   HealthyScatter scatter_;
-  std::vector<const Condition*> conditions_;  ///< one for each reference
+  std::vector<const Condition*> conditions_;  ///< one per reference
 };
 
-/// Says that records without a date count as of the day of the healthy ones.
+/// Warns that records without a date count as recorded on the day of the healthy ones.
 void warn_of_undated(const Campaign& campaign, Parity& result) {
   std::vector<std::string> undated;
   for (const ParityCondition& condition : result.conditions)
@@ -416,7 +418,7 @@ Parity parity(const Campaign& campaign, const std::vector<RepeatRecords>& record
   std::vector<Group> groups;
   for (std::size_t i = 0; i < records.size(); ++i) {
     const Condition& condition = *campaign.find(records[i].average.condition);
-    // Two recorded drives are not the same drive.
+    // Two recorded drives never count as the same drive.
     const std::string signal = condition.waveform == datasets::Waveform::recorded
                                    ? "recorded, " + condition.id
                                    : signal_name(campaign, condition);

@@ -16,46 +16,46 @@ namespace rigcal::diagnosis {
 
 struct ParityOptions {
   double false_alarm = 0.01;  ///< probability that a healthy record raises an alarm
-  int threads = 1;            ///< results are the same bits for any number
+  int threads = 1;            ///< results are identical to the bit for any number
   const std::atomic<bool>* cancel = nullptr;
-  std::function<void(int, int)> progress;  ///< conditions done, of how many; from any thread
+  std::function<void(int, int)> progress;  ///< (conditions done, total); from any thread
 };
 
-/// Thresholds for features of the source paper (Table 4), from healthy records.
+/// Thresholds for the features in the source paper (Table 4), from healthy records.
 struct FeatureThresholds {
   std::optional<double> mean, rms, std;  ///< [m]
 };
 
-/// The parity residual of one record: position minus that of the healthy model under the same
-/// reference (eq. 14), minus the mean of that residual over healthy records of the signal, which is
-/// the part that the model lacks. A healthy record is compared with the others.
+/// Parity residual of one record: position minus that of the healthy model under the same reference
+/// (eq. 14), minus the mean of this residual over healthy records of the signal, which shows what
+/// the model lacks. A healthy record is compared with the others.
 struct ParityRecord {
   std::string condition, signal;
-  std::optional<int> repeat;  ///< from 1; empty: a file that is averaged already
+  std::optional<int> repeat;  ///< from 1; empty: a file that is already averaged
   bool is_healthy = false;
-  /// One of the healthy records that the threshold rests on; it raises no alarm.
+  /// Whether the threshold is based on this healthy record, which then raises no alarm.
   bool sets_threshold = false;
-  int reference_records = 0;           ///< healthy records whose mean was subtracted
-  std::string failure;                 ///< why there is no residual; empty if there is one
-  std::vector<double> parity_m;        ///< shape (samples), with nothing subtracted
-  std::vector<double> residual_m;      ///< the same less the reference; NaN where it does not count
-  std::vector<double> moving_rms_m;    ///< over the window of the signal
+  int reference_records = 0;         ///< number of healthy records whose mean was subtracted
+  std::string failure;               ///< why there is no residual; empty if there is one
+  std::vector<double> parity_m;      ///< shape (samples), without subtracting a reference
+  std::vector<double> residual_m;    ///< parity_m minus the reference; NaN where it does not count
+  std::vector<double> moving_rms_m;  ///< over the window of the signal
   metrics::ResidualFeatures features;  ///< features of residual_m
   double peak_m = 0.0;                 ///< largest moving_rms_m
-  DayWeights days;                     ///< its day against those of its reference
-  /// What peak_m and the features are compared with: of its day.
+  DayWeights days;                     ///< its day relative to those of its reference
+  /// Thresholds for peak_m and for the features, on the day of the record.
   std::optional<double> threshold_m;
   FeatureThresholds feature_thresholds;
-  bool alarm = false;         ///< it exceeds the threshold of the signal
-  double alarm_time_s = 0.0;  ///< from the first sample to the first that exceeds it
+  bool alarm = false;         ///< whether it exceeds the threshold of the signal
+  double alarm_time_s = 0.0;  ///< from the first sample to the first above the threshold
 };
 
 /// Records of one condition on one time base.
 struct ParityCondition {
   std::string condition;
   std::vector<double> time_s;
-  std::vector<double> model_m;  ///< position of the healthy model; empty where it failed
-  /// Change of that position by each quantity that differs between days, per standard deviation,
+  std::vector<double> model_m;  ///< position of the healthy model; empty if it failed
+  /// Change of that position with each quantity that differs between days, per standard deviation,
   /// shape (samples, quantities).
   Eigen::MatrixXd day_changes_m;
   std::vector<ParityRecord> records;
@@ -64,21 +64,21 @@ struct ParityCondition {
 /// Thresholds from the healthy records of one signal.
 struct ParitySignal {
   std::string signal;
-  double window_s = 0.0;    ///< moving root mean square: a period, else a tenth of the record
-  int healthy_records = 0;  ///< number of records behind the thresholds
-  std::optional<double> threshold_m;  ///< threshold for peak_m, of a record of the same day
-  /// The same of a record of a day that the healthy records do not have.
+  double window_s = 0.0;              ///< for the moving rms: a period, else a tenth of the record
+  int healthy_records = 0;            ///< number of records on which the thresholds are based
+  std::optional<double> threshold_m;  ///< for peak_m of a record from the same day
+  /// Threshold for peak_m of a record from a day without healthy records.
   std::optional<double> threshold_of_another_day_m;
-  int common_causes = 0;  ///< by which the healthy records differ beyond noise
+  int common_causes = 0;  ///< number of causes by which healthy records differ beyond noise
   FeatureThresholds features;
   std::string reason;  ///< why there is no threshold, in words
 };
 
-/// Healthy records on which no threshold rests: do they raise as many alarms as stated?
+/// Checks whether healthy records that set no threshold raise as many alarms as stated.
 struct FalseAlarmCheck {
   int records = 0;
   int alarms = 0;
-  double p = 1.0;  ///< probability of so many alarms or more at the stated rate (binomial)
+  double p = 1.0;  ///< probability of at least so many alarms at the stated rate (binomial)
 };
 
 struct Parity {
@@ -86,16 +86,18 @@ struct Parity {
   std::vector<ParitySignal> signals;        ///< in order of their first appearance
   FalseAlarmCheck check;
   BetweenDays between_days;
-  std::vector<std::string> other_days;  ///< days of records that are not of their reference's
+  std::vector<std::string> other_days;  ///< days other than the reference's
   std::vector<std::string> warnings;
-  bool usable() const;  ///< there is a residual at least
+  bool usable() const;  ///< whether there is at least one residual
 };
 
-/// Thresholds rest on the healthy records of use `fit` where there are enough of a signal, so that
-/// the others, of other days, check them; else on all healthy ones.
+/// Computes the parity residual of every record, and thresholds for each signal. Thresholds are
+/// based on the healthy records with use `fit` if there are enough of them for the signal, so that
+/// the others, from other days, check them. Otherwise they are based on all healthy records.
 ///
-/// @param records  of the campaign's conditions that can be diagnosed (diagnosable())
-/// @throws InputError  records or campaign are wrong, a healthy level is not one of the campaign's
+/// @param records  records of the conditions that can be diagnosed (diagnosable())
+/// @throws InputError  if the records or the campaign are wrong, or if a healthy level is not one
+///                     of the campaign's
 Parity parity(const datasets::Campaign& campaign,
               const std::vector<datasets::RepeatRecords>& records, const RigFit& rig,
               const ParityOptions& options);

@@ -18,7 +18,7 @@ struct Prepared {
   const datasets::Condition* condition = nullptr;
   const datasets::RepeatRecords* records = nullptr;
   LeakScan scan;
-  std::shared_ptr<const LeakEffects> effects;  ///< null: none were considered
+  std::shared_ptr<const LeakEffects> effects;  ///< null if none were considered
   Residuals residuals;                         ///< for the average, then for each repeat
   std::string failure;
   std::optional<double> true_share;
@@ -26,10 +26,10 @@ struct Prepared {
   std::shared_ptr<LeakMemo> leaks = std::make_shared<LeakMemo>();
 
   const std::vector<double>& time_s() const { return records->average.time_s; }
-  /// Least half width of a curve of shares: where a record is its own reference there is no error,
-  /// and any width will do that leaks at all.
+  /// Minimum half width of a curve of shares. A record that is its own reference has no error, and
+  /// any width that includes a leak will do.
   double least_reach() const { return 1e-2 * scan.largest_coefficient; }
-  /// Coefficient with a share of a ten thousandth of the smallest share of interest.
+  /// Coefficient whose share is a ten-thousandth of the smallest share of interest.
   double negligible() const { return 1e-4 * least_reach(); }
 };
 

@@ -6,7 +6,7 @@
 
 namespace rigcal::diagnosis {
 
-/// Drive of a condition, by which records are comparable: "sine 0.1 Hz, 50.8 mm".
+/// Name of a condition's drive: "sine 0.1 Hz, 50.8 mm". Records with the same name are comparable.
 std::string signal_name(const datasets::Campaign& campaign, const datasets::Condition& condition);
 
 }  // namespace rigcal::diagnosis

@@ -16,15 +16,15 @@ namespace {
 static_assert(sizeof(Agreement) == kMetrics.size() * sizeof(double),
               "a member of Agreement has no row in the table, or a row no member");
 
-/// The first rows of the table.
+/// Number of rows, from the first, that agreement() computes together.
 constexpr std::size_t kOfMoments = 7;
 static_assert(kMetrics.size() >= kOfMoments && kMetrics[kOfMoments - 1].name == "maximum_error",
               "a metric of its own has its row below those that agreement() computes together");
 
 using Signal = std::span<const double>;
 
-/// All that the metrics are made of. Each metric is a formula of these, so that agreement() and the
-/// single functions cannot differ.
+/// Quantities from which all metrics are computed. Each metric is a formula of these, so that
+/// agreement() and the separate functions cannot differ.
 struct Moments {
   Range measured;
   Range simulated;
@@ -55,8 +55,8 @@ Moments moments(Signal measured, Signal simulated, std::string_view function) {
   m.variance_simulated = s.variance();
   m.covariance = mean_of(n, [&](auto i) { return y[i] * s[i]; });
 
-  // The difference y[i] - s[i] would show the rounding of the two means if the residual is much
-  // smaller than the signals. Differences from the first samples are exact for similar signals.
+  // If the residual is much smaller than the signals, the difference y[i] - s[i] would show the
+  // rounding of the two means. Differences from the first samples are exact for similar signals.
   const Extended mean_from_first = y.mean_from_first() - s.mean_from_first();
   m.variance_residual = mean_of(
       n, [&](auto i) { return square((y.from_first(i) - s.from_first(i)) - mean_from_first); });
@@ -84,7 +84,7 @@ double unexplained_variance(const Moments& m) {
 
 double rho2(const Moments& m) {
   require_varying(m.measured, "rho2", "measured");
-  // A constant has no variance to explain with; without this, rounding would decide the last bit.
+  // A constant cannot explain any variance. Without this line, rounding would decide the last bit.
   if (m.simulated.constant()) return 0.0;
   return to_double(1.0L - m.variance_residual / m.variance_measured, "rho2");  // Eq. 15
 }

@@ -4,29 +4,29 @@
 
 namespace rigcal::metrics {
 
-// Each metric of measured y and simulated s, both of shape (n), same unit, same sample times.
-// Population moments (divided by n), e = y - s. All throw
-//   std::invalid_argument  sizes differ, n < 2, or a value is not finite
-//   std::domain_error      the metric does not exist: the measured signal is constant (every metric
-//                          but rmse and maximum_error), the simulated one is (correlation), or the
-//                          result is beyond the largest double
+// Each metric compares a measured y with a simulated s, both of shape (n), with the same unit and
+// sample times. Moments are population moments (divided by n), and e = y - s. All functions throw
+//   std::invalid_argument  if sizes differ, n < 2, or a value is not finite
+//   std::domain_error      if the metric is undefined: the measured signal is constant (all metrics
+//                          except rmse and maximum_error), the simulated one is (correlation), or
+//                          the result exceeds the largest double
 // so that nothing undefined is ever printed as a number. Every sum is exact to about 1e-16 of the
-// spread it measures, for any offset, scale and length.
+// variation that it measures, for any offset, scale and length.
 
-/// Coefficient of determination, eq. 15: rho2 = 1 - var(e) / var(y). Blind to a constant offset.
-/// At most 1, no lower limit; 0 for a constant simulated signal.
+/// Coefficient of determination, eq. 15: rho2 = 1 - var(e) / var(y). Insensitive to a constant
+/// offset. At most 1, no lower limit; 0 for a constant simulated signal.
 double rho2(std::span<const double> measured, std::span<const double> simulated);
 
-/// 1 - rho2 = var(e) / var(y), with full precision if rho2 is too close to 1.
+/// 1 - rho2 = var(e) / var(y), with full precision even if rho2 is very close to 1.
 double unexplained_variance(std::span<const double> measured, std::span<const double> simulated);
 
-/// Pearson correlation, eq. 16: R = cov(y, s) / (std(y) std(s)), in [-1, 1]. Blind to gain and
-/// offset.
+/// Pearson correlation, eq. 16: R = cov(y, s) / (std(y) std(s)), in [-1, 1]. Insensitive to gain
+/// and offset.
 double correlation(std::span<const double> measured, std::span<const double> simulated);
 
-/// Concordance, eq. 17: CCC = (var(s) + var(y) - var(e)) / (var(s) + var(y) + (mean e)^2), in
-/// [-1, 1], computed in Lin's equal form 2 cov(y, s) / (var(y) + var(s) + (mean y - mean s)^2).
-/// 0 for a constant simulated signal.
+/// Concordance, eq. 17: CCC = (var(s) + var(y) - var(e)) / (var(s) + var(y) + (mean e)^2), in [-1,
+/// 1], computed in Lin's equivalent form 2 cov(y, s) / (var(y) + var(s) + (mean y - mean s)^2). 0
+/// for a constant simulated signal.
 double concordance(std::span<const double> measured, std::span<const double> simulated);
 
 /// 100 mean |e| / (max y - min y), in percent. The paper does not define its absolute error; this
@@ -42,7 +42,7 @@ double nrmse_fit_percent(std::span<const double> measured, std::span<const doubl
 /// max |e|, in the unit of y.
 double maximum_error(std::span<const double> measured, std::span<const double> simulated);
 
-/// Every metric of the table in metrics/metric_table.hpp.
+/// Every metric in the table in metrics/metric_table.hpp.
 struct Agreement {
   double rho2 = 0.0;
   double r = 0.0;
@@ -53,8 +53,9 @@ struct Agreement {
   double maximum_error = 0.0;
 };
 
-/// All metrics at the cost of one, each with the same bits. Throws if any of them does; for signals
-/// that lack one metric (a constant simulation has no R) compute the others one by one.
+/// Computes all metrics at the cost of one, each with the same bits as if computed separately.
+/// Throws if any of them does. For signals for which a metric is undefined (a constant simulation
+/// has no R), compute the others separately.
 Agreement agreement(std::span<const double> measured, std::span<const double> simulated);
 
 }  // namespace rigcal::metrics

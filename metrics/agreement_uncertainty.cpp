@@ -20,7 +20,7 @@ std::vector<double> counts_of(const std::vector<std::vector<double>>& deviations
   return counts;
 }
 
-/// Mean of the other repeats; that of all where no other has the sample.
+/// Mean of the other repeats; if no other repeat has the sample, the mean of all.
 std::vector<double> mean_without(std::span<const double> mean, const std::vector<double>& own,
                                  const std::vector<double>& counts) {
   std::vector<double> others(mean.begin(), mean.end());
@@ -45,7 +45,7 @@ double jackknife_variance(const std::vector<Agreement>& without, double Agreemen
   return squares * (repeats - 1.0) / repeats;
 }
 
-/// Largest noise of the mean, by the largest deviation of a repeat from it.
+/// Largest noise in the mean, estimated from the largest deviation of a repeat from it.
 double largest_noise(const MeasuredMean& measured) {
   double largest = 0.0;
   for (const auto& own : measured.deviations)
@@ -54,12 +54,12 @@ double largest_noise(const MeasuredMean& measured) {
   return largest / std::sqrt(static_cast<double>(measured.deviations.size()) - 1.0);
 }
 
-/// Half width of the two-sided interval: that without bias, and what noise in the mean has made the
-/// score worse by.
+/// Half width of the two-sided interval: the one without bias, combined with how much the noise in
+/// the mean has worsened the score.
 ///
-/// @param noise   largest noise of the mean
-/// @param half    of the interval without bias
-/// @param factor  of the standard uncertainty in it
+/// @param noise   largest noise in the mean
+/// @param half    half width of the interval without bias
+/// @param factor  factor in `half` on the standard uncertainty
 double half_with_bias(const std::vector<Agreement>& without, const Agreement& found,
                       double Agreement::*score, double noise, double half, double factor) {
   const auto repeats = static_cast<double>(without.size());
@@ -69,7 +69,7 @@ double half_with_bias(const std::vector<Agreement>& without, const Agreement& fo
   if (score == &Agreement::maximum_error) return std::hypot(half, noise);
   const bool fit_percent = score == &Agreement::nrmse_fit_percent;
   if (score == &Agreement::rmse || score == &Agreement::absolute_error_percent || fit_percent) {
-    // Squares of errors have a bias in 1/R; a fit in percent is one less such an error.
+    // Squared errors have a bias in 1/R. A fit in percent is 100 minus such an error.
     const auto error_of = [&](const Agreement& each) {
       return fit_percent ? 100.0 - each.*score : each.*score;
     };
@@ -86,7 +86,7 @@ double half_with_bias(const std::vector<Agreement>& without, const Agreement& fo
   return half + away * (repeats - 1.0);
 }
 
-/// Scores after changes of the mean by the sensor's uncertainty; one list per cause.
+/// Scores after the sensor's uncertainty has changed the mean, with one list per cause.
 using Changed = std::vector<std::vector<Agreement>>;
 
 Changed changed_by_sensor(const MeasuredMean& measured, std::span<const double> simulated) {
@@ -100,8 +100,8 @@ Changed changed_by_sensor(const MeasuredMean& measured, std::span<const double> 
     result.push_back({score(1.0 + sd, 0.0), score(1.0 - sd, 0.0)});
   if (const double sd = measured.offset_sd; sd > 0.0) {
     result.push_back({score(1.0, sd), score(1.0, -sd)});
-    // An offset may also change from one end of the range to the other: rho2 and R are blind to a
-    // constant.
+    // The offset may also change from one end of the range to the other. rho2 and R, which are
+    // insensitive to a constant, respond to this.
     const auto [low, high] = std::minmax_element(measured.mean.begin(), measured.mean.end());
     const double middle = 0.5 * (*low + *high);
     const double share = sd / (0.5 * (*high - *low));

@@ -14,41 +14,44 @@ struct MeasuredMean {
   /// Each repeat minus the mean, NaN where it has no sample; shape (repeats, n)
   std::vector<std::vector<double>> deviations;
   double gain_sd = 0.0;    ///< standard uncertainty of the sensor's gain, relative
-  double offset_sd = 0.0;  ///< standard uncertainty of its offset, unit of the mean
-  /// Change of the mean by one standard uncertainty of each other cause; shape (causes, n)
+  double offset_sd = 0.0;  ///< standard uncertainty of the sensor's offset, unit of the mean
+  /// Change of the mean due to one standard uncertainty of each other cause; shape (causes, n)
   std::vector<std::vector<double>> changes = {};
 };
 
-/// Expanded uncertainties of each score of a given model, against the mean of unlimited repeats and
-/// a true sensor.
+/// Expanded uncertainties of each score of a given model, relative to the mean of infinitely many
+/// repeats measured by an ideal sensor.
 struct ScoreUncertainty {
-  /// The score is falsely better by more in at most 2.5 % of cases: the guard band of a limit.
+  /// The score is better than the true one by more than this in at most 2.5 % of cases. This is the
+  /// guard band of a limit.
   Agreement one_sided;
-  /// The score differs by no more, in either direction, in 95 %: printed after +-.
+  /// The score differs from the true one by no more than this, in either direction, in 95 % of
+  /// cases. This is printed after +-.
   Agreement two_sided;
 };
 
-/// Expanded uncertainty of each score.
+/// Computes the expanded uncertainty of each score.
 ///
-/// The contribution of the repeats is the jackknife, u^2 = (R - 1) / R sum (S_r - mean S_r)^2,
-/// where S_r is the score without repeat r. It makes no assumption on the correlation of deviations
-/// within a repeat. The contribution of gain, offset or another cause is the largest change of the
-/// score when the mean changes by one standard uncertainty in either direction, so that it counts
-/// even at the best score, where the slope is zero. An offset may be constant, or change from one
-/// end of the range to the other; the larger effect counts, since certificates do not say which,
-/// and rho2 is blind to a constant. Contributions add as squares. The factor is that of Student's t
-/// with the degrees of freedom by Welch-Satterthwaite, R - 1 for the repeats and unlimited for the
-/// sensor (JCGM 100:2008, G.4).
+/// The repeats contribute the jackknife variance, u^2 = (R - 1) / R sum (S_r - mean S_r)^2, where
+/// S_r is the score without repeat r. This assumes nothing about the correlation of deviations
+/// within a repeat. Gain, offset and each other cause contribute the largest change of the score
+/// when the mean shifts by one standard uncertainty in either direction. They therefore count even
+/// at the best score, where the slope is zero. An offset may be constant, or may change from one
+/// end of the range to the other. Certificates do not say which, and rho2 is insensitive to a
+/// constant, so the larger effect counts. Contributions are added as squares. The coverage factor
+/// is Student's t with Welch-Satterthwaite degrees of freedom: R - 1 for the repeats, infinite for
+/// the sensor (JCGM 100:2008, G.4).
 ///
-/// Noise that remains in the mean makes a score worse on average. One-sided, that is not included:
-/// a limit that is kept in spite of it is kept. Two-sided it is: by the bias of the jackknife, of
-/// the score (fractions such as rho2), or of its square (rms and absolute errors), as the noise
-/// enters. The largest error moves by no more than the largest noise of the
-/// mean, estimated by the largest deviation of the repeats; its square is added.
+/// Noise that remains in the mean makes a score worse on average. The one-sided uncertainty does
+/// not include this: a limit that is met in spite of the noise is met. The two-sided uncertainty
+/// does, as the jackknife bias of the score (for fractions such as rho2) or of its square (for rms
+/// and absolute errors), depending on how the noise enters. The largest error changes by no more
+/// than the largest noise in the mean. This is estimated from the largest deviation of the repeats,
+/// and its square is added.
 ///
-/// @return nothing with fewer than two repeats, if all are equal (copies carry no information), or
-///         if a score does not exist without one of them
-/// @throws as agreement()
+/// @return nullopt if there are fewer than two repeats, if all are equal (copies carry no
+///         information), or if a score is undefined without one of them
+/// @throws std::invalid_argument, std::domain_error  under the conditions of agreement()
 std::optional<ScoreUncertainty> agreement_uncertainty(const MeasuredMean& measured,
                                                       std::span<const double> simulated);
 

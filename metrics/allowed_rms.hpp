@@ -4,12 +4,12 @@
 
 namespace rigcal::metrics {
 
-/// Root mean square of an error without offset at which rho2 equals its limit: sqrt((1 - limit)
-/// var(y)), in the unit of y.
+/// Root mean square of an error without offset at which rho2 is equal to its limit: sqrt((1 -
+/// limit) var(y)), in the unit of y.
 ///
 /// @param measured  shape (n)
 /// @return          0 for n < 2, and for a limit of 1 or more
-/// @throws std::invalid_argument  a value is not finite
+/// @throws std::invalid_argument  if a value is not finite
 double allowed_rms(std::span<const double> measured, double rho2_limit);
 
 }  // namespace rigcal::metrics

@@ -7,7 +7,7 @@
 namespace rigcal::metrics {
 namespace {
 
-/// One step of the recursion of Levinson and Durbin.
+/// One step of the Levinson-Durbin recursion.
 std::vector<double> extended(const std::vector<double>& phi, double partial) {
   std::vector<double> next(phi.size() + 1);
   for (std::size_t k = 0; k < phi.size(); ++k) next[k] = phi[k] - partial * phi[phi.size() - 1 - k];
@@ -15,7 +15,7 @@ std::vector<double> extended(const std::vector<double>& phi, double partial) {
   return next;
 }
 
-/// The partial autocorrelation that follows on a model of the first autocovariances.
+/// Partial autocorrelation that comes after a model of the first autocovariances.
 double next_partial(const Autoregression& model, std::span<const double> gamma) {
   const std::size_t m = model.phi.size();
   double unexplained = gamma[m + 1];
@@ -28,7 +28,7 @@ void extend(Autoregression& model, double partial) {
   model.variance *= 1.0 - partial * partial;
 }
 
-/// Partial autocorrelations of a model, by the recursion run backwards.
+/// Computes the partial autocorrelations of a model by running the recursion backwards.
 std::vector<double> partials(std::vector<double> phi) {
   std::vector<double> result(phi.size());
   for (std::size_t m = phi.size(); m-- > 0;) {
@@ -63,7 +63,7 @@ std::vector<double> autocovariance(std::span<const double> series, int lags) {
 }
 
 std::vector<double> autocovariance(const Autoregression& model, int lags) {
-  // Levinson and Durbin in reverse: the models of the recursion give one lag after the other.
+  // Levinson-Durbin in reverse: the models in the recursion give one lag after another.
   const std::vector<double> partial = partials(model.phi);
   double variance = model.variance;
   for (const double each : partial) variance /= 1.0 - each * each;
@@ -97,7 +97,7 @@ bool is_autocovariance(std::span<const double> gamma) {
 }
 
 Autoregression fit_autoregression(std::span<const double> gamma, double samples) {
-  constexpr double kMemory = 10.0;  // least length of the record over the model's memory
+  constexpr double kMemory = 10.0;  // minimum ratio of the record's length to the model's memory
   if (gamma.empty() || !(gamma.front() > 0.0)) return {};
   const double most = std::max(0.0, 1.0 - kMemory / samples);
   Autoregression model{{}, gamma.front()};
@@ -105,8 +105,9 @@ Autoregression fit_autoregression(std::span<const double> gamma, double samples)
   double least = samples * std::log(model.variance);
   while (model.phi.size() + 1 < gamma.size()) {
     const double partial = next_partial(model, gamma);
-    // No real series leads here; it happens after a cut, for a series that repeats exactly. Further
-    // terms would be cut, too, and give a model whose response grows without limit.
+    // This does not happen for real series, but for a series that repeats exactly, after a partial
+    // autocorrelation has been limited. Further ones would be limited, too, and would give a model
+    // whose response grows without bound.
     if (!model.phi.empty() && !(std::abs(partial) < 1.0)) break;
     extend(model, std::clamp(partial, -most, most));
     const double criterion = samples * std::log(model.variance) +

@@ -14,12 +14,12 @@ double normal_quantile(double probability) {
   return boost::math::quantile(boost::math::normal(), probability);
 }
 
-// Boost computes it in long doubles, ten times as slowly.
+// Boost computes this in long doubles, which takes ten times as long.
 double normal_cdf(double x) { return 0.5 * std::erfc(-x * std::numbers::sqrt2 / 2.0); }
 
 double student_t_quantile(double probability, double freedom) {
-  // For degrees of freedom near zero a quantile exceeds every double. The result is then infinity,
-  // not an error.
+  // With very few degrees of freedom, a quantile exceeds every double. The result is then infinity
+  // rather than an error.
   using Infinite = boost::math::policies::policy<
       boost::math::policies::overflow_error<boost::math::policies::ignore_error>>;
   return boost::math::quantile(boost::math::students_t_distribution<double, Infinite>(freedom),
@@ -31,7 +31,7 @@ double student_t_cdf(double t, double freedom) {
 }
 
 double chi_squared_exceedance(double x, double freedom) {
-  if (x == 0.0 && freedom > 0.0) return 1.0;  // Boost overflows here for many degrees
+  if (x == 0.0 && freedom > 0.0) return 1.0;  // Boost overflows here for many degrees of freedom
   return boost::math::cdf(boost::math::complement(boost::math::chi_squared(freedom), x));
 }
 

@@ -23,15 +23,17 @@ constexpr int kLastHarmonic = 15;
 constexpr double kLeastHarmonic = 1e-2;  // fraction of the fundamental
 constexpr std::size_t kLeastPerPeriod = 8;
 constexpr std::size_t kLeastSamplesOfRecord = 64;
-/// At either end. Bloomfield, Fourier Analysis of Time Series, 1976: a split cosine bell.
+/// Fraction tapered at either end, by a split cosine bell. Bloomfield, Fourier Analysis of Time
+/// Series, 1976.
 constexpr double kTaper = 0.1;
 constexpr double kResponseBinsPerDecade = 12.0;
 constexpr std::size_t kLeastLines = 8;
 constexpr double kLeastDensity = 1e-6;
-/// Differences of samples are those of the signal as long as it is sampled well.
+/// Differences between samples represent the signal only up to this fraction of half the sampling
+/// rate.
 constexpr double kShareOfNyquist = 0.8;
 
-/// Sums over pairs of amplitudes.
+/// Sums over pairs of complex amplitudes.
 struct Products {
   double input = 0.0;   ///< sum of |U|^2
   double output = 0.0;  ///< sum of |Y|^2
@@ -46,8 +48,9 @@ struct Products {
   }
 };
 
-/// Complex regression of Y on U: the variance of H is that of the residual divided by the input's
-/// power, half of it in each direction. Bendat and Piersol, Random Data, 4th ed., Wiley 2010, 9.2.
+/// Complex regression of Y on U. The variance of H is that of the residual divided by the power of
+/// the input, with half of it in each direction. Bendat and Piersol, Random Data, 4th ed., Wiley
+/// 2010, 9.2.
 ///
 /// @param independent  effective number of independent pairs
 ResponsePoint point_of(double frequency_hz, const Products& sums, double independent) {
@@ -77,7 +80,8 @@ void check_sizes(const char* function, std::size_t samples, std::size_t input, s
                   function, samples, input, output));
 }
 
-/// Amplitudes of a signal's harmonics in one period, by least squares together with its mean.
+/// Amplitudes of a signal's harmonics in one period, fitted by least squares together with its
+/// mean.
 class Harmonics {
  public:
   Harmonics(std::span<const double> time_s, double frequency_hz, const std::vector<int>& numbers)
@@ -86,7 +90,8 @@ class Harmonics {
     for (Eigen::Index i = 0; i < columns_.rows(); ++i) {
       const double turns = (time_s[static_cast<std::size_t>(i)] - time_s.front()) * frequency_hz;
       const double angle = 2.0 * std::numbers::pi * turns;
-      // Powers of one number: a sine and a cosine of each harmonic would take most of the time.
+      // Uses powers of one number, because a sine and a cosine for each harmonic would take most of
+      // the time.
       const double c = std::cos(angle);
       const double s = std::sin(angle);
       double cosine = 1.0;
@@ -109,7 +114,7 @@ class Harmonics {
   std::vector<Amplitude> of(std::span<const double> signal) const {
     const Eigen::Map<const Eigen::VectorXd> values(signal.data(),
                                                    static_cast<Eigen::Index>(signal.size()));
-    // Removes the mean, which would cost digits of the variation.
+    // Removes the mean, which would cost precision in the variation.
     const Eigen::VectorXd moving = values.array() - values.mean();
     const Eigen::VectorXd solution = solver_.solve(columns_.transpose() * moving);
     std::vector<Amplitude> amplitudes;
@@ -158,7 +163,7 @@ std::vector<Window> whole_periods(std::span<const double> time_s, double frequen
   return windows;
 }
 
-/// Differences of a signal under its taper, transformed.
+/// Tapers and transforms the differences of a signal.
 std::vector<Amplitude> tapered_lines(std::span<const double> signal, std::size_t length,
                                      const std::vector<double>& taper) {
   std::vector<double> values(length);
@@ -184,7 +189,7 @@ std::vector<double> split_cosine_bell(std::size_t length) {
   return taper;
 }
 
-/// A length of small primes, which the transform is quick for.
+/// Returns a length with only small prime factors, for which the transform is fast.
 std::size_t quick_length(std::size_t most) {
   for (std::size_t length = most;; --length) {
     std::size_t rest = length;
@@ -260,7 +265,7 @@ std::vector<ResponsePoint> broadband_response(double sample_interval_s,
   const std::vector<double> taper = split_cosine_bell(length);
   const std::vector<Amplitude> u = tapered_lines(input, length, taper);
   const std::vector<Amplitude> y = tapered_lines(output, length, taper);
-  // Neighbouring lines of a tapered record share some of their noise.
+  // Neighbouring lines of a tapered record have part of their noise in common.
   double second = 0.0;
   double fourth = 0.0;
   for (const double w : taper) {
@@ -270,7 +275,7 @@ std::vector<ResponsePoint> broadband_response(double sample_interval_s,
   const double shared = static_cast<double>(length) * fourth / (second * second);
 
   struct Bin {
-    double frequency = 0.0;  ///< sum of the frequencies by the input's power
+    double frequency = 0.0;  ///< sum of the frequencies, weighted by the input's power
     Products sums;
   };
   std::vector<Bin> bins;

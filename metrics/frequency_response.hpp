@@ -6,59 +6,61 @@
 
 namespace rigcal::metrics {
 
-/// Half widths of a 95 % interval of a gain and a phase that were estimated from the same lines.
+/// 95 % intervals for a gain and a phase estimated from the same lines.
 struct ResponseInterval {
   double gain_low = 0.0;        ///< >= 0
   double gain_high = 0.0;       ///< > gain_low
-  double phase_half_deg = 0.0;  ///< at most 180: the phase is then unknown
+  double phase_half_deg = 0.0;  ///< at most 180, at which the phase is unknown
 };
 
-/// Output over input at one frequency, estimated from several independent pairs of their complex
-/// amplitudes (periods, or neighbouring lines of a spectrum) by least squares: H = S_uy / S_uu.
+/// Ratio of output to input at one frequency, estimated by least squares from several independent
+/// pairs of their complex amplitudes (periods, or neighbouring lines of a spectrum): H = S_uy /
+/// S_uu.
 struct ResponsePoint {
   double frequency_hz = 0.0;
-  double gain = 0.0;         ///< |H|, unit of the output over that of the input
-  double phase_deg = 0.0;    ///< in (-180, 180]; negative where the output is late
-  double coherence = 1.0;    ///< |S_uy|^2 / (S_uu S_yy), in [0, 1]; 1 where there is one pair alone
-  double independent = 1.0;  ///< pairs, as many as would be independent
-  /// By Student's t with 2 (pairs - 1) degrees of freedom. Absent with fewer than two pairs, which
-  /// have no variance, and at coherence 0, where the interval has no upper end.
+  double gain = 0.0;         ///< |H|, unit of the output divided by that of the input
+  double phase_deg = 0.0;    ///< in (-180, 180]; negative if the output is late
+  double coherence = 1.0;    ///< |S_uy|^2 / (S_uu S_yy), in [0, 1]; 1 for a single pair
+  double independent = 1.0;  ///< effective number of independent pairs
+  /// From Student's t with 2 (pairs - 1) degrees of freedom. Absent for fewer than two pairs, which
+  /// have no variance, and for a coherence of 0, at which the interval has no upper end.
   std::optional<ResponseInterval> interval;
 };
 
-/// Below this coherence no frequency response is reported: about half of the output comes from
-/// something else. Tischler and Remple, Aircraft and Rotorcraft System Identification, 2nd ed.,
-/// AIAA 2012, chapter 7.
+/// Minimum coherence for reporting a frequency response. At lower coherence, about half of the
+/// output comes from something else. Tischler and Remple, Aircraft and Rotorcraft System
+/// Identification, 2nd ed., AIAA 2012, chapter 7.
 inline constexpr double kLeastCoherence = 0.6;
 
-/// The response of a record that was driven periodically, at the fundamental of the drive and at
-/// its odd harmonics up to the fifteenth, as far as the input has at least a hundredth of its
-/// fundamental there and the record four samples per cycle. Each whole period at the end of the
-/// record is one pair; the first is left out as transient where there are three or more.
+/// Computes the response from a periodically driven record, at the fundamental of the drive and at
+/// its odd harmonics up to the fifteenth. A harmonic is included if the input there has at least a
+/// hundredth of its fundamental, and the record has at least four samples per cycle. Each whole
+/// period, counted from the end of the record, is one pair. If there are three or more, the first
+/// is left out as a transient.
 ///
 /// @param time_s        shape (n), increasing; need not be equidistant
 /// @param input         shape (n), any unit
 /// @param output        shape (n), any unit
-/// @param frequency_hz  > 0, of the drive
-/// @return              by frequency; empty where the input does not move at this frequency, or
-///                      the output does not move at all
-/// @throws std::invalid_argument  sizes differ, less than one period or fewer than 8 samples in it,
-///                                a value is not finite, times do not increase
+/// @param frequency_hz  frequency of the drive, > 0
+/// @return              in order of frequency; empty if the input does not move at this frequency,
+///                      or if the output does not move at all
+/// @throws std::invalid_argument  if sizes differ, there is less than one period or fewer than 8
+///                                samples in it, a value is not finite, or times do not increase
 std::vector<ResponsePoint> periodic_response(std::span<const double> time_s,
                                              std::span<const double> input,
                                              std::span<const double> output, double frequency_hz);
 
-/// The response in a record with any other drive: sweep, steps or noise. Both signals are
-/// differenced, which keeps their ratio and removes drifts, tapered over a tenth at either end, and
-/// transformed. The products of their lines are averaged over bins of equal width in log frequency
-/// with at least eight lines. A bin with less than a millionth of the input's largest power density
-/// is left out.
+/// Computes the response from a record with any other drive: a sweep, steps or noise. Both signals
+/// are differenced, which preserves their ratio and removes drifts, tapered over a tenth at either
+/// end, and transformed. The products of their lines are averaged over bins of equal width in log
+/// frequency with at least eight lines each. A bin is left out if the input has less than a
+/// millionth of its largest power density there.
 ///
-/// @param sample_interval_s  > 0, equidistant
+/// @param sample_interval_s  > 0; samples are equidistant
 /// @param input   shape (n), n >= 64, any unit
 /// @param output  shape (n), any unit
-/// @return        by frequency, up to 80 % of half the sampling rate
-/// @throws std::invalid_argument  sizes differ, n < 64, a value or the interval is not finite
+/// @return        in order of frequency, up to 80 % of half the sampling rate
+/// @throws std::invalid_argument  if sizes differ, n < 64, or a value or the interval is not finite
 std::vector<ResponsePoint> broadband_response(double sample_interval_s,
                                               std::span<const double> input,
                                               std::span<const double> output);

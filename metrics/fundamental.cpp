@@ -41,13 +41,13 @@ void check(std::span<const double> time_s, std::span<const double> signal, std::
                       time_s[i], time_s[i - 1]));
 }
 
-/// First sample of the whole periods at the end of the record.
+/// Index of the first sample in the whole periods at the end of the record.
 std::size_t window_begin(std::span<const double> time_s, double frequency_hz) {
   const double last = time_s.back();
   const double span = last - time_s.front();
   const double mean_step = span / static_cast<double>(time_s.size() - 1);
-  // Times read from a file are rounded: a sample within a thousandth of a step of the limit is at
-  // it.
+  // Times read from a file are rounded, so a sample within a thousandth of a step of the limit
+  // counts as on it.
   const double slack = 1e-3 * mean_step;
   const double covered_periods = (span + mean_step + slack) * frequency_hz;
   if (covered_periods < 1.0)
@@ -61,7 +61,8 @@ std::size_t window_begin(std::span<const double> time_s, double frequency_hz) {
                                   time_s.begin());
 }
 
-/// sin, cos and 1 at time t. Whole turns are removed before the multiplication by 2 pi rounds.
+/// Returns sin, cos and 1 at time t. Removes whole turns first, so that multiplying by 2 pi does
+/// not round them.
 Vector3 regressors(double time_s, double frequency_hz) {
   const Extended turns = wide(time_s) * wide(frequency_hz);
   const auto angle =
@@ -69,7 +70,7 @@ Vector3 regressors(double time_s, double frequency_hz) {
   return {wide(std::sin(angle)), wide(std::cos(angle)), 1.0L};
 }
 
-/// Quantities that depend only on the times, so that the signals of one record share them.
+/// Quantities that depend only on the times, so that all signals of one record share them.
 struct Basis {
   std::vector<Vector3> rows;
   Matrix3 normal = Matrix3::Zero();
@@ -86,7 +87,7 @@ struct Basis {
   }
 };
 
-/// @param basis  of the same times and frequency, or empty: it is made where it is needed
+/// @param basis  for the same times and frequency; if empty, it is computed when needed
 Fundamental fit(std::span<const double> time_s, std::span<const double> signal,
                 std::string_view name, double frequency_hz, std::optional<Basis>& basis) {
   check(time_s, signal, name, frequency_hz);
@@ -103,7 +104,7 @@ Fundamental fit(std::span<const double> time_s, std::span<const double> signal,
   if (!basis) basis.emplace(time_s.subspan(begin), frequency_hz);
   Vector3 right = Vector3::Zero();
   for (std::size_t i = 0; i < n; ++i) {
-    // The offset belongs to c, but it would cost the digits of a and b.
+    // The offset belongs to c, but it would cost precision in a and b.
     right += basis->rows[i] * (wide(signal[begin + i]) - wide(signal[begin]));
   }
   if (basis->eigenvalues[0] < 1e-9L * basis->eigenvalues[2])
@@ -113,7 +114,7 @@ Fundamental fit(std::span<const double> time_s, std::span<const double> signal,
                     n, name, 1.0 / frequency_hz));
   const Vector3 solution = basis->normal.ldlt().solve(right);
   const Extended amplitude = std::hypot(solution[0], solution[1]);
-  // Rounding alone; its phase would look like one.
+  // This is only rounding, but its phase would look real.
   if (amplitude < 1e-12L * range.peak_to_peak()) return {};
   return {.amplitude = to_double(amplitude, "fundamental"),
           .phase_rad = static_cast<double>(std::atan2(solution[1], solution[0]))};

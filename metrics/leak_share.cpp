@@ -17,13 +17,13 @@ Extended mean_along_line(Extended a, Extended b) {
   return 0.5L * (square(a) + square(b)) / ends;
 }
 
-/// Its derivative where a and b change by da and db.
+/// Derivative of mean_along_line() when a and b change by da and db.
 Extended slope_along_line(Extended a, Extended b, Extended da, Extended db) {
   const Extended sign_a = a < 0.0L ? -1.0L : 1.0L;
   const Extended sign_b = b < 0.0L ? -1.0L : 1.0L;
   const Extended d_ends = sign_a * da + sign_b * db;
   if (a * b >= 0.0L) {
-    // From a zero on, |y| grows with the sign of the other end.
+    // If one end is zero, |y| grows with the sign of the other end.
     const Extended sign = a + b < 0.0L ? -1.0L : 1.0L;
     return 0.5L * sign * (da + db);
   }

@@ -11,17 +11,17 @@ namespace rigcal::metrics {
 
 inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
-/// All that the program knows about one metric; scorecards, limits of campaign files, reports and
-/// documentation are made from this row.
+/// Everything that the program knows about one metric. Scorecards, limits in campaign files,
+/// reports and documentation are generated from these rows.
 struct MetricSpec {
   std::string_view name;     ///< name in the results
   std::string_view title;    ///< title of its column on the page
   std::string_view formula;  ///< one line; y measured, s simulated, e = y - s
-  std::string_view unit;     ///< "1", "%", or "channel": that of the compared channel
+  std::string_view unit;     ///< "1", "%", or "channel" for that of the compared channel
   double Agreement::*value = nullptr;
   double (*compute)(std::span<const double> measured, std::span<const double> simulated) = nullptr;
   bool higher_is_better = true;
-  double lowest = 0.0;  ///< least possible value
+  double lowest = 0.0;  ///< lowest possible value
   double highest = kUnbounded;
 };
 
@@ -41,7 +41,7 @@ inline constexpr std::array kMetrics{
                &maximum_error, false},
 };
 
-/// The value of a metric where simulation and measurement are the same.
+/// Value of a metric if simulation and measurement are identical.
 constexpr double ideal(const MetricSpec& metric) {
   if (!metric.higher_is_better) return 0.0;
   return metric.unit == "%" ? 100.0 : 1.0;

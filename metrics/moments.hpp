@@ -8,8 +8,8 @@
 
 namespace rigcal::metrics {
 
-/// Type of every sum. Its 64-bit mantissa keeps 1e7 terms exact to double, and its exponent lets
-/// the squares of 1e+-300 neither overflow nor vanish.
+/// Type used for every sum. With its 64-bit mantissa, sums of 1e7 terms are exact to double
+/// precision. With its exponent, the squares of 1e+-300 neither overflow nor vanish.
 using Extended = long double;
 static_assert(std::numeric_limits<Extended>::digits >= 64 &&
                   std::numeric_limits<Extended>::max_exponent >= 16384,
@@ -17,8 +17,8 @@ static_assert(std::numeric_limits<Extended>::digits >= 64 &&
 
 constexpr Extended wide(double value) { return static_cast<Extended>(value); }
 
-/// Mean of term(i) for i in [0, n), n >= 1. Summed in blocks, so that the error grows with the
-/// block and the number of blocks, not with n.
+/// Mean of term(i) for i in [0, n), n >= 1. Summed in blocks, so that the error grows with the size
+/// and the number of blocks, not with n.
 template <class Term>
 Extended mean_of(std::size_t n, Term term) {
   constexpr std::size_t kBlock = 1024;
@@ -45,23 +45,23 @@ struct Range {
   Extended peak_to_peak() const { return wide(high) - wide(low); }
 };
 
-/// Range of a signal of shape (n).
+/// Finds the range of a signal of shape (n).
 ///
 /// @param function, name  the caller and the signal, for the message
-/// @throws std::invalid_argument  n < 2, or a value is not finite (names which)
+/// @throws std::invalid_argument  if n < 2, or if a value is not finite; the message says which
 Range finite_range(std::span<const double> signal, std::string_view function,
                    std::string_view name);
 
-/// The result of `function` as a double.
+/// Converts the result of `function` to a double.
 ///
-/// @throws std::domain_error  it is beyond the largest double
+/// @throws std::domain_error  if it exceeds the largest double
 double to_double(Extended value, std::string_view function);
 
-/// A signal minus its mean, exact to the rounding of the deviation even for offsets of 1e9: the
-/// first sample is subtracted before the mean is formed.
+/// A signal minus its mean. Even for offsets of 1e9, it is exact to the rounding of the deviation,
+/// because the first sample is subtracted before the mean is computed.
 class Centred {
  public:
-  /// @param signal  shape (n), n >= 1, finite; borrowed
+  /// @param signal  shape (n), n >= 1, finite; must outlive this object
   explicit Centred(std::span<const double> signal)
       : signal_(signal), mean_(mean_of(signal.size(), [this](auto i) { return from_first(i); })) {}
 

@@ -4,16 +4,16 @@
 
 namespace rigcal::metrics {
 
-/// Scores of a model that equals the true signal, against a measured one.
+/// Scores that a model equal to the true signal reaches against a measured one.
 struct NoiseFloor {
   double rho2 = 0.0;
   double ccc = 0.0;
   double absolute_error_percent = 0.0;
 };
 
-/// The agreement that the noise of a record leaves to any model. The record is y = t + n: the truth
-/// t plus noise n, independent of t, of zero mean and variance sigma^2 = sd_of_mean^2. In the mean
-/// over draws, to O(1/n_samples),
+/// Computes the agreement that any model can reach, given the noise in a record. The record is y =
+/// t + n: the truth t plus noise n that is independent of t, with zero mean and variance sigma^2 =
+/// sd_of_mean^2. Averaged over draws, to O(1/n_samples),
 ///
 ///   var(y) = var(t) + sigma^2,  cov(y, t) = var(t),  mean y = mean t,  var(y - t) = sigma^2
 ///
@@ -23,17 +23,18 @@ struct NoiseFloor {
 ///   ccc  = 2 cov(y, t) / (var(y) + var(t)) = 2 (var(y) - sigma^2) / (2 var(y) - sigma^2)  (eq. 17)
 ///   absolute error = 100 E|n| / (max y - min y), E|n| = sigma sqrt(2 / pi) for Gaussian noise
 ///
-/// A single draw scatters about these. With x = sigma^2 / var(t), a model with its gain raised by
-/// sqrt(1 + x) would reach ccc = 1 / sqrt(1 + x), above the 1 / (1 + x / 2) of the truth by x^2 / 8
-/// at most: the truth's is the one to compare with.
+/// A single draw scatters around these values. With x = sigma^2 / var(t), a model with its gain
+/// increased by sqrt(1 + x) would reach ccc = 1 / sqrt(1 + x). This exceeds the 1 / (1 + x / 2) of
+/// the truth by at most x^2 / 8, so models are compared with the score of the truth.
 ///
-/// Where sigma^2 >= var(y) the record is noise alone, and rho2 and ccc are 0.
+/// If sigma^2 >= var(y), the record is only noise, and rho2 and ccc are 0.
 ///
 /// @param measured_mean  shape (n), n >= 2, mean of the repeats, any unit
 /// @param sd_of_mean     standard deviation of each of its samples, same unit, >= 0
-/// @throws std::invalid_argument  n < 2, a value is not finite, sd_of_mean negative or not finite
-/// @throws std::domain_error      the record is constant, or the absolute error beyond the largest
-///                                double
+/// @throws std::invalid_argument  if n < 2, a value is not finite, or sd_of_mean is negative or not
+///                                finite
+/// @throws std::domain_error      if the record is constant, or if the absolute error exceeds the
+///                                largest double
 NoiseFloor noise_floor(std::span<const double> measured_mean, double sd_of_mean);
 
 }  // namespace rigcal::metrics

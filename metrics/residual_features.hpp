@@ -4,8 +4,8 @@
 
 namespace rigcal::metrics {
 
-/// Features of a residual by which the source paper classifies leaks (Table 4), in the unit of the
-/// residual.
+/// Features of a residual that the source paper uses to classify leaks (Table 4), in the unit of
+/// the residual.
 struct ResidualFeatures {
   double mean = 0.0;  ///< mean |r|
   double rms = 0.0;   ///< sqrt(mean r^2)
@@ -13,8 +13,8 @@ struct ResidualFeatures {
 };
 
 /// @param residual  shape (n), n >= 2: leaking minus healthy position, eq. 14
-/// @throws std::invalid_argument  n < 2, or a value is not finite
-/// @throws std::domain_error      a feature is beyond the largest double
+/// @throws std::invalid_argument  if n < 2, or if a value is not finite
+/// @throws std::domain_error      if a feature exceeds the largest double
 ResidualFeatures residual_features(std::span<const double> residual);
 
 }  // namespace rigcal::metrics

@@ -16,11 +16,11 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// A fifth of the samples are tested lags: three.
+/// With this many samples, a fifth of them gives three lags to test.
 constexpr std::size_t kLeastSamples = 16;
 constexpr int kTestedLags = 25;
 
-/// 95 % of the autocorrelations of n samples of white noise are within +-this.
+/// 95 % of the autocorrelations of n samples of white noise are within plus or minus this value.
 double white_band(double n) { return kNormal95 / std::sqrt(n); }
 
 void conclude(Judged& test, Judged found) { test = std::move(found); }
@@ -41,7 +41,8 @@ double mean_square(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-/// Transform of `values`, filled up with zeros to a power of two that keeps correlations apart.
+/// Transforms `values`, padded with zeros to a power of two, so that correlations do not wrap
+/// around.
 std::vector<Complex> padded_transform(std::vector<double> values) {
   std::size_t length = 1;
   while (length < 2 * values.size()) length *= 2;
@@ -51,7 +52,7 @@ std::vector<Complex> padded_transform(std::vector<double> values) {
   return result;
 }
 
-/// sum_t a(t) b(t - lag) at [lag modulo the length], from the transforms of a and b.
+/// Returns sum_t a(t) b(t - lag) at [lag modulo the length], given the transforms of a and b.
 std::vector<double> lagged_products(const std::vector<Complex>& a, const std::vector<Complex>& b) {
   std::vector<Complex> product(a.size());
   for (std::size_t i = 0; i < a.size(); ++i) product[i] = a[i] * std::conj(b[i]);
@@ -60,7 +61,8 @@ std::vector<double> lagged_products(const std::vector<Complex>& a, const std::ve
   return result;
 }
 
-/// Lags that a plot of the correlations shows: four times the first fall into the band.
+/// Number of lags to plot for the correlations: four times the lag at which they first enter the
+/// band.
 std::size_t shown_lags(const std::vector<double>& rho, double band) {
   const std::size_t most = rho.size() / 2;
   std::size_t fall = 1;
@@ -94,7 +96,7 @@ Autocorrelation test_autocorrelation(const std::vector<double>& e, const std::ve
   return result;
 }
 
-/// @param transform  of e, padded
+/// @param transform  padded transform of e
 std::optional<CrossCorrelation> test_cross_correlation(const std::vector<double>& e,
                                                        const std::vector<Complex>& transform,
                                                        const std::vector<double>& u,
@@ -124,14 +126,14 @@ std::optional<CrossCorrelation> test_cross_correlation(const std::vector<double>
 }
 
 struct Lines {
-  std::vector<double> power;  ///< from the first above zero to half the sampling rate
+  std::vector<double> power;  ///< from the first line above zero to half the sampling rate
   double spacing = 0.0;       ///< in cycles per sample
 };
 
 Lines line_powers(const std::vector<double>& e) {
   std::vector<double> values = e;
-  // Few lengths are powers of two: the transform of Eigen takes any length of small primes, and a
-  // few samples less do not change a spectrum.
+  // Few lengths are powers of two. Eigen transforms any length with small prime factors, and
+  // omitting a few samples does not change a spectrum.
   const auto smooth = [](std::size_t n) {
     for (const std::size_t prime : {2U, 3U, 5U}) {
       while (n % prime == 0) n /= prime;
@@ -162,7 +164,7 @@ Periodogram test_periodogram(const std::vector<double>& e, double interval_s) {
     if (share >= 0.5 && result.median_frequency_hz == 0.0)
       result.median_frequency_hz = rank * line_hz;
   }
-  // Bartlett, An Introduction to Stochastic Processes, 1955: Kolmogorov and Smirnov's distance.
+  // Kolmogorov and Smirnov's distance. Bartlett, An Introduction to Stochastic Processes, 1955.
   result.limit = 1.358 / std::sqrt(std::max(1.0, lines - 1.0));
   conclude(result, judge(result.distance > result.limit,
                          {static_cast<double>(e.size()), result.limit, kLargestUsefulBound,
@@ -174,7 +176,7 @@ Periodogram test_periodogram(const std::vector<double>& e, double interval_s) {
     result.peak_share += power[k] / total;
   // By Parseval's theorem all lines together give the mean square.
   const double density = mean_square(e) / (total * line_hz);
-  constexpr double kBinsPerDecade = 30.0;  // for pictures, like the points below
+  constexpr double kBinsPerDecade = 30.0;  // for plots, like the points below
   for (std::size_t k = 0; k < power.size();) {
     const double upper = static_cast<double>(k + 1) * std::pow(10.0, 1.0 / kBinsPerDecade);
     double mean = 0.0;
@@ -203,7 +205,8 @@ Normality test_normality(const std::vector<double>& e, double effective) {
       effective / 6.0 *
       (result.skewness * result.skewness + 0.25 * result.excess_kurtosis * result.excess_kurtosis);
   result.p_value = std::exp(-0.5 * result.jarque_bera);
-  // The statistic exceeds chi-square's 5 % point of two degrees by the kurtosis alone.
+  // Excess kurtosis that by itself raises the statistic to the 5 % point of chi-square with two
+  // degrees of freedom.
   const double kurtosis = std::sqrt(-2.0 * std::log(kWarningLevel) * 24.0 / effective);
   conclude(result, judge(result.p_value < kWarningLevel,
                          {effective, kurtosis, kLargestUsefulKurtosis, "an excess kurtosis"}));
@@ -237,8 +240,8 @@ Drift test_drift(std::span<const double> residual, const std::vector<double>& e,
   const double error_of_mean = sd / std::sqrt(effective);
   result.mean_p_value = two_sided_p(result.mean / error_of_mean);
   result.slope_p_value = two_sided_p(slope * std::sqrt(variance_of_time) / error_of_mean);
-  // Two tests, so each at half the level. In units of the standard deviation both bounds are those
-  // of a correlation: with a constant, and with time.
+  // These are two tests, so each is at half the level. In units of the standard deviation, both
+  // bounds are bounds for a correlation: with a constant, and with time.
   const double level = 0.5 * kWarningLevel;
   conclude(result, judge(result.mean_p_value < level || result.slope_p_value < level,
                          {effective, normal_quantile(1.0 - 0.5 * level) / std::sqrt(effective),
@@ -250,7 +253,7 @@ Drift test_drift(std::span<const double> residual, const std::vector<double>& e,
 
 double effective_sample_size(std::span<const double> rho) {
   const auto n = static_cast<double>(rho.size());
-  // A correlation within the band of white noise counts as none.
+  // A correlation within the band for white noise counts as zero.
   if (rho.size() < 2 || rho[1] <= white_band(n)) return n;
   double sum = 0.0;
   for (std::size_t k = 1; k < rho.size() && rho[k] > 0.0; ++k) sum += rho[k];
@@ -275,7 +278,7 @@ ResidualTests residual_tests(std::span<const double> residual, std::span<const d
   double largest = 0.0;
   for (const double value : residual) largest = std::max(largest, std::abs(value));
   const double variance = mean_square(e);
-  // A standard deviation below this is rounding of the mean.
+  // A standard deviation below this is due to rounding of the mean.
   const double least = 8.0 * std::numeric_limits<double>::epsilon() * largest;
   if (!(variance > least * least)) throw std::domain_error("the residual is constant");
 

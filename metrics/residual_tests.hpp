@@ -8,29 +8,29 @@
 
 namespace rigcal::metrics {
 
-// Tests of the residual e of one record: what a model that explains everything leaves is white,
-// normal, without drift, and uncorrelated with the input. Equidistant samples. Each test is at the
-// 5 % level and passed, failed, or not judged where it has no power (test_outcome.hpp). Tests of
-// whiteness count every sample, as white noise does; the others use the effective sample size where
-// the samples are correlated, and are approximate there.
+// Tests of the residual e of one record. A model that explains everything leaves a residual that is
+// white, normal, without drift, and uncorrelated with the input. Samples are equidistant. Each test
+// is at the 5 % level and is passed, failed, or not judged if it has no power (test_outcome.hpp).
+// Tests for whiteness count every sample, as is correct for white noise. The others use the
+// effective sample size if samples are correlated, and are then approximate.
 
-/// Correlation of the residual with itself: white noise has none.
+/// Correlation of the residual with itself. White noise has none.
 struct Autocorrelation : Judged {
   std::vector<double> values;  ///< shape (lags + 1), from lag 0; biased estimate, values[0] = 1
-  double band = 0.0;           ///< 95 % of the values of white noise are within +-band
+  double band = 0.0;           ///< 95 % of the values for white noise are within +-band
   double ljung_box = 0.0;      ///< Ljung and Box, Biometrika 65, 1978, over `tested_lags`
   int tested_lags = 0;
   double p_value = 0.0;
-  double durbin_watson = 0.0;       ///< 2 for white noise, 0 for a residual that only creeps
-  double correlation_time_s = 0.0;  ///< until the autocorrelation first falls within the band
+  double durbin_watson = 0.0;       ///< 2 for white noise, 0 for a residual that varies only slowly
+  double correlation_time_s = 0.0;  ///< time until the autocorrelation first falls within the band
 };
 
 /// Correlation of the residual with the input of the rig.
 struct CrossCorrelation : Judged {
   std::vector<double> values;  ///< shape (2 lags + 1), from -lags: corr(e(t), u(t - lag))
-  double band = 0.0;           ///< 95 % for one lag, by the effective sample size
+  double band = 0.0;           ///< 95 % for one lag, using the effective sample size
   double band_of_peak = 0.0;   ///< 95 % for the largest of all lags (Bonferroni)
-  double peak = 0.0;           ///< value of largest size
+  double peak = 0.0;           ///< value with the largest magnitude
   double peak_lag_s = 0.0;     ///< > 0: the residual follows the input
 };
 
@@ -41,13 +41,13 @@ struct Periodogram : Judged {
   double median_frequency_hz = 0.0;  ///< half of the power is below it
   double peak_frequency_hz = 0.0;    ///< frequency of the largest single line
   double peak_share = 0.0;           ///< fraction of the power in that line and its two neighbours
-  double distance = 0.0;             ///< cumulative periodogram to a straight line (Bartlett)
-  double limit = 0.0;                ///< 5 % critical distance of white noise
+  double distance = 0.0;  ///< from the cumulative periodogram to a straight line (Bartlett)
+  double limit = 0.0;     ///< 5 % critical distance for white noise
 };
 
 /// Distribution of the residual.
 struct Normality : Judged {
-  std::vector<double> normal_quantile;    ///< shape (points), of the standard normal
+  std::vector<double> normal_quantile;    ///< shape (points), from the standard normal distribution
   std::vector<double> residual_quantile;  ///< quantiles of (e - mean) / std
   double skewness = 0.0;
   double excess_kurtosis = 0.0;
@@ -69,27 +69,29 @@ struct ResidualTests {
   double effective_samples = 0.0;  ///< effective_sample_size()
   double sample_interval_s = 0.0;
   Autocorrelation autocorrelation;
-  std::optional<CrossCorrelation> cross_correlation;  ///< absent where the input is constant
+  std::optional<CrossCorrelation> cross_correlation;  ///< absent if the input is constant
   Periodogram periodogram;
   Normality normality;
   Drift drift;
 };
 
-/// Effective sample size: the number of independent samples that determine the mean as well as n
-/// correlated ones, n / (1 + 2 sum of rho) with the autocorrelations up to the first that is not
-/// positive (Geyer, Statistical Science 7, 1992, without his pairs). It is n if the first is within
-/// the 95 % band of white noise. Later negative autocorrelations do not raise it, which is on the
-/// safe side.
+/// Effective sample size: the number of independent samples that would determine the mean as
+/// precisely as n correlated ones, n / (1 + 2 sum of rho). Autocorrelations are summed up to the
+/// first that is not positive (Geyer, Statistical Science 7, 1992, without his pairs). The size is
+/// n if the first one is within the 95 % band for white noise. Later negative autocorrelations do
+/// not increase it, which is on the safe side.
 ///
 /// @param rho  shape (n), n >= 1, from lag 0: rho[0] = 1
 /// @return     in [1, n]
 double effective_sample_size(std::span<const double> rho);
 
+/// Runs all tests on the residual of one record.
+///
 /// @param residual           shape (n), n >= 16, any unit
 /// @param input              shape (n), or empty: reference or command
 /// @param sample_interval_s  > 0
-/// @throws std::invalid_argument  sizes differ, n < 16, a value or interval is not finite
-/// @throws std::domain_error      the residual is constant
+/// @throws std::invalid_argument  if sizes differ, n < 16, or a value or the interval is not finite
+/// @throws std::domain_error      if the residual is constant
 ResidualTests residual_tests(std::span<const double> residual, std::span<const double> input,
                              double sample_interval_s);
 

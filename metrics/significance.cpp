@@ -16,7 +16,7 @@ double effective_freedom(std::span<const ErrorPart> parts) {
   double sum = 0.0;
   double weighted = 0.0;
   for (const ErrorPart& part : parts) {
-    const double fraction = largest > 0.0 ? part.variance / largest : 0.0;  // has a finite square
+    const double fraction = largest > 0.0 ? part.variance / largest : 0.0;  // its square is finite
     sum += fraction;
     weighted += fraction * fraction / part.freedom;
   }

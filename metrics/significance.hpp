@@ -5,7 +5,7 @@
 
 namespace rigcal::metrics {
 
-/// Degrees of freedom from which Student's t counts as the normal distribution.
+/// Number of degrees of freedom from which Student's t is treated as the normal distribution.
 inline constexpr double kManyDegrees = 1e6;
 
 /// Standard error of an estimate, with its degrees of freedom.
@@ -14,7 +14,7 @@ struct EstimateError {
   double freedom = kManyDegrees;
 };
 
-/// One of the independent contributions to a variance.
+/// One of several independent contributions to a variance.
 struct ErrorPart {
   double variance = 0.0;
   double freedom = kManyDegrees;
@@ -27,28 +27,29 @@ double effective_freedom(std::span<const ErrorPart> parts);
 /// Error of the difference between two independent estimates.
 EstimateError error_of_difference(const EstimateError& a, const EstimateError& b);
 
-/// Two-sided probability of a difference of this size if there is none. Uses Student's t with the
-/// degrees of freedom of the error; from kManyDegrees on that is the normal distribution.
+/// Two-sided probability of a difference of at least this size if there is none. Uses Student's t
+/// with the degrees of freedom of the error, and the normal distribution from kManyDegrees on.
 ///
-/// @param error  of the difference, in the same unit; > 0
-/// @throws std::invalid_argument  the error or its degrees of freedom are not positive, or a value
-///                                is not finite
+/// @param error  error of the difference, in the same unit; > 0
+/// @throws std::invalid_argument  if the error or its degrees of freedom are not positive, or if a
+///                                value is not finite
 double difference_p_value(double difference, const EstimateError& error);
 
-/// p-values adjusted for all of them together: the k-th smallest of n becomes (n - k + 1) p, but
-/// never less than that of a smaller one (S. Holm, Scand. J. Statist. 6, 1979).
+/// Adjusts p-values for testing all of them together: the k-th smallest of n becomes (n - k + 1) p,
+/// but never less than the adjusted value of a smaller one (S. Holm, Scand. J. Statist. 6, 1979).
 ///
 /// @param p_values  shape (n), in [0, 1]
 /// @return shape (n), in the same order
 std::vector<double> holm(std::span<const double> p_values);
 
-/// Two-sided exact sign test: the probability that of `better` + `worse` pairs at least as many
-/// fall on one side if each side is equally likely. Ties are left out before. 1 without pairs.
+/// Two-sided exact sign test: the probability that, among `better` + `worse` pairs, at least as
+/// many fall on one side if both sides are equally likely. Ties must be left out. Returns 1 if
+/// there are no pairs.
 ///
-/// @throws std::invalid_argument  a count is negative
+/// @throws std::invalid_argument  if a count is negative
 double sign_test_p_value(int better, int worse);
 
-/// Fewest pairs with which a sign test can reach the 5 % level: 2 / 2^6 = 0.031, 2 / 2^5 = 0.063.
+/// Minimum number of pairs for a sign test at the 5 % level: 2 / 2^6 = 0.031, 2 / 2^5 = 0.063.
 inline constexpr int kLeastSignPairs = 6;
 
 }  // namespace rigcal::metrics

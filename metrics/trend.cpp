@@ -11,7 +11,7 @@
 namespace rigcal::metrics {
 namespace {
 
-/// Scatter about the line with a probability below this is more than the errors explain.
+/// Scatter around the line that is less probable than this is more than the errors explain.
 constexpr double kUpperQuartile = 0.25;
 /// A larger chi-square means that the errors cannot belong to these points.
 constexpr double kMostChiSquare = 1e100;
@@ -43,7 +43,7 @@ Trend weighted_trend(std::span<const double> x, std::span<const double> y,
   Eigen::MatrixXd design = Eigen::MatrixXd::Ones(n, 2);
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(n, n);
   if (common.size() > 0) covariance = common;
-  // Centred at the mean of x, since days since 1970 would leave few digits.
+  // Centred at the mean of x, because days since 1970 would leave few digits.
   double middle = 0.0;
   for (const double each : x) middle += each / static_cast<double>(n);
   for (Eigen::Index i = 0; i < n; ++i) {

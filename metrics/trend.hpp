@@ -8,42 +8,42 @@
 
 namespace rigcal::metrics {
 
-/// A straight line through estimates with errors.
+/// A straight line fitted to estimates with errors.
 struct Trend {
   double slope = 0.0;  ///< unit of y per unit of x
   double intercept = 0.0;
-  double slope_standard_error = 0.0;  ///< widened if the points scatter about the line
+  double slope_standard_error = 0.0;  ///< widened if the points are too far from the line
   double freedom = 0.0;               ///< degrees of freedom of that error
-  double ci95_low = 0.0;              ///< ends of the slope's interval
+  double ci95_low = 0.0;              ///< ends of the slope's 95 % interval
   double ci95_high = 0.0;
   double p_value = 1.0;             ///< two-sided, for no slope
-  double chi_square = 0.0;          ///< scatter of the points about the line
+  double chi_square = 0.0;          ///< scatter of the points around the line
   double reduced_chi_square = 0.0;  ///< chi-square divided by n - 2
   double widened = 1.0;             ///< factor on the error of the slope, at least 1
 };
 
 /// Fits the line y = intercept + slope x by generalised least squares and tests its slope. It is
-/// the only test of a trend.
+/// the only test for a trend.
 ///
-/// The errors of the points are known, so they decide the test: by the normal distribution, or by
-/// Student's t if they have few degrees of freedom (Welch and Satterthwaite). If the points scatter
-/// about the line by more than their errors (chi-square beyond its upper quartile, see Bancroft and
-/// Han, International Statistical Review 45, 1977), something else differs between them, such as
-/// the day. The scatter then gives the error, by Birge's ratio, the root of reduced chi-square
-/// (Phys. Rev. 40, 1932), and the slope is tested by t with n - 2 degrees of freedom. Two points
-/// cannot show scatter, so they make no trend.
+/// The errors of the points are known, so they decide the test: with the normal distribution, or
+/// with Student's t if they have few degrees of freedom (Welch and Satterthwaite). If the points
+/// scatter around the line by more than their errors (chi-square beyond its upper quartile, see
+/// Bancroft and Han, International Statistical Review 45, 1977), something else differs between
+/// them, such as the day. The error is then based on the scatter, using Birge's ratio, the square
+/// root of reduced chi-square (Phys. Rev. 40, 1932), and the slope is tested by t with n - 2
+/// degrees of freedom. Two points cannot show scatter, so they do not make a trend.
 ///
 /// @param x, y     shape (n), n >= 3
-/// @param errors   of each y, independent of each other, shape (n); above 0
-/// @param common   covariance of y from causes that affect all points, shape (n)^2; empty: none
-/// @throws std::invalid_argument  fewer points, unequal shapes, an error that is not positive, a
-///                                value that is not finite
-/// @throws std::domain_error      all x are equal, or the errors differ so much from each other or
-///                                from the scatter that no line can be fitted
+/// @param errors   error of each y, independent of the others, shape (n); above 0
+/// @param common   covariance of y due to causes that affect all points, shape (n)^2; empty: none
+/// @throws std::invalid_argument  if there are fewer points, shapes differ, an error is not
+///                                positive, or a value is not finite
+/// @throws std::domain_error      if all x are equal, or if the errors differ so much from each
+///                                other or from the scatter that no line can be fitted
 Trend weighted_trend(std::span<const double> x, std::span<const double> y,
                      std::span<const EstimateError> errors, const Eigen::MatrixXd& common = {});
 
-/// Least number of points of a trend.
+/// Minimum number of points in a trend.
 inline constexpr std::size_t kLeastTrendPoints = 3;
 
 }  // namespace rigcal::metrics

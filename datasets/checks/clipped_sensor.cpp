@@ -9,8 +9,8 @@
 namespace rigcal::datasets {
 namespace {
 
-// The row "a clipped sensor" of docs/campaign-file.md in numbers; its test has records on both
-// sides.
+// Thresholds for the row "a clipped sensor" in docs/campaign-file.md. The test has records on both
+// sides of them.
 constexpr std::size_t kShortestClip = 3;
 constexpr std::size_t kFewestClipped = 8;
 constexpr double kClipDriveMotion = 0.005;
@@ -19,9 +19,9 @@ constexpr std::size_t kBesideDip = 3;
 constexpr double kDepth = 3.0;
 constexpr std::size_t kFewestDips = 10;
 constexpr double kShareOfStep = 0.5;
-constexpr double kFallSteps = 2.0;  // one of a converter's rounding is not enough
+constexpr double kFallSteps = 2.0;  // a single step may be converter rounding
 
-/// Typical duration of a value that is not extreme: 1, or more where a converter repeats its
+/// Mean length of the runs between the extremes, in samples: above 1 if a converter repeats its
 /// samples.
 double typical_length(const std::vector<EqualRun>& runs, double low, double high) {
   std::size_t count = 0;
@@ -34,8 +34,8 @@ double typical_length(const std::vector<EqualRun>& runs, double low, double high
   return count == 0 ? 1.0 : static_cast<double>(samples) / static_cast<double>(count);
 }
 
-/// Whether the signal falls off its extreme value and returns to it within three samples, time and
-/// again, by three steps of the resolution: as noise does of which one side is cut away.
+/// Whether the signal leaves its extreme value by at least three steps of the resolution and
+/// returns within three samples, at least ten times. Noise that is cut off on one side does this.
 bool noise_is_cut(const std::vector<EqualRun>& runs, double extreme, double smallest) {
   std::size_t dips = 0;
   std::size_t last = runs.size();  // index of the last run at the extreme
@@ -46,7 +46,7 @@ bool noise_is_cut(const std::vector<EqualRun>& runs, double extreme, double smal
       continue;
     }
     if (last < runs.size() && runs[k].begin - runs[last].end() <= kBesideDip &&
-        depth > 0.97 * kDepth * smallest)  // steps are known to rounding only
+        depth > 0.97 * kDepth * smallest)  // the step is known only to within rounding
       ++dips;
     last = k;
     depth = 0.0;
@@ -54,8 +54,9 @@ bool noise_is_cut(const std::vector<EqualRun>& runs, double extreme, double smal
   return dips >= kFewestDips;
 }
 
-/// A parabola of which n samples look equal falls by (12/n + 36/n^2) steps of the resolution within
-/// the next three: it falls by one step within n/2 of its top.
+/// Fall of a parabola beside its flat top, in steps of the resolution. If n samples at the top look
+/// equal, the parabola falls by one step within n/2 samples of the top, and by another (12/n +
+/// 36/n^2) steps within the next three samples.
 double flat_top_fall(std::size_t length) {
   const auto n = static_cast<double>(length);
   return 12.0 / n + 36.0 / (n * n);
@@ -75,7 +76,7 @@ std::vector<EqualRun> clipped_runs(std::span<const double> x, std::span<const do
   for (const EqualRun& run : runs)
     if (run.value == extreme && !(static_cast<double>(run.length) < shortest))
       long_enough.push_back(run);
-  // Most signals end here: the rest costs more than all of the above.
+  // Most signals return here. The checks below cost more than everything above.
   if (long_enough.empty()) return found;
   const bool noisy = shows_noise(runs, *low, *high);
   const double step = typical_step(runs);

@@ -8,7 +8,8 @@
 namespace rigcal::datasets {
 namespace {
 
-/// Whether all values are multiples of the step, as a converter's are, but for rounding.
+/// Whether all values are a whole number of steps apart, within rounding, like those of a
+/// converter.
 bool on_a_grid(const std::vector<double>& values, double step) {
   constexpr double kOffGrid = 0.05;  // fraction of a step
   return std::all_of(values.begin(), values.end(), [&](double value) {
@@ -21,7 +22,7 @@ bool on_a_grid(const std::vector<double>& values, double step) {
 
 std::optional<double> coarse_step(const std::vector<Repeat>& repeats, Channel channel,
                                   double noise_sd) {
-  // Noise of half a step and the rounding itself, a twelfth of its square.
+  // Noise of half a step, combined with the rounding error, whose variance is step^2 / 12.
   const double enough = std::sqrt(0.25 + 1.0 / 12.0);
   std::optional<double> coarsest;
   for (const Repeat& repeat : repeats) {

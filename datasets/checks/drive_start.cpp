@@ -11,10 +11,10 @@
 namespace rigcal::datasets {
 namespace {
 
-constexpr double kLeastJump = 0.1;         // fraction of the drive's range about its neutral value
+constexpr double kLeastJump = 0.1;         // fraction of the drive's range around its neutral value
 constexpr double kSameStep = 0.05;         // fraction of the step
-constexpr std::size_t kFewestAtFirst = 8;  // samples at the first value
-constexpr std::size_t kAStretch = 3;       // samples over which a speed is taken
+constexpr std::size_t kFewestAtFirst = 8;  // samples that must have the first value
+constexpr std::size_t kAStretch = 3;       // samples over which a speed is computed
 constexpr double kGetsGoing = 0.5;         // fraction of the fastest stretch
 
 }  // namespace

@@ -8,14 +8,14 @@
 namespace rigcal::datasets {
 namespace {
 
-// The row "an interrupted sensor" of docs/campaign-file.md in numbers; its test has records on both
-// sides.
+// Thresholds for the row "an interrupted sensor" in docs/campaign-file.md. The test has records on
+// both sides of them.
 constexpr std::size_t kShortestFreeze = 16;
 constexpr double kFreezeDriveMotion = 0.1;
 constexpr int kFreezePassages = 2;
 constexpr double kStandSteps = 4.0;
 
-/// Typical duration of a value, without the run in question.
+/// Mean length of the runs, in samples, without the run in question.
 double typical_length(std::size_t samples, std::size_t runs, const EqualRun& left_out) {
   return static_cast<double>(samples - left_out.length) / static_cast<double>(runs - 1);
 }
@@ -32,7 +32,7 @@ std::vector<EqualRun> frozen_runs(std::span<const double> x, std::span<const dou
     if (!(static_cast<double>(run.length) <
           static_cast<double>(kShortestFreeze) * typical_length(x.size(), runs.size(), run)))
       long_enough.push_back(run);
-  // Most signals end here: the rest costs more than all of the above.
+  // Most signals return here. The checks below cost more than everything above.
   if (long_enough.empty()) return found;
   const bool noisy = shows_noise(runs, -kInfinity, kInfinity);
   const double least = std::max(typical_step(runs), kStandSteps * resolution(runs));

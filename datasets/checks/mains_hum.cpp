@@ -9,15 +9,15 @@
 namespace rigcal::datasets {
 namespace {
 
-// The row "hum of the mains" of docs/campaign-file.md in numbers; the frequency of a grid stays
+// Thresholds for the row "hum of the mains" in docs/campaign-file.md. The frequency of a grid stays
 // within half a hertz.
 constexpr double kLineHalfWidthHz = 0.5;
-constexpr double kSideShare = 0.45;  ///< range of the neighbours, as a fraction of the frequency
-constexpr double kSideLobes = 3.0;   ///< width of a smeared line, over the record's length
-constexpr double kAboveNeighbours = 10.0;  ///< in power
+constexpr double kSideShare = 0.45;  ///< neighbours, as a fraction of the frequency
+constexpr double kSideLobes = 3.0;   ///< width of a smeared line, in multiples of 1 / record length
+constexpr double kAboveNeighbours = 10.0;  ///< ratio of powers
 constexpr double kLeastShareOfVariance = 0.2;
 
-/// Sum of the repeats' periodograms, and the samples that they are of.
+/// Sum of the periodograms of all repeats, with the quantities needed to scale it.
 struct Spectrum {
   std::vector<double> power;  ///< sum of |X|^2 over the repeats
   double step_hz = 0.0;
@@ -49,7 +49,7 @@ Spectrum spectrum_of(const std::vector<std::vector<double>>& deviations, double 
   return result;
 }
 
-/// Largest power from one distance of a frequency to another, on both sides.
+/// Largest power on either side of a frequency, between two distances from it.
 double largest(const Spectrum& spectrum, double frequency_hz, double from_hz, double to_hz) {
   double most = 0.0;
   for (std::size_t k = 0; k < spectrum.power.size(); ++k) {
@@ -59,7 +59,7 @@ double largest(const Spectrum& spectrum, double frequency_hz, double from_hz, do
   return most;
 }
 
-/// Power of a line, which may be between two frequencies of the spectrum.
+/// Total power of a line, which may fall between two frequencies of the spectrum.
 double total(const Spectrum& spectrum, double frequency_hz, double within_hz) {
   double sum = 0.0;
   for (std::size_t k = 0; k < spectrum.power.size(); ++k) {
@@ -69,11 +69,12 @@ double total(const Spectrum& spectrum, double frequency_hz, double within_hz) {
   return sum;
 }
 
-/// Whether a harmonic of the drive is there, and the next ones are too far away to distinguish it.
+/// Whether a harmonic of the drive is at this frequency, with its neighbours too far away to show
+/// that it is one.
 bool hidden_by_drive(double frequency_hz, double drive_hz, double line_hz) {
   if (!(drive_hz > 0.0)) return false;
   const double nearest = std::round(frequency_hz / drive_hz) * drive_hz;
-  // A square has odd harmonics alone.
+  // A square wave has only odd harmonics.
   return std::abs(nearest - frequency_hz) <= line_hz && 2.0 * drive_hz > kSideShare * frequency_hz;
 }
 
@@ -89,16 +90,16 @@ std::optional<MainsHum> mains_hum(const std::vector<std::vector<double>>& deviat
     const double line_hz = std::max(kLineHalfWidthHz, resolution_hz);
     const double near_hz = line_hz + kSideLobes * resolution_hz;
     const double far_hz = kSideShare * frequency_hz;
-    // A record of one sample has no rate.
+    // The comparison is negated because the rate of a record with one sample is NaN.
     if (!(0.5 * rate_hz >= frequency_hz + far_hz) || !(2.0 * near_hz <= far_hz)) continue;
     if (hidden_by_drive(frequency_hz, drive_hz, line_hz)) continue;
     if (!spectrum) spectrum = spectrum_of(deviations, rate_hz);
     const double line = largest(*spectrum, frequency_hz, 0.0, line_hz);
     if (!(line > kAboveNeighbours * largest(*spectrum, frequency_hz, near_hz, far_hz))) continue;
-    // Parseval: half of the squares, since the other half belongs to the negative frequencies.
+    // Parseval's theorem. The factor of 2 accounts for the negative frequencies.
     const double squares = 2.0 * total(*spectrum, frequency_hz, line_hz) / spectrum->length;
     const double share = squares / spectrum->squares;
-    // The mean has taken the share 1/R of the power away.
+    // Subtracting the mean removed a fraction 1/R of the power.
     const auto repeats = static_cast<double>(deviations.size());
     const double amplitude = std::sqrt(2.0 * squares / spectrum->samples / (repeats - 1.0));
     if (share < kLeastShareOfVariance || (found && found->amplitude > amplitude)) continue;

@@ -10,10 +10,10 @@
 namespace rigcal::datasets {
 namespace {
 
-/// The day of a date, or of a date and time; ISO 8601 sorts as text.
+/// Returns the day of a date, with or without a time. ISO 8601 dates sort as text.
 std::string day_part(const std::string& date) { return date.substr(0, 10); }
 
-/// "the sensor of position (LVDT 12, serial number 0815)"
+/// Describes a sensor, as in "the sensor of position (LVDT 12, serial number 0815)".
 std::string words_of(const ReportSettings::Fields& sensor) {
   std::string text = fmt::format("the sensor of {}", text_of(sensor, "channel"));
   const std::string instrument = text_of(sensor, "instrument");
@@ -23,7 +23,7 @@ std::string words_of(const ReportSettings::Fields& sensor) {
   return instrument.empty() ? text : text + fmt::format(" ({})", instrument);
 }
 
-/// First condition that was tested after a day, and the number of such conditions.
+/// Returns the first condition that was tested after a day, and the number of such conditions.
 std::pair<const Condition*, int> tested_after(const Campaign& campaign, const std::string& day) {
   std::pair<const Condition*, int> result{nullptr, 0};
   for (const Condition& condition : campaign.conditions) {

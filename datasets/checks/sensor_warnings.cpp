@@ -32,7 +32,7 @@ std::vector<double> drive_of(const Campaign& campaign, const Condition& conditio
 void find(Channel channel, const Repeat& repeat, const std::vector<double>& drive,
           std::vector<SensorFault>& faults) {
   const std::vector<double>& x = repeat.values.at(channel);
-  std::set<std::size_t> told;  // starts of runs
+  std::set<std::size_t> told;  // starts of the runs that are already reported
   const auto add = [&](Kind kind, const std::vector<EqualRun>& runs) {
     for (const EqualRun& run : runs) {
       if (!told.insert(run.begin).second) continue;

@@ -8,7 +8,7 @@
 
 namespace rigcal::datasets {
 
-/// A stretch of one repeat in which a sensor gave the same value and should not have.
+/// A stretch of one repeat in which a sensor wrongly gave a constant value.
 struct SensorFault {
   enum class Kind { clipped_at_highest, clipped_at_lowest, frozen };
   Channel channel = Channel::position;
@@ -19,17 +19,17 @@ struct SensorFault {
   double value = 0.0;
 };
 
-/// Parts of the record in which sensors of output channels were clipped or frozen. Without a drive
-/// (recorded, or a generated sine or square) a faulty sensor looks like a rig at rest, and nothing
-/// is found.
+/// Finds the parts of a record in which sensors of output channels were clipped or frozen. Without
+/// a drive (recorded, or a generated sine or square), a faulty sensor cannot be distinguished from
+/// a rig at rest, so nothing is found.
 ///
 /// @param repeats  as recorded, in SI
 std::vector<SensorFault> sensor_faults(const Campaign& campaign, const Condition& condition,
                                        const std::vector<Repeat>& repeats);
 
-/// Describes those within the windows of the record: one text for each channel and kind.
+/// Describes the faults within the windows of the record, with one text for each channel and kind.
 ///
-/// @param windows  of the record; empty: all of it
+/// @param windows  windows of the record; empty: the whole record
 std::vector<std::string> sensor_warnings(const std::vector<SensorFault>& faults,
                                          const std::vector<TimeWindow>& windows);
 

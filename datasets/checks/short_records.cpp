@@ -10,13 +10,13 @@
 namespace rigcal::datasets {
 namespace {
 
-// The row "a record that ends early" of docs/campaign-file.md in numbers.
+// Thresholds for the row "a record that ends early" in docs/campaign-file.md.
 constexpr double kStatedShare = 0.95;
 constexpr double kEquallyLong = 0.95;  // fraction of the longest
 constexpr double kShareOfLongest = 0.75;
 constexpr long kFewestAsLong = 2;
 
-/// Conditions of one generated signal have the same key.
+/// Identifies a generated signal. Conditions with the same signal have the same key.
 using Signal = std::tuple<Waveform, std::optional<double>, std::optional<double>,
                           std::optional<double>, std::optional<double>>;
 
@@ -25,7 +25,7 @@ Signal signal_of(const Condition& condition) {
           condition.amplitude};
 }
 
-/// Usual length of the records of a signal, if most of them agree on it.
+/// Usual length of the records of one signal, if enough of them have it.
 struct Usual {
   double seconds = 0.0;
   long as_long = 0;

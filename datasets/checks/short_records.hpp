@@ -16,17 +16,16 @@ struct RecordLength {
 
 double seconds_of(const Record& record);
 
-/// Warns, in words, if a record ended before its run did; one text per record, empty if it did not.
-/// If all repeats of one condition end early they agree with each other, so only these rules detect
-/// it:
-/// - The condition states a `duration`, and the record is shorter than 95 % of it (a sample or two
-///   may be missing, but no period).
+/// Returns one warning for each record that ended before its run did; empty if none did. If all
+/// repeats of a condition end early, they agree with each other, so only these rules detect it:
+/// - The condition states a `duration`, and the record is shorter than 95 % of it. (A sample or two
+///   may be missing, but not a period.)
 /// - The record is shorter than three quarters of the longest record of the same generated signal
-///   (waveform, frequencies, amplitude). In addition, at least two records, and more than are so
-///   short, are as long as that one within 5 %. Fewer do not show which length was intended.
+///   (waveform, frequencies, amplitude). In addition, the longest record must not be an exception:
+///   at least two records, and more records than are this short, are within 5 % of its length.
 std::vector<std::string> short_records(const std::vector<RecordLength>& lengths);
 
-/// Adds that warning to the records it is about.
+/// Adds these warnings to the records concerned.
 void warn_of_short_records(const Campaign& campaign, const std::vector<Record*>& records);
 
 }  // namespace rigcal::datasets

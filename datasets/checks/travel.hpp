@@ -7,10 +7,10 @@
 
 namespace rigcal::datasets {
 
-/// Warns, in words, if the piston of a record travels farther than its rig allows. With a known
-/// stroke the limit is 1.1 times the stroke. Without a stroke the travel must be between a five
-/// hundredth of the reference's range and ten times that range; without a reference it must be
-/// below 20 m. A column in a wrong unit breaks these rules. Empty if the travel is plausible.
+/// Returns a warning if the piston travels farther in a record than its rig allows. If the stroke
+/// is known, the limit is 1.1 times the stroke. Otherwise the travel must be between 1/500 of the
+/// range of the reference and ten times that range or, without a reference, below 20 m. A column in
+/// the wrong unit breaks these rules. Empty if the travel is plausible.
 std::string travel_warning(const Campaign& campaign, const Condition& condition,
                            const Record& record);
 

@@ -13,7 +13,7 @@
 namespace rigcal::datasets {
 namespace {
 
-/// Quantities that a loop may control: SI unit and channel.
+/// Quantities that a control loop may control: SI unit, and channel of the reference.
 using Controlled = std::pair<std::string_view, Channel>;
 constexpr std::array kControlled{Controlled{"m", Channel::reference},
                                  Controlled{"N", Channel::force_reference},
@@ -57,7 +57,7 @@ const std::vector<std::pair<Channel, Words>> kChannelWords{
     {Channel::temperature,
      {"temp", "temperature", "toil", "oiltemperature", "temperatur", "öltemperatur"}}};
 
-/// Parts between underscores, blanks and brackets.
+/// Splits a name at underscores, blanks, brackets, '-' and '/'.
 std::vector<std::string> parts_of(std::string_view name) {
   std::vector<std::string> parts(1);
   for (const char c : name) {
@@ -118,7 +118,7 @@ ColumnGuess guess_column(const std::string& name) {
     assign(guess, words[0] + "_" + words[1]);
   }
   for (const std::string& word : words) assign(guess, word);
-  // A command in the unit of a controlled quantity is the reference of a loop.
+  // A command in the unit of a controlled quantity is the reference of a control loop.
   if (guess.channel == Channel::command || guess.channel == Channel::reference) {
     for (const auto& [of_loop, reference] : kControlled)
       if (converts(guess.unit, of_loop)) guess.channel = reference;

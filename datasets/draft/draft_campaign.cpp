@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// "run_03" -> "run_" and "03".
+/// A text split before the number at its end: "run_03" into "run_" and "03".
 struct Numbered {
   std::string stem;
   std::string number;
@@ -46,11 +46,11 @@ std::vector<std::vector<double>> read(const fs::path& file, const std::string& t
 
 // ---- Columns -------------------------------------------------------------------------------
 
-/// A channel of a file: one column, or numbered ones that are repeats.
+/// Columns of one channel in a file: a single one, or numbered ones that are repeats.
 struct ChannelColumns {
   Channel channel = Channel::position;
-  std::string stem;                  ///< the name, without its number if there are several
-  std::vector<std::string> numbers;  ///< empty: a single column
+  std::string stem;                  ///< name, without its number if there are several columns
+  std::vector<std::string> numbers;  ///< empty for a single column
   std::string unit;
 };
 
@@ -59,16 +59,16 @@ struct FileColumns {
   std::string time_unit;
   std::vector<ChannelColumns> channels;
   std::vector<std::string> unknown;
-  std::map<std::string, std::string> units;  ///< unit of `unknown`, where the file gives one
-  /// Lines of a matrix behind its time, which have no names: rows of an array of Simulink's "To
-  /// File", or columns.
+  std::map<std::string, std::string> units;  ///< units of `unknown`, where the file gives them
+  /// Unnamed lines of a matrix after its time: rows of an array from Simulink's "To File", or
+  /// columns.
   std::vector<std::string> rows;
-  std::string lacks;  ///< why the file is no recording, in words; empty if it is one
+  std::string lacks;  ///< why the file is not a recording, in words; empty if it is one
 };
 
-/// Rows or columns of the first matrix of the file whose first one is a time: Simulink's block "To
-/// File" with the format "Array" saves such rows, and arrays of HDF5 are mostly columns. Empty if
-/// there is no such matrix.
+/// Returns the rows or columns of the first matrix in the file that begins with a time. Simulink's
+/// "To File" block with the format "Array" saves such rows; arrays in HDF5 usually have columns.
+/// Empty if there is no such matrix.
 std::vector<std::string> timed_lines(const fs::path& file,
                                      const std::vector<RecordColumn>& columns) {
   constexpr int kMostTried = 10;
@@ -89,7 +89,7 @@ std::vector<std::string> timed_lines(const fs::path& file,
       read(file, lines[0], lines[1]);
       return lines;
     } catch (const InputError&) {
-      continue;  // its first line is no time
+      continue;  // its first line is not a time
     }
   }
   return {};
@@ -106,7 +106,8 @@ std::string names_text(const std::vector<RecordColumn>& columns) {
   return fmt::format("{}{}", fmt::join(names, ", "), more);
 }
 
-/// Handles a file without a column of times: a matrix with times, or no recording, with the reason.
+/// Handles a file without a time column. Either a matrix contains the times, or the file is not a
+/// recording, and the reason is noted.
 void without_time(const fs::path& file, const std::vector<RecordColumn>& columns,
                   FileColumns& found) {
   found.rows = timed_lines(file, columns);
@@ -115,7 +116,7 @@ void without_time(const fs::path& file, const std::vector<RecordColumn>& columns
     const auto time = std::find_if(columns.begin(), columns.end(), [&](const RecordColumn& each) {
       return each.name == found.time;
     });
-    found.time_unit = time->unit.empty() ? "s" : time->unit;  // Simulink knows no other
+    found.time_unit = time->unit.empty() ? "s" : time->unit;  // Simulink uses no other unit
     found.rows.erase(found.rows.begin());
     std::erase_if(found.unknown, [&](const std::string& name) {
       return name == found.time ||
@@ -142,7 +143,7 @@ FileColumns columns_of(const fs::path& file) {
     const std::string& name = column.name;
     const Numbered numbered = split_number(name);
     const bool several = !numbered.number.empty() && numbers[numbered.stem].size() > 1;
-    // "p1", "p2" are two pressures, not two repeats.
+    // "p1" and "p2" are two pressures, not two repeats.
     const bool own_word = guess_column(name).channel && !guess_column(numbered.stem).channel;
     const bool repeated = several && !own_word;
     const std::string shown = repeated ? numbered.stem : name;
@@ -175,7 +176,8 @@ FileColumns columns_of(const fs::path& file) {
   return found;
 }
 
-/// Columns that a single repeat carries: a new set begins where a channel comes again.
+/// Groups the columns that belong to the same repeats. A new set begins where a channel occurs
+/// again.
 std::vector<std::vector<ChannelColumns>> column_sets(const FileColumns& columns) {
   std::vector<std::vector<ChannelColumns>> sets;
   for (const ChannelColumns& column : columns.channels) {
@@ -195,8 +197,9 @@ std::vector<std::vector<ChannelColumns>> column_sets(const FileColumns& columns)
 
 std::string comment(const std::string& text) { return "  # " + text; }
 
-/// One line of [recording.channels]; a column of another dimension than the channel needs a gain.
-/// @param minus  column of the other direction; empty: there is none
+/// Returns one line of [recording.channels]. If the dimension of the column differs from that of
+/// the channel, the line needs a gain.
+/// @param minus  column for the opposite direction; empty if there is none
 std::string channel_line(Channel channel, const std::string& column, const std::string& unit,
                          const std::string& minus = {}) {
   const ChannelInfo& about = info(channel);
@@ -226,20 +229,20 @@ const ChannelColumns* find(const FileColumns& columns, Channel channel) {
   return found == columns.channels.end() ? nullptr : &*found;
 }
 
-/// The motion of a rig: the angle of a joint, or the position of a piston.
+/// Column with the motion of the rig: the angle of a joint, or else the position of a piston.
 const ChannelColumns* motion_of(const FileColumns& columns) {
   const ChannelColumns* angle = find(columns, Channel::angle);
   return angle != nullptr ? angle : find(columns, Channel::position);
 }
 
-/// Whether a pilot pressure drives the rig; it can where a joint turns.
+/// Whether a pilot pressure drives the rig, which is possible only if a joint turns.
 bool has_pilot(const FileColumns& columns) {
   return find(columns, Channel::angle) != nullptr &&
          find(columns, Channel::pilot_pressure) != nullptr;
 }
 
-/// Which way a column of a drive moves the machine, by a word in its name: 1 out or up, -1 in or
-/// down, 0 unknown.
+/// Direction in which a drive column moves the machine, according to a word in its name: 1 out or
+/// up, -1 in or down, 0 unknown.
 int direction_of(const std::string& name) {
   using Words = std::array<std::string_view, 9>;
   constexpr Words kOut{"up", "out", "extend", "raise", "open", "forward", "fwd", "auf", "aus"};
@@ -257,7 +260,7 @@ int direction_of(const std::string& name) {
   return 0;
 }
 
-/// Columns of a drive, if there is one per direction.
+/// Columns of a drive that has one for each direction.
 struct OneEachWay {
   std::string out;
   std::string in;
@@ -275,7 +278,7 @@ std::optional<OneEachWay> one_each_way(const FileColumns& columns, Channel drive
   return found;
 }
 
-/// Numbers of the named columns; empty if one of them has none.
+/// Reads the named columns; those that cannot be read are empty.
 std::vector<std::vector<double>> columns_or_none(const fs::path& file,
                                                  const std::vector<std::string>& names) {
   try {
@@ -292,7 +295,7 @@ std::vector<std::vector<double>> columns_or_none(const fs::path& file,
   return columns;
 }
 
-/// Range of a column and its possible meaning, in brackets.
+/// Describes the range of a column and its possible meaning, in brackets.
 std::string range_text(const std::vector<double>& values, const std::string& unit,
                        bool has_position) {
   if (values.empty()) return {};
@@ -308,7 +311,7 @@ std::string range_text(const std::vector<double>& values, const std::string& uni
                      guess);
 }
 
-/// Lists the columns that nothing recognises, with their ranges.
+/// Lists the columns that were not recognised, with their ranges.
 std::string unknown_columns_text(const fs::path& file, const FileColumns& columns) {
   constexpr std::size_t kMostShown = 40;
   std::vector<std::string> names = columns.unknown;
@@ -383,7 +386,7 @@ std::string channels_text(const fs::path& file, const FileColumns& columns) {
   return text + unknown_columns_text(file, columns);
 }
 
-/// Lines without names, with their ranges, by which the user knows them again.
+/// Lists unnamed lines with their ranges, from which the user can identify them.
 std::string rows_text(const fs::path& file, const FileColumns& columns) {
   if (columns.rows.empty()) return {};
   std::string text = columns.time.ends_with("(1,:)")
@@ -403,19 +406,19 @@ std::string rows_text(const fs::path& file, const FileColumns& columns) {
                                                                     : "one of these columns"));
 }
 
-/// Optional terms that a cylinder with both chambers mostly has.
+/// Optional terms that a cylinder with two chambers usually has.
 constexpr std::array<std::string_view, 13> kTwoChamberTerms{
     "retracted_position", "valve_dead_band",    "valve_time_constant", "transport_delay",
     "gain_b_to_tank",     "valve_null_leakage", "laminar_leakage",     "gravity",
     "external_force",     "load_gradient",      "coulomb_friction",    "air_fraction",
     "stop_stiffness"};
 
-/// Terms of a servo valve with a symmetric cylinder.
+/// Optional terms for a servo valve with a symmetric cylinder.
 constexpr std::array<std::string_view, 8> kLoadPressureTerms{
     "valve_offset",       "valve_dead_band", "valve_time_constant", "transport_delay",
     "valve_null_leakage", "laminar_leakage", "external_force",      "coulomb_friction"};
 
-/// Terms of a joint.
+/// Optional terms for a joint.
 constexpr std::array<std::string_view, 15> kLinkageTerms{
     "reference_angle", "lever_gradient",      "lever_curvature",
     "gravity_moment",  "joint_friction",      "gravity_moment_gradient",
@@ -423,16 +426,16 @@ constexpr std::array<std::string_view, 15> kLinkageTerms{
     "gain_b_to_tank",  "make_up_conductance", "supply_resistance",
     "supply_capacity", "pump_flow",           "air_fraction"};
 
-/// Terms of a valve that a pilot pressure drives.
+/// Optional terms for a valve driven by a pilot pressure.
 constexpr std::array<std::string_view, 6> kPilotTerms{
     "pilot_dead_band",     "pilot_exponent",         "return_exponent",
     "return_line_opening", "return_line_resistance", "bypass_opening"};
 
-/// Terms of a rig with a payload, proposed if an acceleration was recorded.
+/// Optional terms for a rig with a payload, proposed if an acceleration was recorded.
 constexpr std::array<std::string_view, 3> kPayloadTerms{"payload_mass", "payload_frequency",
                                                         "payload_damping_ratio"};
 
-/// Terms that may join, as comments.
+/// Lists optional terms, as comments.
 std::string terms_text(model::PlantKind plant, bool with_payload, bool pilot) {
   std::vector<std::string_view> terms(kLoadPressureTerms.begin(), kLoadPressureTerms.end());
   if (plant == model::PlantKind::two_chamber)
@@ -464,7 +467,7 @@ std::string model_text(model::PlantKind plant) {
   return {};
 }
 
-/// @param loop   controlled quantity; none: the command was recorded
+/// @param loop   controlled quantity; nullopt if the command was recorded
 /// @param pilot  whether the recorded drive is a pilot pressure
 std::string rig_text(model::PlantKind plant, std::optional<model::Feedback> loop, bool with_payload,
                      bool pilot) {
@@ -474,7 +477,7 @@ std::string rig_text(model::PlantKind plant, std::optional<model::Feedback> loop
       "true }\n"
       "[rig.parameters]\n";
   for (const model::ParameterSpec& spec : model::parameter_table(plant)) {
-    // The gain of a linkage's valve is one of two terms, by what drives it.
+    // The gain of a linkage's valve is one of two terms, depending on what drives the valve.
     const bool needed = plant == model::PlantKind::linkage &&
                         spec.key == std::string_view(pilot ? "pilot_gain" : "valve_gain");
     if (!needed && (spec.kind != model::ParameterKind::plant || spec.default_value)) continue;
@@ -534,7 +537,7 @@ struct Recording {
   FileColumns columns;
 };
 
-/// Files of one condition: their names differ only in the last number.
+/// Files of one condition, whose names differ only in their last number.
 struct FileGroup {
   std::string id;
   std::vector<Recording> files;
@@ -584,7 +587,7 @@ std::string limits_of_others(const FileColumns& columns) {
   return text;
 }
 
-/// Controlled quantity of the loop whose reference is recorded; none: no reference is recorded.
+/// Controlled quantity of the loop whose reference is recorded; nullopt if none is.
 std::optional<model::Feedback> loop_of(const FileColumns& columns) {
   if (find(columns, Channel::angle) != nullptr) return std::nullopt;  // a joint has no controller
   for (std::size_t i = 0; i < model::kFeedbackCount; ++i) {
@@ -601,8 +604,8 @@ const ChannelColumns* drive_of(const FileColumns& columns) {
   return find(columns, drive_channel(model::Rig{{}, model::ControllerKind::pid, {}, *loop}));
 }
 
-/// Time and a channel of a file, the first of several columns.
-/// @return  empty if its time has no unit of time
+/// Reads the time and a channel from a file; if the channel has several columns, the first.
+/// @return  nullopt if there is no time, or if its unit is not a unit of time
 std::optional<std::pair<std::vector<double>, std::vector<double>>> signal_of(
     const fs::path& file, const FileColumns& columns, const ChannelColumns& channel) {
   if (columns.time.empty()) return std::nullopt;
@@ -619,7 +622,8 @@ std::optional<std::pair<std::vector<double>, std::vector<double>>> signal_of(
   return std::pair{std::move(data[0]), std::move(data[1])};
 }
 
-/// Initial state of the runs: that of the record, unless one of them begins in motion.
+/// Describes the initial state of the runs: that of the record, unless one of them begins in
+/// motion.
 std::string initial_text(const std::vector<FileGroup>& groups) {
   const double window_s = Campaign().initial_window_s;
   for (const FileGroup& group : groups) {
@@ -683,7 +687,7 @@ std::string waveform_text(const fs::path& file, const FileColumns& columns) {
 
 constexpr std::size_t kFewestOfARecording = 8;  // samples
 
-/// Whether a file has columns of numbers, whatever their names.
+/// Whether a file has columns of numbers, whatever they are called.
 bool has_numbers(const fs::path& file) {
   constexpr std::size_t kMostTried = 40;
   std::vector<std::string> names;
@@ -695,10 +699,10 @@ bool has_numbers(const fs::path& file) {
          }) >= 2;
 }
 
-/// Sorts recordings from other files. A file without a time or a channel, such as a summary beside
-/// the recordings, is listed in `left_out`. If no file has both, files with numbers count as
-/// recordings.
-/// @throws InputError  no file is a recording
+/// Separates recordings from other files. A file without a time or a channel, such as a summary
+/// stored with the recordings, is listed in `left_out`. If no file has both, files with numbers
+/// count as recordings.
+/// @throws InputError  if no file is a recording
 std::vector<Recording> recordings_among(const std::vector<fs::path>& files,
                                         std::vector<std::string>& left_out) {
   std::vector<Recording> all;
@@ -743,10 +747,10 @@ std::vector<FileGroup> groups_of(std::vector<Recording> recordings) {
   return result;
 }
 
-/// Reads the data for a draft: time and drive of the first file of each group. A file that cannot
-/// be read, for example because it has several runs one after the other and the time restarts, is
-/// listed in `left_out`, and the next one of its group is used.
-/// @throws InputError  of the first file that cannot be read, if no group remains
+/// Reads the data for a draft: the time and drive from the first file of each group. A file that
+/// cannot be read, for example because the time restarts with each of several runs, is listed in
+/// `left_out`, and the next file in its group is used.
+/// @throws InputError  if no group remains; it is the error of the first file that cannot be read
 std::vector<FileGroup> readable_among(std::vector<FileGroup> groups,
                                       std::vector<std::string>& left_out) {
   std::optional<InputError> first;
@@ -788,7 +792,7 @@ Draft draft_campaign(const std::vector<fs::path>& files, const fs::path& folder)
   std::vector<std::string> left_out;
   const auto groups = readable_among(groups_of(recordings_among(files, left_out)), left_out);
   const auto& [first, columns] = groups.at(0).files.at(0);
-  // Rows without names: that of the reference may be among them, as where an experiment is run.
+  // The unnamed rows may include a reference, so a position loop is assumed.
   auto loop = loop_of(columns);
   if (!loop && !columns.rows.empty()) loop = model::Feedback::position;
   const bool chambers = std::any_of(groups.begin(), groups.end(), [](const FileGroup& group) {

@@ -13,7 +13,7 @@ namespace rigcal::datasets {
 
 std::vector<std::filesystem::path> recordings_in(const std::vector<std::filesystem::path>& paths) {
   std::vector<std::filesystem::path> files;
-  std::error_code error;  // a link may lead nowhere
+  std::error_code error;  // a link may be broken
   for (const auto& path : paths) {
     if (!std::filesystem::is_directory(path, error)) {
       require_regular_file(path, fmt::format("a recording ({})", record_format_names()));
@@ -32,7 +32,7 @@ std::vector<std::filesystem::path> recordings_in(const std::vector<std::filesyst
       if (may_be_recording(entry.path())) files.push_back(entry.path());
       if (has_other_format_name(entry.path())) unread.push_back(entry.path());
     }
-    // The reader of these formats explains what to do with them.
+    // The readers for these formats explain what to do with such files.
     if (files.size() == before) files.insert(files.end(), unread.begin(), unread.end());
     if (files.size() == before) {
       throw UsageError(fmt::format("{}: this folder has no {} file; expected recordings",

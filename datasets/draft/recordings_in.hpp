@@ -5,10 +5,10 @@
 
 namespace rigcal::datasets {
 
-/// Files as they are given, and for a folder the recordings in it, in the order of their names.
+/// Returns the files among the paths and, for each folder, the recordings in it, sorted by name.
 ///
-/// @throws InputError  a path is no file, or a folder that cannot be opened
-/// @throws UsageError  a folder has no recordings
+/// @throws InputError  if a path is not a file, or a folder cannot be opened
+/// @throws UsageError  if a folder contains no recordings
 std::vector<std::filesystem::path> recordings_in(const std::vector<std::filesystem::path>& paths);
 
 }  // namespace rigcal::datasets

@@ -16,10 +16,11 @@
 namespace rigcal::datasets {
 namespace {
 
-constexpr double kFewestSamples = 0.02;  // shift that is not worth an interpolation
+constexpr double kFewestSamples = 0.02;  // a smaller shift is not worth an interpolation
 constexpr double kSignificance = 3.0;    // standard deviations
-constexpr int kSearchSamples = 200;      // tried first, then ten times as many
-constexpr double kDisproportion = 10.0;  // offset in median distances from the median
+constexpr int kSearchSamples = 200;      // searched first, then ten times as many
+constexpr double kDisproportion =
+    10.0;  // distance of an offset from the median, in median distances
 
 double interval(const Repeat& repeat) {
   const auto n = repeat.time_s.size();
@@ -76,7 +77,7 @@ void require_compatible(const Repeat& first, const Repeat& other) {
         other.time_s.back()));
 }
 
-/// An edge within one sample hides where in the sample it was.
+/// Whether a signal has an edge within one sample, which hides where within the sample it occurred.
 bool jumps(const std::vector<double>& x) {
   const auto [low, high] = std::minmax_element(x.begin(), x.end());
   double step = 0.0;
@@ -84,7 +85,7 @@ bool jumps(const std::vector<double>& x) {
   return step > 0.25 * (*high - *low);
 }
 
-/// Channels that every repeat carries, the best to align on first.
+/// Channels that every repeat has, the best ones for alignment first.
 std::vector<Channel> alignment_channels(const std::vector<Repeat>& repeats) {
   std::vector<Channel> smooth;
   std::vector<Channel> jumping;
@@ -104,7 +105,8 @@ std::vector<Channel> alignment_channels(const std::vector<Repeat>& repeats) {
   return smooth;
 }
 
-/// The repeat with the smallest sum of rms distances to the others: never an outlier of three.
+/// Returns the repeat with the smallest sum of rms distances to the others. Among three repeats it
+/// is never an outlier.
 std::size_t central_repeat(const std::vector<Repeat>& repeats, Channel channel) {
   std::vector<double> total(repeats.size(), 0.0);
   for (std::size_t a = 0; a < repeats.size(); ++a) {
@@ -122,7 +124,7 @@ std::size_t central_repeat(const std::vector<Repeat>& repeats, Channel channel) 
   return static_cast<std::size_t>(std::min_element(total.begin(), total.end()) - total.begin());
 }
 
-/// Mean of the offsets without those out of all proportion.
+/// Mean of the offsets, excluding those out of all proportion.
 double common_offset(const std::vector<double>& offsets, double smallest) {
   const double centre = median(offsets);
   std::vector<double> distance;
@@ -139,7 +141,8 @@ double common_offset(const std::vector<double>& offsets, double smallest) {
   return sum / count;
 }
 
-/// Delay of each repeat against one of them, in samples; empty if one of them cannot be determined.
+/// Delay of each repeat relative to one of them, in samples; empty if any of them cannot be
+/// determined.
 std::optional<std::vector<Lag>> lags_against(std::size_t centre, const std::vector<Repeat>& repeats,
                                              Channel channel) {
   std::vector<const std::vector<double>*> others;
@@ -163,7 +166,7 @@ struct Offsets {
   std::vector<double> sd_s;
 };
 
-/// Offsets by correlation in the first channel that determines all of them.
+/// Finds the offsets by correlation, in the first channel that determines all of them.
 std::optional<Offsets> correlate_offsets(const std::vector<Repeat>& repeats) {
   const double dt = interval(repeats.front());
   for (const Channel channel : alignment_channels(repeats)) {
@@ -172,12 +175,12 @@ std::optional<Offsets> correlate_offsets(const std::vector<Repeat>& repeats) {
     if (!lags) continue;
     Offsets offsets;
     for (std::size_t r = 0; r < repeats.size(); ++r) {
-      // Samples count from each file's first; a time column that starts later says so already.
+      // Lags count samples from the start of each file, so the start times are added.
       offsets.seconds.push_back((*lags)[r].samples * dt + repeats[r].time_s.front() -
                                 repeats[centre].time_s.front());
       offsets.sd_s.push_back((*lags)[r].sd_samples * dt);
     }
-    // The central repeat is no better known than the others.
+    // The offset of the central repeat is known no better than the others.
     offsets.sd_s[centre] = *std::max_element(offsets.sd_s.begin(), offsets.sd_s.end());
     const double common = common_offset(offsets.seconds, dt);
     for (double& offset : offsets.seconds) offset -= common;
@@ -186,7 +189,8 @@ std::optional<Offsets> correlate_offsets(const std::vector<Repeat>& repeats) {
   return std::nullopt;
 }
 
-/// Repeats are shifted all or none: to shift a few of them would shift their mean.
+/// Whether any offset is significant. Repeats are shifted all or none, because shifting only a few
+/// of them would shift their mean.
 bool any_significant(const Offsets& offsets, double smallest_s) {
   for (std::size_t r = 0; r < offsets.seconds.size(); ++r) {
     if (std::abs(offsets.seconds[r]) > std::max(smallest_s, kSignificance * offsets.sd_s[r]))
@@ -212,7 +216,7 @@ AlignedRepeats align(const std::vector<Repeat>& repeats, bool correlate) {
     result.shift.push_back(same ? 0.0 : (first.time_s.front() - repeat.time_s.front()) / dt);
   }
   if (!correlate || repeats.size() < 2) return result;
-  // A bridged hole moves an edge inside it to its end, which would look like an offset.
+  // In a bridged hole, an edge moves to the end of the hole, which would look like an offset.
   if (std::any_of(repeats.begin(), repeats.end(),
                   [](const Repeat& repeat) { return !repeat.bridged.empty(); })) {
     result.warnings.emplace_back("holes are bridged: repeats are not aligned");

@@ -20,7 +20,8 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// One channel of the repeats that carry it, on the common time base; NaN where one has no sample.
+/// One channel from the repeats that have it, on the common time base; NaN where a repeat has no
+/// sample.
 struct Stack {
   std::vector<std::size_t> carriers;  ///< indices of the repeats
   std::vector<std::vector<double>> rows;
@@ -46,7 +47,7 @@ std::map<Channel, Stack> stack_channels(const std::vector<Repeat>& repeats,
   return stacks;
 }
 
-/// Whether each channel has a value from at least one repeat at a sample.
+/// Whether every channel has a value from at least one repeat at sample i.
 bool is_covered(const std::map<Channel, Stack>& stacks, std::size_t i) {
   return std::all_of(stacks.begin(), stacks.end(), [i](const auto& entry) {
     return std::any_of(entry.second.rows.begin(), entry.second.rows.end(),
@@ -54,8 +55,7 @@ bool is_covered(const std::map<Channel, Stack>& stacks, std::size_t i) {
   });
 }
 
-/// Removes the samples at which some channel has no value from any repeat; this happens in bridged
-/// holes.
+/// Removes samples at which a channel has no value from any repeat, which happens in bridged holes.
 void drop_uncovered(std::map<Channel, Stack>& stacks, std::vector<double>& time_s) {
   std::vector<std::size_t> kept;
   for (std::size_t i = 0; i < time_s.size(); ++i)
@@ -69,12 +69,13 @@ void drop_uncovered(std::map<Channel, Stack>& stacks, std::vector<double>& time_
     for (auto& row : stack.rows) keep(row);
 }
 
-/// The longest run of samples at which every channel has at least one repeat.
+/// Samples [begin, end).
 struct Span {
   std::size_t begin = 0;
   std::size_t end = 0;
 };
 
+/// Returns the longest run of samples at which every channel has at least one repeat.
 Span covered_span(const std::map<Channel, Stack>& stacks, std::size_t samples) {
   Span longest;
   Span run;
@@ -101,12 +102,12 @@ bool all_equal(const Stack& stack, std::size_t i) {
                      [&](const auto& row) { return std::isnan(row[i]) || row[i] == value; });
 }
 
-/// Mean, sd and count at each sample of a span.
+/// Computes mean, sd and count at each sample of a span.
 Series moments(const Stack& stack, Span span) {
   Series series;
   series.repeats = static_cast<int>(stack.rows.size());
   const bool several = stack.rows.size() > 1;
-  // Reserves the exact size: a growing vector would keep up to twice as much for the life of the
+  // Reserves the exact size: a growing vector would keep up to twice the memory for the life of the
   // record.
   series.mean.reserve(span.end - span.begin);
   series.count.reserve(span.end - span.begin);
@@ -121,7 +122,8 @@ Series moments(const Stack& stack, Span span) {
       sum += row[i];
       ++count;
     }
-    // The sum of equal values rounds; a command that all repeats share would seem to have noise.
+    // A sum of equal values may be rounded. A command that all repeats share would then seem to
+    // have noise.
     const double mean = all_equal(stack, i) ? value_at(stack, i) : sum / count;
     series.mean.push_back(mean);
     series.count.push_back(count);
@@ -158,7 +160,7 @@ bool any_differs(const std::vector<std::vector<double>>& deviations) {
   });
 }
 
-/// Fills in the standard deviations that a fit divides by.
+/// Sets the standard deviations by which a fit divides.
 void conclude_sd(Series& series, Channel channel, const AverageOptions& options,
                  std::vector<std::string>& warnings) {
   const auto known = options.known_sd.find(channel);
@@ -214,8 +216,8 @@ std::vector<double> distances_from_median(const Stack& stack, Span span) {
   return distances;
 }
 
-/// Standard deviation of the noise of one row, from its second differences: parts that are smooth
-/// over three samples cancel.
+/// Standard deviation of the noise in one row, from its second differences, in which anything that
+/// is smooth over three samples cancels.
 double noise_sd(const std::vector<double>& row, Span span) {
   if (span.end - span.begin < 3) return 0.0;
   const Span inner{span.begin + 1, span.end - 1};
@@ -223,8 +225,7 @@ double noise_sd(const std::vector<double>& row, Span span) {
          std::sqrt(6.0);
 }
 
-/// In a pair of repeats either may be wrong; they only show that they differ by more than their
-/// noise.
+/// Warns if two repeats differ by more than their noise. Either of them may be wrong.
 void warn_of_pair(const Stack& stack, const Series& series, Channel channel, Span span,
                   const AverageOptions& options, const std::vector<Repeat>& repeats,
                   std::vector<std::string>& warnings) {
@@ -242,7 +243,7 @@ void warn_of_pair(const Stack& stack, const Series& series, Channel channel, Spa
       distance, info(channel).unit, 100.0 * distance / (*high - *low)));
 }
 
-/// Names repeats that are one recording given twice.
+/// Warns of repeats that are copies of one recording.
 void warn_of_copies(const Stack& stack, const std::vector<std::size_t>& first, Channel channel,
                     const std::vector<Repeat>& repeats, std::vector<std::string>& warnings) {
   for (std::size_t k = 0; k < first.size(); ++k) {
@@ -255,7 +256,7 @@ void warn_of_copies(const Stack& stack, const std::vector<std::size_t>& first, C
   }
 }
 
-/// The rows that are no copies of an earlier one.
+/// Returns the rows that are not copies of an earlier one.
 Stack distinct_rows(const Stack& stack, const std::vector<std::size_t>& first) {
   Stack distinct;
   for (std::size_t k = 0; k < first.size(); ++k) {
@@ -266,8 +267,8 @@ Stack distinct_rows(const Stack& stack, const std::vector<std::size_t>& first) {
   return distinct;
 }
 
-/// Names the outliers of one channel.
-/// @param stack  without copies, which would vouch for each other
+/// Marks the outliers in one channel and warns of them.
+/// @param stack  without copies, which would confirm each other
 void warn_of_outliers(const Stack& stack, Channel channel, Span span, const AverageOptions& options,
                       Record& record) {
   const auto from_median = distances_from_median(stack, span);
@@ -285,7 +286,7 @@ void warn_of_outliers(const Stack& stack, Channel channel, Span span, const Aver
   }
 }
 
-/// Enters the deviation of each repeat, and names copies and outliers of one channel.
+/// Sets the deviation of each repeat, and warns of copies and outliers in one channel.
 void judge_repeats(const Stack& stack, const Series& series, Channel channel, Span span,
                    const AverageOptions& options, const std::vector<Repeat>& repeats,
                    Record& record) {
@@ -297,7 +298,7 @@ void judge_repeats(const Stack& stack, const Series& series, Channel channel, Sp
   }
   const auto first = first_identical(repeats, stack.carriers, channel);
   const Stack distinct = distinct_rows(stack, first);
-  if (distinct.rows.size() == 1) return;  // conclude_sd() says so
+  if (distinct.rows.size() == 1) return;  // conclude_sd() warns of this
   warn_of_copies(stack, first, channel, repeats, record.warnings);
   if (distinct.rows.size() == 2)
     warn_of_pair(distinct, series, channel, span, options, repeats, record.warnings);
@@ -305,8 +306,9 @@ void judge_repeats(const Stack& stack, const Series& series, Channel channel, Sp
     warn_of_outliers(distinct, channel, span, options, record);
 }
 
-/// Warns of noise that neither the mean of the repeats nor their standard deviation shows.
-/// @param deviations  of each row from the mean
+/// Warns of mains hum and of coarse converter steps, which neither the mean of the repeats nor
+/// their standard deviation reveals.
+/// @param deviations  deviations of each row from the mean
 void warn_of_noise(const std::vector<std::vector<double>>& deviations, const Series& series,
                    Channel channel, const AverageOptions& options,
                    const std::vector<Repeat>& repeats, std::vector<std::string>& warnings) {
@@ -328,7 +330,7 @@ void warn_of_noise(const std::vector<std::vector<double>>& deviations, const Ser
   }
 }
 
-/// Names repeats that leave more than a hundredth of the record uncovered.
+/// Warns of repeats that leave more than 1 % of the record uncovered.
 void warn_of_gaps(const std::vector<Repeat>& repeats, const std::vector<double>& shift,
                   std::vector<std::string>& warnings) {
   const auto samples = static_cast<double>(repeats.front().time_s.size());

@@ -41,7 +41,7 @@ std::vector<std::size_t> missing_before(const std::vector<double>& time_s, doubl
     const double own_s = time_s[i] - time_s[i - 1];
     if (own_s <= kLostSample * step_s || own_s > longest_s * (1.0 + kRounding)) continue;
     const double lost = std::round(own_s / step_s) - 1.0;
-    // The caller refuses more missing samples than the record has, so the count is capped.
+    // Capped, since the caller refuses more missing samples than the record has.
     missing[i] = static_cast<std::size_t>(std::min(lost, static_cast<double>(time_s.size()) + 1.0));
   }
   return missing;
@@ -90,7 +90,7 @@ void bridge_holes(const Campaign& campaign, Repeat& repeat) {
 
 void forget_bridged(std::vector<double>& row, const std::vector<bool>& bridged, double shift) {
   if (bridged.empty()) return;
-  // Follows shifted(): a whole shift reads one sample, any other shift reads both neighbours.
+  // As in shifted(): a whole shift reads one sample, any other shift reads both neighbours.
   const double nearest = std::round(shift);
   const bool whole = std::abs(shift - nearest) < 1e-6;
   const auto below = static_cast<std::ptrdiff_t>(whole ? nearest : std::floor(shift));

@@ -8,16 +8,16 @@
 
 namespace rigcal::datasets {
 
-/// Inserts the missing samples of a repeat if the campaign bridges holes (`holes = "bridge"`). A
-/// step of time between 1.5 times the median and `longest_hole` gets as many evenly spaced samples
-/// as are missing. They are marked as `bridged` and are compared with nothing. Their values, a line
-/// between the neighbours or a constant input, only keep filters and shifts going. Does nothing if
-/// the campaign does not bridge holes.
+/// Inserts the missing samples of a repeat if the campaign bridges holes (`holes = "bridge"`);
+/// otherwise does nothing. A time step between 1.5 times the median and `longest_hole` is filled
+/// with as many evenly spaced samples as are missing. These are marked as `bridged` and are never
+/// compared with the model. Their values, which are interpolated linearly or, for a constant input,
+/// repeated, only keep filters and shifts working.
 ///
-/// @throws InputError  more samples are missing than the record has
+/// @throws InputError  if more samples are missing than the record has
 void bridge_holes(const Campaign& campaign, Repeat& repeat);
 
-/// Sets the values that shifted() made from bridged samples to NaN.
+/// Sets those values to NaN that shifted() computed from bridged samples.
 ///
 /// @param row    result of shifted(values, shift, ...)
 void forget_bridged(std::vector<double>& row, const std::vector<bool>& bridged, double shift);
@@ -25,7 +25,7 @@ void forget_bridged(std::vector<double>& row, const std::vector<bool>& bridged, 
 /// Describes the bridged holes, one text per repeat.
 std::vector<std::string> bridged_notes(const std::vector<Repeat>& repeats);
 
-/// Warns, in words, if a hole of a recorded drive is bridged in all repeats; empty otherwise.
+/// Returns a warning if a hole in a recorded drive is bridged in all repeats; empty otherwise.
 std::string guessed_drive_warning(const Campaign& campaign, const Condition& condition,
                                   const Record& record);
 

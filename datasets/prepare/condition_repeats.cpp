@@ -14,7 +14,7 @@
 namespace rigcal::datasets {
 namespace {
 
-/// A commanded signal jumps on purpose.
+/// Drives are excluded because they may jump on purpose.
 bool is_measured(Channel channel) { return !is_drive(channel); }
 
 bool is_held(const Campaign& campaign, Channel channel) {
@@ -23,13 +23,13 @@ bool is_held(const Campaign& campaign, Channel channel) {
          setting->second.interpolation == Interpolation::hold;
 }
 
-/// A spike and the repeat that it is in.
+/// A spike and the repeat that contains it.
 struct Found {
   const Repeat* repeat = nullptr;
   Spike spike;
 };
 
-/// Number of spikes in one channel, with the largest one.
+/// Describes the spikes in one channel: their number, and the largest ones.
 std::string spikes_text(Channel channel, std::vector<Found> found) {
   constexpr std::size_t kMostNamed = 3;
   std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) {
@@ -75,7 +75,7 @@ void treat_spikes(const Campaign& campaign, std::vector<Repeat>& repeats, Condit
         "spikes excluded: {} samples replaced by lines between their neighbours", replaced));
 }
 
-/// Marks each decimated sample that was computed from a marked one.
+/// Marks each decimated sample that was computed from at least one marked sample.
 std::vector<bool> decimated_marks(const std::vector<bool>& marks, std::size_t factor) {
   std::vector<bool> result;
   for (std::size_t i = 0; i < marks.size(); i += factor) {

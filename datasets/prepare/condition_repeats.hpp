@@ -8,17 +8,17 @@
 
 namespace rigcal::datasets {
 
-/// Changes to the repeats of a condition before averaging, and findings in them.
+/// Changes made to the repeats of a condition before averaging, and findings about them.
 struct Conditioning {
-  double noise_gain = 1.0;  ///< factor of decimation on the standard deviation of white noise
+  double noise_gain = 1.0;  ///< factor of decimation on the sd of white noise
   std::vector<std::string> notes;
   std::vector<std::string> warnings;
 };
 
-/// Reports spikes of measured channels, replaces them if the campaign excludes them, and decimates
-/// records that are denser than `decimate_to`.
+/// Reports spikes in measured channels, replaces them if the campaign excludes them, and decimates
+/// records that are sampled faster than `decimate_to`.
 ///
-/// @throws std::invalid_argument  a record cannot be decimated, or the repeats need different
+/// @throws std::invalid_argument  if a record cannot be decimated, or if the repeats need different
 ///                                factors
 Conditioning condition_repeats(const Campaign& campaign, std::vector<Repeat>& repeats);
 

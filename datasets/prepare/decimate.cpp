@@ -12,7 +12,7 @@ namespace rigcal::datasets {
 namespace {
 
 constexpr double kRippleDb = 66.0;        // 0.05 %; 0.1 % including the error of the formula
-constexpr double kTransitionShare = 0.2;  // fraction of the new sample rate, from 0.4 to 0.6
+constexpr double kTransitionShare = 0.2;  // transition band, from 0.4 to 0.6 of the new sample rate
 
 double value_beyond(const std::vector<double>& x, long index) {
   const long last = static_cast<long>(x.size()) - 1;
@@ -30,7 +30,7 @@ double AntiAliasFilter::noise_gain() const {
 
 AntiAliasFilter anti_alias_filter(std::size_t factor) {
   if (factor < 2) throw std::invalid_argument("anti_alias_filter: factor must be above 1");
-  // Kaiser's formulas: length and shape from ripple and transition band.
+  // Kaiser's formulas for filter length and window shape, from the ripple and the transition band.
   const double width_rad = 2.0 * std::numbers::pi * kTransitionShare / static_cast<double>(factor);
   const auto half =
       static_cast<std::size_t>(std::ceil((kRippleDb - 7.95) / (2.285 * width_rad) / 2.0));
@@ -73,7 +73,7 @@ std::vector<double> decimated_hold(const std::vector<double>& x, std::size_t fac
     const std::size_t end = std::min(i + factor, x.size());
     const auto begin = x.begin() + static_cast<std::ptrdiff_t>(i);
     const double sum = std::accumulate(begin, x.begin() + static_cast<std::ptrdiff_t>(end), 0.0);
-    // A constant stays unchanged to the last bit.
+    // Keeps a constant unchanged to the last bit.
     const bool constant = std::all_of(begin, x.begin() + static_cast<std::ptrdiff_t>(end),
                                       [&](double value) { return value == *begin; });
     result.push_back(constant ? *begin : sum / static_cast<double>(end - i));
@@ -93,7 +93,7 @@ std::size_t decimation_factor(const Repeat& repeat, double rate_hz) {
                       repeat.source, i, t[i]));
   const double exact = 1.0 / (dt * rate_hz);
   const double factor = std::round(exact);
-  if (exact < 1.01) return 1;  // rates that agree within a hundredth are the same
+  if (exact < 1.01) return 1;  // rates that agree within 1 % count as equal
   if (factor >= static_cast<double>(t.size()))
     throw std::invalid_argument(
         fmt::format("{} is sampled at {:.6g} Hz: decimate_to = {:.6g} Hz leaves one of its {} "

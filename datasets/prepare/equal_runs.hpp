@@ -6,7 +6,7 @@
 
 namespace rigcal::datasets {
 
-/// A maximal run of samples of exactly the same value.
+/// A maximal run of samples with exactly the same value.
 struct EqualRun {
   std::size_t begin = 0;
   std::size_t length = 1;
@@ -15,35 +15,35 @@ struct EqualRun {
   std::size_t end() const { return begin + length; }
 };
 
-/// All runs of a signal, in order; their lengths add up to its own.
+/// Splits a signal into its runs, in order. Their lengths add up to the length of the signal.
 ///
 /// @param x  shape (n), finite
 std::vector<EqualRun> equal_runs(std::span<const double> x);
 
-/// Whether all samples are the same, as far as there are any.
+/// Whether all samples are equal; true for an empty signal.
 bool is_constant(std::span<const double> x);
 
-/// The step of the converter or of the printed digits: the smallest difference of neighbours that
-/// is not zero; 0 where all are equal.
+/// Step of the converter or of the printed digits: the smallest nonzero difference between
+/// neighbours; 0 if all samples are equal.
 double resolution(const std::vector<EqualRun>& runs);
 
-/// Median of the steps from one value to the next; 0 where all are equal.
+/// Median step from one value to the next; 0 if all samples are equal.
 double typical_step(const std::vector<EqualRun>& runs);
 
-/// Whether the signal moves before and after a run, as far as the record shows: three samples
-/// before it and after it have at least this distance from it.
+/// Whether the signal moves before and after a run, as far as the record shows: the third sample
+/// before it and the third after it differ from it by at least `least`.
 ///
-/// @param x  shape (n), of which the run is a part
+/// @param x  shape (n), contains the run
 bool cuts_a_motion(std::span<const double> x, const EqualRun& run, double least);
 
 /// Whether the noise of the signal is well above its resolution, so that a working sensor never
 /// gives the same value many times. The steps between values then go up and down: at least 5 % of
-/// the values, and 30 of them, are larger or smaller than both their neighbours, by four steps of
-/// the resolution and by 1e-6 of the range (the rounding of simulations is less). In white noise
-/// this is half of them or more, whatever slow motion is below it; in a smooth signal only a few.
-/// The rounding of a converter alone causes a difference of two steps.
+/// the values, and at least 30 of them, are larger or smaller than both neighbours, by four steps
+/// of the resolution and by 1e-6 of the range (more than simulations round). In white noise at
+/// least half of the values are, even on top of slow motion; in a smooth signal only a few. The
+/// rounding of a converter by itself causes differences of only two steps.
 ///
-/// @param low, high  runs at or beyond these values are left out
+/// @param low, high  runs at or beyond these values are ignored
 bool shows_noise(const std::vector<EqualRun>& runs, double low, double high);
 
 }  // namespace rigcal::datasets

@@ -12,16 +12,16 @@
 namespace rigcal::datasets {
 namespace {
 
-// Lags beyond the search that the interpolation of its outermost peak needs.
+// Number of lags beyond the search range that are needed to interpolate a peak at its edge.
 constexpr int kMargin = 4;
 
-// Fraction of the sample rate. A faster sinusoid has its peaks so close together, and so few
+// Fraction of the sample rate. The peaks of a faster sinusoid are so close together, with so few
 // samples on each, that noise decides which one is nearest.
 constexpr double kFastest = 0.35;
 
 constexpr int kShortest = 64;
 
-/// A record, and the sums of its first i values and of their squares, i = 0..n.
+/// A record, with the sums of its first i values and of their squares, i = 0..n.
 struct Trace {
   explicit Trace(std::vector<double> values)
       : x(std::move(values)), sum(x.size() + 1), squares(x.size() + 1) {
@@ -44,7 +44,7 @@ Trace without_mean(const std::vector<double>& x) {
   return Trace(std::move(centred));
 }
 
-/// Pearson's correlation of the overlap at each lag of a range; 0 where one side is constant.
+/// Pearson's correlation of the overlap at each lag in a range; 0 where one side is constant.
 struct Correlation {
   int first_lag = 0;
   std::vector<double> r;
@@ -53,7 +53,7 @@ struct Correlation {
   double at(int lag) const { return r[static_cast<std::size_t>(lag - first_lag)]; }
 };
 
-/// Sums of products at each lag of a range.
+/// Sum of products over the overlap, at each lag in a range.
 std::vector<double> products(const Trace& a, const Trace& b, int first_lag, int last_lag) {
   std::vector<double> result;
   if (first_lag < 0) {
@@ -85,7 +85,7 @@ Correlation correlate(const Trace& a, const Trace& b, int first_lag, int last_la
     const double variance_b = over(b.squares, begin + lag, end + lag) - total_b * total_b / n;
     const double covariance =
         product[static_cast<std::size_t>(lag - first_lag)] - total_a * total_b / n;
-    // Rounding leaves a trace of the whole record's energy in a constant overlap.
+    // In a constant overlap, rounding leaves a small fraction of the whole record's energy.
     const bool constant =
         variance_a <= 1e-12 * a.squares.back() || variance_b <= 1e-12 * b.squares.back();
     result.r.push_back(constant ? 0.0 : covariance / std::sqrt(variance_a * variance_b));
@@ -93,19 +93,20 @@ Correlation correlate(const Trace& a, const Trace& b, int first_lag, int last_la
   return result;
 }
 
-/// Cosine of the phase that a sinusoid of this correlation passes per sample.
+/// Cosine of the phase advance per sample of a sinusoid with this correlation.
 double cosine_at(const Correlation& c, int lag) {
   return (c.at(lag - 1) + c.at(lag + 1)) / (2.0 * c.at(lag));
 }
 
-/// A maximum between the samples.
+/// A maximum of the correlation, located between lags.
 struct Peak {
   double lag = 0.0;
   double height = 0.0;
 };
 
-/// The peak around a lag that is higher than its neighbours, exact for a sinusoid: one half way
-/// between two samples must look neither lower nor nearer than one that a sample hits.
+/// Returns the peak at a lag that is higher than its neighbours, interpolated exactly for a
+/// sinusoid. A peak half way between two lags must look neither lower nor nearer than one at a
+/// whole lag.
 Peak peak_at(const Correlation& c, int lag) {
   const double r = c.at(lag);
   const Peak sample{static_cast<double>(lag), r};
@@ -121,9 +122,9 @@ Peak peak_at(const Correlation& c, int lag) {
           std::min(1.0, std::hypot(r, quadrature))};
 }
 
-/// The whole lag to trust: of the peaks that are as good as the highest, the one nearest to zero.
-/// Two maxima are different peaks only with a real valley between them, which the ripple that noise
-/// leaves on a flat top is not.
+/// Chooses a whole lag: among the peaks that are practically as high as the highest, the one
+/// nearest to zero. Two maxima are different peaks only if there is a real valley between them, not
+/// just the ripple that noise leaves on a flat top.
 int peak_lag(const Correlation& c, int samples) {
   std::vector<Peak> peaks;
   for (int lag = c.first_lag; lag <= c.last_lag(); ++lag) peaks.push_back(peak_at(c, lag));
@@ -147,7 +148,8 @@ int peak_lag(const Correlation& c, int samples) {
   return *nearest;
 }
 
-/// Lags from the peak to where the correlation has fallen by a tenth, or to the end of the search.
+/// Number of lags from the peak to where the correlation has fallen by 0.1, or to the end of the
+/// search range.
 int half_width(const Correlation& c, int peak) {
   int width = 0;
   while (peak - width > c.first_lag && peak + width < c.last_lag() &&
@@ -156,7 +158,7 @@ int half_width(const Correlation& c, int peak) {
   return width;
 }
 
-/// Gaussian smoothing, without the ends that the kernel does not cover.
+/// Smooths with a Gaussian, and drops the ends that the kernel does not cover.
 Trace smooth(const Trace& trace, double sd_samples) {
   const auto reach = static_cast<Eigen::Index>(std::ceil(4.0 * sd_samples));
   Eigen::VectorXd kernel(2 * reach + 1);
@@ -188,15 +190,15 @@ Shape shape_at(const Correlation& c, double lag) {
   return shape;
 }
 
-/// The peak of the correlation that counts.
+/// The significant peak from which the search is refined.
 struct Coarse {
-  int peak = 0;       ///< its lag
-  int hill = 0;       ///< lags over which it stretches
+  int peak = 0;       ///< lag of the peak
+  int hill = 0;       ///< half width of the peak, in lags
   double height = 0;  ///< height of the peak
-  int shorter = 0;    ///< samples of the shorter record
+  int shorter = 0;    ///< number of samples in the shorter record
 };
 
-/// The lag near the peak, of records that were smoothed; empty where there is no maximum.
+/// Refines the lag around the peak, using smoothed records; empty if there is no maximum.
 std::optional<Lag> refine(const Trace& x, const Trace& y, const Coarse& coarse, double smoothing) {
   const int peak = coarse.peak;
   const int reach = std::clamp(coarse.hill, 1, static_cast<int>(std::ceil(smoothing)) + 1);
@@ -216,7 +218,7 @@ std::optional<Lag> refine(const Trace& x, const Trace& y, const Coarse& coarse, 
   const double samples = 0.5 * (low + high);
   const double curvature = -shape_at(c, samples).curvature;
   if (!(curvature > 0.0)) return std::nullopt;
-  // Noise against signal, then noise against noise behind the smoothing of both records.
+  // Contributions of noise times signal, and of noise times noise, which smoothing reduces.
   const double noise_per_sample = std::max(0.0, 1.0 - coarse.height) / curvature;
   const auto n = static_cast<double>(coarse.shorter);
   const double width = std::sqrt(2.0 * smoothing * smoothing + 1.0);
@@ -232,7 +234,7 @@ double norm(const Trace& trace) {
       .norm();
 }
 
-/// Maximum of the correlation of two records, if it is significant.
+/// Finds the maximum of the correlation of two records; empty if it is not significant.
 std::optional<Coarse> coarse_peak(const Trace& x, const Trace& y, double first_x, double first_y,
                                   int max_lag) {
   const auto shorter = static_cast<int>(std::min(x.x.size(), y.x.size()));
@@ -244,7 +246,7 @@ std::optional<Coarse> coarse_peak(const Trace& x, const Trace& y, double first_x
   const Correlation c = correlate(x, y, -max_lag - kMargin, max_lag + kMargin);
   const int peak = peak_lag(c, shorter);
   const double height = peak_at(c, peak).height;
-  // Six standard deviations of the correlation of unrelated noise.
+  // Six standard deviations of the correlation between unrelated noise records.
   if (std::abs(peak) >= max_lag || height < 6.0 / std::sqrt(shorter)) return std::nullopt;
   if (cosine_at(c, peak) < std::cos(2.0 * std::numbers::pi * kFastest)) return std::nullopt;
   return Coarse{peak, half_width(c, peak), height, shorter};
@@ -264,7 +266,7 @@ std::vector<std::optional<Lag>> find_lags(const std::vector<double>& a,
     coarse.push_back(coarse_peak(x, y.back(), a.empty() ? 0.0 : a.front(),
                                  b->empty() ? 0.0 : b->front(), max_lag));
   }
-  // Smoothing takes noise away and, where the record has edges, the signal with it.
+  // Smoothing removes noise but also, where the record has edges, signal.
   for (const double smoothing : {0.7, 1.5, 3.0, 6.0, 12.0, 24.0}) {
     std::optional<Trace> smooth_x;
     for (std::size_t k = 0; k < others.size(); ++k) {

@@ -5,28 +5,31 @@
 
 namespace rigcal::datasets {
 
-/// Delay of one record against another.
+/// Delay of one record relative to another.
 struct Lag {
   double samples = 0.0;      ///< positive if the second record is late
-  double sd_samples = 0.0;   ///< its standard deviation for white noise in both records
+  double sd_samples = 0.0;   ///< standard deviation of the delay, for white noise in both records
   double correlation = 0.0;  ///< height of the peak of the normalised cross-correlation
 };
 
-/// Delay of b against a: the maximum of the normalised cross-correlation, found between samples.
+/// Delay of b relative to a: the maximum of the normalised cross-correlation, located between
+/// samples.
 ///
-/// Both records are smoothed by the same Gaussian, which keeps a delay but not the noise; its width
-/// is chosen for the smallest standard deviation. Among the peaks of a periodic record that noise
-/// makes equal, the one with the smallest |lag| is taken, so that no period is ever skipped.
+/// Both records are smoothed with the same Gaussian, which reduces noise and does not change the
+/// delay. Its width is chosen to minimise the standard deviation. Among the peaks of a periodic
+/// record that noise makes indistinguishable, the one with the smallest |lag| is taken, so that no
+/// period is ever skipped.
 ///
-/// @param a, b     same sampling, any lengths; values finite
-/// @param max_lag  [samples], > 0; no more than a third of the shorter record is searched
-/// @return         empty: a record is constant, too short (64 samples), unlike the other, a
-///                 sinusoid above 0.35 of the sample rate (its periods are indistinguishable), or
-///                 the maximum is at the edge of the search
+/// @param a, b     same sampling, any lengths, finite values
+/// @param max_lag  [samples], > 0; at most a third of the shorter record is searched
+/// @return         empty if a record is constant, too short (below 64 samples), unlike the other,
+///                 or a sinusoid above 0.35 of the sample rate (its periods are indistinguishable),
+///                 or if the maximum is at the edge of the search range
 std::optional<Lag> find_lag(const std::vector<double>& a, const std::vector<double>& b,
                             int max_lag);
 
-/// The same for several records against one, which is smoothed once for all of them.
+/// Finds the delays of several records relative to `a`, which is smoothed only once for all of
+/// them.
 std::vector<std::optional<Lag>> find_lags(const std::vector<double>& a,
                                           const std::vector<const std::vector<double>*>& others,
                                           int max_lag);

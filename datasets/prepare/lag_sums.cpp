@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstring>
 
-// Compiled twice, for every x86-64 and for AVX2; without FMA, so that both round alike.
+// Compiled twice, for any x86-64 and for AVX2. Both do without FMA, so that they round alike.
 #if defined(__x86_64__) && !defined(__AVX2__)
 #define RIGCAL_SUMS_IN_TWO_WIDTHS
 #endif
@@ -14,10 +14,10 @@ namespace rigcal::datasets {
 namespace {
 
 constexpr std::size_t kLanes = 4;
-// Sums at once. An addition takes four cycles, and two begin in each cycle: with four sums the
-// processor would wait for their results.
+// Number of sums computed together. An addition takes four cycles, and two can start in each cycle:
+// with only four sums the processor would wait for their results.
 constexpr std::size_t kTogether = 8;
-#define RIGCAL_UNROLLED _Pragma("GCC unroll 8")  // so that the sums are in registers
+#define RIGCAL_UNROLLED _Pragma("GCC unroll 8")  // keeps the sums in registers
 
 using Lanes __attribute__((vector_size(kLanes * sizeof(double)))) = double;
 
@@ -30,7 +30,7 @@ RIGCAL_INLINED void add_product(Lanes& sum, const Lanes& factor, const double* x
   sum += factor * other;
 }
 
-/// One shifted product of `n` terms, of which `done` are in the lanes already.
+/// Completes one shifted product of `n` terms, `done` of which are in the lanes already.
 RIGCAL_INLINED double finished(Lanes& lanes, const double* fixed, const double* moving,
                                std::size_t done, std::size_t n) {
   for (; done + kLanes <= n; done += kLanes) {
@@ -50,8 +50,8 @@ RIGCAL_INLINED double finished(Lanes& lanes, const double* fixed, const double* 
   return sum;
 }
 
-/// Products for kTogether shifts that follow each other.
-/// @param n  terms of each; later ones have no more, and less by at most one each
+/// Products for kTogether consecutive shifts.
+/// @param n  number of terms for each shift: each has as many as the one before, or one fewer
 RIGCAL_INLINED void products_in(const double* fixed, const double* moving,
                                 const std::array<std::size_t, kTogether>& n, double* result) {
   std::array<Lanes, kTogether> sums{};
@@ -67,7 +67,7 @@ RIGCAL_INLINED void products_in(const double* fixed, const double* moving,
     result[k] = finished(sums[k], fixed, moving + k, common, n[k]);
 }
 
-/// kTogether * kLanes weighted sums that follow each other.
+/// Computes kTogether * kLanes consecutive weighted sums.
 RIGCAL_INLINED void weighted_in(const double* x, const double* kernel, std::size_t taps,
                                 double* result) {
   std::array<Lanes, kTogether> sums{};
@@ -79,7 +79,7 @@ RIGCAL_INLINED void weighted_in(const double* x, const double* kernel, std::size
   std::memcpy(result, sums.data(), sizeof sums);
 }
 
-/// The two sums in one set of instructions.
+/// The two sums, compiled for one instruction set.
 struct Sums {
   void (*products)(const double* fixed, const double* moving,
                    const std::array<std::size_t, kTogether>& n, double* result);

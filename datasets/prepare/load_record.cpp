@@ -45,8 +45,8 @@ AverageOptions options_of(const Campaign& campaign, const Condition& condition) 
 }
 
 /// Whether error messages may quote a file. A campaign may name any file, so content is shown only
-/// of files in the folders that the user chose, or with the name of a recording after all links are
-/// resolved.
+/// if the file is in a folder that the user chose, or if it has the name of a recording after all
+/// links are resolved.
 bool may_be_shown(const Campaign& campaign, const std::filesystem::path& path) {
   std::error_code error;
   if (has_record_name(std::filesystem::weakly_canonical(path, error)) && !error) return true;
@@ -54,7 +54,8 @@ bool may_be_shown(const Campaign& campaign, const std::filesystem::path& path) {
          (!campaign.root.empty() && lies_within(campaign.root, path));
 }
 
-/// Columns of a file of any format, the time first; doubts about the file go to the repeat.
+/// Reads columns from a file of any format, the time first. Adds doubts about the file to the
+/// repeat.
 RecordTable read_columns(const Campaign& campaign, const std::filesystem::path& path,
                          const std::vector<std::string>& names, Repeat& repeat) {
   try {
@@ -75,7 +76,8 @@ RecordTable read_columns(const Campaign& campaign, const std::filesystem::path& 
   }
 }
 
-/// Sums of squares stay finite. A damaged number may be as large as a double can be.
+/// Rejects values above 1e100, whose squares could overflow when summed. Corrupt files contain such
+/// numbers.
 void require_measurable(const RepeatSource& source, const std::string& column,
                         const std::vector<double>& values) {
   constexpr double kLargest = 1e100;
@@ -108,7 +110,7 @@ bool delays_its_drive(const Campaign& campaign) {
       });
 }
 
-/// Enters the windows of `windows = "moving"`.
+/// Finds the windows for `windows = "moving"`.
 void find_moving_windows(const Campaign& campaign, const Condition& condition, Record& record) {
   const Channel moving = motion_channel(campaign);
   const auto position = record.channels.find(moving);
@@ -164,7 +166,7 @@ Repeat load_repeat(const Campaign& campaign, const RepeatSource& source) {
                                  source.label));
   std::vector<std::string> names{campaign.time_column};
   for (const auto& [channel, column] : source.columns) names.push_back(column);
-  // Columns that a repeat names itself have no `minus`.
+  // A column that a repeat names itself has no `minus`.
   const auto minus_of = [&](Channel channel, const std::string& column) {
     const ChannelSetting& setting = campaign.channels.at(channel);
     return column == setting.column ? setting.minus : std::string();
@@ -218,8 +220,8 @@ std::vector<Repeat> load_all_repeats(const Campaign& campaign, const Condition& 
 
 namespace {
 
-/// The average of the repeats that are no outliers, which are taken out of `repeats`, too; the same
-/// where there are none, or fewer than two would stay.
+/// Returns the average without outliers, and removes these from `repeats`, too. Returns `all` if
+/// there are no outliers, or if fewer than two repeats would be left.
 Record without_outliers(const Condition& condition, std::vector<Repeat>& repeats,
                         const AverageOptions& options, const Record& all) {
   const auto is_outlier = [](const RepeatReport& each) { return each.outlier; };

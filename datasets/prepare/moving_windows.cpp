@@ -9,15 +9,15 @@
 namespace rigcal::datasets {
 namespace {
 
-constexpr double kHeldShare = 0.02;         // fraction of the command's range
-constexpr double kStepShare = 0.05;         // fraction of the command's range
-constexpr double kLongestRise = 0.1;        // fraction of the time in which the command is constant
+constexpr double kHeldShare = 0.02;   // fraction of the command's range
+constexpr double kStepShare = 0.05;   // fraction of the command's range
+constexpr double kLongestRise = 0.1;  // fraction of the time for which the command is constant
 constexpr double kLeastTravelShare = 0.05;  // fraction of the range of positions
 constexpr double kArrivedShare = 0.01;      // fraction of the travel
 constexpr double kNoiseFactor = 6.0;        // standard deviations
 constexpr double kSpreadFactor = 2.0;       // standard deviations over the repeats
 constexpr double kTailShare =
-    0.05;  // fraction of a constant command that shows where the motion ends
+    0.05;  // final fraction of a constant command, which shows where motion ends
 constexpr std::size_t kFewestHeld = 5;  // samples
 
 /// Samples [begin, end).
@@ -47,8 +47,8 @@ double range_of(std::span<const double> x) {
   return *high - *low;
 }
 
-/// Standard deviation of white noise, from the median of the second differences: edges and spikes
-/// are too few to move it, slopes cancel.
+/// Standard deviation of white noise, from the median of the second differences. Slopes cancel, and
+/// edges and spikes are too few to affect the median.
 double noise_sd(std::span<const double> x) {
   if (x.size() < 3) return 0.0;
   std::vector<double> differences;
@@ -58,9 +58,9 @@ double noise_sd(std::span<const double> x) {
   return median(differences) / (kMedianOfNormal * std::sqrt(6.0));
 }
 
-/// Stretches in which the command stays at one level.
+/// Stretches in which the command remains at one level.
 std::vector<SampleSpan> held_levels(std::span<const double> command) {
-  const std::vector<double> clean = smoothed(command, 2);  // without spikes, edges kept
+  const std::vector<double> clean = smoothed(command, 2);  // removes spikes, keeps edges
   const double tolerance = std::max(kHeldShare * range_of(clean), kNoiseFactor * noise_sd(command));
   std::vector<SampleSpan> levels;
   for (std::size_t begin = 0; begin < clean.size();) {
@@ -72,7 +72,7 @@ std::vector<SampleSpan> held_levels(std::span<const double> command) {
   return levels;
 }
 
-/// Constant levels that a step leads to, from the first sample that leaves the level before.
+/// Constant levels that follow a step, each from the first sample that leaves the previous level.
 std::vector<SampleSpan> stepped_levels(std::span<const double> time_s,
                                        std::span<const double> command) {
   const double least =
@@ -94,7 +94,7 @@ std::vector<SampleSpan> stepped_levels(std::span<const double> time_s,
   return stepped;
 }
 
-/// Motion of the piston under one constant command; empty if it stayed.
+/// Finds the motion of the piston under one constant command; empty if it does not move.
 std::vector<Motion> motion_in(SampleSpan held, std::span<const double> time_s,
                               std::span<const double> position_m, std::span<const double> spread_m,
                               double least_travel_m, double noise_m) {

@@ -24,13 +24,13 @@ constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr std::size_t kFewestToRecognise = 32;
 constexpr double kOfStep = 0.75;    // a rounded value is off by half a step at most
 constexpr double kMostStep = 0.02;  // fraction of the amplitude: a coarser record shows no waveform
-constexpr double kExact = 1e-9;     // fraction of the amplitude: rounding errors of the computation
+constexpr double kExact = 1e-9;     // fraction of the amplitude: rounding errors in the computation
 constexpr double kMostErrors = 5.0;  // in standard deviations of the stated noise
 constexpr double kMostRms = 1.2;     // in standard deviations of the stated noise
 constexpr int kMostSteps = 30;       // Gauss-Newton steps
 constexpr int kMostDigits = 12;
 
-/// Recorded drive and the tolerance for recognising it.
+/// A recorded drive, with the tolerance for recognising it.
 struct Recorded {
   std::span<const double> time_s;
   std::span<const double> drive;
@@ -41,7 +41,7 @@ struct Recorded {
   double tolerance() const { return kOfStep * step + kMostErrors * sd; }
 };
 
-/// Largest deviation of a sample, if all are within the tolerance.
+/// Largest deviation of a sample; empty if any sample is outside the tolerance.
 std::optional<double> farthest_from(const Recorded& record, const model::Signal& signal,
                                     double amplitude) {
   double farthest = 0.0;
@@ -64,7 +64,7 @@ double rounded(double value, int digits) {
 
 /// Fits a few parameters of a signal by Gauss-Newton.
 ///
-/// @param model  returns the signal at a time and its derivatives by the parameters
+/// @param model  returns the signal at a time and its derivatives with respect to the parameters
 /// @return       false if the steps diverge
 template <int N>
 bool solve(const Recorded& record, Eigen::Vector<double, N>& p,
@@ -79,7 +79,7 @@ bool solve(const Recorded& record, Eigen::Vector<double, N>& p,
       normal += slope * slope.transpose();
       right += slope * (record.drive[i] - value);
     }
-    // Scales each parameter: frequencies and amplitudes differ by orders of magnitude.
+    // Scales each parameter, because frequencies and amplitudes differ by orders of magnitude.
     const Eigen::Vector<double, N> scale = normal.diagonal().cwiseSqrt().cwiseMax(1e-300);
     const Eigen::Matrix<double, N, N> scaled =
         scale.cwiseInverse().asDiagonal() * normal * scale.cwiseInverse().asDiagonal();
@@ -111,8 +111,8 @@ std::optional<RecognisedDrive> as_sine(const Recorded& record, double frequency_
   };
   if (!solve<4>(record, p, model) || !(p(3) > 0.0)) return std::nullopt;
   const double amplitude = std::hypot(p(1), p(2));
-  // Takes the simplest frequency within the tolerance: with few digits its samples repeat in each
-  // period.
+  // Takes the simplest frequency within the tolerance: with few digits, the samples repeat from
+  // period to period.
   for (int digits = 2; digits <= kMostDigits; ++digits) {
     const double f = rounded(p(3), digits);
     const double a = rounded(amplitude, digits);
@@ -133,7 +133,7 @@ std::optional<RecognisedDrive> as_sine(const Recorded& record, double frequency_
   return std::nullopt;
 }
 
-/// Number in [low, high] with the fewest digits.
+/// Returns the number in [low, high] that has the fewest digits.
 double roundest_between(double low, double high) {
   for (int digits = 1; digits <= 17; ++digits) {
     const double middle = rounded(0.5 * (low + high), digits);
@@ -144,8 +144,8 @@ double roundest_between(double low, double high) {
 
 std::optional<RecognisedDrive> as_square(const Recorded& record, double amplitude,
                                          const std::string& unit) {
-  // Edge k of a square wave is at k / (2 f), later than the sample before it and not later than the
-  // sample after it.
+  // Edge k of a square wave is at k / (2 f). It comes after the sample before it, and no later than
+  // the sample after it.
   constexpr double kEdgeRounding = 1e-12;
   double low_hz = 0.0;
   double high_hz = std::numeric_limits<double>::infinity();
@@ -166,7 +166,7 @@ std::optional<RecognisedDrive> as_square(const Recorded& record, double amplitud
       fmt::format("a square wave of {:.6g} Hz with an amplitude of {:.6g} {}", f, amplitude, unit));
 }
 
-/// Zero crossings, interpolated between samples; they are half a cycle apart.
+/// Zero crossings, interpolated between samples. Consecutive crossings are half a cycle apart.
 std::vector<double> crossings_of(const Recorded& record) {
   std::vector<double> crossings;
   for (std::size_t i = 1; i < record.size(); ++i) {
@@ -179,13 +179,13 @@ std::vector<double> crossings_of(const Recorded& record) {
   return crossings;
 }
 
-/// Returns (0, frequency, rate) of the logarithmic chirp through the middle and the last crossing.
+/// Returns (0, frequency, rate) for the logarithmic chirp through the middle and the last crossing.
 Eigen::Vector<double, 3> logarithmic_start(const std::vector<double>& crossings) {
   const std::size_t middle = crossings.size() / 2;
   const double t1 = crossings[middle];
   const double t2 = crossings.back();
   const double ratio = static_cast<double>(crossings.size()) / static_cast<double>(middle + 1);
-  // Bisection, since expm1(rate t2) / expm1(rate t1) grows with the rate.
+  // Bisection works because expm1(rate t2) / expm1(rate t1) increases with the rate.
   double low = -50.0 / t2;
   double high = 49.0 / t2;  // asymmetric, so that no rate tried is zero
   for (int i = 0; i < 200; ++i) {
@@ -203,7 +203,8 @@ std::optional<RecognisedDrive> as_chirp(const Recorded& record, double amplitude
   const auto crossings = crossings_of(record);
   const double end_s = record.time_s.back();
   if (crossings.size() < 8 || std::abs(record.time_s.front()) > 1e-9 * end_s) return std::nullopt;
-  // Cycles divided by time is the mean frequency up to a crossing. It is nearly a straight line.
+  // The number of cycles divided by the time is the mean frequency up to a crossing. Plotted over
+  // time, it is close to a straight line.
   double s = 0.0, st = 0.0, stt = 0.0, sy = 0.0, sty = 0.0;
   for (std::size_t k = 0; k < crossings.size(); ++k) {
     const double t = crossings[k];

@@ -10,7 +10,7 @@
 
 namespace rigcal::datasets {
 
-/// Recorded drive that the model can generate.
+/// A recorded drive that the model can generate.
 struct RecognisedDrive {
   model::Signal signal = model::Signal::constant(0.0);
   std::string name;        ///< "a sine of 10 Hz with an amplitude of 0.0508 m"
@@ -20,19 +20,20 @@ struct RecognisedDrive {
 
 /// Recognises a sine (with offset and phase), a square wave or a chirp. Every sample of the
 /// recorded drive must equal the generated signal within the rounding of the record: three quarters
-/// of the step of its converter or digits. If the campaign states the noise of the channel (`sd`),
-/// five times `sd` are added, and the root mean square may be 1.2 times `sd`. Noise that is not
-/// stated is not guessed: it may be a real motion of the rig.
+/// of a step of its converter or digits. If the campaign states the noise of the channel (`sd`),
+/// the tolerance increases by five times `sd`, and the rms deviation may be up to 1.2 times `sd`.
+/// Noise that is not stated is not estimated, because it may be a real motion of the rig.
 ///
 /// @param time_s  shape (n), increasing
 /// @param drive   shape (n), SI
-/// @param unit    unit of the drive, for its name
-/// @param sd      standard deviation of its noise; 0: none stated
+/// @param unit    unit of the drive, for use in its name
+/// @param sd      standard deviation of its noise; 0 if not stated
 std::optional<RecognisedDrive> recognised_drive(std::span<const double> time_s,
                                                 std::span<const double> drive,
                                                 const std::string& unit, double sd);
 
-/// Replaces a recorded drive by the generated signal that it equals, and adds a note. Does nothing
+/// Replaces a recorded drive with the generated signal that it equals, and adds a note. Does
+/// nothing
 /// if the campaign sets `recognise = false` for the channel, or if the drive is generated already.
 void recognise_drive(const Campaign& campaign, const Condition& condition, Record& record);
 

@@ -9,26 +9,26 @@
 
 namespace rigcal::datasets {
 
-/// Agreement of the repeats of one condition in one channel, and the noise floor that follows for
+/// How well the repeats of one condition agree in one channel, and the resulting noise floor for
 /// any model.
 struct Repeatability {
   std::string condition;
   Channel channel = Channel::position;
-  int repeats = 1;          ///< number of repeats with the channel
-  double pooled_sd = 0.0;   ///< for one repeat, SI unit of the channel; NaN if unknown
-  double sd_of_mean = 0.0;  ///< standard deviation of their mean
-  /// Empty where the sd is unknown or the channel constant: then there is no such number.
+  int repeats = 1;          ///< number of repeats that have the channel
+  double pooled_sd = 0.0;   ///< sd of one repeat, SI unit of the channel; NaN if unknown
+  double sd_of_mean = 0.0;  ///< standard deviation of the mean
+  /// Empty if the sd is unknown or the channel is constant: a noise floor is then not defined.
   std::optional<metrics::NoiseFloor> noise_floor;
 };
 
-/// One entry per channel, in the order of the channels. Offsets and outliers of the repeats belong
-/// to the whole condition: `record.repeat_reports`.
+/// Returns one entry per channel, in channel order. Offsets and outliers of the repeats concern the
+/// whole condition; see `record.repeat_reports`.
 std::vector<Repeatability> repeatability(const Record& record);
 
-/// Largest minus smallest offset of the repeats [s]; 0 for a single one.
+/// Difference between the largest and smallest offset of the repeats [s]; 0 for a single repeat.
 double offset_range_s(const Record& record);
 
-/// Sources of the repeats that were named outliers.
+/// Sources of the repeats that were reported as outliers.
 std::vector<std::string> outliers(const Record& record);
 
 }  // namespace rigcal::datasets

@@ -10,7 +10,7 @@
 namespace rigcal::datasets {
 namespace {
 
-constexpr long kReach = 16;  // samples to each side
+constexpr long kReach = 16;  // samples on each side
 
 /// Weights of x[k - kReach + 1 .. k + kReach] for the value at k + fraction.
 std::array<double, 2 * kReach> band_limited_weights(double fraction) {
@@ -22,7 +22,7 @@ std::array<double, 2 * kReach> band_limited_weights(double fraction) {
     const double window = 0.5 + 0.5 * std::cos(angle / kReach);
     weights[j] = sinc * window;
   }
-  // A constant stays unchanged.
+  // Leaves a constant unchanged.
   const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
   for (double& weight : weights) weight /= sum;
   return weights;

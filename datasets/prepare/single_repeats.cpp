@@ -12,8 +12,8 @@
 namespace rigcal::datasets {
 namespace {
 
-/// A record of one repeat must have numbers everywhere. Ends that the repeat does not cover get its
-/// nearest sample, and `covered` excludes them.
+/// Fills the ends that a repeat does not cover with its nearest sample, since a record must be
+/// finite everywhere. `covered` excludes these ends.
 void fill_ends(std::vector<double>& x, std::size_t& first, std::size_t& last) {
   const auto finite = [](double value) { return std::isfinite(value); };
   const auto begin = std::find_if(x.begin(), x.end(), finite);
@@ -26,7 +26,7 @@ void fill_ends(std::vector<double>& x, std::size_t& first, std::size_t& last) {
 }
 
 /// @param base_s  the common time base
-/// @param kept    indices in base_s of the samples of the average
+/// @param kept    indices in base_s of the samples that the average has
 Record single_record(const Record& average, const Repeat& repeat, double shift,
                      const std::vector<double>& base_s, std::vector<std::size_t> kept,
                      TimeWindow& covered) {

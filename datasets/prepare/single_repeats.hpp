@@ -12,19 +12,20 @@ struct RepeatRecords {
   Record average;
   /// In the order of the files; empty for an averaged file or a single repeat.
   std::vector<Record> singles;
-  /// Per single the times that it covers.
+  /// For each single record, the times that it covers.
   std::vector<TimeWindow> covered;
 };
 
-/// Aligns and averages as average_of(); a single repeat is shifted to the common time base as it is
-/// for the average. Its standard deviation is the pooled one of the repeats.
+/// Aligns and averages as average_of() does. Each single repeat is shifted to the common time base
+/// in the same way. Its standard deviation is the pooled one of the repeats.
 ///
-/// @throws InputError  as average_of()
+/// @throws InputError  under the conditions of average_of()
 RepeatRecords repeat_records(const Campaign& campaign, const Condition& condition,
                              std::vector<Repeat> repeats);
 
 /// Loads the average and the single repeats of a condition.
-/// @throws InputError  as load_record(); samples are missing in the windows
+/// @throws InputError  under the conditions of load_record(), or if samples are missing in the
+///                     windows
 RepeatRecords load_repeats(const Campaign& campaign, const Condition& condition);
 
 }  // namespace rigcal::datasets

@@ -13,7 +13,7 @@ namespace rigcal::datasets {
 namespace {
 
 constexpr double kSameFactor = 1e-6;
-/// A gain may be rounded, and may include a correction of the sensor.
+/// A gain may be rounded, and may include a sensor correction.
 constexpr double kSameGain = 0.05;
 
 /// Unit that the file gives for a column.
@@ -31,7 +31,7 @@ std::optional<NamedUnit> named_unit(const ColumnLabel& label) {
   return found ? std::optional(NamedUnit{found->unit, found->is_certain}) : std::nullopt;
 }
 
-/// Empty if the dimensions differ.
+/// Conversion between two units; empty if their dimensions differ.
 std::optional<UnitConversion> conversion_between(const std::string& from, const std::string& to) {
   try {
     return unit_conversion(from, to);

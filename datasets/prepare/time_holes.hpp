@@ -8,12 +8,12 @@
 
 namespace rigcal::datasets {
 
-/// Finds steps above three times the median step in sample times of shape (samples).
+/// Finds time steps longer than three times the median. `time_s` has the shape (samples).
 std::vector<TimeHole> time_holes(const std::vector<double>& time_s);
 
-/// Describes, per repeat, the holes that affect the result, with file, row and times. A hole
-/// outside all windows is harmless unless the drive is a recorded command without a loop: the drive
-/// during the hole is unknown, and the piston stays where it moved.
+/// Describes, for each repeat, the holes that affect the result, with file, row and times. A hole
+/// outside all windows is harmless unless the drive is a recorded command without a loop. The drive
+/// during the hole is then unknown, and the piston does not return to where it would have been.
 ///
 /// @param repeats  as read from their files
 /// @param windows  windows of the condition; empty: the whole record
@@ -21,7 +21,7 @@ std::vector<std::string> holes_in_what_counts(const Campaign& campaign, const Co
                                               const std::vector<Repeat>& repeats,
                                               const std::vector<TimeWindow>& windows);
 
-/// @throws InputError  samples are missing in the windows of the record
+/// @throws InputError  if samples are missing in the windows of the record
 void require_no_holes(const Campaign& campaign, const Record& record);
 
 }  // namespace rigcal::datasets

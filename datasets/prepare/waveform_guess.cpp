@@ -13,8 +13,8 @@ namespace rigcal::datasets {
 namespace {
 
 constexpr double kHysteresis = 0.2;         // fraction of the amplitude
-constexpr double kSteadyPeriods = 0.03;     // largest relative distance from their mean
-constexpr double kSineVariance = 0.98;      // explained by the fundamental
+constexpr double kSteadyPeriods = 0.03;     // largest relative distance of a period from the mean
+constexpr double kSineVariance = 0.98;      // fraction explained by the fundamental
 constexpr double kSquareShare = 0.9;        // fraction of samples at the two levels
 constexpr double kChirpRatio = 1.3;         // ratio of the longest period to the shortest
 constexpr double kLeastStep = 0.1;          // fraction of the amplitude, between two samples
@@ -90,7 +90,8 @@ void judge_periodic(std::span<const double> time_s, std::span<const double> sign
   guess.description = fmt::format("a {} of {:.4g} Hz", to_string(guess.waveform), f);
 }
 
-/// Describes the levels of a signal if it changes so rarely that it is constant between steps.
+/// Describes the steps of a signal that is constant between them; otherwise says that it has no
+/// known waveform.
 std::string steps_text(std::span<const double> signal, const Level& level) {
   std::size_t steps = 0;
   for (std::size_t i = 1; i < signal.size(); ++i)

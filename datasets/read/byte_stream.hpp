@@ -10,12 +10,12 @@
 
 namespace rigcal::datasets {
 
-/// Damaged bytes; what() says in words what is wrong.
+/// Thrown for damaged bytes; what() describes the damage in words.
 class DamagedBytes : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Bytes that come one after the other.
+/// A stream of bytes that is read in order.
 class ByteStream {
  public:
   ByteStream() = default;
@@ -26,14 +26,15 @@ class ByteStream {
   /// Number of bytes that were read or skipped.
   std::uint64_t position() const { return position_; }
 
-  /// @throws DamagedBytes  there are fewer
+  /// @throws DamagedBytes  if fewer bytes are left
   void read(void* to, std::size_t bytes);
   virtual void skip(std::uint64_t bytes);
 
-  /// @throws DamagedBytes  something follows, or the stream says that it is damaged
+  /// Checks that the stream ends here.
+  /// @throws DamagedBytes  if more bytes follow, or if the stream detects damage
   virtual void finish() = 0;
 
-  /// Reads up to `bytes`; 0 at the end alone.
+  /// Reads up to `bytes` bytes and returns their number, which is 0 only at the end.
   virtual std::size_t next(char* to, std::size_t bytes) = 0;
 
  protected:
@@ -43,12 +44,13 @@ class ByteStream {
   std::uint64_t position_ = 0;
 };
 
-/// A range of a file. One at a time may be in use of a file: it moves the file's own position.
+/// A range of a file. Only one may be in use per file at a time, because it moves the file's
+/// position.
 class FileBytes : public ByteStream {
  public:
   FileBytes(std::ifstream& file, std::uint64_t begin, std::uint64_t bytes);
   std::size_t next(char* to, std::size_t bytes) override;
-  /// Skipped bytes are not read.
+  /// Moves on without reading the skipped bytes.
   void skip(std::uint64_t bytes) override;
   void finish() override;
 
@@ -57,13 +59,13 @@ class FileBytes : public ByteStream {
   std::uint64_t left_;
 };
 
-/// Inflated bytes of a compressed range of a file.
+/// Bytes inflated from a compressed range of a file.
 class InflatedBytes : public ByteStream {
  public:
   InflatedBytes(std::ifstream& file, std::uint64_t begin, std::uint64_t bytes);
   ~InflatedBytes() override;
   std::size_t next(char* to, std::size_t bytes) override;
-  /// Also checks that the checksum is right and that nothing follows the compressed data.
+  /// Also verifies the checksum, and that nothing follows the compressed data.
   void finish() override;
 
  private:

@@ -21,7 +21,7 @@ constexpr char kDone = 'd';
 constexpr char kRefused = 'r';
 constexpr char kNoMemory = 'm';
 
-/// The text that `read` returns there.
+/// Returns the text that `read` produces in the separate process.
 std::string read_confined(const std::filesystem::path& path, const ConfinedReader& reader,
                           const std::function<std::string()>& read) {
   const std::string name = path.string();
@@ -56,7 +56,7 @@ std::string read_confined(const std::filesystem::path& path, const ConfinedReade
   return text.substr(1);
 }
 
-/// Takes the text before the next NUL off the front.
+/// Removes the text before the next NUL from the front, and returns it.
 std::string next_text(std::string_view& text) {
   const std::size_t end = std::min(text.find('\0'), text.size());
   std::string part(text.substr(0, end));
@@ -64,7 +64,7 @@ std::string next_text(std::string_view& text) {
   return part;
 }
 
-/// Packs the labels as texts that each end with a NUL, followed by the numbers.
+/// Packs the labels as NUL-terminated texts, followed by the numbers.
 std::string packed(RecordTable table) {
   table.labels.resize(table.columns.size());
   std::string text;
@@ -89,7 +89,8 @@ RecordTable unpacked(std::string_view text, std::size_t columns) {
   return table;
 }
 
-/// Joins texts that end with a NUL each: name, unit, and the remark of the format about the column.
+/// Joins NUL-terminated texts for each column: name, unit, and the format's remarks about the
+/// column.
 std::string joined(const std::vector<RecordColumn>& columns) {
   std::string text;
   for (const RecordColumn& column : columns) {

@@ -10,23 +10,25 @@
 
 namespace rigcal::datasets {
 
-/// A library that reads files of a format in a separate process (common/confined.hpp), in words.
+/// Describes, for messages, a library that reads a file format in a separate process
+/// (common/confined.hpp).
 struct ConfinedReader {
   std::string_view library;  ///< "HDF5"
   std::string_view format;   ///< "a MAT file"
-  std::string_view advice;   ///< advice for a file that crashes it
+  std::string_view advice;   ///< advice for a file that crashes the library
 };
 
-/// Calls `read` in a separate process with limits of memory and time. A crash, an endless loop or
-/// an excessive allocation there becomes an error about the file.
+/// Calls `read` in a separate process with limits on memory and time. A crash, an endless loop or
+/// an excessive allocation in that process is reported as an error about the file.
 ///
-/// @param columns  number of columns of equal length that `read` returns, each with a label or none
-/// @param read     may throw InputError of this file, and std::bad_alloc
-/// @throws InputError  from `read`, or the process did not finish
+/// @param columns  number of columns that `read` returns, all of the same length; labels are
+///                 optional
+/// @param read     may throw InputError about this file, and std::bad_alloc
+/// @throws InputError  if `read` throws it, or if the process does not finish
 RecordTable load_confined(const std::filesystem::path& path, const ConfinedReader& reader,
                           std::size_t columns, const std::function<RecordTable()>& read);
 
-/// The same for a list of columns.
+/// Calls `list` in the way that load_confined() calls `read`.
 std::vector<RecordColumn> list_confined(const std::filesystem::path& path,
                                         const ConfinedReader& reader,
                                         const std::function<std::vector<RecordColumn>()>& list);

@@ -4,8 +4,8 @@
 
 namespace rigcal::datasets {
 
-/// Numbers that are taken from one file at most. 96 MB of them: with the window on a text file,
-/// loading stays below 200 MB.
+/// Maximum number of values read from one file. They take 96 MB. With the buffer for a text file,
+/// loading needs less than 200 MB.
 inline constexpr std::size_t kMostValues = 12'000'000;
 
 }  // namespace rigcal::datasets

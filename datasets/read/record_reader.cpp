@@ -18,7 +18,7 @@
 namespace rigcal::datasets {
 namespace {
 
-/// One row per format; a file belongs to the first row whose sniff says so.
+/// One row per format. A file belongs to the first row whose `sniff` accepts it.
 constexpr std::array kReaders{
     RecordReader{"MAT", ".mat", is_mat_file, mat_record_columns, load_mat_record, kHowToSaveMat},
     RecordReader{"HDF5", ".h5 .hdf5", is_hdf5_file, hdf5_record_columns, load_hdf5_record,
@@ -32,7 +32,7 @@ constexpr std::array kReaders{
 /// A known format that rigcal does not read.
 struct OtherFormat {
   std::string_view name;
-  std::string_view extensions;  ///< empty: recognised by its bytes alone
+  std::string_view extensions;  ///< empty: recognised only by its bytes
   bool (*sniff)(std::string_view bytes);
   std::string_view instead;
 };
@@ -85,7 +85,7 @@ constexpr std::array kOtherFormats{
                 "the file in it (unxz)"},
 };
 
-/// Extensions of text files that loggers write; other text files have them, too.
+/// Extensions of text files that loggers write. Other text files have them, too.
 constexpr std::string_view kTextExtensions = ".txt .dat .lvm .tsv .asc";
 
 constexpr bool is_complete(const RecordReader& reader) {
@@ -102,7 +102,8 @@ std::string lower_extension(const std::filesystem::path& path) {
   return extension;
 }
 
-/// A file that is not regular has no start: a pipe would give its bytes only once.
+/// Reads the start of a file; empty unless the file is regular, because a pipe provides its bytes
+/// only once.
 FileStart start_of(const std::filesystem::path& path) {
   FileStart start{lower_extension(path), {}};
   std::error_code error;
@@ -114,7 +115,7 @@ FileStart start_of(const std::filesystem::path& path) {
   return start;
 }
 
-/// Calls `take` with each of the extensions.
+/// Calls `take` for each extension in a list.
 template <typename Take>
 void for_each_extension(std::string_view rest, Take take) {
   while (!rest.empty()) {
@@ -124,7 +125,7 @@ void for_each_extension(std::string_view rest, Take take) {
   }
 }
 
-/// "a, b or c"
+/// Joins words as in "a, b or c".
 std::string listed(const std::vector<std::string_view>& words) {
   std::string text;
   for (std::size_t i = 0; i < words.size(); ++i) {
@@ -140,7 +141,7 @@ bool has_extension(std::string_view extensions, const std::string& extension) {
   return found;
 }
 
-/// @throws InputError  the file has a known format that rigcal does not read
+/// @throws InputError  if the file has a known format that rigcal does not read
 void refuse_other_format(const std::filesystem::path& path, const FileStart& start) {
   const auto other =
       std::find_if(kOtherFormats.begin(), kOtherFormats.end(), [&](const OtherFormat& format) {

@@ -9,31 +9,35 @@
 
 namespace rigcal::datasets {
 
-/// A format of recordings.
+/// A file format for recordings.
 struct RecordReader {
   std::string_view name;        ///< "MAT"
-  std::string_view extensions;  ///< by which `init` finds recordings in a folder: ".h5 .hdf5"
+  std::string_view extensions;  ///< used by `init` to find recordings in a folder: ".h5 .hdf5"
   bool (*sniff)(const FileStart& start);
-  /// Every column that `load` could read, in the order of the file.
-  /// @throws InputError
+  /// Lists every column that `load` can read, in file order.
+  /// @throws InputError  if the file cannot be read
   std::vector<RecordColumn> (*columns)(const std::filesystem::path& path);
-  /// @throws InputError  file and place within it, what was found and what was expected
-  /// @throws std::invalid_argument  the time column is not among the columns
+  /// Reads the requested columns.
+  /// @throws InputError  if they cannot be read; the message gives the file and the place in it,
+  ///                     what was found and what was expected
+  /// @throws std::invalid_argument  if the time column is not among the columns
   RecordTable (*load)(const std::filesystem::path& path, const RecordRequest& request);
-  std::string_view if_empty;  ///< advice for a file without columns
+  std::string_view if_empty;  ///< advice if a file has no columns
 };
 
-/// Format of a file: the first of the table that accepts it. CSV accepts what no other does.
-/// @throws InputError  the file has a known format that rigcal does not read
+/// Returns the format of a file: the first one in the table that accepts it. CSV accepts whatever
+/// no other format accepts.
+/// @throws InputError  if the file has a known format that rigcal does not read
 const RecordReader& record_reader(const std::filesystem::path& path);
 
-/// Whether the name of a file is that of a recording.
+/// Whether the name of a file is that of a recording in a format that rigcal reads.
 bool has_record_name(const std::filesystem::path& path);
 
-/// Whether it may be that of one: text files have it, too (".txt", ".dat").
+/// Whether the name may be that of a recording, like ".txt" and ".dat", which other text files
+/// have, too.
 bool may_be_recording(const std::filesystem::path& path);
 
-/// Whether it is that of a recording in a format that is not read.
+/// Whether the name is that of a recording in a format that rigcal does not read.
 bool has_other_format_name(const std::filesystem::path& path);
 
 /// Names and extensions of all formats, for messages: "CSV, MAT or ...", ".csv, .mat or ...".

@@ -16,7 +16,7 @@ constexpr std::array<std::string_view, 30> kUnits{
     "in", "bar", "mbar", "Pa",   "kPa", "MPa", "psi",  "N",   "kN",  "lbf",
     "K",  "C",   "degC", "degF", "mA",  "A",   "inch", "hPa", "deg", "rad"};
 
-/// Common spellings of units, in lower case, with the unit they mean.
+/// Common spellings of units, in lower case, with the units that they mean.
 constexpr std::array kSpellings{std::pair<std::string_view, std::string_view>{"c", "degC"},
                                 std::pair<std::string_view, std::string_view>{"deg c", "degC"},
                                 std::pair<std::string_view, std::string_view>{"deg f", "degF"},
@@ -30,7 +30,7 @@ constexpr std::array kSpellings{std::pair<std::string_view, std::string_view>{"c
                                 std::pair<std::string_view, std::string_view>{"kg/cm^2", "kgf/cm2"},
                                 std::pair<std::string_view, std::string_view>{"lbs", "lbf"}};
 
-/// After these words a lone A means a chamber, not amperes.
+/// After one of these words, an isolated A means a chamber, not amperes.
 constexpr std::array<std::string_view, 5> kChamberWords{"p", "pressure", "chamber", "druck",
                                                         "kammer"};
 
@@ -64,7 +64,7 @@ bool is_unit(std::string_view text) {
   }
 }
 
-/// Whether a unit is that of a pure number, "1" or "-".
+/// Whether a unit is that of a pure number, such as "1" or "-".
 bool is_one(const std::string& unit) {
   try {
     return unit_conversion(unit, "1").scale == 1.0;
@@ -120,7 +120,7 @@ std::optional<UnitInName> in_brackets(std::string_view name) {
         before.empty() ? last
                        : last.substr(before.back().begin, before.back().end - before.back().begin);
     const std::string unit = unit_of_text(inside);
-    // A lone letter, such as the "g" of a gauge pressure, is a unit only if it is a common one.
+    // A single letter, such as the "g" of a gauge pressure, must be a common unit.
     const bool is_letter =
         inside.size() == 1 && std::isalpha(static_cast<unsigned char>(inside[0])) != 0;
     const bool is_usual = !is_letter || is_among(kUnits, unit);
@@ -131,7 +131,7 @@ std::optional<UnitInName> in_brackets(std::string_view name) {
   return found;
 }
 
-/// Start of the last part of "/run1/x", "Sheet1!x" or "log.signals(2).values".
+/// Returns where the last part of "/run1/x", "Sheet1!x" or "log.signals(2).values" begins.
 std::size_t begin_of_last(std::string_view path) {
   std::size_t begin = path.starts_with('/') ? path.rfind('/') + 1 : 0;
   for (const char before : {'!', '.'})
@@ -140,8 +140,8 @@ std::size_t begin_of_last(std::string_view path) {
   return begin;
 }
 
-/// Priority among several units in one name. Those that may be words or names come last: "position
-/// in mm".
+/// Priority among several units in one name. Units that may also be words or names come last, as in
+/// "position in mm".
 int weight_of(std::string_view unit) {
   if (unit == "pa" || is_among(kWords, unit)) return 0;
   return unit.size() == 1 ? 1 : 2;
@@ -153,8 +153,9 @@ bool is_number(std::string_view name, const Part& part) {
                      [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
-/// Returns the last unit of the highest weight. A "pa" that ends a name counts as a unit. A unit
-/// that is also a word counts only if nothing but a number follows: not the "in" of "duty_in_pct".
+/// Returns the last unit with the highest priority. A "pa" at the end of a name counts as a unit. A
+/// unit that is also a word counts only if nothing but a number follows, unlike the "in" of
+/// "duty_in_pct".
 std::optional<UnitInName> behind_a_word(std::string_view name) {
   const std::size_t first = begin_of_last(name);
   std::vector<Part> parts = name_parts(name.substr(first));

@@ -7,7 +7,7 @@
 
 namespace rigcal::datasets {
 
-/// Model output for a recorded channel; empty for channels that only drive the model.
+/// Model output that a recorded channel measures; empty for channels that only drive the model.
 std::optional<model::Output> model_output(Channel channel);
 
 }  // namespace rigcal::datasets

@@ -15,7 +15,7 @@
 namespace rigcal::datasets {
 namespace {
 
-/// The record whose drive a condition with a recorded waveform repeats.
+/// Loads the record that provides the drive, if the waveform of the condition is recorded.
 std::optional<Record> driving_record(const Campaign& campaign, const Condition& condition) {
   if (condition.waveform != Waveform::recorded) return std::nullopt;
   if (!condition.has_record())
@@ -62,7 +62,7 @@ SynthesisReport synthesize(const Campaign& campaign, std::uint64_t seed,
       samples += static_cast<long>(repeat.record.time_s.size());
     }
   });
-  // The campaign file comes last: without it an interrupted run is no campaign.
+  // The campaign file comes last: without it, the output of an interrupted run is not a campaign.
   write(out / "truth.json", truth_json(truth, seed, fates));
   SynthesisReport report;
   report.campaign_file = out / "campaign.toml";

@@ -20,21 +20,22 @@ struct SynthesisReport {
   long samples = 0;
 };
 
-/// Records of a known rig. Simulates every condition of the campaign at its true values
-/// ([synthetic]), adds the noise that [synthetic] states, and writes `campaign.toml`,
-/// `records/*.csv` and `truth.json` into `out`, each labelled as synthetic. The same seed gives the
-/// same bytes on any machine and for any number of threads; every repeat and channel has its own
-/// random stream.
+/// Creates records of a known rig. Simulates every condition of the campaign with its true values
+/// from [synthetic], adds the noise stated there, and writes `campaign.toml`, `records/*.csv` and
+/// `truth.json` to `out`, each labelled as synthetic. The same seed gives the same bytes on any
+/// machine and for any number of threads, because every repeat and channel has its own random
+/// stream.
 ///
-/// @param write  receives the path of each file below `out` and its text, from several threads at a
-///               time and the campaign file last
-/// @throws InputError     no [synthetic] section, or a condition without duration and sample rate
-/// @throws NoResultError  a condition could not be simulated
+/// @param write  receives the path of each file below `out` and its text; called from several
+///               threads at a time, with the campaign file last
+/// @throws InputError     if there is no [synthetic] section, or if a condition has no duration and
+///                        sample rate
+/// @throws NoResultError  if a condition could not be simulated
 SynthesisReport synthesize(const Campaign& campaign, std::uint64_t seed,
                            const std::filesystem::path& out, int threads,
                            const WriteText& write = write_file_atomically);
 
-/// Names of the files that synthesize() writes for a campaign, relative to its folder.
+/// Names of the files that synthesize() writes for a campaign, relative to its output folder.
 std::vector<std::filesystem::path> synthetic_file_names(const Campaign& campaign);
 
 }  // namespace rigcal::datasets

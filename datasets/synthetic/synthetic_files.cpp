@@ -24,15 +24,15 @@ double in_file_unit(double value_si, const UnitConversion& to_si) {
   return (value_si - to_si.offset) / to_si.scale;
 }
 
-/// Scope of the true value of one parameter.
+/// A true value of one parameter, and its scope.
 struct TrueValue {
   Scope scope = Scope::rig;
   std::string level;  ///< leak level or condition; empty for the rig
   double value = 0.0;
 };
 
-/// Values of one parameter by a key of the conditions; empty if two conditions of the same key, or
-/// one without a key, make that impossible.
+/// Groups the values of one parameter by a key of the conditions. Returns nullopt if two conditions
+/// with the same key have different values, or if a condition has no key.
 std::optional<std::map<std::string, double>> grouped(
     const Campaign& truth, int index,
     const std::function<std::optional<std::string>(const Condition&)>& key_of) {
@@ -46,7 +46,8 @@ std::optional<std::map<std::string, double>> grouped(
   return groups;
 }
 
-/// The widest scope in which a parameter has one value, but none wider than the campaign gives it.
+/// Finds the widest scope in which a parameter has a single value, but none wider than in the
+/// campaign.
 std::vector<TrueValue> true_values(const Campaign& truth, int index) {
   const ParameterSetting* setting = truth.setting(index);
   const Scope declared = setting == nullptr ? Scope::rig : setting->scope;

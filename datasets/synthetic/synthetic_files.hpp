@@ -14,22 +14,22 @@ namespace rigcal::datasets {
 /// @param repeat  from 1
 std::string synthetic_record_path(const std::string& condition, int repeat);
 
-/// Column of a channel in a synthetic record: the campaign's, or the channel's key where the
-/// campaign names columns per repeat only.
+/// Column for a channel in a synthetic record: the one named in the campaign, or the channel's key
+/// if the campaign names columns only per repeat.
 std::string synthetic_column(const Campaign& campaign, Channel channel);
 
-/// A record as CSV in the columns and units of the campaign, 10 significant digits, labelled as
-/// synthetic in its first line.
-/// @throws InputError  a column name that contains the separator
+/// Returns a record as CSV, with the campaign's columns and units and 10 significant digits. The
+/// first line labels it as synthetic.
+/// @throws InputError  if a column name contains the separator
 std::string synthetic_csv(const Campaign& campaign, const Repeat& repeat, std::uint64_t seed);
 
-/// The campaign file for the synthetic records: `synthetic = true` in place of [synthetic], the
-/// name with " (synthetic)", and `repeats` per condition.
+/// Returns the campaign file for the synthetic records, with `synthetic = true` instead of
+/// [synthetic], " (synthetic)" added to the name, and `repeats` for each condition.
 std::string synthetic_campaign_text(const Campaign& campaign, std::uint64_t seed);
 
-/// truth.json (schema "rigcal.truth/1"): every true value by name, scope and level, the settings of
-/// the noise, and the disturbances of each repeat.
-/// @param fates  per condition, per repeat
+/// Returns the text of truth.json (schema "rigcal.truth/1"): every true value by name, scope and
+/// level, the noise settings, and the disturbances of each repeat.
+/// @param fates  shape (conditions, repeats)
 std::string truth_json(const Campaign& truth, std::uint64_t seed,
                        const std::vector<std::vector<RepeatFate>>& fates);
 

@@ -17,7 +17,7 @@ constexpr double kRoomTemperatureK = 293.15;
 
 using Channels = std::map<Channel, std::vector<double>>;
 
-/// Whether a force channel is the load on the rig, not the reading of a load cell.
+/// Whether a force channel is the load on the rig rather than the reading of a load cell.
 bool is_external_force(const Campaign& campaign, Channel channel) {
   return channel == Channel::force && campaign.channels.at(channel).role == ChannelRole::input;
 }
@@ -75,8 +75,8 @@ model::SimulationInputs inputs_with_ripple(const Campaign& truth, const Conditio
   return inputs;
 }
 
-/// Times of the run at the samples of a record that began `late_s` before it. The first instant of
-/// the run represents all times before it and is always included, because the simulation starts
+/// Times of the run at the samples of a record that began `late_s` earlier. The first instant of
+/// the run represents all times before it. It is always included, because the simulation starts
 /// there.
 struct RunTimes {
   std::vector<double> run_s;        ///< increasing
@@ -92,7 +92,7 @@ RunTimes run_times(const std::vector<double>& time_s, double late_s) {
   return times;
 }
 
-/// Readings of perfect sensors.
+/// Simulates the readings of perfect sensors.
 Channels clean_channels(const Campaign& truth, const Condition& condition, const Record* record,
                         const std::vector<double>& time_s, const RepeatFate& fate) {
   auto values = values_in(truth, condition);
@@ -149,7 +149,7 @@ double setting_of(const std::map<Channel, double>& settings, Channel channel) {
   return found == settings.end() ? 0.0 : found->second;
 }
 
-/// Drift, noise, then the converter.
+/// Adds drift and noise, then applies the converter.
 void disturb(std::vector<double>& x, Channel channel, const SyntheticSettings& settings,
              const std::string& condition, const std::string& repeat, std::uint64_t seed) {
   const auto stream_of = [&](std::string_view purpose) {

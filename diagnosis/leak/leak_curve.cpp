@@ -6,7 +6,7 @@
 namespace rigcal::diagnosis {
 namespace {
 
-/// Value and slope at one place between or beyond points.
+/// Value and slope at one coefficient.
 struct ValueAt {
   double value = 0.0;
   double slope = 0.0;
@@ -29,8 +29,8 @@ ValueAt hermite(const std::vector<LeakPoint>& points, double LeakPoint::*member,
   const double width = b.coefficient - a.coefficient;
   const double t = (coefficient - a.coefficient) / width;
   const double secant = (b.*member - a.*member) / width;
-  // Newton's form: the value at a, the slope at a, and the terms of the secant and of the slope at
-  // b.
+  // Newton's form: the value at a, the slope at a, and the terms for the secant and for the slope
+  // at b.
   const double second = secant - a.*slope;
   const double third = a.*slope + b.*slope - 2.0 * secant;
   const double step = width * t;
@@ -38,8 +38,8 @@ ValueAt hermite(const std::vector<LeakPoint>& points, double LeakPoint::*member,
           a.*slope + t * (2.0 * second + (3.0 * t - 2.0) * third)};
 }
 
-/// At zero the slope is that of a leak so small that it is proportional to its coefficient:
-/// |leakage flow| has no derivative there.
+/// At zero, where |leakage flow| has no derivative, the slope is that of a leak so small that it is
+/// proportional to its coefficient.
 constexpr double kProportional = 0.02;
 
 LeakPoint without_leak(const LeakAt& leak_at, double next) {
@@ -78,8 +78,8 @@ double LeakCurve::share_slope(double coefficient) const {
 
 LeakCurve curve_about(const LeakAt& leak_at, double coefficient, double reach) {
   const double low = coefficient - reach;
-  // Near zero the curve is a straight line through zero. Records without a leak then need the same
-  // simulation.
+  // Close to zero, the curve is a straight line through zero, so that all records without a leak
+  // need the same simulation.
   const bool none = coefficient <= kProportional * reach;
   const double high = none ? reach : coefficient + reach;
   std::vector<LeakPoint> points{low > 0.0 ? leak_at(low) : without_leak(leak_at, high)};

@@ -5,7 +5,7 @@
 
 namespace rigcal::diagnosis {
 
-/// Simulated leak at one coefficient, with its derivatives by the coefficient.
+/// A simulated leak at one coefficient, with derivatives with respect to the coefficient.
 struct LeakPoint {
   double coefficient = 0.0;
   double share = 0.0;               ///< see steady_leak()
@@ -14,18 +14,20 @@ struct LeakPoint {
   double flow_slope = 0.0;
 };
 
-/// Simulates a coefficient, which is above 0.
+/// Simulates the leak for a coefficient above 0.
 using LeakAt = std::function<LeakPoint(double coefficient)>;
 
-/// Share and flow over the coefficient where one record may be: through simulated points, with the
-/// simulated slope at each (cubic Hermite), straight on beyond the last.
+/// Interpolates leak share and flow between simulated coefficients, which cover the plausible range
+/// for one record. Between points it is a cubic Hermite polynomial with the simulated values and
+/// slopes; beyond the last point it is a straight line.
 class LeakCurve {
  public:
-  /// @param points  by increasing coefficient, none negative, at least 2
-  /// @throws std::invalid_argument  fewer, or not increasing
+  /// @param points  at least 2, with increasing coefficients >= 0
+  /// @throws std::invalid_argument  if there are fewer points, if a coefficient is negative, or if
+  ///                                they do not increase
   explicit LeakCurve(std::vector<LeakPoint> points);
 
-  /// 0 where the coefficient is not positive.
+  /// Returns 0 if the coefficient is not positive.
   double share(double coefficient) const;
   double leak_flow_m3_per_s(double coefficient) const;
   double share_slope(double coefficient) const;
@@ -35,9 +37,9 @@ class LeakCurve {
   std::vector<LeakPoint> points_;
 };
 
-/// The curve about an estimate. It is simulated at the estimate itself, so that its share is exact,
-/// and at both ends of the range of the coefficient; from 0, without a leak, if that is in the
-/// range.
+/// Builds the curve around an estimate. The leak is simulated at the estimate itself, so that its
+/// share is exact, and at both ends of the range of the coefficient. If the range includes 0, the
+/// curve starts there, without a leak.
 ///
 /// @param reach  half the width of the interval of interest, above 0
 LeakCurve curve_about(const LeakAt& leak_at, double coefficient, double reach);

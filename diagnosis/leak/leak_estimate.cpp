@@ -13,13 +13,13 @@
 namespace rigcal::diagnosis {
 namespace {
 
-/// Number of equally probable values of the coefficient, and of the error of its share: class
+/// Numbers of equally probable values for the coefficient and for the error of its share. Class
 /// probabilities have a resolution of 1 / 6015.
 constexpr int kDraws = 401;
 constexpr int kBlurs = 15;
-/// Below this an error is that of the arithmetic.
+/// Errors below this are due to rounding.
 constexpr double kLeastShareError = 1e-7;
-/// A quantile of the share is found to this, or after so many steps.
+/// Tolerance for a quantile of the share, and the maximum number of steps to find it.
 constexpr double kQuantileError = 1e-15;
 constexpr int kQuantileSteps = 120;
 
@@ -45,7 +45,7 @@ class ShareDistribution {
     std::sort(shares_.begin(), shares_.end());
   }
 
-  /// Calls with equally probable shares, blurred ones too, which may be negative.
+  /// Calls `take` with equally probable shares, including blurred ones, which may be negative.
   template <typename Take>
   void for_each(Take take) const {
     std::array<double, kBlurs> blurs{};
@@ -56,9 +56,10 @@ class ShareDistribution {
     }
   }
 
-  /// Share that is exceeded with the probability 1 - p, given that it is not negative: by
-  /// Newton's method from the share of that rank, between the bounds that its steps narrow: where
-  /// the blur is small the distribution is a staircase, and a step that leaves them is a bisection.
+  /// Returns the share that is exceeded with probability 1 - p, given that it is not negative.
+  /// Newton's method starts at the share of that rank, and its steps narrow the bounds. If the blur
+  /// is small, the distribution is a staircase, so a step beyond the bounds is replaced by a
+  /// bisection.
   double quantile(double p) const {
     double low = 0.0;
     double high = std::min(1.0, shares_.back() + 10.0 * blur_);
@@ -85,7 +86,7 @@ class ShareDistribution {
     return sum / static_cast<double>(shares_.size());
   }
 
-  /// Derivative of raw_below().
+  /// Derivative of raw_below() with respect to x.
   double density(double x) const {
     double sum = 0.0;
     for (const double share : shares_) sum += std::exp(-0.5 * squared((x - share) / blur_));
@@ -97,10 +98,10 @@ class ShareDistribution {
   std::vector<double> shares_;
 };
 
-/// Prior density of a share, up to a factor: 1 / (offset + share), decreasing and without a step at
-/// any limit. The offset makes a normal machine as probable as one with a slight leak: (offset +
+/// Prior density of a share, up to a factor: 1 / (offset + share), which decreases and has no step
+/// at any limit. The offset makes a normal machine as probable as one with a slight leak: (offset +
 /// first)^2 = offset (offset + second). If the second limit is less than twice the first, no offset
-/// does so, and every share is equally probable.
+/// achieves this, and every share is equally probable.
 class Prior {
  public:
   explicit Prior(const datasets::DiagnosisSettings& settings) {
@@ -127,7 +128,7 @@ std::array<double, kClassCount> class_probabilities(const ShareDistribution& sha
   return probability;
 }
 
-/// Sets the 95 % interval of the coefficient. Without a detected leak the upper limit comes from
+/// Sets the 95 % interval of the coefficient. If no leak is detected, the upper limit comes from
 /// the distribution truncated at 0, so it is above 0 however negative the estimate is.
 void set_interval(double half_width, LeakEstimate& estimate) {
   const double coefficient = estimate.coefficient;

@@ -25,17 +25,18 @@ using datasets::Condition;
 using datasets::Record;
 
 constexpr const char* kLeak = "leakage_coefficient";
-/// For one leak and a few nuisance parameters, from the best point of a scan. A fit that takes more
-/// is reported as not converged.
+/// Enough for one leak and a few nuisance parameters, starting from the best point of a scan. A fit
+/// that needs more iterations is reported as not converged.
 constexpr int kIterations = 40;
-/// Fraction of the largest coefficient of a scan at which the effects are simulated with a leak.
+/// Fraction of the largest coefficient in a scan at which the effects are simulated with a leak.
 constexpr double kLeastOfLargest = 0.1;
 
 void erase_value(datasets::Overrides& overrides, int index) {
   std::erase_if(overrides, [index](const auto& entry) { return entry.first == index; });
 }
 
-/// The campaign's own value, bounds and all, but from 0 and estimated for every record.
+/// Returns the campaign's setting for the coefficient, but with bounds from 0 to the largest valid
+/// value, and to be estimated for every record.
 datasets::ParameterSetting free_leak(const Campaign& campaign, int index) {
   const auto row = static_cast<std::size_t>(index);
   const model::ParameterSpec& spec = model::parameter_table(campaign.rig.plant)[row];
@@ -51,13 +52,13 @@ datasets::ParameterSetting free_leak(const Campaign& campaign, int index) {
   return setting;
 }
 
-/// Weighted residuals of a record and all derivatives, at the end of the fit; the priors of the
-/// unknowns are separate.
+/// Weighted residuals of a record and all their derivatives at the end of the fit. The priors of
+/// the unknowns are separate.
 struct Linear {
   Eigen::MatrixXd jacobian;      ///< shape (residuals, unknowns), SI
   Eigen::MatrixXd rig_jacobian;  ///< shape (residuals, rig parameters), SI
   Eigen::VectorXd residual;      ///< simulated minus measured, weighted
-  Eigen::VectorXd prior_weight;  ///< 1 / sd of each unknown's prior, 0 where there is none
+  Eigen::VectorXd prior_weight;  ///< 1 / sd of each unknown's prior, 0 if it has none
   Eigen::VectorXd prior_residual;
 };
 
@@ -97,7 +98,7 @@ Linear linearise(const calib::Problem& problem, const model::Simulation& run) {
   return {rows.leftCols(own), rows.middleCols(own, all - own), rows.col(all), {}, {}};
 }
 
-/// The R factor of the samples and priors, whose singular values show what is determined.
+/// Returns the R factor of samples and priors. Its singular values show what is determined.
 calib::Linearisation with_priors(const Linear& linear) {
   const Eigen::Index p = linear.jacobian.cols();
   const Eigen::Index samples = linear.jacobian.rows();
@@ -109,7 +110,7 @@ calib::Linearisation with_priors(const Linear& linear) {
   return {r_factor.get().leftCols(p), r_factor.get().col(p)};
 }
 
-/// Record minus simulated position at the samples that count [m].
+/// Measured minus simulated position at the samples that count [m].
 std::vector<double> position_residual(const calib::ProblemCondition& condition,
                                       const Eigen::VectorXd& simulated) {
   const auto& measured = condition.record->channels.at(datasets::Channel::position).mean;
@@ -124,9 +125,9 @@ std::string in_words(const model::Simulation& run) {
                      model::to_string(run.status));
 }
 
-/// Sets what the quantities that differ between days do to the coefficient and to the position.
+/// Sets how the quantities that differ between days change the coefficient and the position.
 ///
-/// @param weight  of each weighted residual in the coefficient, channel after channel
+/// @param weight  weight of each weighted residual in the coefficient, channel after channel
 void set_day_effects(const calib::ProblemCondition& condition, const model::Simulation& run,
                      std::size_t position, const std::vector<int>& free,
                      const std::vector<calib::DayQuantity>& quantities,
@@ -149,10 +150,10 @@ void set_day_effects(const calib::ProblemCondition& condition, const model::Simu
                             static_cast<double>(std::max<Eigen::Index>(1, samples)));
 }
 
-/// Change of the coefficient per unit of each effect. What acts without a leak is in the healthy
-/// reference already, if there is one.
+/// Change of the coefficient per unit of each effect. If there is a healthy reference, it already
+/// includes what acts without a leak.
 ///
-/// @param weight  of each weighted residual in the coefficient, channel after channel
+/// @param weight  weight of each weighted residual in the coefficient, channel after channel
 Eigen::VectorXd moves_by_effects(const calib::ProblemCondition& condition,
                                  const LeakEffects& effects, const Eigen::VectorXd& weight,
                                  double coefficient, bool has_reference) {
@@ -168,7 +169,7 @@ Eigen::VectorXd moves_by_effects(const calib::ProblemCondition& condition,
   return moves;
 }
 
-/// Channels of the record that the model is not compared with: what drives it.
+/// Channels of the record that drive the model and are therefore not compared with it.
 std::map<datasets::Channel, std::vector<double>> driving_channels(
     const calib::ProblemCondition& condition) {
   std::map<datasets::Channel, std::vector<double>> driving;
@@ -187,9 +188,9 @@ std::vector<model::Output> outputs_and_position(const calib::ProblemCondition& c
   return outputs;
 }
 
-/// Simulations at the end of a fit, with and without the leak.
+/// Runs the simulations at the end of a fit, with and without the leak.
 ///
-/// @param healthy  the one without, where it is known
+/// @param healthy  the simulation without the leak, if it is known
 LeakRuns run_both(const calib::Problem& problem, const RigFit& rig, const LeakProblem& leak_problem,
                   const model::ParameterValues& values, const model::Simulation* healthy,
                   const std::atomic<bool>* cancel) {
@@ -216,8 +217,8 @@ LeakRuns run_both(const calib::Problem& problem, const RigFit& rig, const LeakPr
   return runs;
 }
 
-/// Whether the simulation without the leak is that of another record of the condition, whose values
-/// differ by the leak alone.
+/// Whether the simulation without the leak can be reused from another record of the condition,
+/// because its values differ only in the leak.
 bool serves(const LeakRuns& runs, const calib::Problem& problem, model::ParameterValues values,
             int leak) {
   const calib::ProblemCondition& condition = problem.conditions.front();
@@ -228,7 +229,7 @@ bool serves(const LeakRuns& runs, const calib::Problem& problem, model::Paramete
          runs.driving == driving_channels(condition);
 }
 
-/// Describes the record by the simulations at the end of a fit.
+/// Completes `fit` from the simulations made at its end.
 void describe(const calib::Problem& problem, const RigFit& rig, const LeakProblem& leak_problem,
               int reference, const LeakRuns& runs, const LeakEffects* effects, LeakFit& fit) {
   const int leak_row = leak_problem.leak;
@@ -238,7 +239,7 @@ void describe(const calib::Problem& problem, const RigFit& rig, const LeakProble
   const model::Simulation& healthy = runs.healthy;
   const std::vector<int>& free = runs.free;
   const std::size_t position = condition.outputs.size();
-  std::vector<int> rig_columns;  // in the covariance, for each rig parameter that is free here
+  std::vector<int> rig_columns;  // columns in the covariance for rig parameters that are free here
   for (std::size_t j = 0; j < rig.indices.size(); ++j)
     if (column_of(condition.free, rig.indices[j]) < 0) rig_columns.push_back(static_cast<int>(j));
   if (!run.ok() || !healthy.ok()) {
@@ -261,8 +262,8 @@ void describe(const calib::Problem& problem, const RigFit& rig, const LeakProble
   const Eigen::VectorXd left = linear.residual + linear.jacobian * step;
   const auto [covariance, freedom] =
       cluster_sandwich(linear.jacobian, left, bread, clusters_of(condition));
-  // White noise contributes to the variance of the estimate through the samples, priors through
-  // their own.
+  // White noise contributes to the variance of the estimate through the samples, and each prior
+  // with its own variance.
   const Eigen::VectorXd of_priors = linear.prior_weight.asDiagonal() * bread.col(leak);
   const double of_samples = std::max(0.0, bread(leak, leak) - of_priors.squaredNorm());
   const double noise_se =
@@ -272,12 +273,12 @@ void describe(const calib::Problem& problem, const RigFit& rig, const LeakProble
   fit.white_freedom = std::max(1, static_cast<int>(left.size() - step.size()));
   fit.cluster_se = std::sqrt(covariance(leak, leak) + of_priors.squaredNorm());
   fit.cluster_freedom = freedom;
-  // The mean of the healthy repeats has noise too, which the residuals show but is not the
-  // record's.
+  // The mean of the healthy repeats has noise, too. The residuals show it, but it is not in the
+  // record.
   fit.noise_se = noise_se / std::sqrt(1.0 + (reference > 0 ? 1.0 / reference : 0.0));
-  // Convergence of the optimiser does not matter: the last step is taken here, by linear
-  // continuation, which must not be long. A record that is its own reference may have no residual,
-  // so the error of white noise alone is allowed, too.
+  // The optimiser need not have converged, since the last step is taken here by linear
+  // continuation, but that step must not be long. A record that is its own reference may have no
+  // residual, so the error for white noise of unit variance is allowed, too.
   const double error = std::max({fit.white_se, fit.cluster_se, root.row(leak).norm()});
   if (values[kLeak] > 0.0 && std::abs(step(leak)) > error + 1e-3 * values[kLeak]) {
     fit.failure = fmt::format("the leak did not converge: a step of {:.2g} standard errors is left",
@@ -294,7 +295,7 @@ void describe(const calib::Problem& problem, const RigFit& rig, const LeakProble
         moves_by_effects(condition, *effects, weight, fit.coefficient, reference > 0);
   }
   if (!rig_columns.empty()) {
-    // Effects of the rig's parameters without a leak are already in the healthy reference.
+    // The healthy reference already includes the effects of the rig's parameters without a leak.
     const auto columns = static_cast<Eigen::Index>(rig_columns.size());
     Eigen::MatrixXd rig_jacobian = linear.rig_jacobian.leftCols(columns);
     if (reference > 0) rig_jacobian -= linearise(problem, healthy).rig_jacobian;
@@ -322,7 +323,7 @@ calib::Problem problem_of(const LeakProblem& leak_problem, const Condition& cond
                              &leak_problem.values);
 }
 
-/// The condition with windows limited to the times of the record.
+/// Returns the condition with its windows limited to the times that the record covers.
 Condition within(const Condition& condition, const Record& record,
                  const std::optional<datasets::TimeWindow>& covered) {
   Condition result = condition;
@@ -358,7 +359,7 @@ RigFit rig_fit_of(const calib::Fit& fit) {
     if (!p.fitted) continue;
     if (!p.nuisance) rig.values.push_back({p.index, p.scope, p.level, p.value});
     const bool of_rig = !p.nuisance && p.scope == datasets::Scope::rig;
-    if (p.standard_error && !p.correlated) continue;  // a condition's own, without a row
+    if (p.standard_error && !p.correlated) continue;  // belongs to one condition and has no row
     if (!p.standard_error || row >= fit.correlation.rows()) {
       if (!of_rig) continue;
       without_error.push_back(p.index);
@@ -395,7 +396,7 @@ RigFit rig_fit_of(const calib::Fit& fit) {
 }
 
 void RigFit::consider(const calib::EstimateSpread& spread) {
-  // What is looked for is no effect that is left out.
+  // The leak itself, which is to be estimated, is not an effect that was left out.
   const calib::EffectSpread& all = spread.effects;
   std::vector<Eigen::Index> kept;
   effects = {};
@@ -434,7 +435,7 @@ std::shared_ptr<const LeakEffects> leak_effects_of(const LeakProblem& leak_probl
       problem_of(leak_problem, own_condition(leak_problem, condition), records);
   const calib::ProblemCondition& prepared = problem.conditions.front();
   const auto acting = calib::considered_in(problem, problem.start(), rig.effects);
-  // A leak that is seen, so that the difference that it makes is that of effects.
+  // The leak must be large enough to have a visible influence on the effects.
   const double leak = std::max(scan.best_coefficient, kLeastOfLargest * scan.largest_coefficient);
   if (!(leak > 0.0)) return nullptr;
   const auto values_at = [&](double coefficient) {
@@ -453,7 +454,7 @@ std::shared_ptr<const LeakEffects> leak_effects_of(const LeakProblem& leak_probl
   for (std::size_t k = 0; k < result->healthy.size(); ++k) {
     if (!result->healthy[k].allFinite() || !result->by_leak[k].allFinite()) return nullptr;
   }
-  // The share, by the flows of the record.
+  // Computes the share from the flows of the record.
   model::Simulation run =
       model::simulate(prepared.rig, values_at(leak), std::vector<int>(), prepared.inputs,
                       average.time_s, kFlows, problem.simulation_options(leak_problem.cancel));

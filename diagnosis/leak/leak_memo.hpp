@@ -7,11 +7,11 @@
 
 namespace rigcal::diagnosis {
 
-/// Cache of simulated leaks of one condition. Its records need the same leaks, and each simulation
-/// takes a second if the rig approaches its periodic state slowly. Thread-safe.
+/// Cache of simulated leaks for one condition, whose records all need the same leaks. Each
+/// simulation takes a second if the rig approaches its periodic state slowly. Thread-safe.
 class LeakMemo {
  public:
-  /// Returns the leak of a coefficient; simulates it at the first request.
+  /// Returns the leak for a coefficient, which is simulated on the first request.
   LeakPoint at(double coefficient, const LeakAt& simulate) {
     {
       const std::lock_guard lock(mutex_);

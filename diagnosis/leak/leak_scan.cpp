@@ -10,12 +10,12 @@
 namespace rigcal::diagnosis {
 namespace {
 
-/// Steps of the range: a fit finds its way from the nearest.
+/// Ratio between successive coefficients. A fit can converge from the nearest one.
 constexpr double kRatio = 1.35;
 constexpr double kFirst = 1e-3;
 constexpr double kLargest = 1e3;
 
-/// One coefficient, in the record itself.
+/// One simulated coefficient, compared with the record.
 struct Candidate {
   double coefficient = 0.0;
   double share = 0.0;
@@ -68,7 +68,7 @@ LeakScan scan_leaks(const calib::Problem& problem, const calib::ProblemCondition
     return simulate_leak(problem, condition, coefficient, cancel);
   };
   Candidate best = at(0.0);
-  // The coefficient means nothing without its area, so the range begins where a thousandth of the
+  // A coefficient has no meaning without its area, so the range begins where a thousandth of the
   // flow leaks.
   double coefficient = kFirst;
   Candidate point = at(coefficient);
@@ -79,7 +79,7 @@ LeakScan scan_leaks(const calib::Problem& problem, const calib::ProblemCondition
     const bool is_better = point.cost < best.cost;
     if (is_better) best = point;
     if ((point.share >= share_above && !is_better) || coefficient >= kLargest) break;
-    // Coarser steps where the share is small and all but proportional to the coefficient.
+    // Takes larger steps while the share is small and almost proportional to the coefficient.
     coefficient = std::min(kLargest, coefficient * (point.share < 0.02 ? 2.0 : kRatio));
     point = at(coefficient);
   }

@@ -8,20 +8,21 @@
 
 namespace rigcal::diagnosis {
 
-/// The scores of the clusters count as independent: more clusters would be correlated, and fewer
-/// leave few degrees of freedom (fit_leak()).
+/// Number of clusters, whose scores count as independent. More clusters would be correlated, and
+/// fewer would leave few degrees of freedom (fit_leak()).
 inline constexpr int kClusters = 10;
 
-/// The cluster of each sample that counts, from 0: by its phase in the period of a sine or square,
-/// else by its place in the record.
+/// Returns the cluster of each sample that counts, from 0, according to its phase in the period of
+/// a sine or square, or otherwise to its position in the record.
 std::vector<int> clusters_of(const calib::ProblemCondition& condition);
 
-/// Sandwich covariance of the unknowns from residuals that are dependent within a cluster, and its
-/// degrees of freedom: clusters with any information minus unknowns, at least 1. It is multiplied
-/// by clusters over degrees of freedom, because the residuals are those of a fit.
+/// Sandwich covariance of the unknowns for residuals that are dependent within a cluster, and its
+/// degrees of freedom: the number of clusters with any information minus the number of unknowns, at
+/// least 1. The covariance is multiplied by the number of clusters divided by the degrees of
+/// freedom, because the residuals are those of a fit.
 ///
 /// @param jacobian  shape (channels * samples, unknowns), channel after channel
-/// @param residual  shape (channels * samples), at the least squares
+/// @param residual  shape (channels * samples), at the least-squares solution
 /// @param bread     inverse of J^T J
 /// @param clusters  shape (samples)
 std::pair<Eigen::MatrixXd, int> cluster_sandwich(const Eigen::MatrixXd& jacobian,

@@ -11,7 +11,7 @@ namespace {
 
 double power(double x) { return x * x; }
 
-/// Compares the variances of all records with those of white noise.
+/// Whether the variances of all records together exceed those of white noise.
 bool has_misfit(const std::vector<const LeakFit*>& records) {
   double ratios = 0.0;
   double freedom = 0.0;
@@ -31,7 +31,7 @@ SignalErrors signal_errors(const std::vector<std::vector<SingleFit>>& singles,
   SignalErrors errors;
   std::vector<const LeakFit*> records = averages;
   double squares = 0.0;
-  double noise = 0.0;  // that of as many degrees of freedom
+  double noise = 0.0;  // for the same degrees of freedom
   for (const auto& members : singles) {
     if (members.size() < 2) continue;
     double mean = 0.0;
@@ -39,8 +39,8 @@ SignalErrors signal_errors(const std::vector<std::vector<SingleFit>>& singles,
     mean /= static_cast<double>(members.size());
     const double freedom_of_each = 1.0 - 1.0 / static_cast<double>(members.size());
     for (const auto& [fit, corrected_by] : members) {
-      // x minus the mean of r others is (r + 1) / r times as far from zero as x is from the mean of
-      // all.
+      // The distance of x from the mean of r others is (r + 1) / r times its distance from the mean
+      // of all.
       const double spread = corrected_by > 0 ? corrected_by / (corrected_by + 1.0) : 1.0;
       squares += power(spread * (fit->coefficient - mean) * fit->effect_m);
       noise += freedom_of_each * power(fit->noise_se * fit->effect_m);

@@ -18,7 +18,7 @@ bool has_periodic_state(const calib::ProblemCondition& condition) {
          !in.external_force_n && !in.supply_pressure_pa && !in.tank_pressure_pa;
 }
 
-/// Empty where the rig does not become periodic.
+/// Computes the leak in the periodic state; empty if the rig does not become periodic.
 std::optional<SteadyLeak> periodic(const calib::Problem& problem,
                                    const calib::ProblemCondition& condition,
                                    const model::ParameterValues& values, std::span<const int> free,

@@ -22,22 +22,23 @@ struct SteadyLeak {
   double leak_flow_m3_per_s = 0.0;  ///< mean |leakage flow|
   Eigen::VectorXd share_slope;      ///< d share / d parameter, shape (free), SI
   Eigen::VectorXd flow_slope;       ///< d leakage flow / d parameter
-  bool is_periodic = false;         ///< for the periodic state, not the record
+  bool is_periodic = false;         ///< whether it is for the periodic state, not the record
 };
 
-/// The one definition of a share. For a generated sine or square with constant other inputs it is
-/// that of the periodic state, from the same simulation as in a leak table (calib::periodic_flow),
-/// however few periods a record has. With recorded inputs, or if the rig does not become periodic,
-/// there is no periodic state; the flows are then averaged over the record (record_share.hpp).
+/// The only definition of the share. For a generated sine or square with all other inputs constant,
+/// it is the share in the periodic state, from the same simulation as in a leak table
+/// (calib::periodic_flow), however few periods a record has. With recorded inputs, or if the rig
+/// does not become periodic, there is no periodic state, and the flows are averaged over the record
+/// (record_share.hpp).
 ///
 /// @param values  SI, including the leakage coefficient, which must be above 0 for slopes
 /// @param free    table indices for the slopes
-/// @throws NoResultError  the run fails, moves no oil, or has a single sample in the windows
+/// @throws NoResultError  if the run fails, moves no oil, or has only one sample in the windows
 SteadyLeak steady_leak(const calib::Problem& problem, const calib::ProblemCondition& condition,
                        const model::ParameterValues& values, std::span<const int> free,
                        const std::atomic<bool>* cancel = nullptr);
 
-/// Whether the condition is a sine or square of a known frequency.
+/// Whether the condition is a sine or square of known frequency.
 bool is_generated_wave(const datasets::Condition& condition);
 
 }  // namespace rigcal::diagnosis

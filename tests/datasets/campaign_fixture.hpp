@@ -15,14 +15,14 @@ inline datasets::Campaign load_text(const std::string& text) {
   return datasets::load_campaign(folder.write("campaign.toml", text));
 }
 
-/// Line of the first `part` in `text`, from 1.
+/// Number of the line in which `part` first occurs in `text`, from 1.
 inline long line_of(const std::string& text, const std::string& part) {
   const std::size_t at = text.find(part);
   if (at == std::string::npos) throw std::logic_error("the text has no '" + part + "'");
   return 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
 }
 
-/// The example of the contract, with the plant parameters that it leaves out.
+/// The example from the documentation, with the plant parameters that it leaves out.
 inline const std::string kExample = R"(schema = "rigcal.campaign/1"
 name = "UIS shake table"
 

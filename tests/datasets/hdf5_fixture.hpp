@@ -10,7 +10,7 @@
 
 namespace rigcal::test {
 
-/// Writes an HDF5 file piece by piece; missing groups are made.
+/// Writes an HDF5 file piece by piece. Creates missing groups.
 class Hdf5Writer {
  public:
   explicit Hdf5Writer(const std::filesystem::path& path) {
@@ -28,8 +28,8 @@ class Hdf5Writer {
 
   hid_t file() const { return file_; }
 
-  /// An array of doubles, stored as `type`; a vector if no shape is given.
-  /// @param packed  in chunks, by gzip
+  /// Writes an array of doubles, stored as `type`; a vector if no shape is given.
+  /// @param packed  whether to store it in chunks compressed with gzip
   void array(const std::string& path, const std::vector<double>& values,
              std::vector<hsize_t> shape = {}, hid_t type = H5T_IEEE_F64LE,
              bool packed = false) const {
@@ -47,7 +47,7 @@ class Hdf5Writer {
     H5Pclose(plan);
   }
 
-  /// 64-bit integers, which doubles could not give all of.
+  /// Writes 64-bit integers, including those that a double cannot represent.
   void integers(const std::string& path, const std::vector<long long>& values,
                 hid_t type = H5T_STD_I64LE) const {
     const hid_t set = dataset(path, {values.size()}, type, H5P_DEFAULT);
@@ -55,7 +55,7 @@ class Hdf5Writer {
     H5Dclose(set);
   }
 
-  /// A table: a column of doubles per member, stored as `type`.
+  /// Writes a table: a column of doubles per member, stored as `type`.
   void table(const std::string& path,
              const std::vector<std::pair<std::string, std::vector<double>>>& columns,
              hid_t type = H5T_IEEE_F32BE) const {
@@ -76,8 +76,8 @@ class Hdf5Writer {
     H5Tclose(memory);
   }
 
-  /// A chunked vector of `rows` doubles with only the first ones written.
-  /// @param fill  value that HDF5 returns for the others; nothing: HDF5's default of zero
+  /// Writes a chunked vector of `rows` doubles, of which only the first are written.
+  /// @param fill  value that HDF5 returns for the others; null: its default of zero
   void partly_written(const std::string& path, const std::vector<double>& values, hsize_t rows,
                       hsize_t chunk, const double* fill = nullptr) const {
     const hid_t plan = checked(H5Pcreate(H5P_DATASET_CREATE));
@@ -97,12 +97,13 @@ class Hdf5Writer {
     H5Pclose(plan);
   }
 
-  /// A dataset of this type and shape into which nothing is written.
+  /// Creates a dataset with this type and shape, but writes nothing into it.
   void unwritten(const std::string& path, std::vector<hsize_t> shape, hid_t type) const {
     H5Dclose(dataset(path, shape, type, H5P_DEFAULT));
   }
 
-  /// A text of variable length, as h5py writes it, or of fixed length, as others do.
+  /// Writes a text attribute of variable length, like h5py, or of fixed length, like other
+  /// programs.
   void text(const std::string& path, const std::string& name, const std::string& value,
             bool variable = true) const {
     const hid_t type = checked(H5Tcopy(H5T_C_S1));

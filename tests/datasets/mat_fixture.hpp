@@ -12,7 +12,7 @@
 
 namespace rigcal::test {
 
-/// How a MAT file is stored: "-v6", "-v7" and "-v7.3" of MATLAB's save.
+/// Storage of a MAT file: "-v6", "-v7" and "-v7.3" in MATLAB's save.
 enum class MatFormat { v6, v7, v73 };
 
 template <typename Number>
@@ -33,7 +33,7 @@ constexpr matio_types type_of() {
   return MAT_T_DOUBLE;
 }
 
-/// A real array of any shape, column by column; a vector if no shape is given.
+/// Creates a real array of any shape, column by column; a vector if no shape is given.
 template <typename Number>
 matvar_t* mat_array(const std::string& name, const std::vector<Number>& values,
                     std::vector<std::size_t> dims = {}) {
@@ -49,7 +49,7 @@ inline matvar_t* mat_text(const std::string& name, const std::string& text) {
                        const_cast<char*>(text.data()), 0);
 }
 
-/// A struct array: one list of fields per element, all with the same names.
+/// Creates a struct array: one list of fields per element, all with the same names.
 inline matvar_t* mat_struct(const std::string& name,
                             const std::vector<std::vector<matvar_t*>>& elements) {
   std::vector<const char*> names;
@@ -62,7 +62,7 @@ inline matvar_t* mat_struct(const std::string& name,
   return result;
 }
 
-/// Writes variables, which it takes over, through matio.
+/// Writes variables using matio, and frees them.
 inline void write_mat(const std::filesystem::path& path, MatFormat format,
                       const std::vector<matvar_t*>& variables) {
   std::filesystem::create_directories(path.parent_path());

@@ -16,7 +16,7 @@ namespace rigcal::test {
 using Numbers = std::vector<double>;
 using Table = std::vector<Numbers>;
 
-/// The message with which `read` refuses; "no error" if it does not.
+/// Message with which `read` refuses a file; "no error" if it does not.
 template <typename Read>
 std::string message_when(const Read& read) {
   try {
@@ -27,7 +27,7 @@ std::string message_when(const Read& read) {
   return "no error";
 }
 
-/// Columns of a file, by the reader that is there for its format.
+/// Reads columns of a file, using the reader for its format.
 inline Table read_columns(const std::filesystem::path& path,
                           const std::vector<std::string>& columns, const std::string& time = "") {
   return datasets::record_reader(path).load(path, {columns, time}).columns;
@@ -48,10 +48,10 @@ inline bool all_finite(const Table& columns) {
 
 enum class Ending { values, refused, other };
 
-/// What reading a file that may be damaged comes to: finite numbers, a refusal in one line that
-/// names the file, or neither, which is a defect.
+/// Outcome of reading a file that may be damaged: finite numbers, a refusal in one line that names
+/// the file, or neither, which is a defect.
 ///
-/// @param read  whether all that it reads is finite
+/// @param read  returns whether everything it reads is finite
 template <typename Read>
 Ending ending_of(const std::filesystem::path& path, const Read& read) {
   try {
@@ -70,7 +70,7 @@ struct Endings {
   std::size_t refused = 0;
 };
 
-/// Reads a file with every `step`-th byte changed in each of several ways, and counts the results.
+/// Reads a file with every `step`-th byte changed in several ways, and counts the outcomes.
 ///
 /// @param name    name of the damaged file, whose extension selects the format
 /// @param ending  reads a file: Ending(path)
@@ -82,7 +82,7 @@ Endings damage(const TemporaryFolder& folder, const std::string& name, const std
     for (const unsigned char change : changes) {
       std::string damaged = whole;
       damaged[at] = static_cast<char>(static_cast<unsigned char>(damaged[at]) ^ change);
-      std::filesystem::remove(folder / name);  // to write into it anew would wait for the disk
+      std::filesystem::remove(folder / name);  // overwriting it would wait for the disk
       const Ending found = ending(folder.write(name, damaged));
       if (found == Ending::other) FAIL_CHECK("byte " << at << " changed by " << int{change});
       count.values += found == Ending::values ? 1 : 0;

@@ -13,7 +13,7 @@ namespace rigcal::test {
 
 using Samples = std::vector<double>;
 
-/// n samples of f(i), i from 0.
+/// Returns n samples of f(i), with i starting at 0.
 template <typename Function>
 Samples samples(std::size_t n, Function f) {
   Samples x(n);
@@ -21,17 +21,17 @@ Samples samples(std::size_t n, Function f) {
   return x;
 }
 
-/// Sine of amplitude 1 with `period` samples.
+/// Sine with amplitude 1 and `period` samples per period.
 inline Samples sine_signal(std::size_t n, double period) {
   return samples(n, [&](double i) { return std::sin(2.0 * std::numbers::pi * i / period); });
 }
 
-/// +1 and -1 in turn, each for half a period.
+/// Alternates between +1 and -1, each for half a period.
 inline Samples square_signal(std::size_t n, double period) {
   return samples(n, [&](double i) { return std::fmod(i, period) < 0.5 * period ? 1.0 : -1.0; });
 }
 
-/// What a lag of first order with a time constant of `tau` samples makes of a signal.
+/// Response of a first-order lag with a time constant of `tau` samples.
 inline Samples lagged(const Samples& drive, double tau) {
   Samples x;
   double state = 0.0;

@@ -12,8 +12,8 @@
 
 namespace rigcal::test {
 
-/// A ZIP archive of these files.
-/// @param squeezed  compressed, not stored
+/// Writes a ZIP archive with these files.
+/// @param squeezed  whether to compress the files instead of storing them
 inline void write_zip(const std::filesystem::path& path,
                       const std::vector<std::pair<std::string, std::string>>& files,
                       bool squeezed = true) {
@@ -26,12 +26,12 @@ inline void write_zip(const std::filesystem::path& path,
     if (index < 0) throw std::runtime_error("cannot write into " + path.string());
     const auto place = static_cast<zip_uint64_t>(index);
     zip_set_file_compression(archive, place, squeezed ? ZIP_CM_DEFLATE : ZIP_CM_STORE, 1);
-    zip_file_set_mtime(archive, place, 1'700'000'000, 0);  // the same bytes at any time
+    zip_file_set_mtime(archive, place, 1'700'000'000, 0);  // gives the same bytes at any time
   }
   if (zip_close(archive) != 0) throw std::runtime_error("cannot close " + path.string());
 }
 
-/// Cells of a row, as XML: a number, a text, or what is given as XML already.
+/// Cell of a row, as XML. It is made from a number, a text, or given XML.
 struct XlsxFixtureCell {
   std::string xml;
 };
@@ -43,20 +43,20 @@ inline XlsxFixtureCell cell(const std::string& text) {
   return {fmt::format("<c r=\"@\" t=\"inlineStr\"><is><t>{}</t></is></c>", text)};
 }
 inline XlsxFixtureCell cell(const char* text) { return cell(std::string(text)); }
-/// "@" is replaced by the address.
+/// Returns a cell given as XML, in which "@" is replaced with its address.
 inline XlsxFixtureCell raw_cell(const std::string& xml) { return {xml}; }
 inline XlsxFixtureCell no_cell() { return {}; }
 
 using XlsxRows = std::vector<std::vector<XlsxFixtureCell>>;
 
-/// Letters of a column counted from 0: "AB" for 27. Written independently of the reader.
+/// Letters of a column counted from 0, such as "AB" for 27. Written independently of the reader.
 inline std::string column_letters(std::size_t column) {
   std::string letters(1, static_cast<char>('A' + column % 26));
   return column < 26 ? letters : column_letters(column / 26 - 1) + letters;
 }
 
-/// The XML of a sheet.
-/// @param behind  what follows the rows, such as merged cells
+/// Returns the XML of a sheet.
+/// @param behind  XML after the rows, such as merged cells
 inline std::string sheet_xml(const XlsxRows& rows, const std::string& behind = "") {
   std::string text =
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<worksheet "
@@ -76,8 +76,8 @@ inline std::string sheet_xml(const XlsxRows& rows, const std::string& behind = "
   return text + "</sheetData>" + behind + "</worksheet>";
 }
 
-/// All parts of a workbook with these sheets. Style 1 shows a date, style 2 "0.00 \"mm\"", style 3
-/// minutes and seconds in a format of its own.
+/// Returns all parts of a workbook with these sheets. Style 1 shows a date, style 2 is "0.00
+/// \"mm\"", and style 3 shows minutes and seconds in a custom format.
 inline std::vector<std::pair<std::string, std::string>> xlsx_parts(
     const std::vector<std::pair<std::string, std::string>>& sheets) {
   const std::string main = "http://schemas.openxmlformats.org/spreadsheetml/2006/main";

@@ -35,7 +35,8 @@ bool is_number(std::string_view text, char separator) {
   return csv_number(text, separator != ',').has_value();
 }
 
-/// dSPACE writes "trace_values" before its first row, and nothing before the others.
+/// Whether a text may precede a row. dSPACE writes "trace_values" before its first row, and nothing
+/// before the others.
 bool is_label(std::string_view text) { return text.empty() || text == "trace_values"; }
 
 /// Number of fields in a row of numbers; 0 for any other line. The first field may be a label. An
@@ -61,8 +62,8 @@ bool is_unit_text(std::string_view text) {
   return text.empty() || text == "-" || text == "%" || !unit_of_text(text).empty();
 }
 
-/// Names in a line, if there is one for each field of a row and at most one more for comments. The
-/// line itself may be a comment.
+/// Returns the names in a line, if there is one for each field of a row and at most one more for
+/// comments. The line itself may be a comment.
 std::vector<CsvName> names_in(std::string_view line, char separator, std::size_t width) {
   if (!is_plain_text(line)) return {};
   line = trimmed_line(line);
@@ -85,7 +86,7 @@ bool are_units(const std::vector<CsvName>& names) {
                      [](const CsvName& name) { return is_unit_text(name.full); });
 }
 
-/// Nearest line above that is not blank; lines.size() if there is none.
+/// Returns the nearest line above that is not blank, or lines.size() if there is none.
 std::size_t line_above(std::span<const std::string> lines, std::size_t line) {
   while (line > 0)
     if (!trimmed_line(lines[--line]).empty()) return line;

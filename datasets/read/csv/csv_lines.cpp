@@ -11,9 +11,9 @@
 #include <string_view>
 #include <system_error>
 
-// A second thread would not be faster, and would have to pass on exceptions of the source.
+// A second thread would not be faster, and would have to pass on exceptions from the source.
 #define CSV_IO_NO_THREAD
-// Its file names are cut to 255 bytes on purpose.
+// The library truncates its file names to 255 bytes on purpose.
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic ignored "-Wstringop-truncation"
 #endif
@@ -36,7 +36,7 @@ FilePtr open_text(const std::filesystem::path& path, std::size_t max_bytes) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error))
     throw InputError(where, "is a folder; expected a CSV file");
-  const auto bytes = std::filesystem::file_size(path, error);  // an error for pipes: counted later
+  const auto bytes = std::filesystem::file_size(path, error);  // fails for pipes: counted later
   if (!error && bytes > max_bytes)
     throw InputError(where, fmt::format("has {} bytes, more than the limit of {}; decimate the "
                                         "record, or split it into several files",
@@ -47,11 +47,11 @@ FilePtr open_text(const std::filesystem::path& path, std::size_t max_bytes) {
   return file;
 }
 
-/// Feeds LineReader, and detects what it would accept: read errors (it takes them for the end), NUL
-/// bytes (they cut its lines short), UTF-16, endless files.
+/// Feeds LineReader, and detects what LineReader would accept: read errors (which it takes for the
+/// end), NUL bytes (which cut its lines short), UTF-16, and endless files.
 class TextSource : public io::ByteSourceBase {
  public:
-  /// @param had_no_last_newline  set by the time the last line is read; outlives the source
+  /// @param had_no_last_newline  set by the time the last line is read; must outlive the source
   TextSource(const std::filesystem::path& path, std::size_t max_bytes, bool& had_no_last_newline)
       : where_{path.string()},
         max_bytes_(max_bytes),
@@ -65,8 +65,8 @@ class TextSource : public io::ByteSourceBase {
     check(std::string_view(buffer, count));
     bytes_ += count;
     if (count > 0) ends_with_newline_ = buffer[count - 1] == '\n';
-    // For a last line without line end LineReader reads one byte too many, from the old content of
-    // the buffer. So every last line gets a line end.
+    // If the last line has no line end, LineReader reads one byte too many, from old content of the
+    // buffer. Every last line is therefore given a line end.
     if (count < wanted && bytes_ > 0 && !ends_with_newline_) {
       buffer[count++] = '\n';
       ends_with_newline_ = true;
@@ -103,8 +103,7 @@ struct CsvLines::Implementation {
       : file(path.string()),
         reader(file, std::make_unique<TextSource>(path, max_bytes, had_no_last_newline)) {}
   std::string file;
-  bool had_no_last_newline =
-      false;  ///< here, since the reader drops its source when it has read it
+  bool had_no_last_newline = false;  ///< here because the reader drops its source at the end
   io::LineReader reader;
 };
 

@@ -6,27 +6,29 @@
 
 namespace rigcal::datasets {
 
-/// The lines of a text file, one at a time, by fast-cpp-csv-parser's LineReader. Its window has at
-/// most 48 MB, whatever the size of the file.
+/// Reads the lines of a text file one at a time, using the LineReader of fast-cpp-csv-parser. Its
+/// buffer has at most 48 MB, whatever the size of the file.
 class CsvLines {
  public:
-  /// @param max_bytes  larger files are refused, at once if the size is known beforehand
-  /// @throws InputError  no such file, a folder, unreadable, binary, UTF-16, too large
+  /// @param max_bytes  larger files are refused, immediately if the size is known in advance
+  /// @throws InputError  if there is no such file, or if it is a folder, unreadable, binary, UTF-16
+  ///                     or too large
   CsvLines(const std::filesystem::path& path, std::size_t max_bytes);
   ~CsvLines();
   CsvLines(const CsvLines&) = delete;
   CsvLines& operator=(const CsvLines&) = delete;
 
-  /// The next line without its end ("\n" or "\r\n"), null after the last. It may be written to,
-  /// and lives until the next call. A byte-order mark is not part of the first line.
+  /// Returns the next line without its end ("\n" or "\r\n"), or null after the last. The caller may
+  /// modify the line, which remains valid until the next call. A byte-order mark is not part of the
+  /// first line.
   ///
-  /// @throws InputError  as the constructor; or the line has 16 MiB or more
+  /// @throws InputError  under the conditions of the constructor, or if the line has 16 MiB or more
   char* next();
 
-  /// Number of the line that next() gave last, from 1.
+  /// Number of the line that next() last returned, from 1.
   long number() const;
 
-  /// Whether the file went to its end without a newline, once next() has given null.
+  /// Whether the file ended without a newline; known once next() has returned null.
   bool ends_without_newline() const;
 
  private:

@@ -22,25 +22,25 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-/// End of the field that begins at `begin`: its separator, or the end of the line.
+/// Returns the end of the field that starts at `begin`: its separator, or the end of the line.
 std::size_t field_end(std::string_view line, std::size_t begin, char separator) {
   std::size_t first = begin;
   while (first < line.size() && line[first] == ' ') ++first;
   if (first < line.size() && line[first] == '"') {
     bool quoted = false;
     for (std::size_t i = first; i < line.size(); ++i) {
-      if (line[i] == '"') quoted = !quoted;  // a doubled quote opens again at once
+      if (line[i] == '"') quoted = !quoted;  // a doubled quote closes and reopens at once
       if (line[i] == separator && !quoted) return i;
     }
     if (!quoted) return line.size();
-    // A quote that never closes is a character like any other.
+    // A quote that is never closed is an ordinary character.
   }
   for (; first < line.size(); ++first)
     if (line[first] == separator) return first;
   return line.size();
 }
 
-/// Whether the bytes can be UTF-8: every lead byte has its continuation bytes.
+/// Whether the bytes can be UTF-8: every lead byte is followed by its continuation bytes.
 bool is_utf8(std::string_view text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     const auto lead = static_cast<unsigned char>(text[i]);
@@ -53,7 +53,7 @@ bool is_utf8(std::string_view text) {
   return true;
 }
 
-/// The text in UTF-8. Other text is taken for Latin-1, which loggers on Windows write.
+/// Returns the text in UTF-8. Other text is assumed to be Latin-1, which loggers on Windows write.
 std::string as_utf8(std::string_view text) {
   if (is_utf8(text)) return std::string(text);
   std::string result;
@@ -79,7 +79,7 @@ std::string unquoted(std::string_view text) {
   return std::string(trimmed(result));
 }
 
-/// "x" of "x [mm]" and "q (m3/(s Pa))"; the text itself if no brackets end it.
+/// Returns "x" for "x [mm]", and the text itself if it does not end in brackets.
 std::string without_unit(std::string_view text) {
   const std::string_view name =
       trimmed(text.substr(0, brackets_at_end(text).value_or(text.size())));
@@ -123,7 +123,7 @@ std::vector<CsvName> header_names(std::string_view header, char separator) {
   CsvFields fields(header, separator);
   for (CsvField field; fields.next(field);) {
     std::string full = as_utf8(unquoted(field.text));
-    // With blanks as separators a unit in brackets is a field of its own.
+    // With blanks as separators, a unit in brackets is a separate field.
     const bool is_unit = separator == ' ' && !names.empty() && brackets_at_end(full) == 0;
     if (is_unit) {
       full = names.back().full + " " + full;

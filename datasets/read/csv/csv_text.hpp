@@ -8,18 +8,18 @@
 
 namespace rigcal::datasets {
 
-/// A field of a line: its text without surrounding blanks, and where that begins.
+/// A field of a line: its text without surrounding blanks, and where that text begins.
 struct CsvField {
   std::string_view text;
   std::size_t begin = 0;  ///< in bytes from the start of the line
 };
 
-/// Walks over the fields of a line. A separator between double quotes is text, and the quotes stay
-/// part of it. A blank as separator means any number of blanks and tabs.
+/// Iterates over the fields of a line. A separator between double quotes is text, and the quotes
+/// are kept. If the separator is a blank, any number of blanks and tabs separates two fields.
 class CsvFields {
  public:
   CsvFields(std::string_view line, char separator) : line_(line), separator_(separator) {}
-  /// False after the last field. An empty line has one empty field.
+  /// Returns false after the last field. An empty line has one empty field.
   bool next(CsvField& field);
 
  private:
@@ -31,20 +31,20 @@ class CsvFields {
   bool done_ = false;
 };
 
-/// Name of a column: as in the header (without quotes), and without its unit.
+/// Name of a column, as in the header (without quotes) and without its unit.
 struct CsvName {
   std::string full;   ///< "x [mm]"
   std::string plain;  ///< "x"
 };
 
-/// Name in a field of a header.
+/// Extracts the name from a field of a header.
 CsvName header_name(std::string_view field);
 
-/// Names for requesting columns: without unit if that is unambiguous.
+/// Names by which columns can be requested: without the unit where that is unambiguous.
 std::vector<std::string> short_names(const std::vector<CsvName>& names);
 
-/// The column of this name, with its unit or without; `second` is another of the same name, for
-/// which it is not clear which is meant.
+/// The column that matches a name, given with or without its unit. If the name is ambiguous,
+/// `second` is another column that matches.
 struct FoundColumn {
   std::size_t index = 0;
   std::optional<std::size_t> second;
@@ -52,22 +52,22 @@ struct FoundColumn {
 std::optional<FoundColumn> find_column(const std::vector<CsvName>& names,
                                        const std::string& wanted);
 
-/// The separator a header was written with: tab, else ';', else ','.
+/// Finds the separator used in a header: tab, else ';', else ','.
 char find_separator(std::string_view header);
 
-/// Names of all columns of a header.
+/// Names of all columns in a header.
 std::vector<CsvName> header_names(std::string_view header, char separator);
 
-/// The number in a field, or nothing for any other text. Locale-independent; "inf", "nan", numbers
-/// beyond the range of a double, and a thousands separator are no numbers here.
+/// Returns the number in a field, or nullopt for any other text. Independent of the locale. Rejects
+/// "inf", "nan", numbers beyond the range of a double, and thousands separators.
 ///
-/// @param decimal_comma  whether "1,5" counts, too
+/// @param decimal_comma  whether to accept "1,5", too
 std::optional<double> csv_number(std::string_view text, bool decimal_comma);
 
-/// Text for a message: shortened, with '?' for unprintable characters.
+/// Shortens a text for a message, and replaces unprintable characters with '?'.
 std::string shown(std::string_view text);
 
-/// Character position, from 1, of a byte of a UTF-8 line.
+/// Converts the position of a byte in a UTF-8 line to that of its character, counted from 1.
 long character_column(std::string_view line, std::size_t byte);
 
 }  // namespace rigcal::datasets

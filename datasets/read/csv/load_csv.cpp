@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::size_t kMostColumns = 10'000;
 
-constexpr std::size_t kMostHeadLines = 500;  // lines that are searched for the header
+constexpr std::size_t kMostHeadLines = 500;  // number of lines searched for the header
 constexpr std::size_t kMostHeadBytes = 4'000'000;
 
 struct Header {
@@ -32,17 +32,17 @@ struct Header {
   long line = 0;
   char separator = ',';
   std::vector<CsvName> names;
-  std::vector<std::string> units{};  ///< from the row of units, one per name; empty: no such row
+  std::vector<std::string> units{};  ///< one per name; empty without a row of units
   long units_line = 0;
   bool last_may_lack = false;  ///< the last column is a comment that rows may omit
 };
 
-/// Lines of a file, with a view of the first ones in advance.
+/// Lines of a file, of which the first ones can be viewed in advance.
 class HeadedLines {
  public:
   explicit HeadedLines(CsvLines& lines) : lines_(lines) {}
 
-  /// Up to `count` lines from the beginning, within the limits of the head.
+  /// Returns up to `count` lines from the beginning, within the limits for the head.
   const std::vector<std::string>& look_ahead(std::size_t count) {
     std::size_t bytes = 0;
     for (const std::string& line : head_) bytes += line.size();
@@ -58,7 +58,7 @@ class HeadedLines {
   /// Whether look_ahead() has reached the end of the file.
   bool ended() const { return ended_; }
 
-  /// The next line; null after the last.
+  /// Returns the next line, or null after the last.
   const char* next() {
     if (taken_ < head_.size()) {
       ++number_;
@@ -68,7 +68,7 @@ class HeadedLines {
     if (text != nullptr) ++number_;
     return text;
   }
-  /// Number of the line that next() returned last, from 1.
+  /// Number of the line that next() last returned, from 1.
   long number() const { return number_; }
 
  private:
@@ -94,8 +94,8 @@ std::string_view separator_name(char separator) {
 
 // ---- Header --------------------------------------------------------------------------------
 
-/// Whether the first line is the header, as in most files: a row of equally many numbers follows
-/// it.
+/// Whether the first line is the header, as in most files: it is followed by a row with the same
+/// number of fields, all of them numbers.
 bool header_comes_first(const std::vector<std::string>& lines, char separator) {
   const auto is_wanted = [](const std::string& line) { return !is_comment(line); };
   const auto header = std::find_if(lines.begin(), lines.end(), is_wanted);
@@ -108,7 +108,8 @@ bool header_comes_first(const std::vector<std::string>& lines, char separator) {
   return is_row_of_numbers(*row, by, names) && !is_row_of_numbers(*header, by, names);
 }
 
-/// Finds a header below lines of text, between blanks or above a row of units; none in other files.
+/// Finds a header below lines of text, with blanks as separators, or above a row of units; nullopt
+/// for other files.
 std::optional<Header> unusual_header(HeadedLines& lines, const std::string& file, char separator) {
   if (header_comes_first(lines.look_ahead(10), separator)) return std::nullopt;
   const auto& head = lines.look_ahead(kMostHeadLines);
@@ -173,7 +174,7 @@ ColumnLabel label_of(const Header& header, std::size_t field) {
   return label;
 }
 
-/// Index of the column of this name, with its unit or without.
+/// Returns the index of the column with this name, given with or without its unit.
 std::size_t find_column(const Header& header, const std::string& wanted) {
   const Location where{header.file, header.line};
   if (const auto found = find_column(header.names, wanted)) {
@@ -193,14 +194,14 @@ std::size_t find_column(const Header& header, const std::string& wanted) {
 
 // ---- Rows ----------------------------------------------------------------------------------
 
-/// A column of the file and its column of the table.
+/// A column of the file, and the column of the table that it fills.
 struct Wanted {
   std::size_t field;
   std::size_t target;
   bool is_time;
 };
 
-/// Reads rows one by one into a table, and knows where it is for its messages.
+/// Reads rows one by one into a table, and keeps track of the position for its messages.
 class RowReader {
  public:
   RowReader(const Header& header, const CsvRequest& request) : header_(header), request_(request) {
@@ -227,8 +228,8 @@ class RowReader {
     ++rows_;
   }
 
-  /// Makes room for all rows at once: growing columns would take up to three times their memory
-  /// for a moment. Room that is not used yet costs addresses, not memory.
+  /// Reserves memory for all rows at once. Growing columns would temporarily need up to three times
+  /// their memory, whereas unused capacity costs only addresses.
   void reserve(std::size_t rows) {
     for (auto& column : table_.columns)
       column.reserve(std::min(rows, kMostValues / table_.columns.size()));
@@ -236,7 +237,7 @@ class RowReader {
 
   std::size_t rows() const { return rows_; }
 
-  /// Says so if the last number of a file that ends without a newline is the shortest.
+  /// Sets `cut_short` if the file ends without a newline in the shortest number of its column.
   void judge_end() {
     if (last_line_ == 0 || !(last_length_ < shortest_length_) || rows_ < 2) return;
     table_.cut_short = fmt::format(
@@ -246,7 +247,7 @@ class RowReader {
         last_length_ == 1 ? "" : "s", shortest_length_);
   }
 
-  /// The table, with room that is mostly unused given back.
+  /// Returns the table, after freeing capacity that is mostly unused.
   CsvTable take() {
     for (auto& column : table_.columns)
       if (column.size() < column.capacity() / 2) column.shrink_to_fit();
@@ -254,8 +255,8 @@ class RowReader {
   }
 
  private:
-  /// Takes a row as most loggers write it: numbers right between separators where they are wanted,
-  /// and no quote where a field begins. Any other row it leaves as it is, right or wrong.
+  /// Reads a row as most loggers write it: wanted numbers are directly between separators, and no
+  /// field begins with a quote. Returns false for any other row, whether right or wrong.
   bool read_plain(std::string_view line, long line_number) {
     if (header_.separator == ' ') return false;
     const char* at = line.data();
@@ -274,7 +275,7 @@ class RowReader {
       if (error != std::errc{} || !std::isfinite(*value)) return false;
       length = static_cast<std::size_t>(rest - at);
       const bool tells_sign = header_.separator != ',' && (point_line_ == 0 || comma_line_ != 0);
-      // note_decimal_sign() has to see a decimal point.
+      // note_decimal_sign() must see decimal points.
       if (tells_sign && std::find(at, rest, '.') != rest) return false;
       at = rest;
       for (const double number = *value; next != wanted_.end() && next->field == field; ++next) {
@@ -313,7 +314,7 @@ class RowReader {
           fail_on_time(line, line_number, field, *value, column.back());
         column.push_back(*value);
       }
-    // A comment that a row omits is no number: who wants the column gets an error.
+    // A comment that a row omits is not a number, so a request for that column is an error.
     const bool lacks_last =
         header_.last_may_lack && count + 1 == header_.names.size() && next == wanted_.end();
     if (count != header_.names.size() && !lacks_last) fail_on_count(line, line_number, count);
@@ -375,7 +376,8 @@ class RowReader {
                     shown(field.text), shown(name), header_.separator == ',' ? "" : " or -1,5e-3"));
   }
 
-  /// Refuses a file with decimal commas and points: "1.234" could be a thousand times larger.
+  /// Refuses a file with both decimal commas and decimal points, since "1.234" could be a thousand
+  /// times larger.
   void note_decimal_sign(std::string_view line, long line_number, const CsvField& field) {
     const bool has_comma = field.text.find(',') != std::string_view::npos;
     const bool has_point = field.text.find('.') != std::string_view::npos;
@@ -389,7 +391,7 @@ class RowReader {
                             has_comma ? point_line_ : comma_line_, has_comma ? "point" : "comma"));
   }
 
-  /// Keeps the length of the number that ends the last line, and the least of those before it.
+  /// Records the length of the number at the end of the last line, and the shortest one before it.
   void note_last_field(std::size_t length, long line_number) {
     if (last_line_ != 0) shortest_length_ = std::min(shortest_length_, last_length_);
     last_length_ = length;
@@ -413,13 +415,14 @@ class RowReader {
   CsvTable table_;
   std::size_t rows_ = 0;
   long comma_line_ = 0;  ///< line of the first decimal comma; 0: none
-  long point_line_ = 0;  ///< likewise of the first decimal point
-  long last_line_ = 0;   ///< 0: the last column is not wanted
+  long point_line_ = 0;  ///< line of the first decimal point; 0: none
+  long last_line_ = 0;   ///< line of the last number; 0: the last column is not wanted
   std::size_t last_length_ = 0;
   std::size_t shortest_length_ = std::numeric_limits<std::size_t>::max();
 };
 
-/// Rows that the file can have at most: a field takes two bytes, with its separator.
+/// Upper bound on the number of rows in a file: a field takes at least two bytes, including its
+/// separator.
 std::size_t most_rows(const std::filesystem::path& path, const Header& header) {
   std::error_code error;
   const std::uintmax_t bytes = std::filesystem::file_size(path, error);

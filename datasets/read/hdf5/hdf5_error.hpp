@@ -6,7 +6,7 @@
 
 namespace rigcal::datasets {
 
-/// Reason for the last failure of HDF5: the outermost entry of its error stack.
+/// Reason that HDF5 gives for its last failure: the outermost entry of its error stack.
 inline std::string hdf5_reason() {
   std::string reason = "no reason given";
   H5Ewalk2(

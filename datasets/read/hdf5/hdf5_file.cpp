@@ -23,8 +23,8 @@ constexpr unsigned kMostMembers = 1000;
 
 constexpr std::array kUnitAttributes{"unit", "units", "Unit", "Units", "unit_string"};
 
-/// Attributes with the sample interval in seconds or the sampling rate in hertz. npTDMS writes the
-/// first, for NI's TDMS waveforms.
+/// Attributes that give the sample interval in seconds or the sampling rate in hertz. npTDMS writes
+/// the first one, for NI's TDMS waveforms.
 struct ClockAttribute {
   const char* name;
   bool is_rate;
@@ -36,13 +36,13 @@ constexpr std::array kClockAttributes{ClockAttribute{"wf_increment", false},
                                       ClockAttribute{"sampling_rate", true},
                                       ClockAttribute{"sampling_frequency", true},
                                       ClockAttribute{"fs", true}};
-/// Time of the first sample, stored beside "wf_increment".
+/// Time of the first sample, stored next to "wf_increment".
 constexpr const char* kStartAttribute = "wf_start_offset";
 
-/// Names of the hard links of a group.
+/// Names of the hard links in a group.
 using Links = std::vector<std::string>;
 
-/// Called by HDF5, which is C: must not throw.
+/// Callback for HDF5. Must not throw, because HDF5 is written in C.
 herr_t note_link(hid_t /*group*/, const char* name, const H5L_info_t* info, void* links) {
   auto& list = *static_cast<Links*>(links);
   if (list.size() >= kMostObjects) return 1;
@@ -50,7 +50,7 @@ herr_t note_link(hid_t /*group*/, const char* name, const H5L_info_t* info, void
   return 0;
 }
 
-/// Kind of a type that is not numeric, in words; empty if it is numeric.
+/// Describes a type that is not numeric, in words; empty if it is numeric.
 std::string kind_of(hid_t type) {
   switch (H5Tget_class(type)) {
     case H5T_INTEGER:
@@ -75,7 +75,7 @@ std::string kind_of(hid_t type) {
   }
 }
 
-/// Appends the sizes; false if the product of all dimensions overflows.
+/// Appends the sizes. Returns false if the product of all dimensions overflows.
 bool append_dims(const std::vector<hsize_t>& sizes, std::vector<std::size_t>& dims) {
   constexpr std::size_t kMost = std::numeric_limits<std::int64_t>::max();
   std::size_t count = 1;
@@ -88,7 +88,8 @@ bool append_dims(const std::vector<hsize_t>& sizes, std::vector<std::size_t>& di
   return true;
 }
 
-/// Element type of cells that are arrays, whose shape is appended to `dims`; any other type itself.
+/// Returns the element type of cells that are arrays, and appends their shape to `dims`. Returns
+/// any other type unchanged.
 Hdf5Id element_type(Hdf5Id type, Hdf5Series& series) {
   if (H5Tget_class(type.get()) != H5T_ARRAY) return type;
   const int rank = H5Tget_array_ndims(type.get());
@@ -135,8 +136,8 @@ std::size_t dims_of_dataset(const Hdf5Series& series) {
   return series.dims.size() - series.cell_dims;
 }
 
-/// Wanted numbers of a selection of cells with `width` numbers each: first, first + stride, ...
-/// count.
+/// The wanted numbers from a selection of cells with `width` numbers each: first, first + stride,
+/// ..., `wanted` in all.
 struct CellChoice {
   std::size_t cells = 1;
   std::size_t width = 1;
@@ -164,7 +165,7 @@ CellChoice choice_of(const Hdf5Series& series, const Hdf5Line& line) {
   return choice;
 }
 
-/// Selects, in the file, the cells along the line.
+/// Selects the cells along the line in the file.
 bool select_cells(hid_t space, const Hdf5Series& series, const Hdf5Line& line) {
   const std::size_t own_dims = dims_of_dataset(series);
   if (own_dims == 0) return true;
@@ -179,7 +180,7 @@ bool select_cells(hid_t space, const Hdf5Series& series, const Hdf5Line& line) {
          0;
 }
 
-/// The type of the numbers in the file.
+/// Returns the type that the numbers have in the file.
 Hdf5Id number_type(hid_t dataset, const Hdf5Series& series) {
   Hdf5Id type(H5Dget_type(dataset), H5Tclose);
   if (!series.member.empty()) {
@@ -191,8 +192,8 @@ Hdf5Id number_type(hid_t dataset, const Hdf5Series& series) {
   return type;
 }
 
-/// Type in memory for a cell of the series: numbers of a native type, in an array or in a table of
-/// one member like those in the file.
+/// Returns the type in memory for a cell of the series: numbers of a native type, within an array
+/// or a table with one member if the file has one.
 Hdf5Id type_in_memory(const Hdf5Series& series, hid_t native, std::size_t bytes) {
   const std::vector<hsize_t> shape(
       series.dims.begin() + static_cast<std::ptrdiff_t>(dims_of_dataset(series)),
@@ -207,8 +208,8 @@ Hdf5Id type_in_memory(const Hdf5Series& series, hid_t native, std::size_t bytes)
   return table;
 }
 
-/// Packing of numbers by the conventions for climate and forecast metadata (CF 1.11, 2.5.1 and
-/// 8.1), which netCDF files and others use: value = factor * number + offset.
+/// Packing of numbers according to the conventions for climate and forecast metadata (CF 1.11,
+/// 2.5.1 and 8.1), which are used in netCDF and other files: value = factor * number + offset.
 struct Packing {
   double factor = 1.0;
   double offset = 0.0;
@@ -216,8 +217,8 @@ struct Packing {
   std::vector<double> missing;  ///< numbers that mark a missing value
 };
 
-/// Value that HDF5 returns for elements that were never written, if the file sets it. Zero is
-/// ignored, since it may be a real value.
+/// Value that HDF5 returns for elements that were never written, if the file sets one. Zero is
+/// ignored, because it may be a real value.
 std::optional<double> own_fill_value(hid_t dataset) {
   const Hdf5Id plan(H5Dget_create_plist(dataset), H5Pclose);
   H5D_fill_value_t kind = H5D_FILL_VALUE_UNDEFINED;
@@ -237,8 +238,8 @@ std::size_t Hdf5Series::element_count() const {
 }
 
 Hdf5File::Hdf5File(const std::filesystem::path& path) : name_(path.string()) {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // it would print its errors
-  H5PLset_loading_state(0);                     // no plugins from a path in the environment
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // keeps HDF5 from printing errors
+  H5PLset_loading_state(0);                     // loads no plugins from a path in the environment
   file_ = Hdf5Id(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (!file_)
     fail(fmt::format("is truncated or damaged, or no HDF5 file (HDF5: {}); copy or save it again",
@@ -252,8 +253,8 @@ Hdf5File::Hdf5File(const std::filesystem::path& path) : name_(path.string()) {
 void Hdf5File::fail(const std::string& message) const { throw InputError({name_}, message); }
 
 void Hdf5File::list_group(hid_t group, const std::string& path, std::vector<haddr_t>& above) {
-  // The address of an object comes from a reference, since H5Oget_info returns it in another type
-  // in each version.
+  // A reference gives the address of an object. H5Oget_info would return it in a type that depends
+  // on the version.
   hobj_ref_t address{};
   if (H5Rcreate(&address, group, ".", H5R_OBJECT, -1) < 0 || above.size() >= kDeepestGroup) return;
   if (std::find(above.begin(), above.end(), address) != above.end()) return;  // a cycle of links
@@ -412,7 +413,7 @@ std::vector<double> Hdf5File::unpacked(hid_t dataset, std::vector<double> values
   if (const auto fill = own_fill_value(dataset)) packing.missing.push_back(*fill);
   const Hdf5Id type(H5Dget_type(dataset), H5Tclose);
   if (H5Tget_class(type.get()) == H5T_FLOAT && H5Tget_size(type.get()) == sizeof(float)) {
-    // A dataset of floats stores -999.9 rounded, so the attribute is rounded likewise.
+    // A dataset of floats stores -999.9 rounded, so the attribute is rounded, too.
     for (double& each : packing.missing)
       if (std::abs(each) <= static_cast<double>(std::numeric_limits<float>::max()))
         each = static_cast<double>(static_cast<float>(each));
@@ -465,7 +466,7 @@ std::vector<double> Hdf5File::numbers(const Hdf5Series& series, const Hdf5Line& 
   std::vector<double> values = is_float    ? read_raw(double{}, H5T_NATIVE_DOUBLE)
                                : is_signed ? read_raw(std::int64_t{}, H5T_NATIVE_INT64)
                                            : read_raw(std::uint64_t{}, H5T_NATIVE_UINT64);
-  // The attributes of a table do not apply to its single columns.
+  // The attributes of a table do not apply to individual members.
   return series.member.empty() ? unpacked(dataset.get(), std::move(values), column) : values;
 }
 

@@ -34,56 +34,56 @@ class Hdf5Id {
   herr_t (*close_)(hid_t) = nullptr;
 };
 
-/// A dataset, or a member of one that is a table.
+/// A dataset or, if the dataset is a table, one of its members.
 struct Hdf5Series {
-  std::string path;     ///< "/run1/position"; "/run1/table.position" of a member
+  std::string path;     ///< "/run1/position"; "/run1/table.position" for a member
   std::string dataset;  ///< "/run1/table"
-  std::string member;   ///< "position"; empty if the dataset is no table
-  /// Shape, in the order that h5dump and h5py print: that of the dataset, and behind it that of the
-  /// arrays in its cells, if these are arrays.
+  std::string member;   ///< "position"; empty if the dataset is not a table
+  /// Shape, in the order that h5dump and h5py print: the dimensions of the dataset, followed by
+  /// those of its cells if they are arrays.
   std::vector<std::size_t> dims;
   std::size_t cell_dims = 0;       ///< number of `dims` that belong to the cells
-  std::string kind;                ///< what it is, if no numbers: "a text"; else empty
+  std::string kind;                ///< what the elements are, if not numbers: "a text"; else empty
   std::vector<std::string> units;  ///< one for all, one per line of the last dimension, or none
 
   /// Cannot overflow: the dimensions were checked when they were read.
   std::size_t element_count() const;
 };
 
-/// Equidistant samples, described by an attribute: "/run1/position@wf_increment".
+/// Sample times with constant steps, described by an attribute: "/run1/position@wf_increment".
 struct Hdf5Clock {
   std::string path;
-  std::string series;  ///< series whose samples it counts; empty: the attribute belongs to a group
+  std::string series;  ///< series to which it applies; empty: the attribute belongs to a group
   double start_s = 0.0;
-  double step_s = 0.0;  ///< 0: `rate_hz` is given
+  double step_s = 0.0;  ///< 0 if `rate_hz` is given
   double rate_hz = 0.0;
 };
 
-/// Elements along one dimension of a series; the others have the index `fixed`.
+/// Elements along one dimension of a series. The indices in the other dimensions are `fixed`.
 struct Hdf5Line {
   std::size_t along = 0;
   std::vector<std::size_t> fixed;
 };
 
-/// Reads HDF5 files. A single damaged byte can crash or hang the library: use it only within
-/// run_confined(), from one thread.
+/// Reads HDF5 files. A single damaged byte can crash the library or make it hang, so use this class
+/// only within run_confined(), from one thread.
 ///
-/// Follows hard links only, so that no other file is opened.
+/// Follows only hard links, so that no other file is opened.
 class Hdf5File {
  public:
-  /// @throws InputError  HDF5 cannot open it; more than 200 000 objects
+  /// @throws InputError  if HDF5 cannot open the file, or if it has more than 200 000 objects
   explicit Hdf5File(const std::filesystem::path& path);
 
   const std::string& name() const { return name_; }
   const std::vector<Hdf5Series>& series() const { return series_; }
   const std::vector<Hdf5Clock>& clocks() const { return clocks_; }
 
-  /// Returns the numbers of a series whose kind is empty, unpacked by `scale_factor` and
+  /// Returns the numbers of a series whose kind is empty, unpacked using the `scale_factor` and
   /// `add_offset` of its dataset.
-  /// @throws InputError  damaged; not or only partly written; missing by `_FillValue`,
-  ///                     `missing_value` or the dataset's own fill value; compressed by an unknown
-  ///                     filter; stored in another file; or an integer that a double cannot
-  ///                     represent
+  /// @throws InputError  if a number is damaged, was never written, is an integer that a double
+  ///                     cannot represent, or is missing according to `_FillValue`, `missing_value`
+  ///                     or the dataset's own fill value; or if the dataset was only partly
+  ///                     written, is stored in another file, or is compressed by an unknown filter
   std::vector<double> numbers(const Hdf5Series& series, const Hdf5Line& line,
                               const std::string& column) const;
 

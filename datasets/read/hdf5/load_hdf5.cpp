@@ -37,7 +37,8 @@ std::size_t long_dimensions(const Hdf5Series& series) {
       std::count_if(series.dims.begin(), series.dims.end(), [](std::size_t n) { return n != 1; }));
 }
 
-/// "(:,3)" as subscripts from 0, none for a colon; nothing if it has another form.
+/// Parses subscripts such as "(:,3)". Returns them counted from 0, with nullopt for a colon;
+/// nullopt for any other text.
 std::optional<std::vector<std::optional<std::size_t>>> parsed_subscripts(std::string_view text) {
   std::vector<std::optional<std::size_t>> subscripts;
   if (text.size() < 3 || text.front() != '(' || text.back() != ')') return std::nullopt;
@@ -59,7 +60,7 @@ std::optional<std::vector<std::optional<std::size_t>>> parsed_subscripts(std::st
   return subscripts;
 }
 
-/// Reads the columns of a request.
+/// Reads the columns named in a request.
 class Hdf5Columns {
  public:
   explicit Hdf5Columns(const std::filesystem::path& path) : file_(path) {}
@@ -122,7 +123,8 @@ class Hdf5Columns {
     return nullptr;
   }
 
-  /// The series with the longest path at the start of the column; its brackets follow.
+  /// Returns the series with the longest path at the start of the column name. Subscripts may
+  /// follow the path.
   const Hdf5Series& series_of(const std::string& wanted, const std::string& column) const {
     const Hdf5Series* found = nullptr;
     for (const Hdf5Series& series : file_.series()) {
@@ -168,7 +170,8 @@ class Hdf5Columns {
     return values;
   }
 
-  /// Unit from the attributes: one for the whole dataset, or the one of this line of a matrix.
+  /// Returns the unit from the attributes: the one for the whole dataset, or the one for this line
+  /// of a matrix.
   static std::string unit_of(const Hdf5Series& series, const Hdf5Line& line) {
     if (series.units.size() == 1) return series.units[0];
     if (series.dims.size() != 2) return {};

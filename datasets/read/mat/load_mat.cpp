@@ -22,7 +22,7 @@ using Table = std::vector<std::vector<double>>;
 
 constexpr std::size_t kSignatureBytes = 10;
 
-/// "MATLAB 5.0", "MATLAB 7.3", or something else.
+/// Returns "MATLAB 5.0" or "MATLAB 7.3" for a MAT file, and other text for other files.
 std::string signature_of(const std::filesystem::path& path) {
   std::string start(kSignatureBytes, '\0');
   std::ifstream file(path, std::ios::binary);
@@ -31,9 +31,9 @@ std::string signature_of(const std::filesystem::path& path) {
   return start;
 }
 
-/// Whether it is of version 7.3, not 5.
+/// Whether a MAT file is of version 7.3 rather than 5.
 ///
-/// @throws InputError  neither
+/// @throws InputError  if it is of neither version
 bool is_hdf5(const std::filesystem::path& path) {
   require_regular_file(path, "a MAT file");
   const std::string signature = signature_of(path);
@@ -50,7 +50,7 @@ bool is_hdf5(const std::filesystem::path& path) {
 
 constexpr ConfinedReader kHdf5{"HDF5", "a MAT file", "copy or save it again, or save it with -v7"};
 
-/// Columns of the same length.
+/// Reads columns, all of which must have the same length.
 Table read_columns(MatSource& source, const std::vector<std::string>& columns) {
   Table table;
   for (const std::string& column : columns) {
@@ -65,8 +65,8 @@ Table read_columns(MatSource& source, const std::vector<std::string>& columns) {
   return table;
 }
 
-/// Whether a file of version 7.3 is plain HDF5 behind MATLAB's header, as Python's packages write
-/// it: matio recognises none of its arrays, and MATLAB's own store of objects is absent.
+/// Whether a file of version 7.3 is plain HDF5 after MATLAB's header, as Python packages write it:
+/// matio recognises none of its arrays, and MATLAB's own object store is absent.
 bool is_from_elsewhere(const MatSource& source, const std::filesystem::path& path) {
   const auto& arrays = source.variables();
   if (std::any_of(arrays.begin(), arrays.end(),

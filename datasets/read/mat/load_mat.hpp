@@ -8,40 +8,42 @@
 
 namespace rigcal::datasets {
 
-/// Whether a file is to be read as a MAT file: by its name (.mat) or its first bytes.
+/// Whether to read a file as a MAT file, judging by its name (.mat) or its first bytes.
 bool is_mat_file(const FileStart& start);
 
-/// Wanted columns of a MAT file.
+/// Columns wanted from a MAT file.
 struct MatRequest {
   std::vector<std::string> columns;  ///< MATLAB names (mat_path.hpp), in the order of the result
-  std::string time_column;           ///< among `columns`; checked to increase; may be empty
+  std::string time_column;           ///< one of `columns`, checked to increase; may be empty
 };
 
-/// Reads vectors out of a MAT file of version 5 (also compressed: "v6", "v7") or 7.3, strictly.
+/// Reads vectors from a MAT file of version 5 (also compressed: "v6", "v7") or 7.3, strictly.
 ///
-/// A column is a vector variable, a vector field of a struct, or a row or column of a matrix:
-/// "x", "log.time", "log.signals(2).values", "data(:,3)". Arrays of one element are vectors too;
+/// A column is a vector variable, a vector field of a struct, or a row or column of a matrix: "x",
+/// "log.time", "log.signals(2).values", "data(:,3)". Arrays with one element are vectors, too;
 /// dimensions of length 1 do not count. Every real number class is accepted. Everything else is an
-/// error: complex, sparse, text, cells, objects (a timeseries is one), NaN and infinity, integers
-/// that a double cannot represent, time that does not increase, vectors of different lengths, files
-/// that end early or whose compressed data are damaged. At most 12 million numbers are read.
+/// error: complex and sparse arrays, text, cells, objects (such as a timeseries), NaN and infinity,
+/// integers that a double cannot represent, a time that does not increase, vectors of different
+/// lengths, and files that end early or whose compressed data are damaged. At most 12 million
+/// numbers are read.
 ///
-/// Version 5 has its own reader here. HDF5 reads version 7.3 in a separate process with limits of
-/// memory and time, because a damaged file can crash it or keep it busy forever.
+/// Version 5 is read by Level5Source. Version 7.3 is read by HDF5 in a separate process with limits
+/// on memory and time, because a damaged file can crash HDF5 or keep it busy forever.
 ///
 /// @return             one vector per column, of the same length
-/// @throws InputError  file, column and element, what was found and what was expected
-/// @throws std::invalid_argument  time_column is not among the columns
+/// @throws InputError  if the file is not as described; the message gives file, column and element,
+///                     what was found and what was expected
+/// @throws std::invalid_argument  if time_column is not among the columns
 std::vector<std::vector<double>> load_mat(const std::filesystem::path& path,
                                           const MatRequest& request);
 
-/// Every column that load_mat() could read: vectors, and columns of matrices of up to 100 columns,
-/// in the order of the file.
+/// Lists every column that load_mat() can read, in file order: vectors, and the columns of matrices
+/// with up to 100 columns.
 ///
-/// @throws InputError  as load_mat
+/// @throws InputError  under the conditions of load_mat()
 std::vector<std::string> mat_columns(const std::filesystem::path& path);
 
-/// Functions with the signature of the table of readers (record_reader.hpp).
+/// These functions have the signatures that the table of readers requires (record_reader.hpp).
 std::vector<RecordColumn> mat_record_columns(const std::filesystem::path& path);
 RecordTable load_mat_record(const std::filesystem::path& path, const RecordRequest& request);
 

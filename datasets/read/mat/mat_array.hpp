@@ -10,22 +10,22 @@ namespace rigcal::datasets {
 
 enum class MatKind { number, text, cell, structure, sparse, function, object, empty };
 
-/// Description of an array in a MAT file; its numbers stay in the file.
+/// Description of an array in a MAT file. Its numbers remain in the file.
 struct MatArray {
   std::string name;
   MatKind kind = MatKind::empty;
   bool is_complex = false;
   std::vector<std::size_t> dims;
   std::vector<std::string> field_names;  ///< for a structure
-  /// For a structure, shape (elements x field names); the fields of an element are adjacent.
+  /// For a structure, shape (elements x field names). The fields of an element are adjacent.
   std::vector<MatArray> fields;
 
-  /// Place of the numbers, in terms of the reader.
+  /// Where the numbers are; the meaning depends on the reader.
   std::uint64_t place = 0;
   std::uint32_t storage = 0;
   std::size_t variable = 0;
 
-  /// Readers make sure that it does not overflow.
+  /// Cannot overflow, because readers check the dimensions.
   std::size_t element_count() const {
     std::size_t count = 1;
     for (const std::size_t n : dims) count *= n;
@@ -33,7 +33,7 @@ struct MatArray {
   }
 };
 
-/// Elements of an array in the order of the file, column by column: start, start + stride, ...
+/// Elements of an array in file order, column by column: start, start + stride, ...
 struct MatSelection {
   std::size_t start = 0;
   std::size_t stride = 1;
@@ -51,14 +51,16 @@ class MatSource {
   virtual const std::string& name() const = 0;
   virtual const std::vector<MatArray>& variables() const = 0;
 
-  /// @param array   one of variables(), of real numbers; the selection is within it
-  /// @param column  its name in messages
-  /// @throws InputError  damaged, or an integer that a double cannot represent
+  /// Returns the selected numbers of an array.
+  ///
+  /// @param array   one of variables(), with real numbers; it contains the selection
+  /// @param column  name of the column, for messages
+  /// @throws InputError  if the file is damaged, or if a double cannot represent an integer
   virtual std::vector<double> numbers(const MatArray& array, const MatSelection& selection,
                                       const std::string& column) = 0;
 };
 
-/// Whether a double can represent a number, which is not the case for 64-bit integers beyond 2^53.
+/// Whether a double certainly represents a number exactly; false for 64-bit integers beyond 2^53.
 template <typename Number>
 bool is_exact_as_double(Number number) {
   if constexpr (std::is_integral_v<Number> && sizeof(Number) == 8) {

@@ -98,7 +98,7 @@ class ColumnOfMat {
     fail(message);
   }
 
-  /// A field of an element of a struct array.
+  /// Returns a field from an element of a struct array.
   const MatArray& field(const MatArray& parent, const MatStep& step, const std::string& name,
                         const std::string& path) const {
     if (parent.kind != MatKind::structure)
@@ -124,7 +124,8 @@ class ColumnOfMat {
     std::size_t stride = 1;
     for (std::size_t k = 0; k < step.subscripts.size(); ++k) {
       const std::size_t subscript = step.subscripts[k].value();
-      // One alone counts through all; of several, each has its dimension.
+      // A single subscript counts through all elements; if there are several, each has its
+      // dimension.
       const std::size_t size = step.subscripts.size() == 1 ? count
                                : k < parent.dims.size()    ? parent.dims[k]
                                                            : 1;
@@ -194,7 +195,7 @@ class ColumnOfMat {
   const std::string& column_;
 };
 
-/// Adds the readable columns of an array.
+/// Appends the readable columns of an array.
 void list_columns_of(const MatArray& array, const std::string& path, int depth,
                      std::vector<std::string>& columns) {
   if (depth > kDeepestListing) return;

@@ -115,7 +115,7 @@ struct Hdf5Source::Open {
 
 Hdf5Source::Hdf5Source(const std::filesystem::path& path) : open_(std::make_unique<Open>()) {
   open_->name = path.string();
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // it would print its errors
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // keeps HDF5 from printing errors
   const hid_t probe = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   if (probe < 0)
     open_->fail(

@@ -9,12 +9,12 @@
 
 namespace rigcal::datasets {
 
-/// Reads MAT files of version 7.3, which are HDF5 files, through matio. Both libraries can crash,
-/// or run for ever, on a single damaged byte: only to be used by run_confined(), and by one thread
-/// of a process.
+/// Reads MAT files of version 7.3, which are HDF5 files, using matio. A single damaged byte can
+/// crash either library or make it hang, so use this class only within run_confined(), and from
+/// only one thread of a process.
 class Hdf5Source : public MatSource {
  public:
-  /// @throws InputError  HDF5 cannot open it
+  /// @throws InputError  if HDF5 cannot open the file
   explicit Hdf5Source(const std::filesystem::path& path);
   ~Hdf5Source() override;
 

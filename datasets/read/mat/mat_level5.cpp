@@ -23,7 +23,7 @@ constexpr std::uint64_t kMostNameBytes = 4096;
 constexpr std::uint64_t kMostFieldNameBytes = 1 << 20;
 constexpr int kMostStructDepth = 32;
 
-/// Types of data, table 1-1 of the format.
+/// Data types, from table 1-1 of the format.
 enum MatStorage : std::uint32_t {
   kInt8 = 1,
   kUint8 = 2,
@@ -40,7 +40,7 @@ enum MatStorage : std::uint32_t {
   kUtf8 = 16
 };
 
-/// Classes of arrays, table 1-3, and those that came later.
+/// Array classes, from table 1-3, and later additions.
 enum MatClass : std::uint32_t {
   kCell = 1,
   kStruct = 2,
@@ -55,7 +55,7 @@ enum MatClass : std::uint32_t {
 
 constexpr std::uint32_t kComplexFlag = 0x0800;
 
-/// Bytes per number; 0 for types that are no numbers.
+/// Bytes per number; 0 for types that are not numeric.
 std::size_t bytes_of(std::uint32_t storage) {
   switch (storage) {
     case kInt8:
@@ -86,25 +86,25 @@ Number swapped_bytes(Number value) {
   return value;
 }
 
-/// A data element: its type, and the position of its data in the stream.
+/// A data element: its type, and where its data are in the stream.
 struct DataElement {
   std::uint32_t type = 0;
   std::uint64_t begin = 0;
   std::uint64_t bytes = 0;
   std::uint64_t next = 0;             ///< start of the next element
-  std::array<char, 4> held_in_tag{};  ///< its data, if they are stored in the tag
+  std::array<char, 4> held_in_tag{};  ///< the data, if the tag contains them
   bool is_held_in_tag = false;
 };
 
-/// Takes one variable apart.
+/// Parses one variable.
 class Level5Parser {
  public:
   Level5Parser(ByteStream& stream, bool swapped, std::size_t variable, std::size_t& arrays)
       : stream_(stream), swapped_(swapped), variable_(variable), arrays_(arrays) {}
 
-  /// The array whose tag was read.
+  /// Parses the array whose tag has been read.
   ///
-  /// @param end  of it
+  /// @param end  where the array ends
   MatArray array(std::uint64_t end, int depth) {
     if (++arrays_ > kMostArrays)
       throw DamagedBytes(fmt::format("more than {} arrays in the file", kMostArrays));
@@ -133,7 +133,7 @@ class Level5Parser {
     return array;
   }
 
-  /// The tag at the stream's position.
+  /// Reads the tag at the stream's position.
   DataElement element(std::uint64_t end) {
     const std::uint64_t begin = stream_.position();
     if (end < begin + kTagBytes) throw DamagedBytes("an element that ends within its tag");
@@ -157,7 +157,7 @@ class Level5Parser {
     element.begin = begin + kTagBytes;
     if (element.bytes > end - element.begin)
       throw DamagedBytes("an element that is longer than its container");
-    // Elements begin at multiples of eight bytes; some writers omit the padding of the last one.
+    // Elements begin at multiples of eight bytes; some writers omit the padding after the last one.
     element.next = std::min(end, element.begin + (element.bytes + 7) / 8 * 8);
     return element;
   }
@@ -206,7 +206,7 @@ class Level5Parser {
     return result;
   }
 
-  /// Names of fields are filled up with NUL; they are not looked into here.
+  /// Reads a name, or a list of field names padded with NULs, without checking it.
   std::string text(const DataElement& element, std::uint64_t most_bytes) {
     if (element.type != kInt8 && element.type != kUint8 && element.type != kUtf8)
       throw DamagedBytes("a name that is no text");
@@ -236,7 +236,7 @@ class Level5Parser {
     if (at.type != kInt32 || at.bytes < 8 || at.bytes % 4 != 0)
       throw DamagedBytes("an array without its dimensions");
     std::vector<std::size_t> result;
-    // No more than the bytes of a file, even as a sparse array or a text.
+    // A file cannot have more bytes than this, even for a sparse array or a text.
     constexpr std::size_t kMostElements = std::numeric_limits<std::int64_t>::max();
     std::size_t count = 1;
     for (const std::int32_t n : words<std::int32_t>(at)) {
@@ -267,7 +267,7 @@ class Level5Parser {
     }
     if (array.field_names.empty()) return;
     const std::size_t elements = array.element_count();
-    // Each field takes a tag at least.
+    // Each field takes at least one tag.
     const std::uint64_t most = (end - stream_.position()) / kTagBytes;
     if (elements > most / array.field_names.size())
       throw DamagedBytes("a struct of more fields than there is room for");
@@ -309,7 +309,7 @@ std::vector<double> selected(ByteStream& stream, bool swapped, const MatSelectio
   std::vector<double> values;
   values.reserve(selection.count);
   std::size_t left = selection.count == 0 ? 0 : (selection.count - 1) * selection.stride + 1;
-  std::size_t next = 0;  // index in the block of the next wanted number
+  std::size_t next = 0;  // index of the next wanted number in the block
   while (left > 0) {
     block.resize(std::min(left, kBlock));
     stream.read(block.data(), block.size() * sizeof(Number));

@@ -11,14 +11,15 @@
 
 namespace rigcal::datasets {
 
-/// Reads MAT files of level 5 (also "v6", "v7"), strictly, by "MAT-File Format" of The MathWorks.
-/// Every size in the file is checked against its container before it is used. Every variable is
-/// read to its end once, which detects truncation and, in compressed variables, damage. The
-/// requested numbers limit the memory.
+/// Reads MAT files of level 5 (also "v6", "v7"), strictly, according to "MAT-File Format" by The
+/// MathWorks. Every size in the file is checked against its container before it is used. Every
+/// variable is read to its end once, which detects truncation and, in compressed variables, damage.
+/// Memory use is bounded by the numbers requested.
 class Level5Source : public MatSource {
  public:
-  /// @throws InputError  not a regular file of this kind, damaged, more than 200 000 arrays, or
-  ///                     compressed variables that inflate to more than `most_inflated_bytes`
+  /// @throws InputError  if the file is not a regular file of this kind, is damaged, has more than
+  ///                     200 000 arrays, or has compressed variables that inflate to more than
+  ///                     `most_inflated_bytes`
   explicit Level5Source(const std::filesystem::path& path,
                         std::uint64_t most_inflated_bytes = std::uint64_t{4} << 30);
 
@@ -46,7 +47,8 @@ class Level5Source : public MatSource {
   std::size_t arrays_ = 0;
   std::uint64_t inflated_bytes_ = 0;
   std::uint64_t most_inflated_bytes_;
-  /// The last one that numbers were read from: columns often follow each other in a variable.
+  /// Stream of the variable that was last read, kept because successive columns are often in the
+  /// same variable.
   std::unique_ptr<ByteStream> stream_;
   std::size_t stream_of_ = 0;
 };

@@ -14,7 +14,7 @@ namespace {
 constexpr ConfinedReader kXlsxLibraries{"libzip and Expat", "an .xlsx file",
                                         "copy or save it again, or save it as CSV"};
 constexpr std::string_view kZip("PK\x03\x04", 4);
-/// Begins .xls files from before 2007, and encrypted .xlsx files.
+/// First bytes of .xls files from before 2007, and of encrypted .xlsx files.
 constexpr std::string_view kCompound("\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1", 8);
 
 void require_workbook(const std::filesystem::path& path) {

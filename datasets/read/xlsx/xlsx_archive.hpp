@@ -10,10 +10,10 @@
 
 namespace rigcal::datasets {
 
-/// The parts of a workbook, which are the files of a ZIP archive, by libzip.
+/// The parts of a workbook, which are files in a ZIP archive, read by libzip.
 class XlsxArchive {
  public:
-  /// @throws InputError  no archive, damaged, more than 10 000 parts
+  /// @throws InputError  if the file is not an archive, is damaged, or has more than 10 000 parts
   explicit XlsxArchive(const std::filesystem::path& path);
   ~XlsxArchive();
   XlsxArchive(const XlsxArchive&) = delete;
@@ -22,10 +22,11 @@ class XlsxArchive {
   const std::string& name() const { return name_; }
   bool has(const std::string& part) const;
 
-  /// Passes the inflated bytes of a part to `take`, block by block, until it returns false. At the
-  /// end the checksum is verified.
+  /// Passes the inflated bytes of a part to `take`, block by block, until `take` returns false.
+  /// Verifies the checksum at the end.
   ///
-  /// @throws InputError  no such part, damaged, encrypted, or of more than `most_bytes`
+  /// @throws InputError  if there is no such part, or if it is damaged, encrypted, or larger than
+  ///                     `most_bytes`
   void read(const std::string& part, std::uint64_t most_bytes,
             const std::function<bool(std::string_view)>& take) const;
 

@@ -18,7 +18,7 @@
 namespace rigcal::datasets {
 namespace {
 
-// Excel's own limits, and limits of the inflated size of parts.
+// Excel's own limits, and limits on the inflated size of parts.
 constexpr std::size_t kMostRows = 1'048'576;
 constexpr std::size_t kMostSheetColumns = 16'384;
 constexpr std::size_t kLongestCell = 32'767 * 4;
@@ -42,7 +42,7 @@ struct Place {
   std::size_t column = 0;
 };
 
-/// "C17"
+/// Parses an address such as "C17".
 std::optional<Place> parsed_address(std::string_view text) {
   Place place;
   std::size_t at = 0;
@@ -54,14 +54,14 @@ std::optional<Place> parsed_address(std::string_view text) {
   return is_possible ? std::optional(place) : std::nullopt;
 }
 
-/// The name of a part that another one refers to: relative to the folder of the latter.
+/// Resolves the name of a part relative to the folder of the part that refers to it.
 std::string resolved(const std::string& from, std::string_view target) {
   if (target.starts_with('/')) return std::string(target.substr(1));
   const auto path = std::filesystem::path(from).parent_path() / target;
   return path.lexically_normal().generic_string();
 }
 
-/// Path of the description of a part's references.
+/// Path of the file that lists the references of a part.
 std::string relations_of(const std::string& part) {
   const std::filesystem::path path(part);
   return (path.parent_path() / "_rels" / (path.filename().string() + ".rels")).generic_string();
@@ -74,7 +74,7 @@ struct Relation {
   std::string target;
 };
 
-/// References of a part by their ids.
+/// Collects the references of a part by id.
 class RelationsHandler : public XmlHandler {
  public:
   void start(std::string_view element, const XmlAttributes& attributes) override {
@@ -88,7 +88,7 @@ class RelationsHandler : public XmlHandler {
 
 bool is_true(std::string_view text) { return text == "1" || text == "true"; }
 
-/// Names of the sheets, and the ids of the references to their parts.
+/// Collects the names of the sheets, and the ids of the references to their parts.
 class WorkbookHandler : public XmlHandler {
  public:
   void start(std::string_view element, const XmlAttributes& attributes) override {
@@ -100,7 +100,7 @@ class WorkbookHandler : public XmlHandler {
   bool is_to_be_computed = false;
 };
 
-/// Texts that cells share, without the reading aids of Japanese ones.
+/// Collects the texts that cells share, without the phonetic hints of Japanese texts.
 class SharedTextsHandler : public XmlHandler {
  public:
   explicit SharedTextsHandler(std::string name) : name_(std::move(name)) {}
@@ -196,7 +196,7 @@ class SheetHandler : public XmlHandler {
     finish_cell();
   }
 
-  /// Refuses rows or cells of an unknown namespace, which would be missing from the record.
+  /// Refuses rows or cells from an unknown namespace, which would be missing from the record.
   void foreign() override {
     if (in_table_ && !in_extension_) fail("or a cell behind it is of no known kind");
   }
@@ -309,7 +309,7 @@ std::map<std::string, Relation> relations(const XlsxArchive& archive, const std:
   return std::move(handler.relations);
 }
 
-/// The part with the workbook.
+/// Finds the part that contains the workbook.
 std::string workbook_part(const XlsxArchive& archive) {
   constexpr const char* kRoot = "_rels/.rels";
   if (!archive.has(kRoot))
@@ -347,7 +347,7 @@ XlsxBook::XlsxBook(const std::filesystem::path& path) : archive_(path) {
     const auto found = parts.find(id);
     if (found == parts.end() || found->second.kind != "worksheet") continue;
     const std::string part = resolved(workbook, found->second.target);
-    // A part that is listed twice would be read as two sheets.
+    // A part listed twice would be read as two sheets.
     const auto same = std::find_if(sheets_.begin(), sheets_.end(),
                                    [&](const Sheet& each) { return each.part == part; });
     if (same != sheets_.end())

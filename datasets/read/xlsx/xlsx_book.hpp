@@ -10,9 +10,9 @@
 
 namespace rigcal::datasets {
 
-/// Kind of a cell's content; a formula counts as its last result. There is no result (no_result) if
-/// the program that wrote the formula did not compute it: no value, an empty one (openpyxl), or 0
-/// in a workbook that is to be computed when it is opened (`fullCalcOnLoad`; XlsxWriter).
+/// Kind of content in a cell. A formula counts as its last result. It has none (no_result) if the
+/// program that wrote it did not compute it. The cell then has no value, an empty one (openpyxl),
+/// or 0 in a workbook that is to be computed on opening (`fullCalcOnLoad`; XlsxWriter).
 enum class XlsxKind { number, date, text, truth, error, no_result };
 
 struct XlsxCell {
@@ -31,11 +31,11 @@ struct XlsxMerged {
   }
 };
 
-/// "C17"; rows and columns count from 1.
+/// Address of a cell, such as "C17". Rows and columns count from 1.
 std::string xlsx_address(std::size_t row, std::size_t column);
 
-/// An .xlsx workbook (ECMA-376, SpreadsheetML), read strictly, whatever the locale. Use it
-/// only within run_confined(): damaged files may crash the libraries beneath it.
+/// An .xlsx workbook (ECMA-376, SpreadsheetML), read strictly, whatever the locale. Use it only
+/// within run_confined(), because damaged files may crash the underlying libraries.
 class XlsxBook {
  public:
   struct Sheet {
@@ -43,25 +43,25 @@ class XlsxBook {
     std::string part;
   };
 
-  /// @throws InputError  no workbook, damaged, too large
+  /// @throws InputError  if the file is not a workbook, is damaged, or is too large
   explicit XlsxBook(const std::filesystem::path& path);
 
   const std::string& name() const { return archive_.name(); }
-  /// Worksheets in their order, at least one.
+  /// Worksheets in workbook order, at least one.
   const std::vector<Sheet>& sheets() const { return sheets_; }
 
-  /// Passes every cell with content to `take`, row by row, until it returns false.
+  /// Passes every cell with content to `take`, row by row, until `take` returns false.
   ///
-  /// @return merged cells, if it was read to its end
-  /// @throws InputError  damaged, or cells that are not in their order
+  /// @return merged cells, if the sheet was read to its end
+  /// @throws InputError  if the sheet is damaged, or if its cells are out of order
   std::vector<XlsxMerged> read(const Sheet& sheet,
                                const std::function<bool(const XlsxCell&)>& take) const;
 
  private:
   XlsxArchive archive_;
   std::vector<Sheet> sheets_;
-  std::vector<std::string> texts_;  ///< texts that cells share
-  bool is_to_be_computed_ = false;  ///< when it is opened (`fullCalcOnLoad`)
+  std::vector<std::string> texts_;  ///< texts that several cells share
+  bool is_to_be_computed_ = false;  ///< whether to compute on opening (`fullCalcOnLoad`)
   std::vector<bool> shows_a_date_;  ///< indexed by the style of a cell
 };
 

@@ -20,7 +20,8 @@
 namespace rigcal::datasets {
 namespace {
 
-/// Text of a header cell; line breaks, which are common there, count as blanks.
+/// Returns the text of a header cell on one line. Line breaks, which are common there, become
+/// blanks.
 std::string on_one_line(std::string_view text) {
   std::string result;
   for (const char c : text) {
@@ -31,8 +32,8 @@ std::string on_one_line(std::string_view text) {
   return result;
 }
 
-/// The unit in a cell below the header, "mm", "[mm]" or "(mm)"; empty for "-". Nothing if the text
-/// is not a unit.
+/// Returns the unit in a cell below the header: "mm", "[mm]" or "(mm)"; empty for "-". Returns
+/// nullopt if the text is not a unit.
 std::optional<std::string> unit_in(std::string_view text) {
   if (text.size() > 2 &&
       ((text.front() == '[' && text.back() == ']') || (text.front() == '(' && text.back() == ')')))
@@ -68,15 +69,15 @@ std::string kind_text(const XlsxCell& cell) {
 struct SheetHeader {
   std::size_t row = 0;             ///< 0: the sheet is empty
   std::vector<CsvName> names;      ///< by column; empty where the header has a gap
-  std::vector<std::string> units;  ///< by column; empty: no row of units
+  std::vector<std::string> units;  ///< by column; empty without a row of units
   bool has_number = false;
   bool has_text = false;
 };
 
-/// Finds the header while the cells of a sheet pass by.
+/// Finds the header while the cells of a sheet are being read.
 class HeaderFinder {
  public:
-  /// Whether the header is complete, so that the cell belongs to the rows of numbers.
+  /// Whether the header is complete, so that this cell belongs to the rows of numbers.
   bool is_past(const XlsxCell& cell) {
     if (cell.row != row_) finish_row();
     row_ = cell.row;
@@ -98,7 +99,7 @@ class HeaderFinder {
     cells_.clear();
   }
 
-  /// Cells of the row below the header, unless they were units.
+  /// Returns the cells of the row below the header, unless they are units.
   std::vector<XlsxCell> take_rows() { return std::exchange(rows_, {}); }
   const SheetHeader& header() const { return header_; }
 
@@ -142,7 +143,8 @@ struct SheetColumn {
   std::string name;  ///< in its header
 };
 
-/// "Sheet2!x", "'My sheet'!x"; without a sheet it is a column of the first.
+/// Splits names such as "Sheet2!x" and "'My sheet'!x". Without a sheet, a name is that of a column
+/// on the first one.
 SheetColumn place_of(const XlsxBook& book, const std::string& column) {
   for (std::size_t at = column.find('!'); at != std::string::npos; at = column.find('!', at + 1)) {
     std::string name = column.substr(0, at);
@@ -166,7 +168,7 @@ std::string sheet_prefix(const std::string& sheet) {
 
 // ---- Numbers of one sheet ------------------------------------------------------------------
 
-/// Columns of one sheet, read side by side.
+/// Reads several columns of one sheet in a single pass.
 class SheetReader {
  public:
   SheetReader(const XlsxBook& book, const XlsxBook::Sheet& sheet, std::vector<std::string> names,
@@ -216,7 +218,7 @@ class SheetReader {
     return label;
   }
 
-  /// Once the header is known.
+  /// Prepares for the numbers once the header is known.
   void begin(HeaderFinder& finder) {
     if (first_row_ != 0) return;
     const SheetHeader& header = finder.header();
@@ -284,7 +286,7 @@ class SheetReader {
     values.push_back(*value);
   }
 
-  /// Every wanted column has its cell in the row that has been read.
+  /// Checks that every wanted column has a cell in the row that was read.
   void finish_row() {
     if (row_ == 0 || gap_) return;
     const std::size_t rows = row_ - first_row_ + 1;
@@ -321,10 +323,10 @@ class SheetReader {
   std::size_t count_ = 0;
   std::map<std::string, std::size_t> columns_;         ///< by name
   std::map<std::size_t, std::vector<double>> values_;  ///< by column
-  std::size_t first_row_ = 0;                          ///< first row of numbers; 0: not known yet
+  std::size_t first_row_ = 0;  ///< first row of numbers; 0 until it is known
   std::size_t next_row_ = 0;
   std::size_t row_ = 0;
-  std::optional<std::pair<std::size_t, std::size_t>> gap_;  ///< the first cell that is missing
+  std::optional<std::pair<std::size_t, std::size_t>> gap_;  ///< the first missing cell
 };
 
 }  // namespace

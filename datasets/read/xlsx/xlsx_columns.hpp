@@ -7,9 +7,9 @@
 
 namespace rigcal::datasets {
 
-/// The functions of load_xlsx.hpp in this process.
+/// Like xlsx_record_columns() and load_xlsx_record() in load_xlsx.hpp, but without a new process.
 ///
-/// @throws InputError
+/// @throws InputError  under the same conditions
 std::vector<RecordColumn> list_xlsx_columns(const std::filesystem::path& path);
 RecordTable read_xlsx_columns(const std::filesystem::path& path, const RecordRequest& request);
 

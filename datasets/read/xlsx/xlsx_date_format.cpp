@@ -20,11 +20,12 @@ bool is_date_format(std::string_view code) {
       i = code.find('"', i + 1);
       if (i == std::string_view::npos) return false;
     } else if (c == '\\' || c == '_' || c == '*') {
-      ++i;  // the next character is a literal
+      ++i;  // the next character is literal
     } else if (c == '[') {
       const std::size_t end = code.find(']', i);
       if (end == std::string_view::npos) return false;
-      // "[h]", "[mm]" and "[ss]" count beyond a day; others are colours, conditions, currencies.
+      // "[h]", "[mm]" and "[ss]" count beyond one day; other brackets are colours, conditions,
+      // currencies.
       const std::string_view inside = code.substr(i + 1, end - i - 1);
       const bool counts =
           !inside.empty() && inside.find_first_not_of("hmsHMS") == std::string_view::npos;

@@ -4,10 +4,10 @@
 
 namespace rigcal::datasets {
 
-/// Whether a number format of Excel shows dates or times of day: "dd.mm.yyyy", "[h]:mm:ss.000".
+/// Whether an Excel number format shows dates or times of day: "dd.mm.yyyy", "[h]:mm:ss.000".
 bool is_date_format(std::string_view code);
 
-/// For a format that Excel knows by its number (ECMA-376, part 1, 18.8.30).
+/// Whether one of Excel's built-in formats does, given its number (ECMA-376, part 1, 18.8.30).
 bool is_date_format(long number);
 
 }  // namespace rigcal::datasets

@@ -16,11 +16,11 @@
 namespace rigcal::datasets {
 namespace {
 
-/// Limit for a tag or comment. With every block Expat reads an unfinished one again from its
-/// beginning, so one of 64 MB would take 20 s.
+/// Limit for a tag or comment. Expat rereads an unfinished one from its beginning for every block,
+/// so one of 64 MB would take 20 s.
 constexpr std::int64_t kMostTagBytes = std::int64_t{1} << 20;
 
-// From Expat 2.9 on the functions with 64 bits are used; Expat 2.5 lacks them.
+// Expat 2.9 and later have 64-bit versions of these functions; Expat 2.5 does not.
 #if XML_MAJOR_VERSION > 2 || XML_MINOR_VERSION >= 9
 std::uint64_t current_line(XML_Parser parser) { return XML_GetCurrentLineNumber64(parser); }
 std::int64_t current_byte(XML_Parser parser) { return XML_GetCurrentByteIndex64(parser); }
@@ -42,21 +42,21 @@ std::string_view namespace_of(std::string_view name) {
   return end == std::string_view::npos ? std::string_view() : name.substr(0, end);
 }
 
-/// Callbacks of Expat. Exceptions are kept here until it has returned.
+/// Callbacks for Expat. Exceptions are kept here until Expat has returned.
 struct Listener {
   XML_Parser parser = nullptr;
   XmlHandler* handler = nullptr;
   std::exception_ptr error;
   bool has_document_type = false;
   std::optional<std::string> own_namespace{};  ///< namespace of the part's outermost element
-  int foreign_depth = 0;  ///< number of open elements, counted from the first of another namespace
+  int foreign_depth = 0;  ///< number of open elements, from the first in another namespace
 
   template <typename Call>
   void guarded(Call call) {
     if (error) return;
     try {
       call();
-    } catch (...) {  // thrown again by read_xml()
+    } catch (...) {  // rethrown by read_xml()
       error = std::current_exception();
       XML_StopParser(parser, XML_FALSE);
     }

@@ -9,21 +9,22 @@
 
 namespace rigcal::datasets {
 
-/// Attributes of an element by their name without namespace; a name that had none comes first.
+/// Attributes of an element, looked up by name without namespace. An attribute that has no
+/// namespace takes priority.
 class XmlAttributes {
  public:
   explicit XmlAttributes(const char** pairs) : pairs_(pairs) {}
   std::optional<std::string_view> find(std::string_view name) const;
-  /// Empty if there is none.
+  /// Empty if there is no such attribute.
   std::string_view text(std::string_view name) const { return find(name).value_or(""); }
 
  private:
   const char** pairs_;
 };
 
-/// Receives the elements of a part in order. Only those in the namespace of its outermost element
+/// Receives the elements of a part in order. Only elements in the namespace of the outermost one
 /// count, whatever prefix the file uses for it. Elements that other programs add in their own
-/// namespaces are skipped with their content.
+/// namespaces are skipped, together with their content.
 class XmlHandler {
  public:
   XmlHandler() = default;
@@ -34,16 +35,17 @@ class XmlHandler {
   virtual void start(std::string_view element, const XmlAttributes& attributes) = 0;
   virtual void end(std::string_view /*element*/) {}
   virtual void text(std::string_view /*text*/) {}
-  /// Called where an element of another namespace is skipped.
+  /// Called when an element from another namespace is skipped.
   virtual void foreign() {}
-  /// The rest of the part is not wanted.
+  /// Whether the rest of the part is not needed.
   virtual bool is_done() const { return false; }
 };
 
-/// Reads a part of a workbook as XML, by Expat.
+/// Reads a part of a workbook as XML, using Expat.
 ///
-/// @throws InputError  as XlsxArchive::read; not XML; with a document type, which no workbook has
-///                     and which may define endless entities; with a tag of more than 1 MB
+/// @throws InputError  under the conditions of XlsxArchive::read(), or if the part is not XML, has
+///                     a tag of more than 1 MB, or has a document type, which no workbook has and
+///                     which may define endless entities
 void read_xml(const XlsxArchive& archive, const std::string& part, std::uint64_t most_bytes,
               XmlHandler& handler);
 

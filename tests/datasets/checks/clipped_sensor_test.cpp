@@ -32,8 +32,8 @@ TEST_CASE("clipped_runs: a sine that is clipped, with noise and without", "[data
         const auto beyond = static_cast<std::size_t>(
             std::count_if(whole.begin(), whole.end(), [&](double v) { return v >= level; }));
         const std::size_t found = clipped_samples(cut, drive, RangeEnd::highest);
-        // All of it except the edges; at 20 samples per period 0.95 leaves two samples each, which
-        // no rule can distinguish from a coincidence.
+        // All of it is found except the edges. At 20 samples per period, a level of 0.95 leaves two
+        // samples each, which no rule can distinguish from coincidence.
         if (period > 20.0 || level < 0.9) {
           CHECK(found <= beyond);
           CHECK(static_cast<double>(found) > 0.8 * static_cast<double>(beyond));
@@ -52,7 +52,7 @@ TEST_CASE("clipped_runs: both ends, and behind a converter", "[datasets]") {
 }
 
 TEST_CASE("clipped_runs: at rest, noise of which one side is cut away", "[datasets]") {
-  // A piston on its stop for most of the record, at the end of the converter's range.
+  // A piston is on its stop for most of the record, at the end of the converter's range.
   const Samples drive = square_signal(4000, 1000.0);
   const Samples stop = with_noise(lagged(drive, 30.0), 0.005);
   CHECK(clipped_samples(quantised(clipped(stop, -2.0, 0.998), 0.001), drive, RangeEnd::highest) >
@@ -68,19 +68,19 @@ TEST_CASE("clipped_runs: nothing of what is whole", "[datasets]") {
         CAPTURE(period);
         const Samples drive = sine_signal(10000, period);
         CHECK(both_ends(quantised(with_noise(drive, noise), step), drive) == 0);
-        // Late by an eighth of a period.
+        // Delayed by an eighth of a period.
         const Samples late = samples(10000, [&](double i) {
           return std::sin(2.0 * std::numbers::pi * (i / period - 0.125));
         });
         CHECK(both_ends(quantised(with_noise(late, noise), step), drive) == 0);
       }
-      // Squares, answered slowly or within a sample.
+      // Square waves, followed slowly or within a sample.
       for (const double tau : {0.1, 1.0, 3.0, 30.0}) {
         CAPTURE(tau);
         const Samples drive = square_signal(10000, 500.0);
         CHECK(both_ends(quantised(with_noise(lagged(drive, tau), noise), step), drive) == 0);
       }
-      // A ramp that is constant at both ends.
+      // A ramp that stays constant at both ends.
       const Samples ramps = clipped(
           samples(
               10000,

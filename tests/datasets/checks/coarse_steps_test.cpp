@@ -9,7 +9,7 @@ using namespace rigcal::datasets;
 
 namespace {
 
-/// A slow ramp with noise, read in steps of 0.5; one repeat.
+/// One repeat: a slow ramp with noise, read in steps of 0.5.
 std::vector<Repeat> read_in_steps(double noise) {
   auto stream = random_stream(3, {"steps"});
   Repeat repeat;
@@ -26,7 +26,7 @@ std::vector<Repeat> read_in_steps(double noise) {
 TEST_CASE("coarse_step: noise below half a step does not smooth it out", "[datasets]") {
   const auto repeats = read_in_steps(0.1);
   CHECK(coarse_step(repeats, Channel::position, 0.17) == 0.5);
-  // sqrt(1/4 + 1/12) = 0.577 steps
+  // The limit is sqrt(1/4 + 1/12) = 0.577 steps.
   CHECK(coarse_step(repeats, Channel::position, 0.28) == 0.5);
   CHECK_FALSE(coarse_step(repeats, Channel::position, 0.29));
   CHECK_FALSE(coarse_step(repeats, Channel::load_pressure, 0.17));

@@ -10,11 +10,11 @@ using Catch::WithinAbs;
 
 TEST_CASE("drive_motion: share of the drive's range that it passes in a run", "[datasets]") {
   const Samples ramp = samples(101, [](double i) { return 10.0 * i; });
-  // Medians of four parts of ten samples each: 10 + 4.5, ..., 40 + 4.5 of 100.
+  // Medians of four parts with ten samples each: from 10 + 4.5 to 40 + 4.5, in a range of 100.
   CHECK_THAT(drive_motion(ramp, {10, 40, 0.0}), WithinAbs(0.30, 1e-12));
-  CHECK_THAT(drive_motion(ramp, {10, 5, 0.0}), WithinAbs(0.04, 1e-12));  // too short for parts
+  CHECK_THAT(drive_motion(ramp, {10, 5, 0.0}), WithinAbs(0.04, 1e-12));  // too short to be divided
   CHECK(drive_motion(Samples(50, 2.0), {10, 20, 0.0}) == 0.0);
-  // What is constant does not move; an edge in its last tenth is not yet answered.
+  // A constant drive does not move. An edge in its last tenth has not been answered yet.
   const Samples held = square_signal(200, 100.0);
   CHECK(drive_motion(held, {50, 50, 0.0}) == 0.0);
   CHECK(drive_motion(held, {55, 50, 0.0}) == 0.0);

@@ -8,7 +8,7 @@ using Catch::Contains;
 
 namespace {
 
-/// Warning for a sine of 2 Hz with this step of time.
+/// Returns the warning for a 2 Hz sine with this time step.
 std::string sampling_warning(double step_s, int samples, Condition condition = {}) {
   Record record;
   for (int i = 0; i < samples; ++i) record.time_s.push_back(step_s * i);
@@ -23,7 +23,7 @@ std::string sampling_warning(double step_s, int samples, Condition condition = {
 
 TEST_CASE("drive_sampling_warning: samples a period", "[datasets]") {
   CHECK(sampling_warning(0.005, 401).empty());
-  CHECK(sampling_warning(0.125, 41).empty());  // four samples in a period
+  CHECK(sampling_warning(0.125, 41).empty());  // four samples per period
   CHECK_THAT(sampling_warning(0.126, 41),
              Contains("3.97 samples a period of the sine of 2 Hz") && !Contains("ms"));
   CHECK_THAT(sampling_warning(5.0, 401),

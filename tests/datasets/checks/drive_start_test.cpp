@@ -10,7 +10,7 @@ using rigcal::model::ControllerKind;
 
 namespace {
 
-/// A piston that follows a command that is 2 V from the first sample on.
+/// A piston that follows a command, which is 2 V from the first sample.
 struct StartCase {
   Campaign campaign;
   Condition condition;

@@ -9,7 +9,7 @@ using namespace rigcal::test;
 
 namespace {
 
-/// The same value from sample `begin` on, for `length` samples.
+/// Repeats the value of sample `begin` for `length` samples.
 Samples frozen(Samples x, std::size_t begin, std::size_t length) {
   std::fill_n(x.begin() + static_cast<std::ptrdiff_t>(begin), length, x[begin]);
   return x;
@@ -38,16 +38,16 @@ TEST_CASE("frozen_runs: a quiet signal, while the drive goes there and back", "[
   const Samples x = quantised(drive, 0.001);
   CHECK(frozen_runs(x, drive).empty());
   CHECK(frozen_runs(frozen(x, 1010, 1000), drive).size() == 1);
-  CHECK(frozen_runs(frozen(x, 2010, 1990), drive).size() == 1);  // up to the end
-  CHECK(frozen_runs(frozen(x, 1010, 100), drive).empty());  // a piston may stick so by friction
+  CHECK(frozen_runs(frozen(x, 2010, 1990), drive).size() == 1);  // until the end of the record
+  CHECK(frozen_runs(frozen(x, 1010, 100), drive).empty());       // a piston may stick for as long
 }
 
 TEST_CASE("frozen_runs: nothing where the rig may be at rest", "[datasets]") {
   const Samples held = square_signal(4000, 1000.0);
   const Samples x = with_noise(lagged(held, 30.0), 0.005);
   CHECK(frozen_runs(frozen(x, 600, 300), held).empty());
-  CHECK(frozen_runs(frozen(x, 600, 600), held).size() == 1);  // over an edge
-  // Quiet squares, coarse and slow signals, repeated samples, friction.
+  CHECK(frozen_runs(frozen(x, 600, 600), held).size() == 1);  // across an edge
+  // Quiet square waves, coarse and slow signals, repeated samples, and friction.
   CHECK(frozen_runs(quantised(lagged(held, 5.0), 0.001), held).empty());
   const Samples slow = sine_signal(40000, 20000.0);
   for (const double step : {0.001, 0.02, 0.2})

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kRateHz = 1000.0;
 
-/// Repeats of white noise with a sine of its own phase in each, less their mean.
+/// Repeats of white noise plus a sine with a separate phase in each, minus their mean.
 Rows deviations(double frequency_hz, double amplitude, double noise, std::size_t samples,
                 std::size_t repeats = 5) {
   auto stream = random_stream(7, {"hum"});
@@ -43,7 +43,7 @@ TEST_CASE("mains_hum: frequency and amplitude of what differs between repeats", 
     const auto found = mains_hum(deviations(mains, 0.3, 0.1, 20000, 40), kRateHz, 1.0);
     REQUIRE(found);
     CHECK(found->frequency_hz == (mains < 55.0 ? 50.0 : 60.0));
-    // The phases of 40 repeats leave sqrt(1/40) of the amplitude in their mean, give or take.
+    // The mean of 40 repeats keeps about sqrt(1/40) of the amplitude, depending on the phases.
     CHECK_THAT(found->amplitude, Catch::WithinRel(0.3, 0.05));
   }
   CHECK(mains_hum(deviations(50.0, 0.3, 0.1, 500), kRateHz, 0.0));
@@ -53,9 +53,9 @@ TEST_CASE("mains_hum: neither noise nor lines elsewhere are hum", "[datasets]") 
   CHECK_FALSE(mains_hum(deviations(50.0, 0.0, 0.1, 20000), kRateHz, 0.0));
   CHECK_FALSE(mains_hum(deviations(55.0, 0.3, 0.1, 20000), kRateHz, 0.0));
   CHECK_FALSE(mains_hum(deviations(47.0, 0.3, 0.1, 20000), kRateHz, 0.0));
-  // A line that is there, but small beside the noise: 2 % of the variance.
+  // A line that is present but small compared with the noise: 2 % of the variance.
   CHECK_FALSE(mains_hum(deviations(50.0, 0.02, 0.1, 20000), kRateHz, 0.0));
-  // Too short, too slow, or but one repeat.
+  // A record that is too short or too slow, or a single repeat.
   CHECK_FALSE(mains_hum(deviations(50.0, 0.3, 0.1, 100), kRateHz, 0.0));
   CHECK_FALSE(mains_hum(deviations(50.0, 0.3, 0.1, 20000), 100.0, 0.0));
   CHECK_FALSE(mains_hum(deviations(50.0, 0.3, 0.1, 20000, 1), kRateHz, 0.0));
@@ -65,7 +65,7 @@ TEST_CASE("mains_hum: neither noise nor lines elsewhere are hum", "[datasets]") 
 TEST_CASE("mains_hum: a line among others of its size is none", "[datasets]") {
   Rows rows = deviations(50.0, 0.3, 0.1, 20000);
   REQUIRE(mains_hum(rows, kRateHz, 0.0));
-  // A resonance about 50 Hz: 53 Hz has nearly half of the power.
+  // A resonance around 50 Hz, with almost half of its power at 53 Hz.
   const Rows beside = deviations(53.0, 0.2, 0.0, 20000);
   for (std::size_t r = 0; r < rows.size(); ++r)
     for (std::size_t i = 0; i < rows[r].size(); ++i) rows[r][i] += beside[r][i];
@@ -88,8 +88,7 @@ TEST_CASE("mains_hum: late edges of a square wave are none", "[datasets]") {
     }
     CHECK_FALSE(mains_hum(rows, kRateHz, drive));
   }
-  // 50 Hz is a harmonic of 25 Hz, whose other harmonics are too far away to distinguish it from
-  // hum.
+  // 50 Hz is a harmonic of 25 Hz. The other harmonics are too far away to show that it is not hum.
   CHECK_FALSE(mains_hum(deviations(50.0, 0.3, 0.1, 20000), kRateHz, 25.0));
 }
 

@@ -47,7 +47,7 @@ TEST_CASE("sensor doubts: an uncertainty that counts nowhere is told", "[dataset
   CHECK(words("position", "0.02 mm (k = 2)").empty());
   CHECK_THAT(words("position", "0.02 mm"), Contains("\"0.02 mm\", does not count"));
   CHECK_THAT(words("Position", "0.02 mm (k = 2)"), Contains("did you mean \"position\""));
-  CHECK(words("oil temperature in the tank", "0.5 K").empty());  // it appears in no result
+  CHECK(words("oil temperature in the tank", "0.5 K").empty());  // it is not used in any result
   ChannelSetting supply;
   supply.role = ChannelRole::input;
   supply.gain_sd = 0.01;

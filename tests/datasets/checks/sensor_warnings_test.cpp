@@ -17,7 +17,7 @@ Campaign closed_loop() {
   return campaign;
 }
 
-/// 4 s of a 2.5 Hz sine at 1 kHz.
+/// A condition with a 2.5 Hz sine that lasts 4 s at 1 kHz.
 Condition condition() {
   Condition result;
   result.id = "a";
@@ -37,7 +37,7 @@ Repeat repeat_of(const std::string& source, Samples position) {
 
 Samples motion() { return with_noise(sine_signal(4000, 400.0), 0.002); }
 
-/// With an interruption from sample 1000, exclusive of its 200th.
+/// The motion with samples 1000 to 1199 frozen.
 Samples interrupted() {
   Samples x = motion();
   std::fill_n(x.begin() + 1000, 200, x[1000]);

@@ -16,7 +16,7 @@ Condition sine_condition(double frequency_hz, std::optional<double> duration_s =
   return condition;
 }
 
-/// Which records of these durations, one per condition, are reported as short.
+/// Whether each record, with one duration per condition, is reported as short.
 std::vector<bool> told(const std::vector<Condition>& conditions, const std::vector<double>& s) {
   std::vector<RecordLength> lengths;
   for (std::size_t i = 0; i < s.size(); ++i) lengths.push_back({&conditions[i], s[i]});
@@ -41,11 +41,11 @@ TEST_CASE("short_records: against other conditions of the same signal", "[datase
   const std::vector<Condition> same(4, sine_condition(1.0));
   CHECK(told(same, {20.0, 19.5, 14.9, 20.0}) == Told{false, false, true, false});
   CHECK(told(same, {20.0, 19.5, 15.1, 20.0}) == Told{false, false, false, false});
-  // Two long and two short, or one long: which was meant?
+  // With two long and two short records, or a single long one, the intended length is unclear.
   CHECK(told(same, {20.0, 10.0, 10.0, 20.0}) == Told{false, false, false, false});
   CHECK(told(same, {20.0, 10.0, 10.0, 10.0}) == Told{false, false, false, false});
   CHECK(told({same.begin(), same.begin() + 2}, {20.0, 10.0}) == Told{false, false});
-  // Another signal has a length of its own.
+  // A different signal has a different length.
   std::vector<Condition> mixed = same;
   mixed[2] = sine_condition(2.0);
   CHECK(told(mixed, {20.0, 20.0, 10.0, 20.0}) == Told(4, false));

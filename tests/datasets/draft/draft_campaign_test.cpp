@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A loop that follows a sine of 2 Hz and 5 mm.
+/// Record of a loop that follows a sine of 2 Hz and 5 mm.
 std::string sine_csv(double phase) {
   std::string text = "t_s,ref_mm,x_mm,note\n";
   for (int i = 0; i < 400; ++i) {
@@ -35,7 +35,7 @@ std::string sine_csv(double phase) {
   return text;
 }
 
-/// What a user would do: a value for every blank.
+/// Fills every blank with a value, as a user would do.
 std::string filled(std::string text, model::PlantKind plant = model::PlantKind::load_pressure) {
   const auto fill = [&](const std::string& from, const std::string& to) {
     for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from))
@@ -67,7 +67,7 @@ TEST_CASE("draft_campaign: a reference in newtons makes a loop on force", "[data
   std::string draft = draft_campaign({file}, folder.path()).text;
   CHECK_THAT(draft, Contains("feedback = \"force\""));
   CHECK_THAT(draft, Contains("force_reference = { column = \"ref_kN\", unit = \"kN\" }"));
-  CHECK_THAT(draft, Contains("# payload_mass = "));  // since an acceleration was recorded
+  CHECK_THAT(draft, Contains("# payload_mass = "));  // because an acceleration was recorded
   CHECK_THAT(draft, Contains("amplitude = \"2 kN\""));
   draft = filled(draft);
   const auto fill = [&](const std::string& from, const std::string& to) {
@@ -171,7 +171,7 @@ TEST_CASE("draft_campaign: one column per repeat, two sets, no loop", "[datasets
                              "\"x_mm_A{n}\", pressure_a = \"pA_bar_{n}\" } }"));
   CHECK_THAT(draft, Contains("position = \"x_mm_B{n}\", pressure_b = \"pB_bar_{n}\""));
   CHECK_THAT(draft, Contains("waveform = \"recorded\"") && Contains("type = \"none\""));
-  // Pressures of chambers: the plant with both.
+  // Chamber pressures select the plant with two chambers.
   CHECK_THAT(draft, Contains("model = \"two_chamber\"") && Contains("area_b = \"FILL IN m2\"") &&
                         Contains("# retracted_position = \"... m\"  # x_R: "));
   CHECK_THAT(draft, !Contains("piston_area"));
@@ -221,7 +221,7 @@ TEST_CASE("draft_campaign: a file whose time restarts is left out", "[datasets]"
   const std::string draft = draft_campaign({cuts, run}, folder.path()).text;
   CHECK_THAT(draft, Contains("# left out: cuts.csv:4:1: time 't_s' does not increase"));
   CHECK_THAT(draft, !Contains("id = \"cuts\"") && Contains("\"sine_2.csv\""));
-  // The first of two repeats is unreadable; the second one replaces it.
+  // The first of two repeats is unreadable, so the second one replaces it.
   const std::string rest =
       draft_campaign({folder.write("sine_1.csv", restarts), run}, folder.path()).text;
   CHECK_THAT(rest,
@@ -270,7 +270,7 @@ TEST_CASE("draft_campaign: columns that nothing recognises, with their ranges", 
                         Contains("position = { column = \"FILL IN\", unit = \"FILL IN\" }"));
   CHECK_THAT(draft, Contains("A1 (0 to 9.5, perhaps time)") &&
                         Contains("Q [bar] (3 to 6 bar, perhaps pressure_a), note\n"));
-  // Beside a proper recording the file does not count as one.
+  // If there is also a proper recording, the file does not count as one.
   const Draft both = draft_campaign(
       {folder.path() / "a.csv", folder.write("s_1.csv", sine_csv(0.1))}, folder.path());
   REQUIRE(both.left_out.size() == 1);
@@ -281,7 +281,7 @@ TEST_CASE("draft_campaign: an array of Simulink's To File has its time in the fi
           "[datasets]") {
   const auto format = GENERATE(MatFormat::v6, MatFormat::v7, MatFormat::v73);
   const TemporaryFolder folder;
-  // Rows: time, reference [mm], position [mm]; column by column as MATLAB stores them.
+  // Rows are time, reference [mm] and position [mm], stored column by column as MATLAB does.
   std::vector<double> array;
   for (int i = 0; i < 400; ++i) {
     const double t = 0.005 * i;
@@ -321,7 +321,7 @@ TEST_CASE("draft_campaign: a matrix without a time in its first row is no To Fil
   write_mat(file, MatFormat::v6, {mat_array<double>("ans", {0, 1, 1, 2, 1, 3, 2, 4}, {2, 4})});
   CHECK_THROWS_WITH(draft_campaign({file}, folder.path()),
                     Contains("no column looks like a time") && Contains("ans(1,:), ans(2,:)"));
-  // Nothing but what MATLAB alone can read: the cure is said.
+  // If the file has only what MATLAB alone can read, the message says what to do.
   const auto text = folder.path() / "text.mat";
   write_mat(text, MatFormat::v6, {mat_text("note", "run 3")});
   CHECK_THROWS_WITH(draft_campaign({text}, folder.path()),

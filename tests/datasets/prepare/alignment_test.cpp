@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kClock_s = 1e-3;
 
-/// A motion of some periods that begins `late` samples later, on the clock from `first_s`, with
-/// noise.
+/// A motion of several periods with noise. It begins `late` samples later, on a clock that starts
+/// at `first_s`.
 Repeat moved(const std::string& source, double late, double noise_sd = 0.0, double first_s = 0.0,
              double dt = kClock_s) {
   auto stream = random_stream(3, {source});
@@ -40,14 +40,14 @@ TEST_CASE("align: what comes later is shifted back, relative to the mean", "[dat
   CHECK_THAT(aligned.offset_s[0] / kClock_s, WithinAbs(-1.5, 1e-3));
   CHECK_THAT(aligned.offset_s[1] / kClock_s, WithinAbs(1.5, 1e-3));
   CHECK_THAT(aligned.offset_s[2] / kClock_s, WithinAbs(0.0, 1e-3));
-  // The value of sample i is found at i + shift.
+  // The value for sample i is at i + shift.
   CHECK_THAT(aligned.shift[0], WithinAbs(-1.5, 1e-3));
   CHECK_THAT(aligned.shift[1], WithinAbs(1.5, 1e-3));
   CHECK(aligned.shift[2] == 0.0);
 }
 
 TEST_CASE("align: shifts from a fiftieth of a sample on are made", "[datasets]") {
-  // Each is half the distance from their mean.
+  // Each shift is half the distance, because offsets are relative to their mean.
   const auto apart = align({moved("a", 0.0), moved("b", 0.1)}, true);
   CHECK_THAT(apart.shift[1], WithinAbs(0.05, 2e-3));
   CHECK_THAT(apart.shift[0], WithinAbs(-0.05, 2e-3));
@@ -76,7 +76,8 @@ TEST_CASE("align: two clean repeats are told apart beside a noisy one", "[datase
 }
 
 TEST_CASE("align: the central repeat is no better known than the others", "[datasets]") {
-  // With two repeats one random delay gives half of it for each, which is no more significant.
+  // With two repeats, a random delay is divided equally between them, which makes it no more
+  // significant.
   for (int draw = 0; draw < 40; ++draw) {
     const std::string number = std::to_string(draw);
     const auto aligned =
@@ -86,7 +87,7 @@ TEST_CASE("align: the central repeat is no better known than the others", "[data
 }
 
 TEST_CASE("align: a clock that starts later is no delay", "[datasets]") {
-  // Ten samples later on the same clock, and late by two samples.
+  // The clock starts ten samples later, and the motion is late by two samples.
   const auto aligned = align({moved("a", 0.0), moved("b", 2.0, 0.0, 10.0 * kClock_s)}, true);
   CHECK_THAT(aligned.offset_s[1] / kClock_s, WithinAbs(1.0, 1e-3));
   CHECK_THAT(aligned.shift[0], WithinAbs(-1.0, 1e-3));
@@ -128,5 +129,5 @@ TEST_CASE("align: all repeats are shifted or none", "[datasets]") {
     }
   }
   CHECK(shifted > 10);
-  CHECK(insignificant > 20);  // which alone would not have been made
+  CHECK(insignificant > 20);  // which would not have been shifted by themselves
 }

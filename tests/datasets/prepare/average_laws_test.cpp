@@ -1,5 +1,6 @@
-// What averaging must do by definition, and where its warnings begin and end. Records whose mean,
-// sd and distances are known without noise: a pattern of +1 and -1 has them exactly.
+// Checks what averaging must do by definition, and the limits of its warnings. The mean, sd and
+// distances of the records are known exactly, because they contain patterns of +1 and -1 instead of
+// noise.
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -25,7 +26,7 @@ AverageOptions as_they_are() {
   return options;
 }
 
-/// Position over [first, first + samples) of a clock of 1 kHz.
+/// Position during [first, first + samples) on a clock of 1 kHz.
 Repeat on_clock(const std::string& source, long first, std::size_t samples, auto value) {
   Repeat repeat;
   repeat.source = source;
@@ -36,8 +37,8 @@ Repeat on_clock(const std::string& source, long first, std::size_t samples, auto
   return repeat;
 }
 
-/// 1, -1, -1, 1, over and over: its second differences are 2 sqrt(2) in the mean square's root...
-/// of every four samples the rms is 1.
+/// Repeats 1, -1, -1, 1. The rms over every four samples is 1, and every second difference is 2 or
+/// -2.
 double alternating(long i) { return i % 4 == 0 || i % 4 == 3 ? 1.0 : -1.0; }
 
 double triangle(long i) { return std::abs(static_cast<double>(i % 200) - 100.0) / 100.0; }
@@ -51,7 +52,7 @@ std::size_t warnings_with(const Record& record, const std::string& text) {
 }  // namespace
 
 TEST_CASE("average: the mean of equal values is that value, to the last bit", "[datasets]") {
-  // 0.1 + 0.1 + 0.1 is more than 0.3.
+  // In floating point, 0.1 + 0.1 + 0.1 is more than 0.3.
   const auto tenth = [](long) { return 0.1; };
   const std::vector<Repeat> repeats(3, on_clock("r", 0, 20, tenth));
   const Record record = average("c", repeats, as_they_are());
@@ -67,7 +68,7 @@ TEST_CASE("average: the sd of the mean is that of a repeat over the root of thei
       repeats.push_back(
           on_clock("r" + std::to_string(r), 0, 50, [&](long i) { return triangle(i) + 0.01 * r; }));
     const Record record = average("c", repeats, as_they_are());
-    // The sample variance of 0 .. n - 1 is n (n + 1) / 12.
+    // The sample variance of 0, ..., n - 1 is n (n + 1) / 12.
     const double sd = 0.01 * std::sqrt(n * (n + 1) / 12.0);
     CHECK_THAT(position_of(record).pooled_sd, WithinRel(sd, 1e-9));
     CHECK_THAT(position_of(record).sd[7], WithinRel(sd, 1e-9));
@@ -114,7 +115,7 @@ TEST_CASE("average: a commanded signal is never shifted beyond its levels", "[da
     }
     const Record record = average("c", repeats, {});
     const auto& mean = record.channels.at(channel).mean;
-    CHECK(std::abs(record.repeat_reports[0].offset_s) > 1e-4);  // they were shifted
+    CHECK(std::abs(record.repeat_reports[0].offset_s) > 1e-4);  // the repeats were shifted
     CHECK(*std::max_element(mean.begin(), mean.end()) <= 1.0);
     CHECK(*std::min_element(mean.begin(), mean.end()) >= -1.0);
   }
@@ -155,7 +156,8 @@ TEST_CASE("average: identical inputs are as they should be", "[datasets]") {
 TEST_CASE(
     "average: two repeats are named where they differ by more than noise and 1 % of the range",
     "[datasets]") {
-  // The noise of each is +-s, which second differences see as s sqrt(8) / sqrt(6); the range is 1.
+  // Each repeat has noise of +-noise, which second differences see as 2 noise / sqrt(6). The range
+  // is 1.
   const auto named = [](double noise, double apart, double ratio) {
     std::vector<Repeat> repeats;
     for (const int r : {0, 1})
@@ -166,10 +168,10 @@ TEST_CASE(
     options.outlier_ratio = ratio;
     return warnings_with(average("c", repeats, options), "differ by") == 1;
   };
-  CHECK_FALSE(named(0.0, 0.009, 3.0));  // below a hundredth of the range, whatever the noise
+  CHECK_FALSE(named(0.0, 0.009, 3.0));  // less than 1 % of the range, whatever the noise
   CHECK(named(0.0, 0.011, 3.0));
-  // alternating(i) and alternating(i + 1) differ by 0, 2, 0, 2: sqrt(2) rms. Noise of each as seen:
-  // |x[i-1] - 2 x[i] + x[i+1]| is 2 of +-1 everywhere, so that sd = 2 / sqrt(6).
+  // alternating(i) and alternating(i + 1) differ by 0, 2, 0, 2, which has an rms of sqrt(2). Since
+  // |x[i-1] - 2 x[i] + x[i+1]| is 2 everywhere, the noise estimate of each is sd = 2 / sqrt(6).
   const double noise = 0.05;
   const double expected = std::sqrt(2.0) * noise * 2.0 / std::sqrt(6.0);
   const auto apart_of = [&](double distance) {
@@ -182,8 +184,8 @@ TEST_CASE(
 TEST_CASE("average: an outlier lies outlier_ratio times as far as is typical", "[datasets]") {
   const auto outliers_at = [](double apart) {
     std::vector<Repeat> repeats;
-    // Around the median of five, 0: distances 0.01, 0.01, 0, `apart`, and 0.01 but for what makes
-    // it no copy of the first.
+    // The median of the five is 0, so the distances are 0.01, 0.01, 0, `apart` and about 0.01; the
+    // last differs slightly so that it is not a copy of the first.
     const std::vector<double> level{-0.01, 0.01, 0.0, apart, -0.0100001};
     for (std::size_t r = 0; r < level.size(); ++r)
       repeats.push_back(on_clock("r" + std::to_string(r), 0, 100,
@@ -203,16 +205,17 @@ TEST_CASE("average: the deviation of a repeat is that of its worst channel", "[d
   for (const int r : {0, 1, 2}) {
     repeats.push_back(on_clock(
         "r", 0, 100, [&](long i) { return triangle(i) + (r == 2 ? 0.3 : 0.0) + 0.001 * r; }));
-    // No repeat is an outlier in the force, which comes after the position.
+    // The force comes after the position, and has no outlier.
     repeats.back().values[Channel::force] = std::vector<double>(100, static_cast<double>(r));
   }
   const Record record = average("c", repeats, as_they_are());
-  // Position: 0, 0.001, 0.302; distance of the last from the mean of the others over the sd.
+  // Positions are 0, 0.001, 0.302. The deviation is the distance of the last from the mean of the
+  // others, over the sd.
   const double mean = 0.303 / 3.0;
   const double sd =
       std::sqrt((mean * mean + std::pow(mean - 0.001, 2) + std::pow(0.302 - mean, 2)) / 2.0);
   CHECK_THAT(record.repeat_reports[2].deviation, WithinRel((0.302 - 0.0005) / sd, 1e-6));
-  // Force: 0, 1, 2 with sd 1: the first is 1.5 from the mean of the others.
+  // Forces are 0, 1, 2 with an sd of 1. The first is 1.5 from the mean of the others.
   CHECK_THAT(record.repeat_reports[0].deviation, WithinRel(1.5, 1e-6));
 }
 

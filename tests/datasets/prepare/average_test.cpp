@@ -21,7 +21,7 @@ namespace {
 
 using Shape = std::function<double(double)>;
 
-/// 10 Hz: what a rig makes of a square reference.
+/// Response of a rig to a square reference of 10 Hz.
 double square_response(double t) {
   const double phase = 10.0 * t - std::floor(10.0 * t);
   const double x = std::fmod(phase, 0.5) / 0.03;
@@ -70,12 +70,12 @@ TEST_CASE("average: mean, sd and count of three numbers", "[datasets]") {
   CHECK(record.repeats == 3);
   CHECK_THAT(position_of(record).mean[0], WithinAbs(3.0, 1e-15));
   CHECK_THAT(position_of(record).mean[1], WithinAbs(-3.0, 1e-15));
-  // Sample variance (4 + 1 + 9) / 2 at both samples.
+  // The sample variance is (4 + 1 + 9) / 2 at both samples.
   CHECK_THAT(position_of(record).sd[0], WithinRel(std::sqrt(7.0), 1e-14));
   CHECK_THAT(position_of(record).pooled_sd, WithinRel(std::sqrt(7.0), 1e-14));
   CHECK_THAT(position_of(record).sd_of_mean, WithinRel(std::sqrt(7.0 / 3.0), 1e-14));
   CHECK(position_of(record).count == std::vector<int>{3, 3});
-  // 6 against the mean 1.5 of the others.
+  // The value 6 is compared with 1.5, the mean of the others.
   CHECK_THAT(record.repeat_reports[2].deviation, WithinRel(4.5 / std::sqrt(7.0), 1e-14));
 }
 
@@ -84,7 +84,7 @@ TEST_CASE("average: pooled standard deviation is that of the noise", "[datasets]
     CAPTURE(n);
     const auto repeats = jittered(sine_response, std::vector<double>(n, 0.0), 0.05);
     const Record record = average("c", repeats, {});
-    // 2000 (n - 1) degrees of freedom: 1.6 % at n = 2.
+    // There are 2000 (n - 1) degrees of freedom, so the standard error is 1.6 % for n = 2.
     CHECK_THAT(position_of(record).pooled_sd, WithinRel(0.05, 0.05));
     CHECK_THAT(position_of(record).sd_of_mean, WithinRel(0.05 / std::sqrt(n), 0.05));
     CHECK(position_of(record).repeats == n);
@@ -103,14 +103,15 @@ TEST_CASE("average: jittered repeats keep their amplitude and their noise", "[da
     for (const double t : aligned.time_s) truth.push_back(shape(t));
     const double size = rms(truth, 100, 1900);
     CHECK_THAT(rms(position_of(aligned).mean, 100, 1900) / size, WithinAbs(1.0, 0.002));
-    CHECK(rms(position_of(plain).mean, 100, 1900) / size < 0.9);  // what alignment saves
-    // Interpolation takes up to 3 % of the standard deviation of white noise.
+    CHECK(rms(position_of(plain).mean, 100, 1900) / size <
+          0.9);  // without alignment, amplitude is lost
+    // Interpolation reduces the standard deviation of white noise by up to 3 %.
     CHECK_THAT(position_of(aligned).pooled_sd, WithinRel(0.01, 0.05));
     for (std::size_t r = 0; r < late_s.size(); ++r) {
       CAPTURE(r);
       CHECK_THAT(aligned.repeat_reports[r].offset_s, WithinAbs(late_s[r], 2e-5));  // 0.02 samples
     }
-    // The mean offset is zero, so the mean equals the truth.
+    // Because the mean offset is zero, the mean equals the truth.
     for (std::size_t i = 100; i < 1900; ++i)
       CHECK_THAT(position_of(aligned).mean[i], WithinAbs(truth[i], 0.03));
   }
@@ -147,7 +148,7 @@ TEST_CASE("average: repeats that start together are not interpolated", "[dataset
 TEST_CASE("average: ends that not every repeat covers count fewer", "[datasets]") {
   const Record record = average("c", jittered(sine_response, {0.004, -0.001, -0.003}, 0.001), {});
   REQUIRE(record.time_s.size() == 2000);
-  CHECK(position_of(record).count.front() == 1);  // only the late one has the start
+  CHECK(position_of(record).count.front() == 1);  // only the late repeat covers the start
   CHECK(position_of(record).count[5] == 3);
   CHECK(position_of(record).count[1000] == 3);
   CHECK(position_of(record).count.back() == 2);
@@ -211,7 +212,7 @@ TEST_CASE("average: a single repeat has no false standard deviation", "[datasets
 
   AverageOptions options;
   options.known_sd[Channel::position] = 0.02;
-  options.repeats_averaged = 5;  // sd is that of the samples in the file
+  options.repeats_averaged = 5;  // the sd is that of the samples in the file
   const Record known = average("c", repeats, options);
   CHECK(position_of(known).pooled_sd == 0.02);
   CHECK(position_of(known).sd_of_mean == 0.02);
@@ -234,7 +235,7 @@ TEST_CASE("average: of three repeats two are one recording", "[datasets]") {
   const Record record = average("c", {repeats[0], repeats[1], copy}, {});
   REQUIRE(record.warnings.size() == 1);
   CHECK_THAT(record.warnings[0], Contains("position: r0.csv and copy.csv are identical"));
-  // The other one is not to blame.
+  // The other repeat is not to blame.
   for (const RepeatReport& report : record.repeat_reports) CHECK_FALSE(report.outlier);
 
   auto off = jittered(sine_response, {0.0, 0.0, 0.0, 0.0}, 0.01);
@@ -261,7 +262,7 @@ TEST_CASE("average: channels of different repeats are averaged over their carrie
 
 TEST_CASE("average: aligned on the reference where it is recorded", "[datasets]") {
   auto repeats = jittered(sine_response, {0.0, 0.0}, 0.0);
-  // The reference of both starts alike; the second rig lags by 3 ms, which must survive.
+  // Both references start alike. The second rig lags by 3 ms, and this lag must not be removed.
   for (Repeat& repeat : repeats)
     repeat.values[Channel::reference] =
         jittered(sine_response, {0.0}, 0.0)[0].values.at(Channel::position);
@@ -274,7 +275,7 @@ TEST_CASE("average: aligned on the reference where it is recorded", "[datasets]"
 
 TEST_CASE("average: time columns that start apart are put on the first", "[datasets]") {
   auto repeats = jittered(sine_response, {0.0, 0.0}, 0.0);
-  // The second file begins 10.25 samples later on the same clock.
+  // The second file begins 10.25 samples later, on the same clock.
   Repeat& second = repeats[1];
   for (std::size_t i = 0; i < second.time_s.size(); ++i) {
     second.time_s[i] += 0.01025;

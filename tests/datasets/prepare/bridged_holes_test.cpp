@@ -16,7 +16,7 @@ namespace {
 
 double position_at(double t) { return std::sin(t); }
 
-/// Samples every 0.1 s up to 10 s, without those from `first` to `last`.
+/// Samples every 0.1 s up to 10 s, except those from `first` to `last`.
 Repeat torn(const std::string& name, int first, int last) {
   Repeat repeat;
   repeat.source = name;
@@ -56,7 +56,7 @@ TEST_CASE("bridge_holes: what is missing is put in and marked", "[datasets]") {
     CHECK(std::abs(repeat.time_s[i] - 0.1 * static_cast<double>(i)) < 1e-12);
     CHECK(repeat.bridged[i] == (i >= 45 && i <= 48));
   }
-  // A stepwise input keeps its value; a measured signal is interpolated.
+  // A stepwise input keeps its value, whereas a measured signal is interpolated.
   CHECK(repeat.values.at(Channel::command)[48] == 1.0);
   const auto& x = repeat.values.at(Channel::position);
   CHECK(std::abs(x[45] - (0.8 * x[44] + 0.2 * x[49])) < 1e-12);

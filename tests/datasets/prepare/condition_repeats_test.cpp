@@ -19,7 +19,7 @@ Campaign with(const std::string& recording) {
   return load_text(replaced(kExample, "initial = \"rest\"", "initial = \"rest\"\n" + recording));
 }
 
-/// A sine at 1 kHz with noise, a stepped reference, and two spikes in the position.
+/// A 1 kHz record of a sine with noise, a stepped reference, and two spikes in the position.
 Repeat recorded(const std::string& source, double rate_hz = 1000.0) {
   auto stream = random_stream(2, {source});
   Repeat repeat;
@@ -68,7 +68,7 @@ TEST_CASE("condition_repeats: decimation is stated and keeps signals in place", 
   CHECK_THAT(repeats[0].time_s[1], WithinAbs(5e-3, 1e-12));
   CHECK_THAT(repeats[0].values[Channel::position][100], WithinAbs(0.1 * std::sin(5.0), 4e-4));
   const auto& reference = repeats[0].values[Channel::reference];
-  CHECK(reference[199] == 0.0);  // no ringing beside the edge
+  CHECK(reference[199] == 0.0);  // no ringing at the edge
   CHECK(reference[200] == 1.0);
 }
 
@@ -90,7 +90,7 @@ TEST_CASE("condition_repeats: what cannot be decimated", "[datasets]") {
 TEST_CASE("condition_repeats: a command may jump for a sample", "[datasets]") {
   std::vector<Repeat> repeats{recorded("a.csv")};
   auto& position = repeats[0].values[Channel::position];
-  position[1501] -= 0.03;  // a spike of two samples now
+  position[1501] -= 0.03;  // this spike now has two samples
   for (const Channel channel : {Channel::reference, Channel::command}) {
     auto& values = repeats[0].values[channel];
     values.clear();

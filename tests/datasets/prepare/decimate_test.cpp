@@ -15,7 +15,7 @@ using Catch::WithinRel;
 
 namespace {
 
-/// sin(2 pi f i), f in cycles per sample.
+/// sin(2 pi f i), with f in cycles per sample.
 std::vector<double> sine(double cycles_per_sample, std::size_t samples) {
   std::vector<double> x(samples);
   for (std::size_t i = 0; i < samples; ++i)
@@ -64,7 +64,7 @@ TEST_CASE("decimated: no delay in the pass band, no alias from the stop band", "
   REQUIRE(slow.size() == 501);
   const auto expected = sine(0.2, 501);
   for (std::size_t k = 30; k < 470; ++k) CHECK_THAT(slow[k], WithinAbs(expected[k], 2e-3));
-  // 0.09 cycles per sample would come back as 0.1 of the new rate.
+  // 0.09 cycles per sample would alias to 0.1 at the new rate.
   CHECK(rms_inner(decimated(sine(0.09, 5001), filter)) < 1e-3);
   std::vector<double> ramp(201);
   for (std::size_t i = 0; i < ramp.size(); ++i) ramp[i] = static_cast<double>(i);
@@ -77,7 +77,7 @@ TEST_CASE("decimated: leaves white noise the sd that noise_gain says", "[dataset
   auto stream = random_stream(7, {"decimate"});
   const auto filter = anti_alias_filter(5);
   const double left = rms_inner(decimated(white_noise(stream, 100'000, 2.0), filter));
-  // 20 000 samples, hardly correlated: 0.5 % standard error.
+  // There are 20 000 almost uncorrelated samples, so the standard error is 0.5 %.
   CHECK_THAT(left, WithinRel(2.0 * filter.noise_gain(), 0.02));
   CHECK_THAT(filter.noise_gain(), WithinRel(1.0 / std::sqrt(5.0), 0.05));
 }
@@ -109,6 +109,6 @@ TEST_CASE("decimation_factor: whole to a hundredth", "[datasets]") {
 }
 
 TEST_CASE("decimated_hold: a constant stays what it is to the last bit", "[datasets]") {
-  // 0.1 + 0.1 + 0.1 is more than 0.3.
+  // In floating point, 0.1 + 0.1 + 0.1 is more than 0.3.
   CHECK(decimated_hold({0.1, 0.1, 0.1}, 3) == std::vector<double>{0.1});
 }

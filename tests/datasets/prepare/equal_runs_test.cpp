@@ -35,7 +35,7 @@ TEST_CASE("resolution, typical_step: least and median step of those that are not
           "[datasets]") {
   const auto runs = equal_runs(Samples{0.0, 0.0, 0.1, 0.1, 0.6, 0.4, 0.7});
   CHECK_THAT(resolution(runs), WithinRel(0.1, 1e-12));
-  CHECK_THAT(typical_step(runs), WithinRel(0.25, 1e-12));  // 0.1, 0.2, 0.3, 0.5
+  CHECK_THAT(typical_step(runs), WithinRel(0.25, 1e-12));  // steps are 0.1, 0.2, 0.3, 0.5
   CHECK(resolution(equal_runs(Samples(5, 3.0))) == 0.0);
   CHECK(typical_step(equal_runs(Samples(5, 3.0))) == 0.0);
 }
@@ -46,7 +46,8 @@ TEST_CASE("cuts_a_motion: three samples before and after a run lie far enough fr
   const EqualRun top{3, 3, 3.5};
   CHECK(cuts_a_motion(x, top, 0.29));
   CHECK_FALSE(cuts_a_motion(x, top, 0.31));  // it leaves by 0.3
-  // At an end of the record the other side decides; without either there is no decision.
+  // At one end of the record, only the other side decides. If the run fills the record, nothing
+  // does.
   CHECK(cuts_a_motion(Samples(x.begin(), x.begin() + 6), top, 3.5));
   CHECK_FALSE(cuts_a_motion(Samples(3, 3.5), {0, 3, 3.5}, 0.0));
 }
@@ -60,7 +61,7 @@ TEST_CASE("shows_noise: noise of two steps of a converter, not its flicker nor m
   CHECK_FALSE(noisy(quantised(sine_signal(2000, 1000.0), 0.01)));
   CHECK_FALSE(noisy(quantised(with_noise(sine_signal(2000, 1000.0), 0.004), 0.01)));
   CHECK_FALSE(noisy(with_noise(lagged(square_signal(2000, 500.0), 20.0), 1e-9)));  // rounding
-  CHECK_FALSE(noisy(with_noise(Samples(40, 0.0), 0.01)));                          // too few
+  CHECK_FALSE(noisy(with_noise(Samples(40, 0.0), 0.01)));  // too few samples
 }
 
 TEST_CASE("is_constant: one value throughout, or none at all", "[datasets]") {

@@ -29,7 +29,8 @@ Shape sine(double frequency) {
   return [=](double t) { return std::sin(2.0 * std::numbers::pi * frequency * t); };
 }
 
-/// A square of unit amplitude behind two equal lags of `rise` samples, settled in each half period.
+/// A square wave with unit amplitude after two equal lags of `rise` samples, settled in each half
+/// period.
 Shape soft_square(double period, double rise) {
   return [=](double t) {
     const double phase = t - period * std::floor(t / period);
@@ -68,12 +69,12 @@ TEST_CASE("lag: band-limited records are timed to 0.02 samples", "[datasets]") {
 
 TEST_CASE("lag: square-like records with noise are timed to 0.02 samples", "[datasets]") {
   CHECK(errors_of(soft_square(100, 3), 10000, 0.01, 20.3).rms < 0.005);
-  // Noise of a tenth of the amplitude: no estimator does better than 0.016.
+  // With noise of a tenth of the amplitude, no estimator does better than 0.016.
   CHECK(errors_of(soft_square(100, 3), 10000, 0.1, 20.3).rms < 0.025);
 }
 
 TEST_CASE("lag: its standard deviation is that of its errors", "[datasets]") {
-  // A rms of 30 draws scatters by 13 %, of 15 by 18 %.
+  // The rms of 30 draws has a standard deviation of 13 %, that of 15 draws 18 %.
   const auto slow = errors_of(sine(1e-4), 20000, 0.01, 5.3);
   CHECK_THAT(slow.predicted / slow.rms, WithinAbs(1.0, 0.4));
   const auto noisy = errors_of(soft_square(100, 3), 10000, 0.1, 5.3);
@@ -95,8 +96,8 @@ TEST_CASE("lag: gain and offset of a record do not matter", "[datasets]") {
 }
 
 TEST_CASE("lag: a period is never jumped", "[datasets]") {
-  // 33.33 samples per period: the peak one period away is closer to a whole sample than the true
-  // one, and ten periods are within the search.
+  // With 33.33 samples per period, the peak one period away is closer to a whole sample than the
+  // true one, and ten periods are within the search range.
   for (const double delay : {0.5, -0.5, 12.4, -15.5}) {
     CAPTURE(delay);
     const auto a = sampled(sine(0.03), 2000, 0.0, 0.02, 3);
@@ -157,7 +158,7 @@ TEST_CASE("lag: unrelated noise tells none", "[datasets]") {
 }
 
 TEST_CASE("lag: its standard deviation to a tenth", "[datasets]") {
-  // The rms of 200 draws scatters by 5 %.
+  // The rms of 200 draws has a standard deviation of 5 %.
   double squares = 0.0;
   double variances = 0.0;
   for (unsigned draw = 0; draw < 200; ++draw) {

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A campaign as the loader would make it: position in mm, pressure in bar, time in ms.
+/// A campaign like one from the loader: position in mm, pressure in bar, time in ms.
 Campaign campaign_in(const TemporaryFolder& files) {
   Campaign campaign;
   campaign.file = files.path() / "campaign.toml";
@@ -65,7 +65,7 @@ TEST_CASE("load_record: a second column is taken off the first before units", "[
   };
   CHECK_THAT(load_at(0), WithinRel(3e5 + 10.0, 1e-12));
   CHECK_THAT(load_at(2), WithinRel(6e5 + 10.0, 1e-12));
-  // A column that the repeat names itself has no `minus`.
+  // A column that the repeat itself names has no `minus`.
   condition.repeats[0].columns[Channel::load_pressure] = "c";
   CHECK_THAT(load_at(0), WithinRel(9e5 + 10.0, 1e-12));
 }
@@ -100,7 +100,7 @@ TEST_CASE("load_record: columns become SI channels, repeats a mean", "[datasets]
                                           (files.path() / "a_2.csv").string()});
   REQUIRE(record.repeat_reports.size() == 2);
   CHECK(record.repeat_reports[1].source == "a_2.csv");
-  CHECK(record.channels.count(Channel::pressure_a) == 0);  // no repeat carries it
+  CHECK(record.channels.count(Channel::pressure_a) == 0);  // no repeat has this channel
 }
 
 TEST_CASE("load_record: columns of one file as repeats with different channels", "[datasets]") {
@@ -260,7 +260,8 @@ TEST_CASE("load_record: the moving windows of a real step test", "[datasets]") {
       {"steps_4V_1kHz.csv", {"01", "02", "03"}, {{Channel::position, "x_mm_A{n}"}}}};
   const Record record = load_record(campaign, condition);
   REQUIRE(record.windows.size() == 2);
-  // The description of the data: steps after 0.1 s and 5.1 s; 200 mm at 205 and 146 mm/s.
+  // According to the description of the data, steps come after 0.1 s and 5.1 s, with 200 mm at 205
+  // and 146 mm/s.
   CHECK_THAT(record.windows[0].start_s, WithinAbs(0.10045, 1e-9));
   CHECK_THAT(record.windows[0].end_s, WithinAbs(1.05, 0.03));
   CHECK_THAT(record.windows[1].start_s, WithinAbs(5.10045, 1e-9));

@@ -12,7 +12,7 @@ using Catch::WithinAbs;
 
 namespace {
 
-/// A cylinder that follows steps of a valve command between two stops, open loop.
+/// A cylinder in open loop that follows steps of a valve command between two stops.
 struct StepTest {
   std::vector<double> time_s;
   std::vector<double> command;
@@ -22,8 +22,8 @@ struct StepTest {
 constexpr double kRate_hz = 1000.0;
 constexpr double kStroke_m = 0.2;
 
-/// 0 for 0.1 s, +`level` to 4 s, 0 to 4.1 s, -`level` to 9 s; the piston moves with 0.05 m/s per V
-/// from 30 ms after each step.
+/// Command: 0 for 0.1 s, +`level` until 4 s, 0 until 4.1 s, -`level` until 9 s. The piston moves at
+/// 0.05 m/s per V, starting 30 ms after each step.
 StepTest steps(double level) {
   StepTest test;
   double x = 0.0;
@@ -55,7 +55,7 @@ TEST_CASE("find_motions: from the command step to the stop, and back", "[dataset
   const double level = GENERATE(1.5, 2.0, 4.0);
   const auto motions = motions_of(steps(level));
   REQUIRE(motions.size() == 2);
-  // 1 % of the travel is left when a motion counts as arrived.
+  // A motion counts as arrived when 1 % of the travel is left.
   const double travel_s = 0.99 * kStroke_m / (0.05 * level);
   CHECK_THAT(motions[0].window.start_s, WithinAbs(0.1, 1e-9));
   CHECK_THAT(motions[0].window.end_s, WithinAbs(0.13 + travel_s, 3e-3));
@@ -77,7 +77,8 @@ TEST_CASE("find_motions: noise and spikes in both signals move nothing much", "[
   const auto motions = motions_of(test);
   REQUIRE(motions.size() == 2);
   CHECK_THAT(motions[0].window.start_s, WithinAbs(0.1, 3e-3));
-  // A noise of 0.3 mm, medians of a few samples, against 0.1 m/s: some milliseconds.
+  // With noise of 0.3 mm, medians of a few samples and a speed of 0.1 m/s, the error is some
+  // milliseconds.
   CHECK_THAT(motions[0].window.end_s, WithinAbs(0.13 + 1.98, 0.01));
   CHECK_THAT(motions[1].window.start_s, WithinAbs(4.1, 3e-3));
   CHECK_THAT(motions[1].window.end_s, WithinAbs(4.13 + 1.98, 0.01));
@@ -85,7 +86,7 @@ TEST_CASE("find_motions: noise and spikes in both signals move nothing much", "[
 
 TEST_CASE("find_motions: ends before the first repeat has arrived", "[datasets]") {
   const StepTest test = steps(2.0);
-  // Repeats whose arrivals spread by 50 ms spread by 5 mm while they move.
+  // If the arrivals of repeats vary by 50 ms, their positions vary by 5 mm during the motion.
   const std::vector<double> spread(test.time_s.size(), 5e-3);
   const auto motions = motions_of(test, spread);
   REQUIRE(motions.size() == 2);
@@ -96,7 +97,7 @@ TEST_CASE("find_motions: ends before the first repeat has arrived", "[datasets]"
 }
 
 TEST_CASE("find_motions: a motion that the next step cuts short", "[datasets]") {
-  StepTest test = steps(0.8);  // 5 s for the stroke
+  StepTest test = steps(0.8);  // the stroke takes 5 s
   const auto motions = motions_of(test);
   REQUIRE(motions.size() == 2);
   CHECK_FALSE(motions[0].arrived);
@@ -128,7 +129,7 @@ TEST_CASE("find_motions: a rise that takes some samples, and too short records",
   for (int i = 0; i < 20; ++i) test.command[static_cast<std::size_t>(100 + i)] = 0.1 * i;
   const auto motions = motions_of(test);
   REQUIRE(motions.size() == 2);
-  // Where the command has left its level by more than 2 % of its range.
+  // The window starts where the command has left its level by more than 2 % of its range.
   CHECK_THAT(motions[0].window.start_s, WithinAbs(0.101, 1.1e-3));
   CHECK(find_motions({}, {}, {}, {}).empty());
   const std::vector<double> two{0.0, 1.0};
@@ -141,7 +142,7 @@ TEST_CASE("find_motions: a step rises within a tenth of the time that it is held
     StepTest test;
     double x = 0.0;
     for (int i = 0; i < 150 + held + 1500; ++i) {
-      // 0 V; a rise of 50 ms; then 2 V for so many samples; then at once -2 V.
+      // 0 V, then a rise of 50 ms, then 2 V for a given number of samples, then immediately -2 V.
       const double u = i < 100 ? 0.0 : i < 150 ? 0.04 * (i - 100) : i < 150 + held ? 2.0 : -2.0;
       x += 0.05 * u / kRate_hz;
       test.time_s.push_back(i / kRate_hz);

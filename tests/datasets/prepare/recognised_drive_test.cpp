@@ -88,7 +88,7 @@ TEST_CASE("recognised_drive: what is no generated signal is none", "[datasets]")
   Sampled noisy = sampled(Signal::sine(0.05, 2.0));
   for (double& x : noisy.drive) x += 5e-5 * normal(random);
   CHECK_FALSE(recognised(noisy));
-  CHECK(recognised(noisy, 5e-5));  // the campaign states that this is noise of the sensor
+  CHECK(recognised(noisy, 5e-5));  // the campaign attributes it to sensor noise
   CHECK_FALSE(recognised(noisy, 1e-5));
   Sampled clipped = sampled(Signal::sine(0.05, 2.0), 1e-6);
   for (double& x : clipped.drive) x = std::min(x, 0.0499);

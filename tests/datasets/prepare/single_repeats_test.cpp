@@ -14,7 +14,7 @@ constexpr std::size_t kSingleSamples = 400;
 
 double slope_and_ring(double t) { return 2.0 * t + std::sin(40.0 * t); }
 
-/// The same motion on a clock of 1 kHz that starts at `first_s`, `level` higher.
+/// A motion on a clock of 1 kHz that starts at `first_s`, raised by `level`.
 Repeat starting_at(double first_s, double level) {
   Repeat repeat;
   repeat.source = "from " + std::to_string(first_s);
@@ -64,7 +64,7 @@ TEST_CASE("repeat_records: each repeat on the time base of the average, with the
   Condition condition;
   condition.id = "c";
   const double level = 0.01;
-  // The second begins 30 samples later and half a sample off the first one's clock.
+  // The second repeat begins 30 samples later, and its clock is half a sample off.
   const RepeatRecords records =
       repeat_records(campaign, condition, {starting_at(0.0, -level), starting_at(0.0305, level)});
   const Record& average = records.average;
@@ -75,13 +75,13 @@ TEST_CASE("repeat_records: each repeat on the time base of the average, with the
     const Record& single = records.singles[r];
     CHECK(single.time_s == average.time_s);
     const Series& position = single.channels.at(Channel::position);
-    // A single repeat is known as well as one repeat, not as well as their mean.
+    // A single repeat has the uncertainty of one repeat, not that of the mean.
     CHECK_THAT(position.pooled_sd, WithinRel(sd, 1e-3));
     CHECK_THAT(position.sd_of_mean, WithinRel(sd, 1e-3));
     for (std::size_t i = 60; i < 380; ++i)
       CHECK_THAT(position.mean[i],
                  WithinAbs(slope_and_ring(single.time_s[i]) + (r == 0 ? -level : level), 1e-4));
-    // A command is not interpolated beyond its levels.
+    // Interpolation does not take a command beyond its levels.
     for (const double value : single.channels.at(Channel::command).mean) {
       CHECK(value >= 0.0);
       CHECK(value <= 1.0);
@@ -89,7 +89,7 @@ TEST_CASE("repeat_records: each repeat on the time base of the average, with the
   }
   CHECK(records.covered[0].start_s == average.time_s.front());
   CHECK_THAT(records.covered[1].start_s, WithinAbs(0.031, 1e-9));
-  // Times that it does not cover get its nearest sample.
+  // Times that the repeat does not cover get its nearest sample.
   const auto& late = records.singles[1].channels.at(Channel::position).mean;
   CHECK(late[0] == late[31]);
   CHECK(late[30] == late[31]);

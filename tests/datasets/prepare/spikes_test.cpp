@@ -11,7 +11,7 @@ using Catch::WithinAbs;
 
 namespace {
 
-/// A step response with a ring, sampled densely, with noise of 0.01.
+/// A densely sampled step response that rings, with noise of 0.01.
 std::vector<double> ringing() {
   auto stream = random_stream(5, {"spikes"});
   std::vector<double> x;
@@ -79,8 +79,8 @@ TEST_CASE("without_spikes: a line takes their place, all else stays", "[datasets
 
 namespace {
 
-/// 1, -1, -1, 1, over and over: every second sample is 2 from the line between its neighbours, the
-/// others 0; in the median of both all are 1.
+/// Alternates between `size` and -`size`, so every sample is 2 `size` from the line between its
+/// neighbours.
 std::vector<double> pattern_of(std::size_t samples, double size) {
   std::vector<double> x;
   for (std::size_t i = 0; i < samples; ++i) x.push_back(i % 2 == 0 ? size : -size);
@@ -90,7 +90,8 @@ std::vector<double> pattern_of(std::size_t samples, double size) {
 }  // namespace
 
 TEST_CASE("find_spikes: beyond ten deviations of the noise", "[datasets]") {
-  // +1, -1, ... is 2 from the line between neighbours; the median over 0.6745 is the sd.
+  // Samples of +1, -1, ... are 2 from the line between neighbours. The sd is the median over
+  // 0.6745.
   const double limit = 10.0 * 2.0 / 0.6745;
   for (const double off : {limit - 0.5, limit + 0.5}) {
     auto x = pattern_of(1000, 1.0);

@@ -56,7 +56,7 @@ TEST_CASE("require_stated_unit: the same unit written otherwise is the same", "[
   }
   CHECK(is_taken(stated_unit("mm"), "Position in mm"));
   CHECK_FALSE(is_taken(stated_unit("mm"), "Position in cm"));
-  // No unit, a pure number, or a word that only looks like a unit of another dimension.
+  // No unit, the unit of a pure number, or a word that only looks like a unit of another dimension.
   for (const char* name : {"x", "p (ist)", "p_in", "p_s", "p (A)", "u [%]", "p [-]", "p (in)"}) {
     CAPTURE(name);
     CHECK(is_taken(stated_unit("bar"), name));

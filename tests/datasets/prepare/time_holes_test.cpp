@@ -11,7 +11,7 @@ using Catch::Contains;
 
 namespace {
 
-/// Samples every 0.1 s, without those between 2 s and 4 s.
+/// Samples every 0.1 s, except those between 2 s and 4 s.
 std::vector<double> with_a_hole() {
   std::vector<double> time_s;
   for (int i = 0; i <= 100; ++i)
@@ -45,7 +45,7 @@ TEST_CASE("time_holes: steps above three times the median", "[datasets]") {
   CHECK(holes[0].row == 22);
   CHECK(holes[0].from_s == 2.0);
   CHECK(holes[0].to_s == 4.0);
-  // Jitter of a third, one missing sample in three, and too few samples to judge.
+  // Jitter of a third, one missing sample out of three, and too few samples to judge.
   CHECK(time_holes({0.0, 1.3, 2.0, 3.0, 4.3, 5.0}).empty());
   CHECK(time_holes({0.0, 1.0, 2.0, 5.0, 6.0, 7.0}).empty());
   CHECK(time_holes({0.0, 1.0, 2.0, 5.1, 6.0, 7.0}).size() == 1);
@@ -67,7 +67,7 @@ TEST_CASE("holes_in_what_counts: windows leave them out", "[datasets]") {
   CHECK(test.told({{0.0, 2.1}}).size() == 1);
   CHECK(test.told({{3.0, 10.0}}).size() == 1);
   CHECK(test.told({{2.5, 3.5}}).size() == 1);
-  // The command during the hole is unknown, and it moves the piston for good.
+  // The command during the hole is unknown, and it displaces the piston permanently.
   test.condition.waveform = Waveform::recorded;
   CHECK(test.told({{0.0, 2.0}, {4.0, 10.0}}).empty());
   test.campaign.rig.controller = rigcal::model::ControllerKind::none;

@@ -23,7 +23,7 @@ std::vector<double> times(double duration_s) {
   return t;
 }
 
-/// A signal with noise of 0.5 % of its amplitude of 4, and an offset.
+/// Guesses the waveform of a signal with an amplitude of 4, noise of 0.5 % of it, and an offset.
 WaveformGuess guess_of(const model::Signal& signal, double duration_s, double offset = 0.0) {
   auto stream = random_stream(4, {"waveform"});
   const auto t = times(duration_s);
@@ -80,7 +80,7 @@ TEST_CASE("guess_waveform: chirps, steps, constants and noise", "[datasets]") {
 }
 
 TEST_CASE("guess_waveform: a few periods tell the frequency between the samples", "[datasets]") {
-  // 11.3 Hz at 500 Hz: a period is 44.2 samples, and three of them 133.
+  // At 11.3 Hz and 500 Hz sampling, one period has 44.2 samples, and three have 133.
   const auto t = times(0.4);
   std::vector<double> x;
   for (const double time_s : t) x.push_back(std::sin(2.0 * std::numbers::pi * 11.3 * time_s + 0.7));
@@ -95,7 +95,7 @@ TEST_CASE("guess_waveform: a sine explains 98 % of its variance", "[datasets]") 
       const double angle = 2.0 * std::numbers::pi * time_s;
       x.push_back(std::sin(angle) + third * std::sin(3.0 * angle));
     }
-    // 1 / (1 + third^2): 99 % and 96 %.
+    // The fundamental has 1 / (1 + third^2) of the variance: 99 % and 96 %.
     const WaveformGuess guess = guess_waveform(t, x);
     CHECK((guess.waveform == Waveform::sine) == (third == 0.1));
   }

@@ -34,7 +34,7 @@ TEST_CASE("record_reader: the start of a pipe is not taken from it", "[datasets]
   const auto pipe = folder.path() / "pipe";
   std::filesystem::create_directories(folder.path());
   REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
-  CHECK(record_reader(pipe).name == "CSV");  // and does not wait for a writer
+  CHECK(record_reader(pipe).name == "CSV");  // and it does not wait for a writer
 }
 
 TEST_CASE("record_reader: names of recordings", "[datasets]") {

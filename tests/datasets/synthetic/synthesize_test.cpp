@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The paper's rig at 10 Hz, so that a short record contains several periods.
+/// The paper's rig at 10 Hz, so that a short record has several periods.
 std::string campaign_text(const std::string& synthetic) {
   return R"(schema = "rigcal.campaign/1"
 name = "twin"
@@ -143,14 +143,14 @@ TEST_CASE("synthesize: a record read back is the simulation in SI", "[datasets]"
     REQUIRE(run.ok());
     REQUIRE(record.time_s.size() == 501);
     CHECK_THAT(record.time_s.back(), WithinAbs(0.5, 1e-12));
-    // Ten digits of about 3 mm and of some bar.
+    // Numbers have ten digits: about 3 mm, and some bar.
     for (Eigen::Index i = 0; i < 501; ++i) {
       const auto at = static_cast<std::size_t>(i);
       CHECK_THAT(position_of(record).mean[at], WithinAbs(run.outputs(i, 0), 1e-11));
       CHECK_THAT(record.channels.at(Channel::load_pressure).mean[at],
                  WithinAbs(run.outputs(i, 1), 1e-2));
     }
-    CHECK(run.outputs.col(0).cwiseAbs().maxCoeff() > 1e-4);  // the rig does move
+    CHECK(run.outputs.col(0).cwiseAbs().maxCoeff() > 1e-4);  // the rig really moves
   }
   const Record square = load_record(made, *made.find("square_33"));
   CHECK(square.channels.at(Channel::reference).mean[0] == 1e-3);
@@ -167,7 +167,7 @@ ar1_coefficient = 0.5
                                  3, folder.path() / "out", 2);
   const Campaign made = load_campaign(report.campaign_file);
   const Record record = load_record(made, made.conditions[0]);
-  // 3500 degrees of freedom, somewhat fewer for AR(1).
+  // There are 3500 degrees of freedom, somewhat fewer for AR(1).
   CHECK_THAT(position_of(record).pooled_sd, WithinRel(0.02e-3, 0.05));
   CHECK_THAT(record.channels.at(Channel::load_pressure).pooled_sd, WithinRel(0.5e5, 0.07));
   CHECK(position_of(record).repeats == 8);
@@ -185,7 +185,7 @@ TEST_CASE("synthesize: channels and repeats have streams of their own", "[datase
   const auto repeat = [](const Campaign& campaign, std::size_t number) {
     return load_repeat(campaign, repeat_sources(campaign, campaign.conditions[0])[number]);
   };
-  // A noisier reference and a second repeat leave the first position as it was.
+  // A noisier reference and a second repeat leave the first position unchanged.
   CHECK(repeat(few, 0).values.at(Channel::position) ==
         repeat(more, 0).values.at(Channel::position));
   CHECK(repeat(more, 0).values.at(Channel::position) !=
@@ -238,8 +238,8 @@ TEST_CASE("synthesize: a late trigger is told by truth.json and found by the ave
     for (std::size_t r = 0; r < 5; ++r) {
       CAPTURE(c, r);
       CHECK(std::abs(repeats[r]["late_s"].get<double>()) > 0.0);
-      // Between two repeats, because the mean offset of five is not known. 0.1 samples: the start
-      // of the run is not the same stretch in every repeat.
+      // Compares two repeats, because the mean offset of the five is unknown. The tolerance is 0.1
+      // samples, because the run does not start on the same samples in every repeat.
       CHECK_THAT(
           record.repeat_reports[r].offset_s - record.repeat_reports[0].offset_s,
           WithinAbs(repeats[r]["late_s"].get<double>() - repeats[0]["late_s"].get<double>(), 1e-4));
@@ -349,7 +349,7 @@ TEST_CASE("synthesize: a recorded drive is driven again", "[datasets]") {
   const Campaign made = load_campaign(second.campaign_file);
   const auto original = load_record(again, again.conditions[0]);
   const auto repeated = load_record(made, made.conditions[0]);
-  // A square reference of steps is the square itself; edges are on samples up to rounding.
+  // A stepped square reference is the square itself. Edges are on samples, up to rounding.
   for (std::size_t i = 0; i < original.time_s.size(); ++i)
     CHECK_THAT(position_of(repeated).mean[i], WithinAbs(position_of(original).mean[i], 1e-8));
 }

@@ -96,8 +96,8 @@ TEST_CASE("csv_layout: rows that dSPACE labels", "[datasets]") {
 }
 
 TEST_CASE("csv_layout: what is no header is none", "[datasets]") {
-  // A row with a number is no header; names must not be fewer than fields; a column of states is no
-  // column of numbers.
+  // A row with a number is not a header, there must be at least as many names as fields, and a
+  // column of states is not a column of numbers.
   CHECK_FALSE(find_layout(std::vector<std::string>{"0,1,ok", "1,2,3", "2,3,4"}, true, 0));
   CHECK_FALSE(find_layout(std::vector<std::string>{"t,x", "0,5,1,5", "1,5,2,5"}, true, 0));
   CHECK_FALSE(find_layout(std::vector<std::string>{"text", "1,2", "more"}, true, 0));

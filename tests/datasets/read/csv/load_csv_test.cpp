@@ -32,7 +32,7 @@ using Columns = std::vector<std::vector<double>>;
 
 namespace {
 
-/// A file of its own for each test, removed at the end.
+/// A separate file for each test, removed at the end.
 class File {
  public:
   explicit File(const std::string& content) { folder_.write("a.csv", content); }
@@ -54,7 +54,7 @@ CsvTable load(const std::string& content, const CsvRequest& wanted = request({"t
   return load_csv(File(content).path(), wanted);
 }
 
-/// Message of the refusal, from the name of the file on: "a.csv:2:3: ...".
+/// Message with which reading is refused, starting at the name of the file: "a.csv:2:3: ...".
 std::string refusal_of(const fs::path& path, const CsvRequest& wanted) {
   try {
     load_csv(path, wanted);
@@ -200,7 +200,7 @@ TEST_CASE("load_csv: decimal comma with ',' as separator", "[datasets]") {
   CHECK_THAT(refusal("t,x\n0,0,1,5\n"),
              StartsWith("a.csv:2:5: 4 columns; expected 2 as in the header (line 1)") &&
                  Contains("decimal commas are a likely cause"));
-  // The count of columns is what is wrong, though a field is wrong too.
+  // The number of columns is the real fault, although one field is wrong, too.
   CHECK_THAT(refusal("t,x\n0,a,1,5\n"), Contains("decimal commas are a likely cause"));
 }
 
@@ -277,11 +277,11 @@ TEST_CASE("load_csv: no such file, a folder", "[datasets]") {
 
 TEST_CASE("load_csv: a file that cannot be read", "[datasets]") {
   const File file("t\n0\n");
-  if (::geteuid() != 0) {  // root may read everything
+  if (::geteuid() != 0) {  // root can read everything
     fs::permissions(file.path(), fs::perms::none);
     CHECK_THAT(refusal_of(file.path(), request({"t"})), Contains("cannot be opened: Permission"));
   }
-  // Opens, but its first byte cannot be read.
+  // This file can be opened, but its first byte cannot be read.
   CHECK_THAT(refusal_of("/proc/self/mem", request({"t"})), Contains("mem: cannot be read: "));
 }
 
@@ -309,8 +309,9 @@ TEST_CASE("load_csv: too many columns", "[datasets]") {
 // ---- Sizes ---------------------------------------------------------------------------------
 
 TEST_CASE("load_csv: files longer than the window of the reader", "[datasets]") {
-  // 3 windows of 16 MiB, without end of the last line; every line is checked by its number.
-  constexpr bool kFewer = rigcal::test::kSanitized;  // a tenth of the lines, ten times as long
+  // The file has three windows of 16 MiB and no line end after the last line. Every line is checked
+  // against its number.
+  constexpr bool kFewer = rigcal::test::kSanitized;  // a tenth as many lines, ten times as long
   constexpr long kRows = kFewer ? 110'000 : 1'100'000;
   std::string text = "note,t,x\n";
   const std::string padding(kFewer ? 300 : 30, 'p');
@@ -337,7 +338,7 @@ TEST_CASE("load_csv: files longer than the window of the reader", "[datasets]") 
 
 TEST_CASE("load_csv: a file above the limit of bytes is refused unread", "[datasets]") {
   const File file("t,x\n0,1\n");
-  fs::resize_file(file.path(), std::uintmax_t{5} << 30);  // sparse: takes no room
+  fs::resize_file(file.path(), std::uintmax_t{5} << 30);  // sparse, so it needs no disk space
   CHECK_THAT(refusal_of(file.path(), request({"t"})),
              StartsWith("a.csv: has 5368709120 bytes, more than the limit of 4294967296") &&
                  EndsWith("split it into several files"));
@@ -349,11 +350,11 @@ TEST_CASE("load_csv: a file above the limit of bytes is refused unread", "[datas
 
 namespace {
 
-// 200 MB for the whole command, of which 20 are left to the rest of it. The sanitizer's own memory
-// comes on top, and freed blocks stay in its quarantine.
+// The whole command may use 200 MB, of which 20 MB are reserved for everything else. A sanitizer
+// needs memory of its own, and keeps freed blocks in quarantine.
 constexpr long kMostMegabytes = rigcal::test::kSanitized ? 700 : 180;
 
-/// Resident memory of this process: a child starts with as much.
+/// Resident memory of this process, with which a child starts, too.
 long resident_megabytes() {
   long pages_of_program = 0;
   long pages_resident = 0;
@@ -364,10 +365,10 @@ long resident_megabytes() {
 struct EndlessResult {
   std::string message;
   std::size_t bytes_given = 0;
-  long grown_megabytes = 0;  ///< peak of memory above that before
+  long grown_megabytes = 0;  ///< increase of the peak memory
 };
 
-/// Loads, in a separate process, a pipe with `head` and then `body` again and again.
+/// Loads, in a separate process, a pipe that delivers `head` and then `body` over and over.
 EndlessResult load_endless(const std::string& head, const std::string& body,
                            const CsvRequest& wanted) {
   const File file("");
@@ -390,7 +391,7 @@ EndlessResult load_endless(const std::string& head, const std::string& body,
   EndlessResult result;
   const int out = ::open(pipe.c_str(), O_WRONLY);
   REQUIRE(out >= 0);
-  // The stop is for a reader that never gives up.
+  // Stops here if the reader never gives up.
   constexpr std::size_t kStop = std::size_t{2} << 30;
   std::string block = head;
   while (block.size() < (std::size_t{1} << 20)) block += body;
@@ -426,7 +427,8 @@ TEST_CASE("load_csv: a huge file is given up early and within 200 MB", "[dataset
   CAPTURE(result.bytes_given, result.grown_megabytes);
   CHECK_THAT(result.message, Contains("endless.csv:") && Contains("more than 12000000 numbers") &&
                                  Contains("decimate the record, or split it"));
-  // 12 million numbers of two bytes each, and at most three windows of 16 MiB read ahead.
+  // This allows for 12 million numbers of two bytes each, and at most three windows of 16 MiB read
+  // ahead.
   CHECK(result.bytes_given < 80'000'000);
   CHECK(result.grown_megabytes < kMostMegabytes);
 }
@@ -481,9 +483,9 @@ TEST_CASE("load_csv: a file that may have been cut within its last number", "[da
   CHECK_THAT(cut(rows, {"t", "x"}), Contains(":4: the file ends without a newline") &&
                                         Contains("column 'x', of 3 characters") &&
                                         Contains("6 or more"));
-  CHECK(cut(rows + "\n", {"t", "x"}).empty());            // whole
-  CHECK(cut(rows + "432", {"t", "x"}).empty());           // as long as others
-  CHECK(cut(rows, {"t"}).empty());                        // its last column is not used
+  CHECK(cut(rows + "\n", {"t", "x"}).empty());            // complete
+  CHECK(cut(rows + "432", {"t", "x"}).empty());           // as long as the others
+  CHECK(cut(rows, {"t"}).empty());                        // last column not used
   CHECK(cut("t,x\n0.0,3.4", {"t", "x"}).empty());         // nothing to compare with
   CHECK(cut("t,x\n0,1\n1,10\n2,3", {"t", "x"}).empty());  // not the shortest
 }

@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using datasets::load_hdf5_record;
 
-/// A small file with all that is read: vectors, packed chunks, a table, attributes.
+/// A small file with everything that the reader reads: vectors, packed chunks, a table, attributes.
 std::string small_hdf5(const TemporaryFolder& folder) {
   {
     const Hdf5Writer file(folder / "small.h5");

@@ -10,7 +10,7 @@
 #include "tests/datasets/reading.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-// Which numbers belong to a column of an HDF5 file, and which files are refused.
+// Tests which numbers belong to a column of an HDF5 file, and which files are refused.
 
 namespace rigcal::test {
 namespace {
@@ -19,12 +19,12 @@ using Catch::Contains;
 using datasets::hdf5_record_columns;
 using datasets::RecordColumn;
 
-/// 100 i + 10 j + k, each counted from 1.
+/// Returns 100 i + 10 j + k, with indices counted from 1.
 double code(std::size_t i, std::size_t j, std::size_t k) {
   return static_cast<double>(100 * i + 10 * j + k);
 }
 
-/// A dataset of shape `dims` whose cells are arrays of shape `cell`.
+/// Writes a dataset of shape `dims` whose cells are arrays of shape `cell`.
 void write_cells(const Hdf5Writer& file, const char* path, const std::vector<hsize_t>& dims,
                  const std::vector<hsize_t>& cell, const std::vector<double>& values) {
   const hid_t array =
@@ -69,7 +69,7 @@ TEST_CASE("load_hdf5: every line of an array of three dimensions", "[datasets]")
     for (std::size_t i = 1; i <= kI; ++i)
       for (std::size_t j = 1; j <= kJ; ++j)
         for (std::size_t k = 1; k <= kK; ++k) values.push_back(code(i, j, k));
-    // The same numbers with none, one, two and all of the dimensions inside the cells.
+    // Writes the same numbers with none, one, two and all of the dimensions inside the cells.
     file.array("/plain", values, {kI, kJ, kK});
     write_cells(file, "/cell1", {kI, kJ}, {kK}, values);
     write_cells(file, "/cell2", {kI}, {kJ, kK}, values);
@@ -313,7 +313,7 @@ TEST_CASE("load_hdf5: 12 million numbers of one file, those of other columns cou
     const Hdf5Writer file(path);
     file.array("/x", std::vector<double>(100'000, 1.0));
     file.number("/x", "dt", 0.5);
-    // 7000 cells of 2000 numbers each, all unwritten.
+    // There are 7000 cells with 2000 numbers each, all unwritten.
     const hsize_t width = 2000;
     const hsize_t rows = 7000;
     const hid_t array = H5Tarray_create2(H5T_IEEE_F64LE, 1, &width);
@@ -377,7 +377,7 @@ TEST_CASE("load_hdf5: units by any of their attributes, the first that holds a t
     file.array("/in rows", {1, 2, 3, 4, 5, 6}, {2, 3});
     file.texts("/in rows", "unit", {"V", "A"});
     file.table("/table", {{"t", {0, 1, 2}}, {"u", {4, 5, 6}}});
-    file.text("/table", "units", "ms");  // the column is not named, so it has no effect
+    file.text("/table", "units", "ms");  // names no column, so it has no effect
   }
   for (const char* name : {"/unit", "/units", "/Unit", "/Units", "/unit_string"})
     CHECK(unit_of(path, name) == "mm");
@@ -422,7 +422,7 @@ TEST_CASE("load_hdf5: intervals and rates of samples by their attributes", "[dat
   }
   for (const std::string& name : intervals)
     CHECK(read_columns(path, {"/" + name + "@" + name}) == Table{{10, 14, 18}});
-  // A start offset is used together with an interval only.
+  // A start offset is used only together with an interval.
   for (const std::string& name : rates)
     CHECK(read_columns(path, {"/" + name + "@" + name}) == Table{{0, 0.25, 0.5}});
   for (const char* none :

@@ -72,12 +72,12 @@ TEST_CASE("load_hdf5: numbers of any size and byte order", "[datasets]") {
   {
     const Hdf5Writer file(path);
     for (const auto& [name, type] : types) file.array("/" + name, {1, 100, 7}, {}, type);
-    // 12 of 16 bits, as converters give them.
+    // 12 significant bits out of 16, as delivered by converters.
     const hid_t twelve = H5Tcopy(H5T_STD_I16LE);
     H5Tset_precision(twelve, 12);
     file.array("/i12", {-2048, 2047, -1}, {}, twelve);
     H5Tclose(twelve);
-    // Half precision.
+    // A floating-point type of half precision.
     const hid_t half = H5Tcopy(H5T_IEEE_F32LE);
     H5Tset_fields(half, 15, 10, 5, 0, 10);
     H5Tset_size(half, 2);
@@ -144,7 +144,7 @@ TEST_CASE("load_hdf5: units by attributes, of one dataset, a matrix or a table",
     file.table("/d", {{"t", {0, 1, 2}}, {"u", {4, 5, 6}}});
     file.texts("/d", "units", {"ms", "V"});
     file.array("/e", {1, 2, 3});
-    file.text("/e", "unit", "m\nschema = 1");  // would be a line of the campaign file
+    file.text("/e", "unit", "m\nschema = 1");  // would add a line to the campaign file
     file.array("/f", {1, 2, 3});
     file.number("/f", "unit", 3.0);
   }
@@ -171,7 +171,7 @@ TEST_CASE("load_hdf5: time by the distance of samples", "[datasets]") {
     file.array("/log/short", {4, 5});
     file.number("/log/short", "dt", 0.5);
     file.array("/log/none", {4, 5});
-    file.number("/log/none", "dt", 0.0);  // says nothing
+    file.number("/log/none", "dt", 0.0);  // gives no information
   }
   CHECK(read_columns(path, {"/log/x@wf_increment", "/log/x"}, "/log/x@wf_increment") ==
         Table{{10, 10.25, 10.5}, {1, 2, 3}});

@@ -18,7 +18,7 @@ using namespace rigcal::test;
 TEST_CASE("load_mat: a huge file is refused within 200 MB", "[datasets]") {
   const std::filesystem::path path = std::filesystem::temp_directory_path() /
                                      ("rigcal-huge-" + std::to_string(::getpid()) + ".mat");
-  // 13 million zeros, 104 MB: compressed they take 0.1 MB on disk.
+  // 13 million zeros take 104 MB, but compressed only 0.1 MB on disk.
   write_mat(path, MatFormat::v7, {mat_array("x", std::vector<double>(13'000'000))});
   long pages = 0;
   std::ifstream("/proc/self/statm") >> pages >> pages;

@@ -31,7 +31,7 @@ std::string message_of(const std::filesystem::path& path, const MatRequest& requ
   return message_when([&] { load_mat(path, request); });
 }
 
-/// Message of reading the column `name` from a file with these variables.
+/// Message when reading the column `name` from a file with these variables.
 std::string message_of(const std::vector<matvar_t*>& variables, const std::string& name,
                        MatFormat format = MatFormat::v7) {
   const TemporaryFolder folder;
@@ -44,7 +44,7 @@ std::string content_of(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// What Simulink's "To Workspace" writes as a "Structure With Time".
+/// A variable like those that Simulink's "To Workspace" writes as a "Structure With Time".
 matvar_t* logged(const std::string& name) {
   return mat_struct(
       name, {{mat_array("time", Numbers{0.0, 0.1, 0.2}),
@@ -55,8 +55,8 @@ matvar_t* logged(const std::string& name) {
               mat_text("blockName", "rig/To Workspace")}});
 }
 
-/// An object as MATLAB stores it in version 5, by the documented layout: array flags of class 17,
-/// then name, "MCOS", class name and a reference, which only MATLAB can follow.
+/// An object as stored by MATLAB in version 5, following the documented layout: array flags of
+/// class 17, then the name, "MCOS", the class name and a reference that only MATLAB can follow.
 std::string opaque_variable() {
   const auto word = [](std::uint32_t value) {
     return std::string(reinterpret_cast<const char*>(&value), 4);
@@ -203,7 +203,7 @@ TEST_CASE("load_mat: an object says how to save it", "[datasets]") {
   CHECK(load_mat(path, {{"t"}, "t"})[0] == Numbers{0, 1, 2});
   CHECK(mat_columns(path) == std::vector<std::string>{"t"});
 
-  // In version 7.3 an object is a reference whose class is none of MATLAB's numbers.
+  // In version 7.3, an object is a reference whose class is not one of MATLAB's number classes.
   write_mat(path, MatFormat::v73,
             {mat_array("ts", std::vector<std::uint16_t>{1, 2, 3, 4, 5, 6}, {1, 6}),
              mat_array("t", Numbers{0, 1, 2})});
@@ -292,7 +292,7 @@ TEST_CASE("load_record: the same campaign as CSV and as MAT gives the same bits"
     const Series& other = mat.channels.at(channel);
     CHECK(series.mean == other.mean);
     CHECK(series.count == other.count);
-    // The repeats of a generated reference are equal, so that it may have no sd.
+    // All repeats of a generated reference are equal, so it may have no sd.
     CHECK((series.pooled_sd == other.pooled_sd ||
            (std::isnan(series.pooled_sd) && std::isnan(other.pooled_sd))));
   }

@@ -21,7 +21,8 @@ namespace fs = std::filesystem;
 using datasets::load_mat;
 using datasets::mat_columns;
 
-/// A small file with all that a MAT file has: vector, matrix, integers, struct in a struct, text.
+/// A small file with everything that a MAT file may contain: vector, matrix, integers, nested
+/// struct, text.
 std::string small_mat(const TemporaryFolder& folder, MatFormat format) {
   write_mat(folder / "small.mat", format,
             {mat_array("t", Numbers{0.0, 0.5, 1.25}),
@@ -64,10 +65,10 @@ TEST_CASE("damaged MAT: any byte of version 5, changed in several ways", "[datas
                                [](const fs::path& file) { return mat_ending(file, true); });
   const std::size_t each = changes.size();
   CHECK(count.values + count.refused == each * whole.size());
-  // What is compressed has a checksum; of the rest the numbers and the header's text have none.
+  // Compressed data have a checksum. In the rest, the numbers and the text of the header have none.
   CHECK(count.values >= each * 110);
   CHECK(count.refused > each * 250);
-  // AddressSanitizer keeps 256 MB of what was freed.
+  // AddressSanitizer keeps 256 MB of freed memory.
   CHECK(megabytes_of(RUSAGE_SELF) - megabytes_before < (kSanitized ? 400 : 50));
 }
 
@@ -79,7 +80,7 @@ TEST_CASE("damaged MAT: version 7.3, byte by byte", "[datasets]") {
                                [](const fs::path& file) { return mat_ending(file, false); });
   CHECK(count.refused > 0);
   CHECK(count.values > 0);
-  // Damages an address of HDF5 in the heap with the names of fields.
+  // Damages an address in the HDF5 heap that contains the field names.
   std::string damaged = whole;
   const std::size_t heap = whole.find("GCOL");
   REQUIRE(heap != std::string::npos);

@@ -16,7 +16,7 @@
 #include "tests/datasets/reading.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-// Files put together byte by byte, after "MAT-File Format" of The MathWorks.
+// Builds files byte by byte, following "MAT-File Format" by The MathWorks.
 
 namespace rigcal::test {
 namespace {
@@ -44,13 +44,13 @@ struct Level5Writer {
   std::string tag(std::uint32_t type, std::size_t bytes) const {
     return raw(type) + raw(static_cast<std::uint32_t>(bytes));
   }
-  /// With its data filled up to eight bytes.
+  /// Returns an element with its data padded to a multiple of eight bytes.
   std::string element(std::uint32_t type, std::string data) const {
     const std::string head = tag(type, data.size());
     data.resize((data.size() + 7) / 8 * 8, '\0');
     return head + data;
   }
-  /// Up to four bytes within the tag.
+  /// Returns an element with up to four bytes of data within its tag.
   std::string small_element(std::uint32_t type, std::string data) const {
     const auto size = static_cast<std::uint32_t>(data.size());
     data.resize(4, '\0');
@@ -61,7 +61,7 @@ struct Level5Writer {
     return element(6, raw(type) + raw(std::uint32_t{0})) + element(5, raw_list(dims)) +
            element(1, name);
   }
-  /// @param data  the element with the numbers
+  /// @param data  the element that contains the numbers
   std::string numbers(const std::string& name, const std::vector<std::int32_t>& dims,
                       const std::string& data) const {
     return element(14, array_head(6, dims, name) + data);
@@ -211,7 +211,7 @@ TEST_CASE("level 5: nothing that a file says of itself is believed", "[datasets]
     const std::string message = refusal(kLittle.file(each.variables));
     CHECK_THAT(message,
                Contains("damaged in variable 1, which begins at byte 129") && Contains(each.word));
-    // The content before it does not matter.
+    // The preceding content does not matter.
     CHECK_THAT(refusal(kLittle.file(good + each.variables)), Contains("damaged in variable 2"));
   }
   CHECK_THAT(refusal(kLittle.file(nested(20))), Contains("'x' is a struct"));

@@ -18,7 +18,7 @@ using Catch::Contains;
 
 namespace {
 
-/// Message of reading "t" and "x" from a first sheet of these rows.
+/// Message when reading "t" and "x" from a first sheet with these rows.
 std::string refusal_of_sheet(const XlsxRows& rows, const std::string& behind = "") {
   const TemporaryFolder folder;
   write_zip(folder.path() / "a.xlsx", xlsx_parts({{"Log", sheet_xml(rows, behind)}}));
@@ -27,7 +27,7 @@ std::string refusal_of_sheet(const XlsxRows& rows, const std::string& behind = "
 
 }  // namespace
 
-/// It rounds numbers to 16 digits, so that they are such as need fewer.
+/// libxlsxwriter rounds numbers to 16 digits, so the numbers used here need fewer.
 TEST_CASE("load_xlsx: what libxlsxwriter writes", "[datasets]") {
   const TemporaryFolder folder;
   const auto path = folder.path() / "run.xlsx";
@@ -97,7 +97,7 @@ TEST_CASE("load_xlsx: numbers as they are stored, in any locale", "[datasets]") 
   const Table expected{{0.1, 0.3}, {1.2345678901234567e-7, -12}};
   CHECK(read_columns(path, {"t", "x"}, "t") == expected);
   for (const char* locale : {"de_DE.UTF-8", "C.UTF-8"}) {
-    if (std::setlocale(LC_ALL, locale) == nullptr) continue;  // not on this machine
+    if (std::setlocale(LC_ALL, locale) == nullptr) continue;  // not installed on this machine
     CHECK(read_columns(path, {"t", "x"}, "t") == expected);
   }
   std::setlocale(LC_ALL, "C");

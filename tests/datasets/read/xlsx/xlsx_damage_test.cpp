@@ -35,7 +35,7 @@ std::string small_xlsx(const TemporaryFolder& folder, bool squeezed) {
   return text_of(folder / "small.xlsx");
 }
 
-/// Parts of a workbook whose first sheet is this.
+/// Writes a workbook with this first sheet.
 void write_bomb(const fs::path& path, const std::string& sheet) {
   write_zip(path, xlsx_parts({{"Log", sheet}}));
 }
@@ -49,7 +49,7 @@ TEST_CASE("damaged XLSX: a changed byte gives numbers or is refused", "[datasets
   REQUIRE(xlsx_ending(folder / "small.xlsx") == Ending::values);
   const Endings count =
       damage(folder, "damaged.xlsx", whole, kSanitized ? 67 : 13, {0x80, 0x01}, xlsx_ending);
-  // What has no checksum are names, sizes and dates in the directory of the archive.
+  // Names, sizes and dates in the directory of the archive have no checksum.
   CHECK(count.refused > 0);
 }
 
@@ -68,7 +68,7 @@ TEST_CASE("damaged XLSX: what inflates without end is refused", "[datasets]") {
   const std::string head = sheet_xml({{cell("t"), cell("x")}, {cell(0), cell(1)}});
   const std::string blanks(std::size_t{1} << 20, ' ');
   std::string text = head;
-  // A cell with more text than allowed; 64 MB of blanks outside cells are accepted.
+  // A cell may not have more text than this, but 64 MB of blanks outside cells are accepted.
   text.replace(text.find("<v>0</v>"), 8, "<v>" + std::string(300'000, '1') + "</v>");
   write_bomb(bomb, text);
   CHECK_THROWS_WITH(load_xlsx_record(bomb, {{"t", "x"}, "t"}),
@@ -87,7 +87,7 @@ TEST_CASE("damaged XLSX: what inflates without end is refused", "[datasets]") {
     write_zip(bomb, parts);
     CHECK_THROWS_WITH(load_xlsx_record(bomb, {{"t", "x"}, "t"}), Catch::Contains(message));
   };
-  // Expat would read a tag again from its beginning with every block of it.
+  // Expat would reread a tag from its beginning for every block.
   std::string attribute = "<styleSheet a=\"";
   std::string comment = "<styleSheet><!--";
   for (int i = 0; i < 70; ++i) {

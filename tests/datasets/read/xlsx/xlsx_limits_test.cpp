@@ -13,7 +13,7 @@
 #include "tests/datasets/xlsx_fixture.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-// Largest contents of an .xlsx file that are accepted, and smallest that are refused.
+// Tests the largest contents of an .xlsx file that are accepted, and the smallest that are refused.
 
 namespace rigcal::test {
 namespace {
@@ -22,7 +22,7 @@ using Catch::Contains;
 using datasets::xlsx_address;
 using Parts = std::vector<std::pair<std::string, std::string>>;
 
-/// A sheet with the given rows in XML.
+/// Returns a sheet with the given rows as XML.
 std::string sheet_of(const std::string& rows, const std::string& behind = "") {
   return "<worksheet><sheetData>" + rows + "</sheetData>" + behind + "</worksheet>";
 }
@@ -60,7 +60,7 @@ class Book {
   TemporaryFolder folder_;
 };
 
-/// Parts with one more part of this name.
+/// Replaces the content of the part with this name.
 Parts with_part(Parts parts, const std::string& name, const std::string& content) {
   for (auto& [part, text] : parts)
     if (part == name) text = content;
@@ -102,7 +102,7 @@ TEST_CASE("load_xlsx: columns stand where their addresses say, up to XFD", "[dat
     CAPTURE(beyond);
     CHECK_THAT(Book(sheet("A", beyond)).refusal(), Contains("is out of order"));
   }
-  // The message about a gap gives the address, also in columns after Z.
+  // The message about a gap gives the address, also for columns after Z.
   CHECK_THAT(Book(sheet_of(row(1, text_cell("Z1", "t") + text_cell("AB1", "x")) +
                            row(2, number_cell("Z2", 0) + number_cell("AB2", 7)) +
                            row(3, number_cell("Z3", 1)) + row(4, number_cell("Z4", 2))))
@@ -135,7 +135,7 @@ TEST_CASE("load_xlsx: a row given twice, or out of order, is refused", "[dataset
 
 TEST_CASE("load_xlsx: rows and cells without a number count on", "[datasets]") {
   const std::string one = "<c><v>1</v></c>";
-  // Row 2 follows row 1, and C follows B.
+  // Cells without an address continue: row 2 follows row 1, and C follows B.
   CHECK(Book(sheet_of(kHeader + "<row><c><v>0</v></c><c><v>5</v></c></row>" + numbers(3, 1, 6)))
             .read() == Table{{0, 1}, {5, 6}});
   CHECK(Book(sheet_of(row(4, text_cell("B4", "t") + "<c t=\"inlineStr\"><is><t>x</t></is></c>") +
@@ -162,7 +162,7 @@ TEST_CASE("load_xlsx: a cell given twice, or out of order, is refused", "[datase
     CAPTURE(cells);
     CHECK_THAT(refusal(cells), Contains("Log!") && Contains("is out of order"));
   }
-  // Also in a column that is not wanted.
+  // This also applies to a column that is not wanted.
   CHECK_THAT(refusal(a + b + number_cell("C3", 1) + number_cell("C3", 2)),
              Contains("is out of order"));
 }
@@ -192,7 +192,7 @@ TEST_CASE("load_xlsx: a sheet may have more than a part and a tag may", "[datase
   const Table table = Book(sheet_of(rows)).read();
   REQUIRE(table[0].size() == 30'000);
   CHECK(table[0].back() == 0.5 * 29'999);
-  // More than 64 MB of blanks between rows.
+  // There are more than 64 MB of blanks between the rows.
   CHECK(Book(sheet_of(kHeader + numbers(2, 0, 1) + std::string(std::size_t{70} << 20, ' ') +
                       numbers(3, 1, 2)))
             .read() == Table{{0, 1}, {1, 2}});
@@ -222,7 +222,7 @@ TEST_CASE("load_xlsx: 12 million numbers of one file, over all sheets", "[datase
   for (std::size_t i = 0; i < kRows; ++i)
     rows += numbers(i + 2, static_cast<double>(i), -static_cast<double>(i));
   const Book book(xlsx_parts({{"A", sheet_of(rows)}, {"B", sheet_of(rows)}}));
-  // A column that is requested twice counts twice.
+  // A column requested twice counts twice.
   std::vector<std::string> columns(239, "A!t");
   columns.emplace_back("B!x");
   const Table most = book.read(columns);
@@ -258,7 +258,7 @@ TEST_CASE("load_xlsx: columns of unequal length are refused by the cell that is 
              Contains("Log!A3 is empty"));
   CHECK_THAT(refusal(cells(2, "AB") + cells(3, "ABC")), Contains("Log!C2 is empty"));
   CHECK_THAT(refusal(cells(2, "ABC") + cells(4, "ABC")), Contains("Log!A3 is empty"));
-  // Across two sheets the message names the columns.
+  // If the columns are on two sheets, the message names the columns.
   const std::string two = sheet_of(kHeader + numbers(2, 0, 1) + numbers(3, 1, 2));
   const std::string three =
       sheet_of(kHeader + numbers(2, 0, 1) + numbers(3, 1, 2) + numbers(4, 2, 3));
@@ -309,7 +309,7 @@ TEST_CASE("load_xlsx: a row of units stands right below the header and holds uni
   CHECK_THAT(units_of("s", "open"), Contains("Log!A2 is the text 's'"));
   CHECK_THAT(units_of("[s)", "mm"), Contains("Log!A2 is the text '[s)'"));
   CHECK_THAT(units_of("s]", "mm"), Contains("Log!A2 is the text 's]'"));
-  // A number in it makes the row a row of numbers, not of units.
+  // With a number in it, the row is a row of numbers rather than units.
   CHECK_THAT(Book(sheet_of(kHeader + row(2, text_cell("A2", "s") + number_cell("B2", 1)) +
                            numbers(3, 0, 1)))
                  .refusal(),
@@ -318,7 +318,7 @@ TEST_CASE("load_xlsx: a row of units stands right below the header and holds uni
                            numbers(4, 0, 1)))
                  .refusal(),
              Contains("Log!A2 is empty"));
-  // A unit outside the table does no harm.
+  // A unit outside the table does not matter.
   CHECK(Book(sheet_of(kHeader +
                       row(2, text_cell("A2", "s") + text_cell("B2", "mm") + text_cell("F2", "m")) +
                       numbers(3, 0, 1)))
@@ -343,7 +343,7 @@ TEST_CASE("load_xlsx: which cells show a date, by the style of the cell", "[data
   CHECK(refusal(cells, "0") == "no error");
   CHECK_THAT(refusal(cells, "1"), Contains("Log!B2 shows a date or a time of day"));
   for (const char* none : {"2", "3", "-1", "x", ""}) CHECK(refusal(cells, none) == "no error");
-  // A format that the workbook defines overrides the built-in format of that number.
+  // A format defined in the workbook overrides the built-in format with the same number.
   CHECK(refusal("<numFmts><numFmt numFmtId=\"22\" formatCode=\"0.00\"/></numFmts>" + cells, "1") ==
         "no error");
   CHECK_THAT(
@@ -416,11 +416,11 @@ TEST_CASE("load_xlsx: the header is the first row that holds something and is no
   CHECK(Book(sheet_of(row(3, text_cell("A3", "# a comment") + number_cell("B3", 1)) +
                       row(5, text_cell("A5", "t") + text_cell("B5", "x")) + numbers(6, 0, 1)))
             .read() == Table{{0}, {1}});
-  // A row that begins with another cell is no row of names.
+  // A row that begins with another cell is not a row of names.
   CHECK_THAT(Book(sheet_of(row(1, text_cell("A1", "t") + text_cell("B1", "#x")) + numbers(2, 0, 1)))
                  .refusal(),
              Contains("unknown column 'x'"));
-  // A number among the names does not make the row a row of numbers.
+  // A number among the names does not turn the row into a row of numbers.
   CHECK(Book(sheet_of(row(1, text_cell("A1", "t") + text_cell("B1", "x") + number_cell("C1", 7)) +
                       numbers(2, 0, 1)))
             .read() == Table{{0}, {1}});
