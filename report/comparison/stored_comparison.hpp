@@ -52,8 +52,7 @@ struct StoredDifference {
   std::optional<double> difference;
   std::optional<double> percent;  ///< null if the first value may be zero
   std::optional<double> standard_error;
-  Later<std::optional<double>> degrees_of_freedom;  ///< of this standard error (Welch and
-                                                    ///< Satterthwaite)
+  Later<std::optional<double>> degrees_of_freedom;  ///< for this error (Welch-Satterthwaite)
   std::optional<double> p_value;                    ///< for this parameter only
   std::optional<double> p_value_of_all;             ///< adjusted for all parameters (Holm)
   std::optional<bool> significant;

@@ -16,7 +16,7 @@ namespace rigcal::report::doc {
 /// A number that may be missing: null, NaN or absent.
 struct Number {
   std::optional<double> value;
-  // NOLINTBEGIN(google-explicit-constructor): a double converts without loss
+  // NOLINTBEGIN(google-explicit-constructor): these conversions are intended
   Number(double number) : Number(std::optional(number)) {}
   Number(const std::optional<double>& number) : value(number) {
     if (value && std::isnan(*value)) value.reset();
@@ -27,7 +27,7 @@ struct Number {
 /// An interval that may lack one or both ends.
 struct Interval {
   std::optional<Range> ends;  ///< absent unless both ends are known
-  // NOLINTBEGIN(google-explicit-constructor): a range converts without loss
+  // NOLINTBEGIN(google-explicit-constructor): these conversions are intended
   Interval(const std::optional<Range>& range) : ends(range) {
     if (ends && !(std::isfinite(ends->low) && std::isfinite(ends->high))) ends.reset();
   }
