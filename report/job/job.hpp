@@ -78,7 +78,7 @@ struct JobResult {
 
 /// Draws the page of a job and writes its files.
 ///
-/// @throws WriteError,  UsageError  as for write_results()
+/// @throws WriteError, UsageError  as for write_results()
 WrittenResult write_job(HeldFolder& held, int threads, JobResult job);
 
 /// The fit that a job is based on: a fit.json, or a fit made in this process.
@@ -114,7 +114,7 @@ struct FitRequest {
 /// Estimates the free parameters and scores the conditions. If the result folder is known, the fit
 /// stores there what it needs to resume after it was killed.
 ///
-/// @throws InputError,  UsageError
+/// @throws InputError, UsageError
 JobResult fit_job(std::shared_ptr<const datasets::Campaign> campaign, const FitRequest& request,
                   const JobTerms& terms);
 
@@ -124,7 +124,7 @@ struct ValidationRequest {
 };
 /// Scores the conditions with the values from an earlier fit.
 ///
-/// @throws InputError,  UsageError
+/// @throws InputError, UsageError
 JobResult validation_job(std::shared_ptr<const datasets::Campaign> campaign,
                          const ValidationRequest& request, const JobTerms& terms);
 
@@ -136,7 +136,7 @@ struct DiagnosisRequest {
 };
 /// Estimates the leak in every record that can be diagnosed.
 ///
-/// @throws InputError,  UsageError
+/// @throws InputError, UsageError
 JobResult diagnosis_job(datasets::Campaign campaign, const DiagnosisRequest& request,
                         const JobTerms& terms);
 
@@ -147,7 +147,7 @@ struct ParityRequest {
 };
 /// Computes the parity residuals of every record relative to the healthy rig.
 ///
-/// @throws InputError,  UsageError
+/// @throws InputError, UsageError
 JobResult parity_job(datasets::Campaign campaign, const ParityRequest& request,
                      const JobTerms& terms);
 
@@ -161,13 +161,13 @@ struct LeakTableRequest {
 /// Estimates the assumptions of a leak table from its published numbers, and computes the table
 /// with them.
 ///
-/// @throws InputError,  UsageError
+/// @throws InputError, UsageError
 JobResult fit_tables_job(const CampaignChoice& choice, const JobTerms& terms);
 
 /// Computes the leak table of a rig. Takes the choice instead of a loaded campaign, because --set
 /// also applies to the assumptions.
 ///
-/// @throws InputError,  UsageError
+/// @throws InputError, UsageError
 JobResult leak_table_job(const CampaignChoice& choice, const LeakTableRequest& request,
                          const JobTerms& terms);
 
@@ -178,7 +178,7 @@ struct PlanRequest {
 /// Predicts how well the records of a campaign will determine the parameters, and designs a test
 /// within the limits in [design].
 ///
-/// @throws InputError,  UsageError
+/// @throws InputError, UsageError
 JobResult plan_job(const datasets::Campaign& campaign, const PlanRequest& request,
                    const JobTerms& terms);
 
@@ -207,7 +207,7 @@ RigVerbs verbs_in_process(const BatchRequest& request, const JobTerms& terms);
 
 /// Compares the results in two or more folders. The first result is the reference for the others.
 ///
-/// @throws InputError,  UsageError
+/// @throws InputError, UsageError
 JobResult comparison_job(const std::vector<std::filesystem::path>& folders, const JobTerms& terms);
 
 }  // namespace rigcal::report

@@ -45,7 +45,7 @@ Json given_values(const model::ParameterValues& values);
 
 /// Makes a case from a condition and parameter values.
 ///
-/// @param record  if present, the case uses its sample times
+/// @param record  if present, the case has the samples of this record
 LiveCase live_case(const datasets::Campaign& campaign, std::string name,
                    datasets::Condition condition, model::ParameterValues values,
                    std::optional<datasets::Record> record = std::nullopt);

@@ -21,7 +21,7 @@ struct CampaignChoice {
 
 /// Loads the campaign and applies `set` and `free`.
 ///
-/// @throws InputError,  UsageError
+/// @throws InputError, UsageError
 datasets::Campaign load(const CampaignChoice& choice);
 
 /// Returns the choices that affect the numbers, for the provenance.

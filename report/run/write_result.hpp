@@ -25,7 +25,7 @@ struct WrittenResult {
 /// apply: fitted.toml, and residuals of conditions that no longer exist.
 ///
 /// @param threads       number of threads for creating the texts and drawing the page
-/// @throws WriteError,  UsageError  as for write_results()
+/// @throws WriteError, UsageError  as for write_results()
 WrittenResult write_result(HeldFolder& held, int threads, const Result& result);
 
 /// Creates the same files in memory, without the page. The result file is last.
