@@ -7,8 +7,8 @@
     print(fit.parameter("mass").value, fit.verdict)
     fit.write("demo")
 
-All values are in SI units, given at the end of a name (`time_s`) or in `unit`. Results are bitwise identical to those of
-the command. See docs/python.md.
+All values are in SI units, given at the end of a name (`time_s`) or in `unit`. Results are bitwise identical to those
+of the command. See docs/python.md.
 """
 
 from rigcal._rigcal import (

@@ -189,7 +189,7 @@ def _plot_result(result: Result) -> Figure:
 
 
 def _plot_estimates(rows: list[dict[str, Any]]) -> Figure:
-    """Plots intervals around the values. Unidentified parameters are only named: their intervals would dwarf the others."""
+    """Plots intervals around the values. Only names parameters that are not identified; they would hide the others."""
     estimated = [row for row in rows if row.get("fitted")]
     shown = [row for row in estimated if row["identifiability"] == "identified" and row["value"] and row["ci95"]]
     ratios = [[100.0 * (end / row["value"] - 1.0) for end in row["ci95"]] for row in shown]
@@ -202,7 +202,7 @@ def _plot_estimates(rows: list[dict[str, Any]]) -> Figure:
 
 
 def loaded(*arguments: Any) -> Campaign:
-    """Restores a pickled campaign by reading its file again. In Python, because pickle cannot call a compiled function."""
+    """Restores a pickled campaign by reading its file. In Python, because pickle cannot call a compiled function."""
     return load(*arguments)
 
 
