@@ -25,7 +25,7 @@ enum class OnSignal { end, keep_result };
 /// Runs a job for the folder of --out, writes its files with the page, and prints its document.
 ///
 /// @param verb  name of the verb for messages
-/// @throws WriteError,  UsageError, InputError
+/// @throws WriteError, UsageError, InputError
 ExitCode run_job(const char* verb, const CampaignOptions& options, const Invocation& invocation,
                  const Job& job, OnSignal on_signal = OnSignal::end);
 ExitCode run_job(const char* verb, const JobOptions& options, const Invocation& invocation,

@@ -19,7 +19,8 @@ struct DesignedParameter {
   FittedParameter parameter;  ///< value and bounds, without errors
   bool named = false;
   std::optional<double> sd;
-  /// From the campaign's own signals with the same duration, noise and number of repeats.
+  /// Standard deviation from the campaign's own signals with the same duration, noise and number of
+  /// repeats.
   std::optional<double> sd_own;
 };
 
@@ -60,17 +61,17 @@ struct DesignOptions {
 };
 
 /// Searches for the drive that is most informative about the named parameters
-/// (datasets::DesignSettings); all other unknowns are estimated at the same time. The result is the
+/// (datasets::DesignSettings). All other unknowns are estimated at the same time. The result is the
 /// same for any number of threads.
 ///
 /// @param records  records of the campaign's own conditions, as far as they exist
 /// @param names    keys of fitted parameters, such as "bulk_modulus"
 /// @param values   values from an earlier fit, or null for those of the campaign
-/// @throws InputError,    UsageError  if there is no [design], a name is unknown or not fitted, no
-///                        record determines the noise, or the rig exceeds a limit at rest
-/// @throws NoResultError  if the rig cannot be simulated, or none of the tried drives keeps the
-///                        limits
-/// @throws Error          if the search was stopped before there was any drive
+/// @throws InputError, UsageError  if there is no [design], a name is unknown or not fitted, no
+///                                 record determines the noise, or the rig exceeds a limit at rest
+/// @throws NoResultError           if the rig cannot be simulated, or none of the tried drives
+///                                 keeps the limits
+/// @throws Error                   if the search was stopped before there was any drive
 Design design(const datasets::Campaign& campaign, const std::vector<datasets::Record>& records,
               const std::vector<std::string>& names,
               const std::vector<datasets::FittedValue>* values, const DesignOptions& options);
