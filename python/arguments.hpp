@@ -15,37 +15,41 @@
 
 namespace rigcal::python {
 
-/// Whatever Python takes for a whole number: int, numpy.int64... Converted by whole_number(), so
-/// that one out of range is a ValueError that names the argument.
+/// Any object that Python accepts as a whole number: int, numpy.int64 and so on. whole_number()
+/// converts it, so that a value out of range raises a ValueError that names the argument.
 struct Integer {
   pybind11::object value;
 };
 
-/// @throws pybind11::value_error  names the argument, what was found and what was expected
+/// Converts and checks a whole number.
+///
+/// @throws pybind11::value_error  if the value is out of range; names the argument, what was found
+///                                and what was expected
 std::uint64_t whole_number(const char* name, const Integer& integer, std::uint64_t lowest,
                            std::uint64_t highest);
 int count(const char* name, const Integer& integer, int lowest, int highest);
 
-/// A finite number above zero, or none.
+/// Checks that a number is finite and positive, if it is given.
 ///
-/// @throws pybind11::value_error  naming the argument
+/// @throws pybind11::value_error  if it is not; names the argument
 std::optional<double> positive(const char* name, std::optional<double> value);
 
-/// @throws pybind11::value_error  the path is empty, naming the argument
+/// @throws pybind11::value_error  if the path is empty; names the argument
 void require_path(const char* name, const std::optional<std::filesystem::path>& path);
 
-/// Number of threads; by default as many as the machine has.
+/// Returns the number of threads. The default is the number of hardware threads.
 int thread_count(const std::optional<Integer>& threads);
 
-/// name="value unit" of each entry of a dict.
+/// Converts each entry of a dict to name="value unit".
 ///
-/// @throws pybind11::type_error  a value is neither text nor number
+/// @throws pybind11::type_error  if a value is neither text nor a number
 std::vector<std::string> assignments(const std::optional<pybind11::dict>& values);
 
-/// Text that may contain a file name: bytes that are not UTF-8 are decoded like os.fsdecode().
+/// Converts text that may contain a file name. Bytes that are not UTF-8 are decoded as by
+/// os.fsdecode().
 pybind11::str decoded(std::string_view text);
 
-/// Getter of a property that is a field of a member, or of its target if it is a pointer.
+/// Returns a getter for a property that is a field of a member. The member may be a pointer.
 template <typename Self, typename Member, typename Value>
 auto field(Member Self::*member, Value Member::*value) {
   return [=](const Self& self) { return (self.*member).*value; };
@@ -55,7 +59,7 @@ auto field(std::shared_ptr<const Member> Self::*member, Value Member::*value) {
   return [=](const Self& self) { return (*(self.*member)).*value; };
 }
 
-/// The same for an enumerator, as its name.
+/// Returns a getter for an enumerator, which Python sees as its name.
 template <typename Self, typename Value>
 auto named(Value Self::*value) {
   return [=](const Self& self) { return to_string(self.*value); };
@@ -65,10 +69,10 @@ auto named(Member Self::*member, Value Holder::*value) {
   return [get = field(member, value)](const Self& self) { return to_string(get(self)); };
 }
 
-/// "name=value" in Python's notation, for the call recorded in a result.
+/// Formats "name=value" in Python notation, for the call recorded in a result.
 std::string written(const char* name, const pybind11::handle& value);
 
-/// @throws pybind11::value_error  an argument is out of its range
+/// @throws pybind11::value_error  if an argument is out of range
 report::FitChoices choices_of(const std::optional<Integer>& starts, const Integer& seed,
                               const Integer& bootstrap, bool profiles,
                               const std::optional<Integer>& posterior, bool cross_validate,

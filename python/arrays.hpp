@@ -9,8 +9,8 @@
 
 namespace rigcal::python {
 
-/// Numbers of a result as a read-only NumPy array that shares their memory and keeps the result
-/// alive.
+/// Returns numbers from a result as a read-only NumPy array. The array shares the memory of the
+/// result and keeps it alive.
 template <typename T>
 pybind11::array_t<T> view(std::shared_ptr<const void> owner, const T* data, std::size_t size) {
   auto* const kept = new std::shared_ptr<const void>(std::move(owner));
@@ -26,7 +26,7 @@ pybind11::array_t<T> view(std::shared_ptr<const void> owner, const std::vector<T
   return view(std::move(owner), values.data(), values.size());
 }
 
-/// None if there are no values.
+/// Returns None if there are no values.
 template <typename T>
 std::optional<pybind11::array_t<T>> view_or_none(std::shared_ptr<const void> owner,
                                                  const std::vector<T>& values) {
@@ -34,7 +34,7 @@ std::optional<pybind11::array_t<T>> view_or_none(std::shared_ptr<const void> own
   return view(std::move(owner), values);
 }
 
-/// A copy, shape (rows, columns).
+/// Copies a matrix, shape (rows, columns).
 inline pybind11::array_t<double> array_of(const Eigen::MatrixXd& matrix) {
   pybind11::array_t<double> array({matrix.rows(), matrix.cols()});
   auto values = array.mutable_unchecked<2>();

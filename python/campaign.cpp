@@ -15,7 +15,7 @@ namespace {
 
 namespace py = pybind11;
 
-/// A row of the campaign's parameters, with its entry in the plant's table.
+/// A parameter of the campaign, with its row in the plant's parameter table.
 struct Parameter {
   datasets::ParameterSetting setting;
   model::ParameterSpec spec;

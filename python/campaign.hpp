@@ -16,13 +16,14 @@
 
 namespace rigcal::python {
 
-/// A campaign with its options; objects made from it keep it alive.
+/// A campaign with its options. Objects made from it keep it alive.
 struct Campaign {
   report::CampaignChoice choice;
   datasets::Campaign campaign;
   std::string call;  ///< call that made it: rigcal.load('campaign.toml')
 
-  /// The record of a condition, read at the first call. May be called from any thread.
+  /// Returns the record of a condition, which is read on the first call. May be called from any
+  /// thread.
   datasets::Record record(const datasets::Condition& condition) const;
 
  private:
@@ -32,7 +33,8 @@ struct Campaign {
 using CampaignPtr = std::shared_ptr<Campaign>;
 using CampaignClass = pybind11::class_<Campaign, CampaignPtr>;
 
-/// Properties of a parameter from the plant's table, for a class with a `spec`.
+/// Binds the properties that come from the plant's parameter table, for a class with a member
+/// `spec`.
 template <typename Parameter>
 void bind_spec(pybind11::class_<Parameter>& parameter) {
   parameter
@@ -46,12 +48,13 @@ void bind_spec(pybind11::class_<Parameter>& parameter) {
                              "SI unit; \"1\" for a plain number.");
 }
 
-/// None for an unknown number.
+/// Returns None for an unknown number.
 inline std::optional<double> none_if_nan(double value) {
   return std::isnan(value) ? std::nullopt : std::optional(value);
 }
 
-// Each adds the classes of one kind of result, and to Campaign the methods that lead to them.
+// Each function adds the classes for one kind of result, and the methods of Campaign that return
+// them.
 CampaignClass bind_campaign(pybind11::module_& module);
 void bind_records(pybind11::module_& module, CampaignClass& campaign);
 void bind_simulations(pybind11::module_& module, CampaignClass& campaign);

@@ -14,7 +14,8 @@ namespace {
 
 namespace py = pybind11;
 
-/// Messages of the command name its options, which are arguments here: "--set mass" is "set mass".
+/// Adapts a message from the command line, where options have dashes. In Python they are arguments:
+/// "--set mass" becomes "set mass".
 py::str without_dashes(std::string_view message) {
   if (message.starts_with("--")) message.remove_prefix(2);
   return decoded(message);

@@ -2,7 +2,7 @@
 
 namespace rigcal::python {
 
-/// Errors of rigcal become the exceptions of rigcal/errors.py.
+/// Translates the errors of rigcal to the exceptions in rigcal/errors.py.
 void translate_errors();
 
 }  // namespace rigcal::python

@@ -16,22 +16,22 @@
 
 namespace rigcal::python {
 
-/// A fit or validation with its campaign as Python has it.
+/// A fit or validation, with its campaign as the Python object.
 struct FitResult : report::FitRun {
   CampaignPtr source;
 };
 using FitResultPtr = std::shared_ptr<FitResult>;
 
-/// A fit that a call rests on: one in memory, or the path of a fit.json.
+/// The fit that a call is based on: a fit in memory, or the path of a fit.json.
 using FitArgument = std::variant<FitResultPtr, std::filesystem::path>;
 
-/// @throws pybind11::value_error  the path is empty
+/// @throws pybind11::value_error  if the path is empty
 report::FitSource fit_source(const std::optional<FitArgument>& fit, model::PlantKind plant);
 
-/// The argument as text, for the call recorded in a result.
+/// Formats the argument as text, for the call recorded in a result.
 std::string written_fit(const FitArgument& fit);
 
-/// A parameter of a result, with its entry in the plant's table.
+/// A parameter in a result, with its row in the plant's parameter table.
 struct FittedParameter {
   calib::FittedParameter value;
   model::ParameterSpec spec;

@@ -30,10 +30,10 @@ namespace {
 namespace py = pybind11;
 namespace fs = std::filesystem;
 
-// ---- making them
+// ---- functions that make fits
 
-/// Raises the exception of the signal handler; Ctrl-C becomes an exception with the best fit so
-/// far.
+/// Raises the exception of the signal handler. Ctrl-C becomes an exception that contains the best
+/// fit so far.
 [[noreturn]] void raise_interrupted(const std::exception_ptr& raised, const FitResultPtr& found) {
   try {
     std::rethrow_exception(raised);
@@ -47,7 +47,7 @@ namespace fs = std::filesystem;
   }
 }
 
-/// Runs a job that makes a fit, and reports to `progress` meanwhile.
+/// Runs a job that makes a fit, and reports progress to `progress`.
 FitResultPtr made(const CampaignPtr& self, const std::string& call,
                   const std::optional<Integer>& threads,
                   const std::optional<py::function>& progress,
@@ -68,7 +68,7 @@ FitResultPtr made(const CampaignPtr& self, const std::string& call,
   return found;
 }
 
-/// A call as text, without arguments that have their default.
+/// A call as text, without the arguments that have their default values.
 class Call {
  public:
   explicit Call(std::string name) : text_(std::move(name) + "(") {}
@@ -101,7 +101,7 @@ std::string call_of(const Campaign& campaign, const report::FitChoices& choices)
   return call.text();
 }
 
-/// A copy that numpy owns.
+/// Returns a copy of the posterior draws that NumPy owns.
 std::optional<py::array_t<double>> draws_of(const FitResult& self) {
   if (!self.fit.posterior || self.fit.posterior->draws == 0) return std::nullopt;
   const calib::Posterior& found = *self.fit.posterior;
@@ -220,7 +220,7 @@ py::object json_of_result(const FitResult& self) {
   return py::module_::import("json").attr("loads")(text);
 }
 
-/// None before anything was estimated: zero would look like a perfect fit.
+/// Returns None if nothing has been estimated yet, because zero would look like a perfect fit.
 std::optional<double> cost_of(const FitResult& self) {
   const bool has_cost =
       report::status_of(self.fit) != calib::FitStatus::failed && !self.fit.starts.empty();
@@ -250,7 +250,7 @@ void bind_start(py::module_& module) {
       .def_readonly("iterations", &StartReport::iterations, "Of all its stages.");
 }
 
-/// Getter of a property that is a member of the fit.
+/// Returns a getter for a property that is a member of the fit.
 template <typename Value>
 auto of_fit(Value calib::Fit::*value) {
   return [=](const FitResult& self) { return self.fit.*value; };

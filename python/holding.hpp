@@ -9,7 +9,7 @@
 
 namespace rigcal::python {
 
-/// How a call takes its output folder. Messages become a UserWarning.
+/// Describes how a call may use its output folder. Messages become a UserWarning.
 inline report::Holding holding(std::string verb, bool force) {
   return {std::move(verb), force, "force=True", [](const std::string& text) {
             const pybind11::gil_scoped_acquire acquired;

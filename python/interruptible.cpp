@@ -50,8 +50,8 @@ std::exception_ptr run_interruptibly(std::atomic<bool>& cancel, const std::funct
     lock.unlock();
     worker.join();
   }
-  // A signal that came while the work ended belongs to this call, too; a further one says nothing
-  // new.
+  // A signal that arrived while the work was ending also belongs to this call. If an earlier signal
+  // already raised an exception, that one is kept.
   if (PyErr_CheckSignals() != 0) {
     const auto last = std::make_exception_ptr(py::error_already_set());
     if (!raised) raised = last;

@@ -6,11 +6,12 @@
 
 namespace rigcal::python {
 
-/// Runs long work in a separate thread, without the GIL, while this thread checks for signals. A
-/// signal sets `cancel`; then the end of the work is awaited.
+/// Runs long work in a separate thread without the GIL, while this thread checks for signals. A
+/// signal sets `cancel`; the function then waits for the work to end.
 ///
-/// @return  the exception of the signal handler, usually KeyboardInterrupt; null without a signal
-/// @throws  the exception of the work, unless a signal came first
+/// @return  the exception of the signal handler, usually KeyboardInterrupt; null if there was no
+///          signal
+/// @throws the  exception of the work, unless a signal came first
 std::exception_ptr run_interruptibly(std::atomic<bool>& cancel, const std::function<void()>& work);
 
 }  // namespace rigcal::python

@@ -8,7 +8,7 @@ namespace rigcal::python {
 
 namespace py = pybind11;
 
-/// The GIL guards `raised_` while the fit runs: a second lock could deadlock with it.
+/// The GIL guards `raised_` while the fit runs, because a second lock could deadlock with it.
 template <typename Event>
 void Progress::tell(const Event& event) {
   const py::gil_scoped_acquire acquired;

@@ -19,27 +19,28 @@ struct Iteration {
   double relative_change = 0.0;
 };
 
-/// Progress of other work of a fit.
+/// Progress of the other work in a fit.
 struct Pieces {
   std::string work;
   int done = 0;
   int all = 0;
 };
 
-/// Reports the progress of a fit to a Python function, from any thread. An exception ends the fit.
+/// Reports the progress of a fit to a Python function from any thread. If the function raises an
+/// exception, the fit ends.
 class Progress {
  public:
-  /// @param cancel  becomes true when the function raises; borrowed
+  /// @param cancel  set to true when the function raises; borrowed
   Progress(std::optional<pybind11::function> function, std::atomic<bool>& cancel)
       : function_(std::move(function)), cancel_(cancel) {}
 
-  /// Makes the fit report here, if there is a function.
+  /// Makes the fit report to this object, if there is a function.
   void attach(calib::FitOptions& settings);
 
-  /// Reports pieces of a job, if there is a function.
+  /// Reports how many pieces of a job are done, if there is a function.
   void pieces(const char* work, int done, int all);
 
-  /// Throws the exception of the function, if there was one. Needs the GIL.
+  /// Throws the exception that the function raised, if any. The caller must have the GIL.
   void rethrow() const;
 
  private:

@@ -27,13 +27,13 @@ namespace fs = std::filesystem;
 using datasets::Record;
 using RecordPtr = std::shared_ptr<Record>;
 
-/// A channel of a record, which it keeps alive.
+/// A channel of a record. It keeps the record alive.
 struct RecordedChannel {
   std::shared_ptr<const datasets::Series> series;
   datasets::ChannelInfo about;
 };
 
-/// Findings of `check`.
+/// What `check` found.
 struct Checked {
   std::vector<RecordPtr> records;
   std::vector<std::string> without_record;

@@ -36,9 +36,9 @@ namespace fs = std::filesystem;
 using ProgressFunction = std::optional<py::function>;
 using Levels = std::vector<std::string>;
 
-// ---- making them
+// ---- functions that make results
 
-/// Runs a job in a thread, so that Ctrl-C reaches it, and keeps what it made.
+/// Runs a job in a thread, so that Ctrl-C still works, and stores its files in a result.
 ResultPtr job_result(const char* kind, std::string name, std::string call,
                      const report::CampaignChoice& choice, const std::optional<Integer>& threads,
                      const ProgressFunction& progress,
@@ -63,7 +63,7 @@ ResultPtr job_result(const char* kind, std::string name, std::string call,
   return result;
 }
 
-/// ".diagnose(fit='fit.json', healthy=['0 %'])"
+/// The text of a call, such as ".diagnose(fit='fit.json', healthy=['0 %'])".
 class CallText {
  public:
   explicit CallText(std::string name) : text_(std::move(name) + "(") {}

@@ -16,7 +16,7 @@ namespace {
 namespace py = pybind11;
 using datasets::Channel;
 
-/// A channel of a scored condition, which it keeps alive.
+/// A channel of a scored condition. It keeps the condition alive.
 struct ScoredChannel {
   std::shared_ptr<const calib::ConditionScore> condition;
   datasets::ChannelInfo about;
@@ -33,7 +33,7 @@ struct ScoredChannel {
   }
 };
 
-/// Empty where it could not be simulated.
+/// Returns the residual; empty if the condition could not be simulated.
 py::array_t<double> residual(const ScoredChannel& self) {
   const std::vector<double>& measured = self.measured();
   const std::vector<double>& simulated = self.simulated();

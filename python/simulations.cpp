@@ -36,7 +36,7 @@ struct Simulated {
   std::vector<double> time_s;
   std::vector<double> reference;
   bool of_position = true;        ///< whether the loop controls the position
-  std::vector<std::string> free;  ///< parameters of its sensitivities
+  std::vector<std::string> free;  ///< parameters for which there are sensitivities
   model::ParameterValues values;
   model::Simulation simulation;
 };
@@ -49,7 +49,8 @@ py::array_t<double> signal(const SimulatedPtr& self, std::size_t output) {
               static_cast<std::size_t>(outputs.rows()));
 }
 
-/// Whether a signal is among those of a rig. The second mass is, as zero, in every rig.
+/// Returns true if the rig has this signal. Every rig has the payload acceleration, which is zero
+/// without a second mass.
 bool is_signal(const SimulatedPtr& self, model::Output output) {
   return output == model::Output::payload_acceleration || has_output(self->values, output);
 }
@@ -65,7 +66,7 @@ py::dict signals_of(const SimulatedPtr& self) {
   return signals;
 }
 
-/// Per parameter, the derivative of every signal by it.
+/// Returns, for each parameter, the derivatives of all signals with respect to it.
 py::dict sensitivities_of(const SimulatedPtr& self) {
   py::dict all;
   for (std::size_t j = 0; j < self->free.size(); ++j) {
@@ -83,16 +84,16 @@ py::dict sensitivities_of(const SimulatedPtr& self) {
   return all;
 }
 
-/// What a call asks for beside the campaign.
+/// The arguments of a call, besides the campaign.
 struct Wanted {
   std::optional<std::string> condition;
-  std::map<std::string, double> values;  ///< SI
+  std::map<std::string, double> values;  ///< in SI units
   std::vector<std::string> free;
 };
 
-/// Row of a parameter in the plant's table.
+/// Returns the row of a parameter in the plant's table.
 ///
-/// @throws UsageError  there is none of that name
+/// @throws UsageError  if no parameter has this name
 int row_of(const char* argument, const std::string& key, model::PlantKind plant) {
   const int index = model::parameter_index(plant, key);
   if (index >= 0) return index;
@@ -116,7 +117,7 @@ calib::SimulationTask task_of(const Campaign& self, const datasets::Condition& c
   return task;
 }
 
-/// @throws UsageError  there is no such condition
+/// @throws UsageError  if no condition has this id
 std::vector<const datasets::Condition*> wanted(const datasets::Campaign& campaign,
                                                const std::optional<std::string>& id) {
   std::vector<const datasets::Condition*> conditions;
@@ -131,7 +132,7 @@ std::vector<const datasets::Condition*> wanted(const datasets::Campaign& campaig
   return conditions;
 }
 
-/// A condition, or its id.
+/// A condition, or the id of one.
 using ConditionArgument = std::optional<std::variant<std::string, datasets::Condition>>;
 std::optional<std::string> id_of(const ConditionArgument& condition) {
   if (!condition) return std::nullopt;

@@ -1,6 +1,6 @@
-"""Backend of PEP 517: builds the module by CMake, and packs it as a wheel.
+"""PEP 517 build backend: builds the module with CMake and packs it as a wheel.
 
-RIGCAL_BUILD names a build tree that has the module already, such as build/release.
+RIGCAL_BUILD may name a build tree that already contains the module, such as build/release.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ def _version() -> str:
 
 
 def _built() -> pathlib.Path:
-    """The folder of the package as CMake leaves it."""
+    """Returns the package folder that CMake built."""
     tree = os.environ.get("RIGCAL_BUILD")
     if not tree:
         tree = str(ROOT / "build" / "wheel")

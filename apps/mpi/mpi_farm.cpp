@@ -17,18 +17,18 @@
 #include "common/bytes.hpp"
 #include "common/task_farm.hpp"
 
-// Loaded by `rigcal` if mpirun or srun started it (apps/rigcal/processes.cpp), so that the program
-// itself does not depend on MPI.
+// `rigcal` loads this library if mpirun or srun started it (apps/rigcal/processes.cpp), so that the
+// program itself does not depend on MPI.
 //
-// Every process runs the same program on the same inputs and reaches the same jobs. The first one
-// leads: it hands out tasks, collects the results and sends all of them to every process that asks.
-// Processes wait for each other only within a job and at the end; a late one finds the results
-// ready. Only main threads call MPI.
+// Every process runs the same program on the same inputs and reaches the same jobs. The first
+// process leads: it hands out tasks, collects the results and sends all of them to every process
+// that asks. Processes wait for each other only within a job and at the end; for a late process the
+// results are already available. Only main threads call MPI.
 
 namespace rigcal {
 namespace {
 
-/// Sleep between two polls of an idle process: MPI's own waiting would occupy a whole processor.
+/// Pause between two polls by an idle process. Waiting inside MPI would occupy a whole processor.
 constexpr auto kPause = std::chrono::microseconds(300);
 constexpr int kTag = 1;
 
@@ -36,9 +36,9 @@ enum class Kind : std::uint8_t {
   request,  ///< to the leader: a lane is free
   result,   ///< to the leader: result of a task
   bye,      ///< to the leader: last message
-  assign,   ///< from the leader: make this task
+  assign,   ///< from the leader: run this task
   all,      ///< from the leader: every result of the job
-  gone,     ///< from the leader: there is no such job any more
+  gone,     ///< from the leader: the job no longer exists
 };
 
 struct Slot {
@@ -53,7 +53,7 @@ void serialize(Archive& archive, Slot& slot) {
 }
 
 struct Message {
-  int other = 0;  ///< whom it is to, or from
+  int other = 0;  ///< rank of the receiver or sender
   Kind kind = Kind::request;
   std::string job;
   std::uint64_t index = 0;
@@ -89,12 +89,12 @@ Slot make(const TaskFarm::Task& task, std::size_t index) {
   try {
     slot.result = task(index);
   } catch (...) {
-    slot.threw = true;  // a process that needs the results runs it again and throws there
+    slot.threw = true;  // a process that needs the results runs the task again and throws there
   }
   return slot;
 }
 
-/// Tasks for the threads of this process, and their results.
+/// Queue of tasks for the threads of this process, and of their results.
 class Lanes {
  public:
   Lanes(int count, const TaskFarm::Task& task) : idle_(count) {
@@ -149,7 +149,8 @@ class Lanes {
   std::vector<std::pair<std::size_t, Slot>> made_;
   int idle_;
   bool ended_ = false;
-  std::vector<std::jthread> threads_;  // last member: they end before the members that they use
+  std::vector<std::jthread> threads_;  // last member, so that the threads end before the members
+                                       // that they use
 };
 
 class MpiFarm final : public TaskFarm {
@@ -186,13 +187,13 @@ class MpiFarm final : public TaskFarm {
   }
 
  private:
-  /// A job that the leader is at.
+  /// A job that the leader is running.
   struct Led {
     std::string name;
     std::vector<Slot> slots;
-    std::size_t next = 0;        ///< the first task that has not begun
-    std::size_t missing = 0;     ///< results
-    std::vector<int> waiting{};  ///< processes that wait for a task
+    std::size_t next = 0;        ///< the first task that has not been started
+    std::size_t missing = 0;     ///< number of results still missing
+    std::vector<int> waiting{};  ///< processes waiting for a task
     const Done* done = nullptr;
     const FarmJob* job = nullptr;
 
@@ -235,7 +236,7 @@ class MpiFarm final : public TaskFarm {
     return led.slots;
   }
 
-  /// Serves one message, or sleeps where there is none.
+  /// Handles one message, or sleeps if there is none.
   void look(Led* led) {
     const auto message = receive();
     if (message) {
@@ -297,15 +298,19 @@ class MpiFarm final : public TaskFarm {
 
   int rank_ = 0;
   int processes_ = 1;
-  int gone_ = 0;                                         ///< processes that have said goodbye
-  std::map<std::string, std::vector<Slot>> finished_{};  ///< kept by the leader
-  std::vector<Message> early_{};                         ///< to the leader
+  int gone_ = 0;                                         ///< number of processes that have sent
+                                                         ///< their last message
+  std::map<std::string, std::vector<Slot>> finished_{};  ///< results of finished jobs, kept by the
+                                                         ///< leader
+  std::vector<Message> early_{};                         ///< messages to the leader that arrived
+                                                         ///< before it reached the job
 };
 
 }  // namespace
 }  // namespace rigcal
 
-/// The caller owns it, and destroys it before the process ends.
+/// The caller owns the farm and must destroy it before the process ends.
 extern "C" rigcal::TaskFarm* rigcal_mpi_farm() {
-  return new rigcal::MpiFarm;  // NOLINT(cppcoreguidelines-owning-memory): no C++ type crosses it
+  return new rigcal::MpiFarm;  // NOLINT(cppcoreguidelines-owning-memory): a C interface cannot
+                               // return a smart pointer
 }

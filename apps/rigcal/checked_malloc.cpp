@@ -1,6 +1,7 @@
-// Eigen allocates by malloc(), and after std::bad_alloc its matrices are inconsistent: they free
-// memory twice that they could not enlarge. So code that is linked into the program (--wrap in
-// apps/CMakeLists.txt) runs out of memory like operator new: the new handler ends it.
+// Eigen allocates with malloc(). After std::bad_alloc its matrices are inconsistent: they free
+// memory twice if they could not enlarge it. Code linked into the program (--wrap in
+// apps/CMakeLists.txt) therefore handles lack of memory like operator new, by calling the new
+// handler, which ends the program.
 
 #include <cstddef>
 #include <new>
@@ -18,7 +19,8 @@ void* __wrap_realloc(void* memory, std::size_t size);
 
 namespace {
 
-/// While a file is being written the handler returns or throws; then the caller gets the error.
+/// Calls the new handler if an allocation failed. While a file is being written the handler returns
+/// or throws, and the caller gets the error.
 void* checked(void* memory, std::size_t size) {
   if (memory != nullptr || size == 0) return memory;
   try {

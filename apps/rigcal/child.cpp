@@ -18,11 +18,11 @@
 namespace rigcal::app {
 namespace {
 
-/// Bytes that are kept of the end of a child's stderr.
+/// Number of bytes kept from the end of a child's stderr.
 constexpr std::size_t kMostKept = 16'384;
 constexpr int kLookEvery_ms = 50;
 
-/// Variables by which a launcher marks a process as one of several.
+/// Returns true for environment variables with which a launcher marks a process as one of several.
 bool is_of_launcher(std::string_view variable) {
   constexpr std::array kPrefixes{"OMPI_", "PMIX_", "PMI_", "PRTE_", "MPI_"};
   return std::any_of(kPrefixes.begin(), kPrefixes.end(),
@@ -51,10 +51,11 @@ report::VerbEnd not_started(const char* what) {
   return end;
 }
 
-/// Calls only functions that are safe between fork and exec in a process with several threads.
+/// Turns the forked child into the new program. In a process with several threads, only functions
+/// that are safe between fork and exec may be called here.
 [[noreturn]] void become(char* const* arguments, char* const* environment, int err, int null,
                          pid_t parent) {
-  ::setpgid(0, 0);  // a terminal's signal is for the parent, which passes it on once
+  ::setpgid(0, 0);  // signals from the terminal go only to the parent, which passes each on once
   ::prctl(PR_SET_PDEATHSIG, SIGTERM);
   const bool ready = ::getppid() == parent && ::dup2(null, STDIN_FILENO) >= 0 &&
                      ::dup2(null, STDOUT_FILENO) >= 0 && ::dup2(err, STDERR_FILENO) >= 0;
@@ -83,7 +84,7 @@ std::string read_all(int pipe, pid_t child, const std::atomic<bool>& cancel) {
   }
 }
 
-/// The last message of the program, without its name.
+/// Returns the last message from the program, without the program's name.
 std::string message_of(const std::string& text) {
   constexpr std::string_view kName = "rigcal: ";
   const std::size_t at = ("\n" + text).rfind("\n" + std::string(kName));

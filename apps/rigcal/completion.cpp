@@ -8,7 +8,7 @@
 namespace rigcal::app {
 namespace {
 
-/// "--out --json -h": the options of a verb.
+/// Returns the options of a verb: "--out --json -h".
 std::vector<std::string> option_names(const CLI::App& verb) {
   std::vector<std::string> names;
   for (const CLI::Option* option : verb.get_options()) {
@@ -18,7 +18,7 @@ std::vector<std::string> option_names(const CLI::App& verb) {
   return names;
 }
 
-/// For single quotes of any of the shells.
+/// Replaces characters that cannot appear inside single quotes in every shell.
 std::string quotable(std::string text) {
   for (char& c : text) {
     if (c == '\'' || c == '\\') c = ' ';
@@ -54,7 +54,7 @@ complete -F _rigcal rigcal
                      verbs, fmt::join(option_names(app), " "), cases);
 }
 
-/// '--out[Folder of the results]:path:_files'
+/// Returns the options in the syntax of zsh: '--out[Folder of the results]:path:_files'.
 std::string zsh_options(const CLI::App& app) {
   std::string text;
   for (const CLI::Option* option : app.get_options()) {

@@ -14,7 +14,7 @@ namespace {
 using report::kMostReplicates;
 using report::kMostStarts;
 
-/// CLI11's own check of a positive number lets "nan" and "inf" pass.
+/// Accepts finite positive numbers. CLI11's own check also accepts "nan" and "inf".
 CLI::Validator finite_positive() {
   return CLI::Validator(
       [](std::string& text) {

@@ -13,18 +13,18 @@
 namespace rigcal::app {
 namespace {
 
-// A signal handler can access only globals.
+// Globals, because a signal handler cannot access anything else.
 std::atomic<bool> interrupted{false};
 std::atomic<int> keeping{0};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler must not lock");
 
-/// Must not lock or allocate: the signal may have come in the middle of either.
+/// Ends the process. It must not lock or allocate, because the signal may have interrupted either.
 [[noreturn]] void end_at_once() {
   constexpr std::string_view kWords = "rigcal: stopped by a signal before its end\n";
   FilesInWriting::remove_all();
   report::HeldFolder::remove_if_empty();
   if (::write(STDERR_FILENO, kWords.data(), kWords.size()) < 0) {
-    // The error cannot be reported any more.
+    // At this point the error can no longer be reported.
   }
   ::_exit(static_cast<int>(ExitCode::stopped));
 }
@@ -44,7 +44,7 @@ extern "C" void on_signal(int signal) {
 const std::atomic<bool>& watch_signals() {
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
-  // A limit of the size of files is an error of writing, not the end of the process.
+  // Exceeding the file size limit should be a write error, not the end of the process.
   std::signal(SIGXFSZ, SIG_IGN);
   return interrupted;
 }

@@ -4,14 +4,14 @@
 
 namespace rigcal::app {
 
-/// Lets SIGINT and SIGTERM end the run. If there is nothing worth keeping they end the process at
-/// once, with exit code `stopped`. While a Kept lives, the first signal sets the returned flag and
-/// a second one ends the process. Writing beyond a limit of file sizes fails without ending the
-/// process.
+/// Installs handlers for SIGINT and SIGTERM. If there is nothing worth keeping, a signal ends the
+/// process at once with exit code `stopped`. While a Kept object exists, the first signal sets the
+/// returned flag and the second ends the process. Exceeding the file size limit makes a write fail
+/// but does not end the process.
 const std::atomic<bool>& watch_signals();
 
-/// While an object lives, a signal does not discard the work: the work checks the flag, and its
-/// results are written.
+/// While such an object exists, a signal does not discard the work. The work must check the flag,
+/// and its results so far are written.
 class Kept {
  public:
   Kept();

@@ -36,7 +36,7 @@ struct VerbRow {
   const char* name;
   const char* summary;
   Run (*add)(CLI::App&);
-  bool spreads = false;  ///< over the processes that were started together
+  bool spreads = false;  ///< whether the verb uses all processes that were started together
 };
 
 constexpr std::array kVerbs{
@@ -82,7 +82,7 @@ std::string one_line(std::string text) {
   return text;
 }
 
-/// An argument as a shell takes it back, whatever is in it.
+/// Quotes an argument so that a shell reads back exactly the same text.
 std::string quoted(const std::string& argument) {
   const bool plain = !argument.empty() && std::all_of(argument.begin(), argument.end(), [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
@@ -100,7 +100,7 @@ std::string command_line(int argc, char** argv) {
   return text;
 }
 
-/// The verb must be the first argument, so that an unknown one can be named.
+/// Checks that the first argument is a known verb, so that the message can name an unknown one.
 void check_verb(int argc, char** argv) {
   const std::vector<std::string> known = verb_names();
   if (argc < 2) {
@@ -117,7 +117,7 @@ void check_verb(int argc, char** argv) {
   }
 }
 
-/// Prints the manual page or a completion for the package; true if one was requested.
+/// Prints the manual page or a completion script for packaging. Returns true if one was requested.
 bool print_manual(const CLI::App& app, const std::vector<std::string>& arguments) {
   std::string text;
   if (arguments == std::vector<std::string>{"--man-page"}) {
@@ -131,8 +131,8 @@ bool print_manual(const CLI::App& app, const std::vector<std::string>& arguments
   return true;
 }
 
-/// Work of a process that was started beside the first one. It meets the same errors and reports
-/// them there.
+/// Runs the work of a process other than the first. The first process meets the same errors and
+/// reports them.
 ExitCode help(const VerbRow& row, const Run& action, const Invocation& invocation) {
   if (!row.spreads) return ExitCode::done;
   try {
@@ -197,9 +197,9 @@ ExitCode complain(ExitCode code, const std::string& message) {
   std::_Exit(static_cast<int>(ExitCode::internal));
 }
 
-/// Ends the process when memory runs out instead of unwinding: freeing a JSON value takes memory
-/// itself, and some libraries are inconsistent after an exception. Incomplete files are removed
-/// first.
+/// Ends the process when memory runs out. Unwinding would not be safe: freeing a JSON value
+/// allocates memory itself, and some libraries are inconsistent after an exception. Incomplete
+/// files are removed first.
 void end_without_memory() {
   if (rigcal::Uninterrupted::any()) throw std::bad_alloc();
   end("rigcal: out of memory\n");

@@ -7,7 +7,8 @@
 namespace rigcal::app {
 namespace {
 
-/// Text in which roff sees no request; a hyphen is that of a command line.
+/// Escapes text so that roff does not interpret it, and so that hyphens can be copied to a command
+/// line.
 std::string roff(std::string_view text) {
   using Row = std::pair<char, std::string_view>;
   const std::string escaped = report::replaced(

@@ -8,20 +8,20 @@
 
 namespace rigcal::app {
 
-// Made from the output of --help, so that the two cannot differ.
+// The manual is generated from the output of --help, so that the two cannot differ.
 
-/// The manual page rigcal(1) in roff.
+/// Returns the manual page rigcal(1) in roff.
 std::string man_page(const CLI::App& app);
 
 inline constexpr std::array<std::string_view, 3> kShells{"bash", "zsh", "fish"};
 
-/// Script with which a shell completes verbs, options and paths.
+/// Returns a script that lets a shell complete verbs, options and paths.
 ///
 /// @param shell  one of kShells
-/// @throws UsageError  an unknown shell
+/// @throws UsageError  if the shell is unknown
 std::string completion(const CLI::App& app, std::string_view shell);
 
-/// The verbs in the order of --help.
+/// Returns the verbs in the order of --help.
 std::vector<const CLI::App*> verbs_of(const CLI::App& app);
 
 }  // namespace rigcal::app

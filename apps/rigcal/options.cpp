@@ -84,7 +84,7 @@ void add_campaign_options(CLI::App& verb, CampaignOptions& options) {
       ->check(not_empty())
       ->capture_default_str();
   add_force_option(verb, options.force);
-  // One value per --set, or it would swallow the campaign file.
+  // Each --set takes exactly one value; otherwise it would consume the campaign file.
   verb.add_option("--set", options.set, "Change a value: name=\"value unit\"; repeatable")
       ->allow_extra_args(false);
   verb.add_option("--free", options.free, "Fit exactly these parameters: a,b")
@@ -104,7 +104,7 @@ std::size_t terminal_columns(int stream) {
 
 namespace {
 
-/// The value of COLUMNS, as in other programs; else the width of the terminal.
+/// Returns the value of COLUMNS, as other programs do, or else the width of the terminal.
 std::size_t output_columns() {
   constexpr std::size_t kFewest = 20;
   constexpr std::size_t kMost = 10'000;
@@ -132,7 +132,7 @@ report::Style terminal_style() {
 report::Style terminal_style(const PrintOptions& options) {
   report::Style style = terminal_style();
   style.everything = options.verbose;
-  // What goes elsewhere is for programs and logs.
+  // Redirected output is for programs and logs, so its length is not limited.
   if (::isatty(STDOUT_FILENO) == 1 && !options.verbose) style.lines = report::kTerminalLines;
   return style;
 }
@@ -143,7 +143,8 @@ void print(const PrintOptions& options, const std::string& text, const report::J
 
 void print(const PrintOptions& options, const std::string& text, const std::string& json) {
   if (options.quiet) return;
-  // JSON understands the escapes of the few characters that its writer does not escape itself.
+  // The JSON writer leaves a few characters unescaped. The escapes that printable() writes for them
+  // are valid JSON.
   const std::string shown =
       options.json
           ? printable(json)

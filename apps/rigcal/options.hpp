@@ -13,14 +13,14 @@
 
 namespace rigcal::app {
 
-/// How a verb prints.
+/// How a verb prints its result.
 struct PrintOptions {
   bool quiet = false;
   bool json = false;
-  bool verbose = false;  ///< print every row, however many lines it takes
+  bool verbose = false;  ///< print every row, however many lines that takes
 };
 
-/// Options of a verb that leaves a result.
+/// Options of a verb that produces a result.
 struct JobOptions {
   std::filesystem::path out = "rigcal-out";
   bool force = false;
@@ -31,36 +31,37 @@ struct JobOptions {
 /// Options of every verb that reads a campaign.
 struct CampaignOptions : report::CampaignChoice, JobOptions {};
 
-/// Refuses the empty path, which a script passes where a variable is not set.
+/// Rejects an empty path, which a script passes if a variable is not set.
 CLI::Validator not_empty();
 
-/// CLI11's own conversion turns numbers that are too large into the largest one.
+/// Accepts whole numbers in a range. CLI11's own conversion would turn numbers that are too large
+/// into the largest one.
 CLI::Validator whole_number(std::uint64_t lowest, std::uint64_t highest);
 
-/// Threads that this machine has.
+/// Returns the number of hardware threads on this machine.
 int hardware_threads();
 
 void add_print_options(CLI::App& verb, PrintOptions& options);
-/// --force
+/// Adds --force.
 void add_force_option(CLI::App& verb, bool& force);
 void add_campaign_options(CLI::App& verb, CampaignOptions& options);
 
-/// How a verb takes its folder of results.
+/// Describes how a verb may use its results folder.
 report::Holding holding(std::string verb, bool force, const PrintOptions& print);
 
-/// Columns of the terminal behind a stream; 0 if it is redirected.
+/// Returns the width of the terminal behind a stream, or 0 if the stream is redirected.
 std::size_t terminal_columns(int stream);
 
-/// Colour on a terminal, unless NO_COLOR is set; tables as wide as it is.
+/// Uses colour on a terminal unless NO_COLOR is set. Tables are as wide as the terminal.
 report::Style terminal_style();
-/// The same, with few lines unless all are asked for.
+/// Also limits the number of lines, unless the user asks for all of them.
 report::Style terminal_style(const PrintOptions& options);
 
-/// Prints a result on stdout, as text or as JSON.
+/// Prints a result on stdout as text or as JSON.
 ///
-/// @throws WriteError  stdout does not take it
+/// @throws WriteError  if writing to stdout fails
 void print(const PrintOptions& options, const std::string& text, const report::Json& json);
-/// @param json  as text
+/// @param json  JSON that is already formatted as text
 void print(const PrintOptions& options, const std::string& text, const std::string& json);
 
 }  // namespace rigcal::app

@@ -14,10 +14,10 @@
 namespace rigcal::app {
 namespace {
 
-/// Prints the documents of a result on stdout, or its JSON, and where its files are.
+/// Prints the documents of a result or its JSON on stdout, and where its files are.
 ///
-/// @param files  of the folder, those to be opened first
-/// @throws WriteError  stdout does not take it
+/// @param files  the files in the folder that the user should open first
+/// @throws WriteError  if writing to stdout fails
 void print(const JobOptions& options, const std::vector<report::doc::Document>& documents,
            const std::vector<std::string>& files, const std::string& json) {
   std::string text;

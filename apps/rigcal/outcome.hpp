@@ -10,21 +10,21 @@
 
 namespace rigcal::app {
 
-/// --strict
+/// Adds --strict.
 void add_strict_option(CLI::App& verb, bool& strict);
 
-/// The campaign of the options, as a fit keeps it.
+/// Loads the campaign for a fit, which shares its ownership.
 std::shared_ptr<const datasets::Campaign> loaded(const CampaignOptions& options);
 
 using Job = std::function<report::JobResult(const report::JobTerms&)>;
 
-/// Whether a signal during the long work of a job ends the process, or the work, whose result so
-/// far is then written.
+/// What a signal ends during the main computation of a job: the whole process, or only the
+/// computation, in which case the result so far is written.
 enum class OnSignal { end, keep_result };
 
-/// Runs a job in the folder of --out, writes its files with the page, and prints its document.
+/// Runs a job for the folder of --out, writes its files with the page, and prints its document.
 ///
-/// @param verb  for messages
+/// @param verb  name of the verb for messages
 /// @throws WriteError, UsageError, InputError
 ExitCode run_job(const char* verb, const CampaignOptions& options, const Invocation& invocation,
                  const Job& job, OnSignal on_signal = OnSignal::end);

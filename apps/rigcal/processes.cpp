@@ -28,14 +28,15 @@ int number_in(const char* variable) {
   return number;
 }
 
-/// Asks the launcher's variables: mpirun of Open MPI, that of MPICH, srun with PMIx (which gives no
-/// number).
+/// Checks the environment variables that the launcher sets: mpirun from Open MPI, mpirun from
+/// MPICH, or srun with PMIx. PMIx does not set the number of processes.
 bool is_one_of_several() {
   return number_in("OMPI_COMM_WORLD_SIZE") > 1 || number_in("PMI_SIZE") > 1 ||
          (std::getenv("PMIX_RANK") != nullptr && number_in("SLURM_NTASKS") > 1);
 }
 
-/// Beside the program in the build tree, or where it is installed.
+/// Returns the path of the MPI module: beside the program in the build tree, or in its installed
+/// location.
 fs::path module_file() {
   std::error_code unknown;
   const fs::path program = fs::read_symlink("/proc/self/exe", unknown).parent_path();
@@ -56,7 +57,7 @@ std::unique_ptr<TaskFarm> launched_processes() {
         fmt::format("started as one of several MPI processes, but {} is missing: expected a rigcal "
                     "that was built with MPI (docs/many-rigs.md), or a single process",
                     kModule));
-  // Open MPI loads plugins, which need its symbols.
+  // Open MPI loads plugins that need its symbols to be global.
   void* const module = ::dlopen(file.c_str(), RTLD_NOW | RTLD_GLOBAL);
   if (module == nullptr)
     throw UsageError(fmt::format("{}: cannot be loaded: {}", file.string(), ::dlerror()));

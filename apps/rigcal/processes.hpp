@@ -6,13 +6,14 @@
 
 namespace rigcal::app {
 
-/// The processes that `mpirun` or `srun` has started together with this one, or null where there
-/// are none. Lives until the run has ended: where another process still works, its end waits.
+/// Returns the processes that `mpirun` or `srun` started together with this one, or null if there
+/// are none. The object must live until the end of the run. Its destructor waits while other
+/// processes are still working.
 ///
-/// @throws UsageError  there are others, and this rigcal was built without MPI
+/// @throws UsageError  if there are other processes and this rigcal was built without MPI
 std::unique_ptr<TaskFarm> launched_processes();
 
-/// Number of processes that share this machine; 1 without a launcher.
+/// Returns the number of launched processes on this machine; 1 without a launcher.
 int processes_on_this_machine();
 
 }  // namespace rigcal::app

@@ -19,9 +19,10 @@ std::string left_text(const std::optional<double>& seconds) {
   return seconds ? fmt::format(", about {} left", report::duration_text(*seconds)) : std::string();
 }
 
-/// Result of an iteration; it is rejected if its trial is worse or could not be simulated.
+/// Describes an iteration. A step is rejected if its trial point is worse or could not be
+/// simulated.
 std::string step_text(int iteration, double cost, double relative_change) {
-  constexpr double kNoCost = 1e300;  // Ceres gives the largest double where there is none
+  constexpr double kNoCost = 1e300;  // Ceres reports the largest double if there is no cost
   if (!(cost < kNoCost)) return "trial could not be simulated";
   const std::string text = fmt::format("cost {:.6g}", cost);
   if (iteration == 0 || !std::isfinite(relative_change)) return text;
@@ -45,7 +46,7 @@ void StatusLine::show(const std::function<std::string(double)>& text) {
   last_shown_ = now;
   std::string line = printable(text(std::chrono::duration<double>(now - begin_).count()));
   if (terminal_) {
-    // A line that is wrapped could not be rewritten.
+    // A line that wraps could not be overwritten.
     const std::size_t columns = terminal_columns(STDERR_FILENO);
     if (columns > 0 && line.size() >= columns) line.resize(columns - 1);
     std::fputs(fmt::format("\r\x1b[K{}", line).c_str(), stderr);

@@ -11,8 +11,9 @@
 
 namespace rigcal::app {
 
-/// A line on stderr with the progress of long work: rewritten on a terminal, a plain line about
-/// every second elsewhere. Silent for the first second. Not thread-safe.
+/// A line on stderr that shows the progress of long work. On a terminal it is overwritten in place;
+/// otherwise a plain line is printed about once a second. Nothing is shown during the first second.
+/// Not thread-safe.
 class StatusLine {
  public:
   explicit StatusLine(bool quiet);
@@ -20,9 +21,9 @@ class StatusLine {
   StatusLine& operator=(const StatusLine&) = delete;
   ~StatusLine();
 
-  /// Shows a text if it is time for one.
+  /// Shows a text if it is time for an update.
   ///
-  /// @param text  made then, of the seconds since the beginning
+  /// @param text  called only then, with the seconds since the beginning
   void show(const std::function<std::string(double)>& text);
 
  private:
@@ -38,12 +39,12 @@ class StatusLine {
 /// Shows the progress of a fit.
 class FitProgress {
  public:
-  /// @param work      name of the work: "start {} of 3"; braces are replaced by the number of the
-  ///                  start
-  /// @param settings  of the fit: its starts, tolerance and limit of time
+  /// @param work      name of the work, such as "start {} of 3"; the braces are replaced by the
+  ///                  number of the start
+  /// @param settings  options of the fit; its starts, tolerance and time limit are used
   FitProgress(bool quiet, std::string work, const calib::FitOptions& settings);
 
-  /// May be called from any thread. `seconds` is that of one call of the solver, and not shown.
+  /// May be called from any thread. `seconds` is the duration of one solver call and is not shown.
   void operator()(int start, int iteration, double cost, double relative_change, double seconds);
 
  private:
@@ -57,7 +58,7 @@ class FitProgress {
 /// Shows how many of several equal tasks are done.
 class CountProgress {
  public:
-  /// @param pieces  their name: "records"
+  /// @param pieces  what the tasks are called: "records"
   CountProgress(bool quiet, std::string pieces);
 
   /// May be called from any thread.

@@ -10,19 +10,22 @@
 
 namespace rigcal::app {
 
-/// Data of this run of the command for every verb.
+/// What every verb needs to know about this run of the command.
 struct Invocation {
   std::string command;              ///< the command line
-  const std::atomic<bool>& cancel;  ///< becomes true when a signal asks the run to end
-  TaskFarm* processes = nullptr;    ///< processes that were started together; null: only this one
+  const std::atomic<bool>& cancel;  ///< becomes true when a signal asks the run to stop
+  TaskFarm* processes = nullptr;    ///< processes that were started together; null if there is only
+                                    ///< this one
 
-  /// Among cooperating processes only the first one writes and prints.
+  /// Returns true if this process writes and prints. Among cooperating processes only the first one
+  /// does.
   bool leads() const { return processes == nullptr || processes->rank() == 0; }
 };
 
 using Run = std::function<ExitCode(const Invocation&)>;
 
-// Each adds the options of one verb to its subcommand and returns the function that runs it.
+// Each function adds the options of one verb to its subcommand and returns the function that runs
+// the verb.
 Run add_check(CLI::App& verb);
 Run add_average(CLI::App& verb);
 Run add_simulate(CLI::App& verb);

@@ -10,10 +10,11 @@
 namespace rigcal::calib {
 namespace {
 
-/// A step is accepted if the cost falls by more than this fraction of the prediction; Ceres' value.
+/// A step is accepted if the reduction in cost exceeds this fraction of the prediction; Ceres'
+/// value.
 constexpr double kTaken = 1e-3;
-/// Ratio of actual to predicted fall: below the first the trust region shrinks to a fraction of the
-/// step, above the second it grows.
+/// Limits for the ratio of actual to predicted reduction. Below the first, the trust region shrinks
+/// to a fraction of the step; above the second, it grows.
 constexpr double kPoorGain = 0.25;
 constexpr double kGoodGain = 0.75;
 constexpr double kRadiusGrowth = 2.0;
@@ -21,17 +22,17 @@ constexpr double kLeastShrink = 0.1;
 constexpr double kMostShrink = 0.5;
 /// The other model is used next if its prediction error is smaller by this factor; NL2SOL's value.
 constexpr double kNearer = 1.5;
-/// Least ratio of an unknown's scale at one point to that at the point before; NL2SOL's value.
+/// Minimum ratio of an unknown's scale to its scale at the previous point; NL2SOL's value.
 constexpr double kScaleMemory = 0.6;
-/// Least scale, relative to the largest one, and least cosine of the angle between a step and the
-/// change of the gradient.
+/// Minimum scale, relative to the largest one, and minimum cosine of the angle between a step and
+/// the change in the gradient.
 constexpr double kLeastScale = 1e-6;
 constexpr double kLeastCosine = 1e-6;
-/// A rejected step ends the descent if its predicted and actual change of the cost are below this
-/// fraction of the cost: the simulations are not more exact.
+/// A rejected step ends the descent if the predicted and the actual change in cost are below this
+/// fraction of the cost, because the simulations are no more accurate.
 constexpr double kNoise = 1e-8;
-/// The descent gives up after so many points in a row that cannot be evaluated; the last step is
-/// then a millionth as long as the first.
+/// The descent gives up after this many consecutive points that cannot be evaluated. The last step
+/// is then a millionth of the first.
 constexpr int kMostInvalid = 10;
 
 struct Point {
@@ -48,9 +49,10 @@ std::optional<Point> point_at(const DescentOptions& options, const Eigen::Vector
   return Point{z, 0.5 * found->square(), found->gradient(), found->normal()};
 }
 
-/// S after a step, by the update of Dennis, Gay and Welsch: S maps the step onto the change of the
-/// gradient that J'J does not explain, and is else as near to what it was as that allows. It is of
-/// the shared unknowns alone: a whole one would couple those that conditions have for themselves.
+/// Updates S after a step as proposed by Dennis, Gay and Welsch: S maps the step to the change in
+/// the gradient that J'J does not explain, and otherwise remains as close to its previous value as
+/// this allows. S only covers the shared unknowns, because a full S would couple the own unknowns
+/// of different conditions.
 void learn(const Point& from, const Point& to, const Eigen::VectorXd& scales, Eigen::MatrixXd& s) {
   const std::vector<int>& shared = from.square.layout.shared;
   const Eigen::VectorXd whole = to.z - from.z;
@@ -59,7 +61,7 @@ void learn(const Point& from, const Point& to, const Eigen::VectorXd& scales, Ei
   const Eigen::VectorXd scale = scales(shared);
   const Eigen::VectorXd change = to.gradient(shared) - from.gradient(shared);
   const Eigen::VectorXd unexplained = change - explained(shared);
-  // What was learnt where residuals were larger is too large by now.
+  // Sizing: S was learnt where the residuals were larger, and may be too large by now.
   const double before = std::abs(step.dot(s * step));
   if (before > 0.0) s *= std::min(1.0, std::abs(step.dot(unexplained)) / before);
   const double along = change.dot(step);
@@ -72,13 +74,14 @@ void learn(const Point& from, const Point& to, const Eigen::VectorXd& scales, Ei
   s += half + half.transpose() - error.dot(step) * weight * weight.transpose();
 }
 
-/// Scales are the column norms of the Jacobian; they fall slowly from one point to the next.
+/// Updates the scales. They are the column norms of the Jacobian, but may only decrease slowly from
+/// one point to the next.
 void rescale(const Point& at, Eigen::VectorXd& scale) {
   scale = at.square.diagonal().cwiseSqrt().cwiseMax(kScaleMemory * scale);
   scale = scale.cwiseMax(std::max(kLeastScale * scale.maxCoeff(), 1e-150));
 }
 
-/// Length of the Levenberg-Marquardt step, in units of the scale.
+/// Returns the length of the Levenberg-Marquardt step, in units of the scale.
 double damped_length(const Point& at, const Eigen::VectorXd& scale, double damping) {
   const Eigen::VectorXd inverse = scale.cwiseInverse();
   std::vector<Eigen::Index> all(static_cast<std::size_t>(scale.size()));
@@ -87,7 +90,8 @@ double damped_length(const Point& at, const Eigen::VectorXd& scale, double dampi
       .norm();
 }
 
-/// Fraction of a step at which the cost is least, by a parabola through its slope and actual fall.
+/// Returns the fraction of a step at which the cost is lowest, from a parabola through the slope
+/// and the actual reduction.
 double least_along(double slope, double actual_fall) {
   const double curvature = -actual_fall - slope;
   return curvature > 0.0 ? std::clamp(-0.5 * slope / curvature, kLeastShrink, kMostShrink)
@@ -116,7 +120,7 @@ Descent descend_adaptively(const DescentOptions& options, std::vector<double>& z
   const Eigen::Index shared = here->square.blocks.shared.rows();
   Eigen::MatrixXd second = Eigen::MatrixXd::Zero(shared, shared);  // S
   bool augmented = false;
-  bool switched = false;  // the model was exchanged at this point, after a rejected step
+  bool switched = false;  // whether the model was exchanged at this point, after a rejected step
   int invalid = 0;
   bool ended = enough(here->cost, 0.0);
   while (!ended && !result.converged && result.iterations < options.most_iterations) {
@@ -144,7 +148,7 @@ Descent descend_adaptively(const DescentOptions& options, std::vector<double>& z
     const double gain = fall / tried.fall;
     const double other = (augmented ? plain : full).fall(tried.step);
     const bool other_nearer = kNearer * std::abs(fall - other) < std::abs(fall - tried.fall);
-    learn(*here, *there, scale, second);  // also from a rejected step
+    learn(*here, *there, scale, second);  // rejected steps are used, too
     if (gain <= kTaken) {
       ended = enough(here->cost, 0.0);
       result.converged = std::max(std::abs(fall), tried.fall) <= kNoise * here->cost;

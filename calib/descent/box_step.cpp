@@ -9,10 +9,11 @@
 namespace rigcal::calib {
 namespace {
 
-/// Eigenvalues below this fraction of the largest are rounding errors: the matrix is a square.
+/// Eigenvalues below this fraction of the largest are rounding errors, because the matrix is a
+/// square.
 constexpr double kSquaredRounding = 1e-12;
-/// Relative tolerance for a step that ends on the trust region. The limit of iterations is never
-/// reached: Newton's method takes three or four.
+/// Relative tolerance for a step that ends on the boundary of the trust region. The limit on
+/// iterations is never reached, because Newton's method takes three or four.
 constexpr double kOnRadius = 1e-8;
 constexpr int kMostRadiusIterations = 100;
 
@@ -21,24 +22,27 @@ struct BallStep {
   double multiplier = 0.0;  ///< multiplier of the constraint on the radius; 0 inside the ball
 };
 
-/// Eigenvalues that are rounding, as one that is small: directions along them are all but flat.
+/// Replaces eigenvalues that are only rounding errors with a small one, because the model is flat
+/// along these directions.
 Eigen::VectorXd without_rounding(const Eigen::VectorXd& eigenvalues, double flat) {
   return eigenvalues.unaryExpr(
       [flat](double value) { return std::abs(value) <= flat ? flat : value; });
 }
 
-/// (B + shift)^-1 of a dense matrix, in the coordinates of its eigenvectors.
+/// (B + shift)^-1 for a dense matrix, in the coordinates of its eigenvectors.
 class ShiftedDense {
  public:
   explicit ShiftedDense(const Eigen::MatrixXd& b) : spectrum_(b) {
     const double flat = kSquaredRounding * spectrum_.eigenvalues().cwiseAbs().maxCoeff() + 1e-300;
     curvature_ = without_rounding(spectrum_.eigenvalues(), flat);
     least_ = std::max(0.0, -curvature_(0));
-    // Counted from where the matrix is no longer indefinite, so that nothing cancels there.
+    // Shifts are counted from the point where the matrix becomes semidefinite, to avoid
+    // cancellation there.
     curvature_.array() += least_;
   }
 
-  /// The least shift that leaves nothing indefinite; those below come on top of it.
+  /// Returns the smallest shift that makes the matrix semidefinite. The shifts passed to the
+  /// functions below are added to it.
   double least() const { return least_; }
   Eigen::VectorXd into(const Eigen::VectorXd& x) const {
     return spectrum_.eigenvectors().transpose() * x;
@@ -47,11 +51,12 @@ class ShiftedDense {
   Eigen::VectorXd solve(const Eigen::VectorXd& y, double more) const {
     return (y.array() / (curvature_.array() + more).max(1e-300)).matrix();
   }
-  /// Half of the slope of -|y|^2 with the shift, where y solves it for x.
+  /// Returns half of the derivative of -|y|^2 with respect to the shift, where y solves the system
+  /// for x.
   double slope(const Eigen::VectorXd& x, const Eigen::VectorXd& /*y*/, double more) const {
     return (x.array().square() / (curvature_.array() + more).max(1e-300).cube()).sum();
   }
-  /// Direction of the most negative curvature, of unit length.
+  /// Returns the unit vector with the most negative curvature.
   Eigen::VectorXd lowest() const { return Eigen::VectorXd::Unit(curvature_.size(), 0); }
 
  private:
@@ -60,8 +65,8 @@ class ShiftedDense {
   double least_ = 0.0;
 };
 
-/// The same of an arrow: own unknowns are eliminated by the eigenvectors of their blocks; the rest
-/// are eigenvalues of the reduced matrix of the shared ones.
+/// (B + shift)^-1 for an arrow matrix. The own unknowns are eliminated with the eigenvectors of
+/// their blocks; the shared ones use the eigenvalues of the reduced matrix.
 class ShiftedArrow {
  public:
   explicit ShiftedArrow(const ArrowSquare& b)
@@ -137,7 +142,7 @@ class ShiftedArrow {
     return x.cwiseQuotient((curvature_[i].array() + shift).matrix());
   }
 
-  /// What is left of the shared unknowns at a shift.
+  /// Returns the reduced matrix of the shared unknowns at a shift.
   Eigen::MatrixXd schur(double shift) const {
     Eigen::MatrixXd result = b_.blocks.shared;
     result.diagonal().array() += shift;
@@ -149,8 +154,8 @@ class ShiftedArrow {
     return result;
   }
 
-  /// B + shift has as many negative eigenvalues as the Schur complement, since the blocks of the
-  /// conditions have none: the least shift without any is found by halves.
+  /// Finds the smallest shift without negative eigenvalues by bisection. B + shift has as many
+  /// negative eigenvalues as the Schur complement, because the blocks of the conditions have none.
   void find_least() {
     if (b_.blocks.shared.size() == 0) return;
     const auto lowest_at = [&](double shift) {
@@ -175,7 +180,7 @@ class ShiftedArrow {
   double least_ = 0.0;
 };
 
-/// The least of c' y + y' B y / 2 over |y| <= radius.
+/// Minimises c' y + y' B y / 2 over |y| <= radius.
 template <typename Shifted>
 BallStep ball_step(const Shifted& b, const Eigen::VectorXd& c, double radius) {
   const Eigen::VectorXd along = b.into(c);
@@ -190,7 +195,7 @@ BallStep ball_step(const Shifted& b, const Eigen::VectorXd& c, double radius) {
       const double length = y.norm();
       if (std::abs(length - radius) <= kOnRadius * radius) break;
       (length > radius ? low : high) = more;
-      // Newton's method for 1 / length, which is all but linear.
+      // Newton's method for 1 / length, which is almost linear.
       const double slope = b.slope(along, y, more);
       const double next =
           more + (length / radius - 1.0) * length * length / std::max(slope, 1e-300);
@@ -200,7 +205,8 @@ BallStep ball_step(const Shifted& b, const Eigen::VectorXd& c, double radius) {
     y = b.solve(along, more);
   }
   y = -y;
-  // No gradient along the most negative curvature: that is where the rest of the way leads.
+  // The gradient has no component along the most negative curvature, so the rest of the step goes
+  // in that direction.
   const double short_of = radius * radius - y.squaredNorm();
   if (b.least() > 0.0 && short_of > 2.0 * kOnRadius * radius * radius) {
     const Eigen::VectorXd lowest = b.lowest();
@@ -273,7 +279,7 @@ BoxStep box_step(const QuadraticModel& model, const StepLimits& limits) {
         fixed[static_cast<std::size_t>(hit)] = true;
       }
     }
-    // Where the model is indefinite, a step along bounds may raise the cost again.
+    // If the model is indefinite, a step along bounds may increase the cost again.
     if (model.fall(x) > best.fall) best = {x, model.fall(x), multiplier > 0.0};
     if (hit >= 0) continue;
     const Eigen::VectorXd slope =

@@ -9,8 +9,9 @@
 
 namespace rigcal::calib {
 
-/// Reports each iteration of Ceres, and ends the call on request. Exceptions must not pass through
-/// Ceres: one that is thrown here ends the call, and the caller throws it again.
+/// Reports each iteration of Ceres, and stops Ceres on request. Exceptions must not pass through
+/// Ceres, so an exception thrown by the callback is stored and ends the call; the caller rethrows
+/// it.
 class CeresWatch final : public ceres::IterationCallback {
  public:
   CeresWatch(const std::function<bool(const DescentStep&)>& enough, std::exception_ptr& error)
@@ -39,7 +40,8 @@ class CeresWatch final : public ceres::IterationCallback {
 
 inline ceres::Solver::Options quiet_settings() {
   ceres::Solver::Options settings;
-  settings.num_threads = 1;  // more would add up in another order; simulations run in parallel
+  settings.num_threads = 1;  // more threads would sum in a different order; the simulations run in
+                             // parallel anyway
   settings.logging_type = ceres::SILENT;
   settings.minimizer_progress_to_stdout = false;
   return settings;

@@ -9,7 +9,7 @@
 namespace rigcal::calib {
 namespace {
 
-/// All residuals, one parameter block of size 1 per unknown. Borrows everything.
+/// All residuals, with one parameter block of size 1 per unknown. Borrows everything.
 class BoxCost final : public ceres::CostFunction {
  public:
   BoxCost(const DescentOptions& options, Eigen::Index residuals, std::size_t unknowns,
@@ -19,7 +19,7 @@ class BoxCost final : public ceres::CostFunction {
     mutable_parameter_block_sizes()->assign(unknowns, 1);
   }
 
-  /// False where the point cannot be evaluated: Ceres then shortens its step.
+  /// Returns false if the point cannot be evaluated; Ceres then shortens its step.
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
     if (error_) return false;
     try {

@@ -10,36 +10,36 @@
 
 namespace rigcal::calib {
 
-/// Relative change of the cost below which a search at the working tolerance has converged.
+/// Relative change in cost below which a search at the working tolerance has converged.
 inline constexpr double kFunctionTolerance = 1e-10;
 
 /// One iteration of a descent.
 struct DescentStep {
   int number = 0;
   double cost = 0.0;
-  double relative_change = 0.0;  ///< relative change of the cost
+  double relative_change = 0.0;  ///< relative change in cost
   double seconds = 0.0;          ///< since the descent began
 };
 
-/// Function to minimise, and the tolerances.
+/// The function to minimise, and the tolerances.
 struct DescentOptions {
-  /// Residuals at a point of the unit box; none if it cannot be evaluated. The Jacobian is computed
-  /// only on request.
+  /// Returns the residuals at a point in the unit box, or std::nullopt if it cannot be evaluated.
+  /// The Jacobian is computed only on request.
   std::function<std::optional<Linearisation>(std::span<const double> z, bool jacobian)> linearise;
-  double trust_radius = 0.0;  ///< radius of the first step: 1 / damping of Levenberg and Marquardt
+  double trust_radius = 0.0;  ///< radius of the first step: 1 / Levenberg-Marquardt damping
   int most_iterations = 0;
   double function_tolerance = kFunctionTolerance;
   double parameter_tolerance = 1e-9;
-  /// Called after every iteration, with the start as number 0; returns true to end the descent. May
+  /// Called after every iteration, with the start as number 0. Returns true to end the descent. May
   /// be empty.
   std::function<bool(const DescentStep&)> enough;
 };
 
-/// End of a descent.
+/// Result of a descent.
 struct Descent {
-  bool converged = false;  ///< within the tolerances
-  int iterations = 0;      ///< steps tried, the start not counted
-  std::string failure;     ///< why the descent gave up; else empty
+  bool converged = false;  ///< whether a tolerance was reached
+  int iterations = 0;      ///< number of steps tried, without the start
+  std::string failure;     ///< why the descent gave up; otherwise empty
 };
 
 }  // namespace rigcal::calib

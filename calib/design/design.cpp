@@ -27,14 +27,14 @@ using datasets::Campaign;
 using datasets::DriveFamily;
 using datasets::Record;
 
-/// While many drives are compared; sensitivities are then good to a percent.
+/// Tolerance for comparing many drives; sensitivities are then accurate to one percent.
 constexpr double kTrialTolerance = 1e-5;
-/// For the drive that is written.
+/// Tolerance for the drive that is written.
 constexpr double kFineTolerance = 1e-8;
-constexpr int kFiner = 4;  // samples of its response for each of the drive
+constexpr int kFiner = 4;  // response samples per drive sample
 constexpr int kMostScalings = 6;
 constexpr int kMostFineScalings = 20;
-/// A drive that uses this much of a limit is not enlarged further.
+/// A drive that uses this fraction of a limit is not scaled up further.
 constexpr double kUsed = 0.95;
 constexpr double kAimedAt = 0.98;
 constexpr double kFineAimedAt = 0.999;
@@ -65,7 +65,7 @@ const model::ParameterSpec& spec_at(const Campaign& campaign, int index) {
                                key, name));
 }
 
-/// Positions of the named parameters among the unknowns.
+/// Returns the positions of the named parameters among the unknowns.
 std::vector<std::size_t> named_unknowns(const Campaign& campaign, const TrialRig& rig,
                                         const std::vector<std::string>& names) {
   const auto& unknowns = rig.problem().map.unknowns();
@@ -93,8 +93,8 @@ std::vector<double> drive_of(const TrialRig& rig, const DriveShape& shape, doubl
   return drive;
 }
 
-/// The largest scale up to 1 at which a drive keeps the limits, times the share that its shape has
-/// of it; nothing if none was found.
+/// Returns the largest scale up to 1 at which a drive keeps the limits, multiplied by the fraction
+/// chosen for its shape. Returns std::nullopt if none was found.
 std::optional<double> allowed_scale(const TrialRig& rig, const DriveShape& shape) {
   double kept = 0.0;
   double broken = std::numeric_limits<double>::infinity();
@@ -187,8 +187,8 @@ class Searcher {
   DriveGrid grid_;
 };
 
-/// Rounds the chosen drive as it will be written, and makes it smaller until a fine simulation
-/// keeps every limit.
+/// Rounds the chosen drive as it will be written, and reduces it until a fine simulation keeps
+/// every limit.
 void check_finely(const TrialRig& rig, const datasets::DriveUnit& unit, const DriveShape& shape,
                   Design& design) {
   double scale = allowed_scale(rig, shape).value_or(0.0);
@@ -217,8 +217,9 @@ bool is_comparable(const datasets::Condition& condition, const datasets::Conditi
          condition.specimen == of.specimen;
 }
 
-/// Information from the campaign's own signals in the time of the test. Each gets its fraction
-/// of that time, by sample, so that records of other rates compare.
+/// Adds the information that the campaign's own signals would give in the duration of the test.
+/// Each signal gets its fraction of that time, counted in samples, so that records with different
+/// sample rates can be compared.
 void add_own_signals(const Campaign& campaign, const std::vector<Record>& records,
                      const std::vector<datasets::FittedValue>* values, int threads,
                      Design& design) {
@@ -267,7 +268,7 @@ void add_own_signals(const Campaign& campaign, const std::vector<Record>& record
   }
 }
 
-/// What only the smoothing of the orifice roots would determine.
+/// Marks the unknowns that only the smoothing of the orifice roots would determine.
 void leave_symmetric_open(const TrialRig& rig, int threads, Design& design) {
   const auto symmetry = scaling_symmetry(rig.problem(), rig.z(), 1.0, threads);
   if (!symmetry) return;

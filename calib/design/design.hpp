@@ -13,61 +13,65 @@
 
 namespace rigcal::calib {
 
-/// One unknown of the designed test. Standard deviations are those of Cramer and Rao, SI; nothing
-/// where the test does not determine it.
+/// One unknown of the designed test. Standard deviations are Cramer-Rao bounds, SI; absent if the
+/// test does not determine the unknown.
 struct DesignedParameter {
-  FittedParameter parameter;  ///< value and bounds, no errors
+  FittedParameter parameter;  ///< value and bounds, without errors
   bool named = false;
   std::optional<double> sd;
-  /// From the campaign's own signals in the same time, noise and number of repeats.
+  /// Standard deviation from the campaign's own signals with the same duration, noise and number of
+  /// repeats.
   std::optional<double> sd_own;
 };
 
-/// What a family of drives came to.
+/// Result of the search in one family of drives.
 struct FamilyTrial {
   datasets::DriveFamily family = datasets::DriveFamily::multisine;
   int evaluations = 0;
-  bool found = false;  ///< one of them keeps the limits
-  /// Standard deviation of each unknown by the best of them, at the accuracy of the search.
+  bool found = false;  ///< true if one of the drives keeps the limits
+  /// Standard deviation of each unknown with the best drive, at the accuracy of the search.
   std::vector<std::optional<double>> sd;
 };
 
-/// A test that keeps the limits of [design], checked by a fine simulation.
+/// A test that keeps the limits in [design], checked with a fine simulation.
 struct Design {
   datasets::DriveFamily family = datasets::DriveFamily::multisine;
   std::vector<double> time_s;
-  std::vector<double> drive;  ///< SI, as the CSV file has it
+  std::vector<double> drive;  ///< SI, as written to the CSV file
   Eigen::MatrixXd response;   ///< limited_outputs() at time_s
-  double amplitude = 0.0;     ///< largest distance of the drive from its beginning, SI
+  double amplitude = 0.0;     ///< largest distance of the drive from its first value, SI
   std::vector<DrivePart> parts;
   std::vector<LimitUse> limits;
   std::vector<DesignedParameter> parameters;
   std::vector<FamilyTrial> trials;
   std::map<datasets::Channel, double> noise_sd;  ///< per sample of one repeat, SI
   std::vector<std::string> own_conditions;       ///< the campaign's own signals
-  double own_duration_s = 0.0;                   ///< all of them together
-  bool stopped = false;                          ///< by the flag: the best drive until then
+  double own_duration_s = 0.0;                   ///< total duration of these signals
+  bool stopped = false;                          ///< true if stopped by the flag: the best drive
+                                                 ///< until then
   std::vector<std::string> messages;
 };
 
 struct DesignOptions {
   int threads = 1;
   const std::atomic<bool>* cancel = nullptr;
-  /// Called after each generation of drives: family, drives tried in it, drives that it may try.
+  /// Called after each generation with the family, the number of drives tried in it, and the number
+  /// that it may try.
   std::function<void(datasets::DriveFamily, int, int)> progress = {};
 };
 
-/// Looks for the drive that is most informative about the named parameters
-/// (datasets::DesignSettings); all other unknowns are estimated beside them. The same numbers for
-/// any number of threads.
+/// Searches for the drive that is most informative about the named parameters
+/// (datasets::DesignSettings). All other unknowns are estimated at the same time. The result is the
+/// same for any number of threads.
 ///
-/// @param records  of the campaign's own conditions that have one
-/// @param names    keys of parameters that are fitted: "bulk_modulus"
-/// @param values   of an earlier fit, or null: the campaign's own
-/// @throws InputError, UsageError  no [design]; an unknown name, or one that is not fitted; noise
-///                     that no record determines; a limit that the rig breaks at rest
-/// @throws NoResultError  the rig cannot be simulated, or no drive that was tried keeps the limits
-/// @throws Error  stopped before there was any drive
+/// @param records  records of the campaign's own conditions, as far as they exist
+/// @param names    keys of fitted parameters, such as "bulk_modulus"
+/// @param values   values from an earlier fit, or null for those of the campaign
+/// @throws InputError, UsageError  if there is no [design], a name is unknown or not fitted, no
+///                                 record determines the noise, or the rig exceeds a limit at rest
+/// @throws NoResultError           if the rig cannot be simulated, or none of the tried drives
+///                                 keeps the limits
+/// @throws Error                   if the search was stopped before there was any drive
 Design design(const datasets::Campaign& campaign, const std::vector<datasets::Record>& records,
               const std::vector<std::string>& names,
               const std::vector<datasets::FittedValue>* values, const DesignOptions& options);

@@ -9,30 +9,30 @@
 
 namespace rigcal::calib {
 
-/// One limit of [design], and what a drive makes of it.
+/// One limit in [design], and how much of it a drive uses.
 struct LimitUse {
-  std::string key;    ///< in the campaign file: "stroke"
-  std::string words;  ///< "lowest position"
-  std::string unit;   ///< SI
+  std::string key;    ///< key in the campaign file: "stroke"
+  std::string words;  ///< for example "lowest position"
+  std::string unit;   ///< in SI
   double limit = 0.0;
   double reached = 0.0;
   Location where;
-  /// Used part of what is allowed, counted from the state at the first sample for positions; at
-  /// most 1 where the limit is kept.
+  /// Used fraction of the allowed range; for positions, the range counts from the position at the
+  /// first sample. At most 1 if the limit is kept.
   double share = 0.0;
 };
 
-/// Outputs that limits are about; their columns in the runs below.
+/// Returns the outputs for which there are limits, in the order of their columns in a run.
 std::span<const model::Output> limited_outputs();
 
-/// What a run of limited_outputs() makes of each limit that is stated.
+/// Returns how much of each specified limit a run of limited_outputs() uses.
 ///
-/// @param drive  reference of a position loop, which has to stay within the stroke as well; empty
-///               for other drives
+/// @param drive  reference of a position loop, which must also remain within the stroke; empty for
+///               other drives
 std::vector<LimitUse> limit_uses(const datasets::DesignSettings& settings,
                                  const Eigen::MatrixXd& run, std::span<const double> drive);
 
-/// The largest share.
+/// Returns the largest used fraction.
 double largest_share(const std::vector<LimitUse>& uses);
 
 }  // namespace rigcal::calib

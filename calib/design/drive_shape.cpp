@@ -13,22 +13,22 @@ namespace {
 
 using datasets::DriveFamily;
 
-constexpr Eigen::Index kCommon = 2;  // share of the amplitude, offset
+constexpr Eigen::Index kCommon = 2;  // fraction of the amplitude, offset
 constexpr Eigen::Index kSines = 5;
 constexpr Eigen::Index kLevels = 8;
 constexpr double kLeastAmplitude = 0.1;
-constexpr double kLeastComponent = 0.01;  // amplitude over that of the largest sine
-constexpr double kTaper = 0.05;           // fraction of the test at either end
-constexpr double kShortestLevel = 0.2;    // over the longest
+constexpr double kLeastComponent = 0.01;  // relative to the largest sine amplitude
+constexpr double kTaper = 0.05;           // fraction of the test at each end
+constexpr double kShortestLevel = 0.2;    // relative to the longest level
 constexpr unsigned kRegisterBits = 11;
 constexpr std::size_t kSequence = (1U << kRegisterBits) - 1U;
 
-/// A positive number between two others, by its logarithm.
+/// Interpolates between two positive numbers on a logarithmic scale.
 double between(double low, double high, double coordinate) {
   return low * std::pow(high / low, coordinate);
 }
 
-/// Gives the coordinates of a drive one after the other.
+/// Returns the coordinates of a drive one after the other.
 class DriveNumbers {
  public:
   explicit DriveNumbers(const Eigen::VectorXd& values) : values_(values) {}
@@ -71,7 +71,7 @@ std::vector<double> swept(DriveNumbers& point, const DriveGrid& grid,
   std::vector<double> values(grid.samples);
   for (std::size_t i = 0; i < values.size(); ++i) {
     const double share = time_at(grid, i) / end_s;
-    // The integral of f0 exp(octaves t / T); for equal frequencies that of a sine.
+    // Integral of f0 exp(octaves t / T). For equal frequencies it is the phase of a sine.
     const double grown = std::abs(octaves) < 1e-9 ? share : std::expm1(octaves * share) / octaves;
     values[i] =
         between(first, last, share) * std::sin(2.0 * std::numbers::pi * first_hz * end_s * grown);
@@ -82,7 +82,7 @@ std::vector<double> swept(DriveNumbers& point, const DriveGrid& grid,
   return values;
 }
 
-/// Levels, each reached from the one before by a straight line that begins at its edge.
+/// Generates levels, each reached from the previous one by a straight line that begins at its edge.
 std::vector<double> ramped(const std::vector<double>& edges_s, const std::vector<double>& levels,
                            double rise_s, const DriveGrid& grid) {
   std::vector<double> values(grid.samples);
@@ -123,7 +123,7 @@ std::vector<double> stepped(DriveNumbers& point, const DriveGrid& grid,
   return ramped(edges_s, levels, rise_s, grid);
 }
 
-/// The maximum-length sequence of x^11 + x^9 + 1 as -1 and 1.
+/// Returns the maximum-length sequence of x^11 + x^9 + 1 as -1 and 1.
 const std::array<double, kSequence>& sequence() {
   static const std::array<double, kSequence> bits = [] {
     std::array<double, kSequence> made{};
@@ -158,7 +158,7 @@ std::vector<double> pseudo_random(DriveNumbers& point, const DriveGrid& grid,
   return ramped(edges_s, levels, rise_s, grid);
 }
 
-/// From 0 to 1 and back, without corners.
+/// Rises from 0 to 1 and falls back to 0, without corners.
 double window(double share) {
   const double nearest = std::min({share, 1.0 - share, kTaper}) / kTaper;
   return 0.5 - 0.5 * std::cos(std::numbers::pi * std::max(nearest, 0.0));

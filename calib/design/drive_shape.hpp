@@ -8,7 +8,7 @@
 
 namespace rigcal::calib {
 
-/// The samples of a test and what its drive may contain.
+/// The sample times of a test, and the frequency band of its drive.
 struct DriveGrid {
   std::size_t samples = 0;
   double rate_hz = 0.0;
@@ -18,34 +18,36 @@ struct DriveGrid {
   double duration_s() const { return static_cast<double>(samples - 1) / rate_hz; }
 };
 
-/// Default band: from two periods in the test to ten samples per period.
+/// Returns the grid. The default band extends from two periods in the test to ten samples per
+/// period.
 DriveGrid drive_grid(const datasets::DesignSettings& settings);
 
 /// One number of a drive, as results name it.
 struct DrivePart {
   std::string name;  ///< "frequency 1", "bit time"
-  std::string unit;  ///< SI
+  std::string unit;  ///< in SI
   double value = 0.0;
 };
 
-/// A drive as a share of its largest allowed distance from where it begins.
+/// A drive relative to its largest allowed distance from its first value.
 struct DriveShape {
   std::vector<double> values;  ///< shape (samples), in [-1, 1]; begins and ends at 0
   std::vector<DrivePart> parts;
-  /// Factor that the search chose in addition: information need not grow with amplitude.
+  /// Additional factor chosen by the search, because information need not increase with amplitude.
   double share = 1.0;
 };
 
-/// Coordinates that describe a drive of this family.
+/// Returns the number of coordinates that describe a drive of this family.
 Eigen::Index drive_coordinates(datasets::DriveFamily family);
 
-/// The drive at a point of the unit box:
+/// Returns the drive at a point in the unit box:
 ///   multisine  five sines, each with frequency, amplitude and phase;
-///   chirp      frequency and amplitude at either end, logarithmic between them;
-///   steps      eight levels that each last as long as they choose, and the time of rise;
-///   prbs       the time of a bit and of a rise, and where the sequence of x^11 + x^9 + 1 begins.
-/// Two further coordinates are the share of the allowed amplitude and the offset of the drive. It
-/// rises from its beginning within a twentieth of the test, and returns there at the end.
+///   chirp      frequency and amplitude at each end, logarithmic between them;
+///   steps      eight levels, each with its duration, and the rise time;
+///   prbs       bit time, rise time, and the start of the sequence of x^11 + x^9 + 1.
+/// Two further coordinates are the fraction of the allowed amplitude and the offset of the drive.
+/// The drive rises from its first value within a twentieth of the test, and returns to it at the
+/// end.
 ///
 /// @param point  shape (coordinates), in [0, 1]
 DriveShape drive_shape(datasets::DriveFamily family, const Eigen::VectorXd& point,

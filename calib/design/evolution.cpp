@@ -11,7 +11,7 @@ namespace {
 constexpr double kRandomShare = 1.0 / 3.0;
 constexpr double kFirstWidth = 0.2;  // fraction of the box
 
-/// Reflected at the faces of the unit box as often as needed.
+/// Reflects a point at the faces of the unit box as often as needed.
 Eigen::VectorXd reflected(const Eigen::VectorXd& point) {
   return point.unaryExpr([](double x) {
     const double within = x - 2.0 * std::floor(0.5 * x);
@@ -25,7 +25,8 @@ Eigen::VectorXd random_direction(Eigen::Index n, datasets::RandomStream& stream)
   return direction;
 }
 
-/// Numbers of points from the best to the worst; of equal ones the earlier is better.
+/// Returns the indices of the points from best to worst. Of points with equal scores the earlier
+/// one comes first.
 std::vector<std::size_t> ranked(const std::vector<double>& scores) {
   std::vector<std::size_t> order(scores.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -34,7 +35,7 @@ std::vector<std::size_t> ranked(const std::vector<double>& scores) {
   return order;
 }
 
-/// The search distribution, with Hansen's names and default constants.
+/// The search distribution, with Hansen's notation and default constants.
 class Strategy {
  public:
   explicit Strategy(Eigen::VectorXd mean)
@@ -77,7 +78,7 @@ class Strategy {
     return points;
   }
 
-  /// Moves towards the better half of a whole population.
+  /// Moves the distribution towards the better half of a complete population.
   void tell(const std::vector<Eigen::VectorXd>& points, const std::vector<double>& scores) {
     ++generation_;
     const std::vector<std::size_t> order = ranked(scores);
@@ -139,7 +140,7 @@ class BoundedSearch {
   bool goes_on() const { return left_ > 0 && !stopped_(); }
   const Evolved& best() const { return best_; }
 
-  /// Scores of as many points as may still be evaluated.
+  /// Returns the scores of as many points as may still be evaluated.
   std::vector<double> evaluate(const std::vector<Eigen::VectorXd>& unbounded) {
     std::vector<Eigen::VectorXd> points;
     for (const Eigen::VectorXd& each : unbounded) points.push_back(reflected(each));

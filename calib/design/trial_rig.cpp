@@ -19,7 +19,8 @@ using datasets::Record;
 
 constexpr double kRestTolerance = 1e-6;
 
-/// The condition of the test: what `like` says of the machine, and the recorded drive.
+/// Returns the condition of the test: what `like` specifies for the machine, and the recorded
+/// drive.
 datasets::Condition tested_condition(const Campaign& campaign) {
   datasets::Condition condition;
   const datasets::DesignSettings& design = *campaign.design;
@@ -129,8 +130,7 @@ TrialRig::TrialRig(const Campaign& campaign, const std::map<Channel, double>& no
   reach_ = find_reach();
 }
 
-/// Simulates the rig at rest: what it begins with, and its records before anything is known of the
-/// drive.
+/// Simulates the rig at rest to obtain its initial state and the records before the drive is known.
 void TrialRig::rest(const std::map<Channel, double>& noise_sd) {
   std::vector<model::Output> outputs(limited_outputs().begin(), limited_outputs().end());
   for (const auto& [channel, sd] : noise_sd)

@@ -14,21 +14,21 @@
 
 namespace rigcal::calib {
 
-/// Noise of a sample of one repeat, SI: that of [design], the channel's `sd`, that of [synthetic],
-/// or that of the records.
+/// Returns the noise per sample of one repeat, SI: from [design], from the `sd` of the channel,
+/// from [synthetic], or from the records.
 ///
-/// @throws InputError  the noise is unknown
+/// @throws InputError  if the noise is unknown
 std::map<datasets::Channel, double> noise_of_one_repeat(
     const datasets::Campaign& campaign, const std::vector<datasets::Record>& records);
 
 /// The rig of a planned test, ready to be simulated with any drive.
 class TrialRig {
  public:
-  /// @param campaign  with [design]; borrowed
-  /// @param noise_sd  of a sample of one repeat
-  /// @param values    of an earlier fit, or null
-  /// @throws InputError     nothing is free, or a limit that the rig breaks at rest
-  /// @throws NoResultError  the rig cannot be simulated at rest
+  /// @param campaign  must contain [design]; borrowed
+  /// @param noise_sd  noise per sample of one repeat
+  /// @param values    values from an earlier fit, or null
+  /// @throws InputError     if nothing is free, or the rig exceeds a limit at rest
+  /// @throws NoResultError  if the rig cannot be simulated at rest
   TrialRig(const datasets::Campaign& campaign, const std::map<datasets::Channel, double>& noise_sd,
            const std::vector<datasets::FittedValue>* values, const std::atomic<bool>* cancel);
   TrialRig(const TrialRig&) = delete;
@@ -38,25 +38,26 @@ class TrialRig {
   const Problem& problem() const { return *problem_; }
   const std::vector<double>& z() const { return z_; }
   const std::vector<double>& time_s() const { return record_.time_s; }
-  /// Drive at which the rig rests at the first sample, SI.
+  /// Returns the drive at which the rig is at rest at the first sample, SI.
   double neutral() const { return neutral_; }
-  /// Largest distance of a drive from there.
+  /// Returns the largest allowed distance of a drive from this value.
   double reach() const { return reach_; }
 
-  /// Limits under a drive, nothing where it cannot be simulated.
+  /// Returns the use of each limit under a drive, or std::nullopt if it cannot be simulated.
   ///
-  /// @param drive   shape (samples)
-  /// @param finer   samples of the response for each of the drive
-  /// @param at      if not null, receives limited_outputs() at the samples of the drive
+  /// @param drive  shape (samples)
+  /// @param finer  number of response samples for each drive sample
+  /// @param at     if not null, receives limited_outputs() at the samples of the drive
   std::optional<std::vector<LimitUse>> uses_under(const std::vector<double>& drive,
                                                   double tolerance, int finer = 1,
                                                   Eigen::MatrixXd* at = nullptr) const;
-  /// Weighted sensitivities of all channels under a drive, one column per unknown in the unit box;
-  /// empty where it cannot be simulated.
+  /// Returns the weighted sensitivities of all channels under a drive, one column per unknown in
+  /// the unit box. Empty if the drive cannot be simulated.
   Eigen::MatrixXd sensitivities(const std::vector<double>& drive, double tolerance) const;
-  /// Makes a drive that of the problem's condition, for what simulates the problem itself.
+  /// Uses a drive in the problem's condition, for code that simulates the problem itself.
   void play(const std::vector<double>& drive);
-  /// From now on no flag ends a simulation: what was found is checked and kept.
+  /// Disables the cancel flag for all further simulations, so that what was found is checked and
+  /// kept.
   void finish() { cancel_ = nullptr; }
 
  private:

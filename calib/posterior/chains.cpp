@@ -20,7 +20,7 @@ bool too_short(const Chains& chains) {
   return chains.empty() || chains.front().size() < kLeastDraws;
 }
 
-/// Each chain as two; a middle draw is left out.
+/// Splits each chain into two halves. The middle draw of a chain with an odd number is left out.
 Chains halves(const Chains& chains) {
   Chains split;
   for (const auto& chain : chains) {
@@ -31,7 +31,7 @@ Chains halves(const Chains& chains) {
   return split;
 }
 
-/// Normal scores of the ranks, the mean rank where draws are equal.
+/// Returns the normal scores of the ranks. Equal draws get their mean rank.
 Chains normal_scores(const Chains& chains) {
   struct Place {
     double value;
@@ -93,7 +93,7 @@ double r_hat(const Chains& chains) {
   return std::sqrt(found.pooled / found.within);
 }
 
-/// Biased autocovariance of a chain at one lag.
+/// Returns the biased autocovariance of a chain at one lag.
 double autocovariance_at(const std::vector<double>& chain, double mean, std::size_t lag) {
   double sum = 0.0;
   for (std::size_t i = lag; i < chain.size(); ++i)
@@ -101,7 +101,8 @@ double autocovariance_at(const std::vector<double>& chain, double mean, std::siz
   return sum / static_cast<double>(chain.size());
 }
 
-/// Effective sample size of split chains: Geyer's initial monotone sequence over all of them.
+/// Returns the effective sample size of split chains, from Geyer's initial monotone sequence over
+/// all chains.
 double effective_of(const Chains& chains) {
   const auto count = static_cast<double>(total(chains));
   const std::size_t draws = chains.front().size();
@@ -125,7 +126,8 @@ double effective_of(const Chains& chains) {
     least = std::min(least, pair);
     sum += 2.0 * least;
   }
-  // Antithetic chains may be worth more than their draws; no more than this is believed of any.
+  // Antithetic chains may be worth more than their number of draws. This limits how much more is
+  // accepted.
   return count / std::max(sum, 1.0 / std::log10(count));
 }
 

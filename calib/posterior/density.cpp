@@ -13,11 +13,11 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// The sampler begins no nearer to a bound, and within this share of the box of one: at it, its own
-/// coordinates would be infinite.
+/// Limits for the distance from a bound at which the sampler may start, as fractions of the box. At
+/// the bound itself its coordinates would be infinite.
 constexpr double kLeastDistance = 1e-6;
 constexpr double kMostDistance = 0.25;
-/// Least eigenvalue of the covariance of the score, over its mean.
+/// Minimum eigenvalue of the covariance of the score, relative to the mean eigenvalue.
 constexpr double kLeastShare = 1e-6;
 
 double logistic(double y) {
@@ -29,7 +29,7 @@ double log_logistic(double y) {
   return y >= 0.0 ? -std::log1p(std::exp(-y)) : y - std::log1p(std::exp(y));
 }
 
-/// R of all unknowns over all directions.
+/// Returns R of all unknowns over all directions.
 MatrixXd dense_root(const ArrowRoot& root, std::size_t conditions) {
   MatrixXd all = MatrixXd::Zero(root.unknowns(), root.directions());
   for (Index j = 0; j < root.unknowns(); ++j) {
@@ -44,8 +44,9 @@ MatrixXd dense_root(const ArrowRoot& root, std::size_t conditions) {
   return all;
 }
 
-/// S in directions of the root: the covariance of the score by the residuals, or white noise, so
-/// stretched that each unknown has the error that the fit states.
+/// Returns S in the directions of the root: the covariance of the score estimated from the
+/// residuals, or that of white noise. It is scaled so that each unknown has the error reported by
+/// the fit.
 MatrixXd score_covariance(const Problem& problem, const Evaluation& optimum,
                           const Uncertainty& found, const std::vector<FittedParameter>& parameters,
                           const MatrixXd& root, const VectorXd& prior_row) {
@@ -66,8 +67,8 @@ MatrixXd score_covariance(const Problem& problem, const Evaluation& optimum,
   } else {
     covariance.diagonal().setConstant(std::max(1.0, found.reduced_chi_square));
   }
-  // The error that the fit states for each unknown may be that of the repeats, or contain those of
-  // known values.
+  // The error that the fit reports for an unknown may come from the repeats, or may include the
+  // uncertainty of known values.
   VectorXd stretch = VectorXd::Ones(root.rows());
   for (Index j = 0; j < root.rows(); ++j) {
     const auto u = static_cast<std::size_t>(j);
@@ -116,8 +117,8 @@ PosteriorDensity::PosteriorDensity(const Problem& problem, const Evaluation& opt
   const MatrixXd information = Eigen::LDLT<MatrixXd>(scores).solve(none);
   weight_ = information - none / kappa_;
 
-  // In the unit box the precision is R^-T S^-1 R^-1 on what the records determine; the transform
-  // adds what keeps the coordinates of the others from going to infinity.
+  // In the unit box the precision is R^-T S^-1 R^-1 in the directions that the records determine.
+  // The transform adds the terms that keep the other coordinates from going to infinity.
   const MatrixXd inverse = Eigen::CompleteOrthogonalDecomposition<MatrixXd>(root_).pseudoInverse();
   const MatrixXd precision = inverse.transpose() * information * inverse;
   VectorXd slope(unknowns);
@@ -132,8 +133,8 @@ PosteriorDensity::PosteriorDensity(const Problem& problem, const Evaluation& opt
   }
   centre_ = from_unit(begin);
   MatrixXd curvature = slope.asDiagonal() * precision * slope.asDiagonal();
-  // The logistic distribution, to which an unknown comes that the records do not determine, has
-  // the variance pi^2 / 3.
+  // An unknown that the records do not determine has a logistic distribution, whose variance is
+  // pi^2 / 3.
   curvature.diagonal().array() += 3.0 / (M_PI * M_PI);
   covariance_ = Eigen::LLT<MatrixXd>(curvature).solve(MatrixXd::Identity(unknowns, unknowns));
   covariance_ = MatrixXd(0.5 * (covariance_ + covariance_.transpose()));
@@ -176,7 +177,7 @@ LogDensity PosteriorDensity::evaluate(const VectorXd& y, const Fidelity& fidelit
     VectorXd own_gradient = VectorXd::Zero(columns);
     for (std::size_t k = 0; k < condition.channels.size(); ++k) {
       double unused = 0.0;
-      constexpr std::size_t kBlock = 512;  // stays in the cache
+      constexpr std::size_t kBlock = 512;  // small enough to remain in the cache
       for (std::size_t begin = 0; begin < samples; begin += kBlock) {
         const std::size_t end = std::min(begin + kBlock, samples);
         const MatrixXd weighted = weighted_rows(condition, k, {begin, end, 0}, run, box_slopes,
@@ -210,8 +211,8 @@ LogDensity PosteriorDensity::evaluate(const VectorXd& y, const Fidelity& fidelit
     slopes.col(j).noalias() += root_.row(j).transpose() * (prior_row_(j) * slope);
     gradient(j) += slope * residual;
     square += residual * residual;
-    // It is normal in the value: d value / d z is constant, or the value itself where z is
-    // logarithmic.
+    // The prior is normal in the value: d value / d z is constant, or proportional to the value if
+    // z is logarithmic.
     const double box_slope = problem_.map.slope(unknown, z[u]);
     log_prior += std::log(box_slope);
     prior_gradient(j) =

@@ -12,53 +12,56 @@
 
 namespace rigcal::calib {
 
-/// Posterior of the unknowns of a problem.
+/// Posterior density of the unknowns of a problem.
 ///
 /// Likelihood: the weighted residuals r of the fit are normal. In the directions that move the
-/// estimates, the columns of G = J R at the optimum, their covariance is S, that by which the fit
-/// computes its errors: autocorrelated residuals, repeats that differ and stated uncertainties of
-/// known values widen the posterior as they widen the intervals. In all other directions they are
-/// white with the variance kappa, the mean of S, at least 1 and at least the reduced chi-square. So
+/// estimates, the columns of G = J R at the optimum, their covariance is the matrix S that the fit
+/// uses to compute its errors. Autocorrelated residuals, differences between repeats and stated
+/// uncertainties of known values thus widen the posterior in the same way as the intervals. In all
+/// other directions the residuals are white with variance kappa, which is the mean of S, but at
+/// least 1 and at least the reduced chi-square. Hence
 ///
 ///     -2 log L = q^T S^-1 q + (r^T r - q^T q) / kappa,  q = G^T r,
 ///
-/// which is r^T r where the noise is white and known. Near the optimum it has the curvature of the
-/// fit's covariance, and further away the shape that the simulations give it.
+/// which is r^T r if the noise is white and known. Close to the optimum the likelihood has the
+/// curvature of the fit's covariance; further away it has the shape given by the simulations.
 ///
-/// Prior: uniform between the bounds in the fit's own scale, the coordinate z of the unit box. An
-/// unknown with `prior` and `prior_sd` has that normal distribution, cut off at its bounds.
+/// Prior: uniform between the bounds in the scale used by the fit, the coordinate z of the unit
+/// box. An unknown with `prior` and `prior_sd` has that normal distribution, truncated at its
+/// bounds.
 ///
-/// Coordinates of the sampler: y = log(z / (1 - z)), in which the density has the factor z (1 - z)
-/// of each unknown.
+/// Coordinates of the sampler: y = log(z / (1 - z)). In these coordinates the density has a factor
+/// z (1 - z) for each unknown.
 class PosteriorDensity {
  public:
   /// Borrows the problem.
   ///
-  /// @param optimum     an evaluation that is ok, with its rows
-  /// @param found       the uncertainty of the fit there
-  /// @param parameters  of the unknowns, in their order: which error their intervals rest on
-  /// @param cancel      ends simulations; what follows has no density
+  /// @param optimum     an evaluation with status ok, with its rows
+  /// @param found       uncertainty of the fit at the optimum
+  /// @param parameters  parameters of the unknowns, in the same order; they define which error each
+  ///                    interval is based on
+  /// @param cancel      set to true to stop simulations; afterwards no point has a density
   PosteriorDensity(const Problem& problem, const Evaluation& optimum, const Uncertainty& found,
                    const std::vector<FittedParameter>& parameters,
                    const std::atomic<bool>* cancel = nullptr);
 
   LogDensity at(const Eigen::VectorXd& y) const { return evaluate(y, Fidelity::full); }
-  /// The logarithm alone, by simulations without sensitivities.
+  /// Returns only the logarithm of the density, from simulations without sensitivities.
   double value(const Eigen::VectorXd& y) const { return evaluate(y, {false, true}).value; }
 
-  /// A point to begin at: the optimum, or one standard error inside where that is nearer to a
-  /// bound.
+  /// Returns the start point: the optimum, or a point one standard error inside if the optimum is
+  /// closer to a bound than that.
   const Eigen::VectorXd& centre() const { return centre_; }
   std::vector<double> to_unit(const Eigen::VectorXd& y) const;
   Eigen::VectorXd from_unit(std::span<const double> z) const;
-  /// Covariance of a normal distribution near this one: curvature at the optimum, priors and
-  /// transform included.
+  /// Returns the covariance of a normal approximation, from the curvature at the optimum including
+  /// the priors and the transform.
   const Eigen::MatrixXd& covariance() const { return covariance_; }
-  /// Variance of the residuals outside the directions that move the estimates.
+  /// Returns the variance of the residuals outside the directions that move the estimates.
   double noise() const { return kappa_; }
 
  private:
-  /// @param fidelity  without derivatives there is no gradient
+  /// @param fidelity  if it has no derivatives, the result has no gradient
   LogDensity evaluate(const Eigen::VectorXd& y, const Fidelity& fidelity) const;
 
   struct Directions {
@@ -70,7 +73,7 @@ class PosteriorDensity {
   const std::atomic<bool>* cancel_;
   std::vector<Directions> conditions_;
   Eigen::MatrixXd root_;       ///< R, shape (unknowns, directions)
-  Eigen::VectorXd prior_row_;  ///< d residual / d z of the priors at the optimum; 0: none
+  Eigen::VectorXd prior_row_;  ///< d residual / d z of the priors at the optimum; 0 without a prior
   Eigen::MatrixXd weight_;     ///< S^-1 - 1 / kappa
   double kappa_ = 1.0;
   Eigen::VectorXd centre_;

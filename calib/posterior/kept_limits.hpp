@@ -9,11 +9,11 @@
 
 namespace rigcal::calib {
 
-/// How many of some points of the unit box keep each limit of the problem's conditions. What cannot
-/// be simulated keeps none.
+/// Counts, for each limit of the problem's conditions, how many points keep it. A point that cannot
+/// be simulated keeps no limit.
 ///
 /// @param points  unit-box coordinates
-/// @param cancel  ends it; then the result is empty
+/// @param cancel  set to true to stop; the result is then empty
 std::vector<KeptLimit> kept_limits(const Problem& problem,
                                    const std::vector<std::vector<double>>& points, int threads,
                                    const std::atomic<bool>* cancel);

@@ -16,16 +16,17 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// An energy error above this is a divergence.
+/// An energy error above this value counts as a divergence.
 constexpr double kDivergence = 1000.0;
-/// Windows of the warm-up, as shares of its draws: the step alone, twice the covariance too, and
-/// the step for the last covariance.
+/// Ends of the warm-up windows, as fractions of its draws. The first window adapts only the step,
+/// the next two also the covariance, and the last one the step for the final covariance.
 constexpr double kFirstWindow = 0.15;
 constexpr double kSecondWindow = 0.45;
 constexpr double kLastWindow = 0.85;
-/// Times the first step, to which the first search for one is drawn: long steps are cheap to try.
+/// In the first window, the search is drawn towards this multiple of the first step, because long
+/// steps are cheap to try.
 constexpr double kHopeful = 10.0;
-/// Draws that a covariance from before counts for.
+/// Number of draws that the previous covariance counts for.
 constexpr double kPriorDraws = 10.0;
 constexpr int kMostHalvings = 50;
 
@@ -35,7 +36,7 @@ double log_sum(double a, double b) {
   return larger + std::log(std::exp(a - larger) + std::exp(b - larger));
 }
 
-/// A point of phase space, in coordinates in which the mass is one.
+/// A point in phase space, in coordinates in which the mass is one.
 struct Phase {
   VectorXd x, momentum, gradient;
   double log_density = -HUGE_VAL;
@@ -43,7 +44,7 @@ struct Phase {
   double energy() const { return 0.5 * momentum.squaredNorm() - log_density; }
 };
 
-/// The density in coordinates x with position = L x, L L^T the inverse mass.
+/// The density in coordinates x with position = L x, where L L^T is the inverse mass matrix.
 class Whitened {
  public:
   Whitened(const LogDensityOf& density, const MatrixXd& covariance) : density_(density) {
@@ -80,8 +81,8 @@ class Whitened {
   MatrixXd lower_;
 };
 
-/// A stretch of a trajectory: its first and last momentum in the order of its making, the sum of
-/// all, and one point of it that was drawn by its weight.
+/// A section of a trajectory: its first and last momentum in the order in which they were
+/// generated, the sum of all momenta, and one point drawn according to its weight.
 struct Stretch {
   VectorXd first, last, sum;
   Phase drawn;
@@ -92,24 +93,24 @@ bool goes_on(const VectorXd& first, const VectorXd& last, const VectorXd& sum) {
   return first.dot(sum) > 0.0 && last.dot(sum) > 0.0;
 }
 
-/// Whether two neighbouring stretches make no U-turn together: over the whole, and from each to
-/// where the other begins.
+/// Returns true if two adjacent sections do not make a U-turn, neither over the whole nor from each
+/// section to the start of the other.
 bool go_on(const Stretch& a, const Stretch& b) {
   const VectorXd sum = a.sum + b.sum;
   return goes_on(a.first, b.last, sum) && goes_on(a.first, b.first, a.sum + b.first) &&
          goes_on(a.last, b.last, b.sum + a.last);
 }
 
-/// Grows one trajectory.
+/// Extends one trajectory.
 class Trajectory {
  public:
   Trajectory(const Whitened& density, double step, const Phase& begin,
              datasets::RandomStream& stream)
       : density_(density), step_(step), energy_(begin.energy()), stream_(stream) {}
 
-  /// Appends 2^doublings points after `end`, which moves along.
+  /// Appends 2^doublings points after `end`, which is updated.
   ///
-  /// @return  false: it turned back, or diverged
+  /// @return  false if the trajectory turned back or diverged
   bool grow(int doublings, double direction, Phase& end, Stretch& grown) {
     if (doublings == 0) {
       end = density_.leap(end, direction * step_);
@@ -149,12 +150,12 @@ class Trajectory {
   int points_ = 0;
 };
 
-/// A stretch that was grown backwards, in the order of time.
+/// Converts a section that was generated backwards to the order of time.
 Stretch forwards(const Stretch& stretch) {
   return {stretch.last, stretch.first, stretch.sum, {}, stretch.log_weight};
 }
 
-/// One draw from `at`, which becomes it.
+/// Makes one draw, starting from `at` and updating it.
 Draw draw_from(const Whitened& density, double step, int most_doublings,
                datasets::RandomStream& stream, Phase& at) {
   for (double& each : at.momentum) each = datasets::normal(stream, 1.0);
@@ -169,7 +170,7 @@ Draw draw_from(const Whitened& density, double step, int most_doublings,
     Stretch grown;
     if (!trajectory.grow(draw.doublings, ahead ? 1.0 : -1.0, ahead ? front : back, grown)) break;
     ++draw.doublings;
-    // What is new is preferred: a draw far from the last one is worth more.
+    // The new section is preferred, because a draw far from the previous one is worth more.
     if (trajectory.chance() < std::exp(grown.log_weight - whole.log_weight))
       whole.drawn = std::move(grown.drawn);
     const Stretch added = ahead ? std::move(grown) : forwards(grown);
@@ -199,7 +200,7 @@ Phase phase_at(const Whitened& density, VectorXd x) {
   return phase;
 }
 
-/// A step of which the first leap is accepted with about the target probability.
+/// Finds a step for which the first leap is accepted with about the target probability.
 double first_step(const Whitened& density, const NutsOptions& options, long iteration, Phase at) {
   auto stream = stream_of(options, iteration);
   for (double& each : at.momentum) each = datasets::normal(stream, 1.0);
@@ -220,8 +221,8 @@ double first_step(const Whitened& density, const NutsOptions& options, long iter
 /// Nesterov's dual averaging of the logarithm of the step (Hoffman and Gelman 2014, 3.2).
 class StepSearch {
  public:
-  /// @param first   step to begin with
-  /// @param centre  step to which the search is drawn
+  /// @param first   initial step
+  /// @param centre  step that the search is drawn towards
   StepSearch(double first, double centre, double target)
       : target_(target),
         centre_(std::log(centre)),
@@ -229,7 +230,8 @@ class StepSearch {
         log_mean_(std::log(first)) {}
 
   void learn(double acceptance) {
-    // Six times theirs: with less, steps swing so far that their mean is too short by a third.
+    // Six times the value of Hoffman and Gelman. With a smaller value the steps vary so much that
+    // their mean is too short by a third.
     constexpr double kGamma = 0.3;
     constexpr double kDelay = 10.0;
     constexpr double kForgetting = 0.75;
@@ -274,8 +276,8 @@ bool warm_up(const LogDensityOf& density, int draws, const NutsOptions& options,
     Phase phase = phase_at(whitened, whitened.coordinates(state.position));
     if (phase.log_density == -HUGE_VAL)
       throw std::invalid_argument("nuts: the density is zero where the chain begins");
-    // At first long steps are tried. Later windows know the step, which hardly changes in
-    // coordinates of the covariance: a search that is drawn away from it would end too short.
+    // Long steps are tried first. Later windows already know the step, which hardly changes in
+    // coordinates of the covariance. A search drawn away from it would end with too short a step.
     const double first =
         window == 0 ? first_step(whitened, options, state.iteration, phase) : state.step;
     StepSearch search(first, window == 0 ? kHopeful * first : first, options.target_acceptance);

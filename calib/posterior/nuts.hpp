@@ -7,16 +7,16 @@
 #include <string>
 #include <vector>
 
-// Sampling of a density by the no-U-turn sampler (Hoffman and Gelman, Journal of Machine Learning
-// Research 15, 2014) with multinomial weights and the criterion of generalised momenta (Betancourt,
-// arXiv:1701.02434). It knows nothing of rigs.
+// Samples a density with the no-U-turn sampler (Hoffman and Gelman, Journal of Machine Learning
+// Research 15, 2014) with multinomial weights and the generalised momentum criterion (Betancourt,
+// arXiv:1701.02434). It is independent of rigs.
 
 namespace rigcal::calib {
 
 /// Logarithm of a density at a point, up to a constant, and its gradient.
 struct LogDensity {
-  double value = -std::numeric_limits<double>::infinity();  ///< minus infinity: no density there
-  Eigen::VectorXd gradient;                                 ///< not looked at without a density
+  double value = -std::numeric_limits<double>::infinity();  ///< minus infinity: the density is zero
+  Eigen::VectorXd gradient;                                 ///< ignored if the density is zero
 };
 
 using LogDensityOf = std::function<LogDensity(const Eigen::VectorXd&)>;
@@ -25,20 +25,21 @@ using LogDensityOf = std::function<LogDensity(const Eigen::VectorXd&)>;
 struct ChainState {
   Eigen::VectorXd position;
   Eigen::MatrixXd covariance;  ///< inverse mass matrix
-  /// The position in coordinates in which that is one. It is kept, since to compute it again would
-  /// round differently, depending on where a stretch of draws begins; empty before the first draw.
+  /// The position in coordinates in which the mass is one. It is stored because computing it again
+  /// would round differently, depending on where a group of draws begins. Empty before the first
+  /// draw.
   Eigen::VectorXd whitened;
   double step = 0.0;   ///< in units of that covariance
-  long iteration = 0;  ///< draws so far, those of the warm-up included
+  long iteration = 0;  ///< number of draws so far, including the warm-up
 };
 
-/// A draw with what diagnostics need of it.
+/// A draw with the data needed for diagnostics.
 struct Draw {
   Eigen::VectorXd position;
   double energy = 0.0;      ///< total energy of its trajectory: minus log density plus kinetic
-  double acceptance = 0.0;  ///< mean probability of acceptance over the trajectory
-  int doublings = 0;        ///< number that its trajectory took
-  bool diverged = false;    ///< the energy error exceeded 1000: steps are too long for the density
+  double acceptance = 0.0;  ///< mean acceptance probability over the trajectory
+  int doublings = 0;        ///< number of doublings in its trajectory
+  bool diverged = false;    ///< the energy error exceeded 1000: steps are too long for this density
 };
 
 struct NutsOptions {
@@ -46,19 +47,19 @@ struct NutsOptions {
   int chain = 0;  ///< number of the chain, for its random numbers
   double target_acceptance = 0.8;
   int most_doublings = 10;
-  std::function<bool()> stop;  ///< asked after every draw; may be empty
+  std::function<bool()> stop;  ///< called after every draw; returns true to stop; may be empty
 };
 
 /// Runs the warm-up of a chain: dual averaging of the step, and a covariance from the draws of two
-/// windows, of which the given one counts as ten draws.
+/// windows. The given covariance counts as ten draws.
 ///
-/// @return  false: stopped
+/// @return  false if it was stopped
 bool warm_up(const LogDensityOf& density, int draws, const NutsOptions& options, ChainState& state);
 
-/// Draws with a fixed step. Random numbers depend only on seed, chain and iteration, so that
-/// stretches one after the other give the draws of a single run.
+/// Makes draws with a fixed step. Random numbers depend only on seed, chain and iteration, so that
+/// consecutive calls give the same draws as a single one.
 ///
-/// @return  less than `count` if it was stopped
+/// @return  fewer than `count` draws if it was stopped
 std::vector<Draw> sample(const LogDensityOf& density, int count, const NutsOptions& options,
                          ChainState& state);
 

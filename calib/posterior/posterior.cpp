@@ -22,21 +22,24 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Standard deviations of the normal approximation about the optimum from which a chain begins:
-/// wider than the posterior, so that R-hat sees whether chains forget where they began.
+/// Standard deviations of the normal approximation around the optimum from which a chain starts. It
+/// is wider than the posterior, so that R-hat can detect chains that have not forgotten their
+/// start.
 constexpr double kScattered = 2.0;
-/// How often such a point is drawn again, each time half as far out, where none can be simulated.
+/// Maximum number of attempts to draw such a point, each half as far out, if it cannot be
+/// simulated.
 constexpr int kMostTries = 8;
-/// Fraction of missing information by energy below which tails may not be reached.
+/// Fraction of missing information below which the tails may not be reached.
 constexpr double kLeastEnergyFraction = 0.3;
-/// Effective draws of all chains below which quantiles are not settled.
+/// Effective draws of all chains below which the quantiles are unreliable.
 constexpr double kLeastEffective = 100.0 * kPosteriorChains;
 
 std::vector<double> listed(const MatrixXd& matrix) {
   return {matrix.data(), matrix.data() + matrix.size()};
 }
 
-/// A chain after a task, with the draws of that task. Plain numbers, so that it can be kept.
+/// State of a chain after a task, with the draws from that task. Contains only numbers, so that it
+/// can be stored.
 struct ChainTask {
   std::vector<double> position, whitened, covariance;
   double step = 0.0;
@@ -73,9 +76,9 @@ struct ChainTask {
   }
 };
 
-/// Where a chain begins.
+/// Chooses the start point of a chain.
 ///
-/// @return  false: nothing can be simulated there, not even the optimum
+/// @return  false if nothing can be simulated there, not even the optimum
 bool begin_chain(const LogDensityOf& density, const PosteriorDensity& posterior, std::uint64_t seed,
                  std::size_t chain, ChainState& state) {
   const MatrixXd lower = posterior.covariance().llt().matrixL();
@@ -93,7 +96,7 @@ bool begin_chain(const LogDensityOf& density, const PosteriorDensity& posterior,
   return std::isfinite(density(state.position).value);
 }
 
-/// Draws of an unknown, SI, of each chain.
+/// Returns the draws of an unknown from each chain, SI.
 Chains chains_of(const Problem& problem, const PosteriorDensity& density,
                  const std::vector<std::vector<std::vector<double>>>& positions, std::size_t j) {
   Chains chains;
@@ -125,7 +128,7 @@ PosteriorSpread spread_of(const Chains& chains) {
   return spread;
 }
 
-/// What is wrong with the chains, in words; empty: nothing.
+/// Describes the problems with the chains, in words; empty if there are none.
 std::string complaints(const Posterior& found) {
   std::vector<std::string> words;
   if (!found.mixed()) {
@@ -197,7 +200,8 @@ void sample_posterior(const Problem& problem, const Evaluation& optimum, const U
   std::atomic<int> done = 0;
   const int of_all = kPosteriorChains * (kPosteriorWarmUp + options.posterior);
   std::vector<ChainTask> chains(kPosteriorChains);
-  // The warm-up, then stretch after stretch; each begins where all chains have ended the last.
+  // The warm-up comes first, then one group of draws after the other. All chains must complete a
+  // group before the next one starts.
   const auto run = [&](const std::string& name, int count) {
     const bool warming = result.draws == 0 && chains.front().position.empty();
     const auto make = [&](std::size_t c) -> TaskResult {

@@ -19,16 +19,18 @@
 namespace rigcal::calib {
 namespace {
 
-/// The tables of docs/paper.md take 13 to 32, as the last digits of the start have it.
+/// The tables in docs/paper.md need 13 to 32 iterations, depending on the last digits of the start
+/// values.
 constexpr int kMostIterations = 100;
-/// Each call has another set of unknowns at their bounds.
+/// Each call has a different set of unknowns at their bounds.
 constexpr int kMostCalls = 10;
-/// All but a full Gauss-Newton step would leave the box at once from a far start.
+/// Limits the first steps: from a distant start, a full Gauss-Newton step would leave the box
+/// immediately.
 constexpr double kTablesTrustRadius = 10.0;
-/// The flows themselves are good to 2e-4 only.
+/// The flows themselves are only accurate to 2e-4.
 constexpr double kTablesTolerance = 1e-6;
 constexpr double kRankThreshold =
-    1e-6;  ///< smallest over largest singular value, columns of length 1
+    1e-6;  ///< ratio of smallest to largest singular value, with columns scaled to length 1
 
 std::vector<double> values_at(const std::vector<UnitInterval>& intervals,
                               std::span<const double> z) {
@@ -37,8 +39,9 @@ std::vector<double> values_at(const std::vector<UnitInterval>& intervals,
   return values;
 }
 
-/// Least squares from z, which ends at the optimum. Unknowns at an active bound stay there for one
-/// descent, because a step that is projected onto the bound is none for the others.
+/// Solves the least-squares problem from z, which is updated to the optimum. Unknowns at an active
+/// bound are fixed for one descent, because a step projected onto the bound is not the right step
+/// for the others.
 Descent minimise(TableResiduals& residuals, const std::vector<UnitInterval>& intervals,
                  std::vector<double>& z, int& evaluations) {
   std::string failure;
@@ -74,11 +77,11 @@ Descent minimise(TableResiduals& residuals, const std::vector<UnitInterval>& int
     if (!descent.failure.empty()) total.failure = failure.empty() ? descent.failure : failure;
     if (!total.converged) return total;
   }
-  total.converged = false;  // it keeps going from bound to bound
+  total.converged = false;  // it still moves from bound to bound
   return total;
 }
 
-/// Standard errors, intervals and correlation from the Jacobian at the optimum [SI].
+/// Adds standard errors, intervals and correlation from the Jacobian at the optimum, SI.
 void add_uncertainty(const TableResiduals::Evaluation& optimum, model::PlantKind plant,
                      TablesFit& fit) {
   const ScaledSvd svd(optimum.jacobian, kRankThreshold);
@@ -88,7 +91,7 @@ void add_uncertainty(const TableResiduals::Evaluation& optimum, model::PlantKind
   const Eigen::MatrixXd root = svd.root();
   const Eigen::MatrixXd covariance =
       root * root.transpose() * (optimum.residuals.squaredNorm() / freedom);
-  // Fraction in the directions that the tables do not determine.
+  // Fraction of each unknown in the directions that the tables do not determine.
   const Eigen::VectorXd open = svd.V().rightCols(n - svd.rank()).rowwise().squaredNorm();
   const double t = metrics::student_t_quantile(0.975, freedom);
   fit.correlation.setIdentity(n, n);

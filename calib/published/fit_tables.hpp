@@ -12,28 +12,28 @@
 
 namespace rigcal::calib {
 
-/// One assumption that was estimated.
+/// One estimated assumption.
 struct FittedAssumption {
   int index = 0;  ///< row of the parameter table, or datasets::kResidualScale
   double value = 0.0;
   double start = 0.0;
   double lower = 0.0;
   double upper = 0.0;
-  std::optional<double> standard_error;  ///< absent where the tables do not determine it
+  std::optional<double> standard_error;  ///< absent if the tables do not determine the value
   std::optional<std::pair<double, double>> ci95;
-  std::optional<double> degrees_of_freedom;  ///< for the standard error
+  std::optional<double> degrees_of_freedom;  ///< degrees of freedom of the standard error
   bool at_bound = false;
   Identifiability identifiability = Identifiability::not_identifiable;
 };
 
-/// One published number against the computed one, at the end of the fit.
+/// One published number compared with the computed one at the end of the fit.
 struct TableResidual {
   std::string what;        ///< "share, sine_0.1Hz, 10 %", "mean, Slight"
-  double weight = 1.0;     ///< weight of its square root in the cost
+  double weight = 1.0;     ///< factor on `log_ratio` in the residual
   double log_ratio = 0.0;  ///< ln(computed / published)
 };
 
-/// Values that make the published tables come out, estimated by least squares.
+/// Least-squares estimates of the values that reproduce the published tables.
 struct TablesFit {
   FitStatus status = FitStatus::failed;
   std::string message;
@@ -43,24 +43,25 @@ struct TablesFit {
   double wall_seconds = 0.0;
   double rms = 0.0;  ///< root mean square of the weighted residuals
   std::vector<FittedAssumption> parameters;
-  Eigen::MatrixXd correlation;  ///< shape (parameters)^2
+  Eigen::MatrixXd correlation;  ///< shape (parameters, parameters)
   std::vector<TableResidual> residuals;
-  std::vector<std::string> left_out;     ///< published numbers that do not count, and why
+  std::vector<std::string> left_out;     ///< published numbers that were left out, and why
   datasets::LeakTableSettings settings;  ///< with the estimated values filled in
 };
 
-/// Weight of the logarithm of a share at its published coefficient; of a flow or feature it is 1.
+/// Weight of the logarithm of a share at its published coefficient. Flows and features have weight
+/// 1.
 inline constexpr double kShareWeight = 0.5;
 
-/// Estimates the assumptions marked `fit` from the published numbers by Ceres, with derivatives by
-/// sensitivities. Residuals are weighted logarithms of computed over published: of the share at
-/// each published coefficient, and of the flows and features that are not left out.
+/// Estimates the assumptions marked `fit` from the published numbers with Ceres. Derivatives come
+/// from sensitivities. The residuals are weighted logarithms of computed over published values: the
+/// share at each published coefficient, and the flows and features that are not left out.
 ///
-/// A value whose lower bound is positive is estimated by its logarithm, any other by itself, so
-/// that a gain may start at zero. Intervals take the scatter of the residuals for their error.
+/// A value with a positive lower bound is estimated as its logarithm, and any other value directly,
+/// so that a gain may start at zero. Intervals take their error from the scatter of the residuals.
 ///
-/// @throws InputError  nothing is marked `fit`, or fewer published numbers than values
-/// @return             never throws for a fit that fails: see status
+/// @throws InputError  if nothing is marked `fit`, or there are fewer published numbers than values
+/// @return  a fit that fails does not throw: see status
 TablesFit fit_tables(const datasets::Campaign& campaign,
                      const datasets::LeakTableSettings& settings, const LeakTableOptions& options);
 

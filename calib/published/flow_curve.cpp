@@ -11,16 +11,16 @@
 namespace rigcal::calib {
 namespace {
 
-/// Width of a root in ln coefficient: well below three printed digits, above the noise of the
-/// flows.
+/// Tolerance of a root in ln coefficient: well below three printed digits, and above the noise of
+/// the flows.
 constexpr double kRootWidth = 1e-4;
-/// Bisection alone would come from two decades to the root's width in sixteen.
+/// Bisection from two decades down to this tolerance would need sixteen steps.
 constexpr std::uintmax_t kMostRootSteps = 60;
-/// An interval of the scan is flat where the quantity grows with less than this power of the
-/// coefficient, and near a target within this factor of it.
+/// An interval of the scan is flat if the quantity grows with less than this power of the
+/// coefficient. It is close to a target if it is within this factor of it.
 constexpr double kFlatPower = 0.5;
 constexpr double kNear = 1.25;
-/// Width in ln coefficient to which a flat part is searched: a fiftieth of a decade.
+/// Width in ln coefficient down to which a flat interval is searched: a fiftieth of a decade.
 constexpr double kFinest = 0.046;
 
 }  // namespace

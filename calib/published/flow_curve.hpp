@@ -9,41 +9,42 @@
 namespace rigcal::calib {
 
 /// Mean flows of one rig under one drive as a function of the leakage coefficient. Every
-/// coefficient is simulated once; each simulation starts with the number of periods and samples
-/// that the one before needed.
+/// coefficient is simulated only once. Each simulation starts with the number of periods and
+/// samples that the previous one needed.
 class FlowCurve {
  public:
   using Quantity = std::function<double(const PeriodicFlow&)>;
 
-  /// @param values  the rig's; the leakage coefficient in them does not count
+  /// @param values  values of the rig; their leakage coefficient is ignored
   FlowCurve(PeriodicDrive drive, model::ParameterValues values, PeriodicOptions options)
       : drive_(std::move(drive)), values_(std::move(values)), options_(options) {}
 
-  /// @throws NoResultError  it cannot be simulated, or is not periodic in time: says where and why
+  /// @throws NoResultError  if it cannot be simulated or does not become periodic; says where and
+  ///                        why
   const PeriodicFlow& at(double coefficient);
 
-  /// d ln share / d ln coefficient, by sensitivities.
+  /// Returns d ln share / d ln coefficient, from sensitivities.
   ///
-  /// @throws NoResultError  as at()
+  /// @throws NoResultError  as for at()
   double log_slope(double coefficient) const;
 
-  /// d ln share / d parameter, by sensitivities: of the coefficient, then of `parameters` (rows of
-  /// the parameter table, SI). Shape (1 + parameters).
+  /// Returns d ln share / d parameter, from sensitivities, first for the coefficient and then for
+  /// `parameters` (rows of the parameter table), SI. Shape (1 + parameters).
   ///
-  /// @throws NoResultError  as at()
+  /// @throws NoResultError  as for at()
   Eigen::VectorXd share_slopes(double coefficient, std::span<const int> parameters) const;
 
-  /// Simulates a grid of coefficients, equidistant in their logarithm.
+  /// Simulates a grid of coefficients that is equidistant on a logarithmic scale.
   void scan(double lowest, double highest, int per_decade);
 
-  /// All coefficients among those simulated so far between which `quantity` passes `target`,
-  /// found to 1e-4 of themselves, in increasing order. Where the quantity is flat near the target
-  /// the scan is made finer first, so that a plateau does not hide a pair of roots.
+  /// Finds all coefficients in the simulated range at which `quantity` equals `target`, to a
+  /// relative accuracy of 1e-4 and in increasing order. If the quantity is flat close to the
+  /// target, the scan is refined first, so that a plateau cannot hide a pair of roots.
   ///
-  /// @param quantity  positive
+  /// @param quantity  must be positive
   std::vector<double> roots(const Quantity& quantity, double target);
 
-  /// Every coefficient simulated so far with its flows, increasing.
+  /// Returns every coefficient simulated so far with its flows, in increasing order.
   const std::map<double, PeriodicFlow>& simulated() const { return known_; }
   const PeriodicDrive& drive() const { return drive_; }
 

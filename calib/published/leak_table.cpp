@@ -14,14 +14,16 @@
 namespace rigcal::calib {
 namespace {
 
-/// Points of a scan over the coefficient.
+/// Points per decade in a scan over the coefficient.
 constexpr int kScanPerDecade = 4;
-/// Grades of docs/paper.md. A coefficient that is printed as 0.3 is itself rounded by up to 17 %.
+/// Grades in docs/paper.md. A coefficient printed as 0.3 already has a rounding error of up to 17
+/// %.
 constexpr double kGoodPercent = 10.0;
 constexpr double kFairPercent = 16.0;
-/// 1 % of the share over it is 5 % of the coefficient.
+/// If d ln share / d ln coefficient is below this, 1 % of the share corresponds to 5 % of the
+/// coefficient.
 constexpr double kFlatSlope = 0.2;
-/// Grades compare errors with whole percents: a hair above is not beyond.
+/// Tolerance for comparing errors with whole percentages, so that rounding does not change a grade.
 constexpr double kHair = 1e-9;
 
 double share_of(const PeriodicFlow& flow) { return flow.share(); }
@@ -31,7 +33,7 @@ std::string join(const std::string& a, const std::string& b) {
   return a.empty() ? b : b.empty() ? a : a + "; " + b;
 }
 
-/// Why no coefficient reaches the target.
+/// Explains why no coefficient reaches the target.
 std::string not_reached(const FlowCurve& curve, double target) {
   const auto& known = curve.simulated();
   const auto highest = std::max_element(
@@ -106,7 +108,7 @@ LeakRoot root_at(const FlowCurve& curve, double coefficient, const LeakTableOpti
   const Eigen::VectorXd slopes = curve.share_slopes(coefficient, rig.indices);
   root.log_slope = coefficient * slopes(0);
   const Eigen::VectorXd moves = -slopes.tail(slopes.size() - 1) / root.log_slope;
-  // An interval is at least as wide as the error of the share from transient and sampling.
+  // The interval also covers the error of the share from transient and sampling.
   const double numeric = options.periodic.tolerance / root.log_slope;
   root.log_error = std::sqrt(std::max(0.0, moves.dot(rig.covariance * moves)) + numeric * numeric);
   return root;
@@ -144,7 +146,7 @@ Column column_of(const PeriodicDrive& drive, const model::ParameterValues& value
   return column;
 }
 
-/// One period with a coefficient, after as many periods as its flows needed.
+/// Simulates one period with a coefficient, after as many periods as its flows needed.
 PeriodicSeries series_at(const PeriodicDrive& drive, model::ParameterValues values,
                          double coefficient, int periods, const LeakTableOptions& options) {
   values.set("leakage_coefficient", coefficient);
@@ -158,8 +160,8 @@ PeriodicSeries series_at(const PeriodicDrive& drive, model::ParameterValues valu
   return series;
 }
 
-/// Features need the position, which settles more slowly than the mean flows: it gets as many
-/// periods again.
+/// Features need the position, which settles more slowly than the mean flows. It gets this many
+/// times the number of periods.
 constexpr int kMorePeriods = 2;
 
 FeatureRow feature_row(const PeriodicDrive& drive, const model::ParameterValues& values,

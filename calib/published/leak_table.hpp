@@ -12,61 +12,63 @@
 
 namespace rigcal::calib {
 
-/// Agreement of the computed coefficient with the published one.
+/// How well the computed coefficient agrees with the published one.
 enum class LeakGrade { within_10, within_16, outlier, not_published };
 std::string_view to_string(LeakGrade grade);
 
 struct LeakRoot {
   double coefficient = 0.0;
   double log_slope = 0.0;  ///< d ln share / d ln coefficient
-  /// Standard error of ln coefficient from that of the rig's values; empty where none is known.
+  /// Standard error of ln coefficient due to the errors of the rig's values; absent if none is
+  /// known.
   std::optional<double> log_error;
-  /// False on a plateau, where 1 % of the share moves the coefficient by more than 5 %.
+  /// Returns false on a plateau, where 1 % of the share moves the coefficient by more than 5 %.
   bool determined() const;
-  /// 95 % interval of the coefficient, which is above zero: symmetric in its logarithm.
+  /// Returns the 95 % interval of the coefficient. It is positive, because it is symmetric in the
+  /// logarithm.
   std::optional<std::array<double, 2>> ci95() const;
 };
 
-/// The published coefficient of an entry against the computed one.
+/// The published coefficient of an entry compared with the computed one.
 struct LeakComparison {
   double published = 0.0;
   double share_percent = 0.0;      ///< at the published coefficient
   double share_low_percent = 0.0;  ///< at the ends of the interval that its rounding allows
   double share_high_percent = 0.0;
-  std::optional<double> relative_error_percent;  ///< for the nearest root; absent without one
+  std::optional<double> relative_error_percent;  ///< for the nearest root; absent if there is none
 };
 
 /// One cell of the table: a signal and a target share.
 struct LeakEntry {
   datasets::LeakSignal signal;
   double target_percent = 0.0;
-  std::vector<LeakRoot> roots;  ///< all, increasing
+  std::vector<LeakRoot> roots;  ///< all roots, increasing
   std::optional<LeakComparison> comparison;
   LeakGrade grade = LeakGrade::not_published;
-  std::string note;  ///< in words: why there is no root, or more than one, or an outlier
+  std::string note;  ///< explains why there is no root or more than one, or comments on an outlier
 };
 
 /// The published coefficient of the rig without a fault.
 struct NormalEntry {
   datasets::LeakSignal signal;
   double coefficient = 0.0;
-  double share_percent = 0.0;  ///< at it
+  double share_percent = 0.0;  ///< at this coefficient
 };
 
-/// One row of the published flows and features, computed.
+/// One row of the published flows and features, as computed.
 struct FeatureRow {
   datasets::PrintedFeatures printed;
   double servo_flow_m3_per_s = 0.0;
   double leak_flow_m3_per_s = 0.0;
   metrics::ResidualFeatures features;  ///< scaled residual: leaking minus healthy position
-  /// Coefficients that give the published leak flow; for the rig without a fault only.
+  /// Coefficients that give the published leak flow; only for the rig without a fault.
   std::vector<double> coefficients_for_leak_flow;
-  PeriodicSeries series;  ///< one period, outputs of kFeatureOutputs
+  PeriodicSeries series;  ///< one period, with the outputs in kFeatureOutputs
 };
 inline constexpr std::array kFeatureOutputs{model::Output::position, model::Output::servo_flow,
                                             model::Output::leakage_flow, model::Output::work_flow};
 
-/// A combination of values that the tables fix, where the values alone are not.
+/// A combination of values that the tables determine although they do not determine each value.
 struct FixedCombination {
   std::string_view name;     ///< "loop_gain_per_s"
   std::string_view formula;  ///< "kp k_sv C_d w sqrt(P_s / rho) / A"
@@ -78,12 +80,12 @@ struct FixedCombination {
 struct LeakSummary {
   int published = 0;
   int within_10 = 0;
-  int within_16 = 0;                        ///< including those within 10 %
+  int within_16 = 0;                        ///< includes those within 10 %
   std::optional<double> share_rms_percent;  ///< rms of ln(share / target), in percent
 };
 
 struct LeakTable {
-  std::vector<LeakEntry> entries;  ///< signals in their order, targets within
+  std::vector<LeakEntry> entries;  ///< signals in their order; targets in order for each signal
   std::vector<NormalEntry> normals;
   std::optional<PeriodicSeries> healthy;  ///< series of the feature signal, without a leak
   std::vector<FeatureRow> features;
@@ -91,33 +93,35 @@ struct LeakTable {
   LeakSummary summary;
 };
 
-/// Uncertainty of the rig's values, from a fit.
+/// Uncertainty of the rig's values from a fit.
 struct RigUncertainty {
   std::vector<int> indices;    ///< rows of the parameter table
-  Eigen::MatrixXd covariance;  ///< SI, shape (indices)^2
+  Eigen::MatrixXd covariance;  ///< SI, shape (indices, indices)
 };
 
 struct LeakTableOptions {
   PeriodicOptions periodic;
-  int series_samples = 2000;  ///< samples in the features' period
-  int threads = 1;            ///< results are the same bits for any number
+  int series_samples = 2000;  ///< samples in the period used for features
+  int threads = 1;            ///< the results are bitwise identical for any number
   RigUncertainty rig;         ///< empty: coefficients have no interval
 };
 
-/// Computes the table of a rig: per signal and target all leakage coefficients at which that share
-/// of the servo flow leaks, and what was published for it.
+/// Computes the leak table of a rig: for each signal and target, all leakage coefficients at which
+/// that share of the servo flow leaks, and the published value.
 ///
-/// Where the rig's values p are estimates with a covariance S, so are the coefficients C at a share
-/// s: from s(C, p) = const follows d ln C / dp = -(d ln s / dp) / (d ln s / d ln C) = g, and the
-/// variance of ln C is g^T S g to first order, to which the numerical error of the share adds.
+/// If the rig's values p are estimates with covariance S, the coefficients C at a share s are
+/// uncertain, too. From s(C, p) = const follows d ln C / dp = -(d ln s / dp) / (d ln s / d ln C) =
+/// g. To first order the variance of ln C is g^T S g, to which the numerical error of the share is
+/// added.
 ///
 /// @param settings  signals, targets, published numbers, assumptions
-/// @throws NoResultError  a simulation that fails or is slow to become periodic: says which and why
-/// @throws InputError     a parameter of the plant has no value
+/// @throws NoResultError  if a simulation fails or takes too long to become periodic; says which
+///                        and why
+/// @throws InputError     if a parameter of the plant has no value
 LeakTable leak_table(const datasets::Campaign& campaign,
                      const datasets::LeakTableSettings& settings, const LeakTableOptions& options);
 
-/// Loop gain, m / b and leak conductance; those that exist for the rig.
+/// Computes the loop gain, m / b and the leak conductance, as far as they exist for the rig.
 std::vector<FixedCombination> fixed_combinations(const datasets::Campaign& campaign,
                                                  const model::ParameterValues& values);
 

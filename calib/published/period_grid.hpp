@@ -8,25 +8,26 @@
 
 namespace rigcal::calib {
 
-/// Sample times in one period of a sine or square drive. A sine has one piece, a square two. Each
-/// goes from just after a jump to just before the next, so that no interval spans a jump. In the
-/// pieces of a square the samples are denser after the jump.
+/// Sample times in one period of a sine or square drive. A sine has one piece, and a square two.
+/// Each piece extends from just after a jump to just before the next, so that no interval spans a
+/// jump. In the pieces of a square the samples are denser after the jump.
 struct PeriodGrid {
   std::vector<double> offset_s;  ///< from the start of the period, increasing
-  std::size_t pieces = 1;        ///< pieces with equal numbers of samples, one after another
+  std::size_t pieces = 1;        ///< number of pieces, one after another, with equal numbers of
+                                 ///< samples
 };
 
-/// @param intervals  per piece, even
+/// @param intervals  intervals per piece; must be even
 PeriodGrid period_grid(datasets::Waveform waveform, double period_s, int intervals);
 
-/// Mean of |y| over the period, which has pieces of equal length.
+/// Returns the mean of |y| over the period, which has pieces of equal length.
 ///
 /// @param signal  shape (offset_s)
-/// @param stride  1: all samples; 2: every other one, to estimate the sampling error
+/// @param stride  1: all samples; 2: every second one, to estimate the sampling error
 double mean_absolute(const PeriodGrid& grid, std::span<const double> signal,
                      std::size_t stride = 1);
 
-/// Derivative of that mean along dy.
+/// Returns the derivative of that mean in the direction dy.
 double mean_absolute_slope(const PeriodGrid& grid, std::span<const double> signal,
                            std::span<const double> signal_slope);
 

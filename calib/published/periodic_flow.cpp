@@ -17,19 +17,19 @@ using model::Output;
 constexpr std::array kOutputs{Output::servo_flow, Output::leakage_flow, Output::command};
 enum FlowColumn { kServo, kLeak, kCommand };
 
-/// Intervals in a period; more do not help.
+/// Maximum number of intervals in a period; more would not help.
 constexpr int kMostIntervals = 16384;
-/// A mean flow below this fraction counts as zero, so that relative changes are meaningful.
+/// A mean flow below this fraction counts as zero, because relative changes would be meaningless.
 constexpr double kNoFlow = 1e-9;
-/// Fraction of the limit from which the command counts as saturated.
+/// Fraction of the limit above which the command counts as saturated.
 constexpr double kAtLimit = 0.999;
-/// Largest y (see the header) that the two changes can determine reliably: near 1 the noise of the
-/// simulation can give any quotient.
+/// Largest y (see the header) that the two changes can determine reliably. Close to 1 the
+/// simulation noise can give any quotient.
 constexpr double kSlowest = 0.8;
-/// Number of periods from which the loop can be judged. A transient that will decay within the
-/// largest number of periods must then have shrunk to this fraction since half as many. Otherwise
-/// the loop cycles by itself, if the remainder exceeds the noise of the simulation by so many
-/// tolerances.
+/// After this many periods the loop can be judged. A transient that will decay within the maximum
+/// number of periods must then have decreased to this fraction since the run with half as many.
+/// Otherwise the loop oscillates by itself, provided that the remainder exceeds the simulation
+/// noise by this many tolerances.
 constexpr int kTellingPeriods = 256;
 constexpr double kDecays = 0.7;
 constexpr double kNotNoise = 10.0;
@@ -50,14 +50,14 @@ std::string why(const model::Simulation& run) {
   return fmt::format("{} at {:.6g} s: {}", to_string(run.status), run.failed_at_s, run.reason);
 }
 
-/// Every how many samples of the grid the two earlier periods are sampled.
+/// Sampling stride for the two earlier periods.
 constexpr std::size_t kEarlyStride = 4;
 
 /// A run with three sampled periods: n/4 and n/2 coarsely, to observe the transient, and the last
 /// one finely.
 struct Run {
   PeriodGrid grid;        ///< grid of the last period
-  PeriodGrid early_grid;  ///< grid of the two others
+  PeriodGrid early_grid;  ///< grid of the other two
   model::Simulation simulation;
 
   std::span<const double> last(const Eigen::MatrixXd& matrix, Eigen::Index column) const {
@@ -67,7 +67,7 @@ struct Run {
   double mean(FlowColumn column, std::size_t stride = 1) const {
     return mean_absolute(grid, last(simulation.outputs, column), stride);
   }
-  /// Mean in period n/4 (0) or n/2 (1).
+  /// Returns the mean in period n/4 (0) or n/2 (1).
   double early_mean(FlowColumn column, std::size_t which) const {
     const std::size_t n = early_grid.offset_s.size();
     const double* first = simulation.outputs.col(column).data() +
@@ -86,7 +86,7 @@ Run make_run(const PeriodicDrive& drive, const model::ParameterValues& values,
   run.early_grid =
       period_grid(drive.signal.waveform, period_s, intervals / static_cast<int>(kEarlyStride));
   std::vector<double> times;
-  if (periods > 4) times.push_back(0.0);  // a simulation starts at its first time, at rest
+  if (periods > 4) times.push_back(0.0);  // a simulation starts from rest at its first time
   const auto add = [&](const PeriodGrid& grid, int period) {
     for (const double offset : grid.offset_s) times.push_back((period - 1) * period_s + offset);
   };
@@ -98,8 +98,8 @@ Run make_run(const PeriodicDrive& drive, const model::ParameterValues& values,
   return run;
 }
 
-/// Sampling error of a mean flow: its largest relative change without every other sample, divided
-/// by the gain of a second-order rule.
+/// Returns the sampling error of a mean flow: its largest relative change when every second sample
+/// is left out, divided by the gain of a second-order rule.
 double sampling_error(const Run& run) {
   const double servo = run.mean(kServo);
   double worst = 0.0;
@@ -111,8 +111,8 @@ double sampling_error(const Run& run) {
   return worst;
 }
 
-/// Remaining transient of one flow, relative to it: see the header. `noise` is the difference
-/// between two equal periods that the tolerance of the simulation causes.
+/// Returns the remaining transient of one flow, relative to the flow (see the header). `noise` is
+/// the difference between two equal periods that the simulation tolerance causes.
 double transient_left(const Run& run, FlowColumn column, double noise) {
   const double last = run.mean(column, kEarlyStride);
   const double scale = std::max(last, kNoFlow * run.mean(kServo, kEarlyStride));
@@ -121,7 +121,8 @@ double transient_left(const Run& run, FlowColumn column, double noise) {
   if (late <= noise && early <= noise) return 0.0;
   const double quotient = early > 0.0 ? late / early : HUGE_VAL;
   const double y = std::min(kSlowest, 0.5 * (std::sqrt(1.0 + 4.0 * quotient) - 1.0));
-  // A slow part of the transient may hide behind a fast one: at least the last change is left.
+  // A fast component of the transient may hide a slow one, so the result is at least the last
+  // change.
   return late * std::max(1.0, y * y / (1.0 - y * y));
 }
 
@@ -149,7 +150,7 @@ Eigen::VectorXd slopes(const Run& run, FlowColumn column) {
   return result;
 }
 
-/// A block of a matrix without columns would start at an offset from a null pointer.
+/// Avoids a block of a matrix without columns, which would apply an offset to a null pointer.
 Eigen::MatrixXd last_rows(const Eigen::MatrixXd& matrix, Eigen::Index rows) {
   if (matrix.cols() == 0) return {rows, 0};
   return matrix.bottomRows(rows);

@@ -19,9 +19,9 @@ struct PeriodicDrive {
 struct PeriodicOptions {
   model::SimulationOptions simulation{.tolerance = 1e-5};
   int periods = 4;          ///< initial number; a power of two, at least 4
-  int most_periods = 1024;  ///< beyond: not periodic
-  int intervals = 512;      ///< samples per piece of a period, to begin with
-  double tolerance = 1e-4;  ///< allowed error of the mean flows from transient and sampling
+  int most_periods = 1024;  ///< if more are needed, the flow counts as not periodic
+  int intervals = 512;      ///< initial number of samples per piece of a period
+  double tolerance = 1e-4;  ///< allowed error of the mean flows due to transient and sampling
 };
 
 /// Mean flows of a rig that has become periodic.
@@ -30,8 +30,8 @@ struct PeriodicFlow {
   double leak_flow_m3_per_s = 0.0;   ///< mean |Q_leak|
   Eigen::VectorXd servo_slope;       ///< d servo flow / d parameter, shape (free), SI
   Eigen::VectorXd leak_slope;
-  double saturated = 0.0;  ///< part of the period in which the command is at its limit
-  int periods = 0;         ///< periods simulated from rest
+  double saturated = 0.0;  ///< fraction of the period in which the command is at its limit
+  int periods = 0;         ///< number of periods simulated from rest
   int intervals = 0;       ///< per piece
   std::string failure;     ///< why there is no result; empty if there is one
 
@@ -39,16 +39,18 @@ struct PeriodicFlow {
   double share() const { return leak_flow_m3_per_s / servo_flow_m3_per_s; }
 };
 
-/// Simulates from rest until the mean flows are periodic, and samples until they are resolved.
+/// Simulates from rest until the mean flows are periodic, and refines the sampling until they are
+/// resolved.
 ///
-/// Whether a run of n periods is periodic shows in the means f of its periods n/4, n/2 and n: with
-/// a transient a y^k per quarter of the run, f(n/2) - f(n/4) = a y (y - 1) and f(n) - f(n/2) = a
-/// y^2 (y^2 - 1), so that their quotient gives y, and y gives what is left at n. Beyond the
-/// tolerance the run is made twice as long, until that no longer helps: a loop that cycles by
-/// itself never comes to rest. The sampling is judged by leaving out every other sample.
+/// Whether a run of n periods is periodic can be seen from the means f of its periods n/4, n/2 and
+/// n. With a transient a y^k per quarter of the run, f(n/2) - f(n/4) = a y (y - 1) and f(n) -
+/// f(n/2) = a y^2 (y^2 - 1). Their quotient gives y, and y gives the remainder at n. If the
+/// remainder exceeds the tolerance, the length of the run is doubled until that no longer helps: a
+/// loop that oscillates by itself never settles. The sampling is judged by leaving out every second
+/// sample.
 ///
 /// @param values  SI; includes the leakage coefficient
-/// @param free    table indices of the slopes that are wanted
+/// @param free    table indices of the parameters for which slopes are needed
 PeriodicFlow periodic_flow(const PeriodicDrive& drive, const model::ParameterValues& values,
                            std::span<const int> free, const PeriodicOptions& options);
 
@@ -58,7 +60,7 @@ struct PeriodicSeries {
   model::Simulation run;       ///< outputs and their slopes
 };
 
-/// @param periods  after which the run is periodic; the last of them is returned
+/// @param periods  number of periods after which the run is periodic; the last one is returned
 PeriodicSeries periodic_series(const PeriodicDrive& drive, const model::ParameterValues& values,
                                std::span<const int> free, std::span<const model::Output> outputs,
                                int periods, int samples, const model::SimulationOptions& options);

@@ -8,23 +8,23 @@
 
 namespace rigcal::calib {
 
-/// The published numbers of a leak table as weighted residuals of its assumptions.
+/// The published numbers of a leak table as weighted residuals that depend on its assumptions.
 class TableResiduals {
  public:
-  /// @param free  indices of the assumptions that vary, kResidualScale among them
+  /// @param free  indices of the free assumptions, which may include kResidualScale
   TableResiduals(const datasets::Campaign& campaign, const datasets::LeakTableSettings& settings,
                  std::vector<int> free, LeakTableOptions options);
 
   struct Evaluation {
-    std::string failure;        ///< why there is none; empty if there is one
+    std::string failure;        ///< why there are no residuals; empty if there are some
     Eigen::VectorXd residuals;  ///< shape (size())
-    Eigen::MatrixXd jacobian;   ///< shape (size(), free), SI; empty if not wanted
+    Eigen::MatrixXd jacobian;   ///< shape (size(), free), SI; empty if not requested
   };
-  /// @param values  of the free assumptions, SI
+  /// @param values  values of the free assumptions, SI
   Evaluation evaluate(const std::vector<double>& values, bool with_jacobian);
 
   std::size_t size() const { return rows_.size(); }
-  /// Quantity of a residual, and its weight.
+  /// The quantity behind a residual, and its weight.
   const std::string& name(std::size_t row) const { return rows_[row].what; }
   double weight(std::size_t row) const { return rows_[row].weight; }
 
@@ -33,16 +33,16 @@ class TableResiduals {
     std::string what;
     double weight = 1.0;
     std::size_t run = 0;     ///< index of the run that gives the result
-    double published = 0.0;  ///< SI, features in their printed unit
-    bool is_share = false;   ///< else `feature`
+    double published = 0.0;  ///< SI; features are in their printed unit
+    bool is_share = false;   ///< true for a share, false for `feature`
     datasets::Feature feature = datasets::Feature::servo_flow;
   };
-  /// One coefficient under one drive; the first run of a feature signal is the healthy rig.
+  /// One coefficient under one drive. The first run of a feature signal is the healthy rig.
   struct Run {
     PeriodicDrive drive;
     double coefficient = 0.0;
     bool with_series = false;
-    PeriodicOptions options;  ///< starts with the numbers that the last evaluation needed
+    PeriodicOptions options;  ///< start with the numbers that the last evaluation needed
   };
   struct Outcome {
     PeriodicFlow flow;

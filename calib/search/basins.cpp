@@ -9,11 +9,11 @@
 namespace rigcal::calib {
 namespace {
 
-/// Fraction of a 95 % interval that equals 0.4 standard errors; searches end within 0.05.
+/// Fraction of a 95 % interval that corresponds to 0.4 standard errors; searches end within 0.05.
 constexpr double kSamePoint = 0.1;
 /// Fraction of the variance of a residual: half the square of 0.2 standard errors.
 constexpr double kSameCost = 0.02;
-/// Share of the cost by which simulations of one point may differ.
+/// Fraction of the cost by which two simulations of the same point may differ.
 constexpr double kSimulated = 2e-6;
 
 bool same_point(const std::vector<double>& a, const std::vector<double>& b,

@@ -5,7 +5,7 @@
 namespace rigcal::calib {
 namespace {
 
-/// About thirty years; a longer time would overflow a clock of nanoseconds.
+/// About thirty years; a longer time would overflow a clock that counts nanoseconds.
 constexpr double kWithoutEnd = 1e9;
 
 }  // namespace

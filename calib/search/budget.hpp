@@ -7,28 +7,29 @@
 
 namespace rigcal::calib {
 
-/// Budget of a whole job: the search and everything in addition to it. Its threads share it.
+/// Budget of a whole job: the search and everything that follows it. All threads of the job use the
+/// same budget.
 class Budget {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// Without limits, but for a request.
+  /// Creates a budget without limits, which only ends on request.
   explicit Budget(const std::atomic<bool>* cancel = nullptr) : cancel_(cancel) {}
-  /// @param cancel           ends the job when it becomes true; may be null
-  /// @param max_seconds      from `began`; longer than a clock can count means no limit
-  /// @param max_evaluations  of all residuals
+  /// @param cancel           becomes true to end the job; may be null
+  /// @param max_seconds      counted from `began`; no limit if it exceeds the range of the clock
+  /// @param max_evaluations  limit on evaluations of all residuals
   Budget(const std::atomic<bool>* cancel, Clock::time_point began,
          const std::optional<double>& max_seconds, const std::optional<long>& max_evaluations);
 
-  /// Budget of a part of the job whose evaluations are counted at its end: the same deadline, any
-  /// number of evaluations.
+  /// Returns a budget for a part of the job whose evaluations are counted when it ends. It has the
+  /// same deadline and no limit on evaluations.
   Budget part() const { return Budget(cancel_, deadline_); }
 
   const std::atomic<bool>* cancel() const { return cancel_; }
   const std::optional<Clock::time_point>& deadline() const { return deadline_; }
 
   void count(long evaluations) { evaluations_ += evaluations; }
-  /// Evaluations that are left; none without a limit.
+  /// Returns the remaining evaluations, or std::nullopt if there is no limit.
   std::optional<long> evaluations_left() const;
 
   bool cancelled() const;
@@ -36,9 +37,9 @@ class Budget {
   bool out_of_evaluations() const {
     return max_evaluations_ && evaluations_.load() >= *max_evaluations_;
   }
-  /// Whether no further work may begin.
+  /// Returns true if no further work may begin.
   bool spent() const { return cancelled() || out_of_time() || out_of_evaluations(); }
-  /// What has spent it: "stopped on request", "stopped by the time limit", ...
+  /// Explains why the budget is spent: "stopped on request", "stopped by the time limit", ...
   std::string reason() const;
 
  private:

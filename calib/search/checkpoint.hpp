@@ -7,12 +7,13 @@
 
 namespace rigcal::calib {
 
-/// A multi-start between two starts: enough to go on as if it had never been stopped.
+/// State of a multi-start between two starts. It is enough to continue as if the search had never
+/// been stopped.
 struct Checkpoint {
-  std::vector<StartReport> starts;  ///< finished ones
-  int best = 0;                     ///< number of the best of them; 0: none could be simulated
-  std::vector<double> best_z;       ///< its end, in the unit box
-  EvaluationCounters counters;      ///< up to there
+  std::vector<StartReport> starts;  ///< completed starts
+  int best = 0;                     ///< number of the best start; 0 if none could be simulated
+  std::vector<double> best_z;       ///< its end point, in the unit box
+  EvaluationCounters counters;      ///< counts up to this point
 };
 
 }  // namespace rigcal::calib

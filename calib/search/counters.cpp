@@ -5,7 +5,7 @@
 namespace rigcal::calib {
 namespace {
 
-/// Failures that are kept in words, of each condition and kind.
+/// Number of failures described in words, for each condition and kind.
 constexpr int kFailuresKept = 3;
 
 }  // namespace

@@ -11,16 +11,16 @@ namespace rigcal::calib {
 
 /// Evaluates all conditions of a problem at one fidelity, within a budget.
 ///
-/// Every evaluation includes sensitivities: nearly every trial point becomes the next iterate,
-/// whose Jacobian is then available, and cost and gradient come from the same steps of the solver.
-/// The last and the best point are kept, so that nothing is computed twice.
+/// Every evaluation includes sensitivities. Almost every trial point becomes the next iterate,
+/// whose Jacobian is then available, and cost and gradient come from the same solver steps. The
+/// last point and the best point are kept, so that nothing is computed twice.
 class Evaluator {
  public:
-  /// Borrows the budget, and the problem, whose weights may change between solves: call forget()
-  /// then.
+  /// Borrows the budget and the problem. If the weights of the problem change between solves, call
+  /// forget().
   Evaluator(const Problem& problem, Budget& budget, int threads = 1)
       : problem_(problem), budget_(budget), threads_(threads) {}
-  /// Copies the kept points of another one, with a separate budget and counters.
+  /// Copies the kept points of another evaluator, but uses a separate budget and counters.
   Evaluator(const Evaluator& other, Budget& budget)
       : problem_(other.problem_),
         budget_(budget),
@@ -29,27 +29,29 @@ class Evaluator {
         best_(other.best_),
         fidelity_(other.fidelity_) {}
 
-  /// The evaluation at z; not ok where a condition could not be simulated, which is recorded.
+  /// Returns the evaluation at z. It is not ok if a condition could not be simulated; the failure
+  /// is recorded.
   const Evaluation& evaluate(std::span<const double> z);
-  /// Evaluates even with a spent budget, so that a stopped fit is still scored by whole records.
+  /// Evaluates even if the budget is spent, so that a stopped fit can still be scored with whole
+  /// records.
   const Evaluation& conclude(std::span<const double> z);
 
-  /// Begins with a point that was evaluated elsewhere, and counts it.
+  /// Starts with a point that was evaluated elsewhere, and counts that evaluation.
   void begin_with(Evaluation evaluation);
 
-  /// Sets the fidelity of the simulations to come, and clears the cache if it is another one.
+  /// Sets the fidelity of future simulations, and clears the cache if the fidelity changes.
   void set_fidelity(const Fidelity& fidelity);
   const Fidelity& fidelity() const { return fidelity_; }
-  /// Evaluations at the working tolerance keep their rows from now on, for verify_optimum().
+  /// Makes evaluations at the working tolerance keep their rows from now on, for verify_optimum().
   void keep_rows() { keep_rows_ = true; }
 
-  /// Begins a start of a multi-start: best() is then the best of this start.
+  /// Begins a start of a multi-start; best() is then the best point of this start.
   void begin_start(int number);
   /// Clears the cache.
   void forget();
-  /// The point of lowest cost so far; not ok if there is none.
+  /// Returns the point with the lowest cost so far; not ok if there is none.
   const Evaluation& best() const { return best_; }
-  /// Takes the last point for the best, whatever its cost.
+  /// Makes the last point the best, whatever its cost.
   void take_last() { best_ = last_; }
 
   const Budget& budget() const { return budget_; }
@@ -57,9 +59,9 @@ class Evaluator {
   /// Counts an evaluation that was made elsewhere, and records its failures.
   void record(const Evaluation& evaluation);
   const EvaluationCounters& counters() const { return counters_; }
-  /// Continues counting from there, after a resumed fit.
+  /// Sets the counters with which a resumed fit continues.
   void set_counters(EvaluationCounters counters);
-  /// Adds the counts of another evaluator of the same problem.
+  /// Adds the counts of another evaluator for the same problem.
   void add(const EvaluationCounters& counters);
 
  private:

@@ -16,30 +16,34 @@ struct Checkpoint;  // checkpoint.hpp
 /// Options of a fit in addition to the campaign and its records.
 struct FitOptions {
   int starts = 1;  ///< 1: the campaign's start values; more: latin hypercube around them
-  /// Latin-hypercube starts in addition to a single one. If that one converges they are only
-  /// evaluated coarsely; otherwise each is searched like the first.
+  /// Latin-hypercube starts in addition to a single start. If that start converges, they are only
+  /// evaluated coarsely. Otherwise each is searched like the first.
   int further_starts = 0;
   std::uint64_t seed = 1;               ///< for the latin hypercube
-  int threads = 1;                      ///< results are the same bits for any number
+  int threads = 1;                      ///< the results are bitwise identical for any number
   int max_iterations = 200;             ///< per start
-  std::optional<long> max_evaluations;  ///< limit for the whole job; then: `stopped`
-  std::optional<double> max_seconds;    ///< limit for the whole job; then: `stopped`
-  bool consider = true;                 ///< the small effects that the model leaves out
-  int bootstrap = 0;                    ///< replicates, each fitted from the optimum; 0: none
-  int posterior = 0;                    ///< draws of each chain of the posterior; 0: none
-  bool profiles = false;                ///< profile likelihood of every unknown that is no nuisance
-  bool cross_validate = false;          ///< leave one condition out after the other
+  std::optional<long> max_evaluations;  ///< limit for the whole job; status `stopped` if reached
+  std::optional<double> max_seconds;    ///< limit for the whole job; status `stopped` if reached
+  bool consider = true;                 ///< whether to consider small effects that the model leaves
+                                        ///< out
+  int bootstrap = 0;                    ///< number of replicates, each fitted from the optimum; 0:
+                                        ///< none
+  int posterior = 0;                    ///< number of posterior draws per chain; 0: none
+  bool profiles = false;                ///< profile likelihood of every unknown except nuisance
+                                        ///< parameters
+  bool cross_validate = false;          ///< leave out one condition at a time
   const Checkpoint* resume = nullptr;   ///< checkpoint to continue from
-  std::function<void(const Checkpoint&)> checkpoint;  ///< called after every finished start
-  /// Makes starts (where it has several processes), replicates, profiles and folds; null: the
-  /// threads of this process do.
+  std::function<void(const Checkpoint&)> checkpoint;  ///< called after every completed start
+  /// Runs starts (if it has several processes), replicates, profiles and folds. If null, the
+  /// threads of this process run them.
   TaskFarm* farm = nullptr;
-  const std::atomic<bool>* cancel = nullptr;  ///< ends the fit with the best so far
-  /// Called after every iteration: start (from 1), iteration, cost, relative change of cost,
+  const std::atomic<bool>* cancel = nullptr;  ///< set to true to end the fit with the best point so
+                                              ///< far
+  /// Called after every iteration with start (from 1), iteration, cost, relative change of cost,
   /// seconds.
   std::function<void(int, int, double, double, double)> progress;
-  /// Called during bootstrap, profiles, posterior and cross-validation: their name ("replicates of
-  /// the bootstrap"), number done, total number. From any thread.
+  /// Called during bootstrap, profiles, posterior and cross-validation with their name ("replicates
+  /// of the bootstrap"), the number done and the total number. May be called from any thread.
   std::function<void(const char*, int, int)> beside;
 
   void validate() const;

@@ -6,12 +6,12 @@
 
 namespace rigcal::calib {
 
-/// Counts the iterations of one start: one budget for all of its stages, and one count for progress
-/// messages. Borrows the options.
+/// Counts the iterations of one start. All stages of the start have a common limit and a common
+/// count for progress messages. Borrows the options.
 class Iterations {
  public:
   /// @param start   number of the start
-  /// @param before  that the start has taken already: counted, but not against its budget
+  /// @param before  iterations that the start has already made; counted, but not against its limit
   explicit Iterations(const FitOptions& options, int start = 1, int before = 0)
       : options_(options), start_(start), before_(before) {}
 
@@ -21,7 +21,7 @@ class Iterations {
   int total() const { return before_ + used_; }
   void add(int iterations) { used_ += iterations; }
 
-  /// Reports one iteration of a stage whose iterations are not added yet.
+  /// Reports one iteration of a stage whose iterations have not been added yet.
   void tell(int iteration, double cost, double relative_change, double seconds) const {
     if (options_.progress)
       options_.progress(start_, total() + iteration, cost, relative_change, seconds);

@@ -11,18 +11,20 @@
 namespace rigcal::calib {
 namespace {
 
-/// Standard errors that may be left of a step with coarse simulations: their own errors leave more.
+/// With coarse simulations, a search ends when the remaining step is at most this many standard
+/// errors. The errors of the simulations themselves are larger.
 constexpr double kCoarseOffset = 1.0;
-/// Fraction of the cost that may still be gained in a horizon: the error of the model is then a
-/// fraction of the residual anyway.
+/// A horizon ends when at most this fraction of the cost could still be gained. The model error is
+/// then only a fraction of the residual anyway.
 constexpr double kHorizonLeaves = 0.05;
-/// Standard errors that may be left with it: in many samples a parameter that is far off, but acts
-/// on few of them, is a small share of the cost.
+/// In addition, the remaining step must be at most this many standard errors. With many samples, a
+/// parameter that is far off but acts on few of them contributes only a small fraction of the cost.
 constexpr double kHorizonOffset = 10.0;
-/// Relative change of the cost below which coarse simulations cannot resolve it.
+/// Relative change in cost below which coarse simulations cannot resolve the change.
 constexpr double kCoarseChange = 1e-4;
 
-/// Whether a horizon carries no more information: the next one, a few times as long, has far more.
+/// Returns true if a horizon has no more information to offer. The next horizon, a few times as
+/// long, has far more.
 bool horizon_exhausted(const Problem& problem, const Evaluator& evaluator,
                        const OptimumCheck& check) {
   const Evaluation& best = evaluator.best();

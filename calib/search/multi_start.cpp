@@ -32,14 +32,15 @@ void serialize(Archive& archive, EvaluationCounters& counters) {
 
 namespace {
 
-/// Iterations of a start that is only evaluated coarsely.
+/// Maximum number of iterations for a start that is only evaluated coarsely.
 constexpr int kLookIterations = 30;
-/// Two minima differ if their costs differ by more than both tolerances together: the error of
+/// Two minima differ if their costs differ by more than the sum of two tolerances: the error of
 /// coarse simulations, as a fraction of the cost, and a number of variances of a residual.
 constexpr double kCoarseCost = 1e-3;
 constexpr double kFurtherCost = 2.0;
 
-/// Uniform in [0, 1) with 53 bits; std::uniform_real_distribution differs between libraries.
+/// Returns a uniform number in [0, 1) with 53 bits. std::uniform_real_distribution would give
+/// different numbers with different libraries.
 double uniform(boost::random::mt19937_64& random) {
   return static_cast<double>(random() >> 11U) * 0x1p-53;
 }
@@ -61,14 +62,14 @@ std::vector<std::vector<double>> start_points(const Problem& problem, int count,
   return points;
 }
 
-/// Variance of the weighted residuals at a cost; at least 1 where the noise is known.
+/// Returns the variance of the weighted residuals at a cost; at least 1 if the noise is known.
 double residual_variance(const Problem& problem, double cost) {
   const auto freedom = problem.residual_count() - static_cast<long>(problem.map.unknowns().size());
   const double variance = 2.0 * cost / static_cast<double>(std::max(1L, freedom));
   return problem.has_estimated_sd() ? variance : std::max(1.0, variance);
 }
 
-/// Enters the end of a search into the report.
+/// Stores the result of a search in the report.
 void report_end(const Problem& problem, const SolveResult& solved, const Evaluation& end,
                 StartReport& report) {
   report.status = solved.status;
@@ -79,7 +80,7 @@ void report_end(const Problem& problem, const SolveResult& solved, const Evaluat
   report.final_cost = end.cost;
 }
 
-/// Makes one start; where it ends is the evaluator's best point.
+/// Runs one start. Its end point is the evaluator's best point.
 StartReport make_start(const Problem& problem, Evaluator& evaluator, const FitOptions& options,
                        int number, const std::vector<double>& from, SolveResult& solved) {
   evaluator.begin_start(number);
@@ -94,7 +95,7 @@ StartReport make_start(const Problem& problem, Evaluator& evaluator, const FitOp
   return report;
 }
 
-/// Whether a start, which has a point that can be simulated, is better than those before it.
+/// Returns true if a start whose end point could be simulated is better than those before it.
 bool is_best(const MultiStart& before, const StartReport& report, const Problem& problem) {
   if (before.best == 0) return true;
   const StartReport& best = before.starts[static_cast<std::size_t>(before.best) - 1];
@@ -102,7 +103,7 @@ bool is_best(const MultiStart& before, const StartReport& report, const Problem&
   return better_start(report, best, residual_variance(problem, least));
 }
 
-/// Takes over status and words of the best start, or of the first where none can be simulated, and
+/// Copies the status and message of the best start, or of the first if none could be simulated, and
 /// evaluates its end point.
 void describe_best(const Problem& problem, const std::vector<double>& best_z, int threads,
                    MultiStart& found) {
@@ -118,7 +119,7 @@ void describe_best(const Problem& problem, const std::vector<double>& best_z, in
   if (found.optimum.ok) found.result.check = check_optimum(problem, found.optimum);
 }
 
-/// The state after the starts of a checkpoint; evaluates the best point again.
+/// Restores the state after the starts in a checkpoint, and evaluates the best point again.
 MultiStart resumed(const Problem& problem, Evaluator& evaluator, const FitOptions& options) {
   const Checkpoint& from = *options.resume;
   MultiStart result;
@@ -133,7 +134,7 @@ MultiStart resumed(const Problem& problem, Evaluator& evaluator, const FitOption
   return result;
 }
 
-/// Makes the starts one after the other.
+/// Runs the starts one after the other.
 void make_in_turn(const Problem& problem, Evaluator& evaluator, const FitOptions& options,
                   const std::vector<std::vector<double>>& points, MultiStart& found) {
   for (std::size_t i = found.starts.size(); i < points.size(); ++i) {
@@ -151,14 +152,14 @@ void make_in_turn(const Problem& problem, Evaluator& evaluator, const FitOptions
       found.result = solved;
     }
     found.starts.push_back(std::move(report));
-    // A start that was cut short is made again.
+    // An interrupted start is repeated after resuming.
     if (options.checkpoint && !evaluator.budget().spent())
       options.checkpoint({found.starts, found.best, found.optimum.z, evaluator.counters()});
   }
 }
 
-/// Makes the starts in parallel in the processes of a farm. The bits are the same, since each
-/// begins with the evaluator's state before the first.
+/// Runs the starts in parallel in the processes of a farm. The results are bitwise identical,
+/// because each start begins with the evaluator's state before the first.
 void make_in_farm(const Problem& problem, Evaluator& evaluator, const FitOptions& options,
                   const std::vector<std::vector<double>>& points, TaskFarm& farm,
                   MultiStart& found) {
@@ -197,19 +198,20 @@ void make_in_farm(const Problem& problem, Evaluator& evaluator, const FitOptions
 struct Approach {
   std::size_t start = 0;
   std::vector<double> end;
-  double cost = 0.0;  ///< after the step that is left, by coarse simulations of whole records
+  double cost = 0.0;  ///< predicted cost after the remaining step, from coarse simulations of whole
+                      ///< records
 };
 
-/// Evaluates further starts coarsely, then searches to the end those that lead lower than the
-/// first.
+/// Evaluates further starts coarsely, then fully searches those that lead to a lower cost than the
+/// first start.
 void look_around(const Problem& problem, Evaluator& evaluator, const FitOptions& options,
                  MultiStart& found) {
   FitOptions coarsely = options;
   coarsely.progress = nullptr;
   coarsely.max_iterations = std::min(options.max_iterations, kLookIterations);
   const auto points = start_points(problem, 1 + options.further_starts, options.seed);
-  // The cost counts the fall of one more Gauss-Newton step: an approach may end some standard
-  // errors before its minimum.
+  // The cost includes the predicted fall of one more Gauss-Newton step, because an approach may end
+  // some standard errors before its minimum.
   const auto coarse_cost = [&](const std::vector<double>& z) {
     evaluator.set_fidelity(Fidelity::coarse);
     const Evaluation& there = evaluator.evaluate(z);
@@ -290,7 +292,7 @@ MultiStart multi_start(const Problem& problem, Evaluator& evaluator, const FitOp
   MultiStart result;
   if (options.resume != nullptr) result = resumed(problem, evaluator, options);
   const auto points = start_points(problem, options.starts, options.seed);
-  // A limit of evaluations is counted over one start after the other.
+  // The limit on evaluations requires that the starts run one after the other.
   const bool spread = options.farm != nullptr && options.farm->processes() > 1 &&
                       points.size() > 1 && !options.max_evaluations;
   if (spread) {
@@ -302,7 +304,7 @@ MultiStart multi_start(const Problem& problem, Evaluator& evaluator, const FitOp
       result.result.status == FitStatus::converged) {
     look_around(problem, evaluator, options, result);
   }
-  evaluator.set_fidelity(Fidelity::full);  // a last start that failed, or none that was left
+  evaluator.set_fidelity(Fidelity::full);  // needed if the last start failed or none was left
   return result;
 }
 

@@ -21,38 +21,41 @@
 namespace rigcal::calib {
 namespace {
 
-/// Jumps that weigh as much as a residual of one standard deviation, per stage, in floors: from
-/// about a tenth of the usual size of states to less than a simulation resolves.
+/// For each stage, the jump, in floors, that has the same weight as a residual of one standard
+/// deviation. It decreases from about a tenth of the usual size of states to less than a simulation
+/// can resolve.
 constexpr double kJumps[] = {3e3, 30.0, 0.3, 3e-3};
 constexpr std::size_t kStages = std::size(kJumps);
-/// Relative change of the cost that ends a stage.
+/// Relative change in cost at which each stage ends.
 constexpr double kStageChange[] = {1e-3, 1e-3, 1e-6, 1e-10};
-/// Floors of a state per unit of its coordinate, which is then of the order of 1 as the others are.
+/// Floors of a state per unit of its coordinate. Coordinates are then of order 1, like the other
+/// unknowns.
 constexpr double kCoordinate = 1e4;
 constexpr std::size_t kLeastSamples = 4;
-/// Share of an interval over which the record is read to each side of a node.
+/// Fraction of an interval over which the record is read on each side of a node.
 constexpr double kReadShare = 0.1;
-/// The damping of Levenberg and Marquardt is relative to the weights. Heavier jumps damp the common
-/// motion of all states more, unless the radius grows with the square of the weights.
+/// Levenberg-Marquardt damping is relative to the weights. Larger weights on the jumps would damp
+/// the common motion of all states more, unless the radius grows with the square of the weights.
 constexpr double kTrustRadii[] = {1e2, 1e4, 1e8, 1e12};
-/// Reduced systems up to this size are solved densely: the same bits whatever library is there.
+/// Reduced systems up to this size are solved densely, so that the bits do not depend on the
+/// available library.
 constexpr std::size_t kMostDense = 1000;
 
-/// A part of a condition's record that is simulated separately. Its last sample is the first of the
-/// next piece and belongs to that one.
+/// An interval of a condition's record that is simulated separately. Its last sample is the first
+/// sample of the next piece and is counted there.
 struct Piece {
   std::size_t condition = 0;
-  std::size_t first = 0;                   ///< sample
-  std::size_t last = 0;                    ///< sample
-  std::size_t begin_row = 0, end_row = 0;  ///< in the condition's `rows`
+  std::size_t first = 0;                   ///< index of the first sample
+  std::size_t last = 0;                    ///< index of the last sample
+  std::size_t begin_row = 0, end_row = 0;  ///< range in the condition's `rows`
   int node = -1;       ///< node with its initial state; -1: the condition's initial state
   int next_node = -1;  ///< node with the state at its end; -1: none
 };
 
 /// The state between two pieces.
 struct Node {
-  std::size_t number = 0;  ///< within its record
-  std::size_t first = 0;   ///< among all coordinates
+  std::size_t number = 0;  ///< number within its record
+  std::size_t first = 0;   ///< index of its first coordinate
   Eigen::VectorXd floor;
 
   int states() const { return static_cast<int>(floor.size()); }
@@ -62,13 +65,13 @@ struct PieceEvaluation {
   model::SimulationStatus status = model::SimulationStatus::ok;
   double failed_at_s = 0.0;
   std::string reason;
-  /// R factor of [J r], columns: acting unknowns, coordinates of the node if it has one, r.
+  /// R factor of [J r]. Columns: acting unknowns, coordinates of the node if there is one, r.
   Eigen::MatrixXd r_factor;
-  Eigen::VectorXd end;           ///< state, in floors
-  Eigen::MatrixXd end_jacobian;  ///< by the columns of the R factor except the last
+  Eigen::VectorXd end;           ///< final state, in floors
+  Eigen::MatrixXd end_jacobian;  ///< same columns as the R factor, except the last
 };
 
-/// First sample of each piece of a condition.
+/// Returns the first sample of each piece of a condition.
 std::vector<std::size_t> cuts(const ProblemCondition& condition, double interval_s) {
   const auto times = condition.fit_times();
   const double span_s = times.back() - times.front();
@@ -79,7 +82,7 @@ std::vector<std::size_t> cuts(const ProblemCondition& condition, double interval
                                  "fewer than {} samples of its record",
                                  condition.condition->id, interval_s, kLeastSamples));
   };
-  // Refuses before allocating anything of that length.
+  // Checked before anything of this length is allocated.
   if (wanted > 1.0 && wanted * kLeastSamples > static_cast<double>(times.size() - 1)) refuse();
   const auto pieces = static_cast<std::size_t>(wanted);
   std::vector<std::size_t> result{0};
@@ -96,7 +99,7 @@ std::vector<std::size_t> cuts(const ProblemCondition& condition, double interval
   return result;
 }
 
-/// All pieces and the states between them, and their evaluation side by side.
+/// All pieces and the states between them, with their parallel evaluation.
 class Pieces final : public ceres::EvaluationCallback {
  public:
   Pieces(const Problem& problem, Evaluator& evaluator, double interval_s)
@@ -111,14 +114,15 @@ class Pieces final : public ceres::EvaluationCallback {
   std::span<const double> z() const {
     return std::span(coordinates_).first(problem_.map.unknowns().size());
   }
-  /// Coordinates for Ceres: the unknowns in the unit box, then state / (kCoordinate floor) of every
-  /// node. They are contiguous in memory, because Ceres orders its blocks by their addresses.
+  /// Coordinates for Ceres: the unknowns in the unit box, then state / (kCoordinate floor) for
+  /// every node. They are contiguous in memory, because Ceres orders its blocks by their addresses.
   double* unknown(std::size_t j) { return &coordinates_[j]; }
   double* coordinates(const Node& node) { return &coordinates_[node.first]; }
   const PieceEvaluation& evaluation(std::size_t piece) const { return evaluations_[piece]; }
 
-  /// Puts the unknowns at z and every node where the record says.
-  /// @return  false where such a state cannot be worked out
+  /// Sets the unknowns to z, and every node to the state read from the record.
+  ///
+  /// @return  false if such a state cannot be determined
   bool begin_at(std::span<const double> z, double interval_s) {
     coordinates_.assign(z.begin(), z.end());
     for (const Piece& piece : pieces_) {
@@ -134,7 +138,7 @@ class Pieces final : public ceres::EvaluationCallback {
         values.set(index, value);
       model::Rig rig = condition.rig;
       rig.initial = model::InitialState::given;
-      rig.before = model::Before::hold;  // the drive began long before
+      rig.before = model::Before::hold;  // the drive began long before this sample
       const auto found = model::simulate(rig, values, {}, condition.inputs, {&at_s, 1}, {});
       if (!found.ok()) return false;
       Node& node = nodes_[static_cast<std::size_t>(piece.node)];
@@ -146,7 +150,7 @@ class Pieces final : public ceres::EvaluationCallback {
     return true;
   }
 
-  /// Tolerance of the simulations.
+  /// Sets the tolerance of the simulations.
   void set_tolerance(double tolerance) { tolerance_ = tolerance; }
 
   void PrepareForEvaluation(bool /*evaluate_jacobians*/, bool /*new_evaluation_point*/) override {
@@ -161,7 +165,7 @@ class Pieces final : public ceres::EvaluationCallback {
     for (PieceEvaluation& each : evaluations_) each.status = model::SimulationStatus::cancelled;
   }
 
-  /// Whether every piece could be simulated.
+  /// Returns true if every piece could be simulated.
   bool ok() const {
     return std::all_of(evaluations_.begin(), evaluations_.end(), [](const PieceEvaluation& each) {
       return each.status == model::SimulationStatus::ok;
@@ -172,7 +176,7 @@ class Pieces final : public ceres::EvaluationCallback {
     if (error_) std::rethrow_exception(error_);
   }
 
-  /// Largest jump between two pieces, in floors.
+  /// Returns the largest jump between two pieces, in floors.
   double largest_gap() const {
     double largest = 0.0;
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
@@ -221,7 +225,7 @@ class Pieces final : public ceres::EvaluationCallback {
   void evaluate() {
     parallel_for(pieces_.size(), evaluator_.threads(),
                  [this](std::size_t i) { evaluations_[i] = evaluate_piece(pieces_[i]); });
-    Evaluation told;  // for the counters
+    Evaluation told;  // only for the counters
     told.z.assign(z().begin(), z().end());
     told.conditions.resize(problem_.conditions.size());
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
@@ -287,7 +291,7 @@ class Pieces final : public ceres::EvaluationCallback {
   std::exception_ptr error_;
 };
 
-/// Hands columns of a matrix to Ceres, parameter block by parameter block.
+/// Copies the columns of a matrix to Ceres, one parameter block after the other.
 void give_jacobians(const Eigen::MatrixXd& columns, const std::vector<int>& sizes,
                     double** jacobians) {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -300,7 +304,7 @@ void give_jacobians(const Eigen::MatrixXd& columns, const std::vector<int>& size
   }
 }
 
-/// Residuals of the samples of a piece. Blocks: acting unknowns, then its node if it has one.
+/// Residuals of the samples in a piece. Blocks: acting unknowns, then its node if it has one.
 class PieceCost final : public ceres::CostFunction {
  public:
   PieceCost(const Pieces& pieces, std::size_t piece, const std::vector<int>& sizes)
@@ -327,8 +331,8 @@ class PieceCost final : public ceres::CostFunction {
   std::size_t piece_;
 };
 
-/// The jump from the end of a piece to the next node, over the jump that a stage allows. Blocks:
-/// those of PieceCost, then the next node.
+/// The jump from the end of a piece to the next node, divided by the jump that the stage allows.
+/// Blocks: those of PieceCost, then the next node.
 class JumpCost final : public ceres::CostFunction {
  public:
   JumpCost(const Pieces& pieces, std::size_t piece, const std::vector<int>& sizes, double jump)
@@ -360,7 +364,8 @@ class JumpCost final : public ceres::CostFunction {
   double weight_;
 };
 
-/// One stage, from where the unknowns and nodes of `pieces` are to where it leaves them.
+/// Runs one stage. It starts from the current unknowns and nodes in `pieces` and updates them.
+///
 /// @return  false if not even its start could be simulated
 bool stage(const Problem& problem, Pieces& pieces, std::size_t number, int iterations,
            CeresWatch& watch) {
@@ -382,7 +387,7 @@ bool stage(const Problem& problem, Pieces& pieces, std::size_t number, int itera
   }
   for (const Node& node : pieces.nodes()) {
     system.AddParameterBlock(pieces.coordinates(node), node.states());
-    const bool eliminated = node.number % 2 == 0;  // no two of them share a residual
+    const bool eliminated = node.number % 2 == 0;  // no two of these have a residual in common
     ordering->AddElementToGroup(pieces.coordinates(node), eliminated ? 0 : 1);
     if (!eliminated) reduced += static_cast<std::size_t>(node.states());
   }
@@ -445,7 +450,7 @@ ShootingResult multiple_shooting(const Problem& problem, Evaluator& evaluator,
     result.iterations += watch.made();
     if (!usable || pieces.aborted()) break;
     result.z.assign(pieces.z().begin(), pieces.z().end());
-    pieces.PrepareForEvaluation(true, true);  // the last trial may not be where it ended
+    pieces.PrepareForEvaluation(true, true);  // the last trial point may not be the end point
     result.largest_gap = pieces.largest_gap();
   }
   return result;

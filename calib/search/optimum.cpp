@@ -8,7 +8,7 @@
 namespace rigcal::calib {
 namespace {
 
-/// Standard errors; see OptimumCheck.
+/// In standard errors; see OptimumCheck.
 constexpr double kStationary = 0.01;
 
 }  // namespace

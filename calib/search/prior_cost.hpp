@@ -6,7 +6,7 @@
 
 namespace rigcal::calib {
 
-/// (value - mean) / sd of one unknown, in physical units. Borrows the map.
+/// Residual (value - mean) / sd of the prior on one unknown, in physical units. Borrows the map.
 class PriorCost final : public ceres::SizedCostFunction<1, 1> {
  public:
   PriorCost(const ParameterMap& map, int unknown, datasets::Prior prior)

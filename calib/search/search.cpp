@@ -9,20 +9,21 @@ namespace rigcal::calib {
 namespace {
 
 /// Distance from the minimum, in standard errors, at which full Gauss-Newton steps begin, and their
-/// number.
+/// maximum number.
 constexpr double kFullStepOffset = 30.0;
 constexpr int kFullSteps = 4;
-/// Distance at which they end: a third of the limit of stationarity, since each step is nearly
-/// exact.
+/// Distance at which these steps end: a third of the limit for a stationary point, because each
+/// step is almost exact.
 constexpr double kFullStepEnd = 0.003;
-/// A step from coarse to exact simulations went astray if the cost grew by more than this factor.
-/// With large residuals a Gauss-Newton step may overshoot; errors of the coarse simulations are far
-/// smaller.
+/// The step from coarse to exact simulations is rejected if the cost grows by more than this
+/// factor. With large residuals a Gauss-Newton step may overshoot; errors of the coarse simulations
+/// are far smaller.
 constexpr double kWorseStep = 1.5;
-/// Growth of the mean square residual beyond which the shorter horizon's estimate is discarded.
+/// If the mean square residual grows by more than this factor, the estimate from the shorter
+/// horizon is discarded.
 constexpr double kForeseen = 4.0;
 
-/// Point that a full Gauss-Newton step leads to.
+/// Returns the point reached by a full Gauss-Newton step.
 std::vector<double> gauss_newton(const Evaluation& evaluation, const OptimumCheck& check) {
   std::vector<double> z = evaluation.z;
   for (std::size_t j = 0; j < z.size(); ++j)
@@ -30,7 +31,7 @@ std::vector<double> gauss_newton(const Evaluation& evaluation, const OptimumChec
   return z;
 }
 
-/// Up to a factor that is the same for all horizons.
+/// Returns the mean square residual up to a factor that is the same for all horizons.
 double mean_square(const Evaluation& evaluation) { return evaluation.cost / evaluation.share; }
 
 }  // namespace
@@ -83,7 +84,8 @@ bool Search::enter(const Stage& stage) {
     if (iterations_.used() >= horizons_until_) return false;
     evaluator_.set_fidelity(stage.fidelity);
     evaluator_.evaluate(z_);
-    // An estimate that fails at the next horizon, by more than its start does, is discarded.
+    // An estimate that fits the next horizon much worse than its own horizon is discarded, unless
+    // its start point is even worse.
     if (!evaluator_.best().ok || mean_square(evaluator_.best()) > kForeseen * foreseen_)
       evaluator_.evaluate(before_);
     if (!evaluator_.best().ok) {
@@ -97,7 +99,7 @@ bool Search::enter(const Stage& stage) {
     evaluator_.set_fidelity(stage.fidelity);
     if (!after_horizons) return true;
     const Evaluation& whole = evaluator_.evaluate(z_);
-    if (!whole.ok || whole.cost > begin_cost_) {  // whole records contradict the horizons
+    if (!whole.ok || whole.cost > begin_cost_) {  // the whole records contradict the horizons
       z_ = begin_;
       evaluator_.forget();
       evaluator_.evaluate(z_);
@@ -105,7 +107,7 @@ bool Search::enter(const Stage& stage) {
     return !evaluator_.best().ok ||
            check_optimum(problem_, evaluator_.best()).relative_offset > kFullStepOffset;
   }
-  // The step from coarse simulations to those of the working tolerance.
+  // The transition from coarse simulations to simulations at the working tolerance.
   const Evaluation coarse = evaluator_.best();
   const OptimumCheck check = check_optimum(problem_, coarse);
   evaluator_.set_fidelity(stage.fidelity);
@@ -116,8 +118,8 @@ bool Search::enter(const Stage& stage) {
   return true;
 }
 
-/// Returns the end of multiple shooting, if a simulation of whole records from there is better. It
-/// gets at most half of the iterations.
+/// Returns the end point of multiple shooting if a simulation of whole records is better there than
+/// at z. Multiple shooting gets at most half of the iterations.
 std::vector<double> Search::shoot(std::vector<double> z, double interval_s) {
   const Evaluation first = evaluator_.evaluate(z);
   const ShootingResult found =
@@ -137,8 +139,8 @@ SolveResult Search::polish(std::vector<double> z) {
 }
 
 /// Makes full Gauss-Newton steps from the evaluator's best point as long as they approach a
-/// stationary one. Near it the cost is no guide, because errors of the simulation exceed the
-/// remaining gain. The last point becomes the evaluator's best point.
+/// stationary point. Close to it the cost is not a useful criterion, because simulation errors
+/// exceed the remaining reduction. The last point becomes the evaluator's best point.
 OptimumCheck Search::full_steps() {
   OptimumCheck check = check_optimum(problem_, evaluator_.best());
   const int most = std::min(kFullSteps, iterations_.left());
@@ -155,9 +157,9 @@ OptimumCheck Search::full_steps() {
   return check;
 }
 
-/// A start that was stopped before any simulation at the working tolerance: the best of the points
-/// that its stages ended at. Whole records decide, coarsely simulated; the best alone once more at
-/// that tolerance.
+/// Returns the result of a start that was stopped before any simulation at the working tolerance:
+/// the best of the end points of its stages. They are compared by coarse simulations of whole
+/// records. Only the best is then simulated at the working tolerance.
 SolveResult Search::stopped() {
   if (evaluator_.best().ok) ends_.push_back(evaluator_.best().z);
   const std::vector<double>* best = nullptr;

@@ -6,12 +6,12 @@
 namespace rigcal::calib {
 
 /// Least squares from one start, in the unit box. The end point is the evaluator's best(). A search
-/// has `converged` if check_optimum() finds the point stationary, or nearly so if Ceres converged,
-/// too. Borrows everything.
+/// has `converged` if check_optimum() finds the point stationary, or almost stationary if Ceres
+/// also converged. Borrows everything.
 class Search {
  public:
-  /// @param start   its number, for progress and messages
-  /// @param before  iterations that it has taken already
+  /// @param start   number of the start, for progress and messages
+  /// @param before  iterations that the start has already made
   Search(const Problem& problem, Evaluator& evaluator, const FitOptions& options, int start = 1,
          int before = 0)
       : problem_(problem),
@@ -19,17 +19,18 @@ class Search {
         options_(options),
         iterations_(options, start, before) {}
 
-  /// Runs multiple shooting if the campaign asks for it, then the stages of plan_schedule(). After
-  /// a stop the best point is the end of a stage with the least cost over whole records.
+  /// Runs multiple shooting if the campaign asks for it, then the stages of plan_schedule(). If the
+  /// search is stopped, the best point is the end point of a stage with the lowest cost over whole
+  /// records.
   SolveResult run(std::vector<double> z);
 
-  /// Runs all stages but the last. The best point is the one with the least cost over whole
-  /// records, by coarse simulations.
+  /// Runs all stages except the last. The best point is the one with the lowest cost over whole
+  /// records, simulated coarsely.
   ///
   /// @return  false if there is no such point, or the budget was spent
   bool approach(std::vector<double> z);
 
-  /// The last stage alone, from a point near the optimum.
+  /// Runs only the last stage, from a point close to the optimum.
   SolveResult polish(std::vector<double> z);
 
  private:
@@ -44,13 +45,14 @@ class Search {
   const FitOptions& options_;
   Iterations iterations_;
 
-  std::vector<double> z_;                  ///< end of the stages so far
-  std::vector<double> begin_;              ///< start of the stages
-  double begin_cost_ = 0.0;                ///< cost of whole records there
-  std::vector<double> before_;             ///< start of the last horizon
-  double foreseen_ = 0.0;                  ///< mean square that the last horizon ended with
-  int horizons_until_ = 0;                 ///< iterations used, after which horizons end
-  std::vector<std::vector<double>> ends_;  ///< ends of stages
+  std::vector<double> z_;                  ///< end point of the stages so far
+  std::vector<double> begin_;              ///< start point of the stages
+  double begin_cost_ = 0.0;                ///< cost of whole records at the start point
+  std::vector<double> before_;             ///< start point of the last horizon
+  double foreseen_ = 0.0;                  ///< mean square residual at the end of the last horizon
+  int horizons_until_ = 0;                 ///< horizons end once this many iterations have been
+                                           ///< used
+  std::vector<std::vector<double>> ends_;  ///< end points of the stages
 };
 
 }  // namespace rigcal::calib

@@ -7,15 +7,16 @@
 namespace rigcal::calib {
 namespace {
 
-/// If the samples resolve an oscillation, so few of them are less than a cycle. Each unknown that
-/// only one record determines (its initial state, the offset of a sensor) adds as many.
+/// If the samples resolve an oscillation, this number of samples is less than a cycle. Each unknown
+/// that only one record determines (its initial state, the offset of a sensor) adds the same
+/// number.
 constexpr std::size_t kShortestSamples = 4;
-/// Largest ratio of the length of a horizon to the one before.
+/// Largest ratio of the length of a horizon to that of the one before.
 constexpr double kGrowth = 4.0;
-/// Iterations at one horizon: the next one carries more information.
+/// Maximum number of iterations at one horizon; the next one carries more information.
 constexpr int kHorizonIterations = 10;
 
-/// Number of unknowns that no other record determines.
+/// Returns the number of unknowns that no other record determines.
 std::size_t own_unknowns(const Problem& problem, std::size_t condition) {
   const std::vector<int>& acting = problem.map.acting(condition);
   return static_cast<std::size_t>(std::count_if(acting.begin(), acting.end(), [&](int j) {

@@ -10,32 +10,33 @@ namespace rigcal::calib {
 struct Stage {
   Fidelity fidelity = Fidelity::full;
   double trust_radius = 0.0;  ///< radius of its first step
-  int most_iterations = 0;    ///< limit for this stage; 0: all that the search has left
+  int most_iterations = 0;    ///< limit for this stage; 0: all remaining iterations of the search
 
   bool is_horizon() const { return !fidelity.whole(); }
 };
 
-/// Ceres' default of 1e4 is effectively unlimited: from a poor start the first step may end in a
-/// corner of the bounds and stay there.
+/// Initial trust radius from a poor start. Ceres' default of 1e4 is effectively unlimited, so that
+/// the first step may end in a corner of the bounds and remain there.
 inline constexpr double kFirstTrustRadius = 10.0;
-/// Near the optimum the full step is the right one.
+/// Initial trust radius close to the optimum, where the full step is the right one.
 inline constexpr double kNearTrustRadius = 1e8;
 
-/// Whole records, coarsely simulated, from wherever the search is.
+/// Whole records, simulated coarsely, from wherever the search is.
 inline constexpr Stage kCoarseStage{Fidelity::coarse, kFirstTrustRadius};
-/// Whole records at the working tolerance, from near the optimum.
+/// Whole records at the working tolerance, from a point close to the optimum.
 inline constexpr Stage kPolishStage{Fidelity::full, kNearTrustRadius};
 
-/// Lengths of the growing horizon, each a few times the one before it: from a few of the shortest
-/// sample intervals up to the longest first period.
+/// Returns the lengths of the growing horizon, each a few times the one before: from a few of the
+/// shortest sample intervals up to the longest first period.
 std::vector<double> horizons_s(const Problem& problem);
 
-/// The stages of a start: the growing horizon where records are longer than a period of their
-/// drive, whole records coarsely, then the polish.
+/// Returns the stages of a start: the growing horizon if records are longer than a period of their
+/// drive, whole records with coarse simulations, and finally the polish.
 ///
-/// An oscillation is fitted before it completes a cycle, so that phase errors cannot alias: fitted
-/// at once, a frequency that is off by more than a cycle in the record leads into a valley of slow
-/// valves and stiff oil. Nor are later periods, which repeat the first, worth their time yet.
+/// An oscillation is fitted before it completes a cycle, so that phase errors cannot alias. If
+/// whole records were fitted at once, a frequency that is off by more than a cycle in the record
+/// would lead into a valley of slow valves and stiff oil. Later periods, which repeat the first,
+/// are also not worth their simulation time yet.
 std::vector<Stage> plan_schedule(const Problem& problem);
 
 }  // namespace rigcal::calib

@@ -7,7 +7,7 @@ std::vector<ConditionRows> verify_optimum(const Problem& problem, Evaluator& eva
   if (!found.optimum.ok) return {};
   const bool claimed = found.result.status == FitStatus::converged;
   const auto simulate = [&] {
-    if (found.optimum.rows) return;  // the last that the search did
+    if (found.optimum.rows) return;  // the last evaluation in the search already has all rows
     found.optimum =
         evaluate_at(problem, found.optimum.z, options.threads, {Fidelity::full, nullptr, true});
     evaluator.record(found.optimum);

@@ -11,12 +11,12 @@
 namespace rigcal::calib {
 namespace {
 
-/// If the standard deviations have not settled by then, a warning says so.
+/// If the standard deviations have not settled after this many rounds, a warning says so.
 constexpr int kMaxRounds = 10;
-/// Reweighting stops when no standard deviation changes by more.
+/// Reweighting stops when no standard deviation changes by more than this fraction.
 constexpr double kSettled = 0.1;
 
-/// Calls action(channel, rms residual) for every channel of estimated noise.
+/// Calls action(channel, rms residual) for every channel whose noise is estimated.
 template <typename Action>
 void for_each_estimated(Problem& problem, const Evaluation& optimum, const Action& action) {
   for (std::size_t i = 0; i < problem.conditions.size(); ++i) {
@@ -27,9 +27,9 @@ void for_each_estimated(Problem& problem, const Evaluation& optimum, const Actio
   }
 }
 
-/// Root mean square residual of each channel whose noise is estimated, over the samples of all its
-/// conditions. A value per condition would give most weight to the record that the model happens to
-/// fit best, at the expense of the others.
+/// Returns the root mean square residual of each channel whose noise is estimated, over the samples
+/// of all its conditions. Separate values for each condition would give most weight to the record
+/// that the model happens to fit best, at the expense of the others.
 std::map<datasets::Channel, double> pooled_rms(Problem& problem, const Evaluation& optimum) {
   struct Sum {
     double squares = 0.0;
@@ -48,8 +48,7 @@ std::map<datasets::Channel, double> pooled_rms(Problem& problem, const Evaluatio
 }
 
 /// Sets every estimated standard deviation to the pooled residual of its channel, and derives the
-/// tolerance of the simulations from it. Returns the largest relative change of a standard
-/// deviation.
+/// simulation tolerance from it. Returns the largest relative change in a standard deviation.
 double update(Problem& problem, const Evaluation& optimum) {
   const auto pooled = pooled_rms(problem, optimum);
   double largest = 0.0;
@@ -60,9 +59,11 @@ double update(Problem& problem, const Evaluation& optimum) {
   };
   for_each_estimated(problem, optimum, set);
   if (!problem.tolerance_fixed) {
-    // Never coarser again: each change is another cost, which has its minimum elsewhere.
+    // The tolerance never becomes coarser again: each change gives a different cost with a
+    // different minimum.
     problem.tolerance = std::min(problem.tolerance, tolerance_from_noise(problem.conditions, true));
-    for_each_estimated(problem, optimum, set);  // a finer simulation resolves more
+    for_each_estimated(problem, optimum, set);  // a finer simulation allows a smaller standard
+                                                // deviation
   }
   return largest;
 }

@@ -10,19 +10,22 @@
 namespace rigcal::calib {
 namespace {
 
-/// Bancroft and Han's (docs/uncertainty.md): keeps the coverage near 95 % whatever is true.
+/// Significance level for pooling from Bancroft and Han (docs/uncertainty.md). It keeps the
+/// coverage close to 95 % whatever the true ratio is.
 constexpr double kPoolingLevel = 0.25;
-/// From here Fisher's F equals that of infinitely many degrees of freedom, to six digits.
+/// Above this number of degrees of freedom, Fisher's F agrees to six digits with that for
+/// infinitely many.
 constexpr double kFreedomWithoutEnd = 1e6;
-/// Share of the squares from which one cause is named: a second one has a quarter of its at most.
+/// Fraction of the squares above which one cause is named. A second cause then explains at most a
+/// quarter as much.
 constexpr double kMostlyExplained = 0.8;
 
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Repeats whose deviations every channel of the condition has; 0 where they are not those of the
-/// same runs.
+/// Returns the number of repeats with deviations in every channel of the condition; 0 if the
+/// channels do not have deviations for the same runs.
 std::size_t common_repeats(const ProblemCondition& condition) {
   const auto deviations = [&](const ProblemChannel& channel) {
     return condition.record->channels.at(channel.channel).deviations.size();
@@ -33,14 +36,14 @@ std::size_t common_repeats(const ProblemCondition& condition) {
   return same && first > 1 ? first : 0;
 }
 
-/// Slope of a series at a sample, per second; one-sided at its ends.
+/// Returns the slope of a series at a sample, per second; one-sided at the ends.
 double slope(const std::vector<double>& x, const std::vector<double>& time_s, std::size_t at) {
   const std::size_t before = at > 0 ? at - 1 : at;
   const std::size_t after = std::min(at + 1, x.size() - 1);
   return after > before ? (x[after] - x[before]) / (time_s[after] - time_s[before]) : 0.0;
 }
 
-/// d mean / dt of all channels, weighted: by how much a later start lowers them, per second.
+/// Returns d mean / dt for all channels, weighted: how much a later start lowers them, per second.
 VectorXd slopes(const ProblemCondition& condition) {
   const std::size_t samples = condition.rows.size();
   VectorXd result(static_cast<Index>(samples * condition.channels.size()));
@@ -55,12 +58,14 @@ VectorXd slopes(const ProblemCondition& condition) {
   return result;
 }
 
-/// A recorded drive is shifted with the rest: there is no common delay to be unsure of.
+/// Returns true if the drive was recorded. It is then shifted together with the outputs, so that a
+/// common delay adds no uncertainty.
 bool start_is_known(const ProblemCondition& condition) {
   return condition.condition->waveform == datasets::Waveform::recorded;
 }
 
-/// Scores of a unit of each cause in one condition, the start last; shape (directions, causes).
+/// Returns the score caused by one unit of each cause in one condition, with the start last; shape
+/// (directions, causes).
 MatrixXd cause_scores(CauseEffects& effects, std::size_t condition, const MatrixXd& jacobian) {
   const ProblemCondition& own = effects.problem().conditions[condition];
   const std::vector<double> values = effects.values(condition);
@@ -74,7 +79,7 @@ MatrixXd cause_scores(CauseEffects& effects, std::size_t condition, const Matrix
   return result;
 }
 
-/// Parameters that are declared to differ between repeats and act in a condition.
+/// Returns the parameters that act in a condition and are declared to differ between repeats.
 std::vector<datasets::ParameterSetting> declared_in(const Problem& problem, std::size_t condition) {
   std::vector<datasets::ParameterSetting> result;
   for (const int j : problem.map.acting(condition)) {
@@ -85,7 +90,7 @@ std::vector<datasets::ParameterSetting> declared_in(const Problem& problem, std:
   return result;
 }
 
-/// Change of the weighted outputs per unit of a cause: SI, of the start per second.
+/// Returns the change in the weighted outputs per SI unit of a cause; for the start, per second.
 VectorXd effect_of(CauseEffects& effects, std::size_t condition, const std::string& cause) {
   const auto& causes = effects.causes();
   const auto found = std::find(causes.begin(), causes.end(), cause);
@@ -94,13 +99,14 @@ VectorXd effect_of(CauseEffects& effects, std::size_t condition, const std::stri
   return felt.size() > 0 ? VectorXd(felt.col(found - causes.begin())) : VectorXd();
 }
 
-/// Squares of deviations along a direction, and the noise that would give the same on average.
+/// Sum of squared deviations along a direction, and the expected value of this sum if there is only
+/// noise.
 struct AlongCause {
   double squares = 0.0;
   double noise = 0.0;
 };
 
-/// Number of parts of a record that count as independent: nineteen degrees of freedom.
+/// Number of intervals of a record that are treated as independent: nineteen degrees of freedom.
 constexpr Index kStretches = 20;
 
 AlongCause along(const VectorXd& direction, const MatrixXd& deviations) {
@@ -158,7 +164,8 @@ MatrixXd explained_by_declared(const Problem& problem, std::size_t condition,
   for (std::size_t j = 0; j < declared.size(); ++j)
     felt.col(static_cast<Index>(j)) *= declared[j].prior->sd;
   MatrixXd normal = felt.transpose() * felt;
-  // The weights are those of the mean: a single repeat is as many times noisier.
+  // The weights are those of the mean, but the variance of a single repeat is larger by the number
+  // of repeats.
   normal.diagonal().array() += static_cast<double>(deviations.cols());
   return felt * normal.llt().solve(felt.transpose() * deviations);
 }
@@ -208,7 +215,8 @@ std::optional<LikelyDifference> likely_difference(CauseEffects& effects,
   std::vector<std::string> causes = effects.causes();
   causes.emplace_back("start");
   const auto count = static_cast<Index>(causes.size());
-  VectorXd explained = VectorXd::Zero(count);  // part of the squares of all scores
+  VectorXd explained = VectorXd::Zero(count);  // sum of squares that each cause explains in the
+                                               // scores
   VectorXd size = VectorXd::Zero(count);
   double all = 0.0;
   for (std::size_t i = 0; i < scores.size(); ++i) {
@@ -240,7 +248,7 @@ double difference_by_noise(CauseEffects& effects, const std::string& cause) {
     const VectorXd direction = effect_of(effects, i, cause);
     if (direction.size() != deviations.rows() || !(direction.squaredNorm() > 0.0)) continue;
     const AlongCause found = along(direction, deviations);
-    if (!(found.noise > 0.0)) continue;  // repeats that are equal, or differ by this alone
+    if (!(found.noise > 0.0)) continue;  // the repeats are equal, or differ only in this direction
     const auto own = static_cast<double>(deviations.cols() - 1);
     ratios += own * found.squares / found.noise;
     freedom += own;

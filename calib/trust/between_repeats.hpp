@@ -12,78 +12,82 @@
 
 namespace rigcal::calib {
 
-/// Weighted deviations of the single repeats of a condition from their mean, shape (channels *
-/// samples in windows, repeats); no columns if the record has no single repeats.
+/// Returns the weighted deviations of the single repeats of a condition from their mean, shape
+/// (channels * samples in windows, repeats). There are no columns if the record has no single
+/// repeats.
 ///
-/// Shifting repeats onto one another hides that they began at different times. With a generated
-/// drive the start of their mean is known only as well as the offsets scatter, so the shift of each
-/// repeat is added to its deviation again.
+/// Aligning the repeats in time hides that they started at different times. With a generated drive,
+/// the start of the mean is only known as well as the offsets of the repeats agree. The shift of
+/// each repeat is therefore added back to its deviation.
 ///
-/// @param explained  part that recorded inputs explain (repeat_inputs.hpp), or empty
+/// @param explained  component explained by recorded inputs (repeat_inputs.hpp), or empty
 Eigen::MatrixXd repeat_deviations(const ProblemCondition& condition,
                                   const Eigen::MatrixXd& explained);
 
-/// Part of these deviations that declared parameters explain
-/// (datasets::ParameterSetting::between_repeats), by their linear effect with their prior; shape of
-/// `deviations`.
+/// Returns the component of these deviations that declared parameters explain
+/// (datasets::ParameterSetting::between_repeats), from their linear effects and their priors. Same
+/// shape as `deviations`.
 Eigen::MatrixXd explained_by_declared(const Problem& problem, std::size_t condition,
                                       std::span<const double> z, const Eigen::MatrixXd& deviations);
 
-/// J^T of these deviations: shape (directions, repeats).
+/// Returns J^T times the deviations, shape (directions, repeats), minus its mean over the repeats.
 Eigen::MatrixXd repeat_scores(const Eigen::MatrixXd& jacobian, const Eigen::MatrixXd& deviations);
 
-/// Variance of a combination, with its degrees of freedom.
+/// Variance of a linear combination of unknowns, with its degrees of freedom.
 struct RepeatVariance {
   double variance = 0.0;
   double freedom = 0.0;
 };
 
-/// Variance c^T (covariance of the mean scores + priors) c from the differences between the
-/// repeats. These include everything that differs between them, also if it is constant over a
-/// record: supply pressure, oil, a drift. For R repeats with the deviations s_r the covariance of
-/// the mean is sum s_r s_r^T / (R (R - 1)), with R - 1 degrees of freedom. Over the conditions
-/// these add up by Satterthwaite (the cluster-robust covariance with repeats as clusters; Cameron
-/// and Miller, Journal of Human Resources 50, 2015). A condition without single repeats adds its
-/// `scatter`.
+/// Returns the variance c^T (covariance of the mean scores + priors) c, estimated from the
+/// differences between repeats. These include everything that differs between repeats, even if it
+/// is constant during a record, such as supply pressure, oil or drift. For R repeats with
+/// deviations s_r the covariance of the mean is sum s_r s_r^T / (R (R - 1)), with R - 1 degrees of
+/// freedom. The conditions are combined according to Satterthwaite. This is the cluster-robust
+/// covariance with repeats as clusters (Cameron and Miller, Journal of Human Resources 50, 2015). A
+/// condition without single repeats contributes its `scatter`.
 ///
-/// Zero degrees of freedom: no condition has single repeats.
+/// The degrees of freedom are zero if no condition has single repeats.
 RepeatVariance repeat_variance(const std::vector<Eigen::MatrixXd>& scores,
                                const std::vector<ScoreScatter>& scatter, const ArrowMatrix& priors,
                                const ArrowRoot& combinations, Eigen::Index unknown);
 
-/// Whether repeats differ by so much more than the residuals predict that the interval must be
-/// based on them: F of the two variances is beyond its upper quartile. A variance that is pooled or
-/// chosen only after a significant difference at 5 % or 1 % covers too little in between. At 25 %
-/// the coverage stays near its level for any true ratio (Bancroft and Han, International
-/// Statistical Review 45, 1977; docs/uncertainty.md has the study).
+/// Returns true if repeats differ so much more than the residuals predict that the interval must be
+/// based on the repeats: the F ratio of the two variances is in its upper quartile. Pooling or
+/// choosing a variance only after a significant difference at 5 % or 1 % would give too little
+/// coverage for moderate ratios. At 25 % the coverage is close to its nominal level for any true
+/// ratio (Bancroft and Han, International Statistical Review 45, 1977; docs/uncertainty.md has the
+/// study).
 bool rests_on_repeats(const RepeatVariance& repeats, const RobustVariance& robust);
 
-/// Probability of such a ratio of variances, or a larger one, where repeats differ by their noise
-/// alone.
+/// Returns the probability of a variance ratio at least this large if the repeats differ only by
+/// noise.
 double exceedance(const RepeatVariance& repeats, const RobustVariance& robust);
 
-/// A cause that would make repeats differ as they do.
+/// A cause that could explain how the repeats differ.
 struct LikelyDifference {
-  std::string cause;       ///< key of a parameter, or "start": when the run began
-  double sd = 0.0;         ///< standard deviation between repeats: relative; in s for the start
-  double explained = 0.0;  ///< share of the squared scores of the repeats, 0 to 1
-  double p = 1.0;          ///< probability that noise alone causes it, see difference_by_noise()
+  std::string cause;       ///< key of a parameter, or "start" for the time when the run began
+  double sd = 0.0;         ///< standard deviation between repeats: relative, or in s for the start
+  double explained = 0.0;  ///< fraction of the repeats' squared scores that the cause explains, 0
+                           ///< to 1
+  double p = 1.0;          ///< probability that noise alone explains the difference, see
+                           ///< difference_by_noise()
 };
 
-/// The cause, of supply pressure, bulk modulus and start, whose scores explain most of those of the
-/// repeats over all conditions; empty if none explains four fifths. A cause is not proven by that:
-/// another one may act in the same way.
+/// Returns the cause (supply pressure, bulk modulus or start) whose scores best explain those of
+/// the repeats over all conditions. Returns std::nullopt if none explains four fifths. This does
+/// not prove the cause, because another one may act in the same way.
 ///
-/// @param rows    as for score_scatter(), of all conditions
-/// @param scores  of repeat_scores(), of all conditions
+/// @param rows    as for score_scatter(), for all conditions
+/// @param scores  from repeat_scores(), for all conditions
 std::optional<LikelyDifference> likely_difference(CauseEffects& effects,
                                                   const std::vector<ScoreRows>& rows,
                                                   const std::vector<Eigen::MatrixXd>& scores);
 
-/// Probability that noise alone makes repeats differ as much in the direction of a cause: F of the
-/// deviations along it against those of twenty parts of the remaining deviations, over all
-/// conditions. The fit of the model to the mean does not matter here; it does for the residuals
-/// that rests_on_repeats() uses.
+/// Returns the probability that noise alone makes the repeats differ this much in the direction of
+/// a cause. It is based on the F ratio of the deviations along that direction to those in twenty
+/// intervals of the remaining deviations, over all conditions. Unlike rests_on_repeats(), which
+/// uses the residuals, this does not depend on how well the model fits the mean.
 double difference_by_noise(CauseEffects& effects, const std::string& cause);
 
 }  // namespace rigcal::calib

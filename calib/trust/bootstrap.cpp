@@ -17,19 +17,19 @@
 namespace rigcal::calib {
 namespace {
 
-/// From so many replicates the standard deviation is known to a sixth.
+/// With this many replicates the standard deviation is known to about one sixth.
 constexpr std::size_t kLeastReplicates = 20;
-/// Two repeats differ from their mean by the same amount with opposite signs, which leaves nothing
-/// to draw.
+/// Two repeats differ from their mean by the same amount with opposite signs, so drawing from them
+/// would add nothing.
 constexpr std::size_t kLeastRepeats = 3;
 
-using Samples = std::vector<std::vector<double>>;  ///< per channel, samples that count
+using Samples = std::vector<std::vector<double>>;  ///< for each channel, the scored samples
 
 /// Data from which the replicates of one condition are drawn.
 struct Source {
-  Samples centre;                ///< record, or simulation
-  std::vector<Samples> repeats;  ///< deviations, enlarged; empty: blocks of residuals
-  Samples residuals;             ///< enlarged
+  Samples centre;                ///< the record or the simulation
+  std::vector<Samples> repeats;  ///< deviations, scaled up; if empty, blocks of residuals are drawn
+  Samples residuals;             ///< residuals, scaled up
   std::size_t block = 1;
 };
 
@@ -122,7 +122,7 @@ void draw_blocks(const Source& from, datasets::RandomStream& stream, ProblemCond
   }
 }
 
-/// Linear between the ordered values.
+/// Interpolates linearly between the ordered values.
 double quantile(const std::vector<double>& ordered, double share) {
   const double at = share * static_cast<double>(ordered.size() - 1);
   const auto below = static_cast<std::size_t>(at);
@@ -130,7 +130,7 @@ double quantile(const std::vector<double>& ordered, double share) {
   return ordered[below] + (at - static_cast<double>(below)) * (ordered[above] - ordered[below]);
 }
 
-/// @param spec  beyond its limits values make no sense
+/// @param spec  gives the limits beyond which values make no sense
 BootstrapSpread replicate_spread(std::vector<double> values, double estimate, double freedom,
                                  const model::ParameterSpec& spec) {
   const auto count = static_cast<double>(values.size());
@@ -148,8 +148,8 @@ BootstrapSpread replicate_spread(std::vector<double> values, double estimate, do
   return {std::sqrt(squares / (count - 1.0)), mean - estimate, freedom, {end(0.025), end(0.975)}};
 }
 
-/// Satterthwaite's degrees of freedom of an unknown, from the contributions of the conditions to
-/// its variance.
+/// Returns Satterthwaite's degrees of freedom for an unknown, from the contributions of the
+/// conditions to its variance.
 double freedom_of(const Uncertainty& found, const std::vector<Source>& sources,
                   Eigen::Index unknown) {
   double total = 0.0;
@@ -192,8 +192,8 @@ std::string drawn_from(const std::vector<Source>& sources) {
   return text;
 }
 
-/// Drops the replicates after the one that reached a limit of evaluations: the number of threads
-/// decides which of them were made.
+/// Drops the replicates after the one that reached the limit of evaluations. Which of them were
+/// computed depends on the number of threads.
 void cut_at(const std::optional<long>& allowed, std::vector<long>& taken,
             std::vector<std::vector<double>>& values) {
   if (!allowed) return;
@@ -246,11 +246,11 @@ void bootstrap(const Problem& problem, const Evaluation& optimum, const Uncertai
   FitOptions quiet = options;
   quiet.progress = nullptr;
   const auto replicates = static_cast<std::size_t>(options.bootstrap);
-  std::vector<std::vector<double>> values(replicates);  // empty: did not converge
+  std::vector<std::vector<double>> values(replicates);  // empty: the replicate did not converge
   const std::optional<long> allowed = left.evaluations_left();
-  std::vector<long> taken(replicates, 0);  // evaluations; 0: not made to its end
+  std::vector<long> taken(replicates, 0);  // evaluations; 0: the replicate was not completed
   std::atomic<int> done = 0;
-  // Every replicate begins at the optimum, where it is the same simulation for all of them.
+  // Every replicate starts at the optimum, so that this first simulation is the same for all.
   std::once_flag simulated;
   std::vector<model::Simulation> runs(problem.conditions.size());
   const auto simulate = [&] {

@@ -11,33 +11,33 @@
 
 namespace rigcal::calib {
 
-/// Length of the blocks in which residuals are drawn: (2 G^2 / D)^(1/3) n^(1/3) with G = sum |h|
-/// gamma_h, D = 4/3 (sum gamma_h)^2 of their noise model (Politis and White, Econometric Reviews
-/// 23, 2004, circular blocks), from 1 to n.
+/// Returns the length of the blocks in which residuals are drawn, from 1 to n: (2 G^2 / D)^(1/3)
+/// n^(1/3) with G = sum |h| gamma_h and D = 4/3 (sum gamma_h)^2 from the noise model of the
+/// residuals (Politis and White, Econometric Reviews 23, 2004, circular blocks).
 std::size_t block_length(const metrics::Autoregression& noise, std::size_t samples);
 
-/// Bootstrap of a fit: every replicate is drawn anew and fitted from the optimum with the same
-/// weights.
+/// Bootstraps a fit: draws replicates of the records and fits each of them from the optimum with
+/// the same weights.
 ///
-/// A condition whose record has its repeats (`Series::deviations`, at least 3) draws as many of
-/// them with replacement: record + mean of the drawn deviations. This assumes nothing about the
-/// noise within a repeat, and keeps the model error. R repeats show only sqrt((R - 1) / R) of their
-/// standard deviation, which is corrected.
+/// If a record contains at least 3 repeats (`Series::deviations`), the same number of repeats is
+/// drawn with replacement, and the replicate is the record + mean of the drawn deviations. This
+/// assumes nothing about the noise within a repeat, and it retains the model error. R repeats show
+/// only sqrt((R - 1) / R) of their standard deviation; this is corrected.
 ///
-/// Any other condition is simulation + residuals drawn in circular blocks, all channels together.
-/// The residuals are enlarged by the part that the fit has removed from their variance. Model
-/// errors count as noise here.
+/// For any other condition the replicate is the simulation + residuals drawn in circular blocks,
+/// for all channels together. The residuals are scaled up by the part of their variance that the
+/// fit removed. Model errors count as noise here.
 ///
-/// Intervals are percentiles; their distance from the estimate is widened by the quantile of
-/// Student's t over that of the normal distribution. Degrees of freedom are Satterthwaite's over
-/// the conditions, R - 1 for each with repeats. Enters the result into `fit.parameters`, and how it
-/// was made, or why not, into `fit.bootstrap_message`. Random numbers depend only on seed,
-/// replicate and condition.
+/// Intervals are percentiles. Their distance from the estimate is multiplied by the quantile of
+/// Student's t divided by that of the normal distribution. The degrees of freedom are
+/// Satterthwaite's over the conditions, with R - 1 for each condition with repeats. Stores the
+/// results in `fit.parameters`, and how they were obtained, or why there are none, in
+/// `fit.bootstrap_message`. Random numbers depend only on seed, replicate and condition.
 ///
-/// @param found   with scatter
-/// @param scores  of the problem's conditions at the optimum, in their order
-/// @param left  budget of the whole job; a limit of evaluations ends the bootstrap after the same
-///              replicate for any number of threads
+/// @param found   must include `scatter`
+/// @param scores  scores of the problem's conditions at the optimum, in their order
+/// @param left    budget of the whole job; a limit on evaluations ends the bootstrap after the same
+///                replicate for any number of threads
 void bootstrap(const Problem& problem, const Evaluation& optimum, const Uncertainty& found,
                const std::vector<ConditionScore>& scores, const FitOptions& options, Fit& fit,
                Budget& left);

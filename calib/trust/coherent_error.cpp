@@ -6,7 +6,7 @@
 namespace rigcal::calib {
 namespace {
 
-/// Step over range of a converter of 12 bits (docs/uncertainty.md).
+/// Relative step size of a 12-bit converter (docs/uncertainty.md).
 constexpr double kFinestConverter = 1.0 / 4096.0;
 
 }  // namespace

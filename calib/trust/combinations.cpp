@@ -13,18 +13,20 @@
 namespace rigcal::calib {
 namespace {
 
-/// A combination is worth its name if it is not weak, and this much better known than its parts.
+/// A combination is named if it is not weak and its interval is narrower than that of the parameter
+/// by this factor.
 constexpr double kMuchBetter = 1.0 / 3.0;
-/// A power this near a simple one, relative to it, is written as that: 0.52 as a square root.
+/// Exponents within this relative distance of a simple one are rounded to it: 0.52 is written as a
+/// square root.
 constexpr double kRoundedPower = 0.1;
-/// Outside this range the combination consists almost entirely of one of the two.
+/// Outside this range the combination consists almost entirely of one of the two parameters.
 constexpr double kLeastPower = 0.2;
 constexpr double kMostPower = 5.0;
 
 struct PowerLaw {
   std::size_t first = 0;
   std::size_t second = 0;
-  double power = 1.0;       ///< first / second^power is fixed
+  double power = 1.0;       ///< the records determine first / second^power
   double half_width = 0.0;  ///< relative, 95 %
 };
 
@@ -61,9 +63,9 @@ std::string text_of(const Problem& problem, std::span<const double> z, const Pow
                      unit == "1" ? "" : " " + unit, significant(100.0 * c.half_width, 2), a, b);
 }
 
-/// The partner with which the unknown makes the best-known product of powers.
+/// Finds the partner with which the unknown forms the most precisely known product of powers.
 ///
-/// @param to_log  of each unknown, d ln value / d z; 0 where it does not count
+/// @param to_log  d ln value / d z for each unknown; 0 if the unknown is excluded
 std::optional<PowerLaw> best_partner(const ArrowRoot& spread, const std::vector<double>& to_log,
                                      std::size_t unknown) {
   const auto j = static_cast<Eigen::Index>(unknown);

@@ -18,8 +18,8 @@
 namespace rigcal::calib {
 namespace {
 
-/// Correlation of all unknowns that have an error, except a condition's own ones where there are
-/// many: their number squared would be most of a result.
+/// Adds the correlation of all unknowns that have an error. Unknowns of single conditions are left
+/// out if there are many, because the matrix would be most of the result.
 void add_correlation(const Problem& problem, const Uncertainty& found, Fit& fit) {
   std::vector<Eigen::Index> rows;
   for (std::size_t j = 0; j < found.standard_error.size(); ++j) {
@@ -55,10 +55,10 @@ void warn_of_noise(const Problem& problem, const Uncertainty& found, Fit& fit) {
   }
 }
 
-/// A prior that the records contradict pulls the fit off both.
+/// Warns about priors that contradict the records: the fit then matches neither.
 void warn_of_priors(const Problem& problem, const std::vector<FittedParameter>& parameters,
                     Fit& fit) {
-  constexpr double kFar = 3.0;  // standard deviations: one in 370 by chance
+  constexpr double kFar = 3.0;  // standard deviations; one in 370 by chance
   const auto warn = [&](const std::string& name, double value, const datasets::Prior& prior,
                         std::string_view unit, const char* what) {
     const double pull = std::abs(prior.residual(value));
@@ -99,9 +99,9 @@ void warn_of_parameters(const Problem& problem, const std::vector<FittedParamete
   if (!loose.empty()) fit.message += fmt::format("; not identifiable: {}", fmt::join(loose, ", "));
 }
 
-/// Akaike's and Schwarz's criteria. The noise is known or was estimated from the residual, so 2
-/// cost is -2 ln(likelihood) except for a constant. Correlated residuals count by their independent
-/// fraction.
+/// Computes Akaike's and Schwarz's criteria. The noise is known or was estimated from the residual,
+/// so 2 cost is -2 ln(likelihood) up to a constant. Correlated residuals count in proportion to
+/// their independent fraction.
 void rate_model(const Uncertainty& spread, Fit& fit) {
   const double residuals = std::max(1.0, static_cast<double>(fit.residual_count));
   const double effective = spread.scatter.empty() ? residuals : spread.independent_residuals;
@@ -110,7 +110,7 @@ void rate_model(const Uncertainty& spread, Fit& fit) {
   fit.bic = weighed + spread.rank * std::log(std::max(1.0, effective));
 }
 
-/// Judges the noise, and the intervals based on it, by the residuals.
+/// Uses the residuals to judge the noise and the intervals based on it.
 void judge_residuals(const Problem& problem, const OptimumCheck& check, const Uncertainty& spread,
                      Fit& fit) {
   fit.independent_residuals = spread.independent_residuals;
@@ -128,12 +128,13 @@ void judge_residuals(const Problem& problem, const OptimumCheck& check, const Un
   rate_model(spread, fit);
 }
 
-/// Adds measures that would determine parameters that the records leave open; the first few only,
-/// since each is tried. A symmetry has its own words.
+/// Adds measures that would determine the parameters that the records leave undetermined. Only the
+/// first few parameters are treated, because each measure must be tried. Parameters left open by a
+/// symmetry are described separately.
 void add_remedies(const Problem& problem, const Evaluation& optimum,
                   const std::vector<std::size_t>& symmetric, const Uncertainty& spread,
                   std::vector<FittedParameter>& parameters) {
-  constexpr int kMostTried = 4;  // each takes the simulations of some records
+  constexpr int kMostTried = 4;  // each requires simulations of some records
   int tried = 0;
   const Linearisation system = linearise(problem, optimum);
   if (!system.own.empty()) return;  // the trial uses a dense matrix over all unknowns
@@ -155,8 +156,8 @@ void add_remedies(const Problem& problem, const Evaluation& optimum,
   }
 }
 
-/// Adds the combinations that are determined where single parameters are not, and measures that
-/// would determine those.
+/// Adds the combinations that are determined although their parameters are not, and measures that
+/// would determine the parameters.
 ///
 /// @return  the unknowns that a scaling symmetry leaves undetermined
 std::vector<std::size_t> judge_identifiability(const Problem& problem, const Evaluation& optimum,
@@ -167,7 +168,7 @@ std::vector<std::size_t> judge_identifiability(const Problem& problem, const Eva
   if (symmetry) grade_symmetric(problem, *symmetry, fit.parameters);
   fit.combinations = name_combinations(problem, optimum.z, spread, fit.parameters);
   if (!symmetric.empty()) {
-    // The other combinations are among the reasons of their parameters already.
+    // The reasons of the parameters already contain the other combinations.
     fit.combinations.insert(fit.combinations.begin(), symmetric);
     fit.warnings.push_back(symmetric);
   }

@@ -8,9 +8,9 @@
 
 namespace rigcal::calib {
 
-/// Completes a fit that has its starts and counters: parameters with intervals, agreement of the
-/// starts, combinations and remedies, tests of the residuals, correlation, and warnings about
-/// unreliable results.
+/// Completes a fit that already has its starts and counters. Adds parameters with intervals,
+/// agreement of the starts, combinations and remedies, tests of the residuals, correlation, and
+/// warnings about unreliable results.
 ///
 /// @return  unknowns that a scaling symmetry leaves undetermined
 std::vector<std::size_t> describe_findings(const Problem& problem, const Evaluation& optimum,

@@ -12,19 +12,19 @@
 namespace rigcal::calib {
 namespace {
 
-/// The interval is as wide as the value to each side: not even the sign is known
+/// The interval extends as far as the value itself to each side, so that not even the sign is known
 /// (docs/uncertainty.md).
 constexpr double kNotIdentifiable = 1.0;
-/// Robust over plain error from which the residuals are called autocorrelated: the interval is
-/// then half as wide again, which a user would miss.
+/// If the robust error exceeds the plain error by this factor, the residuals are called
+/// autocorrelated. The interval is then one and a half times as wide, which the user should know.
 constexpr double kRobustMatters = 1.5;
-/// Residuals below this fraction of the noise show errors of the simulation or a wrong `sd`, not
+/// Residuals below this fraction of the noise are due to simulation errors or a wrong `sd`, not to
 /// noise.
 constexpr double kSuspiciouslySmall = 0.5;
-/// Student's t with two degrees of freedom has no variance: a robust error below the plain one
-/// means nothing there.
+/// Student's t with two degrees of freedom has no variance, so that a robust error below the plain
+/// one is meaningless there.
 constexpr double kLeastFreedom = 3.0;
-/// A partner is named where less than a fifth of the variance is a parameter's own (1 - 0.9^2).
+/// A partner is named if less than a fifth of the variance is the parameter's own (1 - 0.9^2).
 constexpr double kStrongCorrelation = 0.9;
 
 using datasets::FittedValue;
@@ -51,7 +51,7 @@ std::string number(const ParameterSpec& spec, double value) {
                           : fmt::format("{:.4g} {}", value, spec.unit);
 }
 
-/// "; correlated 0.98 with mass_kg", or nothing.
+/// Returns, for example, "; correlated 0.98 with mass_kg", or an empty string.
 std::string partner(const Problem& problem, const Uncertainty& found, std::size_t unknown) {
   const auto row = static_cast<Eigen::Index>(unknown);
   Eigen::Index best = -1;
@@ -68,8 +68,8 @@ std::string partner(const Problem& problem, const Uncertainty& found, std::size_
                      problem.name(static_cast<std::size_t>(best)));
 }
 
-/// Half width relative to the value; for a value of zero a number above the limit of
-/// identifiability.
+/// Returns the half-width relative to the value. For a value of zero, returns a number above the
+/// limit of identifiability.
 double share_of_value(double value, double half_width) {
   return value != 0.0 ? half_width / std::abs(value) : kNotIdentifiable * 2.0;
 }
@@ -78,7 +78,8 @@ void add_reason(FittedParameter& parameter, const std::string& text) {
   parameter.reason += parameter.reason.empty() ? text : "; " + text;
 }
 
-/// Why an interval of this half width gives this grade; empty where nothing is to be said.
+/// Explains why an interval with this half-width gives this grade; empty if there is nothing to
+/// say.
 std::string grade_words(const Problem& problem, const Uncertainty& found, std::size_t unknown,
                         double half_width, const FittedParameter& parameter) {
   const ParameterSpec& spec = spec_of(problem, problem.map.unknowns()[unknown].index);
@@ -100,8 +101,8 @@ std::string grade_words(const Problem& problem, const Uncertainty& found, std::s
          partner(problem, found, unknown);
 }
 
-/// Grade and reason of a parameter that has an interval of this half width: by nothing but the
-/// interval and the value, so that wider bounds change neither.
+/// Sets grade and reason of a parameter for this half-width. Both depend only on the interval and
+/// the value, so that wider bounds do not change them.
 void grade(const Problem& problem, const Uncertainty& found, std::size_t unknown, double half_width,
            FittedParameter& parameter) {
   const Unknown& u = problem.map.unknowns()[unknown];
@@ -112,7 +113,8 @@ void grade(const Problem& problem, const Uncertainty& found, std::size_t unknown
   if (!words.empty()) add_reason(parameter, words);
 }
 
-/// What adds most to an interval that is wider than if the model were exact.
+/// Names the largest contribution to an interval that is wider than it would be if the model were
+/// exact.
 std::string widened_words(const Budget95& budget) {
   const BudgetLine* largest = nullptr;
   for (const BudgetLine& line : budget.lines) {
@@ -123,16 +125,15 @@ std::string widened_words(const Budget95& budget) {
   return fmt::format("with what the model leaves out, most of it {}", largest->source);
 }
 
-/// The longer side of an interval.
+/// Returns the length of the longer side of an interval.
 double longer_side(double value, const std::pair<double, double>& interval) {
   return std::max(interval.second - value, value - interval.first);
 }
 
-/// Degrees of freedom as student_t() accepts them; infinitely many, with known variances, are
-/// capped.
+/// Clamps degrees of freedom to the range of student_t(). Known variances have infinitely many.
 double degrees(double freedom) { return std::clamp(freedom, 1.0, metrics::kManyDegrees); }
 
-/// Half width of the 95 % interval, and on which error it rests.
+/// Returns the half-width of the 95 % interval, and records which error it is based on.
 double choose_interval(const Problem& problem, const Uncertainty& found, std::size_t unknown,
                        FittedParameter& parameter) {
   const double plain = *parameter.standard_error;
@@ -158,7 +159,8 @@ double choose_interval(const Problem& problem, const Uncertainty& found, std::si
   return found.robust_quantile[unknown] * robust;
 }
 
-/// Describes the bound at which the estimate is, and whether the cost presses against it.
+/// Describes the bound that the estimate has reached, and whether the cost still decreases beyond
+/// it.
 void describe_bound(const Problem& problem, const OptimumCheck& check, std::size_t unknown,
                     FittedParameter& parameter) {
   const BoundSide side = check.side[unknown];
@@ -176,7 +178,7 @@ void describe_bound(const Problem& problem, const OptimumCheck& check, std::size
   parameter.reason = parameter.reason.empty() ? text : text + "; " + parameter.reason;
 }
 
-/// Whether a value of an earlier fit is that of one of the problem's conditions at least.
+/// Returns true if a value from an earlier fit applies to at least one of the problem's conditions.
 bool holds_somewhere(const Problem& problem, const FittedValue& value) {
   return std::any_of(
       problem.conditions.begin(), problem.conditions.end(), [&](const ProblemCondition& each) {
@@ -281,7 +283,7 @@ void grade_widened(const Problem& problem, const Uncertainty& found, std::size_t
 
 bool rests_on_known(const Problem& problem, const Uncertainty& uncertainty,
                     const std::vector<double>& z, std::size_t unknown) {
-  constexpr double kMost = 0.7;  // fraction of the error: half of the variance
+  constexpr double kMost = 0.7;  // fraction of the error; about half of the variance
   const auto row = static_cast<Eigen::Index>(unknown);
   const auto& error = uncertainty.standard_error[unknown];
   if (!error || uncertainty.known.names.empty()) return false;

@@ -14,14 +14,16 @@
 namespace rigcal::calib {
 namespace {
 
-/// Part in an undetermined direction from which a parameter is lost with it, as in uncertainty().
+/// A parameter is undetermined if its component in an undetermined direction exceeds this value, as
+/// in uncertainty().
 constexpr double kLost = 0.1;
-constexpr double kTriedPrior = 0.05;      // relative standard deviation of a prior that is tried
-constexpr double kPressureNoise = 0.003;  // fraction of the supply pressure; a plain sensor
-/// A record that is tried: half a period of the slowest signal, at 1 kHz or less.
+constexpr double kTriedPrior = 0.05;      // relative standard deviation of the prior to try
+constexpr double kPressureNoise = 0.003;  // as a fraction of the supply pressure; typical of a
+                                          // simple sensor
+/// Length of the record to try: half a period of the slowest signal, sampled at 1 kHz or less.
 constexpr double kTriedSeconds = 5.0;
 constexpr std::size_t kMostSamples = 5000;
-/// The reader has to know one of them; more make the sentence long.
+/// One of these is enough for the reader; more would make the sentence long.
 constexpr std::size_t kMostPriors = 2;
 
 bool tells(const Problem& problem, std::span<const double> z, const Eigen::MatrixXd& jacobian,
@@ -37,7 +39,8 @@ Eigen::MatrixXd above(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   return both;
 }
 
-/// Weighted sensitivities of one output of a condition; empty where it cannot be simulated.
+/// Returns the weighted sensitivities of one output in a condition; empty if it cannot be
+/// simulated.
 Eigen::MatrixXd tried_rows(const Problem& problem, std::size_t i, std::span<const double> z,
                            const model::SimulationInputs& inputs, std::span<const double> time_s,
                            model::Output output, double sd) {
@@ -101,7 +104,7 @@ void try_pressure(const Problem& problem, std::span<const double> z,
 
 void try_signals(const Problem& problem, std::span<const double> z, const Eigen::MatrixXd& jacobian,
                  std::size_t target, std::vector<std::string>& words) {
-  // Like the condition that knows the most unknowns, with another signal.
+  // The trial record copies the condition in which the most unknowns act, but with another signal.
   std::size_t like = 0;
   for (std::size_t i = 0; i < problem.conditions.size(); ++i) {
     if (problem.map.acting(i).size() > problem.map.acting(like).size()) like = i;
@@ -116,7 +119,7 @@ void try_signals(const Problem& problem, std::span<const double> z, const Eigen:
     times.push_back(step_s * static_cast<double>(times.size()));
   const ProblemChannel& channel = condition.channels.front();
   for (const double frequency_hz : {0.1, 1.0, 10.0}) {
-    // Limits the speed to the largest observed one.
+    // Keeps the speed below the largest one observed.
     const double amplitude = *c.amplitude * std::min(1.0, *c.frequency_hz / frequency_hz);
     for (const bool square : {false, true}) {
       model::SimulationInputs inputs = condition.inputs;

@@ -12,40 +12,42 @@
 
 namespace rigcal::calib {
 
-/// Cramer-Rao standard deviation of each unknown, SI, from a Jacobian of weighted residuals (any
-/// number of rows, one column per unknown, unit box), for white noise and all unknowns free. Empty
-/// if it takes part in a direction that the rows do not determine.
+/// Returns the Cramer-Rao standard deviation of each unknown, SI, from a Jacobian of weighted
+/// residuals (any number of rows, one column per unknown, unit box). Assumes white noise and all
+/// unknowns free. The value is absent if the unknown contributes to a direction that the rows do
+/// not determine.
 std::vector<std::optional<double>> cramer_rao(const Problem& problem, std::span<const double> z,
                                               const Eigen::MatrixXd& jacobian);
 
-/// The start values of a problem, with those of an earlier fit where it has them.
+/// Returns the start values of a problem, replaced by the values from an earlier fit where
+/// available.
 ///
 /// @param values  may be null
 std::vector<double> point_at(const Problem& problem,
                              const std::vector<datasets::FittedValue>* values);
 
-/// Value and bounds of an unknown, without errors.
+/// Returns the value and bounds of an unknown, without errors.
 FittedParameter parameter_at(const Problem& problem, std::span<const double> z,
                              std::size_t unknown);
 
-/// Jacobian of all priors, and of conditions whose information counts so many times. Those that
-/// could not be simulated do not count.
+/// Returns the Jacobian of all priors and conditions, with the information of each condition
+/// multiplied by its weight. Conditions that could not be simulated are left out.
 ///
 /// @param weights  shape (conditions), not negative
 Eigen::MatrixXd weighted_jacobian(const Problem& problem, const Evaluation& at,
                                   const std::vector<double>& weights);
 
-/// Half width of the 95 % interval of such a standard deviation, as a share of the value; empty
-/// without one, or where the value is 0.
+/// Returns the half-width of the 95 % interval for such a standard deviation, as a fraction of the
+/// value. Returns std::nullopt if `sd` is absent or the value is 0.
 std::optional<double> relative_half_width(const std::optional<double>& sd, double value);
 
-/// Suggests additions that would determine unknowns which the records leave open. For each target
-/// it gives the simplest additions that bring its interval below 20 % of the value, in words: "a
-/// prior on mass_kg (5 %)", "a recorded load pressure", "a square wave of 10 Hz" (the first two
-/// priors, the slowest signal). Each is tried alone, by simulation at z. Empty if none is
-/// sufficient.
+/// Suggests additions that would determine an unknown which the records leave undetermined.
+/// Returns, in words, the simplest additions that reduce its interval to less than 20 % of the
+/// value: "a prior on mass_kg (5 %)", "a recorded load pressure", "a square wave of 10 Hz" (at most
+/// two priors, and the slowest signal). Each addition is tried separately, by simulation at z.
+/// Empty if none is sufficient.
 ///
-/// @param jacobian  of all conditions and priors
+/// @param jacobian  for all conditions and priors
 std::vector<std::string> remedies(const Problem& problem, std::span<const double> z,
                                   const Eigen::MatrixXd& jacobian, std::size_t target);
 

@@ -13,14 +13,15 @@
 namespace rigcal::calib {
 namespace {
 
-/// Effective share of the residuals below which correlation is worth a word.
+/// Effective fraction of the residuals below which their correlation is mentioned.
 constexpr double kCorrelated = 0.5;
-/// Widths and halves that differ by less agree: a bootstrap of 1000 knows its own to 5 %.
+/// Intervals, or halves of an interval, whose lengths differ by less than this factor are taken as
+/// equal. A bootstrap with 1000 replicates knows its length to 5 %.
 constexpr double kAgrees = 1.25;
 
 double width(const std::pair<double, double>& interval) { return interval.second - interval.first; }
 
-/// Share by which the longer half of an interval exceeds the other.
+/// Returns the ratio of the longer half of an interval to the shorter one.
 double skewness(double value, const std::pair<double, double>& interval) {
   const double below = value - interval.first;
   const double above = interval.second - value;
@@ -28,7 +29,7 @@ double skewness(double value, const std::pair<double, double>& interval) {
   return std::max(below / above, above / below);
 }
 
-/// Both ends with enough digits to distinguish them.
+/// Formats both ends with enough digits to distinguish them.
 std::string ends_text(const std::pair<double, double>& interval, std::string_view unit) {
   const double size = std::max(std::abs(interval.first), std::abs(interval.second));
   const double share = width(interval) > 0.0 ? size / width(interval) : 1.0;
@@ -37,8 +38,8 @@ std::string ends_text(const std::pair<double, double>& interval, std::string_vie
                      unit == "1" ? "" : " ", unit == "1" ? "" : unit);
 }
 
-/// Compares profile and bootstrap of a parameter with `ci95` and names the interval to use if they
-/// differ.
+/// Compares the profile and the bootstrap of a parameter with `ci95`, and names the interval to use
+/// if they differ.
 std::string other_interval(const FittedParameter& parameter, std::string_view unit, bool misfit) {
   if (parameter.profile && parameter.profile->low.value && parameter.profile->high.value) {
     const std::pair ends{*parameter.profile->low.value, *parameter.profile->high.value};
@@ -57,7 +58,8 @@ std::string other_interval(const FittedParameter& parameter, std::string_view un
   if (skewness(parameter.value, drawn) > 2.0 * kAgrees)
     return fmt::format("use the interval of the bootstrap, {}: it is skewed",
                        ends_text(drawn, unit));
-  // With few repeats their variance is uncertain: with f degrees of freedom by sqrt(2 / f).
+  // With few repeats the bootstrap variance is itself uncertain: its relative error is sqrt(2 / f)
+  // for f degrees of freedom.
   const double chance = 2.0 / std::sqrt(2.0 * std::max(1.0, parameter.bootstrap->freedom));
   if (ratio * (kAgrees + chance) < 1.0) {
     return fmt::format("the bootstrap is {:.2g} times as wide; use `ci95_if_exact`{}", ratio,

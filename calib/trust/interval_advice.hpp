@@ -10,25 +10,26 @@
 
 namespace rigcal::calib {
 
-/// Advises, in words, which errors to use and why: none away from a minimum; else by the
-/// correlation of the residuals, and by whether the model leaves more than noise.
+/// Advises, in words, which errors to use and why. Away from a minimum there are no valid errors.
+/// Otherwise the advice depends on the correlation of the residuals, and on whether the model
+/// leaves more than noise.
 std::string interval_advice(const Problem& problem, const OptimumCheck& check,
                             const Uncertainty& found, const std::vector<LackOfFit>& tests);
 
-/// Differences between the repeats; empty if no condition has single repeats.
+/// Describes the differences between repeats; std::nullopt if no condition has single repeats.
 std::optional<BetweenRepeats> between_repeats(const Problem& problem, const Uncertainty& found);
 
-/// Describes these differences, their effect on the intervals and a remedy; empty if repeats differ
-/// by no more than their noise.
+/// Explains these differences, their effect on the intervals and a remedy. Empty if the repeats
+/// differ by no more than their noise.
 std::string between_repeats_warning(const BetweenRepeats& repeats);
 
-/// Explains, in words, the errors of channels whose residuals have no noise.
+/// Explains, in words, the errors in channels whose residuals contain no noise.
 std::string noiseless_warning(const Problem& problem, const Uncertainty& found);
 
-/// Explains where bootstrap or profile differ from `ci95`, and which is right. A parameter that is
-/// not identifiable has no valid interval. Empty if neither was requested.
+/// Explains where bootstrap or profile differ from `ci95`, and which of them to use. A parameter
+/// that is not identifiable has no valid interval. Empty if neither was requested.
 ///
-/// @param parameters  of the problem's unknowns
+/// @param parameters  parameters of the problem's unknowns
 /// @param carried     known values whose uncertainty only `ci95` includes
 /// @param misfit      whether the model is known to leave more than noise
 std::string compare_intervals(const Problem& problem,

@@ -13,16 +13,16 @@
 namespace rigcal::calib {
 namespace {
 
-/// Known value with a stated uncertainty.
+/// A known value with a stated uncertainty.
 struct Known {
   std::string name;  ///< name in messages
   int index = 0;     ///< row of the parameter table
-  double sd = 0.0;   ///< SI
+  double sd = 0.0;   ///< in SI units
   bool of_sensor = false;
 };
 
-/// Adds the uncertainty of a channel's sensor as a prior of its gain and offset, unless these are
-/// estimated or have a prior.
+/// Adds the uncertainty of a channel's sensor as priors on its gain and offset, unless these are
+/// estimated or have priors.
 void add_sensor(const Problem& problem, const datasets::ChannelSetting& channel,
                 std::vector<Known>& result) {
   const auto key = datasets::info(channel.channel).key;
@@ -56,7 +56,7 @@ std::vector<Known> uncertain_values(const Problem& problem) {
   return result;
 }
 
-/// Sensitivities to known values times their standard deviations.
+/// Returns the sensitivities to known values, multiplied by their standard deviations.
 Eigen::MatrixXd known_rows(const Problem& problem, std::size_t i, std::span<const double> z,
                            const std::vector<Known>& values) {
   std::vector<int> indices;
@@ -65,8 +65,8 @@ Eigen::MatrixXd known_rows(const Problem& problem, std::size_t i, std::span<cons
   if (rows.size() == 0) return rows;
   for (std::size_t p = 0; p < values.size(); ++p) {
     const Known& each = values[p];
-    // A prior belongs to the value of the rig, so a condition with its own value is exempt. A
-    // certificate belongs to the sensor and applies to all conditions.
+    // A prior belongs to the value of the rig, so it does not apply to conditions with a value of
+    // their own. A certificate belongs to the sensor and applies to all conditions.
     const bool own = !each.of_sensor &&
                      known_in(*problem.campaign, *problem.conditions[i].condition, each.index);
     rows.col(static_cast<Eigen::Index>(p)) *= own ? 0.0 : each.sd;
@@ -150,7 +150,7 @@ Eigen::VectorXd day_errors(const Problem& problem, std::span<const double> z,
   if (problem.conditions.empty()) return Eigen::VectorXd::Zero(root.unknowns());
   double interval_s = HUGE_VAL;
   std::vector<std::string> days;
-  std::vector<Eigen::Index> day_of;  // index of its day, for each condition
+  std::vector<Eigen::Index> day_of;  // for each condition, the index of its day
   for (const ProblemCondition& each : problem.conditions) {
     const auto& time_s = each.record->time_s;
     if (time_s.size() > 1)

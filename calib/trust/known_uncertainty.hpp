@@ -10,44 +10,44 @@
 
 namespace rigcal::calib {
 
-/// Known values with a stated uncertainty, and its effect on the estimates: `prior` and `prior_sd`
-/// of a parameter that is not fitted; `gain_sd` and `offset_sd` of a compared channel, for the gain
-/// and offset of its sensor.
+/// Known values with a stated uncertainty, and the effect of that uncertainty on the estimates. The
+/// uncertainty comes from `prior` and `prior_sd` for a parameter that is not fitted, and from
+/// `gain_sd` and `offset_sd` of a compared channel for the gain and offset of its sensor.
 struct KnownUncertainty {
   std::vector<std::string> names;
-  /// Change of the unknowns in the unit box per standard deviation of each, to first order:
+  /// First-order change in the unknowns (unit box) per standard deviation of each known value:
   /// -(J^T J)^-1 J^T J_known sd. Shape (unknowns, names).
   Eigen::MatrixXd response;
 };
 
-/// Names of these values in messages.
+/// Returns the names of these values for messages.
 std::vector<std::string> uncertain_names(const Problem& problem);
 
-/// Weighted sensitivities of one condition to parameters that are known in it: shape (channels *
-/// samples that count, indices), per SI unit; empty where it cannot be simulated.
+/// Returns the weighted sensitivities of one condition to parameters that are known in it, per SI
+/// unit: shape (channels * scored samples, indices). Empty if the condition cannot be simulated.
 ///
 /// @param indices  rows of the parameter table, none of them free in the condition
 Eigen::MatrixXd known_sensitivities(const Problem& problem, std::size_t condition,
                                     std::span<const double> z, const std::vector<int>& indices);
 
-/// Change of the unknowns in the unit box, -(J^T J)^-1 J^T K, by what changes the weighted outputs
-/// of each condition by the columns of K. Shape (unknowns, columns).
+/// Returns the change in the unknowns (unit box), -(J^T J)^-1 J^T K, if the weighted outputs of
+/// each condition change by the columns of K. Shape (unknowns, columns).
 ///
-/// @param known  K of a condition, shape (residuals, columns); empty: none
+/// @param known  returns K for a condition, shape (residuals, columns), or an empty matrix
 Eigen::MatrixXd response_of_unknowns(const Problem& problem, const std::vector<ConditionRows>& rows,
                                      const ArrowRoot& root, Eigen::Index columns, int threads,
                                      const std::function<Eigen::MatrixXd(std::size_t)>& known);
 
-/// @param rows  of each condition at z
+/// @param rows  rows of each condition at z
 /// @param root  R with R R^T = (J^T J)^-1 on the directions that the data determine
 KnownUncertainty known_uncertainty(const Problem& problem, std::span<const double> z,
                                    const std::vector<ConditionRows>& rows, const ArrowRoot& root,
                                    int threads);
 
-/// Standard errors of the unknowns in the unit box by what differs between days: each date of the
-/// conditions has deviations of its own. Zero where nothing differs.
+/// Returns the standard errors of the unknowns (unit box) due to day-to-day differences. Each date
+/// has its own deviations, common to the conditions of that date. Zero if nothing differs.
 ///
-/// @param rows  of each condition at z
+/// @param rows  rows of each condition at z
 /// @param root  R with R R^T = (J^T J)^-1 on the directions that the data determine
 Eigen::VectorXd day_errors(const Problem& problem, std::span<const double> z,
                            const std::vector<ConditionRows>& rows, const ArrowRoot& root,

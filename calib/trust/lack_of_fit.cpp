@@ -12,10 +12,11 @@
 namespace rigcal::calib {
 namespace {
 
-/// A test that passes must be able to detect a residual twice as large as the noise.
+/// A test may only pass if it could have detected a residual twice as large as the noise.
 constexpr double kLargestUsefulRatio = 4.0;
 
-/// 1 + 2 sum rho_h^2: by how much correlation thins a sum of squares out.
+/// Returns 1 + 2 sum rho_h^2, the factor by which correlation reduces the degrees of freedom of a
+/// sum of squares.
 double square_inflation(const metrics::Autoregression& noise, double samples) {
   if (noise.phi.empty()) return 1.0;
   const int lags = std::min(metrics::kLongestMemory, static_cast<int>(samples) - 1);
@@ -26,7 +27,7 @@ double square_inflation(const metrics::Autoregression& noise, double samples) {
   return sum;
 }
 
-/// Probability that noise alone gives this ratio or a larger one.
+/// Returns the probability that noise alone gives this ratio or a larger one.
 double exceedance(double ratio, const LackOfFit& test) {
   if (!(ratio > 0.0)) return 1.0;
   if (std::isinf(test.pure_freedom))
@@ -34,8 +35,8 @@ double exceedance(double ratio, const LackOfFit& test) {
   return metrics::fisher_f_exceedance(ratio, test.freedom, test.pure_freedom);
 }
 
-/// The level of F is valid for few degrees of freedom, too, so a rejection always counts. A test
-/// passes only if it could have rejected kLargestUsefulRatio.
+/// Judges a test at a significance level. The level of F is also valid for few degrees of freedom,
+/// so a rejection always counts. A test passes only if it would have rejected kLargestUsefulRatio.
 metrics::Judged judged(const LackOfFit& test, double level) {
   using metrics::TestOutcome;
   if (test.p < level) return {TestOutcome::failed, {}};
@@ -46,7 +47,7 @@ metrics::Judged judged(const LackOfFit& test, double level) {
                       kLargestUsefulRatio, test.freedom)};
 }
 
-/// @param noise  model of the weighted residual, whose variance is the ratio
+/// @param noise  model of the weighted residual; its variance is the ratio
 LackOfFit make_test(const ProblemCondition& condition, const ProblemChannel& channel,
                     const metrics::Autoregression& noise, double samples) {
   const datasets::Series& series = condition.record->channels.at(channel.channel);

@@ -25,7 +25,7 @@ struct Noise {
     variance = left > 0.0 ? 2.0 * model.cost / left / share : 0.0;
   }
 
-  /// A difference of deviances in independent residuals of this noise.
+  /// Expresses a difference in deviance in terms of independent residuals with this noise.
   double weighed(double difference) const {
     constexpr double kMost = std::numeric_limits<double>::max();
     if (variance > 0.0) return std::clamp(difference / variance, -kMost, kMost);
@@ -33,11 +33,12 @@ struct Noise {
   }
 };
 
-/// A difference of a criterion below this is none to speak of (Burnham and Anderson, Model
+/// A difference in a criterion below this is not worth mentioning (Burnham and Anderson, Model
 /// Selection and Multimodel Inference, 2002, 2.6).
 constexpr double kNoDifference = 2.0;
 
-/// "+3.1", "-6936": three digits, or all before the point.
+/// Formats a number with its sign and three digits, or all digits before the decimal point: "+3.1",
+/// "-6936".
 std::string signed_text(double value) {
   constexpr double kWhole = 100.0;
   return std::abs(value) < kWhole || std::abs(value) > 1e9 ? fmt::format("{:+.3g}", value)

@@ -18,8 +18,8 @@ using datasets::Campaign;
 using datasets::Condition;
 using datasets::Record;
 
-/// Only the smoothing of the orifice roots determines what a scaling symmetry leaves open, and that
-/// is no physics.
+/// Removes the standard deviations of an unknown that a scaling symmetry leaves undetermined. They
+/// come only from the smoothing of the orifice roots, which has no physical meaning.
 void leave_open(std::size_t unknown, Plan& plan) {
   plan.recorded[unknown].reset();
   plan.all[unknown].reset();

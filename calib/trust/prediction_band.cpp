@@ -14,7 +14,8 @@ namespace {
 
 constexpr double kHalf95 = 1.96;
 
-/// Sum of the covariances of all conditions and of the priors, in coordinates of `root`.
+/// Returns the sum of the covariances of all conditions and of the priors, in coordinates of
+/// `root`.
 ArrowMatrix long_run_covariance(const Problem& problem, std::span<const double> z,
                                 const Uncertainty& uncertainty) {
   ArrowMatrix sum = uncertainty.root.zero();
@@ -24,17 +25,17 @@ ArrowMatrix long_run_covariance(const Problem& problem, std::span<const double> 
   return sum;
 }
 
-/// Unknowns that a simulation may know together: those of a condition with the shared ones, or
-/// these alone. Rows are in the unit box.
+/// Unknowns that act in the same simulation: those of one condition together with the shared ones,
+/// or only the shared ones. Rows are in the unit box.
 struct Joint {
-  std::vector<std::size_t> unknowns;  ///< own ones first
+  std::vector<std::size_t> unknowns;  ///< the condition's own unknowns come first
   std::size_t own = 0;
-  Eigen::MatrixXd determined;  ///< S of their covariance, before it is widened
+  Eigen::MatrixXd determined;  ///< S of their covariance before widening
   Eigen::MatrixXd open;        ///< directions that the data do not determine
 };
 
-/// @param condition   negative: the shared ones alone
-/// @param covariance  of the score; none: the plain errors count
+/// @param condition   negative: only the shared unknowns
+/// @param covariance  covariance of the score; if absent, the plain errors are used
 Joint joint_of(const Uncertainty& found, int condition,
                const std::optional<ArrowMatrix>& covariance) {
   const bool alone = condition < 0;
@@ -53,7 +54,7 @@ Joint joint_of(const Uncertainty& found, int condition,
       covariance
           ? Eigen::MatrixXd(root * square_root(alone ? covariance->shared : covariance->of(i)))
           : Eigen::MatrixXd(std::sqrt(std::max(1.0, found.reduced_chi_square)) * root);
-  // What is not determined comes last among the own directions and among the shared ones.
+  // Undetermined directions come last among the own directions and among the shared ones.
   const Eigen::MatrixXd spread = alone ? found.spread.shared() : found.spread.rows(i);
   const Eigen::Index own = alone ? 0 : found.spread.own_directions(i);
   const Eigen::Index open = own - (alone ? 0 : found.root.own_directions(i));
@@ -63,7 +64,7 @@ Joint joint_of(const Uncertainty& found, int condition,
   return joint;
 }
 
-/// The most by which an interval is wider than by the covariance.
+/// Returns the largest factor by which an interval is wider than the covariance alone would give.
 double widening(const Problem& problem, std::span<const double> z, const Uncertainty& found,
                 const Joint& joint) {
   const bool robust = !found.scatter.empty();
@@ -85,7 +86,7 @@ double widening(const Problem& problem, std::span<const double> z, const Uncerta
   return widen;
 }
 
-/// S of the covariance of all that is uncertain of them, SI.
+/// Returns S of the full covariance of these unknowns, SI.
 Eigen::MatrixXd spread_of(const Problem& problem, std::span<const double> z,
                           const Uncertainty& found, const Joint& joint, double widen) {
   const auto n = static_cast<Eigen::Index>(joint.unknowns.size());
@@ -104,7 +105,8 @@ Eigen::MatrixXd spread_of(const Problem& problem, std::span<const double> z,
   return root;
 }
 
-/// Whether an estimate of the fit acts in a condition, known values of its own aside.
+/// Returns true if an estimate of the fit acts in a condition, that is, unless the condition has
+/// its own known value.
 bool acts(const Problem& problem, const ProblemCondition& condition,
           const EstimateSpread::Estimate& estimate) {
   if (known_in(*problem.campaign, *condition.condition, estimate.index)) return false;
@@ -119,10 +121,11 @@ bool acts(const Problem& problem, const ProblemCondition& condition,
   return false;
 }
 
-/// Sets what the uncertainty of the estimates explains of the residuals: a step of linear least
-/// squares from the estimates, whose covariance is the prior.
+/// Computes the component of the residuals that the uncertainty of the estimates explains. This is
+/// one linear least-squares step from the estimates, with their covariance as the prior.
 ///
-/// @param gradients  of each channel by what `root` is the spread of, shape (times, spread)
+/// @param gradients  for each channel, its derivatives with respect to the quantities whose
+///                   covariance has the square root `root`, shape (times, quantities)
 void explain(const ProblemCondition& condition, const std::vector<Eigen::MatrixXd>& gradients,
              const Eigen::MatrixXd& root, ConditionScore& score) {
   const std::vector<Eigen::Index> counted(condition.rows.begin(), condition.rows.end());
@@ -153,15 +156,16 @@ void explain(const ProblemCondition& condition, const std::vector<Eigen::MatrixX
   }
 }
 
-/// By how many deviations between days a record may differ from those of the fit: its own day's and
-/// those of the fit, where dates say that these are others; else 0.
+/// Returns by how many day-to-day standard deviations a record may differ from those of the fit.
+/// This includes the deviation of its own day and those of the fit's days. Returns 0 unless the
+/// dates show that its day is a different one.
 double day_distance(const datasets::Condition& condition, const std::vector<std::string>& dates) {
   const bool another = condition.date && !dates.empty() &&
                        std::find(dates.begin(), dates.end(), *condition.date) == dates.end();
   return another ? std::sqrt(1.0 + 1.0 / static_cast<double>(dates.size())) : 0.0;
 }
 
-/// Adds columns to gradients, and their spread to its root.
+/// Appends columns to the gradients, and the square root of their covariance to `root`.
 void append(const std::vector<Eigen::MatrixXd>& columns, const Eigen::MatrixXd& spread,
             std::vector<Eigen::MatrixXd>& gradients, Eigen::MatrixXd& root) {
   Eigen::MatrixXd both =
@@ -189,7 +193,8 @@ void add_to(const Problem& problem, std::size_t i, std::span<const double> z,
   for (std::size_t j = 0; j < estimates.size(); ++j) {
     const int index = estimates[j].index;
     if (!acts(problem, condition, estimates[j])) continue;
-    // A value of the condition or level replaces that of the rig, so it comes later here.
+    // A value for the condition or leak level overrides that of the rig, and comes later in this
+    // loop.
     const auto same = std::find(free.begin(), free.end(), index);
     if (same == free.end()) {
       free.push_back(index);

@@ -26,20 +26,21 @@ void serialize(Archive& archive, Profile& profile) {
 
 namespace {
 
-/// First step where no interval suggests one, and the least, as a share of the box.
+/// First step if no interval suggests one, and the smallest step; both as a fraction of the box.
 constexpr double kFirstStep = 0.05;
 constexpr double kLeastStep = 1e-6;
-/// So many doublings take a step of a four-thousandth of the box across it.
+/// This many doublings extend a step of 1/4000 of the box across the whole box.
 constexpr int kMostDoublings = 12;
-/// Halvings alone would come from a doubled step to within kCrossing in six.
+/// Six halvings alone would reduce a doubled step to kCrossing.
 constexpr int kMostRefinements = 8;
-/// How often a step is shortened where no fit converges, and by which factor.
+/// How often a step is shortened if a fit does not converge, and by which factor.
 constexpr int kMostShortened = 4;
 constexpr double kShorter = 8.0;
-/// Tolerance of a crossing, relative to its distance from the optimum.
+/// Tolerance for a crossing, relative to its distance from the optimum.
 constexpr double kCrossing = 0.02;
-/// A rise below minus this share of the threshold, about one standard error: the fit was not at its
-/// minimum. Less may be the error of simulations, which differs from point to point.
+/// A cost below the optimum by more than this fraction of the threshold, about one standard error,
+/// means that the fit was not at its minimum. A smaller decrease may be simulation error, which
+/// differs from point to point.
 constexpr double kLower = 0.25;
 
 datasets::Campaign campaign_with(const Problem& problem, const Unknown& unknown, double value) {
@@ -59,7 +60,8 @@ datasets::Campaign campaign_with(const Problem& problem, const Unknown& unknown,
   return campaign;
 }
 
-/// Least cost of all others at values of one unknown, from the nearest point that is known.
+/// Minimises the cost over all other unknowns at fixed values of one unknown. Each fit starts from
+/// the nearest point already known.
 class Follower {
  public:
   Follower(const Problem& problem, const std::vector<datasets::Record>& records,
@@ -78,7 +80,8 @@ class Follower {
     points_[optimum.z[unknown]] = {0.0, std::move(others)};
   }
 
-  /// Rise of 2 cost in units of the threshold; empty where it could not be found.
+  /// Returns the rise of 2 cost in units of the threshold, or std::nullopt if it could not be
+  /// found.
   std::optional<double> rise(double z) {
     const auto known = points_.find(z);
     if (known != points_.end()) return known->second.rise;
@@ -156,8 +159,8 @@ ProfileEnd follow(Follower& follower, const Problem& problem, std::size_t unknow
   for (int i = 0; i < kMostDoublings && inside != bound; ++i) {
     outside = std::clamp(inside + side * step, 0.0, 1.0);
     outside_rise = follower.rise(outside);
-    // The step was too long for a fit from the point before, as when the interval includes more
-    // than the records.
+    // The step may have been too long to fit from the previous point, for example if the interval
+    // includes more than the records determine.
     for (int k = 0; k < kMostShortened && !outside_rise && !follower.cancelled(); ++k) {
       step /= kShorter;
       outside = std::clamp(inside + side * step, 0.0, 1.0);
@@ -173,8 +176,8 @@ ProfileEnd follow(Follower& follower, const Problem& problem, std::size_t unknow
     inside_rise = *outside_rise;
     step *= 2.0;
   }
-  if (!outside_rise || *outside_rise < 1.0) return end;  // open up to there
-  // The root of the rise is all but linear in z.
+  if (!outside_rise || *outside_rise < 1.0) return end;  // the profile is open up to this point
+  // The square root of the rise is almost linear in z.
   for (int i = 0; i < kMostRefinements; ++i) {
     if (std::abs(outside - inside) <= kCrossing * std::abs(outside - z0)) break;
     const double a = std::sqrt(std::max(0.0, inside_rise));
@@ -199,12 +202,13 @@ ProfileEnd follow(Follower& follower, const Problem& problem, std::size_t unknow
   return end;
 }
 
-/// Rise of 2 cost at which the profile of this parameter ends: a quadratic one at ci95.
+/// Returns the rise of 2 cost at which the profile of this parameter ends. For a quadratic cost
+/// this is where `ci95` ends.
 double threshold_of(const FittedParameter& parameter, double reduced_chi_square) {
   const double variance = std::max(1.0, reduced_chi_square);
   if (!parameter.ci95_if_exact || !parameter.standard_error)
     return metrics::kNormal95 * metrics::kNormal95 * variance;
-  // The longer half: the other may be cut off where values make no sense.
+  // The longer half is used because the other may be truncated at a limit.
   const double half = std::max(parameter.ci95_if_exact->second - parameter.value,
                                parameter.value - parameter.ci95_if_exact->first);
   const double errors = half / *parameter.standard_error;
@@ -219,7 +223,7 @@ double first_step(const Problem& problem, std::size_t unknown, double z0,
   return std::clamp(metrics::kNormal95 * error / slope, kLeastStep, 0.5);
 }
 
-/// A profile of the optimum alone, where the budget allowed no more.
+/// Returns a profile that contains only the optimum, for when the budget is used up.
 Profile not_made(double value) {
   Profile profile;
   profile.low = {{}, value, true};
@@ -283,7 +287,8 @@ void profiles(const Problem& problem, const std::vector<datasets::Record>& recor
     parameter.profile = not_made(parameter.value);
     if (!results[j].bytes.empty()) from_bytes(results[j].bytes, taken[j], *parameter.profile);
   }
-  // The number of threads decides which profiles were made beyond the one that reached a limit.
+  // Which profiles were computed after the one that reached the limit depends on the number of
+  // threads.
   long sum = 0;
   for (std::size_t j = 0; j < unknowns.size(); ++j) {
     FittedParameter& parameter = fit.parameters[j];
@@ -319,7 +324,8 @@ void profiles(const Problem& problem, const std::vector<datasets::Record>& recor
                     below && above ? "on both sides" : (above ? "above" : "below"),
                     profile.low.value.value_or(profile.low.reached), unit,
                     profile.high.value.value_or(profile.high.reached), unit));
-    // A bound within `ci95` is tighter than the records; a bound beyond it is looser.
+    // A bound within `ci95` restricts the parameter more than the records do; a bound outside
+    // `ci95` restricts it less.
     const double half_width = parameter.ci95_if_exact
                                   ? std::max(parameter.ci95_if_exact->second - parameter.value,
                                              parameter.value - parameter.ci95_if_exact->first)

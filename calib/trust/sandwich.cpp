@@ -15,10 +15,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using metrics::Autoregression;
-/// Rows of samples in memory order: the recursions walk along the samples.
+/// Each row is contiguous in memory, because the recursions run along the samples.
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Integral of the squared Parzen kernel, both sides.
+/// Integral of the squared Parzen kernel over both sides.
 constexpr double kParzenSquare = 0.539285;
 
 /// Rows of one channel.
@@ -35,7 +35,7 @@ ChannelRows channel_rows(const ScoreRows& rows, Index channel) {
           rows.residual.segment(channel * samples, samples)};
 }
 
-/// L^T J: y[t] = x[t] + sum_k phi[k] y[t + 1 + k].
+/// Computes L^T J: y[t] = x[t] + sum_k phi[k] y[t + 1 + k].
 RowMajor backwards(const Autoregression& noise, RowMajor rows) {
   const auto order = static_cast<Index>(noise.phi.size());
   for (Index t = rows.rows() - 1; t >= 0; --t) {
@@ -45,7 +45,7 @@ RowMajor backwards(const Autoregression& noise, RowMajor rows) {
   return rows;
 }
 
-/// L J: y[t] = x[t] + sum_k phi[k] y[t - 1 - k].
+/// Computes L J: y[t] = x[t] + sum_k phi[k] y[t - 1 - k].
 RowMajor forwards(const Autoregression& noise, RowMajor rows) {
   const auto order = static_cast<Index>(noise.phi.size());
   for (Index t = 0; t < rows.rows(); ++t) {
@@ -55,7 +55,7 @@ RowMajor forwards(const Autoregression& noise, RowMajor rows) {
   return rows;
 }
 
-/// L^-1 x: u[t] = x[t] - sum_k phi[k] x[t - 1 - k].
+/// Computes L^-1 x: u[t] = x[t] - sum_k phi[k] x[t - 1 - k].
 RowMajor whitened(const Autoregression& noise, RowMajor rows) {
   const auto order = static_cast<Index>(noise.phi.size());
   for (Index t = rows.rows() - 1; t >= 0; --t) {
@@ -65,13 +65,13 @@ RowMajor whitened(const Autoregression& noise, RowMajor rows) {
   return rows;
 }
 
-/// sum_t a[t] . b[t + lag]
+/// Computes sum_t a[t] . b[t + lag].
 double lagged(const RowMajor& a, const RowMajor& b, Index lag) {
   return a.topRows(a.rows() - lag).cwiseProduct(b.bottomRows(b.rows() - lag)).sum();
 }
 
-/// Bias of the residuals' autocovariances due to the fit, if `noise` is their model and `total` the
-/// covariance of the whole score.
+/// Returns the bias that the fit causes in the autocovariances of the residuals, if `noise` is
+/// their model and `total` the covariance of the whole score.
 std::vector<double> bias(const ChannelRows& rows, const Autoregression& noise,
                          const MatrixXd& total, Index lags) {
   const RowMajor& Q = rows.jacobian;
@@ -86,19 +86,19 @@ std::vector<double> bias(const ChannelRows& rows, const Autoregression& noise,
   return result;
 }
 
-/// Covariance of the score of one channel if `noise` is the model of its residuals.
+/// Returns the covariance of the score of one channel if `noise` is the model of its residuals.
 MatrixXd expected(const ChannelRows& rows, const Autoregression& noise) {
   const RowMajor filtered = backwards(noise, rows.jacobian);
   return noise.variance * filtered.transpose() * filtered;
 }
 
-/// The noise of one channel, before the part that the fit has removed is known.
+/// The noise of one channel before the correction for what the fit removed.
 struct ChannelNoise {
   std::size_t condition = 0;
   Index channel = 0;
   std::vector<double> gamma;
   Autoregression noise;
-  MatrixXd expected;  ///< covariance of the channel's score, as expected()
+  MatrixXd expected;  ///< covariance of the channel's score, from expected()
 };
 
 std::vector<ChannelNoise> channels_of(const std::vector<ScoreRows>& rows) {
@@ -109,15 +109,17 @@ std::vector<ChannelNoise> channels_of(const std::vector<ScoreRows>& rows) {
   return channels;
 }
 
-/// In the order of the channels, whichever of them was made first.
+/// Sums in the order of the channels, whichever thread finished first, so that the result is
+/// reproducible.
 ArrowMatrix total_of(const ArrowMatrix& priors, const std::vector<ChannelNoise>& channels) {
   ArrowMatrix total = priors;
   for (const ChannelNoise& each : channels) total.add(each.condition, each.expected);
   return total;
 }
 
-/// Autoregressions of all channels, corrected for what the fit has removed. The rows of a channel
-/// are taken twice: all of them at once would be the largest memory of a fit.
+/// Fits autoregressions to the residuals of all channels, corrected for what the fit removed. The
+/// rows of a channel are extracted twice, because keeping all of them would be the peak memory use
+/// of a fit.
 std::vector<ChannelNoise> noise_models(const std::vector<ScoreRows>& rows,
                                        const ArrowMatrix& priors, int threads) {
   std::vector<ChannelNoise> channels = channels_of(rows);
@@ -138,10 +140,11 @@ std::vector<ChannelNoise> noise_models(const std::vector<ScoreRows>& rows,
     std::vector<double>& gamma = each.gamma;
     const auto removed =
         bias(own, each.noise, total.of(each.condition), static_cast<Index>(gamma.size()) - 1);
-    // More than half taken away: the fit has left too little to estimate the noise from.
+    // If the correction exceeds half of the total, the fit has left too little to estimate the
+    // noise from.
     if (removed.front() < 0.5 * (gamma.front() + removed.front())) {
       for (std::size_t h = 0; h < gamma.size(); ++h) gamma[h] += removed[h];
-      // Far from an optimum residuals are not the noise that the correction supposes.
+      // Far from an optimum the residuals are not the noise that the correction assumes.
       if (!metrics::is_autocovariance(gamma)) return;
       each.noise = metrics::fit_autoregression(gamma, static_cast<double>(own.samples()));
       each.expected = expected(own, each.noise);
@@ -150,10 +153,10 @@ std::vector<ChannelNoise> noise_models(const std::vector<ScoreRows>& rows,
   return channels;
 }
 
-/// Andrews' bandwidth of the Parzen kernel, 2.6614 (alpha(2) n)^(1/5) with alpha(2) from a
-/// first-order autoregression of every component (Econometrica 59, 1991, eqs. 6.2 and 6.4).
+/// Returns Andrews' bandwidth for the Parzen kernel, 2.6614 (alpha(2) n)^(1/5), with alpha(2) from
+/// a first-order autoregression of every component (Econometrica 59, 1991, eqs. 6.2 and 6.4).
 double bandwidth(const RowMajor& scores) {
-  // The bound of Andrews and Monahan (Econometrica 60, 1992): at 1 the bandwidth is infinite.
+  // Bound from Andrews and Monahan (Econometrica 60, 1992): at 1 the bandwidth would be infinite.
   constexpr double kMostCorrelation = 0.97;
   double above = 0.0;
   double below = 0.0;
@@ -164,7 +167,7 @@ double bandwidth(const RowMajor& scores) {
     if (!(square > 0.0)) continue;
     const double rho = std::clamp(column.head(n - 1).dot(column.tail(n - 1)) / square,
                                   -kMostCorrelation, kMostCorrelation);
-    // Components in units of their own size: one of them must not decide for all.
+    // Components are scaled by their own size, so that no single one dominates.
     above += 4.0 * rho * rho / std::pow(1.0 - rho, 8.0) * std::pow(1.0 - rho * rho, 2.0);
     below += std::pow(1.0 - rho * rho, 2.0) / std::pow(1.0 - rho, 4.0);
   }
@@ -188,11 +191,12 @@ MatrixXd kernel_covariance(const RowMajor& scores, double width) {
 }
 
 /// Sums over the channels of a condition, each of shape (samples, directions or combinations).
-/// Records are long: these and two more of their kind are in memory at a time.
+/// Records are long, so at most these and two more such arrays are in memory at a time.
 struct ChannelSums {
   RowMajor scores;   ///< contributions of the samples to the score
-  RowMajor weights;  ///< variance of each combination of them
-  RowMajor own;  ///< their covariance with the error of each combination, over its standard error
+  RowMajor weights;  ///< variance of each combination of these contributions
+  RowMajor own;  ///< their covariance with the error of each combination, divided by its standard
+                 ///< error
   double independent_residuals = 0.0;
 };
 
@@ -257,7 +261,8 @@ ScoreScatter scatter_of(const ScoreRows& rows, std::vector<Autoregression> noise
   return result;
 }
 
-/// What `own` of a condition is for an unknown: nothing by way of shared ones.
+/// Returns the element of `own` for an unknown. It is zero if the unknown belongs to another
+/// condition.
 double own_in(const ScoreScatter& scatter, const ArrowRoot& combinations, Index unknown,
               std::size_t condition) {
   const int whose = combinations.condition_of(unknown);
@@ -320,7 +325,7 @@ RobustVariance robust_variance(const std::vector<ScoreScatter>& scatter, const A
 
 double RobustVariance::quantile() const {
   constexpr double kMostOwn = 0.9;      // limit that keeps the divisor away from zero
-  constexpr double kMostFreedom = 1e9;  // Student's t is the normal distribution there
+  constexpr double kMostFreedom = 1e9;  // above this, Student's t equals the normal distribution
   const double share = std::clamp(own, 0.0, kMostOwn);
   const double rest = 1.0 - share;
   const double scatter = std::max(1.0 / freedom - share * share, 1.0 / kMostFreedom);

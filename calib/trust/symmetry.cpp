@@ -15,9 +15,10 @@
 namespace rigcal::calib {
 namespace {
 
-/// Relative standard error from which the common scale is weak (kWeak, 95 %).
+/// Relative standard error above which the common scale counts as weak (kWeak, 95 %).
 constexpr double kScaleKnown = 0.1;
-constexpr std::string_view kSmoothing = "leakage_smoothing";  // no physics: no exponent of its own
+constexpr std::string_view kSmoothing = "leakage_smoothing";  // has no physical meaning, hence no
+                                                              // exponent of its own
 constexpr std::string_view kSupply = "supply_pressure";
 
 bool positions_alone(const Problem& problem) {
@@ -42,7 +43,7 @@ std::vector<std::string> known_and_scaled(const Problem& problem) {
   }
   std::vector<std::string> names;
   for (const std::size_t row : rows) names.emplace_back(table[row].name);
-  // Air in the oil relates pressures to that of the atmosphere, which cannot be scaled.
+  // Air in the oil relates pressures to atmospheric pressure, which cannot be scaled.
   const int air = model::parameter_index(problem.campaign->rig.plant, "air_fraction");
   const bool holds_air =
       air >= 0 && std::any_of(problem.conditions.begin(), problem.conditions.end(),
@@ -53,7 +54,7 @@ std::vector<std::string> known_and_scaled(const Problem& problem) {
   return names;
 }
 
-/// Outputs of one condition, shape (samples that count, channels); empty where it cannot be
+/// Returns the outputs of one condition, shape (scored samples, channels); empty if it cannot be
 /// simulated.
 Eigen::MatrixXd outputs_at(const Problem& problem, const ProblemCondition& condition,
                            const model::ParameterValues& values) {
@@ -67,11 +68,12 @@ Eigen::MatrixXd outputs_at(const Problem& problem, const ProblemCondition& condi
   return run.outputs(condition.rows, Eigen::all);
 }
 
-/// Change of the weighted residuals, priors included, per ln s where unknowns and smoothing are
-/// scaled; measured by scaling them, because the model has no derivative to the smoothing.
+/// Returns the change in the weighted residuals, including priors, per ln s when the unknowns and
+/// the smoothing are scaled. It is found by simulation with scaled values, because the model has no
+/// derivative with respect to the smoothing.
 double felt_when_scaled(const Problem& problem, std::span<const double> z,
                         const std::vector<std::size_t>& unknowns, int threads) {
-  constexpr double kScale = 1.5;  // far enough for the tolerance of the simulations not to count
+  constexpr double kScale = 1.5;  // large enough for simulation errors to be negligible
   const int smoothing = model::parameter_index(problem.campaign->rig.plant, kSmoothing);
   std::vector<double> scaled(z.size());
   for (std::size_t j = 0; j < z.size(); ++j)
@@ -115,7 +117,8 @@ bool takes_part(const Problem& problem, const ScalingSymmetry& symmetry, std::st
 
 double scaling_exponent(const model::ParameterSpec& spec) {
   using model::ParameterKind;
-  // Flows follow the root of pressure over density, and density stays: it is no force.
+  // Flows depend on the square root of pressure over density. The density is not scaled because it
+  // is not a force.
   if (spec.key == "valve_gain" || spec.key == "leakage_coefficient") return -0.5;
   if (spec.key == "density" || spec.key == kSmoothing) return 0.0;
   if (spec.kind == ParameterKind::sensor || spec.kind == ParameterKind::controller) return 0.0;
@@ -134,7 +137,7 @@ std::optional<ScalingSymmetry> scaling_symmetry(const Problem& problem, std::spa
       continue;
     result.unknowns.push_back(j);
   }
-  // A known supply pressure fixes s through the orifices; the Jacobian then shows what is
+  // A known supply pressure fixes s through the orifices. The Jacobian then shows what is
   // undetermined.
   if (result.unknowns.size() < 2 || !takes_part(problem, result, kSupply)) return std::nullopt;
   result.known = known_and_scaled(problem);
@@ -186,7 +189,7 @@ void grade_symmetric(const Problem& problem, const ScalingSymmetry& symmetry,
     FittedParameter& each = parameters[j];
     if (each.nuisance) continue;
     each.identifiability = Identifiability::not_identifiable;
-    // The words about an interval go with the interval.
+    // The explanation of the interval is removed together with the interval.
     const std::string known = each.standard_error || each.reason.empty() ? "" : "; " + each.reason;
     each.standard_error.reset();
     each.robust_standard_error.reset();

@@ -16,17 +16,18 @@
 namespace rigcal::calib {
 namespace {
 
-/// A parameter belongs to a null direction above this fraction: of the effect on the outputs, or of
-/// the motion in the box relative to the largest one.
+/// A parameter belongs to a null direction if its fraction of the effect on the outputs, or its
+/// motion in the box relative to the largest one, is above these values.
 constexpr double kFelt = 0.1;
 constexpr double kMoves = 0.05;
-/// Partners that are named; an offset for all records goes with that of each.
+/// Maximum number of partners that are named. An offset common to all records is linked with that
+/// of each record.
 constexpr std::size_t kMostPartners = 12;
-/// Significance level of a difference between repeats whose cause can be named: it is looked for in
-/// every fit.
+/// Significance level for a difference between repeats with a named cause. It is low because every
+/// fit is tested.
 constexpr double kDifferenceLevel = 0.01;
 
-/// Scores of every condition in coordinates of `root`.
+/// Returns the scores of every condition in coordinates of `root`.
 std::vector<ScoreRows> score_rows(const Problem& problem, std::vector<ConditionRows> rows,
                                   const ArrowRoot& root) {
   std::vector<ScoreRows> result(rows.size());
@@ -80,7 +81,8 @@ void add_prior_information(const Problem& problem, std::span<const double> z, co
     const double weight = problem.map.prior_slope(static_cast<int>(j), z[j]);
     if (weight == 0.0) continue;
     const auto unknown = static_cast<Eigen::Index>(j);
-    // Shared unknowns are over shared directions, which are those of any condition.
+    // Shared unknowns only have components in the shared directions, which every condition
+    // contains.
     const int whose = root.condition_of(unknown);
     if (whose < 0) {
       const auto row = root.shared().row(root.row_of(unknown));
@@ -152,7 +154,7 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
       result.independent_residuals += each.independent_residuals;
   }
 
-  // A parameter is named with those that share a null direction with it.
+  // The reason for a parameter names the other parameters in its null directions.
   std::vector<std::vector<int>> directions;
   for (const ArrowSvd::Direction& each : svd.undetermined()) {
     std::vector<int>& members = directions.emplace_back();

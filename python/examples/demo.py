@@ -1,14 +1,14 @@
 #!/usr/bin/python3
-"""The job of scripts/demo by the module: records of a known rig are made, averaged, fitted and validated.
+"""Does the same as scripts/demo with the Python module: makes records of a known rig, averages, fits and validates.
 
     PYTHONPATH=build/release/python python/examples/demo.py [FOLDER]
 
-Results go to FOLDER (demo). Each cell begins with "# %%", as editors for notebooks read it.
+Results go to FOLDER (default: demo). Cells begin with "# %%", which notebook editors recognise.
 """
 
 # %% [markdown]
 # The rig is the shake table of the source paper: 6 signals at 4 openings of the leak valve, 5 repeats each, sampled at
-# 1 kHz. Its parameters are known, so that the estimates can be compared with the truth.
+# 1 kHz. Its parameters are known, so that the estimates can be compared with the true values.
 
 # %%
 import json
@@ -27,7 +27,7 @@ known_rig = rigcal.load(SOURCE / "datasets" / "rigs" / "uis_shake_table" / "camp
 campaign = rigcal.load(known_rig.synthesize(out, seed=1))
 print(f"{campaign.name}: {len(campaign.conditions)} conditions")
 
-# %% Five repeats become one record with a mean and a standard deviation for each sample
+# %% Average five repeats into one record with a mean and a standard deviation for each sample
 records = campaign.average(out=out)
 for condition, record in records.items():
     position = record.channels["position"]
@@ -42,7 +42,7 @@ fit = campaign.fit()
 fit.write(out)
 print(f"{fit.status}, verdict {fit.verdict}: {fit.message}")
 
-# %% Estimates beside the truth
+# %% Compare the estimates with the true values
 truth = {
     (row["name"], row["level"]): row["value"] for row in json.loads((out / "truth.json").read_text())["parameters"]
 }
@@ -56,12 +56,12 @@ for parameter in fit.parameters:
         f"{f'{low:.6g} .. {high:.6g}':>27} {truth[parameter.name, parameter.level]:12.6g}  {parameter.unit}"
     )
 
-# %% How the estimates hang together
+# %% Correlation between the estimates
 strongest = np.abs(fit.correlation - np.eye(len(fit.correlation_names)))
 i, j = np.unravel_index(np.argmax(strongest), strongest.shape)
 print(f"strongest correlation: {fit.correlation[i, j]:.3f}, {fit.correlation_names[i]} and {fit.correlation_names[j]}")
 
-# %% Conditions that the fit did not see, with its parameters
+# %% Validate the fitted parameters with conditions that the fit did not use
 validation = campaign.validate(out / "fit.json")
 validation.write(out / "validation")
 print(f"verdict {validation.verdict}")
@@ -72,7 +72,7 @@ for condition, score in validation.conditions.items():
         f"largest error {1e3 * np.max(np.abs(channel.residual)):.3f} mm"
     )
 
-# %% All signals and flows of one condition, with the start values of the campaign
+# %% Simulate all signals and flows of one condition with the start values of the campaign
 simulation = campaign.simulate(campaign.conditions[0].id)
 litres_per_minute = 6e4 * np.max(np.abs(simulation.servo_flow_m3_per_s))
 print(f"{simulation.condition}: the valve gives up to {litres_per_minute:.2f} l/min")

@@ -1,4 +1,4 @@
-"""Calibrates models of servo-hydraulic rigs from recorded runs: the command rigcal, as objects with arrays.
+"""Calibrates models of servo-hydraulic rigs from recorded runs: the rigcal command as Python objects with arrays.
 
     import rigcal
 
@@ -7,8 +7,8 @@
     print(fit.parameter("mass").value, fit.verdict)
     fit.write("demo")
 
-Everything is in SI units, named at the end of a name (`time_s`) or in `unit`. Results are the bits that the command
-computes. docs/python.md tells more.
+All values are in SI units, given at the end of a name (`time_s`) or in `unit`. Results are bitwise identical to those
+of the command. See docs/python.md.
 """
 
 from rigcal._rigcal import (

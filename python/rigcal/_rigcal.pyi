@@ -1,4 +1,4 @@
-"""Types of what module.cpp makes; what each thing means is in its docstring: help(rigcal.Fit)."""
+"""Type stubs for the compiled module (module.cpp). Its docstrings contain the documentation: help(rigcal.Fit)."""
 
 from collections.abc import Callable, Sequence
 from os import PathLike

@@ -1,4 +1,4 @@
-"""What goes wrong, as exceptions. Arguments out of their range are ValueErrors that name the argument."""
+"""The exceptions of rigcal. An argument out of range raises a ValueError that names the argument."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ __all__ = ["InputError", "Interrupted", "NoResultError", "RigcalError", "UsageEr
 
 
 class RigcalError(Exception):
-    """Base of all errors of rigcal; str() is the message of the command."""
+    """Base class of all rigcal errors; str() is the message that the command would print."""
 
 
 class InputError(RigcalError):
-    """A campaign, record or result file is wrong: str() gives the place, what was found and what was expected.
+    """A campaign, record or result file is invalid: str() gives the place, what was found and what was expected.
 
     Attributes:
-        file: its path; of a key, what the message begins with
-        line, column: from 1; None where they are not known
+        file: path of the file; for an invalid key, the beginning of the message
+        line, column: counted from 1; None if unknown
     """
 
     def __init__(self, message: str, file: str = "", line: int | None = None, column: int | None = None) -> None:
@@ -33,11 +33,11 @@ class InputError(RigcalError):
 
 
 class UsageError(RigcalError, ValueError):
-    """What was asked for does not fit the campaign: an unknown parameter, a value outside its limits."""
+    """The request does not fit the campaign: an unknown parameter, or a value outside its limits."""
 
 
 class NoResultError(RigcalError):
-    """Nothing usable came out of making records; a fit or simulation that fails says so in its status."""
+    """Making records produced nothing usable. A failed fit or simulation does not raise this; its status says so."""
 
 
 class WriteError(RigcalError):
@@ -48,7 +48,7 @@ class Interrupted(KeyboardInterrupt):
     """Ctrl-C ended a fit or validation.
 
     Attributes:
-        fit: the best that was found by then, status "stopped"; it can be written as any other
+        fit: the best fit so far, with status "stopped"; it can be written like any other
     """
 
     def __init__(self, message: str, fit: Fit) -> None:

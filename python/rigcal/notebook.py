@@ -1,6 +1,6 @@
-"""Tables by pandas and figures by matplotlib, for results that are looked at in a notebook.
+"""Makes pandas tables and matplotlib figures of results, for use in a notebook.
 
-Both packages are imported when they are asked for, so that rigcal needs neither.
+Both packages are imported only when they are needed, so that rigcal does not depend on them.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     import pandas  # type: ignore[import]
     from matplotlib.figure import Figure  # type: ignore[import]
 
-# The list of most interest in the JSON of each kind of result.
+# The most interesting list in the JSON of each kind of result.
 _TABLES = {
     "batch": "rigs",
     "comparison": "parameters",
@@ -62,7 +62,7 @@ def _figure(rows: int = 1, **options: Any) -> tuple[Figure, Any]:
     import matplotlib.pyplot as pyplot  # type: ignore[import]
 
     figure, axes = pyplot.subplots(rows, layout="constrained", **options)
-    pyplot.close(figure)  # a notebook shows what a cell returns; it need not show it twice
+    pyplot.close(figure)  # a notebook already shows the returned figure; without this it would show it twice
     return figure, axes
 
 
@@ -189,7 +189,7 @@ def _plot_result(result: Result) -> Figure:
 
 
 def _plot_estimates(rows: list[dict[str, Any]]) -> Figure:
-    """Intervals around the values; those of what is not identified would hide the others, and are named instead."""
+    """Plots intervals around the values. Only names parameters that are not identified; they would hide the others."""
     estimated = [row for row in rows if row.get("fitted")]
     shown = [row for row in estimated if row["identifiability"] == "identified" and row["value"] and row["ci95"]]
     ratios = [[100.0 * (end / row["value"] - 1.0) for end in row["ci95"]] for row in shown]
@@ -202,12 +202,12 @@ def _plot_estimates(rows: list[dict[str, Any]]) -> Figure:
 
 
 def loaded(*arguments: Any) -> Campaign:
-    """What pickle calls of a campaign, which reads its file again; pickle cannot call a compiled function."""
+    """Restores a pickled campaign by reading its file. In Python, because pickle cannot call a compiled function."""
     return load(*arguments)
 
 
 def restored(state: tuple[Any, ...]) -> Result:
-    """The same of a result."""
+    """Restores a pickled result."""
     result: Result = Result._restored(state)  # type: ignore[attr-defined]
     return result
 

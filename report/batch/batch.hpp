@@ -9,13 +9,13 @@
 #include "report/comparison/comparison.hpp"
 #include "report/json/described.hpp"
 
-// batch.json, as docs/command-line.md describes it: one row for each rig of `batch`.
+// Format of batch.json: one row for each rig of `batch`. docs/command-line.md documents it.
 
 namespace rigcal::report {
 
 inline constexpr const char* kBatchSchema = "rigcal.batch/1";
 
-/// Agreement of one channel of one condition.
+/// Agreement between measurement and simulation for one channel of one condition.
 struct StoredRigScore {
   std::string condition;
   std::string channel;
@@ -27,7 +27,7 @@ struct StoredRigScore {
   RIGCAL_DESCRIBE(condition, channel, use, verdict, rho2, absolute_error_percent, failure)
 };
 
-/// An estimate, SI.
+/// An estimated parameter in SI units.
 struct StoredRigEstimate {
   std::string key;
   std::string name;
@@ -40,7 +40,7 @@ struct StoredRigEstimate {
   RIGCAL_DESCRIBE(key, name, unit, scope, level, value, ci95, identifiability)
 };
 
-/// Course of an estimate over the earlier results and this one.
+/// Trend of one estimate over the earlier results and this one.
 struct StoredRigTrend {
   std::string key;
   std::string unit;
@@ -49,19 +49,20 @@ struct StoredRigTrend {
 };
 
 struct StoredRig {
-  std::string rig;       ///< its folder, relative to that of the batch
-  std::string campaign;  ///< the campaign file
-  std::string folder;    ///< folder of its results, relative to that of the batch's
+  std::string rig;       ///< folder of the rig, relative to the batch folder
+  std::string campaign;  ///< path of the campaign file
+  std::string folder;    ///< folder with the results of this rig, relative to the results folder of
+                         ///< the batch
   std::optional<std::string> name;
   int exit_code = 0;
-  bool unchanged = false;  ///< its result was there already
+  bool unchanged = false;  ///< the result existed before this run and was reused
   double seconds = 0.0;
   std::optional<calib::FitStatus> status;
   std::optional<calib::Verdict> verdict;
-  std::string message;  ///< message of the fit; or the error that left no result
+  std::string message;  ///< message from the fit, or the error that prevented a result
   bool synthetic = false;
   bool has_report = false;
-  std::vector<std::string> reasons;  ///< why it is no PASS, in words
+  std::vector<std::string> reasons;  ///< why the verdict is not PASS, in words
   std::vector<StoredRigScore> worst_scores;
   std::vector<StoredRigEstimate> parameters;
   std::vector<std::string> warnings;
@@ -72,16 +73,16 @@ struct StoredRig {
 };
 
 struct StoredBatch {
-  std::string status = "done";  ///< or "stopped": rigs are left
+  std::string status = "done";  ///< "done", or "stopped" if some rigs have not been run
   std::string schema = kBatchSchema;
-  std::string folder;  ///< folder of these rigs
-  int exit_code = 0;   ///< the highest of the rigs
+  std::string folder;  ///< folder that contains the rigs
+  int exit_code = 0;   ///< the highest exit code of any rig
   std::vector<StoredRig> rigs;
   StoredProvenance provenance;
   RIGCAL_DESCRIBE(status, schema, folder, exit_code, rigs, provenance)
 };
 
-/// End of the run of one rig.
+/// How the run of one rig ended.
 struct RigRun {
   std::string rig;
   std::filesystem::path campaign;
@@ -90,32 +91,34 @@ struct RigRun {
   bool unchanged = false;
   double seconds = 0.0;
   std::string error;
-  std::optional<Compared> result;   ///< its fit.json; empty where this run left none
-  std::vector<Compared> earlier;    ///< earlier results of the same rig, in any order
-  std::vector<std::string> unread;  ///< why earlier ones are left out
+  std::optional<Compared> result;   ///< contents of its fit.json; absent if this run left none
+  std::vector<Compared> earlier;    ///< earlier results for the same rig, in any order
+  std::vector<std::string> unread;  ///< why some earlier results were left out
 };
 
-/// The row of one rig.
+/// Builds the row for one rig.
 StoredRig rig_row(const RigRun& run);
 
-/// batch.csv: a line for each rig; `parameter_ci95_low` and so on of every estimate that one has.
+/// Writes batch.csv with one line for each rig. Every parameter that any rig estimates gets its own
+/// columns, such as `mass_kg` and `mass_kg_ci95_low`.
 std::string batch_csv(const StoredBatch& batch);
 
 inline std::string parameter_label(const StoredRigEstimate& each) {
   return parameter_label(each.key, each.scope, each.level);
 }
-/// The fit converged.
+/// Returns true if the fit converged.
 inline bool has_converged(const StoredRig& rig) {
   return rig.status == calib::FitStatus::converged;
 }
 
-/// "leakage_coefficient: +0.000966 per day (0.000694 to 0.00124): significant trend."
+/// Formats a trend: "leakage_coefficient: +0.000966 per day (0.000694 to 0.00124): significant
+/// trend."
 std::string trend_sentence(const StoredRigTrend& trend);
 bool is_significant(const StoredRigTrend& trend);
-/// Name of a series: "mass_kg of rig".
+/// Returns the display name of a series: "mass_kg of rig".
 std::string trend_name(const StoredRigTrend& trend);
 
-/// "3 of 4 rigs: PASS 1, WARN 1, FAIL 1; 1 without a result".
+/// Summarises the outcomes: "3 of 4 rigs: PASS 1, WARN 1, FAIL 1; 1 without a result".
 std::string batch_sentence(const StoredBatch& batch);
 
 }  // namespace rigcal::report

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kCampaignFile = "campaign.toml";
 
-/// Present hash of a file; nothing if it cannot be read.
+/// Returns the current hash of a file, or std::nullopt if the file cannot be read.
 std::optional<std::string> hash_of(const fs::path& file) {
   try {
     return sha256_of_file(file);
@@ -29,7 +29,7 @@ std::optional<std::string> hash_of(const fs::path& file) {
 
 std::vector<BatchRig> find_rigs(const fs::path& folder, const fs::path& out) {
   std::vector<BatchRig> rigs;
-  std::error_code none;  // --out need not be there yet, and a link may lead nowhere
+  std::error_code none;  // errors are ignored: --out may not exist yet, and a link may be broken
   auto entry =
       fs::recursive_directory_iterator(folder, fs::directory_options::skip_permission_denied);
   for (; entry != fs::recursive_directory_iterator(); ++entry) {
@@ -94,7 +94,7 @@ RigEnd run_rig(const BatchRig& rig, const fs::path& out, const RigVerbs& verbs,
   const bool same = before == after;
   const bool whole = fit.code == ExitCode::done || fit.code == ExitCode::verdict_fail ||
                      fit.code == ExitCode::no_result;
-  // A file of an earlier run is not the result of one that was stopped before it wrote any.
+  // A run that was stopped before it wrote a result must not claim the file of an earlier run.
   end.left_result = after && (whole || (fit.code == ExitCode::stopped && !same));
   end.unchanged = whole && same;
   end.code = fit.code;

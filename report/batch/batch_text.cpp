@@ -10,19 +10,19 @@
 namespace rigcal::report {
 namespace {
 
-/// Short reason for a table: the first one, or the message of a run that left no result.
+/// Returns the first reason, which is short enough for a table; empty if there is none.
 std::string first_reason(const StoredRig& rig) {
   return rig.reasons.empty() ? "" : rig.reasons.front();
 }
 
-/// Verdict of a rig that was judged; else how it ended.
+/// Returns the verdict of a rig that was judged, and otherwise how its run ended.
 std::string outcome_of(const StoredRig& rig) {
   if (!rig.status) return "no result";
   if (!has_converged(rig)) return std::string(to_string(*rig.status));
   return rig.verdict ? std::string(to_string(*rig.verdict)) : "not judged";
 }
 
-/// Names of all estimates of any rig, in the order in which they come up.
+/// Returns the names of the estimates of all rigs, in order of first appearance.
 std::vector<std::string> estimate_columns(const StoredBatch& batch) {
   std::vector<std::string> names;
   for (const StoredRig& rig : batch.rigs) {

@@ -60,7 +60,8 @@ std::vector<std::string> reasons_of(const StoredFit& fit) {
   return reasons;
 }
 
-/// Whether a parameter is followed from one rig and day to another: all except nuisance parameters.
+/// Returns true for parameters that can be compared between rigs and dates: all fitted ones except
+/// nuisance parameters.
 bool is_shown(const StoredParameter& parameter) { return parameter.fitted && !parameter.nuisance; }
 
 std::vector<StoredRigEstimate> estimates(const StoredFit& fit) {
@@ -73,7 +74,7 @@ std::vector<StoredRigEstimate> estimates(const StoredFit& fit) {
   return list;
 }
 
-/// Trends of all estimates that at least two results have.
+/// Computes the trend of every estimate that occurs in at least two results.
 std::vector<StoredRigTrend> trends_of(const RigRun& run) {
   std::vector<Compared> results = run.earlier;
   results.push_back(*run.result);

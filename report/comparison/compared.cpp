@@ -10,7 +10,8 @@
 namespace rigcal::report {
 namespace {
 
-/// The last parts of the paths, as many as are needed to distinguish them.
+/// Shortens each path to its last components, keeping as many as are needed to distinguish the
+/// paths.
 std::vector<std::string> short_names(const std::vector<std::filesystem::path>& folders) {
   std::vector<std::vector<std::string>> parts;
   std::size_t most = 1;

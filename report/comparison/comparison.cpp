@@ -10,7 +10,7 @@
 namespace rigcal::report {
 namespace {
 
-/// Least and largest of some values.
+/// Widens the range `ends` to include a value.
 template <typename T>
 void widen(std::optional<std::array<T, 2>>& ends, const T& value) {
   if (!ends) ends = {value, value};

@@ -49,7 +49,7 @@ std::size_t first_shown_sample(const std::vector<double>& time_s, double frequen
                                   time_s.begin());
 }
 
-/// Samples of the least and the largest value of each bucket, in their order.
+/// Returns the indices of the minimum and maximum in each bucket, in time order.
 std::vector<std::size_t> extreme_samples(std::span<const double> values, std::size_t begin) {
   const std::span<const double> part = values.subspan(begin);
   const Buckets thin = buckets(part.size(), kCurvePoints);
@@ -84,7 +84,7 @@ Table overlaid(const std::vector<ConditionSeries>& results, double frequency_hz)
   for (const datasets::ChannelInfo& about : datasets::channel_table()) {
     const auto* measured = first.find(curve_column("measured", about.name));
     if (measured == nullptr) continue;
-    if (samples.empty()) {  // the times of the first channel apply to all
+    if (samples.empty()) {  // The times of the first channel are used for all channels.
       samples = extreme_samples(*measured, first_shown_sample(*time_s, frequency_hz));
       add("time_s", *time_s);
     }

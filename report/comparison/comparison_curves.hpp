@@ -9,25 +9,26 @@
 
 namespace rigcal::report {
 
-/// The measured and simulated series of a condition of one result.
+/// Measured and simulated series for one condition, from one result.
 struct ConditionSeries {
-  std::size_t result = 0;  ///< its number in the comparison, from 0
-  Table series;            ///< residuals/<condition>.csv
+  std::size_t result = 0;  ///< index of the result in the comparison, from 0
+  Table series;            ///< contents of residuals/<condition>.csv
 };
 
-/// One table of the results' curves of a condition: `time_s`; per channel that the first of them
-/// has, `measured_` of the first and `simulated_` of each with its number from 1 behind the name.
-/// The last two periods of a periodic drive, else all, at 800 points at most: the least and largest
-/// measured value of equal stretches. A result with other sample times is read between its samples;
-/// a field is empty where it has none.
+/// Combines the curves of all results for one condition in a single table. Its columns are `time_s`
+/// and, for each channel of the first result, one `measured_` column from the first result and one
+/// `simulated_` column from each result, numbered from 1. For a periodic drive only the last two
+/// periods are included. The table has at most 800 points: the minimum and maximum measured value
+/// in each of several equal intervals. Results with other sample times are interpolated; fields for
+/// which a result has no value are empty.
 ///
-/// @param frequency_hz  of a periodic drive; 0 for any other
+/// @param frequency_hz  frequency of a periodic drive; 0 for any other drive
 Table overlaid(const std::vector<ConditionSeries>& results, double frequency_hz);
 
-/// overlay/<condition>.csv of every condition that two or more of the results have simulated.
+/// Writes overlay/<condition>.csv for every condition that at least two results have simulated.
 ///
-/// @throws InputError  a result's residuals are no table, or its condition has a name that cannot
-///                     be that of a file
+/// @throws InputError  if the residuals of a result are not a table, or the name of a condition
+///                     cannot be used as a file name
 std::vector<ResultFile> comparison_curves(const std::vector<Compared>& results);
 
 }  // namespace rigcal::report

@@ -19,7 +19,7 @@ namespace {
 using calib::Candidate;
 using datasets::Scope;
 
-/// Whether the divisors of the residuals are equal wherever they are known.
+/// Returns true if the residuals have equal standard deviations wherever these are known.
 bool same_weights(const std::vector<StoredWeight>& a, const std::vector<StoredWeight>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) {
     constexpr double kSame = 1e-9;
@@ -29,11 +29,11 @@ bool same_weights(const std::vector<StoredWeight>& a, const std::vector<StoredWe
   });
 }
 
-/// If the fit estimated the noise of a channel, takes cost and logarithms at its maximum-likelihood
-/// standard deviation, the rms of the residual. (The fit itself approaches it only within a tenth.
-/// Priors, which are few among many residuals, are ignored.)
+/// For channels whose noise the fit estimated, recomputes the cost and the log terms at the
+/// maximum-likelihood standard deviation, which is the rms residual. The fit itself only gets
+/// within a tenth of it. Priors are ignored because they are few among many residuals.
 void take_likeliest_noise(const std::vector<StoredWeight>& weights, Candidate& candidate) {
-  constexpr double kLeastRms = 1e-12;  // SI; an exact fit must not be infinitely likely
+  constexpr double kLeastRms = 1e-12;  // in SI units; keeps the likelihood of an exact fit finite
   double cost = 0.0;
   bool estimated = false;
   for (const StoredWeight& weight : weights) {
@@ -63,7 +63,7 @@ Candidate candidate_of(const Compared& compared) {
   return candidate;
 }
 
-/// Why two fits cannot be compared as models; empty if they can.
+/// Explains why two fits cannot be compared as models; empty if they can.
 std::string obstacle(const Compared& a, const Compared& b) {
   for (const Compared* each : {&a, &b}) {
     const StoredFit& fit = each->result;
@@ -72,7 +72,7 @@ std::string obstacle(const Compared& a, const Compared& b) {
     if (fit.status != calib::FitStatus::converged || !fit.cost)
       return fmt::format("{} did not converge", each->name);
   }
-  // The same content under another name is the same record.
+  // Files with equal contents are the same record, whatever their names.
   const auto hashes_of = [](const StoredFit& fit) {
     std::set<std::string> hashes;
     for (const auto& [hash, file] : record_hashes(fit)) hashes.insert(hash);
@@ -86,7 +86,7 @@ std::string obstacle(const Compared& a, const Compared& b) {
   return {};
 }
 
-/// The parameters of a fit, sorted by their role in it.
+/// The parameters of a fit, sorted into free and known ones.
 struct Terms {
   std::map<std::string, Scope> free;  ///< by key
   std::map<std::string, std::pair<double, double>> bounds;
@@ -104,7 +104,7 @@ struct Terms {
   }
 };
 
-/// Why the larger model does not contain the smaller one; empty if it does.
+/// Explains why the larger model does not contain the smaller one; empty if it does.
 std::string not_contained(const StoredFit& smaller_result, const StoredFit& larger_result) {
   const std::optional<model::PlantKind>& plant = smaller_result.model;
   if (plant != larger_result.model) return "the plants are different models";
@@ -112,7 +112,8 @@ std::string not_contained(const StoredFit& smaller_result, const StoredFit& larg
   const Terms larger(larger_result);
   for (const auto& [key, scope] : smaller.free) {
     const auto found = larger.free.find(key);
-    if (found == larger.free.end() || found->second < scope)  // from rig to condition
+    if (found == larger.free.end() || found->second < scope)  // the scope must not become coarser:
+                                                              // condition, leak level, rig
       return fmt::format("{} is free in one alone, and something else in the other", key);
   }
   for (const auto& [id, value] : smaller.known) {
@@ -134,7 +135,8 @@ std::string not_contained(const StoredFit& smaller_result, const StoredFit& larg
   return {};
 }
 
-/// A model that contains another one fits at least as well, within the error of simulations.
+/// A model that contains another one must fit at least as well. This margin allows for simulation
+/// errors.
 constexpr double kWorse = 2.0;
 
 StoredModelChoice choice_of(const Compared& first, const Compared& other) {

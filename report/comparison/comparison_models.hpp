@@ -7,12 +7,13 @@
 
 namespace rigcal::report {
 
-/// Which model the records prefer, per result: nothing for the first; for each other one its
-/// information criteria against the first. If all free parameters of one fit are free in the other,
-/// too, and everything else is equal, the likelihood-ratio test is added. `reason` explains a
-/// missing number: other records or weights, a fit that did not converge.
+/// Compares the models of the other results with that of the first. The entry for the first result
+/// is std::nullopt. Every other entry has the information criteria relative to the first. The
+/// likelihood-ratio test is added if the models are nested: all free parameters of one fit are also
+/// free in the other, and everything else is equal. `reason` explains a missing number, such as
+/// different records or weights, or a fit that did not converge.
 ///
-/// @throws InputError  a result has impossible counts
+/// @throws InputError  if a result contains impossible counts
 std::vector<std::optional<StoredModelChoice>> compared_models(const std::vector<Compared>& results);
 
 }  // namespace rigcal::report

@@ -11,7 +11,7 @@
 namespace rigcal::report {
 namespace {
 
-/// Whether two are the same parameter, each of its result.
+/// Returns true if `a` and `b`, from different results, describe the same parameter.
 template <typename A, typename B>
 bool same_parameter(const A& a, const B& b) {
   return a.name == b.name && a.scope == b.scope && a.level == b.level;
@@ -37,9 +37,10 @@ std::optional<StoredEstimate> estimate_of(const StoredFit& fit,
   return estimate;
 }
 
-/// Variance that the effects which both models leave out give the difference of two estimates of
-/// one rig: the effects are the same in both, and what they move both estimates by cancels. By the
-/// size that either result leaves them.
+/// Returns the variance of the difference between two estimates that is caused by effects missing
+/// from both models. Both results are for the same rig, so an effect is the same in both and
+/// cancels as far as it shifts the two estimates equally. The assumed sizes of the effects come
+/// from either result; the larger variance counts.
 double variance_by_effects(const StoredFit& first, const StoredFit& other,
                            const StoredComparedParameter& wanted) {
   const auto spread_of = [&](const StoredFit& fit) -> std::optional<calib::EffectSpread> {
@@ -51,8 +52,8 @@ double variance_by_effects(const StoredFit& first, const StoredFit& other,
   const auto a = spread_of(first);
   const auto b = spread_of(other);
   if (!a || !b) return 0.0;
-  // The change of the difference per unit of each effect of one, as its own moves less those of
-  // the other.
+  // Shift of the difference per unit of each effect: the shift in this estimate minus that in the
+  // other.
   const auto variance_by = [](const calib::EffectSpread& own, const calib::EffectSpread& beside) {
     Eigen::RowVectorXd moves = own.moves.row(0);
     for (std::size_t e = 0; e < own.keys.size(); ++e) {
@@ -65,15 +66,16 @@ double variance_by_effects(const StoredFit& first, const StoredFit& other,
   return std::max(variance_by(*a, *b), variance_by(*b, *a));
 }
 
-/// Whether a value is zero or not significantly different from it, so that percentages of it mean
-/// nothing.
+/// Returns true if a value is zero or not significantly different from zero, so that a percentage
+/// of it is meaningless.
 bool may_be_zero(const StoredEstimate& estimate) {
   if (estimate.value.value_or(0.0) == 0.0) return true;
   const Interval interval(estimate.ci95);
   return interval.ends && interval.ends->low <= 0.0 && interval.ends->high >= 0.0;
 }
 
-/// The difference, except for the adjustment that needs all parameters together.
+/// Computes the difference and its test, except the adjustment for multiple tests, which needs all
+/// parameters.
 std::optional<StoredDifference> difference_of(const std::optional<StoredEstimate>& first,
                                               const std::optional<StoredEstimate>& other,
                                               bool same_records, bool other_dates,
@@ -117,7 +119,7 @@ std::optional<StoredDifference> difference_of(const std::optional<StoredEstimate
   return result;
 }
 
-/// Judges all differences of one result from the first together.
+/// Adjusts the p-values for all differences between one result and the first.
 void judge_together(std::vector<StoredComparedParameter>& parameters, std::size_t result) {
   std::vector<double> p_values;
   std::vector<StoredDifference*> differences;
@@ -134,7 +136,7 @@ void judge_together(std::vector<StoredComparedParameter>& parameters, std::size_
   }
 }
 
-/// Every parameter that a result has, but for nuisance parameters, without values yet.
+/// Lists every parameter that occurs in any result, except nuisance parameters, without values.
 std::vector<StoredComparedParameter> all_parameters(const std::vector<Compared>& results) {
   std::vector<StoredComparedParameter> list;
   for (const Compared& compared : results) {
@@ -148,7 +150,8 @@ std::vector<StoredComparedParameter> all_parameters(const std::vector<Compared>&
   return list;
 }
 
-/// Dates of the conditions that a result was fitted to; none where one has no date.
+/// Returns the dates of the conditions that a result was fitted to; empty if any of them has no
+/// date.
 std::set<std::string> fitted_dates(const Compared& compared) {
   std::set<std::string> dates;
   for (const StoredCondition& condition : compared.result.conditions) {
@@ -159,7 +162,8 @@ std::set<std::string> fitted_dates(const Compared& compared) {
   return dates;
 }
 
-/// Whether two results are stated to be of different dates. Unknown where one has no date.
+/// Returns true if two results were recorded on different dates. Returns false if a date is
+/// missing.
 bool of_other_dates(const Compared& first, const Compared& other) {
   const auto a = fitted_dates(first);
   const auto b = fitted_dates(other);

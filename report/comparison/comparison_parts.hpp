@@ -11,69 +11,74 @@
 
 namespace rigcal::report {
 
-// Parts of a comparison, and functions that they share.
+// The parts of a comparison, and the functions that they have in common.
 
 inline constexpr double kSignificantLevel = 0.05;
 
-/// Reason of a difference between values that neither result estimates.
+/// The reason given when a parameter is known, not estimated, in both results.
 inline constexpr const char* kKnownInBoth = "known in both";
 
-/// Converged or stopped: its numbers may be shown.
+/// Returns true if the fit converged or was stopped, so that its values may be shown.
 inline bool is_usable(const StoredFit& fit) { return fit.status != calib::FitStatus::failed; }
 
-/// Input files of a result by hash, without the campaign file and an earlier fit.
+/// Returns the input files of a result by hash, without the campaign file and any earlier fit.
 std::map<std::string, std::string> record_hashes(const StoredFit& fit);
-/// Whether two results used at least one common file or published table, for fitting or for
+/// Returns true if two results used at least one common file or published table, for fitting or for
 /// scoring.
 bool share_records(const Compared& a, const Compared& b);
-/// Whether the estimates of two results used common data: a published table, or samples of one file
-/// (by SHA-256) within windows of both. Files of earlier versions do not name the fitted records;
-/// all inputs of such a file count as fitted.
+/// Returns true if the estimates of two results are based on common data: a published table, or
+/// samples of the same file (by SHA-256) in overlapping windows. Files from earlier versions do not
+/// name the fitted records, so all their inputs count as fitted.
 bool share_fitted_records(const Compared& a, const Compared& b);
 
-/// Estimates side by side, differences from the first.
+/// Lists the estimates side by side, with their differences from the first result.
 std::vector<StoredComparedParameter> compared_parameters(const std::vector<Compared>& results);
-/// For each result (nothing for the first): how many parameters that one of the two estimates were
-/// compared with the first, how many of these were tested, and why the others were not, in words.
+/// Counts, for each result, the parameters that were compared with the first result and those that
+/// were tested. A parameter is compared if at least one of the two results estimates it. The text
+/// explains why the other parameters were not tested. The entry for the first result is
+/// std::nullopt.
 ///
-/// @param parameters  of `results` results, from compared_parameters()
+/// @param parameters  from compared_parameters(), for `results` results
 std::vector<std::optional<StoredSignificance>> tested_parameters(
     const std::vector<StoredComparedParameter>& parameters, std::size_t results);
 
-/// A difference from the first result that a reader must see: significant, or not tested.
+/// A difference from the first result that the reader must see: it is significant, or it could not
+/// be tested.
 struct Change {
   std::string parameter, result;
-  std::string by;           ///< "+1.2 %", or "+0.3 mm" where the first value may be zero
-  std::optional<double> p;  ///< for all parameters together; absent if it was not tested
-  std::string reason;       ///< why not
+  std::string by;           ///< "+1.2 %", or "+0.3 mm" if the first value may be zero
+  std::optional<double> p;  ///< adjusted for all parameters; absent if the difference was not
+                            ///< tested
+  std::string reason;       ///< why the difference was not tested
 };
-/// The significant ones first, the surest before the others; then the others, the largest in
-/// standard errors first.
+/// Returns the significant changes first, in order of increasing p-value. Untested changes follow,
+/// largest in standard errors first.
 std::vector<Change> changes_of(const StoredComparison& comparison);
 
-/// Scores side by side.
+/// Lists the scores side by side.
 std::vector<StoredComparedCondition> compared_conditions(const std::vector<Compared>& results);
-/// Means over the conditions that the first and another result have; a sign test where the records
-/// are not shared and enough conditions differ.
+/// Computes mean scores over the conditions that the first result and another one have in common.
+/// Adds a sign test if the two have no common records and enough conditions differ.
 ///
-/// @param conditions  as compared_conditions() gives them, of `results`
+/// @param conditions  from compared_conditions(), for `results`
 std::vector<StoredComparedMetric> compared_metrics(
     const std::vector<StoredComparedCondition>& conditions, const std::vector<Compared>& results);
-/// Files and the results that used them.
+/// Lists the input files and the results that used them.
 std::vector<StoredComparedRecord> compared_records(const std::vector<Compared>& results);
-/// The error of an estimate with that by what differs between days.
+/// Adds the day-to-day standard error to the error of an estimate.
 metrics::EstimateError with_days(const metrics::EstimateError& own,
                                  const std::optional<double>& between_days_error);
 
-/// Estimates of the parameter of a key along dates and temperatures.
+/// Follows the parameter `key` over dates and temperatures.
 std::vector<StoredSeries> trends(const std::vector<Compared>& results, std::string_view key);
 
-/// A difference from the first result in percent; where that value is zero or not significantly
-/// different from it, in the unit. Empty where one has no value.
+/// Formats a difference from the first result in percent, or in the unit if the first value is zero
+/// or not significantly different from zero. Returns an empty string if a value is missing.
 std::string change_text(const StoredDifference& difference, const RowUnit& unit);
-/// Whether a parameter is worth a row: a result estimates it, or known values differ.
+/// Returns true if a parameter deserves a row: at least one result estimates it, or its known
+/// values differ.
 bool worth_a_row(const StoredComparedParameter& parameter);
-/// The unit in which the largest estimate of a parameter has few digits.
+/// Chooses the unit in which the largest estimate of a parameter needs few digits.
 RowUnit unit_of_estimates(const StoredComparedParameter& parameter);
 inline std::string parameter_label(const StoredComparedParameter& p) {
   return parameter_label(p.key, p.scope, p.level);

@@ -14,7 +14,7 @@ bool share_published_numbers(const Compared& a, const Compared& b) {
   });
 }
 
-/// Conditions that were fitted; none if the file does not name their records.
+/// Returns the fitted conditions; empty if the file does not name their records.
 std::vector<const StoredCondition*> fitted_conditions(const StoredFit& fit) {
   std::vector<const StoredCondition*> fitted;
   for (const StoredCondition& condition : fit.conditions) {
@@ -25,7 +25,8 @@ std::vector<const StoredCondition*> fitted_conditions(const StoredFit& fit) {
   return fitted;
 }
 
-/// Whether the windows of two conditions overlap. Without windows the whole record counts.
+/// Returns true if the windows of two conditions overlap. A condition without windows uses its
+/// whole record.
 bool overlap(const StoredCondition& a, const StoredCondition& b) {
   if (!a.windows_s || a.windows_s->empty() || !b.windows_s || b.windows_s->empty()) return true;
   for (const Range& one : *a.windows_s) {
@@ -84,7 +85,7 @@ std::vector<StoredComparedRecord> compared_records(const std::vector<Compared>& 
   std::vector<StoredComparedRecord> list;
   std::set<std::string> listed;
   for (const auto& [file, hash] : all) {
-    // The same content under another name is the same record.
+    // Files with equal contents are the same record, whatever their names.
     if (!listed.insert(hash).second) continue;
     StoredComparedRecord& record = list.emplace_back(StoredComparedRecord{file, hash, {}});
     for (const auto& each : hashes) record.in.push_back(each.contains(hash));

@@ -39,7 +39,7 @@ std::optional<StoredComparedScore> score_of(const StoredFit& fit, const std::str
   return score;
 }
 
-/// Tests whether one is the better more often than chance has it.
+/// Tests whether one result scores better than the other more often than chance would explain.
 void sign_test(bool shared, StoredMetricAgainst& result) {
   const int untied = result.better + result.worse;
   if (shared) {
@@ -87,7 +87,7 @@ std::vector<StoredComparedCondition> compared_conditions(const std::vector<Compa
               return e.id == condition.id && e.channel == name;
             });
         if (there) continue;
-        // Describes it like the first result that has the condition.
+        // The description is taken from the first result that has the condition.
         const auto first = std::find_if(results.begin(), results.end(), [&](const Compared& each) {
           return each.result.find(condition.id) != nullptr;
         });

@@ -61,7 +61,7 @@ std::vector<std::optional<StoredSignificance>> tested_parameters(
 }
 
 std::vector<Change> changes_of(const StoredComparison& comparison) {
-  std::vector<std::pair<double, Change>> changes;  // with their size in standard errors
+  std::vector<std::pair<double, Change>> changes;  // each with its size in standard errors
   for (const StoredComparedParameter& parameter : comparison.parameters) {
     const auto error_of_estimate = [&](std::size_t i) {
       const auto& estimate = parameter.estimates.at(i);

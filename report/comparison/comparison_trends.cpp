@@ -10,7 +10,7 @@ namespace {
 
 using datasets::Scope;
 
-/// Mean of a condition's quantity over those that an estimate of this scope and level rests on.
+/// Averages a quantity over the conditions that an estimate with this scope and level is based on.
 template <typename Quantity>
 std::optional<double> mean_over(const StoredFit& fit, const StoredParameter& parameter,
                                 Quantity quantity) {
@@ -28,7 +28,7 @@ std::optional<double> mean_over(const StoredFit& fit, const StoredParameter& par
   return count > 0 ? std::optional(sum / count) : std::nullopt;
 }
 
-/// Series of an estimate: estimates of equal name are points of one trend.
+/// Names the series of an estimate. Estimates with the same name are points on one trend.
 std::string series_of(const StoredFit& fit, const StoredParameter& parameter) {
   const std::string level = parameter.level.value_or("");
   if (parameter.scope == Scope::rig) return "rig";
@@ -37,8 +37,11 @@ std::string series_of(const StoredFit& fit, const StoredParameter& parameter) {
   return condition == nullptr ? "rig" : condition->leak_level.value_or("rig");
 }
 
-/// @param place   of a point
-/// @param shared  whether results of the series share records
+/// Fits a line to the points of a series.
+///
+/// @param place   member that gives the abscissa of a point
+///
+/// @param shared  whether results in the series have common records
 void find_trend(const std::vector<StoredTrendPoint>& points,
                 std::optional<double> StoredTrendPoint::*place, bool shared, StoredTrend& result) {
   std::vector<double> x, y;
@@ -64,7 +67,7 @@ void find_trend(const std::vector<StoredTrendPoint>& points,
   metrics::Trend trend;
   try {
     trend = metrics::weighted_trend(x, y, errors);
-  } catch (const std::domain_error&) {  // possible in files that somebody has edited
+  } catch (const std::domain_error&) {  // only possible in files that were edited by hand
     result.reason = "the errors of the estimates are too far apart for a line";
     return;
   }
@@ -82,7 +85,7 @@ void find_trend(const std::vector<StoredTrendPoint>& points,
 bool any_share_records(const std::vector<const Compared*>& results) {
   for (std::size_t i = 0; i < results.size(); ++i) {
     for (std::size_t j = i + 1; j < results.size(); ++j) {
-      // Levels of one fit have separate records.
+      // The levels of one fit have separate records.
       if (results[i] != results[j] && share_fitted_records(*results[i], *results[j])) return true;
     }
   }
@@ -102,7 +105,8 @@ StoredTrendPoint point_of(const Compared& compared, const StoredParameter& param
                                   });
   point.value = parameter.value;
   if (const auto error = interval_error(parameter)) {
-    const bool dated = point.day.has_value();  // each date has a day of its own
+    const bool dated = point.day.has_value();  // results from different dates differ in their day
+                                               // effects
     const metrics::EstimateError all =
         dated ? with_days(*error, parameter.between_days_error) : *error;
     if (dated && parameter.between_days_error)
@@ -118,7 +122,7 @@ StoredTrendPoint point_of(const Compared& compared, const StoredParameter& param
 
 std::vector<StoredSeries> trends(const std::vector<Compared>& results, std::string_view key) {
   std::vector<StoredSeries> list;
-  std::vector<std::vector<const Compared*>> sources;  // sources of each series
+  std::vector<std::vector<const Compared*>> sources;  // the results that contribute to each series
   for (const Compared& compared : results) {
     if (!is_usable(compared.result)) continue;
     for (const StoredParameter& parameter : compared.result.parameters) {

@@ -7,8 +7,9 @@
 
 #include "report/store/stored/stored_fit.hpp"
 
-// comparison.json, as docs/command-line.md describes it. Of lists with an entry per result, the
-// first, which the others are compared with, has null where an entry is about a difference.
+// Format of comparison.json, which docs/command-line.md documents. Lists marked shape (results)
+// have one entry per result. All results are compared with the first, so in lists of differences
+// the first entry is null.
 
 namespace rigcal::report {
 
@@ -25,7 +26,7 @@ struct StoredComparedResult {
   long residual_count = 0;
   std::optional<double> reduced_chi_square, independent_residuals;
   long conditions = 0;
-  std::optional<std::array<std::string, 2>> dates;  ///< first and last
+  std::optional<std::array<std::string, 2>> dates;  ///< first and last date
   std::optional<Range> temperature_k;
   std::string version, revision, command;
   RIGCAL_DESCRIBE(name, file, schema, status, verdict, message, campaign, model, synthetic, cost,
@@ -37,27 +38,27 @@ struct StoredEstimate {
   std::optional<double> value;
   bool fitted = false;
   std::optional<double> standard_error;
-  Later<std::optional<double>> degrees_of_freedom;  ///< for the standard error
+  Later<std::optional<double>> degrees_of_freedom;  ///< degrees of freedom of the standard error
   std::optional<Range> ci95;
   std::optional<calib::Identifiability> identifiability;
   bool at_bound = false;
-  Omittable<double> between_days_error;  ///< standard error by what differs between days
+  Omittable<double> between_days_error;  ///< standard error due to day-to-day differences
   RIGCAL_DESCRIBE(value, fitted, standard_error, degrees_of_freedom, ci95, identifiability,
                   at_bound, between_days_error)
 };
 
-/// An estimate minus that of the first result.
+/// An estimate minus the estimate in the first result.
 struct StoredDifference {
   std::optional<double> difference;
-  std::optional<double> percent;  ///< null where the first value may be zero
+  std::optional<double> percent;  ///< null if the first value may be zero
   std::optional<double> standard_error;
-  Later<std::optional<double>> degrees_of_freedom;  ///< for this error (Welch and Satterthwaite)
-  std::optional<double> p_value;                    ///< for this parameter alone
+  Later<std::optional<double>> degrees_of_freedom;  ///< for this error (Welch-Satterthwaite)
+  std::optional<double> p_value;                    ///< for this parameter only
   std::optional<double> p_value_of_all;             ///< adjusted for all parameters (Holm)
   std::optional<bool> significant;
-  std::optional<std::string> reason;  ///< why it is not tested
-  Omittable<bool> of_other_dates;     ///< the error includes what differs between days
-  /// Part of the error due to small effects that both models leave out.
+  std::optional<std::string> reason;  ///< why the difference was not tested
+  Omittable<bool> of_other_dates;     ///< the error includes day-to-day differences
+  /// Component of the error caused by small effects that both models leave out.
   Omittable<double> by_effects;
   RIGCAL_DESCRIBE(difference, percent, standard_error, degrees_of_freedom, p_value, p_value_of_all,
                   significant, reason, of_other_dates, by_effects)
@@ -72,7 +73,7 @@ struct StoredComparedParameter {
   RIGCAL_DESCRIBE(name, key, symbol, unit, scope, level, estimates, differences)
 };
 
-/// Number of parameters that were compared with the first result, tested and changed.
+/// How many parameters were compared with the first result, were tested, and have changed.
 struct StoredSignificance {
   int compared = 0, tested = 0, significant = 0;
   std::string text;
@@ -100,7 +101,8 @@ struct StoredComparedCondition {
   RIGCAL_DESCRIBE(id, channel, waveform, frequency_hz, leak_level, scores)
 };
 
-/// Means over the conditions that both have, and in how many of them the other is the better.
+/// Mean scores over the conditions that both results have, and the number of conditions in which
+/// the other result is better or worse.
 struct StoredMetricAgainst {
   int conditions = 0;
   double mean_of_first = 0.0, mean = 0.0;
@@ -117,10 +119,11 @@ struct StoredComparedMetric {
   RIGCAL_DESCRIBE(channel, metric, against_first)
 };
 
-/// Which model the records prefer.
+/// Result of the model comparison: which model the records prefer.
 struct StoredModelChoice {
   std::optional<double> delta_aic, delta_bic;
-  std::optional<std::string> smaller, larger;  ///< results, where one contains the other
+  std::optional<std::string> smaller, larger;  ///< names of the results, if one model contains the
+                                               ///< other
   std::optional<double> likelihood_ratio;
   std::optional<int> freedom;
   std::optional<double> p_value;
@@ -136,25 +139,26 @@ struct StoredComparedRecord {
   RIGCAL_DESCRIBE(file, sha256, in)
 };
 
-/// An estimate of a series, with its position.
+/// An estimate in a series, with its date and temperature.
 struct StoredTrendPoint {
   std::string result;
   std::optional<std::string> level;
   std::optional<double> day, temperature_k;
   std::optional<double> value, standard_error;
-  Later<std::optional<double>> degrees_of_freedom;  ///< for the error
+  Later<std::optional<double>> degrees_of_freedom;  ///< degrees of freedom of the standard error
   std::optional<Range> ci95;
-  Omittable<double> between_days_error;  ///< is in the standard error, too
+  Omittable<double> between_days_error;  ///< included in the standard error
   RIGCAL_DESCRIBE(result, level, day, temperature_k, value, standard_error, degrees_of_freedom,
                   ci95, between_days_error)
 };
 
 /// A line through the points, weighted by their errors.
 struct StoredTrend {
-  long points = 0;  ///< with an error and a position
+  long points = 0;  ///< points that have both an error and a position
   std::optional<double> slope, intercept, standard_error;
-  Later<std::optional<double>> degrees_of_freedom;  ///< for the slope's error
-  Later<std::optional<double>> widened;  ///< factor on that error by scatter about the line
+  Later<std::optional<double>> degrees_of_freedom;  ///< degrees of freedom of the slope's error
+  Later<std::optional<double>> widened;  ///< factor by which the slope's error is enlarged for
+                                         ///< scatter about the line
   std::optional<Range> ci95;
   std::optional<double> p_value, reduced_chi_square;
   std::optional<bool> significant;
@@ -189,7 +193,7 @@ struct StoredTrendPerKelvin : StoredTrend {
   }
 };
 
-/// Estimates of one thing along dates and temperatures.
+/// Estimates of one quantity over dates and temperatures.
 struct StoredSeries {
   std::string of;  ///< "rig" or a leak level
   std::vector<StoredTrendPoint> points;
@@ -199,7 +203,7 @@ struct StoredSeries {
 };
 
 struct StoredComparison {
-  std::string status = "done";  ///< or "failed": fewer than two usable results
+  std::string status = "done";  ///< "failed" if fewer than two results are usable
   std::string schema = kComparisonSchema;
   std::vector<StoredComparedResult> results;
   std::vector<StoredComparedParameter> parameters;

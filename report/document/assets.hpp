@@ -4,9 +4,9 @@
 
 namespace rigcal::report {
 
-/// A file of report/page/ or of the plot library, as it was built in.
+/// Returns a built-in file from report/page/ or from the plot library.
 ///
-/// @throws std::out_of_range  there is none of that name
+/// @throws std::out_of_range  if no built-in file has this name
 std::string_view asset(std::string_view name);
 
 }  // namespace rigcal::report

@@ -11,49 +11,50 @@
 
 #include "report/figure/svg.hpp"
 
-// A result as a document, independent of its output: only render_html() and render_terminal() know
-// about pages and terminals. Texts are plain; the renderers escape them.
+// A result as a document that does not depend on the output: only render_html() and
+// render_terminal() know about pages and terminals. Texts are plain; the renderers escape them.
 
 namespace rigcal::report::doc {
 
-/// Meaning of a result to its reader. It sets colour and mark; words always accompany it.
+/// What a result means to the reader. The state selects the colour and the mark; words always
+/// accompany it.
 enum class State { none, good, warn, bad };
-/// "○", "✓", "!", "✕"
+/// Returns "○", "✓", "!" or "✕".
 std::string_view mark(State state);
-/// Class of the style sheet: "none", "good", "warn", "bad".
+/// Returns the style-sheet class: "none", "good", "warn" or "bad".
 std::string_view css(State state);
 
-/// A number: the exact value, and the text with the digits that are significant (quantity.hpp).
+/// A number as its exact value and as text with the significant digits (quantity.hpp).
 struct Quantity {
   std::optional<double> exact;
   std::string text = "–";
-  std::string unit = {};  ///< empty if there is none, or if another column shows it
+  std::string unit = {};  ///< empty if dimensionless, or if another column shows the unit
 };
 struct Badge {
   State state = State::none;
   std::string words;
 };
-/// A badge without visible words; a screen reader reads them.
+/// A badge whose words are not visible and are read only by screen readers.
 struct Mark {
   State state = State::none;
   std::string words;
 };
 struct Link {
-  std::string to;  ///< "#id", or a file
+  std::string to;  ///< "#id" or a file
   std::string words;
 };
-/// Symbols and remarks in a lighter colour.
+/// Symbols and remarks, shown in a lighter colour.
 struct Soft {
   std::string words;
 };
 struct Strong {
   std::string words;
 };
-/// Text that a user types: a key, a command.
+/// Text for the user to type: a key or a command.
 struct Code {
   std::string words;
 };
-/// Text that only a page has room for, or that explains a picture.
+/// Text that is shown only on a page, where there is room for it, or that explains a picture.
 struct Aside {
   std::string words;
 };
@@ -73,12 +74,12 @@ struct Tile {
 
 struct Cell {
   Line line = {};
-  Lines paragraphs = {};               ///< after it, one below the other
-  Lines below = {};                    ///< smaller
-  std::vector<Tile> tiles = {};        ///< in place of a line
-  std::optional<Plot> picture = {};    ///< in place of a line, on the page alone
-  std::optional<double> shade = {};    ///< -1 to 1: colour of the cell
-  std::optional<double> portion = {};  ///< 0 to 1: filled fraction of a bar above `below`
+  Lines paragraphs = {};               ///< one below the other, after the line
+  Lines below = {};                    ///< in smaller print
+  std::vector<Tile> tiles = {};        ///< shown instead of a line
+  std::optional<Plot> picture = {};    ///< shown instead of a line, only on the page
+  std::optional<double> shade = {};    ///< background colour on a scale from -1 to 1
+  std::optional<double> portion = {};  ///< filled fraction of a bar above `below`, 0 to 1
 
   Cell() = default;
   // NOLINTBEGIN(google-explicit-constructor): most cells are a text, a number or a line
@@ -93,9 +94,9 @@ struct Column {
   enum class Kind { text, number, unit, words };
   std::string title;
   Kind kind = Kind::text;
-  int spare = 0;  ///< the column with the highest number is the first that a narrow terminal omits;
-                  ///< 0: never
-  std::string below = {};  ///< second line of the title, on the page
+  int spare = 0;  ///< a narrow terminal omits the column with the highest number first; 0: never
+                  ///< omitted
+  std::string below = {};  ///< second line of the title, shown on the page
 };
 
 struct Row {
@@ -105,16 +106,19 @@ struct Row {
 };
 
 struct Table {
-  /// A matrix has tiles of equal width; on a narrow screen each row of cards becomes a card.
+  /// A matrix has tiles of equal width. On a narrow screen each row of a cards table becomes a
+  /// card.
   enum class Shape { list, cards, matrix };
-  std::string label;  ///< for screen readers; the caption if there is none
+  std::string label;  ///< for screen readers; the caption is used if this is empty
   Line caption = {};
   Shape shape = Shape::list;
-  std::string style = {};   ///< class of the style sheet
+  std::string style = {};   ///< class in the style sheet
   std::size_t heading = 0;  ///< index of the column that names the row
-  std::size_t keys = 1;     ///< leading columns, repeated in every block of a narrow terminal
-  std::string file = {};    ///< file with the columns and rows that are omitted
-  std::size_t most = 1000;  ///< rows on a page, about twenty printed sheets; more are only counted
+  std::size_t keys = 1;     ///< number of leading columns to repeat in every block on a narrow
+                            ///< terminal
+  std::string file = {};    ///< file that contains the omitted columns and rows
+  std::size_t most = 1000;  ///< maximum number of rows on a page, about twenty printed sheets;
+                            ///< further rows are only counted
   std::vector<Column> columns = {};
   std::vector<Row> rows = {};
 };
@@ -123,11 +127,11 @@ struct Paragraph {
   enum class Tone {
     plain,
     reading,
-    source,  ///< small print, on the page alone
+    source,  ///< small print, only on the page
     small,   ///< small print
     problem,
-    screen,   ///< not in print
-    picture,  ///< how to read a picture, or where to click: on the page alone
+    screen,   ///< not printed
+    picture,  ///< how to read a picture, or where to click; only on the page
   };
   Line line;
   Tone tone = Tone::reading;
@@ -144,10 +148,10 @@ struct Heading {
 
 struct List {
   Lines items;
-  std::optional<State> state = {};  ///< colour of reasons and warnings
+  std::optional<State> state = {};  ///< colour for reasons and warnings
 };
 
-/// Names with values, of a test, a program or a range.
+/// Names and values that describe a test, a program or a range.
 struct Facts {
   enum class Shape { table, grid };
   std::string label;
@@ -156,7 +160,8 @@ struct Facts {
   Shape shape = Shape::table;
 };
 
-/// A plot is made only when it is drawn, so that the plots of a page are never in memory together.
+/// A figure. The plot is created only when it is drawn, so that not all plots of a page are in
+/// memory at the same time.
 struct Figure {
   std::function<Plot()> plot;
   std::string caption = {};
@@ -168,24 +173,25 @@ struct Gallery {
   std::vector<Figure> figures = {};
   bool wide = false;
 };
-/// Small pictures of many things of one kind, each with its verdict.
+/// Small pictures of similar items, each with its verdict.
 struct Tiles {
   std::vector<Tile> tiles;
 };
 
-/// The beginning of a page: the verdict as a badge, and a sentence with numbers.
+/// The beginning of a page: the verdict as a badge, and a sentence with the key numbers.
 struct Verdict {
   Badge badge;
   Line sentence;
   Lines reasons = {};
   std::size_t more = 0;  ///< number of further reasons
 };
-/// Everything that must be known before the result is signed.
+/// Everything the reader must know before signing the result.
 struct Doubts {
   Lines items;
-  std::optional<Line> warnings = {};  ///< the last item of a page; a terminal shows their section
+  std::optional<Line> warnings = {};  ///< last item on a page; a terminal shows the warnings
+                                      ///< section instead
 };
-/// Aspects that are judged separately, side by side.
+/// Separately judged aspects, shown side by side.
 struct Aspects {
   struct Aspect {
     Badge badge;
@@ -194,33 +200,35 @@ struct Aspects {
   };
   std::vector<Aspect> aspects;
 };
-/// Lines for signatures: what each one certifies, and the name.
+/// Signature lines: what each signature certifies, and the name.
 struct Signatures {
   std::vector<std::pair<std::string, std::string>> rows;
 };
-/// The command that produced a result.
+/// The command that produced the result.
 struct Command {
   std::string words;
 };
-/// A picture that the page's script replaces by one with zoom, from the series of its article.
+/// A picture that the page's script replaces with a zoomable plot, drawn from the series of the
+/// article.
 struct LivePlot {
   std::size_t number = 0;   ///< index of the plot in the series
-  std::string file;         ///< file name for saving it
+  std::string file;         ///< file name for saving the plot
   std::string description;  ///< text for screen readers
   std::string caption;
   std::function<Plot()> plot;
 };
-/// Series of the live plots of an article, as report.js reads them.
+/// Data series for the live plots of an article, in the format that report.js reads.
 struct LiveSeries {
   std::string json;
 };
-/// Many things of one kind, a line each. The page's script draws one when a reader opens its line.
+/// A list of similar items, one line each. The page's script draws an item when the reader opens
+/// its line.
 struct Sketches {
   struct Sketch {
     std::string id;
     Badge badge;
     Line line;
-    std::string json;  ///< what the script draws; empty if there is nothing to draw
+    std::string json;  ///< data for the script to draw; empty if there is nothing to draw
   };
   std::vector<Sketch> sketches;
 };
@@ -232,21 +240,21 @@ using Block = std::variant<Paragraph, Heading, List, Facts, Table, Figure, Galle
                            Doubts, Aspects, Signatures, Command, LivePlot, LiveSeries, Sketches,
                            Fold, Article, Rendered>;
 using Blocks = std::vector<Block>;
-/// Content that the reader can unfold; it is printed unfolded.
+/// Content that the reader can unfold. It is printed unfolded.
 struct Fold {
   std::string summary;
-  Blocks blocks;  // an initialiser here would need to know Block
+  Blocks blocks;  // no initialiser: it would need the complete type Block
   bool open = false;
   std::string style = {};  ///< class of the style sheet
 };
-/// Part of a section that links can point to.
+/// A subsection that links can point to.
 struct Article {
   std::string id;
   Line title;
   Blocks blocks;
 };
-/// Blocks that are a page already, and what a terminal shows of them: those of a long page would
-/// need most of its memory.
+/// Blocks that are already rendered for the page, and the blocks that a terminal shows instead.
+/// Rendering early saves memory: the blocks of a long page would need most of the memory.
 struct Rendered {
   std::string html;
   Blocks blocks;
@@ -256,16 +264,16 @@ struct Section {
   std::string id;
   std::string title;
   Blocks blocks = {};
-  std::string short_title = {};  ///< in lists of sections
+  std::string short_title = {};  ///< title in lists of sections
   bool always = false;  ///< a terminal shows it below the first page, whatever the style asks for
 };
 
-/// A result as its page and a terminal show it.
+/// A result in the form in which the page and the terminal show it.
 struct Document {
   Verdict verdict;
-  Blocks front = {};  ///< below the verdict, on the page that is signed
+  Blocks front = {};  ///< below the verdict, on the page to be signed
   std::vector<Section> sections = {};
-  bool synthetic = false;  ///< whether its records are synthetic
+  bool synthetic = false;  ///< whether the records are synthetic
 };
 
 }  // namespace rigcal::report::doc

@@ -2,7 +2,7 @@
 
 namespace rigcal::report::doc {
 
-/// A visitor of several lambdas.
+/// A visitor composed of several lambdas.
 template <typename... Cases>
 struct Overloaded : Cases... {
   using Cases::operator()...;

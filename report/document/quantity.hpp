@@ -9,15 +9,14 @@
 #include "report/json/range.hpp"
 #include "report/text/estimate_text.hpp"
 
-// The one rule for the digits of numbers on pages and terminals. A missing number or NaN is shown
-// as a dash.
+// All number formatting for pages and terminals. A missing number or NaN is shown as a dash.
 
 namespace rigcal::report::doc {
 
 /// A number that may be missing: null, NaN or absent.
 struct Number {
   std::optional<double> value;
-  // NOLINTBEGIN(google-explicit-constructor): each is such a number
+  // NOLINTBEGIN(google-explicit-constructor): these conversions are intended
   Number(double number) : Number(std::optional(number)) {}
   Number(const std::optional<double>& number) : value(number) {
     if (value && std::isnan(*value)) value.reset();
@@ -27,8 +26,8 @@ struct Number {
 
 /// An interval that may lack one or both ends.
 struct Interval {
-  std::optional<Range> ends;  ///< empty unless both ends are known
-  // NOLINTBEGIN(google-explicit-constructor): each is such an interval
+  std::optional<Range> ends;  ///< absent unless both ends are known
+  // NOLINTBEGIN(google-explicit-constructor): these conversions are intended
   Interval(const std::optional<Range>& range) : ends(range) {
     if (ends && !(std::isfinite(ends->low) && std::isfinite(ends->high))) ends.reset();
   }
@@ -37,26 +36,28 @@ struct Interval {
   double half_width() const { return 0.5 * (ends->high - ends->low); }
 };
 
-/// Number in a unit that a heading names for several numbers.
+/// Formats a number in a given unit, which a heading names for several numbers.
 Quantity in_unit(const Number& value_si, double si_per_unit, int digits = 5);
-/// Number in a suitable engineering unit: 0.0508 m is "50.8" with the unit "mm".
+/// Formats a number in a suitable engineering unit: 0.0508 m becomes "50.8" with the unit "mm".
 Quantity readable(const Number& value_si, std::string_view si_unit, int digits = 5);
-/// rho2, R or CCC: "0.9996", "> 0.9999".
+/// Formats rho2, R or CCC: "0.9996", "> 0.9999".
 Quantity agreement(const Number& value);
-/// Score, formatted for its metric: with enough decimals to distinguish it from 1; errors in
-/// percent have four digits.
+/// Formats a score for its metric, with enough decimals to distinguish it from 1. Errors in percent
+/// have four digits.
 Quantity score(std::string_view metric, const Number& value);
-/// Number with `count` decimals, never "-0.00".
+/// Formats a number with `count` decimals, never as "-0.00".
 Quantity decimals(const Number& value, int count);
 
-/// An estimate and its interval, formatted by estimate_text(). Without an interval its ends are
+/// An estimate and its interval, formatted by estimate_text(). Without an interval the ends are
 /// dashes.
 struct Estimate {
   Quantity value, low, high;
   bool has_interval = false;
-  Line interval() const;  ///< "84.96 … 85.06", or a dash
+  Line interval() const;  ///< Returns "84.96 … 85.06", or a dash.
 };
-/// @param bounds  bounds of the value, SI
+/// Formats an estimate with its interval.
+///
+/// @param bounds  range that the value cannot leave, SI
 Estimate estimate(const Number& value_si, const Interval& interval, double si_per_unit,
                   const Range& bounds = kAnywhere);
 

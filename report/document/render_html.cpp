@@ -17,7 +17,7 @@
 namespace rigcal::report::doc {
 namespace {
 
-/// A zlib stream, which browsers unpack.
+/// Compresses text as a zlib stream, which browsers can unpack.
 std::vector<std::uint8_t> deflated(const std::string& text) {
   uLongf size = compressBound(text.size());
   std::vector<std::uint8_t> packed(size);
@@ -161,7 +161,7 @@ std::string table_class(const Table& table) {
   return html_attribute("class", classes);
 }
 
-/// "2200 more, in fit.json."; empty if nothing was left out.
+/// Formats the count of omitted rows: "2200 more, in fit.json."; empty if none was omitted.
 std::string rest_of(std::size_t count, const std::string& file) {
   if (count == 0) return {};
   return fmt::format("<p class=\"source\">{} more{}.</p>\n", count,
@@ -214,7 +214,8 @@ void add(const Heading& heading, std::string& page) {
   page += fmt::format("<h{0}>{1}</h{0}>\n", heading.level, html(heading.line));
 }
 
-/// Most items of a list on a page; nobody reads more. Lists begin with the gravest.
+/// Maximum number of list items on a page; nobody reads more. Lists begin with the most serious
+/// items.
 constexpr std::size_t kMostItems = 100;
 
 void add(const List& list, std::string& page) {
@@ -356,7 +357,8 @@ void add(const LiveSeries& series, std::string& page) {
   page += "<script type=\"application/json\" class=\"series\">" + series.json + "</script>\n";
 }
 
-/// Sketches in one packed stream. Opening one of them unpacks the stream.
+/// Number of sketches in one compressed stream. The browser unpacks a whole stream to open one of
+/// its sketches.
 constexpr std::size_t kSketchesInStream = 40;
 
 void add(const Sketches& all, std::string& page) {

@@ -12,10 +12,12 @@
 namespace rigcal::report::doc {
 namespace {
 
-/// Columns of a cell of a table, beyond which it is broken: about what is read at a glance.
+/// Maximum width of a table cell in characters; longer text is wrapped. About as much as one reads
+/// at a glance.
 constexpr std::size_t kCellColumns = 48;
 
-/// Rows that the first table keeps, however many lines are left: it has the result itself.
+/// Minimum number of rows in the first table, however few lines are left: that table contains the
+/// result itself.
 constexpr std::size_t kFirstRows = 8;
 
 const char* colour_of(State state) {
@@ -35,8 +37,8 @@ const char* colour_of(State state) {
 /// Writes blocks one after the other.
 class Terminal {
  public:
-  /// @param most        rows of each table
-  /// @param is_brief  without the sentences that say how to read a result
+  /// @param most      maximum number of rows in each table
+  /// @param is_brief  omits the sentences that explain how to read a result
   Terminal(const Style& style, std::size_t most, bool is_brief)
       : style_(style), most_(most), is_brief_(is_brief) {}
 
@@ -52,7 +54,7 @@ class Terminal {
     add(section.blocks);
   }
   void add(const Blocks& blocks) {
-    const Heading* pending = nullptr;  // waits for what it is the heading of
+    const Heading* pending = nullptr;  // a heading is printed only once something follows it
     starts_section_ = true;
     for (const Block& block : blocks) {
       if (const auto* heading = std::get_if<Heading>(&block)) {
@@ -140,7 +142,7 @@ class Terminal {
 
   bool is_open(const Fold& fold) const { return fold.open || style_.everything; }
 
-  /// Whether anything of a block is for a terminal.
+  /// Returns true if a block has anything to show on a terminal.
   bool shows(const Block& block) const {
     return std::visit(
         Overloaded{
@@ -179,7 +181,7 @@ class Terminal {
       text_ += "\n" + in_colour(text_of(table.caption), "1") + "\n";
     else if (!starts_section_)
       text_ += "\n";
-    std::vector<std::size_t> used;  // columns with something for a terminal
+    std::vector<std::size_t> used;  // columns that have something to show on a terminal
     for (std::size_t i = 0; i < table.columns.size(); ++i) {
       const bool is_used = std::any_of(table.rows.begin(), table.rows.end(), [&](const Row& row) {
         return !lines_of(row.cells[i]).empty();
@@ -265,7 +267,7 @@ class Terminal {
     return text;
   }
 
-  /// "✓ 0.250", then what is below it.
+  /// Returns "✓ 0.250", followed by the lines below it.
   std::vector<std::string> lines_of(const Tile& tile) const {
     std::string first = text_of(tile.line);
     if (tile.badge.state != State::none)
@@ -305,10 +307,10 @@ class Terminal {
   bool is_brief_;
   std::string text_;
   bool is_first_table_ = true;
-  bool starts_section_ = true;  ///< nothing is below the last title yet
+  bool starts_section_ = true;  ///< nothing has been printed since the last title
 };
 
-/// Names the sections of a document that a terminal shows only if asked.
+/// Names the sections of a document that a terminal shows only on request.
 std::string further_sections(const Document& document) {
   std::string text;
   for (const Section& section : document.sections)
@@ -340,7 +342,8 @@ std::size_t lines_in(const std::string& text) {
 }  // namespace
 
 std::string render_terminal(const Document& document, const Style& style) {
-  constexpr std::size_t kFewestRows = 3;  // beside the sentences that say how to read them
+  constexpr std::size_t kFewestRows = 3;  // with fewer rows, the sentences that explain them are
+                                          // omitted
   const std::size_t all = std::numeric_limits<std::size_t>::max();
   std::string text = rendered(document, style, all, false);
   if (style.lines == 0) return text;

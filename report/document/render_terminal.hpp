@@ -7,10 +7,10 @@
 
 namespace rigcal::report::doc {
 
-/// The verdict and the page that is signed; every section with its tables, facts, lists and
-/// sentences, where the style asks for everything or there is no such page. Pictures stay on the
-/// page, and so do closed folds but for their warnings, unless the style asks for everything. Where
-/// the style limits the lines, every table is cut to as many rows as find room, and the rest is
+/// Renders the verdict and the page to be signed. If the style asks for everything, or the document
+/// has no such page, all sections follow with their tables, facts, lists and sentences. Pictures
+/// are not shown. Closed folds are reduced to their warnings unless the style asks for everything.
+/// If the style limits the number of lines, tables are shortened to fit, and the omitted rows are
 /// counted.
 std::string render_terminal(const Document& document, const Style& style);
 

@@ -6,8 +6,8 @@
 #include "calib/published/leak_table.hpp"
 #include "report/document/document.hpp"
 
-// The words for every state of a result. Each function is a switch without a default, so a state
-// without words does not compile.
+// The words for every state of a result. Each function is a switch without a default case, so that
+// the compiler rejects a state without words.
 
 namespace rigcal::report::doc {
 
@@ -17,7 +17,7 @@ Badge badge(calib::AspectState state);
 Badge badge(calib::Identifiability grade);
 Badge badge(calib::LeakGrade grade);
 Badge badge(datasets::LeakClass leak_class);
-/// Badge of an estimate.
+/// Returns the badge for an estimate.
 ///
 /// @param judged  whether the search converged
 Badge badge(const std::optional<calib::Identifiability>& grade, bool at_bound, bool judged);

@@ -97,7 +97,7 @@ Quantised quantised(std::span<const double> values) {
   Quantised result;
   if (low <= high) {
     result.low = low;
-    // Each divided alone: the difference of two doubles may be beyond the largest.
+    // Divided separately, because the difference between two doubles can overflow.
     result.step = high / kSteps - low / kSteps;
   }
   std::vector<std::uint8_t> bytes;

@@ -6,7 +6,7 @@
 
 #include <stdexcept>
 
-// The bytes of the font, by figure_font.S.
+// The bytes of the font, embedded by figure_font.S.
 extern "C" const char rigcal_figure_font_begin[];
 extern "C" const char rigcal_figure_font_end[];
 

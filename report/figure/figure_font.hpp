@@ -4,10 +4,11 @@
 
 namespace rigcal::report {
 
-/// A TrueType file with the font of the figures, for libraries that read it by its name alone. The
-/// font is built in; the file is one in memory, which ends with the process.
+/// Returns the path of a TrueType file with the font for figures, for libraries that can only read
+/// fonts from a file. The font is built in. The file exists only in memory and disappears with the
+/// process.
 ///
-/// @throws std::runtime_error  there is no memory for it
+/// @throws std::runtime_error  if no memory is available for it
 const std::string& figure_font_file();
 
 }  // namespace rigcal::report

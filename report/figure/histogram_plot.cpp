@@ -14,7 +14,8 @@ constexpr int kFewestBins = 11;
 constexpr int kMostBins = 41;
 constexpr int kNormalPoints = 81;
 
-/// By Freedman and Diaconis' rule. A record is too long to be sorted for two quartiles.
+/// Chooses the number of bins by the rule of Freedman and Diaconis. Uses selection instead of
+/// sorting, because a record is too long to sort just for two quartiles.
 int bins_of(double span, std::vector<double> values) {
   const auto quantile = [&values](std::size_t rank) {
     const auto at = values.begin() + static_cast<std::ptrdiff_t>(rank);

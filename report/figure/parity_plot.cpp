@@ -12,8 +12,8 @@
 namespace rigcal::report {
 namespace {
 
-constexpr int kCells = 72;  ///< along an axis: three pixels each
-/// Shades end at these shares of the fullest cell.
+constexpr int kCells = 72;  ///< number of cells along an axis, three pixels each
+/// Upper limits of the shades, as fractions of the fullest cell's count.
 constexpr std::array kShades{std::pair{0.05, "sparse"}, std::pair{0.35, "medium"},
                              std::pair{1.0, "dense"}};
 
@@ -29,7 +29,7 @@ struct Extent {
 
 Trace diagonal(const Extent& range, double shift, const std::string& style, std::string name) {
   Trace line = empty_trace(Trace::Kind::line, style, std::move(name));
-  // Cut where the line leaves the square of both axes.
+  // The line is clipped to the square that both axes span.
   const double first = std::max(range.low, range.low - shift);
   const double last = std::min(range.high, range.high - shift);
   if (first > last) return line;
@@ -82,7 +82,7 @@ Plot parity_plot(const std::string& title, std::span<const double> measured,
     const int at = std::clamp(static_cast<int>((value / si - range.low) / cell), 0, kCells - 1);
     return static_cast<std::size_t>(at);
   };
-  std::vector<std::size_t> counts(std::size_t{kCells} * kCells, 0);  // by columns
+  std::vector<std::size_t> counts(std::size_t{kCells} * kCells, 0);  // in column order
   for (std::size_t i = 0; i < size; ++i)
     if (there(i)) ++counts[index(measured[i]) * kCells + index(simulated[i])];
   const std::size_t fullest = *std::max_element(counts.begin(), counts.end());

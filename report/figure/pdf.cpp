@@ -20,12 +20,12 @@ namespace {
 constexpr double kPointsPerPixel = 0.75;
 constexpr float kBandOpacity = 0.22F;
 
-/// Drawing style of a class in figure.css.
+/// How lines and areas with a class from figure.css are drawn.
 struct Ink {
   std::string_view style;
   unsigned rgb;
   double width;
-  std::array<HPDF_UINT16, 2> dash;  ///< points on and off; zero: solid
+  std::array<HPDF_UINT16, 2> dash;  ///< lengths of dash and gap in points; zero: solid
 };
 constexpr std::array kInks{
     Ink{"grid", 0xcccccc, 0.6, {}},     Ink{"level", 0x444444, 1.0, {3, 2}},
@@ -43,9 +43,10 @@ const Ink& ink_of(const std::string& style) {
   return found == kInks.end() ? kOther : *found;
 }
 
-/// Lets readers find and copy the text. Its codes are UTF-16; the map by which a reader is to know
-/// that, libharu (2.3) writes with the operators of a map to glyphs, which readers refuse. In place
-/// and of the same length, because the table at the end of the file counts its bytes.
+/// Makes the text searchable, so that PDF readers can find and copy it. The character codes are
+/// UTF-16. libharu (2.3) writes the map from codes to Unicode with the operators of a glyph map,
+/// which PDF readers reject. The map is overwritten in place with one of the same length, because
+/// the table at the end of the file refers to byte positions.
 void make_searchable(std::string& document) {
   const std::size_t begin = document.find("1 beginnotdefrange");
   constexpr std::string_view kEnd = "endcidrange";
@@ -58,12 +59,13 @@ void make_searchable(std::string& document) {
   document.replace(begin, map.size(), map);
 }
 
-/// A document of one page, and the first error that the library reports.
+/// A document with one page, which keeps the first error that the library reports.
 class PdfPage {
  public:
   PdfPage(double width, double height) : height_(height) {
     if (!document_) throw std::runtime_error("PDF: out of memory");
-    // Metadata are the CMap alone, which make_searchable() reads.
+    // Metadata are not compressed: they consist only of the CMap, which make_searchable() must
+    // read.
     HPDF_SetCompressionMode(document_.get(), HPDF_COMP_TEXT | HPDF_COMP_IMAGE);
     page_ = HPDF_AddPage(document_.get());
     HPDF_Page_SetWidth(page_, real(width));

@@ -6,11 +6,11 @@
 
 namespace rigcal::report {
 
-/// A picture as a PDF of one page, as large as the picture: a pixel is 0.75 points. Lines stay
-/// lines; text is DejaVu Sans, of which the letters in use are embedded. The same plot gives the
-/// same bytes.
+/// Converts a picture to a PDF with a single page of the same size; a pixel is 0.75 points. Lines
+/// remain vector graphics. Text is set in DejaVu Sans, with only the characters in use embedded.
+/// The same plot always gives the same bytes.
 ///
-/// @throws std::runtime_error  memory ran out, or the PDF library met an error
+/// @throws std::runtime_error  if memory runs out or the PDF library reports an error
 std::string pdf(const Plot& plot);
 
 }  // namespace rigcal::report

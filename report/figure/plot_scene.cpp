@@ -18,8 +18,8 @@ struct Axis {
   double low = 0.0;
   double high = 1.0;
   bool logarithmic = false;
-  bool whole = false;  ///< counts
-  double start = 0.0;  ///< pixel of `low`
+  bool whole = false;  ///< only whole numbers: counts
+  double start = 0.0;  ///< pixel position of `low`
   double length = 0.0;
 
   double scaled(double value) const { return logarithmic ? std::log10(value) : value; }
@@ -39,11 +39,11 @@ void widen(Axis& axis, const std::vector<double>& values, bool& any) {
 
 void leave_room(Axis& axis, double share) {
   const double span = axis.high - axis.low;
-  // On a logarithmic axis the value 1 is at zero, where a series that differs by rounding alone is
-  // constant, too.
+  // On a logarithmic axis the value 1 maps to zero. A size of at least 1 makes a series constant if
+  // it differs only by rounding there.
   const double size =
       std::max({std::abs(axis.high), std::abs(axis.low), axis.logarithmic ? 1.0 : 0.0});
-  // A constant still needs an axis around it.
+  // Even a constant needs an axis with some range.
   const double room = span > 1e-12 * size ? share * span : (size > 0.0 ? 0.1 * size : 1.0);
   axis.low -= room;
   axis.high += room;
@@ -68,7 +68,7 @@ std::vector<Tick> ticks_of(const Axis& axis, int count) {
     return ticks;
   }
   if (axis.logarithmic) {
-    // Less than two decades need the twos and fives too.
+    // If the axis spans less than two decades, it also needs ticks at twos and fives.
     const bool close = axis.high - axis.low < 2.0;
     for (double decades = std::max(1.0, std::ceil((axis.high - axis.low) / count)); decades >= 1.0;
          decades -= 1.0) {
@@ -83,7 +83,7 @@ std::vector<Tick> ticks_of(const Axis& axis, int count) {
       }
       if (ticks.size() > 1) return ticks;
     }
-    // So short an interval is nearly linear.
+    // Over such a short interval a logarithmic axis is almost linear.
     ticks.clear();
     for (const double value :
          round_ticks(std::pow(10.0, axis.low), std::pow(10.0, axis.high), count))
@@ -249,12 +249,12 @@ void add_legend(const Plot& plot, std::vector<Shape>& shapes) {
 std::vector<double> round_ticks(double low, double high, int count) {
   std::vector<double> ticks;
   const double raw = (high - low) / std::max(1, count);
-  // Ticks that are closer than the resolution of numbers of this size would never reach the end.
+  // If ticks were closer than the floating-point resolution, the loop would never reach the end.
   constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
   if (!(raw > kRounding * std::max(std::abs(low), std::abs(high))) || !std::isfinite(raw))
     return ticks;
   const double power = std::pow(10.0, std::floor(std::log10(raw)));
-  // The nearest of 1, 2, 5 and 10 on a scale of ratios: bounds are the geometric means.
+  // Picks the nearest of 1, 2, 5 and 10 on a logarithmic scale; the boundaries are geometric means.
   const double step = power * (raw <= std::sqrt(2.0) * power    ? 1.0
                                : raw <= std::sqrt(10.0) * power ? 2.0
                                : raw <= std::sqrt(50.0) * power ? 5.0

@@ -8,23 +8,23 @@
 namespace rigcal::report {
 
 struct Point {
-  double x = 0.0;  ///< NaN: the pen is lifted
+  double x = 0.0;  ///< NaN lifts the pen
   double y = 0.0;
 };
 
-/// A piece of a picture, in its pixels from the upper left corner.
+/// A graphic element in pixels from the upper left corner of the picture.
 struct Shape {
   enum class Kind { line, area, dots, cells, text };
   enum class Anchor { start, middle, end };
   Kind kind = Kind::line;
-  std::string style;  ///< class of the style sheet
+  std::string style;  ///< class in the style sheet
   std::vector<Point> points;
-  std::string text;  ///< at the first point
+  std::string text;  ///< placed at the first point
   Anchor anchor = Anchor::start;
-  double side = 0.0;  ///< side of cells: squares about the points
+  double side = 0.0;  ///< side length of the square cells around the points
 };
 
-/// The shapes of a plot from bottom to top: grid, ticks and labels, levels, traces, legend.
+/// Returns the shapes of a plot from bottom to top: grid, ticks and labels, levels, traces, legend.
 std::vector<Shape> plot_scene(const Plot& plot);
 
 inline constexpr double kDotRadius = 2.2;

@@ -8,7 +8,7 @@
 namespace rigcal::report {
 namespace {
 
-/// `phase` plus the whole turns that bring it next to `neighbour`.
+/// Adds whole turns to `phase` until it is as close as possible to `neighbour`.
 double near(double phase, double neighbour) {
   return neighbour + std::remainder(phase - neighbour, 360.0);
 }
@@ -52,7 +52,7 @@ ResponseCurves coherent(const ResponseCurves& all) {
   kept.model.clear();
   std::size_t at = 0;
   for (const metrics::ResponsePoint& measured : all.record) {
-    // Both are of the same drive, so that a frequency is the same number in both.
+    // Both responses belong to the same drive, so equal frequencies are bitwise equal.
     while (at < all.model.size() && all.model[at].frequency_hz < measured.frequency_hz) ++at;
     if (at == all.model.size()) break;
     const metrics::ResponsePoint& simulated = all.model[at];

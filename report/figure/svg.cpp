@@ -12,8 +12,8 @@
 namespace rigcal::report {
 namespace {
 
-/// Same text as "{:.1f}", but fast enough for a path of ten thousand points. Values that may be
-/// half way between two tenths are left to fmt, which knows all digits.
+/// Writes the same text as "{:.1f}", but fast enough for a path with ten thousand points. Values
+/// that may be halfway between two tenths are left to fmt, which works with all digits.
 void put_tenths(std::string& out, double value) {
   constexpr double kLargest = 1e9;
   constexpr double kNearHalf = 1e-3;
@@ -33,7 +33,7 @@ void put_tenths(std::string& out, double value) {
   out += static_cast<char>('0' + rounded % 10);
 }
 
-/// A tenth of a pixel is finer than any screen.
+/// Coordinates are rounded to a tenth of a pixel, which is finer than any screen.
 void put_path(std::string& out, const Shape& shape, const char* css, const char* end) {
   out += fmt::format("<path class=\"{}{}\" d=\"", css, shape.style);
   bool pen_down = false;

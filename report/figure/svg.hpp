@@ -6,19 +6,19 @@
 
 namespace rigcal::report {
 
-/// A trace of a picture, in the units of its axes.
+/// A trace in a picture, in the units of the axes.
 struct Trace {
   enum class Kind { line, points, bars, band, intervals, cells };
-  std::string name;   ///< in the legend; none if empty
-  std::string style;  ///< class of the style sheet: "measured", "model", "residual", ...
+  std::string name;   ///< shown in the legend; no entry if empty
+  std::string style;  ///< class in the style sheet: "measured", "model", "residual", ...
   Kind kind = Kind::line;
   std::vector<double> x;
-  std::vector<double> y;      ///< NaN: a gap
-  std::vector<double> upper;  ///< for a band or intervals; `y` is the lower edge
-  double cell = 0.0;          ///< for cells: side of the squares about the points
+  std::vector<double> y;      ///< NaN leaves a gap
+  std::vector<double> upper;  ///< upper edge of a band or of intervals; `y` is the lower edge
+  double cell = 0.0;          ///< side length of the square cells around the points
 };
 
-/// A trace that has no points yet.
+/// Returns a trace without points.
 inline Trace empty_trace(Trace::Kind kind, std::string style, std::string name = {}) {
   Trace trace;
   trace.kind = kind;
@@ -35,19 +35,20 @@ struct Plot {
   double height = 200.0;
   bool log_x = false;
   bool log_y = false;
-  bool bare = false;       ///< traces alone, from edge to edge: one of many small pictures
-  bool whole_x = false;    ///< x counts: ticks at whole numbers, room beside the first and last
-  bool same_axes = false;  ///< one range for both axes
+  bool bare = false;       ///< only the traces, from edge to edge, as one of many small pictures
+  bool whole_x = false;    ///< x counts items: ticks at whole numbers, room beside the first and
+                           ///< last
+  bool same_axes = false;  ///< both axes have the same range
   std::vector<Trace> traces;
   std::vector<double> levels;  ///< dashed horizontal lines, in units of y
 };
 
-/// A picture as SVG, coloured by the style sheet of the page. Every text is escaped.
+/// Renders a picture as SVG. Colours come from the style sheet of the page. All text is escaped.
 ///
-/// @param style_sheet  included in a separate file; none if empty
+/// @param style_sheet  embedded for use as a separate file; omitted if empty
 std::string svg(const Plot& plot, const std::string& style_sheet = {});
 
-/// Round numbers that divide [low, high] into about `count` parts.
+/// Returns round numbers that divide [low, high] into about `count` intervals.
 std::vector<double> round_ticks(double low, double high, int count);
 
 }  // namespace rigcal::report

@@ -11,7 +11,7 @@
 namespace rigcal::report {
 namespace {
 
-/// A line of a static picture has about two points per pixel.
+/// A line in a static picture has about two points per pixel.
 constexpr std::size_t kStaticPoints = 1200;
 
 bool has_numbers(const std::vector<double>* values) {
@@ -19,7 +19,7 @@ bool has_numbers(const std::vector<double>* values) {
                                           [](double value) { return std::isfinite(value); });
 }
 
-/// The unit that suits the largest value; flows always in L/min.
+/// Chooses the unit that suits the largest value; flows are always in L/min.
 void set_unit(TimePlot& plot, std::string_view si_unit) {
   double size = 0.0;
   for (const TimeLine& line : plot.lines) size = std::max(size, largest(*line.values));
@@ -108,7 +108,7 @@ std::vector<TimePlot> time_plots(const Table& table) {
 
 namespace {
 
-/// A band varies slowly where it does not follow a signal.
+/// Number of points in a band that does not follow a signal; such a band varies slowly.
 constexpr std::size_t kBandPoints = 300;
 
 Trace prediction_band(const TimePlot& plot, const std::vector<double>& time_s) {
@@ -129,8 +129,8 @@ Trace prediction_band(const TimePlot& plot, const std::vector<double>& time_s) {
   return band;
 }
 
-/// Whether a band that follows a curve is drawn: only if it is wider than the line. The script of
-/// the page shows it after zooming in.
+/// Returns true if a band around a curve should be drawn: only if it is wider than the line. The
+/// script on the page shows narrower bands after zooming in.
 bool shows_band(const TimePlot& plot) {
   constexpr double kLeastShare = 0.01;
   return plot.prediction_middle == nullptr ||
@@ -155,7 +155,7 @@ Plot picture(const TimePlot& plot, const Table& table, const std::string& condit
     trace.y = scaled(thinned(*line.values, thin), plot.si);
     result.traces.push_back(std::move(trace));
   }
-  // Measured signals are on top, bands below everything.
+  // Measured signals are drawn on top, and bands below everything.
   std::reverse(result.traces.begin(), result.traces.end());
   if (plot.prediction_sd != nullptr && shows_band(plot))
     result.traces.insert(result.traces.begin(), prediction_band(plot, time_s));

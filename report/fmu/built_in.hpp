@@ -5,12 +5,12 @@
 
 namespace rigcal::report {
 
-// Files of every FMU, built into the program.
+// The files that every FMU contains, built into the program.
 
-/// The sources by their paths within sources/, sorted.
+/// Returns the sources, sorted by their path within sources/.
 const std::map<std::string_view, std::string_view>& fmu_sources();
 
-/// The shared library compiled from them.
+/// Returns the shared library compiled from these sources.
 std::string_view fmu_library();
 
 }  // namespace rigcal::report

@@ -8,9 +8,10 @@
 
 namespace rigcal::report {
 
-/// documentation/index.html: origin of the values, the variables, and how to compile the sources.
+/// Writes documentation/index.html: where the values come from, the variables, and how to compile
+/// the sources.
 ///
-/// @param compile  the command
+/// @param compile  the command that compiles the sources
 std::string fmu_documentation(const FmuRequest& request, const std::vector<FmuVariable>& variables,
                               const std::string& compile);
 

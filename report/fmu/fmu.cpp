@@ -9,15 +9,15 @@
 #include "report/fmu/documentation.hpp"
 #include "report/fmu/model_description.hpp"
 
-// The bytes of the library, by fmu_library.S.
+// The bytes of the library, embedded by fmu_library.S.
 extern "C" const char rigcal_fmu_library_begin[];
 extern "C" const char rigcal_fmu_library_end[];
 
 namespace rigcal::report {
 namespace {
 
-// Folder in which an importer searches the library. FMI 2.0 names those of Intel's processors; for
-// others the name of FMI 3.0 is used.
+// Folder in which an importer looks for the library. FMI 2.0 only names folders for Intel
+// processors; for other processors the FMI 3.0 name is used.
 #if defined(__x86_64__)
 constexpr const char* kPlatform = "linux64";
 #elif defined(__i386__)
@@ -36,7 +36,7 @@ std::vector<std::string> files_to_compile() {
   return names;
 }
 
-/// The GUID depends on the content: any different byte gives another one.
+/// Derives the GUID from the content, so that changing any byte changes the GUID.
 std::string guid_of(const std::vector<FmuFile>& files) {
   std::string all;
   for (const FmuFile& file : files) all += file.path + ":" + sha256_of_text(file.content) + "\n";

@@ -8,9 +8,9 @@
 
 namespace rigcal::report {
 
-/// modelDescription.xml of FMI 2.0.
+/// Writes modelDescription.xml according to FMI 2.0.
 ///
-/// @param sources  names of the files to compile, in the folder sources/
+/// @param sources  names of the files to compile, relative to sources/
 std::string model_description(const FmuRequest& request, const std::vector<FmuVariable>& variables,
                               std::size_t indicators, const std::vector<std::string>& sources);
 

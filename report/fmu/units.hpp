@@ -6,7 +6,7 @@ namespace rigcal::report {
 
 /// A unit of the model as a product of powers of SI base units.
 struct BaseUnits {
-  std::string_view unit;  ///< as in a ParameterSpec
+  std::string_view unit;  ///< spelled as in ParameterSpec
   int kg = 0;
   int m = 0;
   int s = 0;
@@ -14,7 +14,7 @@ struct BaseUnits {
   int rad = 0;
 };
 
-/// @throws std::invalid_argument  the table has no such unit
+/// @throws std::invalid_argument  if the table does not contain the unit
 const BaseUnits& base_units(std::string_view unit);
 
 }  // namespace rigcal::report

@@ -73,7 +73,7 @@ void add_inputs(const ExportedRig& rig, std::vector<FmuVariable>& variables) {
                               rig.values["tank_pressure"]));
 }
 
-/// Whether the sampled controller's tick sets a state.
+/// Returns true if the tick of the sampled controller sets this state.
 bool of_sampled_loop(const Layout& layout, std::size_t state) {
   const int i = static_cast<int>(state);
   return layout.sampled() && (i == layout.held || i == layout.integral || i == layout.filter);
@@ -85,7 +85,7 @@ void add_states(const ExportedRig& rig, const Layout& layout, std::vector<FmuVar
     FmuVariable variable;
     variable.name = states[i].name;
     variable.reference = model::kStateReference + static_cast<unsigned>(i);
-    // The first states are the plant's, which are outputs too.
+    // The plant states come first; they are also outputs.
     if (static_cast<int>(i) < layout.plant_states) variable.causality = Causality::output;
     variable.unit = states[i].unit;
     variable.meaning = states[i].meaning;
@@ -99,7 +99,9 @@ void add_states(const ExportedRig& rig, const Layout& layout, std::vector<FmuVar
 void add_outputs(const ExportedRig& rig, std::vector<FmuVariable>& variables) {
   for (const OutputRow& row : kOutputs) {
     const bool drives = row.output == Output::command || row.output == Output::pilot_pressure;
-    if (drives && rig.rig.controller == model::ControllerKind::none) continue;  // it is the input
+    if (drives && rig.rig.controller == model::ControllerKind::none)
+      continue;  // without a controller this is
+                 // the input
     if (!has_output(rig.values, row.output)) continue;
     const bool is_state = std::any_of(variables.begin(), variables.end(),
                                       [&](const auto& each) { return each.name == row.name; });

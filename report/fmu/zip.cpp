@@ -10,7 +10,8 @@
 namespace rigcal::report {
 namespace {
 
-constexpr zip_uint16_t kDate = 0x0021;  ///< 1980-01-01, the first day of the format
+constexpr zip_uint16_t kDate = 0x0021;  ///< 1980-01-01, the earliest date that the format can
+                                        ///< represent
 constexpr zip_uint32_t kReadable = 0100644U << 16U;
 
 [[noreturn]] void fail(const std::string& what, const char* why) {
@@ -26,13 +27,13 @@ struct Free {
 using Source = std::unique_ptr<zip_source_t, Free>;
 
 void add(zip_t* archive, const FmuFile& file) {
-  // Borrowed: `files` outlives the archive.
+  // The content is borrowed: `files` outlives the archive.
   Source source(zip_source_buffer(archive, file.content.data(), file.content.size(), 0));
   if (!source) fail(file.path, zip_strerror(archive));
   const zip_int64_t index =
       zip_file_add(archive, file.path.c_str(), source.get(), ZIP_FL_ENC_UTF_8);
   if (index < 0) fail(file.path, zip_strerror(archive));
-  static_cast<void>(source.release());  // the archive's now
+  static_cast<void>(source.release());  // the archive now owns the source
   const auto place = static_cast<zip_uint64_t>(index);
   if (zip_file_set_dostime(archive, place, 0, kDate, 0) != 0 ||
       zip_set_file_compression(archive, place, ZIP_CM_DEFLATE, 9) != 0 ||
@@ -62,7 +63,8 @@ std::string zipped(const std::vector<FmuFile>& files) {
   if (!memory) fail("memory", zip_error_strerror(&error));
   std::unique_ptr<zip_t, Discard> archive(zip_open_from_source(memory.get(), ZIP_TRUNCATE, &error));
   if (!archive) fail("memory", zip_error_strerror(&error));
-  zip_source_keep(memory.get());  // one for the archive, which frees its own; one to read from
+  zip_source_keep(memory.get());  // the archive releases its own reference; this one keeps the
+                                  // bytes for reading
   for (const FmuFile& file : files) add(archive.get(), file);
   if (zip_close(archive.get()) != 0) fail("its end", zip_strerror(archive.get()));
   static_cast<void>(archive.release());

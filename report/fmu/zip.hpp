@@ -7,9 +7,10 @@
 
 namespace rigcal::report {
 
-/// A ZIP archive of files. The same files give the same bytes, since it has no time stamps.
+/// Packs files into a ZIP archive. The same files always give the same bytes, because all entries
+/// have the same time stamp.
 ///
-/// @throws WriteError  libzip fails (in its words)
+/// @throws WriteError  if libzip fails, with the message from libzip
 std::string zipped(const std::vector<FmuFile>& files);
 
 }  // namespace rigcal::report

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 void require_other_folders(const BatchRequest& request, const fs::path& out) {
   for (const fs::path& earlier : request.earlier) {
-    std::error_code unknown;  // --out need not be there yet
+    std::error_code unknown;  // the error is ignored: --out may not exist yet
     if (fs::equivalent(earlier, out, unknown))
       throw UsageError(fmt::format(
           "batch: --earlier {} is where the results go; expected the --out of another batch",
@@ -30,7 +30,7 @@ Compared read_fit_of(const fs::path& folder) {
   return load_compared_file(folder / "fit.json", folder.string());
 }
 
-/// Adds the results of earlier batches for a rig; `unread` lists those that could not be read.
+/// Adds the results for a rig from earlier batches; `unread` lists those that could not be read.
 void add_earlier(const BatchRequest& request, RigRun& run) {
   for (const fs::path& batch : request.earlier) {
     const fs::path folder = batch / run.folder;
@@ -75,14 +75,14 @@ std::vector<std::pair<std::string, std::string>> options_of(const BatchRequest& 
           {"earlier", fmt::format("{}", fmt::join(earlier, ", "))}};
 }
 
-/// The campaign files that can be read, and the earlier results.
+/// Lists the readable campaign files and the earlier results.
 std::vector<InputFile> inputs_of(const std::vector<RigRun>& runs) {
   std::vector<InputFile> inputs;
   const auto add = [&](const fs::path& file) {
     try {
       inputs.push_back({file.string(), sha256_of_file(file)});
     } catch (const InputError&) {
-      // The rig's own row says so.
+      // The row of the rig reports this error.
     }
   };
   for (const RigRun& run : runs) {
@@ -92,7 +92,7 @@ std::vector<InputFile> inputs_of(const std::vector<RigRun>& runs) {
   return inputs;
 }
 
-/// A note for each rig that has ended, in the order of their ends.
+/// Prints a note for each rig as its run ends.
 class EndedRigs {
  public:
   EndedRigs(const JobTerms& terms, std::size_t all) : terms_(terms), all_(all) {}

@@ -28,7 +28,7 @@ void CheckpointFile::finish(calib::FitStatus status) {
 }
 
 void CheckpointFile::write() {
-  constexpr int kShare = 20;  // one part of writing to so many of fitting
+  constexpr int kShare = 20;  // time for fitting relative to time for writing
   const auto began = Clock::now();
   write_file_atomically(file_, checkpoint_text(*unwritten_, provenance_));
   const auto ended = Clock::now();

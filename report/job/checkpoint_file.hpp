@@ -10,21 +10,21 @@
 
 namespace rigcal::report {
 
-/// File in the result folder from which a fit can continue after a kill.
+/// A file in the result folder from which a fit can resume after it was killed.
 class CheckpointFile {
  public:
-  /// @param provenance  of the fit; borrowed
+  /// @param provenance  provenance of the fit; borrowed
   CheckpointFile(const std::filesystem::path& out, const Provenance& provenance);
 
-  /// The checkpoint of an earlier run of the same fit; empty where there is none.
+  /// Reads the checkpoint that an earlier run of the same fit left; std::nullopt if there is none.
   ///
-  /// @throws InputError  it is one of another fit, or none at all
+  /// @throws InputError  if the file belongs to another fit or is not a checkpoint
   std::optional<calib::Checkpoint> read() const;
 
-  /// Writes a checkpoint unless that would take more than a twentieth of the time.
+  /// Writes a checkpoint, or postpones it if writing would take more than a twentieth of the time.
   void keep(const calib::Checkpoint& checkpoint);
 
-  /// Writes the withheld state if the fit was stopped; else removes the file.
+  /// If the fit was stopped, writes the postponed checkpoint; otherwise removes the file.
   void finish(calib::FitStatus status);
 
  private:

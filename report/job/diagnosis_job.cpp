@@ -23,7 +23,8 @@ namespace {
 using datasets::Campaign;
 using datasets::Condition;
 
-/// Warns of records outside the range of the fit, which is checked with the leak that was found.
+/// Warns about records outside the range covered by the fit. The check uses the leak that was
+/// found.
 void warn_of_validity(const Campaign& campaign, const Validity& covered,
                       diagnosis::Diagnosis& found) {
   const int leak = model::parameter_index(campaign.rig.plant, "leakage_coefficient");
@@ -39,13 +40,14 @@ void warn_of_validity(const Campaign& campaign, const Validity& covered,
     own.value = std::max(0.0, record.estimate.coefficient);
     own.fitted = true;
     Validity asked = coverage(alone, {}, values, {alone.conditions.front().use});
-    // The leak is the unknown here, and a fit to healthy records covers none.
+    // The leak is the unknown here, and a fit to healthy records does not cover any leak.
     asked.leakage_coefficient.reset();
     for (const std::string& text : outside(asked, covered)) record.warnings.push_back(text);
   }
 }
 
-/// Warns of doubtful recordings: beside the average of a single one, or once for many.
+/// Warns about doubtful recordings. A doubt about a single average is shown with it; a doubt about
+/// several is shown once for all.
 void warn_of_recordings(const std::vector<datasets::Record>& averages,
                         diagnosis::Diagnosis& found) {
   for (const auto& warning : gathered_doubts(averages)) {
@@ -59,7 +61,8 @@ void warn_of_recordings(const std::vector<datasets::Record>& averages,
   }
 }
 
-/// The classes end where the rows of a leak table do, which must be that of the rig diagnosed here.
+/// Takes the class limits from the rows of a leak table, which must describe the same rig as this
+/// diagnosis.
 std::vector<TableLimit> take_table(const std::filesystem::path& file, const EarlierFit& earlier,
                                    Campaign& campaign) {
   const EarlierLeakTable table = read_leak_table(file, campaign.rig.plant);
@@ -74,7 +77,7 @@ std::vector<TableLimit> take_table(const std::filesystem::path& file, const Earl
   return table.limits;
 }
 
-/// Signals that were diagnosed and are no column of the table.
+/// Warns about diagnosed signals for which the leak table has no column.
 void warn_of_absent(const std::vector<TableLimit>& limits, const Campaign& campaign,
                     diagnosis::Diagnosis& found) {
   std::vector<std::string> absent;
@@ -93,7 +96,8 @@ void warn_of_absent(const std::vector<TableLimit>& limits, const Campaign& campa
                     fmt::join(absent, "; ")));
 }
 
-/// Doubts of the fit about itself apply to every leak that is based on it.
+/// Warns about doubts that the fit itself reported, because they apply to every leak based on the
+/// fit.
 void warn_of_fit(const EarlierFit& fit, diagnosis::Diagnosis& found) {
   if (fit.status == calib::FitStatus::stopped)
     found.warnings.push_back("the fit was stopped before it converged: " + fit.message);
@@ -113,7 +117,7 @@ std::optional<std::vector<datasets::FittedValue>> truth_beside(const Campaign& c
   return read_truth(file, campaign.rig.plant);
 }
 
-/// @param live  diagnosis_live.json, if the rig can be simulated in the page
+/// @param live  contents of diagnosis_live.json, if the rig can be simulated in the page
 JobResult finished(const DiagnosisResult& result, const std::optional<Json>& live = {}) {
   StoredDiagnosis diagnosis = stored(result);
   JobResult job;

@@ -23,7 +23,7 @@ using datasets::Condition;
 using datasets::Scope;
 using model::ParameterValues;
 
-/// Leak levels that the campaign or the fit knows.
+/// Lists the leak levels that occur in the campaign or in the fit.
 std::vector<std::string> leak_levels(const Campaign& campaign,
                                      const std::optional<EarlierFit>& earlier) {
   std::vector<std::string> levels;
@@ -42,7 +42,8 @@ std::vector<std::string> leak_levels(const Campaign& campaign,
   return levels;
 }
 
-/// The leak level of --level, or the only one; none if the rig has none.
+/// Returns the leak level from --level, or the only level that exists; std::nullopt if the rig has
+/// no leak levels.
 std::optional<std::string> chosen_level(const ExportRequest& request,
                                         const std::vector<std::string>& levels) {
   if (request.level) {
@@ -58,7 +59,7 @@ std::optional<std::string> chosen_level(const ExportRequest& request,
   return levels.front();
 }
 
-/// Refuses values that the fit lacks for a leak level, and names the options that help.
+/// Throws if the fit has no value for the leak level, and names the options that help.
 void require_values_of_level(const ExportRequest& request, const Campaign& campaign,
                              const Condition& condition, const EarlierFit& earlier) {
   const auto table = model::parameter_table(campaign.rig.plant);
@@ -81,7 +82,7 @@ void require_values_of_level(const ExportRequest& request, const Campaign& campa
   }
 }
 
-/// Values that --set gives go over those of a fit.
+/// Applies the values from --set, which override those of the fit.
 void set_over_fit(const std::vector<std::string>& set, const Campaign& campaign,
                   const Condition& condition, ParameterValues& values) {
   for (const std::string& assignment : set) {
@@ -105,7 +106,7 @@ ParameterValues values_of(const std::vector<std::string>& set, const Campaign& c
   return values;
 }
 
-/// Warns of exported values that were not estimated.
+/// Warns about exported values that were not estimated.
 void warn_of_start_values(const Campaign& campaign, const Condition& condition,
                           const std::optional<EarlierFit>& earlier,
                           std::vector<std::string>& warnings) {
@@ -133,7 +134,7 @@ void warn_of_start_values(const Campaign& campaign, const Condition& condition,
                     fmt::join(of_records, ", ")));
 }
 
-/// Removes the sensors: their reading at the start becomes the state.
+/// Removes the sensors: their initial readings become the initial state.
 void take_sensors_off(ParameterValues& values) {
   struct Reading {
     const char* initial;
@@ -165,7 +166,7 @@ void take_sensors_off(ParameterValues& values) {
   }
 }
 
-/// Leaves the delay out if requested, and refuses it otherwise.
+/// Removes the transport delay if requested. Otherwise throws if there is a delay.
 void take_delay_off(const ExportRequest& request, const Campaign& campaign, ParameterValues& values,
                     std::vector<std::string>& warnings) {
   const double delay_s = values["transport_delay"];
@@ -188,7 +189,7 @@ void take_delay_off(const ExportRequest& request, const Campaign& campaign, Para
   values.given[index] = false;
 }
 
-/// Refuses values that the model does not take, in its words.
+/// Throws if the model rejects the values, with the model's own message.
 void require_simulable(const Campaign& campaign, const model::ExportedRig& rig) {
   const std::array times_s{0.0};
   const std::array outputs{model::Output::position};
@@ -196,7 +197,8 @@ void require_simulable(const Campaign& campaign, const model::ExportedRig& rig) 
   if (!run.ok()) throw InputError({campaign.file.string()}, run.reason);
 }
 
-/// Recorded inputs start from their first sample; the importer sets what follows.
+/// Sets the start values of recorded inputs from their first samples; the importer provides the
+/// rest of the inputs.
 void start_from_record(const calib::SimulationTask& task, ParameterValues& values,
                        std::vector<std::string>& warnings) {
   std::vector<std::string_view> recorded;
@@ -217,8 +219,7 @@ void start_from_record(const calib::SimulationTask& task, ParameterValues& value
         fmt::join(recorded, ", ")));
 }
 
-/// A name without the folders that differ from machine to machine, and the first digits of its
-/// hash.
+/// Returns the file name without folders, which differ between machines, and the hash.
 std::string name_and_hash(const InputFile& file) {
   return fmt::format("{}, SHA-256 {}", std::filesystem::path(file.path).filename().string(),
                      file.sha256);

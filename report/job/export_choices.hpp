@@ -16,18 +16,18 @@ struct ExportRequest {
   bool without_delay = false;
 };
 
-/// A rig that is ready to be written, and the files that it was made from.
+/// A rig that is ready for export, and the files that it was made from.
 struct ExportChoice {
   FmuRequest fmu;
   std::vector<InputFile> inputs;
   std::vector<std::string> warnings;
 };
 
-/// The rig of a campaign with the values of the chosen condition or leak level: those of the fit
-/// replace the campaign's, those of --set replace both.
+/// Returns the rig of a campaign with the values for the chosen condition or leak level. Values
+/// from the fit override those of the campaign, and values from --set override both.
 ///
-/// @throws UsageError, InputError  the leak level is not determined; a value is missing; the rig
-///                     has a term that an FMU cannot have
+/// @throws UsageError, InputError  if the leak level is ambiguous, a value is missing, or the rig
+///                      has a term that an FMU cannot represent
 ExportChoice choose_export(const datasets::Campaign& campaign, const CampaignChoice& choice,
                            const ExportRequest& request);
 

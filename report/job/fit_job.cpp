@@ -18,7 +18,7 @@ namespace {
 using calib::FitStatus;
 using datasets::Use;
 
-/// @param strict  WARN counts as FAIL
+/// @param strict  true to treat WARN as FAIL
 ExitCode code_of(FitStatus status, std::optional<calib::Verdict> verdict, bool strict) {
   switch (status) {
     case FitStatus::failed:
@@ -33,8 +33,9 @@ ExitCode code_of(FitStatus status, std::optional<calib::Verdict> verdict, bool s
   return failed ? ExitCode::verdict_fail : ExitCode::done;
 }
 
-/// What a fit keeps in its folder until it is written, to go on after a kill. Bootstrap, profiles
-/// and cross-validation do not change the starts.
+/// The state of an unfinished fit, stored in its folder so that the fit can resume after it was
+/// killed. The provenance is that of the starts: bootstrap, profiles and cross-validation do not
+/// change them.
 struct Unfinished {
   Unfinished(const std::filesystem::path& out, Provenance searched, TaskFarm* processes,
              bool resume)
@@ -75,8 +76,8 @@ JobResult finished(std::shared_ptr<FitRun> run, bool strict) {
   return job;
 }
 
-/// The same fit in a process that does not lead: it works on the leader's tasks, and continues with
-/// the same results.
+/// Runs the fit in a process that is not the leader. It works on the leader's tasks and obtains the
+/// same results.
 void help(const FitRun& run, const Provenance& searched, bool resume, const JobTerms& terms,
           calib::FitOptions settings) {
   settings.farm = terms.processes;
@@ -85,13 +86,13 @@ void help(const FitRun& run, const Provenance& searched, bool resume, const JobT
   calib::fit(*run.campaign, run.records, settings);
 }
 
-/// The fit itself, which keeps what it needs to go on.
+/// Runs the fit and stores what is needed to resume it.
 void search(FitRun& run, Unfinished& kept, bool resume, const JobTerms& terms,
             calib::FitOptions settings) {
   settings.farm = &kept.tasks;
   const auto earlier = resume ? kept.checkpoint.read() : std::nullopt;
   if (earlier) settings.resume = &*earlier;
-  // A fit that begins anew must not look as if it went on.
+  // If --resume finds nothing to resume, the user must know that the fit starts from the beginning.
   if (resume && !earlier && kept.tasks.found() == 0 && terms.note)
     terms.note(fmt::format("no checkpoint in {}{}: the fit begins anew", terms.out.string(),
                            settings.starts > 1 ? "" : " (a fit of one start keeps none)"));
@@ -99,7 +100,7 @@ void search(FitRun& run, Unfinished& kept, bool resume, const JobTerms& terms,
     settings.checkpoint = [&](const calib::Checkpoint& reached) { kept.checkpoint.keep(reached); };
   give_freed_memory_back();  // memory of the single repeats
   run.fit = calib::fit(*run.campaign, run.records, settings);
-  // Files and page are not made from them, and need as much memory again.
+  // The files and the page do not need the deviations, and making them takes as much memory again.
   datasets::drop_deviations(run.records);
   give_freed_memory_back();
   give_large_blocks_back();
@@ -122,7 +123,8 @@ JobResult fit_job(std::shared_ptr<const datasets::Campaign> campaign, const FitR
   }
   PlannedFiles planned = planned_result(ResultKind::fit, *run->campaign);
   planned.files.emplace_back(kKeptTasksFile);
-  // With `resume` the checkpoint is read, and a foreign one is refused with the reason.
+  // With `resume` the checkpoint is read instead, and a checkpoint from another fit is rejected
+  // with the reason.
   if (!request.resume) planned.files.emplace_back(kCheckpointFile);
   if (request.if_changed) {
     if (const auto made = whole_fit(terms.out, run->provenance)) {

@@ -79,8 +79,8 @@ StoredTablesFit stored(const datasets::Campaign& campaign, const calib::TablesFi
 
 JobResult fit_tables_job(const CampaignChoice& choice, const JobTerms& terms) {
   const LeakTableInput input = load_leak_table(choice);
-  // If the fit does not converge, the tables of an earlier run are removed: they would contradict
-  // this one.
+  // If the fit does not converge, tables left by an earlier run are removed, because they would
+  // contradict this run.
   PlannedFiles planned = planned_leak_table(input.settings);
   for (const char* file : {"fit.json", "parameters.csv", "fitted.toml"})
     planned.files.emplace_back(file);

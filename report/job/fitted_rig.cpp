@@ -15,7 +15,7 @@ const model::ParameterSpec& spec_in(const LeakTableInput& input, int index) {
   return datasets::assumption_spec(input.campaign.rig.plant, index);
 }
 
-/// The rows of the covariance whose values the table has from the fit.
+/// Selects the covariance of the values that the leak table takes from the fit.
 calib::RigUncertainty uncertainty_of(const LeakTableInput& input, const EarlierFit& earlier) {
   calib::RigUncertainty result;
   std::vector<Eigen::Index> rows;
@@ -29,7 +29,7 @@ calib::RigUncertainty uncertainty_of(const LeakTableInput& input, const EarlierF
   return result;
 }
 
-/// Known values that are not those which the fit was made with.
+/// Warns about known values that differ from those used in the fit.
 void warn_of_changed(const LeakTableInput& input, const EarlierFit& earlier,
                      std::vector<std::string>& warnings) {
   const auto values = datasets::leak_table_values(input.campaign, input.settings);

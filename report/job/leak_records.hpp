@@ -9,10 +9,11 @@
 
 namespace rigcal::report {
 
-/// Records in which leaks are searched.
+/// The records to be searched for leaks.
 struct LeakRecords {
   std::vector<datasets::RepeatRecords> conditions;
-  std::vector<std::string> left_out;  ///< conditions that cannot be diagnosed, and why, in words
+  std::vector<std::string> left_out;  ///< conditions that cannot be diagnosed, with the reason in
+                                      ///< words
 
   std::vector<datasets::Record> averages() const;
 };
@@ -20,12 +21,12 @@ struct LeakRecords {
 /// Reads the repeats of every condition that can be diagnosed.
 LeakRecords load_leak_records(const datasets::Campaign& campaign, int threads);
 
-/// Doubts about recordings, with equal ones gathered.
+/// Collects the doubts about recordings, with identical ones combined.
 std::vector<datasets::RecordWarning> gathered_doubts(const std::vector<datasets::Record>& averages);
 
-/// Leak levels that --healthy names are normal, as if `level_class` said so.
+/// Marks the leak levels from --healthy as normal, as if `level_class` said so.
 ///
-/// @throws UsageError  no condition has such a level, or `level_class` says otherwise
+/// @throws UsageError  if no condition has such a level, or `level_class` contradicts it
 void take_healthy(const std::vector<std::string>& levels, datasets::Campaign& campaign);
 
 }  // namespace rigcal::report

@@ -20,10 +20,11 @@ const std::filesystem::path kHealthySeries = kLevels / "healthy.csv";
 
 LeakTableInput load_leak_table(const CampaignChoice& choice) {
   CampaignChoice of_campaign = choice;
-  // The residual's scale is no parameter of the rig: only the leak table knows it.
+  // The residual scale is not a parameter of the rig; only the leak table has it.
   std::erase_if(of_campaign.set,
                 [](const std::string& text) { return text.starts_with(kResidualScale); });
-  of_campaign.free.clear();  // the tables have their own, not the records'
+  of_campaign.free.clear();  // the free parameters of the leak table differ from those of the
+                             // records
   LeakTableInput input{load(of_campaign), {}};
   input.settings = leak_table_settings(input.campaign);
   for (const std::string& assignment : choice.set) {

@@ -11,7 +11,7 @@
 
 namespace rigcal::report {
 
-/// A campaign and its [leak_table], both with the values of --set.
+/// A campaign and its [leak_table], both with the values from --set.
 struct LeakTableInput {
   datasets::Campaign campaign;
   datasets::LeakTableSettings settings;
@@ -20,14 +20,14 @@ struct LeakTableInput {
 /// @throws InputError, UsageError
 LeakTableInput load_leak_table(const CampaignChoice& choice);
 
-/// @param cancel  ends it; borrowed
+/// @param cancel  set to true to stop the computation; borrowed
 calib::LeakTableOptions leak_table_options(const datasets::Campaign& campaign, int threads,
                                            const std::atomic<bool>& cancel);
 
-/// Files that leak_table_files() and the page may write.
+/// Lists the files that leak_table_files() and the page may write.
 PlannedFiles planned_leak_table(const datasets::LeakTableSettings& settings);
 
-/// leak_table.csv and the other files of a table; leak_table.json comes last.
+/// Writes leak_table.csv and the other files of a leak table. leak_table.json comes last.
 std::vector<ResultFile> leak_table_files(const LeakTableResult& result);
 
 }  // namespace rigcal::report

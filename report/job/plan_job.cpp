@@ -30,7 +30,8 @@ std::vector<datasets::Record> records_of(const datasets::Campaign& campaign) {
   return records;
 }
 
-/// Plan from the records; empty where a design is asked for and the campaign has no condition.
+/// Plans with the records of the campaign. The plan is empty if the campaign has no condition and a
+/// design is requested.
 StoredPlan plan_of_records(const datasets::Campaign& campaign,
                            const std::vector<datasets::Record>& records,
                            const std::vector<datasets::FittedValue>* values, bool has_design,
@@ -41,7 +42,7 @@ StoredPlan plan_of_records(const datasets::Campaign& campaign,
   return report::stored(campaign, calib::plan(campaign, records, values, threads), provenance);
 }
 
-/// Designs a test and adds it to the result and to its files.
+/// Designs a test and adds it to the result and its files.
 Table add_design(const datasets::Campaign& campaign, const std::vector<datasets::Record>& records,
                  const std::vector<datasets::FittedValue>* values,
                  const std::vector<std::string>& names, const JobTerms& terms,

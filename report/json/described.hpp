@@ -16,9 +16,9 @@
 
 #include "report/json/json_node.hpp"
 
-// Each struct of a result file is described once; writer, reader and schema follow from that. The
-// names of the members are the keys, in this order. A name that is reserved in C++ has "_" at its
-// end.
+// Each struct in a result file is described once; writer, reader and schema are derived from the
+// description. The names of the members are the keys, in this order. A member whose key is a
+// reserved word in C++ has a trailing "_".
 //
 //   struct Leak {
 //     std::string level;
@@ -27,7 +27,7 @@
 //     RIGCAL_DESCRIBE(level, share_percent, reason)
 //   };
 
-// NOLINTBEGIN(cppcoreguidelines-macro-usage): only a macro knows the name of a member
+// NOLINTBEGIN(cppcoreguidelines-macro-usage): only a macro can turn a member into its name
 #define RIGCAL_VISIT_MEMBER(member) \
   rigcal::report::described::visit_member(visit, #member, self.member);
 #define RIGCAL_DESCRIBE(...)                                                    \
@@ -39,33 +39,37 @@
 
 namespace rigcal::report {
 
-/// A value whose key is omitted if there is none: rigs differ in what they have.
+/// A value whose key is omitted if the value is absent. Not every rig has every value.
 template <typename T>
 struct Omittable : std::optional<T> {
   using std::optional<T>::optional;
 };
 
-/// A member that results of earlier versions lack: the default of T then.
+/// A member that results from earlier versions do not have. T then has its default value.
 template <typename T>
 struct Later : T {
   using T::T;
   using T::operator=;
   Later() = default;
-  Later(T value) : T(std::move(value)) {}  // NOLINT(google-explicit-constructor): it is one
+  Later(T value)
+      : T(std::move(value)) {}  // NOLINT(google-explicit-constructor): this conversion
+                                // is intended
 };
 
-/// A struct whose keys are among those of the struct that contains it.
+/// A struct whose keys are merged into those of the struct that contains it.
 template <typename T>
 struct Inlined : T {
   Inlined() = default;
-  Inlined(T value) : T(std::move(value)) {}  // NOLINT(google-explicit-constructor): it is one
+  Inlined(T value)
+      : T(std::move(value)) {}  // NOLINT(google-explicit-constructor): this conversion
+                                // is intended
 };
 
-/// Keys and values in their order.
+/// Keys and values in insertion order.
 template <typename T>
 using Keyed = std::vector<std::pair<std::string, T>>;
 
-/// The value of a key; null where there is none.
+/// Returns the value for a key, or null if the key does not exist.
 template <typename T>
 const T* find(const Keyed<T>& keyed, std::string_view key) {
   for (const auto& [name, value] : keyed)
@@ -73,13 +77,14 @@ const T* find(const Keyed<T>& keyed, std::string_view key) {
   return nullptr;
 }
 
-/// All values of an enumeration that results name by to_string(). A specialisation lists them.
+/// Returns all values of an enumeration that to_string() names in results. Each enumeration has its
+/// own specialisation.
 template <typename Enum>
 std::vector<Enum> every();
 
 namespace described {
 
-/// Whether T is made of a template: is_a<std::optional<int>, std::optional>.
+/// True if T is a specialisation of the template: is_a<std::optional<int>, std::optional>.
 template <typename T, template <typename...> typename Of>
 inline constexpr bool is_a = false;
 template <template <typename...> typename Of, typename... Arguments>
@@ -99,7 +104,7 @@ inline constexpr bool is_keyed = false;
 template <typename T>
 inline constexpr bool is_keyed<Keyed<T>> = true;
 
-/// Largest number of things that a result counts: sums of some hundred of them are whole numbers.
+/// Largest count in a result. Sums of several hundred such counts are still exact as doubles.
 inline constexpr long kMostCounted = 1'000'000'000;
 
 struct Anything {
@@ -129,7 +134,7 @@ inline std::string key_of(const char* member) {
 
 }  // namespace described
 
-/// A number for JSON: nothing if it is not finite.
+/// Returns a number for JSON, or std::nullopt if it is not finite.
 inline std::optional<double> finite(double value) {
   return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
@@ -138,12 +143,13 @@ inline std::optional<double> finite(const std::optional<double>& value) {
   return value ? finite(*value) : std::nullopt;
 }
 
-/// A text; nothing where it is empty.
+/// Returns a text, or std::nullopt if it is empty.
 inline std::optional<std::string> unless_empty(const std::string& text) {
   return text.empty() ? std::nullopt : std::optional(text);
 }
 
-/// A value as JSON. Numbers that are not finite become null: JSON knows neither NaN nor infinity.
+/// Converts a value to JSON. Numbers that are not finite become null, because JSON has neither NaN
+/// nor infinity.
 template <typename T>
 Json json_of(const T& value) {
   using namespace described;
@@ -181,9 +187,10 @@ Json json_of(const T& value) {
   }
 }
 
-/// Reads what json_of() wrote. Unknown keys are ignored.
+/// Reads JSON written by json_of(). Ignores unknown keys.
 ///
-/// @throws InputError  a key is missing or has another type (names file, key and what was expected)
+/// @throws InputError  if a key is missing or has another type; names file, key and what was
+///                     expected
 template <typename T>
 void read_into(const JsonNode& node, T& value) {
   using namespace described;
@@ -213,7 +220,7 @@ void read_into(const JsonNode& node, T& value) {
   } else if constexpr (is_a<T, std::optional> || is_a<T, Omittable>) {
     value.reset();
     if constexpr (is_a<T, Omittable>) {
-      // Null is a value of one that may be null.
+      // If the value itself is optional, null is a valid value.
       if constexpr (is_a<typename T::value_type, std::optional>) value.emplace();
     }
     if (!node.is_null()) read_into(node, value.emplace());
@@ -247,7 +254,7 @@ void read_into(const JsonNode& node, T& value) {
   }
 }
 
-/// The JSON schema (draft 7) of the output of json_of() for a type.
+/// Returns the JSON schema (draft 7) for the output of json_of() for a type.
 template <typename T>
 Json schema_of() {
   using namespace described;

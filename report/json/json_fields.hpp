@@ -3,22 +3,23 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-// Values of a result in JSON that may be missing.
+// Access to values in a JSON result that may be missing.
 
 namespace rigcal::report {
 
 using Json = nlohmann::ordered_json;
 
-/// The text of a key, or an empty one where it is null or missing.
+/// Returns the text for a key, or an empty string if it is null or missing.
 std::string text_of(const Json& json, const std::string& key);
 
 /// @throws InputError  always
 [[noreturn]] void refuse_json(const std::string& where, const Json::exception& error);
 
-/// Runs work on foreign JSON. JSON that is no result of this version becomes an error of the input.
+/// Runs `work` on JSON from outside. Converts JSON errors to InputError, because the JSON is then
+/// not a result of this version.
 ///
-/// @param where  the file or folder
-/// @throws InputError  a value is missing or has another type
+/// @param where        the file or folder, for the message
+/// @throws InputError  if a value is missing or has another type
 template <typename Work>
 void with_json_errors(const std::string& where, const Work& work) {
   try {

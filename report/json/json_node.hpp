@@ -20,8 +20,8 @@ namespace rigcal::report {
 
 using Json = nlohmann::ordered_json;
 
-/// One value of a result in JSON, with its place in words. A wrong value throws InputError with the
-/// key, what was found and what was expected. Borrows the JSON.
+/// One value in a JSON result, together with its path for messages. If the value is wrong, the
+/// functions throw InputError with the key, what was found and what was expected. Borrows the JSON.
 class JsonNode {
  public:
   /// @param kind  expected kind of file: "fit.json"
@@ -54,7 +54,7 @@ class JsonNode {
     return result;
   }
 
-  /// A list of numbers; null represents one that is not finite.
+  /// Returns a list of numbers; null becomes NaN.
   std::vector<double> reals() const {
     if (!json_.is_array()) fail("a list");
     std::vector<double> result;
@@ -69,7 +69,7 @@ class JsonNode {
     return result;
   }
 
-  /// Keys with their values, in order.
+  /// Returns the keys with their values, in order.
   std::vector<std::pair<std::string, JsonNode>> members() const {
     if (!json_.is_object()) fail("an object");
     std::vector<std::pair<std::string, JsonNode>> result;
@@ -122,7 +122,7 @@ class JsonNode {
   std::string kind_;
 };
 
-/// The member of an enumeration whose name a text is.
+/// Returns the enumeration value whose name is the text of `node`.
 template <typename Values>
 requires std::is_enum_v<typename Values::value_type>
 typename Values::value_type one_of(const JsonNode& node, const Values& values) {
@@ -135,7 +135,7 @@ typename Values::value_type one_of(const JsonNode& node, const Values& values) {
   node.fail("one of " + names);
 }
 
-/// The value of a table {name, value} whose name a text is.
+/// Returns the value paired with the name that is the text of `node`.
 template <typename Value>
 Value one_of(const JsonNode& node, const std::vector<std::pair<std::string, Value>>& choices) {
   const std::string text = node.string();
@@ -147,7 +147,7 @@ Value one_of(const JsonNode& node, const std::vector<std::pair<std::string, Valu
   node.fail("one of " + names);
 }
 
-/// The row of the parameter table whose result name a text is.
+/// Returns the row of the parameter table whose name in results is the text of `name`.
 int parameter_row(const JsonNode& name, model::PlantKind plant);
 
 }  // namespace rigcal::report

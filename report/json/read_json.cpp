@@ -21,8 +21,8 @@ Location place_of_byte(const std::string& file, std::string_view text, std::size
           static_cast<long>(byte - line_start) + 1};
 }
 
-/// Scans a text once, without parsing it, and refuses what is beyond a limit. The parser decides
-/// whether it is JSON.
+/// Scans a text once without parsing it, and rejects it if it exceeds a limit. Whether the text is
+/// valid JSON is for the parser to decide.
 class JsonScan {
  public:
   JsonScan(std::string_view text, const std::string& file, const JsonLimits& limits)
@@ -66,7 +66,7 @@ class JsonScan {
   void count_key(std::size_t byte) {
     if (keys_.empty()) return;
     const std::size_t keys = ++keys_.back();
-    // No overflow: a key takes three bytes of a text whose size is limited.
+    // This cannot overflow: the size of the text is limited, and a key takes at least three bytes.
     if (comparisons_ + keys * keys > limits_.key_comparisons)
       fail(byte, fmt::format("an object of {} keys, or too many large ones before it", keys));
   }
@@ -96,7 +96,8 @@ class JsonScan {
     return end;
   }
 
-  /// Whether a number beyond the range of a double is too small, and is therefore read as zero.
+  /// Returns true if a number outside the range of a double is too small. Such a number is read as
+  /// zero.
   static bool is_tiny(std::string_view number) {
     const std::size_t exponent = number.find_first_of("eE");
     if (exponent != std::string_view::npos) return number.substr(exponent + 1).front() == '-';

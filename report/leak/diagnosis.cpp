@@ -25,7 +25,7 @@ std::string class_name(const std::optional<LeakClass>& leak_class, const char* o
   return leak_class ? std::string(to_string(*leak_class)) : otherwise;
 }
 
-/// Class of a record, or a word for a record without one.
+/// Returns the class found for a record, or a word that explains why there is none.
 std::string found_class(const RecordDiagnosis& record) {
   if (record.is_reference) return "reference";
   if (record.estimate.incompatible) return "incompatible";

@@ -9,26 +9,26 @@
 
 namespace rigcal::report {
 
-/// A diagnosis with all that its files are made from. Borrows everything.
+/// A diagnosis with everything needed to write its files. Borrows all of it.
 struct DiagnosisResult {
   const datasets::Campaign& campaign;
   const diagnosis::Diagnosis& diagnosis;
-  const std::vector<std::string>& reasons;  ///< why it was declined; empty if it was not
+  const std::vector<std::string>& reasons;  ///< why the diagnosis was declined; empty if it was not
   const Provenance& provenance;
-  /// Limits of the leak table that gave the classes; empty if [diagnosis] gave them.
+  /// Limits from the leak table that defined the classes; empty if [diagnosis] defined them.
   std::vector<TableLimit> class_limits = {};
 };
 
-/// Declined where it gives reasons; failed where no record could be diagnosed.
+/// Returns declined if there are reasons for it, and failed if no record could be diagnosed.
 LeakStatus status_of(const DiagnosisResult& result);
 
-/// "sine 0.1 Hz, 50.8 mm": the signal of an entry of the leak table.
+/// Describes the signal that an entry in the leak table belongs to: "sine 0.1 Hz, 50.8 mm".
 std::string drive_of(const datasets::Campaign& campaign, const TableLimit& limit);
 
-/// diagnosis.json.
+/// Builds the contents of diagnosis.json.
 StoredDiagnosis stored(const DiagnosisResult& result);
 
-/// diagnosis.csv: one row per record.
+/// Writes diagnosis.csv with one row per record.
 std::string diagnosis_csv(const DiagnosisResult& result);
 
 }  // namespace rigcal::report

@@ -8,14 +8,14 @@
 
 namespace rigcal::report {
 
-inline constexpr double kLitresPerMinute = 60e3;  ///< per m3/s
+inline constexpr double kLitresPerMinute = 60e3;  ///< L/min per m3/s
 inline constexpr double kInPercent = 100.0;
 
-/// Both ends times `scale`.
+/// Multiplies both ends of a range by `scale`.
 Range scaled_ends(const std::pair<double, double>& range, double scale = 1.0);
 
-/// Coefficient, share, flow and class of a leak, for a record or a state; empty without an estimate
-/// (`ok` false).
+/// Collects coefficient, share, flow and class of the leak in a record or a state. All are absent
+/// if there is no estimate (`ok` is false).
 StoredLeak stored(const diagnosis::LeakEstimate& estimate,
                   const std::optional<datasets::LeakClass>& leak_class, bool ok);
 

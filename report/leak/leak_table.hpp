@@ -10,9 +10,9 @@
 
 namespace rigcal::report {
 
-inline constexpr double kLitrePerMinute = 1e-3 / 60.0;  ///< [m3/s]
+inline constexpr double kLitrePerMinute = 1e-3 / 60.0;  ///< m3/s per L/min
 
-/// A leak table with all that its files are made from. Borrows everything.
+/// A leak table with everything needed to write its files. Borrows all of it.
 struct LeakTableResult {
   const datasets::Campaign& campaign;
   const datasets::LeakTableSettings& settings;
@@ -22,19 +22,20 @@ struct LeakTableResult {
   std::vector<std::string> warnings = {};  ///< doubts about the values
 };
 
-/// leak_table.json.
+/// Builds the contents of leak_table.json.
 StoredLeakTable stored(const LeakTableResult& result);
 
-/// leak_table.csv: one row per signal and target.
+/// Writes leak_table.csv with one row per signal and target.
 std::string leak_table_csv(const LeakTableResult& result);
 
-/// features.csv: one row per published level, printed beside computed numbers.
+/// Writes features.csv with one row per published level: the printed values beside the computed
+/// ones.
 std::string features_csv(const LeakTableResult& result);
 
-/// levels/<level>.csv: one period of the feature signal: time, reference, position, flows, and the
-/// residual against the rig without a leak.
+/// Writes levels/<level>.csv for one period of the feature signal, with time, reference, position,
+/// flows, and the residual relative to the rig without a leak.
 ///
-/// @param healthy  null for the rig without a leak itself
+/// @param healthy  series of the rig without a leak; null when writing that rig itself
 std::string level_csv(const datasets::LeakSignal& signal, const calib::PeriodicSeries& series,
                       const calib::PeriodicSeries* healthy);
 

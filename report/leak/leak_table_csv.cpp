@@ -21,7 +21,7 @@ std::string list(const std::vector<calib::LeakRoot>& roots, Value value) {
   return fmt::format("{}", fmt::join(texts, " "));
 }
 
-/// One end of the intervals of all roots; empty without a fit.
+/// Lists the lower (or upper) ends of the intervals of all roots; empty without a fit.
 std::string ends(const std::vector<calib::LeakRoot>& roots, std::size_t end) {
   std::vector<std::string> texts;
   for (const calib::LeakRoot& root : roots) {

@@ -9,7 +9,8 @@ std::optional<Range> range_of(const std::optional<std::array<double, 2>>& ends) 
   return ends ? std::optional(Range{ends->front(), ends->back()}) : std::nullopt;
 }
 
-/// Every value that the computation used; those that no section states are the campaign's.
+/// Lists every value that the computation used. Values not set in the leak table section come from
+/// the campaign.
 std::vector<StoredAssumption> assumptions_of(const LeakTableResult& result) {
   const auto values = datasets::leak_table_values(result.campaign, result.settings);
   const auto table = model::parameter_table(result.campaign.rig.plant);
@@ -19,7 +20,7 @@ std::vector<StoredAssumption> assumptions_of(const LeakTableResult& result) {
         {std::string(spec.name), std::string(spec.key), value, std::string(spec.unit), source});
   };
   for (std::size_t i = 0; i < table.size(); ++i) {
-    if (table[i].key == "leakage_coefficient") continue;  // what the table varies
+    if (table[i].key == "leakage_coefficient") continue;  // the table varies this parameter
     const auto* assumption = result.settings.assumption(static_cast<int>(i));
     if (!values.given[i] && table[i].kind != model::ParameterKind::plant) continue;
     add(table[i], values.value[i], assumption == nullptr ? "campaign file" : assumption->source);
@@ -31,7 +32,7 @@ std::vector<StoredAssumption> assumptions_of(const LeakTableResult& result) {
   return list;
 }
 
-/// Drive of an entry or of the rig without a fault.
+/// Starts an entry of the table, or the row of the fault-free rig, with its drive.
 template <typename Entry>
 Entry with_drive(const LeakTableResult& result, const datasets::LeakSignal& signal) {
   Entry entry;

@@ -14,9 +14,9 @@ namespace {
 
 using diagnosis::LeakTrend;
 
-/// A rate is reported as the change over so many days.
+/// Number of days over which the change is reported.
 constexpr double kDays = 30.0;
-/// A prediction goes no farther ahead than this multiple of the observed days.
+/// Predictions are limited to this multiple of the observed time span.
 constexpr double kAhead = 3.0;
 
 std::string machine_of(const LeakTrend& trend) {
@@ -27,7 +27,7 @@ std::string machine_of(const LeakTrend& trend) {
   return name.empty() ? "The machine" : name;
 }
 
-/// Whether a day is too far ahead for the records.
+/// Returns true if a day is too far in the future to be predicted from the records.
 bool is_far(const LeakTrend& trend, double day) {
   return day - trend.last_day > kAhead * (trend.last_day - trend.first_day);
 }
@@ -45,7 +45,7 @@ std::string next_limit_of(const LeakTrend& trend) {
 
 std::string trend_sentence(const LeakTrend& trend) {
   const auto [low, high] = trend.share_per_day_ci95;
-  const double points = kInPercent * kDays;  // percent of the servo flow, in these days
+  const double points = kInPercent * kDays;  // converts to percent of the servo flow per kDays
   const double error = std::max(0.005, points * (high - low) / 4.0);
   const auto text = [&](double per_day) { return to_uncertainty(points * per_day, error); };
   const std::string over =

@@ -7,11 +7,11 @@
 
 namespace rigcal::report {
 
-/// The trend in a sentence for an operator: "66.66 %: the leak rises by 1.2 percentage points of
-/// the servo flow in 30 days ...".
+/// Describes the trend in a sentence for an operator: "66.66 %: the leak rises by 1.2 percentage
+/// points of the servo flow in 30 days ...".
 std::string trend_sentence(const diagnosis::LeakTrend& trend);
 
-/// Entry of `trends` in diagnosis.json.
+/// Builds an entry of `trends` in diagnosis.json.
 StoredLeakTrend stored(const diagnosis::LeakTrend& trend);
 
 }  // namespace rigcal::report

@@ -73,7 +73,7 @@ std::string state_sentence(const MachineState& state) {
         "delivers at {}.{}",
         name, e.coefficient, state.duty, agreement_of(state));
   }
-  // Two decimals at most: of an operator's percentages no more can be meant.
+  // At most two decimals, because more would be meaningless for percentages that an operator reads.
   const double error = std::max(0.1, kInPercent * (e.share_ci95.second - e.share_ci95.first) / 4.0);
   const auto percent = [&](double fraction) {
     return to_uncertainty(kInPercent * fraction, error);

@@ -7,12 +7,12 @@
 
 namespace rigcal::report {
 
-/// The state of a machine in one sentence that an operator understands, with its uncertainty: "The
-/// seal of 66.66 % leaks 15.0 % (14.8 to 15.2 %) of the servo flow at sine 0.1 Hz, 50.8 mm: medium
+/// Describes the state of a machine and its uncertainty in one sentence for an operator: "The seal
+/// of 66.66 % leaks 15.0 % (14.8 to 15.2 %) of the servo flow at sine 0.1 Hz, 50.8 mm: medium
 /// (probability 1.00), 5.0 percentage points below critical. 6 signals agree."
 std::string state_sentence(const diagnosis::MachineState& state);
 
-/// Entry of `states` of diagnosis.json.
+/// Builds an entry of `states` in diagnosis.json.
 StoredState stored(const diagnosis::MachineState& state);
 
 }  // namespace rigcal::report

@@ -23,12 +23,12 @@ const ParitySignal* signal_of(const ParityResult& result, const ParityRecord& re
   return nullptr;
 }
 
-/// Whether a record exceeds a threshold; nothing without a threshold.
+/// Returns true if a record exceeds a threshold, and std::nullopt if there is no threshold.
 std::optional<bool> exceeds(const std::optional<double>& threshold, double value) {
   return threshold ? std::optional(value > *threshold) : std::nullopt;
 }
 
-/// Compared with a threshold that it has no part in.
+/// Returns true if a record is compared with a threshold that it did not help to set.
 bool is_judged(const ParitySignal* signal, const ParityRecord& record) {
   return record.failure.empty() && signal != nullptr && signal->threshold_m &&
          !record.sets_threshold;

@@ -9,30 +9,31 @@
 
 namespace rigcal::report {
 
-/// Parity residuals with all that their files are made from. Borrows everything.
+/// Parity residuals with everything needed to write their files. Borrows all of it.
 struct ParityResult {
   const datasets::Campaign& campaign;
   const diagnosis::Parity& parity;
-  const std::vector<std::string>& reasons;  ///< why it was declined; empty if it was not
-  double false_alarm = 0.0;                 ///< stated probability for a healthy record
+  const std::vector<std::string>& reasons;  ///< why the check was declined; empty if it was not
+  double false_alarm = 0.0;                 ///< specified probability of an alarm for a healthy
+                                            ///< record
   const Provenance& provenance;
 };
 
-/// Declined where it gives reasons; failed where no residual could be made.
+/// Returns declined if there are reasons for it, and failed if no residual could be computed.
 LeakStatus status_of(const ParityResult& result);
 
-/// parity.json.
+/// Builds the contents of parity.json.
 StoredParity stored(const ParityResult& result);
 
-/// parity.csv: one row per record.
+/// Writes parity.csv with one row per record.
 std::string parity_csv(const ParityResult& result);
 
-/// parity/<condition>.csv: time_s, the healthy model's position, and for each repeat the parity
-/// residual, the residual minus that of healthy records, and its moving root mean square. Fields of
-/// samples outside the windows are empty.
+/// Writes parity/<condition>.csv with time_s, the position of the healthy model and, for each
+/// repeat, the parity residual, the residual minus that of healthy records, and its moving root
+/// mean square. Samples outside the windows have empty fields.
 std::vector<ResultFile> parity_series(const ParityResult& result);
 
-/// Files that parity and its page may write.
+/// Lists the files that a parity check and its page may write.
 PlannedFiles planned_parity(const datasets::Campaign& campaign);
 
 }  // namespace rigcal::report

@@ -28,7 +28,8 @@ TableLimit limit_of(const StoredLeakEntry& entry, const JsonNode& node) {
   return limit;
 }
 
-/// Equality up to the last digits, which a file in between may change.
+/// Compares two values up to rounding, because writing and reading a file may change the last
+/// digits.
 bool alike(double a, double b) {
   constexpr double kRounding = 1e-12;
   return a == b || std::abs(a - b) <= kRounding * std::max(std::abs(a), std::abs(b));
@@ -46,7 +47,7 @@ EarlierLeakTable read_leak_table(const std::filesystem::path& file, model::Plant
   EarlierLeakTable table;
   const std::vector<JsonNode> assumptions = root["assumptions"].items();
   for (std::size_t i = 0; i < assumptions.size(); ++i) {
-    if (stored.assumptions[i].key == "residual_scale") continue;  // no parameter of the rig
+    if (stored.assumptions[i].key == "residual_scale") continue;  // not a parameter of the rig
     table.rig.emplace_back(parameter_row(assumptions[i]["name"], plant),
                            stored.assumptions[i].value);
   }

@@ -11,46 +11,49 @@
 
 namespace rigcal::report {
 
-/// An entry of a leak table as limit of a class.
+/// An entry of a leak table, used as the limit of a class.
 struct TableLimit {
   datasets::Waveform waveform = datasets::Waveform::sine;
   double frequency_hz = 0.0;
-  double amplitude = 0.0;  ///< [m], or [V] where no controller is in the loop
+  double amplitude = 0.0;  ///< [m], or [V] if the loop has no controller
   double target_percent = 0.0;
-  std::vector<double> coefficients;             ///< all roots, increasing
-  std::vector<std::optional<Range>> ranges_95;  ///< intervals of each
+  std::vector<double> coefficients;             ///< all roots in increasing order
+  std::vector<std::optional<Range>> ranges_95;  ///< interval for each root
 };
 
-/// Data of leak_table.json for a diagnosis.
+/// The data in leak_table.json that a diagnosis needs.
 struct EarlierLeakTable {
   std::vector<TableLimit> limits;
-  std::vector<double> targets_percent;      ///< rows, increasing
-  std::vector<std::pair<int, double>> rig;  ///< row of the parameter table, value in SI
+  std::vector<double> targets_percent;      ///< values of the table rows, in increasing order
+  std::vector<std::pair<int, double>> rig;  ///< row of the parameter table, and value in SI units
 };
 
-/// Reads leak_table.json strictly.
+/// Reads leak_table.json and rejects anything unexpected.
 ///
-/// @throws InputError  file and key, what was found and what was expected
+/// @throws InputError  if a key is missing or wrong; names file and key, what was found and what
+///                     was expected
 EarlierLeakTable read_leak_table(const std::filesystem::path& file, model::PlantKind plant);
 
-/// Lists, in words, the differences between the rig of a table and that of a campaign with the
-/// values of a fit: "damping is 900 N s/m in the table, 1000 N s/m in the diagnosis"; empty if they
-/// agree. The leakage coefficient, which a table varies, sensors, and values that are estimated for
-/// every record are ignored.
+/// Lists, in words, how the rig of a leak table differs from the rig of a campaign with the fitted
+/// values: "damping is 900 N s/m in the table, 1000 N s/m in the diagnosis". The list is empty if
+/// they agree. Ignores sensors, values that are estimated for every record, and the leakage
+/// coefficient, which the table varies.
 std::vector<std::string> rig_differences(const EarlierLeakTable& table,
                                          const datasets::Campaign& campaign,
                                          const std::vector<datasets::FittedValue>& fitted);
 
-/// Takes the limits of the classes from the rows of a table: in increasing order the upper limits
-/// of slight, medium and critical. A fourth row is within supercritical and limits nothing. With
-/// five rows the first one is the limit of normal, which otherwise stays.
+/// Takes the class limits from the rows of a leak table. In increasing order they are the upper
+/// limits of slight, medium and critical. A fourth row is inside supercritical and does not limit
+/// any class. If there are five rows, the first is the upper limit of normal; otherwise the limit
+/// of normal does not change.
 ///
-/// @throws InputError  fewer than three or more than five rows, or the first is not above the limit
-///                     of normal
+/// @throws InputError  if there are fewer than three or more than five rows, or the first is not
+///                     above the limit of normal
 void take_limits(datasets::DiagnosisSettings& settings, const std::vector<double>& targets_percent,
                  const std::string& file);
 
-/// The class that ends at a row by take_limits(); empty if the row limits nothing.
+/// Returns the class whose upper limit is a given row according to take_limits(), or std::nullopt
+/// if the row does not limit any class.
 std::optional<datasets::LeakClass> class_ending_at(const datasets::DiagnosisSettings& settings,
                                                    double target_percent);
 

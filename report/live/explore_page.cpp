@@ -59,7 +59,7 @@ std::string still_figure(const LiveCase& shown, const std::string& title, const 
       title, escaped(shown.name), svg(plot));
 }
 
-/// Pictures for readers without scripts, and for print.
+/// Draws pictures for readers without scripts, and for print.
 std::string still_pictures(const LiveCase& shown, const model::Simulation& run) {
   constexpr std::array kPosition{StillLine{"position", "model", model::Output::position}};
   constexpr std::array kFlows{StillLine{"servo", "servo", model::Output::servo_flow},
@@ -110,7 +110,8 @@ std::string explore_page(const datasets::Campaign& campaign, const std::vector<L
        {"inputs", inputs_html},
        {"live", live},
        {"style", fmt::format("{}{}{}", asset("report.css"), asset("uPlot.css"), asset("live.css"))},
-       // The licence of the plot library requires its notice in every copy, and each page is one.
+       // The licence of the plot library requires its notice in every copy, and each page contains
+       // one.
        {"plot_library",
         fmt::format("/*! uPlot\n\n{}*/\n{}", asset("uPlot.LICENSE"), asset("uPlot.js"))},
        {"live_scripts", live_scripts(live_rig(campaign, cases))}});

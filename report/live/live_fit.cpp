@@ -22,16 +22,18 @@ namespace {
 
 using datasets::Condition;
 
-/// More would make the list too long to choose from; the worst come first.
+/// Maximum number of conditions; a longer list would be hard to choose from. The worst come first.
 constexpr std::size_t kMostCases = 40;
-/// As 32-bit numbers these are 2 MB.
+/// Maximum number of samples in total; 2 MB as 32-bit numbers.
 constexpr std::size_t kMostSamples = 500'000;
-/// A condition beyond that limit keeps at least so many.
+/// Minimum number of samples for each condition, even if that exceeds the total.
 constexpr std::size_t kLeastOfACase = 500;
 
 bool is_estimate(const calib::FittedParameter& p) { return p.fitted && std::isfinite(p.value); }
 
-/// @param p  an estimate with its scope: of the rig, of a leak level, or of a condition
+/// Returns true if an estimate applies to a condition.
+///
+/// @param p  an estimate for the rig, a leak level or a condition
 template <typename Estimate>
 bool acts_in(const Estimate& p, const Condition& condition) {
   return p.scope == datasets::Scope::rig ||
@@ -39,7 +41,7 @@ bool acts_in(const Estimate& p, const Condition& condition) {
          (p.scope == datasets::Scope::condition && p.level == condition.id);
 }
 
-/// Values of a condition at the optimum, nuisance parameters included.
+/// Returns the values for a condition at the optimum, including nuisance parameters.
 model::ParameterValues values_at_optimum(const datasets::Campaign& campaign,
                                          const Condition& condition, const calib::Fit& fit) {
   model::ParameterValues values = values_in(campaign, condition);
@@ -48,7 +50,7 @@ model::ParameterValues values_at_optimum(const datasets::Campaign& campaign,
   return values;
 }
 
-/// The part of the tolerance that a condition uses, or its error where it has no limits.
+/// Returns the fraction of its tolerance that a condition uses, or its error if it has no limits.
 double used(const calib::ConditionScore& score) {
   double most = 0.0;
   for (const calib::LimitCheck& check : score.checks) most = std::max(most, check.used);
@@ -72,7 +74,7 @@ std::vector<const calib::ConditionScore*> shown_first(const calib::Fit& fit) {
   return scores;
 }
 
-/// First and last sample of each window that counts.
+/// Returns the first and last sample of each window in the mask.
 Json windows_of(const std::vector<bool>& in_window, std::size_t samples) {
   if (in_window.empty()) return {{0, samples - 1}};
   Json windows = Json::array();
@@ -84,7 +86,7 @@ Json windows_of(const std::vector<bool>& in_window, std::size_t samples) {
   return windows;
 }
 
-/// First and last sample of each window of a record.
+/// Returns the first and last sample of each window in a record.
 Json windows_of(const datasets::Record& record) {
   std::vector<bool> counts;
   for (const double t : record.windows.empty() ? std::vector<double>() : record.time_s)
@@ -95,7 +97,7 @@ Json windows_of(const datasets::Record& record) {
   return windows_of(counts, record.time_s.size());
 }
 
-/// Sample times as start, step and number, or each where they are not regular.
+/// Encodes sample times as start, step and number, or one by one if they are not equidistant.
 Json times_of(const std::vector<double>& time_s) {
   const double step_s = (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1);
   const bool regular = [&] {
@@ -123,7 +125,7 @@ Json limits_of(const calib::ConditionScore& score, datasets::Channel channel) {
   return limits;
 }
 
-/// Measured means of a case.
+/// The measured means of a case.
 struct MeasuredCase {
   struct Measured {
     datasets::Channel channel;
@@ -132,9 +134,9 @@ struct MeasuredCase {
     Json limits = Json::array();
   };
   const std::vector<double>* time_s = nullptr;  ///< borrowed
-  Json windows;                                 ///< first and last sample of each that counts
+  Json windows;                                 ///< first and last sample of each scored window
   bool held_back = false;
-  std::vector<Measured> channels;  ///< those that the model has an output for
+  std::vector<Measured> channels;  ///< channels for which the model has an output
 };
 
 MeasuredCase measured_case(const calib::ConditionScore& score) {
@@ -152,7 +154,7 @@ MeasuredCase measured_case(const calib::ConditionScore& score) {
   return found;
 }
 
-/// @param every  one sample in this many is taken
+/// @param every  only every `every`-th sample is included
 Json json_of(const MeasuredCase::Measured& measured, std::size_t every) {
   std::vector<double> taken;
   taken.reserve(measured.mean->size() / every + 1);
@@ -165,7 +167,7 @@ Json json_of(const MeasuredCase::Measured& measured, std::size_t every) {
           {"limits", measured.limits}};
 }
 
-/// Measured means of the cases, within the limit of all.
+/// Adds the measured means to the cases, thinned so that all of them stay within the common limit.
 void add_measured(const std::vector<MeasuredCase>& measured, Json& cases) {
   std::size_t left = kMostSamples;
   for (std::size_t i = 0; i < measured.size(); ++i) {
@@ -186,7 +188,7 @@ void add_measured(const std::vector<MeasuredCase>& measured, Json& cases) {
   }
 }
 
-/// The rig of some cases, in a page of their result.
+/// Returns the rig and its cases for embedding in the page of a result.
 Json embedded_rig(const datasets::Campaign& campaign, const std::vector<LiveCase>& cases,
                   const std::vector<MeasuredCase>& measured) {
   Json rig = live_rig(campaign, cases);
@@ -200,7 +202,8 @@ Json embedded_rig(const datasets::Campaign& campaign, const std::vector<LiveCase
   return rig;
 }
 
-/// Intervals of the estimates; those of a leak level belong to its conditions.
+/// Returns the intervals of the estimates. An interval for a leak level applies to the conditions
+/// with that level.
 Json intervals_of(const calib::Fit& fit) {
   Json intervals = Json::array();
   for (const calib::FittedParameter& p : fit.parameters) {

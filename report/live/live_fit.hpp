@@ -8,41 +8,42 @@
 #include "report/store/result.hpp"
 #include "report/store/stored.hpp"
 
-// The calibrated rig of a fit, a validation or a diagnosis, for the live section of its page.
+// The calibrated rig from a fit, a validation or a diagnosis, for the live section of its page.
 
 namespace rigcal::report {
 
-/// File of a fit or validation. Results of several kinds may be in one folder, so others have names
-/// of their own, which end alike.
+/// File name for a fit or validation. The other kinds of results have different names with the same
+/// ending, because one folder may contain several kinds.
 inline constexpr const char* kLiveFile = "live.json";
 inline constexpr const char* kLiveDiagnosisFile = "diagnosis_live.json";
 inline constexpr const char* kLiveLeakTableFile = "leak_table_live.json";
 
-/// Contents of live.json: the rig with the estimates, and conditions with their measured means,
-/// validation conditions and worst ones first. Nothing if no condition was scored, or if the search
-/// did not converge.
+/// Builds the contents of live.json: the rig with its estimates, and the conditions with their
+/// measured means. Validation conditions come first, and the worst first among each kind. Returns
+/// std::nullopt if no condition was scored or the search did not converge.
 std::optional<Json> live_fit(const Result& result);
 
-/// Contents of diagnosis_live.json: the healthy rig with the leak that was found in each average,
-/// the largest first. Nothing if no leak was found out.
+/// Builds the contents of diagnosis_live.json: the healthy rig with the leak found in each averaged
+/// record, largest leak first. Returns std::nullopt if no leak could be determined.
 ///
-/// @param averages  the records that were diagnosed
-/// @param healthy   estimates of the fit that the diagnosis rests on
+/// @param averages  the diagnosed records
+/// @param healthy   estimates from the fit that the diagnosis is based on
 std::optional<Json> live_diagnosis(const datasets::Campaign& campaign,
                                    const std::vector<datasets::Record>& averages,
                                    const std::vector<datasets::FittedValue>& healthy,
                                    const diagnosis::Diagnosis& found);
 
-/// The section of a page with the rig in it, and the scripts that run it.
+/// The section of a page that contains the simulated rig, and the scripts that run it.
 struct LiveSection {
   std::string html;
   std::string scripts;
 };
 
-/// Nothing if this program was built without the model for pages.
+/// Builds the live section. Returns std::nullopt if this program was built without the model for
+/// pages.
 ///
-/// @param text  live.json
-/// @throws InputError  it is no JSON
+/// @param text         contents of live.json
+/// @throws InputError  if the text is not JSON
 std::optional<LiveSection> live_section(const std::string& text, const std::string& where);
 
 }  // namespace rigcal::report

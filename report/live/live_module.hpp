@@ -4,7 +4,7 @@
 
 namespace rigcal::report {
 
-/// The model as a WebAssembly module (model/wasm), compressed by gzip. Empty if the program was
+/// Returns the model as a gzip-compressed WebAssembly module (model/wasm). Empty if the program was
 /// built without it.
 std::string_view live_module();
 

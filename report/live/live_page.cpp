@@ -11,7 +11,7 @@
 namespace rigcal::report {
 namespace {
 
-/// JSON that no HTML parser can mistake for markup.
+/// Formats JSON so that no HTML parser can mistake it for markup.
 std::string for_script(const Json& json) {
   std::string text;
   for (const char c : json.dump(-1, ' ', false, Json::error_handler_t::replace))
@@ -26,7 +26,7 @@ std::string module_base64() {
 
 }  // namespace
 
-/// Replaces each {{name}} of a template by the HTML of that name.
+/// Replaces each {{name}} in a template with the HTML of that name.
 std::string filled(std::string_view text, const std::map<std::string_view, std::string>& html) {
   std::string result;
   for (std::size_t at = 0; at < text.size();) {

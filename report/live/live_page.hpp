@@ -8,16 +8,17 @@
 
 namespace rigcal::report {
 
-/// Replaces each {{name}} of a template by the HTML of that name.
+/// Replaces each {{name}} in a template with the HTML of that name.
 std::string filled(std::string_view text, const std::map<std::string_view, std::string>& html);
 
-/// The controls and curves of a live model, without what runs them.
+/// Returns the controls and curves of a live model, without the scripts that run them.
 ///
 /// @param noscript  HTML for browsers without scripts
-/// @param still     HTML of pictures that are shown until the model runs
+/// @param still     HTML for pictures to show until the model runs
 std::string live_html(const std::string& noscript, const std::string& still);
 
-/// The worker, the module and the script, for the end of a page that has the plot library.
+/// Returns the worker, the module and the script, for the end of a page that includes the plot
+/// library.
 std::string live_scripts(const Json& rig);
 
 }  // namespace rigcal::report

@@ -24,17 +24,18 @@ using datasets::Waveform;
 
 constexpr double kPeriodsShown = 4.0;
 constexpr double kSecondsOfNoPeriod = 10.0;
-/// More samples would not be visible, and would take too long to draw.
+/// Maximum number of samples. More would not be visible and would take too long to draw.
 constexpr double kMostMadeSamples = 5'000.0;
 constexpr double kSamplesOfAPeriod = 500.0;
-/// Without bounds, the slider of a known value reaches from a fifth of it to five times it.
+/// Slider range of a known value without bounds: from a fifth of the value to five times the value.
 constexpr double kReach = 5.0;
-/// Above the leaks of the source paper, whose largest coefficient is 2.5.
+/// Larger than any leak in the source paper, whose largest coefficient is 2.5.
 constexpr double kMostLeakage = 5.0;
 
 const char* const kLeak = "leakage_coefficient";
 
-/// Fills in duration and sample rate of a generated drive where the campaign does not state them.
+/// Fills in the duration and sample rate of a generated drive if the campaign does not specify
+/// them.
 void complete(Condition& condition) {
   if (condition.waveform == Waveform::recorded) return;
   const double frequency_hz = condition.frequency_hz.value_or(0.0);
@@ -54,7 +55,7 @@ std::string case_name(const datasets::LeakSignal& signal) {
   return fmt::format("leak table: {}", signal.name());
 }
 
-/// Settings of the leak table, if the campaign has one.
+/// Returns the settings of the leak table, if the campaign has one.
 std::optional<datasets::LeakTableSettings> leak_table_of(const Campaign& campaign) {
   const bool periodic =
       std::any_of(campaign.conditions.begin(), campaign.conditions.end(),
@@ -65,7 +66,7 @@ std::optional<datasets::LeakTableSettings> leak_table_of(const Campaign& campaig
   return settings;
 }
 
-/// Range of a slider and its scale: "log", "linear" or "cubic". The cubic scale includes zero.
+/// Range of a slider and its scale: "log", "linear" or "cubic". The cubic scale can include zero.
 struct SliderRange {
   double lower = 0.0;
   double upper = 0.0;
@@ -78,7 +79,8 @@ SliderRange scaled_range(double lower, double upper) {
   return {lower, upper, "linear"};
 }
 
-/// Empty if neither the campaign nor the value suggests a range.
+/// Chooses the slider range. Returns std::nullopt if neither the campaign nor the value suggests
+/// one.
 std::optional<SliderRange> slider_range(const datasets::ParameterSetting* setting,
                                         const model::ParameterSpec& spec, double value) {
   if (setting != nullptr && std::isfinite(setting->lower) && std::isfinite(setting->upper) &&
@@ -106,7 +108,7 @@ const char* group_of(const datasets::ParameterSetting* setting, model::Parameter
   return "";
 }
 
-/// The quantity of the drive, in the unit of its field.
+/// Describes the quantity that is driven, in the unit of its input field.
 Json driven(const Campaign& campaign) {
   const datasets::ChannelInfo& channel = info(datasets::drive_channel(campaign));
   const bool metres = channel.unit == "m";
@@ -116,7 +118,7 @@ Json driven(const Campaign& campaign) {
           {"si_unit", channel.unit}};
 }
 
-/// Null for numbers that JSON cannot represent.
+/// Returns null for numbers that JSON cannot represent.
 Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json live_parameter(const Campaign& campaign, int index, double value) {
@@ -143,7 +145,7 @@ Json live_parameter(const Campaign& campaign, int index, double value) {
   return row;
 }
 
-/// Times and inputs of a recording, as 32-bit floats (relative error up to 6e-8).
+/// Encodes the times and inputs of a recording as 32-bit floats (relative error up to 6e-8).
 Json recorded_inputs(const Campaign& campaign, const SimulationTask& task) {
   const datasets::Channel channel = datasets::drive_channel(campaign);
   const auto at_samples = [&task](const model::Signal& signal) {
@@ -196,8 +198,8 @@ Json preset(std::string_view name, double coefficient) {
   return {{"name", name}, {"coefficient", coefficient}};
 }
 
-/// Leak levels for the buttons: of the published table, else of the campaign, else of its synthetic
-/// truth.
+/// Returns the leak levels for the buttons. They come from the published table, or else from the
+/// campaign, or else from the parameters of its synthetic records.
 Json presets_of(const Campaign& campaign,
                 const std::optional<datasets::LeakTableSettings>& leak_table) {
   Json list = Json::array();
@@ -221,9 +223,9 @@ Json presets_of(const Campaign& campaign,
   return list;
 }
 
-/// Rows of the published table of leak levels, which the page computes anew.
+/// Returns the rows of the published table of leak levels, which the page recomputes.
 ///
-/// @param comparable  the first case is the published drive of the published rig
+/// @param comparable  whether the first case is the published drive of the published rig
 Json published_levels(const datasets::LeakTableSettings& settings, bool comparable) {
   Json list = Json::array();
   for (const datasets::PrintedFeatures& row : settings.features) {
@@ -251,7 +253,7 @@ Json classes_of(const datasets::DiagnosisSettings& settings) {
   return list;
 }
 
-/// Waveforms that amplitude and frequency describe, and that the module supports.
+/// Waveforms that are defined by amplitude and frequency and that the module supports.
 Json waveforms_made() { return {"sine", "square", "chirp"}; }
 
 }  // namespace
@@ -320,7 +322,8 @@ std::vector<LiveCase> live_cases(const Campaign& campaign,
     try {
       values = fitted.empty() ? values_in(campaign, condition)
                               : calib::values_with(campaign, condition, fitted);
-    } catch (const InputError& error) {  // the fit has no value for its leak level
+    } catch (const InputError& error) {  // the fit has no value for the leak level of this
+                                         // condition
       if (!problem) problem.emplace(error);
       continue;
     }
@@ -366,7 +369,8 @@ Json live_rig(const Campaign& campaign, const std::vector<LiveCase>& cases) {
            {"cases", Json::array()},
            {"presets", presets_of(campaign, leak_table)},
            {"classes", classes_of(campaign.diagnosis)},
-           // Values that --set starts from: the rig without the changes of any level or condition.
+           // Values that --set starts from: the rig without the overrides of any leak level or
+           // condition.
            {"campaign", given_values(values_in(campaign, Condition()))}};
   if (leak_table && !leak_table->features.empty()) {
     const bool comparable =

@@ -24,7 +24,7 @@ bool has_result(const ResultFolder& folder, const Section& section) {
                      [&](const std::string& file) { return folder.read(file).has_value(); });
 }
 
-/// "found neither fit.json nor ... or plan.json; expected a result folder".
+/// Returns, for example, "found neither fit.json nor ... or plan.json; expected a result folder".
 std::string nothing_found() {
   std::vector<std::string> files;
   for (const Section& section : sections())
@@ -40,8 +40,8 @@ struct Parts {
   std::vector<std::string> problems;  ///< results that exist but could not be drawn
 };
 
-/// Reads the results of a folder. Unreadable ones are named on the page; if there are no others, it
-/// is an error.
+/// Reads the results in a folder. Unreadable results are named on the page. If all of them are
+/// unreadable, the first error is thrown.
 Parts parts_of(const ResultFolder& folder) {
   Parts parts;
   std::exception_ptr first;
@@ -59,7 +59,7 @@ Parts parts_of(const ResultFolder& folder) {
   throw InputError({folder.where}, nothing_found());
 }
 
-/// Quotes a text as a string of a style sheet and escapes everything in it.
+/// Quotes a text as a style-sheet string and escapes everything in it.
 std::string css_string(const std::string& text) {
   std::string result = "\"";
   for (const char c : text) {
@@ -71,7 +71,7 @@ std::string css_string(const std::string& text) {
   return result + "\"";
 }
 
-/// Style of the foot of every printed page: laboratory, report and source file.
+/// Returns the style for the footer of printed pages: laboratory, report and source file.
 std::string foot_style(const Part& first, bool bad, const std::string& sha256) {
   std::string left;
   const auto add = [&](const std::string& text) {
@@ -114,7 +114,7 @@ void add_top(const Part& first, bool synthetic, std::string& page) {
   page += "</header>\n";
 }
 
-/// Every file that a result on the page was made from, once.
+/// Lists every file that any result on the page was made from, without duplicates.
 doc::Fold inputs_of(const Parts& parts) {
   doc::Table inputs{"Input files"};
   inputs.style = "hashes";
@@ -129,8 +129,8 @@ doc::Fold inputs_of(const Parts& parts) {
           {std::move(inputs)}};
 }
 
-/// Adds the page that is signed: the verdict of the first result with its evidence, then the
-/// verdicts of the others.
+/// Adds the page to be signed: the verdict of the first result with its evidence, then the verdicts
+/// of the others.
 void add_first_page(const Parts& parts, bool synthetic, const std::string& sha256,
                     std::string& page) {
   const Part& first = parts.drawn.front();
@@ -161,7 +161,7 @@ void add_first_page(const Parts& parts, bool synthetic, const std::string& sha25
   page += "</section>\n\n";
 }
 
-/// Drops what makes a page long, and pictures of a section after the first few.
+/// Removes the blocks that make a page long, and all but the first few pictures of a section.
 void shorten(doc::Blocks& blocks) {
   constexpr std::size_t kMostPictures = 4;
   std::size_t pictures = 0;
@@ -246,7 +246,7 @@ std::string page_of(const Parts& parts, const std::string& sha256, PageExtent ex
   provenance.blocks.emplace_back(inputs_of(parts));
   doc::render_html(provenance, page);
   doc::render_html(formulas_section(), page);
-  // The licence of the plot library requires its notice in every copy, and each page is one.
+  // The licence of the plot library requires its notice in every copy, and each page contains one.
   page += fmt::format("</main>\n<script>/*! uPlot\n\n{}*/\n{}</script>\n<script>{}</script>\n",
                       asset("uPlot.LICENSE"), asset("uPlot.js"), asset("report.js"));
   if (first.live) page += first.live->scripts;

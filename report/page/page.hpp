@@ -12,7 +12,7 @@ namespace rigcal::report {
 
 /// A result in a folder.
 struct ResultDocument {
-  std::string file;  ///< the result itself: "fit.json"
+  std::string file;  ///< file with the result itself: "fit.json"
   doc::Document document;
 };
 
@@ -22,28 +22,28 @@ struct ResultPage {
   std::vector<ResultDocument> documents;
 };
 
-/// report.html of a result folder: every result in it, from its files alone. The same files give
-/// the same bytes. A result that cannot be read is named on the page and left out, unless it is the
-/// only one.
+/// Draws report.html for a result folder. The page shows every result in the folder and is made
+/// only from its files. The same files always give the same bytes. A result that cannot be read is
+/// named on the page and left out, unless it is the only one.
 ///
-/// @param where    the folder, named in errors
-/// @param made     as of load_calibration()
-/// @throws InputError  there is no result, or none that this version can read
+/// @param where  the folder, for error messages
+/// @param made   as for load_calibration()
+/// @throws InputError  if there is no result that this version can read
 ResultPage result_page(const ReadFile& read, const std::string& where, int threads,
                        const ReadTable& made = {});
 
-/// The same results without a page, and without curves of single conditions.
+/// Returns the same results without a page, and without the curves of single conditions.
 std::vector<ResultDocument> result_documents(const ReadFile& read, const std::string& where,
                                              const ReadTable& made = {});
 
-/// The same without scripts, and without what makes it long: folds, the articles of single
-/// conditions, provenance and formulas. For a notebook.
+/// Draws a short page for a notebook, without scripts, folds, articles about single conditions,
+/// provenance and formulas.
 std::string brief_page(const ReadFile& read, const std::string& where, const ReadTable& made = {});
 
-/// Every picture as a separate file in figures/, as SVG and as PDF: <condition>_<plot>, leak_table,
-/// leak_levels, diagnosis, comparison_<parameter>, trend_<along>_<level>.
+/// Returns every picture as a separate file in figures/, as SVG and as PDF: <condition>_<plot>,
+/// leak_table, leak_levels, diagnosis, comparison_<parameter>, trend_<along>_<level>.
 ///
-/// @throws InputError  a file is missing, or not in the format of this version
+/// @throws InputError  if a file is missing or does not have the format of this version
 std::vector<std::pair<std::filesystem::path, std::string>> result_figures(const ReadFile& read,
                                                                           const std::string& where);
 

@@ -15,7 +15,7 @@ namespace {
 
 using Kind = doc::Column::Kind;
 
-/// About one point per pixel of the width.
+/// About one point per pixel of width.
 constexpr std::size_t kAveragePoints = 600;
 
 std::string offsets_text(const StoredRecord& record) {
@@ -45,7 +45,7 @@ void add_agreement_rows(const StoredRecord& record, doc::Table& table) {
   }
 }
 
-/// Texts about every record, with its condition.
+/// Collects a list of texts from all records, each with its condition.
 std::vector<std::string> texts_of(const StoredAverage& average,
                                   std::vector<std::string> StoredRecord::*texts) {
   std::vector<std::string> list;

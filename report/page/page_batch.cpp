@@ -15,10 +15,10 @@ namespace {
 
 using Kind = doc::Column::Kind;
 
-/// Warnings of a rig that the overview shows; its own report has all.
+/// Number of warnings per rig in the overview; the report of the rig lists all.
 constexpr std::size_t kShownWarnings = 3;
 
-/// A relative path as a link, with reserved characters escaped.
+/// Converts a relative path to a link with reserved characters escaped.
 std::string as_link(const std::string& path) {
   std::string link;
   for (const char c : path) {
@@ -71,7 +71,8 @@ doc::Cell estimate_lines(const StoredRig& rig) {
   return cell;
 }
 
-/// Points over days since the first; nothing if fewer than two have a date.
+/// Plots the estimates over the days since the first one. Returns std::nullopt if fewer than two
+/// have a date.
 std::optional<Plot> rig_trend_plot(const StoredRig& rig, const StoredRigTrend& trend) {
   const std::vector<StoredTrendPoint>& points = trend.series.points;
   double first = std::numeric_limits<double>::infinity();
@@ -115,7 +116,7 @@ std::optional<Plot> rig_trend_plot(const StoredRig& rig, const StoredRigTrend& t
   return plot;
 }
 
-/// Reasons why a rig is not PASS, and its first warnings.
+/// Lists why a rig is not PASS, and its first warnings.
 doc::Cell reason_lines(const StoredRig& rig) {
   doc::Cell cell;
   if (!has_converged(rig) || rig.exit_code > 1) cell.paragraphs.push_back({rig.message});

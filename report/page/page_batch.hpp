@@ -5,7 +5,7 @@
 namespace rigcal::report {
 
 StoredBatch load_batch(const ReadFile& read, const std::string& where);
-/// Its campaign is the folder of its rigs.
+/// Adds a batch. The folder of the rigs is shown in place of a campaign.
 void add_batch(const StoredBatch& batch, Part& part);
 
 }  // namespace rigcal::report

@@ -15,7 +15,7 @@ namespace {
 using doc::Line;
 using Kind = doc::Column::Kind;
 
-/// Change from the first result; nothing if there is none to report.
+/// Returns the change from the first result, or std::nullopt if there is nothing to report.
 std::optional<doc::Line> change_line(const std::optional<StoredDifference>& difference,
                                      const RowUnit& unit) {
   if (!difference) return std::nullopt;
@@ -46,7 +46,7 @@ doc::Cell estimate_cell(const std::optional<StoredEstimate>& estimate, const Row
   return cell;
 }
 
-/// Adds a column for each result, with its number and name.
+/// Adds a column for each result, headed by its number and name.
 void add_result_columns(const StoredComparison& comparison, Kind kind, doc::Table& table) {
   for (std::size_t i = 0; i < comparison.results.size(); ++i)
     table.columns.push_back({fmt::format("{} {}", i + 1, comparison.results[i].name), kind});
@@ -71,7 +71,7 @@ doc::Table parameter_table_of(const StoredComparison& comparison) {
   return table;
 }
 
-/// Each fitted parameter by result, with its interval.
+/// Draws one figure for each fitted parameter: its estimate in each result, with intervals.
 std::vector<Figure> parameter_figures(const StoredComparison& comparison) {
   std::vector<Figure> figures;
   for (const StoredComparedParameter& parameter : comparison.parameters) {
@@ -101,7 +101,7 @@ std::vector<Figure> parameter_figures(const StoredComparison& comparison) {
   return figures;
 }
 
-/// A series along dates or temperatures.
+/// The axis of a trend: dates or temperatures.
 struct TrendAxis {
   const char* key;
   std::optional<double> StoredTrendPoint::*place;
@@ -155,7 +155,7 @@ Plot trend_plot(const StoredSeries& series, const TrendAxis& axis) {
   return plot;
 }
 
-/// Whether the points have different positions.
+/// Returns true if the points have at least two different positions.
 bool differ(const StoredSeries& series, const TrendAxis& axis) {
   std::optional<double> first;
   for (const StoredTrendPoint& point : series.points) {
@@ -236,7 +236,7 @@ doc::Table metric_table(const StoredComparison& comparison) {
   return table;
 }
 
-/// "1 to 2", or "1" where both are the same.
+/// Returns "1 to 2", or "1" if both are the same.
 std::string span(const std::string& first, const std::string& last) {
   return first == last ? first : fmt::format("{} to {}", first, last);
 }
@@ -307,7 +307,7 @@ std::string change_sentence(const Change& change) {
                   : fmt::format("{}, not tested: {}", text, change.reason);
 }
 
-/// Results of the tests, and the number of parameters that were not tested.
+/// Summarises the tests and the number of parameters that were not tested.
 std::string significance_sentence(const StoredComparison& comparison) {
   long compared = 0;
   long tested = 0;
@@ -391,7 +391,7 @@ std::vector<Figure> comparison_figures(const StoredComparison& comparison) {
 
 namespace {
 
-/// Whether an error of a difference includes what differs between days.
+/// Returns true if the error of any difference includes day-to-day differences.
 bool has_other_dates(const StoredComparison& comparison) {
   for (const StoredComparedParameter& parameter : comparison.parameters)
     for (const auto& difference : parameter.differences)

@@ -19,7 +19,7 @@ namespace {
 using Kind = doc::Column::Kind;
 
 constexpr std::size_t kDesignPoints = 1200;
-/// Bins of a spectrum per decade: narrow enough to separate the lines of a multisine.
+/// Number of bins per decade in a spectrum: narrow enough to separate the lines of a multisine.
 constexpr double kBinsPerDecade = 60.0;
 
 std::optional<double> half_width_percent(const std::optional<double>& sd, double value) {
@@ -46,7 +46,7 @@ std::string words_of(datasets::DriveFamily family) {
   return "";
 }
 
-/// A column of the response, thinned for drawing.
+/// Returns a column of the response, thinned for drawing.
 Trace line_of(const Table& response, const std::vector<double>& values, double si,
               const std::string& style, const std::string& name) {
   Trace trace = empty_trace(Trace::Kind::line, style, name);
@@ -67,7 +67,8 @@ Plot plot_over_time(const std::string& title, const std::string& what, const Rea
   return plot;
 }
 
-/// The root mean square of a signal in each bin of its spectrum, over the frequency in hertz.
+/// Returns the root mean square of a signal in each bin of its spectrum, over the frequency in
+/// hertz.
 Trace spectrum_of(const std::vector<double>& values, double rate_hz, double si,
                   const std::string& style, const std::string& name) {
   Trace trace = empty_trace(Trace::Kind::line, style, name);

@@ -6,11 +6,11 @@
 
 namespace rigcal::report {
 
-/// `design` of plan.json: the test of `plan --design`.
+/// Functions for `design` in plan.json: the test that `plan --design` designed.
 doc::Verdict design_headline(const StoredDesign& design);
-/// @param files  with a design
+/// @param files  must contain a design
 doc::Section design_section(const PlanFiles& files);
-/// Drive, response and spectrum; none without a design.
+/// Draws the drive, the response and the spectrum; empty without a design.
 std::vector<Figure> design_figures(const PlanFiles& files);
 
 }  // namespace rigcal::report

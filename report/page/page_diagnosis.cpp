@@ -22,7 +22,7 @@ std::string class_text(const std::optional<LeakClass>& leak_class) {
   return leak_class ? std::string(to_string(*leak_class)) : std::string();
 }
 
-/// Badge of a leak below zero: supply or valve differ from the fit.
+/// Badge for a leak below zero: supply or valve differ from the fit.
 const doc::Badge kIncompatible{doc::State::bad, "incompatible with the model"};
 
 doc::Badge leak_badge(const StoredDiagnosedRecord& record) {
@@ -34,7 +34,7 @@ doc::Badge leak_badge(const StoredDiagnosedRecord& record) {
   return doc::badge(*record.leak.class_);
 }
 
-/// Cell with a value in a unit and its 95 % interval below.
+/// Returns a cell with a value in a unit and its 95 % interval below it.
 doc::Cell value_cell(const std::optional<double>& value, const std::optional<Range>& interval,
                      double si_per_unit = 1.0, int digits = 4) {
   doc::Cell cell{Line{doc::in_unit(value, si_per_unit, digits)}};
@@ -51,7 +51,7 @@ doc::Cell probability_cell(const std::optional<double>& p) {
   return cell;
 }
 
-/// @param classes  those that have a column
+/// @param classes  the classes that have a column
 doc::Row average_row(const StoredDiagnosedRecord& record, std::size_t number,
                      const std::vector<std::string>& classes) {
   doc::Cell name = doc::Cell(record.condition);
@@ -86,7 +86,8 @@ doc::Row repeat_row(const StoredDiagnosedRecord& record) {
            class_text(record.true_class)}};
 }
 
-/// Shares with their intervals in the order of the table, and the limits of the classes.
+/// Plots the leak shares with their intervals in the order of the table, and the limits of the
+/// classes.
 Plot share_plot(const StoredDiagnosis& diagnosis) {
   Plot plot;
   plot.title = "Share of the servo flow that leaks, with 95 % intervals, by record";
@@ -133,7 +134,7 @@ constexpr std::array kMethods{
     MethodName{&StoredMethods::features_leave_one_signal_out,
                "Paper's features, learned without the signal"}};
 
-/// How often a method is right.
+/// Returns a row with the accuracy of a classification method.
 doc::Row accuracy_row(const StoredAccuracy& method, const char* name) {
   const auto percent = [](double value) { return doc::in_unit(100.0 * value, 1.0, 4); };
   doc::Cell accuracy;
@@ -144,7 +145,7 @@ doc::Row accuracy_row(const StoredAccuracy& method, const char* name) {
            fmt::format("{}", method.undecided), fmt::format("{}", method.off_by_two_or_more)}};
 }
 
-/// What a method takes for what.
+/// Returns the confusion matrix of a classification method.
 doc::Table confusion_table(const StoredAccuracy& method, const char* name) {
   doc::Table table{fmt::format("Confusion: {}", name)};
   table.style = "correlation confusion";
@@ -160,7 +161,7 @@ doc::Table confusion_table(const StoredAccuracy& method, const char* name) {
     for (std::size_t j = 0; j < counts.size(); ++j) {
       doc::Cell cell = doc::Cell(fmt::format("{}", counts[j]));
       const double fraction = static_cast<double>(counts[j]) / static_cast<double>(total);
-      cell.shade = i == j ? -fraction : fraction;  // blue: correct
+      cell.shade = i == j ? -fraction : fraction;  // blue for correct classifications
       row.cells.push_back(std::move(cell));
     }
     table.rows.push_back(std::move(row));
@@ -168,7 +169,7 @@ doc::Table confusion_table(const StoredAccuracy& method, const char* name) {
   return table;
 }
 
-/// General warnings, then those of the records, each once.
+/// Returns the general warnings, followed by those of the records, without duplicates.
 std::vector<std::string> diagnosis_warnings(const StoredDiagnosis& diagnosis) {
   std::vector<std::pair<std::string, std::string>> told;
   for (const StoredDiagnosedRecord& record : diagnosis.records) {
@@ -182,7 +183,7 @@ std::vector<std::string> diagnosis_warnings(const StoredDiagnosis& diagnosis) {
   return list;
 }
 
-/// Rows of the leak table that gave the limits; none where [diagnosis] did.
+/// Lists the rows of the leak table that define the limits; empty if [diagnosis] defines them.
 doc::Table limits_of_classes(const StoredDiagnosis& diagnosis) {
   doc::Table table{"Coefficient at each limit, by signal"};
   table.columns = {{"Signal"},
@@ -204,7 +205,7 @@ doc::Table limits_of_classes(const StoredDiagnosis& diagnosis) {
   return table;
 }
 
-/// Verdicts on the states of the machine, but for healthy references; the largest leak first.
+/// Returns the judged states of the machine, without healthy references, largest leak first.
 std::vector<StoredState> judged_states(const StoredDiagnosis& diagnosis) {
   std::vector<StoredState> states;
   for (const StoredState& state : diagnosis.states)

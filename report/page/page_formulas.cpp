@@ -11,7 +11,7 @@ struct Formula {
   const char* formula;
 };
 
-/// Quantities of the page other than the metrics of metrics/metric_table.hpp.
+/// Definitions of the quantities on the page, except the metrics in metrics/metric_table.hpp.
 constexpr std::array kFormulas{
     Formula{"noise floor",
             "what a model equal to the true signal would score: rho2 = 1 - sigma^2 / var(y), sigma "

@@ -6,8 +6,8 @@
 namespace rigcal::report {
 namespace {
 
-/// Everything that is stated about a sensor: "LVDT, serial number 4711, DKD 17, due 2027-01-31". A
-/// sensor that was overdue on the last day of the test is marked.
+/// Describes a sensor: "LVDT, serial number 4711, DKD 17, due 2027-01-31". Marks a sensor whose
+/// calibration was overdue on the last day of the test.
 doc::Line sensor_line(const Json& sensor, const std::string& tested) {
   doc::Line line;
   for (const datasets::ReportField& field : datasets::kSensorFields) {
@@ -51,7 +51,7 @@ Identity identity_of(const Json& report) {
     add("Tested", first == last ? first : fmt::format("{} to {}", first, last));
   }
   for (const datasets::ReportField& field : datasets::kReportFields) {
-    // The top of the page and the signatures at its foot show these.
+    // These appear at the top of the page or in the signatures at the bottom.
     if (field.key == "number" || field.key == "issued" || field.key == "laboratory" ||
         field.key == "customer" || field.key == "operator" || field.key == "approver")
       continue;
@@ -63,7 +63,7 @@ Identity identity_of(const Json& report) {
         channel.empty() ? std::string("Sensor") : "Sensor: " + spaced(channel),
         sensor_line(sensor, tested));
   }
-  // The person who signs for the test.
+  // The operator signs for the test.
   const std::string tester = text_of(report, "operator");
   const std::string approver = text_of(report, "approver");
   if (!tester.empty() || !approver.empty())

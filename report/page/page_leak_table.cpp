@@ -16,12 +16,12 @@ using doc::Line;
 using Kind = doc::Column::Kind;
 
 constexpr std::size_t kLevelPoints = 1200;
-/// Half an interval in parts of its middle, from which on its two ends are shown.
+/// If half the interval exceeds this fraction of its centre, both ends are shown.
 constexpr double kWideInterval = 0.1;
-/// Style classes of levels side by side; their order distinguishes them without colour.
+/// Style classes for levels drawn side by side; even without colour their order distinguishes them.
 constexpr std::array kLevelStyles{"model", "residual", "servo", "leak", "reference"};
 
-/// "sine 0.1 Hz, 50.8 mm" of an entry or of the rig without a fault.
+/// Names the drive of an entry or of the fault-free rig: "sine 0.1 Hz, 50.8 mm".
 template <typename Entry>
 std::string drive_name(const Entry& entry) {
   std::string text = fmt::format("{} {:.6g} Hz", to_string(entry.waveform), entry.frequency_hz);
@@ -30,7 +30,7 @@ std::string drive_name(const Entry& entry) {
   return text;
 }
 
-/// All roots of an entry; "~" before those that the share hardly determines.
+/// Lists all roots of an entry, with "~" before roots that the share barely determines.
 Line coefficients_line(const StoredLeakEntry& entry) {
   Line line;
   for (const double root : entry.coefficients) {
@@ -43,7 +43,8 @@ Line coefficients_line(const StoredLeakEntry& entry) {
   return line;
 }
 
-/// Their intervals; results without a fit, or of before there were any, have none.
+/// Formats the intervals of the roots; empty for results without a fit and for results from before
+/// intervals were introduced.
 std::string intervals_text(const StoredLeakEntry& entry) {
   std::string text;
   if (!entry.coefficients_ci95) return text;
@@ -57,7 +58,7 @@ std::string intervals_text(const StoredLeakEntry& entry) {
   return text;
 }
 
-/// "+4.2 %"; a dash where there is no error.
+/// Formats an error: "+4.2 %", or a dash if there is none.
 std::string error_text(const std::optional<double>& percent) {
   return percent ? fmt::format("{:+.1f} %", *percent) : std::string("–");
 }
@@ -72,7 +73,8 @@ doc::Tile leak_tile(const StoredLeakEntry& entry) {
   return tile;
 }
 
-/// Cell with the share at the published coefficient, and the range that its rounding allows.
+/// Returns a cell with the share at the published coefficient and the range that its rounding
+/// allows.
 doc::Cell published_share_cell(const StoredLeakEntry& entry) {
   if (!entry.published_coefficient) return doc::Cell("–");
   doc::Cell cell{Line{doc::in_unit(entry.share_at_published_percent, 1.0, 3)}};
@@ -82,7 +84,7 @@ doc::Cell published_share_cell(const StoredLeakEntry& entry) {
   return cell;
 }
 
-/// Signals by target shares, in the order of the file.
+/// Adds a row for each signal and a column for each target share, in the order of the file.
 ///
 /// @param cell_of  makes the cell of an entry
 template <typename CellOf>
@@ -114,7 +116,8 @@ std::vector<double> targets_of(const std::vector<StoredLeakEntry>& entries) {
   return targets;
 }
 
-/// Computed over published coefficients; a perfect agreement is on the line.
+/// Plots computed over published coefficients. With perfect agreement all points would be on the
+/// line.
 Plot agreement_plot(const std::vector<StoredLeakEntry>& entries) {
   Plot plot;
   plot.title = "Computed over published leakage coefficients";
@@ -202,7 +205,7 @@ Plot levels_plot(const std::vector<std::pair<std::string, Table>>& levels) {
     trace.x = thinned_times(*time_s, *residual, thin);
     trace.y = thinned(*residual, thin);
     for (double& y : trace.y) {
-      y = -y;  // the file has leaking minus healthy
+      y = -y;  // the file contains leaking minus healthy
       size = std::max(size, std::abs(y));
     }
     plot.traces.push_back(std::move(trace));
@@ -214,7 +217,8 @@ Plot levels_plot(const std::vector<std::pair<std::string, Table>>& levels) {
   return plot;
 }
 
-/// One column of a level's series over its period, times a factor; empty without that column.
+/// Returns one column of a level's series over its period, multiplied by a factor; empty if the
+/// column does not exist.
 Trace level_trace(const Table& table, const char* column, double factor) {
   Trace trace;
   const auto* values = table.find(column);
@@ -227,7 +231,8 @@ Trace level_trace(const Table& table, const char* column, double factor) {
   return trace;
 }
 
-/// Response of the cylinder to its reference at each level; the source paper's figures 8 and 10.
+/// Plots the response of the cylinder to its reference at each level, as in figures 8 and 10 of the
+/// source paper.
 Plot positions_plot(const std::vector<std::pair<std::string, Table>>& levels) {
   Plot plot;
   plot.title = "Position in percent of the amplitude of the reference, over one period";
@@ -247,7 +252,7 @@ Plot positions_plot(const std::vector<std::pair<std::string, Table>>& levels) {
   return plot;
 }
 
-/// The flows at one level; the source paper's figures 9 and 11.
+/// Plots the flows at one level, as in figures 9 and 11 of the source paper.
 Plot flows_plot(const std::string& level, const Table& table) {
   struct Column {
     const char* name;
@@ -257,7 +262,7 @@ Plot flows_plot(const std::string& level, const Table& table) {
   constexpr std::array kColumns{Column{"servo", "servo_flow_m3_per_s", "servo"},
                                 Column{"work", "work_flow_m3_per_s", "model"},
                                 Column{"leakage", "leakage_flow_m3_per_s", "leak"}};
-  constexpr double kLitresPerMinuteEach = 60e3;  ///< per m3/s
+  constexpr double kLitresPerMinuteEach = 60e3;  ///< L/min per m3/s
   Plot plot;
   plot.title = fmt::format("Servo, work and leakage flow at the level {}, over one period", level);
   plot.x_label = "time [s]";
@@ -272,7 +277,7 @@ Plot flows_plot(const std::string& level, const Table& table) {
   return plot;
 }
 
-/// "Critical: 30.6 % of the servo flow leak, at the coefficient 0.6"
+/// Returns, for example, "Critical: 30.6 % of the servo flow leak, at the coefficient 0.6".
 std::string level_caption(const std::vector<StoredFeatures>& features, const std::string& level) {
   for (const StoredFeatures& f : features) {
     if (f.level != level) continue;

@@ -14,7 +14,7 @@
 namespace rigcal::report {
 namespace {
 
-/// In the order of the results; repeated from the sixth on.
+/// Style classes in the order of the results, reused from the sixth result on.
 constexpr std::array kResultStyles{"model", "residual", "servo", "leak", "reference"};
 
 Plot time_plot(const std::string& title, const std::string& y_label, double height) {
@@ -125,7 +125,7 @@ std::vector<doc::Section> comparison_sections(const ComparisonFiles& files) {
     curves.blocks.emplace_back(
         doc::Fold{condition, {std::move(gallery)}, files.curves.size() <= kFew});
   }
-  // The curves go before the records.
+  // The curves are inserted before the records.
   if (curves.blocks.size() > 1) sections.insert(sections.end() - 1, std::move(curves));
   return sections;
 }

@@ -10,14 +10,14 @@
 
 namespace rigcal::report {
 
-/// For each channel of overlay/<condition>.csv: the measurement with the models of all results, and
-/// the residual of each.
+/// Draws, for each channel in overlay/<condition>.csv, the measurement with the models of all
+/// results, and the residual of each result.
 ///
-/// @param names  of the results, in the order of their numbers
+/// @param names  names of the results, in the order of their numbers
 std::vector<Figure> overlay_figures(const std::string& condition, const Table& curves,
                                     const std::vector<std::string>& names);
 
-/// A comparison, and its overlaid curves by condition, in the order of its scores.
+/// A comparison with its overlaid curves for each condition, in the order of the scores.
 struct ComparisonFiles {
   StoredComparison result;
   std::vector<std::pair<std::string, Table>> curves;
@@ -26,7 +26,7 @@ ComparisonFiles load_comparison_files(const ReadFile& read, const std::string& w
 doc::Verdict comparison_headline(const ComparisonFiles& files);
 std::vector<doc::Section> comparison_sections(const ComparisonFiles& files);
 std::vector<Figure> comparison_figures(const ComparisonFiles& files);
-/// Adds a comparison; its campaigns are those of the compared results.
+/// Adds a comparison. Its campaigns are those of the compared results.
 void add_comparison(const ComparisonFiles& files, Part& part);
 
 }  // namespace rigcal::report

@@ -13,7 +13,7 @@ using doc::Line;
 using Kind = doc::Column::Kind;
 
 constexpr double kMillimetres = 1e3;
-constexpr std::size_t kPoints = 1200;  ///< points in one line of a picture
+constexpr std::size_t kPoints = 1200;  ///< number of points on one line of a picture
 constexpr int kLengthDigits = 3;
 
 const StoredParitySignal* signal_of(const StoredParity& parity, const std::string& name) {
@@ -22,13 +22,13 @@ const StoredParitySignal* signal_of(const StoredParity& parity, const std::strin
   return nullptr;
 }
 
-/// Summary of the repeats of one condition.
+/// Summary over the repeats of one condition.
 struct Summary {
   std::string condition, level;
   const StoredParitySignal* signal = nullptr;
-  std::optional<double> threshold_m;  ///< threshold for records of its day
+  std::optional<double> threshold_m;  ///< threshold for records from the same day
   bool healthy = false;
-  bool reference = false;  ///< its records set the threshold
+  bool reference = false;  ///< its records were used to set the threshold
   int judged = 0;
   int alarms = 0;
   std::optional<double> first_s;
@@ -77,7 +77,7 @@ std::vector<double> in_millimetres(const std::vector<double>& metres) {
   return result;
 }
 
-/// Columns of all repeats whose names begin so, thinned.
+/// Adds, thinned, the columns of all repeats whose name starts with `column`.
 void add_lines(const Table& series, const std::string& column, const char* style, const char* name,
                Plot& plot) {
   const std::vector<double>* time = series.find("time_s");

@@ -12,7 +12,7 @@ namespace {
 
 using Kind = doc::Column::Kind;
 
-/// A standard deviation in percent of the value; a dash where there is none.
+/// Formats a standard deviation in percent of the value; a dash if it is absent.
 std::string percent_text(const std::optional<double>& sd, const std::optional<double>& value) {
   if (!sd || !value || *value == 0.0) return "–";
   const double percent = 100.0 * *sd / std::abs(*value);
@@ -27,7 +27,7 @@ doc::Row percent_row(const StoredPlan& plan, const std::string& label,
   return row;
 }
 
-/// Table with a column for each parameter.
+/// Returns a table with a column for each parameter.
 doc::Table percent_table(const StoredPlan& plan, const char* label, const char* first) {
   doc::Table table{label};
   table.columns = {{first}};

@@ -9,41 +9,42 @@
 #include "report/live/live_fit.hpp"
 #include "report/page/page_parts.hpp"
 
-// Kinds of results on the page, with their files and their sections.
+// The kinds of results on the page, with their files and sections.
 
 namespace rigcal::report {
 
-/// A folder of results, as the page reads it.
+/// A result folder as seen by the page.
 struct ResultFolder {
   const ReadFile& read;
-  std::string where;    ///< for messages
-  int threads = 1;      ///< threads for reading series and drawing
-  ReadTable made = {};  ///< tables that this run has made, which need not be read back
+  std::string where;    ///< name of the folder for messages
+  int threads = 1;      ///< number of threads for reading series and drawing
+  ReadTable made = {};  ///< tables made in this run, which need not be read back
   bool curves = true;   ///< whether the curves of single conditions are drawn
 };
 
-/// Part of a page from one result.
+/// The part of a page that comes from one result.
 struct Part : doc::Document {
   std::string link;  ///< id of its first section
-  std::string name;  ///< "Calibration"
+  std::string name;  ///< for example "Calibration"
   std::string file;  ///< file that the part is made from
   std::string campaign;
   Identity identity;
-  std::optional<LiveSection> live;  ///< the rig in the page, after its first page
+  std::optional<LiveSection> live;  ///< the simulated rig, shown after the first page
   doc::Blocks provenance;
-  std::vector<InputFile> inputs;                         ///< that it was made from
+  std::vector<InputFile> inputs;                         ///< files that the result was made from
   std::string program;                                   ///< program that made the result
   std::vector<std::pair<std::string, std::string>> nav;  ///< id and title of each section
 };
 
 struct Section {
-  std::string name;                ///< "leak_table"
-  std::vector<std::string> files;  ///< a folder with such a result has at least one of them
+  std::string name;                ///< for example "leak_table"
+  std::vector<std::string> files;  ///< a folder with this kind of result has at least one of these
+                                   ///< files
   std::function<Part(const ResultFolder&)> part;
   std::function<std::vector<Figure>(const ResultFolder&)> figures;
 };
 
-/// Id and title of the first part of a section.
+/// File of a result, name of its section, and id and title of its first part.
 struct SectionTitle {
   const char* file;
   const char* section;
@@ -51,7 +52,7 @@ struct SectionTitle {
   const char* name;
 };
 
-/// Content of a file, without the series beside it.
+/// Returns the contents of the result file, without the series stored beside it.
 template <typename Files>
 const auto& result_of(const Files& files) {
   if constexpr (requires { files.result; }) {
@@ -61,7 +62,7 @@ const auto& result_of(const Files& files) {
   }
 }
 
-/// Common data of any kind of result.
+/// Fills in the data that all kinds of results have in common.
 template <typename Result>
 Part part_of(const Result& result, const char* link, const char* name, const std::string& file) {
   Part part;
@@ -76,13 +77,14 @@ Part part_of(const Result& result, const char* link, const char* name, const std
   return part;
 }
 
-/// The rig of a result's own run in its page; nothing if the run wrote none.
+/// Returns the simulated rig written by the same run as the result, or std::nullopt if the run did
+/// not write one.
 std::optional<LiveSection> live_of(const StoredProvenance& provenance, const ResultFolder& folder,
                                    const std::string& file);
 
-/// A row of sections(), from functions that all take the data that the first one has read.
+/// Makes a row for sections(). `load` reads the data, and all other functions receive it.
 ///
-/// @param more  further data of this kind of result; null if there are none
+/// @param more  adds further data for this kind of result; null if there are none
 template <typename Files>
 Section section(const SectionTitle& title, Files (*load)(const ReadFile&, const std::string&),
                 doc::Verdict (*verdict)(const Files&),
@@ -108,7 +110,7 @@ Section section(const SectionTitle& title, Files (*load)(const ReadFile&, const 
   return {title.section, {title.file}, part, drawn};
 }
 
-/// Every kind of result that the page knows, in the order in which it shows them.
+/// Returns every kind of result that the page supports, in display order.
 const std::vector<Section>& sections();
 
 }  // namespace rigcal::report

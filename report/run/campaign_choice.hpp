@@ -12,18 +12,19 @@ namespace rigcal::report {
 /// The chosen campaign, with changes from the command line.
 struct CampaignChoice {
   std::filesystem::path campaign;
-  std::filesystem::path data;     ///< base of relative record paths; empty: the file's folder
+  std::filesystem::path data;     ///< base folder for relative record paths; empty: the folder of
+                                  ///< the campaign file
   std::filesystem::path root;     ///< no file outside this folder is read; empty: no restriction
-  std::vector<std::string> set;   ///< name="value unit"
-  std::vector<std::string> free;  ///< exactly these are fitted; empty: the campaign's
+  std::vector<std::string> set;   ///< each as name="value unit"
+  std::vector<std::string> free;  ///< the only parameters to fit; empty: those of the campaign
 };
 
-/// The campaign with the values of `set` and `free`.
+/// Loads the campaign and applies `set` and `free`.
 ///
 /// @throws InputError, UsageError
 datasets::Campaign load(const CampaignChoice& choice);
 
-/// Choices that change numbers, for the provenance.
+/// Returns the choices that affect the numbers, for the provenance.
 std::vector<std::pair<std::string, std::string>> recorded(const CampaignChoice& choice);
 
 }  // namespace rigcal::report

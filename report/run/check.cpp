@@ -26,7 +26,7 @@ struct StoredCheck {
   RIGCAL_DESCRIBE(campaign, synthetic, records, without_record, warnings)
 };
 
-/// One line on a record and one on each of its warnings.
+/// Formats one line about a record, and one for each of its warnings.
 std::string record_text(const datasets::Condition& condition, const datasets::Record& record) {
   const double duration_s =
       record.time_s.empty() ? 0.0 : record.time_s.back() - record.time_s.front();
@@ -58,16 +58,16 @@ Check check(const datasets::Campaign& campaign, const std::function<void(dataset
   StoredCheck told;
   told.campaign = campaign.name;
   told.synthetic = campaign.synthetic;
-  std::vector<std::string> texts;               // per condition
-  std::vector<datasets::RecordLength> lengths;  // lengths of those with a record
-  std::vector<std::size_t> places;              // their indices in `texts`
+  std::vector<std::string> texts;               // one per condition
+  std::vector<datasets::RecordLength> lengths;  // lengths of the conditions that have a record
+  std::vector<std::size_t> places;              // indices of these conditions in `texts`
   for (const datasets::Condition& condition : campaign.conditions) {
     if (!condition.has_record()) {
       texts.push_back(fmt::format("{}: {}, no record\n", condition.id, to_string(condition.use)));
       told.without_record.push_back(condition.id);
       continue;
     }
-    // One record at a time is in memory.
+    // Only one record is in memory at a time.
     datasets::Record record = datasets::load_record(campaign, condition);
     lengths.push_back({&condition, datasets::seconds_of(record)});
     places.push_back(texts.size());

@@ -9,16 +9,16 @@
 
 namespace rigcal::report {
 
-/// Findings of `check` about the records of a campaign.
+/// What `check` found out about the records of a campaign.
 struct Check {
   std::string text;
   Json json;
 };
 
-/// Reads every record, one at a time.
+/// Reads and checks every record, one at a time.
 ///
-/// @param keep  is given each, in the campaign's order; may be empty
-/// @throws InputError  a record is wrong
+/// @param keep         receives each record in campaign order; may be empty
+/// @throws InputError  if a record is invalid
 Check check(const datasets::Campaign& campaign,
             const std::function<void(datasets::Record)>& keep = {});
 

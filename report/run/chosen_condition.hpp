@@ -6,7 +6,9 @@
 
 namespace rigcal::report {
 
-/// @throws UsageError  of --condition: no condition has this id
+/// Returns the condition named by --condition.
+///
+/// @throws UsageError  if no condition has this id
 const datasets::Condition& chosen_condition(const datasets::Campaign& campaign,
                                             const std::string& id);
 

@@ -7,7 +7,8 @@
 namespace rigcal::report {
 namespace {
 
-/// Further starts if their number is not stated and the campaign's start ends away from a minimum.
+/// Number of further starts if the campaign's start does not end at a minimum and no number is
+/// given.
 constexpr int kFurtherStarts = 3;
 
 }  // namespace

@@ -10,7 +10,7 @@
 namespace rigcal::report {
 namespace {
 
-/// Bounds of a term about the size that the residuals ask for.
+/// Half-width of the bounds, as a multiple of the size that the residuals suggest.
 constexpr double kWidestTerm = 10.0;
 
 }  // namespace
@@ -22,13 +22,13 @@ std::vector<MissingTerm> missing_terms(model::PlantKind plant,
     const int index = model::parameter_index(plant, key);
     if (index < 0) continue;
     const auto& spec = model::parameter_table(plant)[static_cast<std::size_t>(index)];
-    // An error of a value that a campaign states anyway is no term.
+    // A wrong value of a parameter that every campaign specifies is not a missing term.
     if (!spec.default_value || key == "kp" || key == "kd") continue;
     const auto number = [&](double value) {
       return spec.unit == "1" ? fmt::format("{:.3g}", value)
                               : fmt::format("\"{:.3g} {}\"", value, spec.unit);
     };
-    // A gain is about its neutral value, all other terms are about none.
+    // The neutral value is the default of a gain, and zero for all other terms.
     const double start = spec.default_value.value_or(0.0) + size;
     const double reach = kWidestTerm * std::abs(size);
     terms.push_back({spec.kind == model::ParameterKind::controller,

@@ -8,20 +8,21 @@
 
 namespace rigcal::report {
 
-/// A term that a model lacks, as a campaign may have it.
+/// A term that the model lacks, in the form of a line for a campaign file.
 struct MissingTerm {
-  bool of_controller = false;  ///< its place is [rig.controller], else [rig.parameters]
+  bool of_controller = false;  ///< the line belongs in [rig.controller]; otherwise in
+                               ///< [rig.parameters]
   std::string line;            ///< "valve_time_constant = { start = ..., fit = true }"
 };
 
-/// Lines of campaign files that estimate the terms that residuals ask for, from their sizes. What
-/// no parameter describes has none.
+/// Writes lines for a campaign file that estimate the terms suggested by the residuals, starting at
+/// the suggested sizes. An effect that no parameter describes gets no line.
 ///
-/// @param sizes  by the key of the effect, SI
+/// @param sizes  size of each effect by its key, SI
 std::vector<MissingTerm> missing_terms(model::PlantKind plant,
                                        const std::vector<std::pair<std::string, double>>& sizes);
 
-/// The text of a campaign file with these lines at the head of their tables.
+/// Inserts these lines at the beginning of their tables in the text of a campaign file.
 std::string with_terms(std::string campaign, const std::vector<MissingTerm>& terms);
 
 }  // namespace rigcal::report

@@ -10,20 +10,21 @@
 
 namespace rigcal::report {
 
-/// Reads from files in memory, which must outlive it.
+/// Returns a reader for files in memory. The files must outlive the reader.
 ReadFile files_in(const std::vector<ResultFile>& files);
 
-/// Adds report.html before the last of `files`, the JSON that marks the result as complete. The
-/// page shows these files and other results that are already in `out`, as `report` would.
+/// Inserts report.html before the last of `files`, which is the JSON file that marks the result as
+/// complete. The page shows these files and other results that already exist in `out`, as `report`
+/// would.
 ///
-/// @param made  the tables of this run's residuals/, if they are not among `files`
+/// @param made  tables for this run's residuals/, if they are not among `files`
 /// @return      the results among `files`
 std::vector<doc::Document> add_page(const std::filesystem::path& out, int threads,
                                     std::vector<ResultFile>& files, const ReadTable& made = {});
 
-/// The results among files in memory.
+/// Returns the results among files in memory.
 ///
-/// @param where  for messages
+/// @param where  name of the place for messages
 std::vector<doc::Document> documents_in(const std::vector<ResultFile>& files,
                                         const std::string& where, const ReadTable& made = {});
 

@@ -6,7 +6,7 @@
 
 namespace rigcal::report {
 
-/// The file of `simulate`: <condition>.csv.
+/// Writes <condition>.csv, the file that `simulate` produces.
 std::string simulation_file(const calib::SimulationTask& task, const model::Simulation& simulation);
 
 }  // namespace rigcal::report

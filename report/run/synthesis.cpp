@@ -13,7 +13,7 @@
 namespace rigcal::report {
 namespace {
 
-/// The campaign file and the recordings whose drive is used. Their content is not needed.
+/// Lists the campaign file and the recordings whose drive is used. Their hashes are not needed.
 std::vector<InputFile> inputs_of(const datasets::Campaign& campaign) {
   std::vector<InputFile> inputs{{campaign.file.string(), ""}};
   for (const datasets::Condition& condition : campaign.conditions) {
@@ -31,7 +31,7 @@ datasets::SynthesisReport write_synthesis(HeldFolder& held, const datasets::Camp
   const PlannedFiles planned{datasets::synthetic_file_names(campaign), {"records"}};
   const std::vector<InputFile> inputs = inputs_of(campaign);
   require_inputs_kept(held.path(), planned.files, inputs);
-  // Versions without a manifest left no evidence that a campaign file was edited.
+  // Versions without a manifest left nothing that would show whether a campaign file was edited.
   if (campaign.synthetic_settings) {
     const std::string text = datasets::synthetic_campaign_text(campaign, seed);
     held.require_replaceable({{"campaign.toml", "", sha256_of_text(text)}});

@@ -14,8 +14,8 @@ namespace {
 using datasets::Campaign;
 using datasets::Use;
 
-/// Finds the records that the earlier fit was estimated from, by their content, since new
-/// recordings may have old names.
+/// Finds the records that the earlier fit was based on. Compares contents, because new recordings
+/// may reuse old names.
 calib::Origin origin_of(const EarlierFit& earlier, const std::vector<datasets::Record>& records,
                         const Provenance& provenance) {
   const auto seen = [&](const FileState& file) {
@@ -33,7 +33,7 @@ calib::Origin origin_of(const EarlierFit& earlier, const std::vector<datasets::R
     const auto then =
         std::find_if(earlier.conditions.begin(), earlier.conditions.end(),
                      [&](const auto& each) { return each.first == record.condition; });
-    // A file that the fit read under another name counts as one that it was estimated from.
+    // A file that the fit read under another condition name counts as fitted.
     if (then == earlier.conditions.end() || then->second == Use::fit)
       origin.estimated_from.insert(record.condition);
   }

@@ -9,17 +9,17 @@
 
 namespace rigcal::report {
 
-/// Doubts about the values of an earlier fit in this campaign, in words: a fit that was stopped,
-/// and known values of the rig that have changed since.
+/// Describes, in words, doubts about using the values from an earlier fit in this campaign: the fit
+/// was stopped, or known values of the rig have changed since.
 std::vector<std::string> doubts_about(const EarlierFit& earlier,
                                       const datasets::Campaign& campaign);
 
-/// Scores the `fit` and `validate` conditions with the values of an earlier fit, and warns if they
-/// exceed its range.
+/// Scores the `fit` and `validate` conditions with the values from an earlier fit, and warns if
+/// they exceed the range covered by that fit.
 ///
-/// @param earlier     null: the campaign's own values
-/// @param provenance  of the validation: its inputs show which records the fit has seen
-/// @throws InputError  as calib::validate()
+/// @param earlier      null: the campaign's own values are used
+/// @param provenance   provenance of the validation; its inputs show which records the fit has seen
+/// @throws InputError  as for calib::validate()
 calib::Fit validate(const datasets::Campaign& campaign,
                     const std::vector<datasets::Record>& records, const EarlierFit* earlier,
                     const Provenance& provenance, const calib::FitOptions& settings);

@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 using calib::FitStatus;
 
-/// The terms that the residuals ask for, as a next campaign may have them, in comments.
+/// Writes the terms that the residuals suggest as comments, ready to copy into the next campaign.
 std::string terms_in_comments(const Result& result) {
   if (!result.fit.considered) return {};
   std::vector<std::pair<std::string, double>> sizes;
@@ -58,8 +58,8 @@ fs::path residual_file(const std::string& condition) {
   return fs::path("residuals") / (condition + ".csv");
 }
 
-/// Replaces the scores of a fit that failed before it scored anything, so that its residual files
-/// say so, too.
+/// Builds placeholder scores for a fit that failed before it scored anything, so that its residual
+/// files also report the failure.
 std::vector<calib::ConditionScore> unscored(const Result& result) {
   std::vector<calib::ConditionScore> scores;
   for (const datasets::Condition& condition : result.campaign.conditions) {
@@ -75,10 +75,10 @@ fs::path main_file(ResultKind kind) {
   return kind == ResultKind::fit ? "fit.json" : "validation.json";
 }
 
-/// Residual files, each handed on as soon as its text is there: those of all conditions at once
-/// would be the most memory that a written result takes.
+/// Creates the residual files and passes each one on as soon as its text is ready. Keeping the
+/// files of all conditions would be the peak memory use when writing a result.
 ///
-/// @return  their names and hashes, in the order of the scores
+/// @return  names and hashes of the files, in the order of the scores
 std::vector<InputFile> add_residuals(const Result& result, int threads,
                                      const std::function<void(ResultFile)>& add) {
   const std::vector<calib::ConditionScore> early = unscored(result);
@@ -95,7 +95,7 @@ std::vector<InputFile> add_residuals(const Result& result, int threads,
   return files;
 }
 
-/// Tables of the residual files, which need not be read back.
+/// Provides the tables of the residual files, so that the files need not be read back.
 ReadTable tables_of(const Result& result) {
   return [&result](const fs::path& path) {
     for (const calib::ConditionScore& score : result.fit.conditions)
@@ -105,10 +105,10 @@ ReadTable tables_of(const Result& result) {
   };
 }
 
-/// Every file but the residuals and the page.
+/// Creates every file except the residuals and the page.
 ///
-/// @param residuals  their names, which the result gives with those of the other files
-/// @param stored     the result, to which they are added
+/// @param residuals  names of the residual files, listed in the result with the other files
+/// @param stored     the result; the file names are added to it
 std::vector<ResultFile> files_of(const fs::path& out, const Result& result,
                                  const std::vector<InputFile>& residuals, StoredFit& stored) {
   std::vector<ResultFile> files;
@@ -122,12 +122,12 @@ std::vector<ResultFile> files_of(const fs::path& out, const Result& result,
     files.push_back({"fitted.toml", fitted_toml(out, result)});
   if (const auto live = live_fit(result)) files.push_back({kLiveFile, json_line(*live)});
   name_files(residuals, files, stored.provenance);
-  // Last, so that its presence means that the others are there.
+  // This file is last, so that its presence means that all others exist.
   files.push_back({main_file(result.kind), json_text(json_of(stored))});
   return files;
 }
 
-/// The files that a page without curves is made from.
+/// Returns the files needed for a page without curves.
 std::vector<ResultFile> shown_files(const Result& result) {
   return {{"residual_tests.json", json_line(json_of(stored_curves(result)))},
           {main_file(result.kind), json_text(json_of(stored(result)))}};

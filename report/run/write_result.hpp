@@ -10,29 +10,31 @@
 
 namespace rigcal::report {
 
-/// Files that write_result() may write for a campaign, for HeldFolder::plan() before the work.
+/// Lists the files that write_result() may write for a campaign, for HeldFolder::plan() before the
+/// computation.
 PlannedFiles planned_result(ResultKind kind, const datasets::Campaign& campaign);
 
 struct WrittenResult {
-  std::vector<std::filesystem::path> files;  ///< relative to the folder; the result is the last
-  std::vector<doc::Document> documents;      ///< the results as the page shows them
+  std::vector<std::filesystem::path> files;  ///< relative to the folder; the result file is last
+  std::vector<doc::Document> documents;      ///< the results in the form in which the page shows
+                                             ///< them
   std::string json;                          ///< text of the last file
 };
 
-/// Writes the files of a fit or validation. Removes the leftovers of an earlier run: fitted.toml,
-/// and residuals of conditions that no longer exist.
+/// Writes the files of a fit or validation. Removes files left by an earlier run that no longer
+/// apply: fitted.toml, and residuals of conditions that no longer exist.
 ///
-/// @param threads  that make the texts and draw the page
-/// @throws WriteError, UsageError  as write_results()
+/// @param threads       number of threads for creating the texts and drawing the page
+/// @throws WriteError, UsageError  as for write_results()
 WrittenResult write_result(HeldFolder& held, int threads, const Result& result);
 
-/// The same files in memory, without the page; the result comes last.
+/// Creates the same files in memory, without the page. The result file is last.
 std::vector<ResultFile> result_files(const Result& result, int threads);
 
-/// A fit or validation as its page shows it.
+/// Returns a fit or validation in the form in which its page shows it.
 doc::Document document_of(const Result& result);
 
-/// The brief page of a fit or validation (report/page/page.hpp).
+/// Returns the brief page of a fit or validation (report/page/page.hpp).
 std::string brief_page(const Result& result);
 
 }  // namespace rigcal::report

@@ -20,11 +20,11 @@ json batch_in(const CommandFolder& folder, const std::string& out) {
 TEST_CASE("batch: every folder with a campaign is a rig, but for those among the results",
           "[apps]") {
   const CommandFolder folder;
-  const std::string none = "schema = \"rigcal.campaign/1\"\n";  // the verb refuses it at once
+  const std::string none = "schema = \"rigcal.campaign/1\"\n";  // the verb rejects it immediately
   for (const char* where : {"lab/z", "lab/a/deep", "lab", "lab/out/earlier"})
     folder.write(std::string(where) + "/campaign.toml", none);
   folder.write("lab/a/campaign.toml.bak", none);
-  // A result of an earlier run must not pass for the result of a refused rig.
+  // A result from an earlier run must not be taken for the result of a rejected rig.
   folder.write("lab/out/z/fit.json", "{}");
   const Outcome outcome = folder.run({"batch", "lab", "--out", "lab/out", "--quiet"});
   CHECK(outcome.exit_code == 2);
@@ -80,7 +80,8 @@ TEST_CASE("fit: WARN is exit 1 with --strict alone, in a batch too", "[apps]") {
   const CommandFolder folder;
   REQUIRE(write_twin(folder, {{"use = \"validate\"", "use = \"ignore\""}}).exit_code == 0);
   const Outcome plain = folder.run({"fit", "twin/campaign.toml", "--out", "plain", "--quiet"});
-  REQUIRE(json::parse(folder.read("plain/fit.json"))["verdict"] == "WARN");  // not validated
+  REQUIRE(json::parse(folder.read("plain/fit.json"))["verdict"] ==
+          "WARN");  // because it was not validated
   CHECK(plain.exit_code == 0);
   CHECK(folder.run({"fit", "twin/campaign.toml", "--out", "strict", "--strict", "--quiet"})
             .exit_code == 1);
@@ -105,8 +106,8 @@ TEST_CASE("fit: options that make no sense are refused before any work", "[apps]
     CHECK(exit_code("--threads", count) == 2);
   }
   CHECK_FALSE(folder.has("out"));
-  // The least valid value of each option is accepted; one evaluation stops the fit, but is not
-  // refused.
+  // The smallest valid value of each option is accepted. A limit of one evaluation stops the fit,
+  // but is not rejected.
   CHECK(folder
             .run({"fit", "campaign.toml", "--out", "out", "--seed", "0", "--max-evaluations", "1",
                   "--threads", "1", "--starts", "1", "--max-time", "60", "--quiet"})

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::array kRigs{"bench_1", "lab/bench_2", "lab/bench_3"};
 
-/// Records of three rigs beneath a folder; the leak of lab/bench_2 is another one.
+/// Writes records of three rigs below a folder. The leak of lab/bench_2 is different.
 void write_rigs(const CommandFolder& folder, const std::string& where, const std::string& date,
                 const std::string& leak) {
   for (const std::string rig : kRigs) {
@@ -43,7 +43,8 @@ json batch_of(const CommandFolder& folder, const std::string& out) {
 json without_run(json fit) {
   fit.erase("wall_seconds");
   fit["provenance"].erase("command");
-  fit["provenance"].erase("files");  // report.html and fit.json's neighbours hold the command
+  fit["provenance"].erase("files");  // report.html and other files beside fit.json contain the
+                                     // command
   return fit;
 }
 
@@ -77,7 +78,7 @@ TEST_CASE("batch: every rig as fit fits it, and one overview", "[apps]") {
         if (parameter["name"] == estimate["name"]) CHECK(parameter["ci95"] == estimate["ci95"]);
       }
     }
-    // Whatever is no pass is said.
+    // Every verdict other than PASS has a reason.
     CHECK(row["reasons"].empty() == (row["verdict"] == "PASS"));
   }
   const std::string csv = folder.read("out/batch.csv");
@@ -96,7 +97,7 @@ TEST_CASE("batch: a second one makes only what has changed", "[apps]") {
   folder.write(
       "lab_a/lab/bench_2/campaign.toml",
       replaced(folder.read("lab_a/lab/bench_2/campaign.toml"), "rho2 = 0.9", "rho2 = 0.95"));
-  // What is missing of a result, or was changed in it, is made again.
+  // A missing or modified file of a result causes the result to be made again.
   std::filesystem::remove(folder.work() / "out/lab/bench_3/scorecard.csv");
   REQUIRE(folder.run({"batch", "lab_a", "--out", "out", "--resume", "--quiet"}).exit_code == 0);
   const json batch = batch_of(folder, "out");
@@ -177,7 +178,7 @@ TEST_CASE("batch: a signal ends it with what is done, and --resume makes the res
   const Outcome stopped = folder.run_and_signal(
       {"batch", "lab_a", "--out", "out", "--bootstrap", "5000"}, "of 3 rigs", SIGTERM);
   CAPTURE(stopped.out, stopped.err);
-  // A rig that took longer than the signal was stopped, or not begun.
+  // If a rig took longer than the time until the signal, it was stopped or not started.
   if (stopped.exit_code != 0) {
     CHECK(stopped.exit_code == 4);
     CHECK(batch_of(folder, "out")["status"] == "stopped");

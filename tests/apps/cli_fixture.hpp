@@ -12,7 +12,7 @@
 
 namespace rigcal::test {
 
-/// Replacements in a text: each `from` must be there.
+/// Replacements in a text; each `from` must occur.
 using Edits = std::vector<std::pair<std::string, std::string>>;
 
 inline std::string edited(std::string text, const Edits& edits) {
@@ -20,7 +20,7 @@ inline std::string edited(std::string text, const Edits& edits) {
   return text;
 }
 
-/// A small campaign: the paper's rig in closed loop, two seconds of a 2 Hz sine at 200 Hz.
+/// A small campaign: the paper's rig in closed loop, with two seconds of a 2 Hz sine at 200 Hz.
 inline const std::string kCampaign = R"(schema = "rigcal.campaign/1"
 name = "small rig"
 [rig]
@@ -61,7 +61,7 @@ use = "validate"
 repeats = ["records/square_*.csv"]
 )";
 
-/// What makes kCampaign a truth that records are made from.
+/// Section that makes records from kCampaign with known parameters.
 inline const std::string kSynthetic = R"([synthetic]
 parameters = { damping = "1000 N s/m", valve_gain = "3e-5 m/V" }
 repeats = 3
@@ -70,7 +70,7 @@ sample_rate = "200 Hz"
 noise = { position = "0.01 mm", load_pressure = "0.05 bar" }
 )";
 
-/// kCampaign with records that look like any recording, made by hand.
+/// Writes kCampaign with hand-made records that look like ordinary recordings.
 inline void write_campaign(const CommandFolder& folder, const Edits& edits = {}) {
   folder.write("campaign.toml", edited(kCampaign, edits));
   for (const char* name : {"sine_1", "sine_2", "square_1", "square_2"}) {
@@ -88,8 +88,9 @@ inline void write_campaign(const CommandFolder& folder, const Edits& edits = {})
   }
 }
 
-/// Records of a known rig, made by the command itself, in `twin/`.
-/// @param campaign  with its section [synthetic]
+/// Makes records of a known rig in `twin/` with the command itself.
+///
+/// @param campaign  text of a campaign with a section [synthetic]
 inline Outcome synthesize_twin(const CommandFolder& folder, const std::string& campaign) {
   folder.write("truth.toml", campaign);
   return folder.run({"synthesize", "truth.toml", "--seed", "3", "--out", "twin", "--quiet"});

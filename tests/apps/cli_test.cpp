@@ -19,7 +19,7 @@ using nlohmann::json;
 
 namespace {
 
-/// The numbers of one column of a CSV file.
+/// Returns the numbers in one column of a CSV file.
 std::vector<double> column(const std::string& csv, const std::string& title) {
   std::istringstream lines(csv);
   std::string line;
@@ -37,7 +37,8 @@ std::vector<double> column(const std::string& csv, const std::string& title) {
   return values;
 }
 
-/// Bad input: exit 2, one line on stderr that says where and what, and no file.
+/// Checks the response to bad input: exit code 2, one line on stderr that names place and problem,
+/// and no files.
 void check_bad_input(const CommandFolder& folder, const CommandFolder::Arguments& arguments,
                      const std::vector<std::string>& parts) {
   const auto before = folder.files();
@@ -62,7 +63,8 @@ bool says_something(const json& value) {
   return value.is_string() && !value.get<std::string>().empty();
 }
 
-/// Every number of a fit.json or validation.json is finite, and what is missing says why.
+/// Checks that every number in a fit.json or validation.json is finite, and that a reason is given
+/// for every missing one.
 void check_complete(const std::string& text) {
   const json result = json::parse(text);
   check_finite(result);
@@ -98,7 +100,7 @@ struct BadCampaign {
   std::vector<std::string> message;
 };
 
-// The column is that of the value, or of the key where it has none.
+// The column is that of the value, or that of the key if it has no value.
 const std::vector<BadCampaign> kBadCampaigns{
     {"not TOML", {{"name = \"small rig\"", "name = small rig"}}, {"campaign.toml:2:"}},
     {"no schema", {{"schema = \"rigcal.campaign/1\"\n", ""}}, {"campaign.toml", "schema"}},
@@ -240,7 +242,7 @@ struct BadFit {
   std::vector<std::string> message;
 };
 
-/// A fit.json that one thing is wrong with.
+/// Returns a fit.json with one error.
 std::string broken_fit(const std::function<void(json&)>& edit) {
   json fit = json::parse(stored_result().dump());
   edit(fit);
@@ -283,7 +285,8 @@ const std::set<std::string> kFitFiles{"out/fit.json",
                                       "out/residuals/square.csv",
                                       "out/rigcal-manifest.json"};
 
-/// Without a rig for the page, which an unfinished search does not determine.
+/// Files of an unfinished search. They do not include the rig for the page, because it is not
+/// determined.
 std::set<std::string> unfinished_files() {
   std::set<std::string> files = kFitFiles;
   files.erase("out/live.json");
@@ -298,7 +301,7 @@ std::set<std::string> files_in(const CommandFolder& folder, const std::string& p
   return found;
 }
 
-/// The part of a result that must not depend on threads or time.
+/// Returns the part of a result that must not depend on threads or time.
 json reproducible(const CommandFolder& folder, const std::string& file) {
   json result = json::parse(folder.read(file));
   result.erase("wall_seconds");
@@ -485,7 +488,7 @@ TEST_CASE("average: mean, sd and count, and the repeatability", "[apps]") {
   CHECK_THAT(page, Contains("id=\"repeatability\"") && Contains("mean and standard deviation"));
   CHECK(folder.run({"report", "out"}).exit_code == 0);
   CHECK(folder.read("out/report.html") == page);
-  // A mean that was changed since is not taken for that of the result.
+  // A mean that was changed later does not belong to the result any more.
   folder.write("out/averaged/sine.csv", "time_s\n0\n");
   const Outcome changed = folder.run({"report", "out"});
   CHECK(changed.exit_code == 2);
@@ -507,7 +510,7 @@ TEST_CASE("simulate: runs without records", "[apps]") {
 
 TEST_CASE("simulate: what fails says so at its top, the others are written", "[apps]") {
   const CommandFolder folder;
-  // A controller of this gain needs steps that the time limit does not allow.
+  // A controller with this gain needs steps that the time limit does not allow.
   folder.write("campaign.toml",
                edited(kCampaign, kNoRecords) + "[simulation]\nmax_seconds = 1e-6\n");
   const Outcome outcome = folder.run({"simulate", "campaign.toml", "--out", "out"});
@@ -536,7 +539,8 @@ TEST_CASE("fit and validate: a twin from its records to its verdict", "[apps]") 
              Catch::WithinRel(2.0 * fit["cost"].get<double>() / freedom, 1e-12));
   for (const json& parameter : fit["parameters"]) {
     if (parameter["name"] == "damping_n_s_per_m") {
-      // Noise of 0.2 % leaves 0.2 %; 3.5 standard errors: wrong once in two thousand draws.
+      // Noise of 0.2 % leaves an uncertainty of 0.2 %. At 3.5 standard errors the test fails once
+      // in two thousand draws.
       const double standard_error = parameter["standard_error"].get<double>();
       CHECK(standard_error < 3.0);
       CHECK_THAT(parameter["value"].get<double>(), Catch::WithinAbs(1000.0, 3.5 * standard_error));
@@ -572,7 +576,7 @@ TEST_CASE("fit and validate: a twin from its records to its verdict", "[apps]") 
     CHECK_FALSE(folder.has("val/fitted.toml"));
     CHECK_THAT(validation.out, Contains("rigcal.validation/1"));
     check_complete(validation.out);
-    // Its band equals the fit's, from errors and correlations in fit.json.
+    // Its band equals that of the fit, because fit.json contains errors and correlations.
     const auto theirs = column(folder.read("out/residuals/square.csv"), "prediction_sd_position_m");
     const auto ours = column(folder.read("val/residuals/square.csv"), "prediction_sd_position_m");
     REQUIRE(theirs.size() == ours.size());
@@ -642,7 +646,7 @@ TEST_CASE("fit: stopped by a signal it keeps the best so far", "[apps]") {
       CHECK(outcome.exit_code == 4);
       CHECK_THAT(outcome.err, Contains(", iteration ") && Contains(" left\n"));
       auto files = files_in(folder, "out/");
-      files.erase("out/checkpoint.json");  // there once a start is finished
+      files.erase("out/checkpoint.json");  // exists once a start is completed
       CHECK(files == unfinished_files());
       CHECK(json::parse(folder.read("out/fit.json"))["status"] == "stopped");
       check_complete(folder.read("out/fit.json"));

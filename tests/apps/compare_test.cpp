@@ -31,7 +31,7 @@ TEST_CASE("compare: fits of two days, one with another valve", "[apps]") {
     for (const json& p : fit["parameters"]) {
       if (p["key"] == "valve_gain") CHECK(parameter["estimates"][0]["value"] == p["value"]);
     }
-    // 3e-5 against 2.5e-5 m/V at 0.01 mm of noise.
+    // 3e-5 compared with 2.5e-5 m/V, at 0.01 mm of noise.
     CHECK(parameter["differences"][1]["significant"] == true);
     CHECK(parameter["differences"][1]["difference"].get<double>() < 0.0);
   }
@@ -44,7 +44,7 @@ TEST_CASE("compare: fits of two days, one with another valve", "[apps]") {
 
 TEST_CASE("compare: the same records with a term on and off", "[apps]") {
   const CommandFolder folder;
-  // The truth has a friction; one of the fits does not know it.
+  // The true rig has friction; one of the fits does not include it.
   folder.write(
       "truth.toml",
       kCampaign + edited(kSynthetic, {{"damping = ", "coulomb_friction = \"60 N\", damping = "}}));

@@ -25,12 +25,13 @@ evaluations = 16
 like = "sine"
 )";
 
-/// The campaign with its synthetic truth, and a design.
+/// The campaign with its synthetic parameters and a design.
 std::string campaign_with(const std::string& design, const Edits& edits = {}) {
   return edited(kCampaign, edits) + kSynthetic + design;
 }
 
-/// Records of the designed test: its drive beside signals that are made anew by `synthesize`.
+/// Writes records of the designed test, with its drive in addition to signals that `synthesize`
+/// makes.
 void write_dummy_records(const CommandFolder& folder, const std::string& header,
                          const std::string& rest, const std::string& condition) {
   std::istringstream drive(folder.read("out/design.csv"));
@@ -76,7 +77,7 @@ TEST_CASE("plan --design: a drive, a picture, a campaign file; fits of its recor
   CHECK_THAT(folder.read("out/design.csv"), Catch::StartsWith("time_s,reference_mm\n0,0\n"));
   CHECK(folder.read("out/rigcal-manifest.json").find("design.toml") != std::string::npos);
   const std::string condition = "design_" + design["family"].get<std::string>();
-  // Without recordings the campaign is refused, and says which are missing.
+  // Without recordings the campaign is rejected, and the message names the missing ones.
   const Outcome missing = folder.run({"check", "out/design.toml"});
   CHECK(missing.exit_code == 2);
   CHECK_THAT(missing.err, Contains(condition + "_r1.csv"));
@@ -99,7 +100,7 @@ TEST_CASE("plan --design: a drive, a picture, a campaign file; fits of its recor
   CHECK(value("damping_n_s_per_m") == Approx(1000.0).epsilon(0.05));
   CHECK(value("valve_gain_m_per_v") == Approx(3e-5).epsilon(0.02));
 
-  // Another design in the same folder replaces it; a plan without one sweeps it away.
+  // Another design in the same folder replaces the first one. A plan without a design removes it.
   CHECK(folder.run({"plan", "campaign.toml", "--out", "out", "--quiet"}).exit_code == 0);
   CHECK_FALSE(folder.has("out/design.csv"));
   CHECK_FALSE(nlohmann::json::parse(folder.read("out/plan.json")).contains("design"));

@@ -17,9 +17,10 @@ using nlohmann::json;
 
 namespace {
 
-/// One healthy and one leaking condition of the same sine.
+/// One healthy and one leaking condition with the same sine.
 const std::string kDiagnosed =
-    edited(kCampaign, {{"1000 V/m", "300 V/m"},  // else the healthy loop cycles by itself
+    edited(kCampaign, {{"1000 V/m", "300 V/m"},  // otherwise the healthy loop would oscillate by
+                                                 // itself
                        {"leakage_coefficient = 0.3", "leakage_coefficient = 0"},
                        {"[leak_level.\"none\"]",
                         "[leak_level.\"none\"]\nparameters = { leakage_coefficient = 0 }\n"
@@ -48,7 +49,8 @@ TEST_CASE("diagnose: from synthetic records to classes", "[apps]") {
   CHECK_THAT(outcome.out, Contains("leaking") && Contains("Smallest leak"));
   const json result = json::parse(folder.read("diagnosis/diagnosis.json"));
   CHECK(result["status"] == "done");
-  REQUIRE(result["records"].size() == 8);  // two averages of three repeats, and these
+  REQUIRE(result["records"].size() == 8);  // two averages of three repeats each, and the repeats
+                                           // themselves
   for (const json& record : result["records"]) {
     CAPTURE(record.dump());
     CHECK(record["failure"].is_null());
@@ -76,7 +78,7 @@ TEST_CASE("diagnose: from synthetic records to classes", "[apps]") {
   CHECK_THAT(outcome.out, Contains("State of the machine") && Contains("open: "));
   CHECK(result["accuracy"] == 1.0);
   CHECK(result["confusion"]["counts"][0][0] == 3);
-  // The limit of the mean of three is below that of one repeat, but of the same order.
+  // The detection limit for the mean of three is below that for one repeat, but of the same order.
   const json& smallest = result["smallest_leak_l_per_min"][0];
   CHECK(smallest["averaged"].get<double>() > 0.2 * smallest["single"].get<double>());
   CHECK_THAT(outcome.out, Contains("another day than their reference") &&
@@ -84,12 +86,13 @@ TEST_CASE("diagnose: from synthetic records to classes", "[apps]") {
   const json& between_days = result["between_days"];
   CHECK(between_days["source"] == "usual");
   CHECK(between_days["quantities"].size() == 4);
-  REQUIRE(between_days["other_days"].size() == 1);  // that of the leaking record, which has no date
+  REQUIRE(between_days["other_days"].size() == 1);  // the leaking record, which has no date
   CHECK(smallest["of_another_day"] == true);
   CHECK(smallest["averaged_same_day"].get<double>() < smallest["averaged"].get<double>());
   CHECK_THAT(folder.read("diagnosis/diagnosis.csv"), StartsWith("condition,repeat,signal,"));
   CHECK(violations(result, "diagnosis") == "");
-  // The rig with the leak of each average, the largest first, for the page; the result names it.
+  // The page needs the rig with the leak of each average, the largest first; the result names this
+  // file.
   const json live = json::parse(folder.read("diagnosis/diagnosis_live.json"));
   REQUIRE(!live["cases"].empty());
   CHECK(live["cases"][0]["name"] == "leaking");
@@ -136,7 +139,7 @@ TEST_CASE("diagnose: classes end where the rows of a leak table of the same rig 
   CHECK(violations(result, "diagnosis") == "");
   CHECK_THAT(result["settings"]["limits_percent"]["critical"].get<double>(),
              Catch::WithinRel(9.0, 1e-12));
-  // The class by the coefficient of the table is that by the share.
+  // The class from the table's coefficient equals the class from the share.
   const json table = json::parse(folder.read("table/leak_table.json"));
   REQUIRE(result["class_limits"].size() == table["entries"].size());
   CHECK(result["class_limits"][0]["class"] == "slight");
@@ -154,7 +157,7 @@ TEST_CASE("diagnose: classes end where the rows of a leak table of the same rig 
   }
   CHECK_THAT(folder.read("out/report.html"), Contains("Limits of the classes, by the leak table"));
 
-  // The table of the campaign's own values is of another rig.
+  // The leak table with the campaign's own values belongs to a different rig.
   REQUIRE(folder.run({"leak-table", "made/campaign.toml", "--out", "other", "--targets", "3,6,9"})
               .exit_code == 0);
   const Outcome other = diagnosed({"--table", "other/leak_table.json"});
@@ -190,7 +193,7 @@ TEST_CASE("diagnose: --healthy names the level that the campaign does not know",
   };
   const Outcome unknown = diagnosed({});
   REQUIRE(unknown.exit_code == 0);
-  // Both conditions lack it, and one line says so, with the cure.
+  // Both conditions lack a class. One line reports this, with the remedy.
   CHECK(count_of(unknown.out, "what the model lacks is not in the interval") == 1);
   CHECK_THAT(unknown.out, Contains("no healthy record of this signal") &&
                               Contains("--healthy LEVEL") && Contains("level_class"));
@@ -254,7 +257,7 @@ TEST_CASE("diagnose: a leak that grows from date to date", "[apps]") {
   CHECK(trend["dates"] == 3);
   CHECK(trend["first_date"] == "2026-03-01");
   CHECK(trend["significant"] == true);
-  // 0.1 of the coefficient in 61 days.
+  // The coefficient changes by 0.1 in 61 days.
   CHECK(std::abs(trend["coefficient_per_day"].get<double>() * 61.0 - 0.1) < 0.01);
   CHECK_THAT(folder.read("diagnosis/report.html"), Contains("The machine: the leak rises by"));
 }

@@ -19,7 +19,7 @@ using Catch::Contains;
 using SimulatedColumns = std::map<std::string, std::vector<double>>;
 using Drive = std::function<double(double)>;
 
-/// Both simulations are this exact at each step; what is compared is a hundred times coarser.
+/// Tolerance of both simulations at each step. The comparison is a hundred times coarser.
 constexpr double kTolerance = 1e-9;
 
 const Edits kGeneratedRuns{
@@ -34,7 +34,7 @@ const Edits kTwoChamberGeneratedRuns{
      "s\"\nsample_rate = \"200 Hz\""},
     {"[recording.channels]", "[simulation]\ntolerance = 1e-9\n[recording.channels]"}};
 
-/// The condition "square" of either campaign: 1 Hz, so that its edges are at half seconds.
+/// The condition "square" of both campaigns. At 1 Hz its edges are at half seconds.
 Drive square(double amplitude) {
   return [amplitude](double t) { return std::fmod(t + 1e-9, 1.0) < 0.5 ? amplitude : -amplitude; };
 }
@@ -65,7 +65,7 @@ SimulatedColumns simulated(const CommandFolder& folder, const std::string& condi
   return columns;
 }
 
-/// Exports the campaign of a folder and unpacks it.
+/// Exports the campaign in a folder and unpacks the FMU.
 Fmu exported(const CommandFolder& folder, CommandFolder::Arguments more = {}) {
   CommandFolder::Arguments arguments{"export", "fmu", "campaign.toml", "--out", "fmu"};
   arguments.insert(arguments.end(), more.begin(), more.end());
@@ -81,7 +81,7 @@ Fmu exported(const CommandFolder& folder, CommandFolder::Arguments more = {}) {
   throw std::runtime_error("nothing was exported");
 }
 
-/// Names of the outputs by those of the columns that `simulate` writes.
+/// Maps the names of the outputs to the names of the columns that `simulate` writes.
 std::map<std::string, std::string> outputs_of(const Fmu& fmu, const SimulatedColumns& columns) {
   std::map<std::string, std::string> outputs;
   for (const auto& [name, variable] : fmu.variables) {
@@ -100,8 +100,9 @@ double peak_of(const std::vector<double>& values) {
   return peak;
 }
 
-/// Every output at every sample, over the peak of its column: to a millionth. Leakage is a root of
-/// the pressure, whose slope at zero makes ten of them of one.
+/// Compares every output at every sample to a millionth of the peak of its column. The tolerance
+/// for leakage is ten times larger: it is a square root of the pressure, with a steep slope at
+/// zero.
 void require_same(FmuRun& run, const std::map<std::string, std::string>& outputs,
                   const SimulatedColumns& columns, std::size_t sample) {
   for (const auto& [name, column] : outputs) {
@@ -113,9 +114,9 @@ void require_same(FmuRun& run, const std::map<std::string, std::string>& outputs
   }
 }
 
-/// Co-simulation with inputs that go straight from one communication point to the next: many enough
-/// that a sine of 2 Hz is off by (2 pi f h)^2 / 8 = 5e-8 of its amplitude, which accelerations
-/// multiply.
+/// Runs a co-simulation whose inputs are linear between communication points. There are enough
+/// points that a 2 Hz sine is off by only (2 pi f h)^2 / 8 = 5e-8 of its amplitude, an error that
+/// accelerations amplify.
 void require_co_simulation(const Fmu& fmu, const FmuLibrary& library, const std::string& input,
                            const Drive& drive, bool jumps, const SimulatedColumns& columns) {
   FmuRun run(fmu, library, fmi2CoSimulation);
@@ -166,7 +167,7 @@ void require_model_exchange(const Fmu& fmu, const FmuLibrary& library, const std
   CHECK(run.messages().empty());
 }
 
-/// Every condition with its drive, by either interface.
+/// Checks every condition with its drive, with both interfaces.
 void require_both(const CommandFolder& folder, const std::string& input,
                   const std::map<std::string, Drive>& drives) {
   const Fmu fmu = exported(folder);

@@ -7,7 +7,7 @@
 
 #include "tests/apps/cli_fixture.hpp"
 
-// A decision rule as an engineer states it, from the campaign file to the exit code.
+// A decision rule as an engineer specifies it, from the campaign file to the exit code.
 
 namespace rigcal::test {
 namespace {
@@ -18,7 +18,7 @@ Json result_of(const CommandFolder& folder, const std::string& file) {
   return Json::parse(folder.read(file));
 }
 
-/// kCampaign with a limit of its own for the score of the sine.
+/// kCampaign with a separate limit for the score of the sine.
 Edits with_limit(double limit, const std::string& decision) {
   return {{"rho2 = 0.9\n", fmt::format("rho2 = {:.17g}\n{}", limit, decision)}};
 }
@@ -33,7 +33,7 @@ TEST_CASE("fit: by the guard band a limit is kept by more than the score's uncer
   CHECK(plain["decision"] == "simple");
   CHECK(folder.read("plain/report.html").find("Decision rule: simple acceptance") !=
         std::string::npos);
-  // The lowest score decides; its limit is set into its guard band.
+  // The lowest score decides; the limit is placed so that this score is in its guard band.
   double rho2 = 1.0;
   double uncertainty = 0.0;
   for (const Json& condition : plain["conditions"]) {
@@ -68,7 +68,7 @@ TEST_CASE("fit: by the guard band a limit is kept by more than the score's uncer
                     [](const Json& reason) { return reason["code"] == "guard_band"; }));
   CHECK(folder.read("judged/report.html").find("Decision rule: guard band") != std::string::npos);
 
-  // A validation of single recordings cannot know.
+  // A validation with single recordings cannot determine the uncertainty.
   folder.write("twin/one.toml",
                edited(text, {{"rho2 = 0.9\n", "rho2 = 0.9\n" + guard},
                              {R"(, "records/sine_r2.csv", "records/sine_r3.csv")", ""},
@@ -101,7 +101,7 @@ TEST_CASE("fit: what a certificate states of a sensor counts, or is told", "[app
   };
   CHECK(judged("uncertainty = \"0.002 mm (k = 2)\"\n").exit_code == 0);
   const double small = uncertainty("sine");
-  // The uncertainty is as large as the motion: with the guard band no limit is kept.
+  // The uncertainty is as large as the motion, so that no limit is met with the guard band.
   const Outcome large = judged("uncertainty = \"20 mm (k = 2)\"\n");
   CHECK(large.exit_code == 1);
   CHECK_THAT(large.out,
@@ -115,7 +115,7 @@ TEST_CASE("fit: what a certificate states of a sensor counts, or is told", "[app
              Catch::Contains("warning: the uncertainty of the sensor of position"));
 
   const std::string dates = "calibrated = 2024-01-31\ndue = 2025-01-31\n";
-  CHECK(judged(dates).exit_code == 0);  // the campaign states no dates of tests
+  CHECK(judged(dates).exit_code == 0);  // the campaign does not give the dates of the tests
   const Edits tested{{"use = \"validate\"", "use = \"validate\"\ndate = 2026-02-26"}};
   const Outcome overdue = judged(dates, tested);
   CHECK(overdue.exit_code == 1);
@@ -152,7 +152,7 @@ TEST_CASE("fit: a channel that is compared and not judged is a reservation", "[a
   CHECK_THAT(silent.out, Catch::StartsWith("WARN: ") &&
                              Catch::Contains("no limit judges load_pressure in 2 conditions"));
   CHECK_FALSE(result_of(folder, "out/fit.json").contains("not_judged"));
-  // A comparison marks as passed only what was judged.
+  // A comparison marks only judged scores as passed.
   REQUIRE(folder.run({"fit", "twin/campaign.toml", "--out", "two", "--quiet"}).exit_code == 0);
   REQUIRE(folder.run({"compare", "out", "two", "--out", "both", "--quiet"}).exit_code == 0);
   const Json compared = result_of(folder, "both/comparison.json");

@@ -9,7 +9,7 @@ namespace {
 
 using Catch::Contains;
 
-/// Whether a terminal can only display a text.
+/// Returns true if a terminal would only display the text, not act on it.
 bool is_harmless(const std::string& text) {
   const auto acts = [](char c) {
     const auto byte = static_cast<unsigned char>(c);

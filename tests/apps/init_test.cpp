@@ -12,7 +12,7 @@ using Catch::Contains;
 
 namespace {
 
-/// Values for the blanks of a draft of the load-pressure plant.
+/// Values for the blanks in a draft for the load-pressure plant.
 const Edits kValues{
     {"\"FILL IN kg\"", "\"60 kg\""},        {"\"FILL IN N s/m\"", "\"2000 N s/m\""},
     {"\"FILL IN N/m\"", "\"0 N/m\""},       {"\"FILL IN m2\"", "\"633 mm2\""},
@@ -22,7 +22,7 @@ const Edits kValues{
     {"\"FILL IN m/V\"", "\"2e-5 m/V\""},    {"\"FILL IN\"  # C_leak", "0.3  # C_leak"},
     {"\"FILL IN m2\"", "\"1 mm2\""},        {"\"FILL IN V/m\"", "\"1000 V/m\""}};
 
-/// Values for the blanks of a draft of the plant with both chambers.
+/// Values for the blanks in a draft for the two-chamber plant.
 const Edits kTwoChamberValues{{"\"FILL IN kg\"", "\"5 kg\""},
                               {"\"FILL IN N s/m\"", "\"300 N s/m\""},
                               {"\"FILL IN N/m\"", "\"0 N/m\""},
@@ -43,7 +43,8 @@ const Edits kTwoChamberValues{{"\"FILL IN kg\"", "\"5 kg\""},
                               {"\"FILL IN\"  # C_leak", "0  # C_leak"},
                               {"leakage_area = \"FILL IN m2\"", "leakage_area = \"1 mm2\""}};
 
-/// Folder of the Festo recordings; empty, with a message, where it is absent.
+/// Returns the folder with the Festo recordings. If it does not exist, prints a message and returns
+/// an empty path.
 std::filesystem::path festo_records() {
   std::filesystem::path folder =
       std::filesystem::path(RIGCAL_RECORDINGS_DIR) / "festo_tp511_servo_cylinder";
@@ -141,7 +142,7 @@ TEST_CASE("init: a folder with a file that is no record", "[apps]") {
   const CommandFolder folder;
   const Outcome all = folder.run({"init", records.string(), "--out", "new"});
   CHECK(all.exit_code == 0);
-  // Several records below each other, and a table of speeds.
+  // A file with several records, one below the other, and a table of speeds.
   CHECK_THAT(all.out,
              Contains("warning: left out: transients_10kHz_mean_of_10_repeats.csv:8002:7: time") &&
                  Contains("warning: left out: run_summary.csv (no column looks like a time"));

@@ -17,7 +17,7 @@ using nlohmann::json;
 
 namespace {
 
-/// Tables of kCampaign's rig that its own `leak-table` printed at kp = 1000 V/m and 1 mm2.
+/// Tables for kCampaign's rig, printed by `leak-table` at kp = 1000 V/m and 1 mm2.
 const std::string kTables = R"([leak_table]
 targets = [10, 30]
 [leak_table.assumptions]
@@ -39,7 +39,7 @@ servo_flow = "QS m3/s"
 leak_flow = "QL m3/s"
 )";
 
-/// A number for a campaign file, with all its digits and without an exponent.
+/// Formats a number for a campaign file, with all digits and without an exponent.
 std::string fmt_number(double value) {
   std::ostringstream text;
   text << std::fixed << std::setprecision(15) << value;
@@ -158,17 +158,18 @@ TEST_CASE("leak-table: of a fitted rig, whatever the campaign assumes", "[apps]"
   CHECK_THAT(folder.read("out/report.html"), Contains("from the fit") && Contains("<small>±"));
   CHECK_THAT(folder.read("out/leak_table.csv"), Contains("ci95_low,ci95_high"));
 
-  // The same file without the fit: the guess is used, and a warning says so.
+  // With the same file but without the fit, the guess is used and a warning says so.
   const auto [warned, guessed] = table("fit/fitted.toml", {});
   CHECK(guessed["entries"][0]["coefficients_ci95"][0].is_null());
   CHECK(guessed["entries"][0]["coefficients"] != fitted["entries"][0]["coefficients"]);
   CHECK_THAT(warned, Contains("warning: [leak_table.assumptions] replace") &&
                          Contains("valve_gain (5e-05 for") && Contains("--fit"));
-  // And fitted.toml with the fit is the same table.
+  // fitted.toml together with the fit gives the same table.
   const auto [again, same] = table("fit/fitted.toml", {"--fit", "fit/fit.json"});
   CHECK(same["entries"] == fitted["entries"]);
 
-  // What --set changes is not of the fit, and other known values make another rig.
+  // A value changed with --set does not come from the fit, and other known values make a different
+  // rig.
   const auto [changed, other] =
       table("made/campaign.toml", {"--fit", "fit/fit.json", "--set", "valve_gain=0.05 mm/V",
                                    "--set", "damping=1000 N s/m", "--set", "mass=70 kg"});
@@ -258,7 +259,7 @@ TEST_CASE("fit-tables: finds the values behind tables that leak-table made", "[a
   const auto coefficient = [&](std::size_t i) {
     return fmt_number(truth["entries"][i]["coefficients"][0].get<double>());
   };
-  // Flows of the true rig, by the table itself.
+  // Flows of the true rig, computed by the leak table itself.
   const std::string guess = edited(
       kTables, {{"C10", coefficient(0)}, {"C30", coefficient(1)}, {"QS", "1e-5"}, {"QL", "1e-6"}});
   folder.write("flows.toml", kCampaign + guess);
@@ -283,23 +284,23 @@ TEST_CASE("fit-tables: finds the values behind tables that leak-table made", "[a
   CHECK(fit["status"] == "converged");
   CHECK(fit["residual_count"] == 4);
   CHECK(violations(json::parse(folder.read("out/leak_table.json")), "leak_table") == "");
-  // Both results are on the page: what was fitted, and the table that comes out, graded.
+  // The page shows both results: the fitted values, and the resulting table with its grades.
   const std::string page = folder.read("out/report.html");
   CHECK_THAT(page, Contains("<title>FITTED") && Contains("leakage_area") &&
                        Contains("id=\"leak-table\"") && Contains("class=\"cell good\""));
   REQUIRE(folder.run({"report", "out"}).exit_code == 0);
   CHECK(folder.read("out/report.html") == page);
   REQUIRE(fit["parameters"].size() == 2);
-  // The flows are good to a few 1e-4.
+  // The flows are accurate to a few 1e-4.
   CHECK_THAT(fit["parameters"][0]["value"].get<double>(), WithinRel(1000.0, 0.01));
   CHECK_THAT(fit["parameters"][1]["value"].get<double>(), WithinRel(1e-6, 0.01));
   CHECK(fit["parameters"][1]["name"] == "leakage_area_m2");
-  // What it writes is a campaign that gives the same table.
+  // The campaign that it writes gives the same table.
   REQUIRE(folder.run({"leak-table", "out/fitted.toml", "--out", "again", "--quiet"}).exit_code ==
           0);
   CHECK(json::parse(folder.read("again/leak_table.json"))["entries"] ==
         json::parse(folder.read("out/leak_table.json"))["entries"]);
-  // Another fit to the same numbers can be put beside it.
+  // Another fit to the same numbers can be compared with it.
   REQUIRE(folder.run({"fit-tables", "campaign.toml", "--free", "kp", "--out", "one", "--quiet"})
               .exit_code == 0);
   REQUIRE(folder.run({"compare", "out", "one", "--out", "both"}).exit_code == 0);

@@ -1,4 +1,4 @@
-"""`mpirun -n N rigcal` makes the bits of one process, and loses no more than a lost process was at.
+"""`mpirun -n N rigcal` gives bitwise the same result as one process, and a killed process only loses its current task.
 usage: mpi_test.py RIGCAL SOURCE"""
 import json
 import os
@@ -11,8 +11,8 @@ import tempfile
 import time
 import unittest
 
-RIGCAL = SOURCE = ""  # from the command line
-# A container has one user, and fewer processors than there are processes here.
+RIGCAL = SOURCE = ""  # set from the command line
+# A container may only have the root user, and has fewer processors than this test has processes.
 ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
                "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
                "OMPI_MCA_plm_rsh_agent": "/bin/false"}

@@ -12,7 +12,7 @@ using nlohmann::json;
 
 namespace {
 
-/// A healthy sine that is fitted, the same of another day, and one that leaks.
+/// A healthy sine that is fitted, the same signal on another day, and one with a leak.
 const std::string kWatched = edited(
     kCampaign, {{"leakage_coefficient = 0.3", "leakage_coefficient = 0"},
                 {"[leak_level.\"none\"]",

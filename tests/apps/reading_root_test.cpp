@@ -12,7 +12,7 @@ namespace {
 
 constexpr const char* kSecret = "swordfish:1:2";
 
-/// Writes a campaign to `lab/rig` that reads a file of another folder.
+/// Writes a campaign to `lab/rig` that reads a file from another folder.
 void write_in_lab(const CommandFolder& folder, const std::string& repeats) {
   write_campaign(folder, {{"records/sine_*.csv", repeats}});
   fs::create_directories(folder.work() / "lab/rig");

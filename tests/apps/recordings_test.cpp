@@ -14,7 +14,7 @@ using nlohmann::json;
 
 namespace {
 
-/// Fields of the lines of a CSV text; the first is the comment "# synthetic", the second the
+/// Fields in the lines of a CSV text. The first line is the comment "# synthetic", the second the
 /// header.
 using Rows = std::vector<std::vector<std::string>>;
 
@@ -38,12 +38,12 @@ std::string text_of_rows(const Rows& rows) {
   return text;
 }
 
-/// A twin of which a test changes recordings.
+/// A twin whose recordings a test changes.
 class Twin {
  public:
   Twin() { REQUIRE(write_twin(folder).exit_code == 0); }
 
-  /// Changes the value of each row of a column in the repeats of a condition.
+  /// Changes the value in each row of a column, in all repeats of a condition.
   template <typename Function>
   void change(const std::string& condition, int column, Function value) const {
     for (const int repeat : {1, 2, 3}) {
@@ -139,7 +139,7 @@ TEST_CASE("recordings: all repeats of a condition end half way", "[apps]") {
     rows.resize(201);
     twin.write("sine", repeat, text_of_rows(rows));
   }
-  CHECK_THAT(twin.run("check").out, !Contains("warning"));  // what was meant is unknown
+  CHECK_THAT(twin.run("check").out, !Contains("warning"));  // the intended duration is unknown
   const std::string campaign = twin.folder.read("twin/campaign.toml");
   twin.folder.write("twin/campaign.toml",
                     replaced(campaign, "id = \"sine\"", "id = \"sine\"\nduration = \"2 s\""));
@@ -192,7 +192,7 @@ TEST_CASE("recordings: a text that a spreadsheet would run stays text", "[apps]"
 
 TEST_CASE("recordings: samples that are missing in one repeat", "[apps]") {
   const Twin twin;
-  // In all repeats: unequal times of repeats would be refused first.
+  // In all repeats, because repeats with different times would be rejected first.
   for (const int repeat : {1, 2, 3}) {
     Rows rows = rows_of(twin.read("sine", repeat));
     rows.erase(rows.begin() + 150, rows.begin() + 250);

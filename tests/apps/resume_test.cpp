@@ -9,7 +9,7 @@ namespace {
 
 using Catch::Contains;
 
-/// A fit.json without what may differ between two runs.
+/// Returns fit.json without the parts that may differ between two runs.
 nlohmann::json comparable(const CommandFolder& folder, const std::string& file) {
   auto json = nlohmann::json::parse(folder.read(file));
   json.erase("wall_seconds");
@@ -17,7 +17,7 @@ nlohmann::json comparable(const CommandFolder& folder, const std::string& file) 
   return json;
 }
 
-/// Bounds so near that every start is quick.
+/// Writes a twin with bounds so narrow that every start is quick.
 Outcome write_quick_twin(const CommandFolder& folder) {
   return write_twin(folder, {{R"(lower = "10 N s/m", upper = "1e5 N s/m")",
                               R"(lower = "500 N s/m", upper = "4e3 N s/m")"},
@@ -34,11 +34,11 @@ TEST_CASE("resume: a killed fit goes on to the result of one that was not", "[ap
       "fit",     "twin/campaign.toml", "--starts", kSanitized ? "40" : "100", "--out", "whole",
       "--quiet", "--threads",          "1"};
   REQUIRE(folder.run(whole).exit_code == 0);
-  CHECK_FALSE(folder.has("whole/checkpoint.json"));  // a fit that ended needs none
+  CHECK_FALSE(folder.has("whole/checkpoint.json"));  // a completed fit needs no checkpoint
 
   CommandFolder::Arguments parts = whole;
   parts[5] = "parts";
-  parts.back() = "2";  // nor does the number of threads matter
+  parts.back() = "2";  // the number of threads does not matter, either
   int killed = 0;
   for (const char* start : {"\"number\": 2", "\"number\": 10", "\"number\": 30"}) {
     killed += folder.run_and_kill(parts, "parts/checkpoint.json", start).exit_code == -SIGKILL;
@@ -101,7 +101,9 @@ TEST_CASE("resume: a fit that was killed in what it makes beside the search lose
   for (int i = 0; i < 3; ++i) {
     killed += folder.run_and_kill(parts, "parts/checkpoint.tasks", "0").exit_code == -SIGKILL;
     if (parts.back() != "--resume") parts.push_back("--resume");
-    if (!folder.has("parts/checkpoint.tasks")) break;  // it was faster
+    if (!folder.has("parts/checkpoint.tasks"))
+      break;  // the fit completed before it could be
+              // killed
     const std::size_t bytes = folder.read("parts/checkpoint.tasks").size();
     CHECK(bytes >= kept);
     kept = bytes;

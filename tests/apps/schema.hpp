@@ -5,8 +5,8 @@
 
 namespace rigcal::test {
 
-/// What a document lacks by docs/schema/<schema>.schema.json, in words; empty if it is as that
-/// says.
+/// Describes, in words, how a document violates docs/schema/<schema>.schema.json. Empty if it
+/// conforms.
 std::string violations(const nlohmann::json& document, const std::string& schema);
 
 }  // namespace rigcal::test

@@ -58,13 +58,13 @@ TEST_CASE("schema: results of fits and validations, good and failed", "[apps]") 
 
   REQUIRE(fit["parameters"][0].contains("identifiability"));
   REQUIRE(fit.contains("cross_validation"));
-  // What such a fit knows more is on its page.
+  // The additional findings of such a fit are on its page.
   const std::string page = folder.read("fit/report.html");
   for (const char* title :
        {"<h3>Profiles", "<h3>Bootstrap", "<h3>Posterior", "<h3>Lack of fit", "left out"})
     CHECK_THAT(page, Catch::Contains(title));
 
-  // The draws, all of them, and what was made of them.
+  // All draws, and what was derived from them.
   REQUIRE(fit["posterior"]["draws"] == 100);
   CHECK(fit["posterior"]["effects"] == false);
   CHECK(fit["parameters"][0].contains("posterior"));
@@ -80,6 +80,6 @@ TEST_CASE("schema: results of fits and validations, good and failed", "[apps]") 
   broken.erase("status");
   CHECK_FALSE(violations(broken, "result").empty());
   broken = fit;
-  broken["of"] = "published tables";  // results of these have other keys
+  broken["of"] = "published tables";  // fits to published tables have other keys
   CHECK_FALSE(violations(broken, "result").empty());
 }

@@ -10,7 +10,7 @@ using nlohmann::json;
 
 namespace {
 
-/// kCampaign with a line in [fit].
+/// kCampaign with an additional line in [fit].
 Edits with_fit(const std::string& line) {
   return {{"[acceptance]", "[fit]\n" + line + "\n[acceptance]"}};
 }
@@ -68,7 +68,7 @@ TEST_CASE("fit: a shooting_interval that makes no sense is refused", "[apps]") {
     CHECK_THAT(refused.err, Contains("campaign.toml:29:") && Contains(bad.found));
     CHECK_FALSE(folder.has("rigcal-out/fit.json"));
   }
-  // Records of 5 ms a sample.
+  // Records with a sampling interval of 5 ms.
   write_campaign(folder, with_fit("shooting_interval = \"10 ms\""));
   const Outcome dense = folder.run({"fit", "campaign.toml"});
   CHECK(dense.exit_code == 2);

@@ -12,7 +12,7 @@ using rigcal::test::write_twin;
 
 namespace {
 
-/// Sets the terminal width that commands see while it lives.
+/// Sets the terminal width that commands see while the object exists.
 class Columns {
  public:
   explicit Columns(const char* columns) { ::setenv("COLUMNS", columns, 1); }

@@ -6,7 +6,7 @@
 
 namespace rigcal::test {
 
-/// A single-rod cylinder on the command of its valve, two seconds of a square wave at 200 Hz.
+/// A single-rod cylinder driven by its valve command, with two seconds of a square wave at 200 Hz.
 inline const std::string kTwoChamber = R"(schema = "rigcal.campaign/1"
 name = "single rod"
 [rig]
@@ -46,7 +46,7 @@ use = "fit"
 repeats = ["records/square_*.csv"]
 )";
 
-/// Its truth and what disturbs the records.
+/// Its true parameters and the noise of the records.
 inline const std::string kTwoChamberTruth = R"([synthetic]
 parameters = { mass = "5 kg", valve_gain = "4e-6 m/V" }
 repeats = 3
@@ -55,7 +55,7 @@ sample_rate = "200 Hz"
 noise = { position = "0.02 mm", pressure_a = "0.1 bar", pressure_b = "0.1 bar" }
 )";
 
-/// Records of it, made by the command itself, in `twin/`.
+/// Makes records of this rig in `twin/` with the command itself.
 inline Outcome write_two_chamber_twin(const CommandFolder& folder, const Edits& edits = {}) {
   return synthesize_twin(folder, edited(kTwoChamber, edits) + kTwoChamberTruth);
 }

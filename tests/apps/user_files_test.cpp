@@ -11,7 +11,7 @@
 #include "tests/apps/cli_fixture.hpp"
 #include "tests/apps/schema.hpp"
 
-// Files of a user in a folder that results are written to.
+// A user's files in a folder that results are written to.
 
 using namespace rigcal::test;
 using Catch::Contains;
@@ -56,7 +56,7 @@ const std::vector<Verb> kVerbs{
     {{"compare", "one", "two"}, "comparison.json"},
 };
 
-/// Makes a rig with records, two fits, and a folder of rigs.
+/// Prepares a rig with records, two fits, and a folder of rigs.
 void prepare(const CommandFolder& folder) {
   REQUIRE(write_twin(folder).exit_code == 0);
   REQUIRE(folder
@@ -128,13 +128,14 @@ TEST_CASE("user files: no verb replaces what it has not written, but for --force
     }
     CHECK(listed);
 
-    // Its own results are replaced, except those that were changed.
+    // The verb replaces its own results, but not those that were changed.
     CHECK(run(folder, verb).exit_code == forced.exit_code);
     folder.write(file, folder.read(file) + " ");
     check_kept(folder, verb, verb.file + ": changed since rigcal wrote it");
     CHECK(run(folder, verb, {"--force"}).exit_code == forced.exit_code);
 
-    // Without a manifest, as earlier versions left it. A draft is kept, since users edit it.
+    // Without a manifest, as in results from earlier versions. A draft is kept, because users edit
+    // it.
     std::filesystem::remove(folder.work() / kManifest);
     if (verb.arguments[0] == "init") {
       check_kept(folder, verb, "campaign.toml: not written by rigcal");
@@ -183,7 +184,7 @@ TEST_CASE("user files: several verbs share a folder, again and again", "[apps]")
                                folder.work() / "demo/validation.json",
                                std::filesystem::copy_options::overwrite_existing);
   }
-  // Only a validation would replace the copy, and there it counts as a foreign file.
+  // Only a validation would replace the copy, and it treats the copy as a foreign file.
   const Outcome outcome = folder.run({"validate", "demo/campaign.toml", "--out", "demo"});
   CHECK(outcome.exit_code == 2);
   CHECK_THAT(outcome.err, Contains("validation.json: not written by rigcal"));

@@ -1,6 +1,6 @@
-// Records of a rig that is known, and what a sensor, a data sheet or an assistant may do to them.
-// The model follows the position under its controller nearly whatever is wrong, so that scores
-// alone say little: what is judged beside them has to notice.
+// Records of a known rig, corrupted by errors in a sensor or a data sheet, or by an assistant's
+// mistake. The controlled model follows the position almost whatever is wrong, so that scores alone
+// show little. The other checks must notice the error.
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
@@ -23,7 +23,7 @@ using Cells = std::vector<double>;
 const rigcal::test::Edits kStrictLimits{
     {"rho2 = 0.9\n", "rho2 = 0.99\nwarn_rho2 = 0.995\nccc = 0.99\nabsolute_error_percent = 1.0\n"}};
 
-/// Every record of the twin with its cells (time, reference, position, load pressure) changed.
+/// Changes the cells (time, reference, position, load pressure) in every record of the twin.
 void change_records(const CommandFolder& folder, const std::function<void(Cells&)>& change) {
   for (const char* name : {"sine", "square"}) {
     for (int repeat = 1; repeat <= 3; ++repeat) {

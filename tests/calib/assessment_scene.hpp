@@ -10,7 +10,7 @@
 
 namespace rigcal::calib {
 
-/// A result that passes all four: one condition fitted, one not.
+/// A result that passes all four aspects: one condition is fitted, and one is not.
 struct AssessmentScene {
   datasets::Campaign campaign;
   Fit fit;
@@ -67,7 +67,7 @@ struct AssessmentScene {
   std::optional<Verdict> verdict() const { return verdict_of(assessed()); }
 };
 
-/// The reason of this code, or none.
+/// Returns the reason with this code, or null if there is none.
 inline const Reason* find(const Aspect& aspect, std::string_view code) {
   for (const Reason& reason : aspect.reasons) {
     if (reason.code == code) return &reason;

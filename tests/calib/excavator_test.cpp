@@ -1,4 +1,4 @@
-// The shipped rigs in radians, fitted to their records where these are there (docs/excavator.md).
+// The shipped rigs in radians, fitted to their records if these are available (docs/excavator.md).
 
 #include <fmt/format.h>
 
@@ -14,7 +14,7 @@
 namespace rigcal::calib {
 namespace {
 
-/// @param held_back  end of the name of a condition that is scored, not fitted; empty: none
+/// @param held_back  end of the name of a condition that is scored but not fitted; may be empty
 std::optional<Fit> fitted(const std::string& rig, const std::string& held_back = {}) {
   const std::filesystem::path data =
       std::filesystem::path(RIGCAL_RECORDINGS_DIR) / "excavator_dspace";
@@ -28,14 +28,14 @@ std::optional<Fit> fitted(const std::string& rig, const std::string& held_back =
   if (!held_back.empty()) {
     for (datasets::Condition& each : campaign.conditions)
       if (each.id.ends_with(held_back)) each.use = datasets::Use::validate;
-    campaign.decimate_to_hz = 20.0;  // it is the prediction that counts, not the last digit
+    campaign.decimate_to_hz = 20.0;  // coarse data are enough to test the prediction
   }
   const auto records =
       datasets::load_records(campaign, {datasets::Use::fit, datasets::Use::validate}, 1, true);
   return fit(campaign, records, FitOptions());
 }
 
-/// Smallest rho2 of a channel over the conditions.
+/// Returns the smallest rho2 of a channel over the conditions.
 double least_rho2(const Fit& fit, datasets::Channel channel) {
   double least = 1.0;
   for (const ConditionScore& score : fit.conditions) {

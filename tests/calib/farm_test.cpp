@@ -9,7 +9,7 @@ namespace {
 
 using datasets::Waveform;
 
-/// As several processes would do it: in any order, some tasks more than once.
+/// Runs tasks as several processes might: in any order, and some tasks more than once.
 class BackwardsFarm final : public TaskFarm {
  public:
   std::vector<TaskResult> run(const FarmJob& job, const Task& task, const Done& done) override {
@@ -93,7 +93,7 @@ TEST_CASE("farm: the same bits as in one process, in whatever order", "[calib]")
 
 TEST_CASE("farm: failures are counted and named as in one process", "[calib]") {
   Twin hard = twin();
-  // Stiff beyond what an explicit method can follow, but for the first start.
+  // Except for the first start, the problem is too stiff for an explicit method.
   hard.free("bulk_modulus", 1e9, 1e8, 1e14);
   hard.campaign.simulation.method = model::Method::dopri5;
   const auto records = hard.records(250, 500.0, 3);

@@ -17,7 +17,7 @@ using Catch::WithinRel;
 using datasets::Scope;
 using datasets::Waveform;
 
-/// Three signals, two leak levels, three unknowns of the rig and the leakage of each level.
+/// Three signals, two leak levels, three unknowns of the rig, and the leakage of each level.
 Twin six_conditions() {
   Twin twin;
   twin.free("mass", 60.0, 10.0, 500.0);
@@ -32,7 +32,7 @@ Twin six_conditions() {
   return twin;
 }
 
-/// One short condition with mass and valve gain unknown: quick to fit.
+/// One short condition with mass and valve gain unknown, which is quick to fit.
 Twin small_twin() {
   Twin twin;
   twin.free("mass", 60.0, 10.0, 500.0);
@@ -59,14 +59,15 @@ TEST_CASE("fit: recovers the truth from noisy positions", "[calib]") {
   const Fit found = fit(twin.campaign, twin.records(1500, 1000.0, 7), {});
   REQUIRE(found.status == FitStatus::converged);
   CHECK(found.usable());
-  // 3.5 standard errors: a false alarm once in two thousand draws.
+  // At 3.5 standard errors there is a false alarm once in two thousand draws.
   CHECK(errors_off(found, "mass", 85.0) < 3.5);
   CHECK(errors_off(found, "valve_gain", 0.0406e-3) < 3.5);
   CHECK(errors_off(found, "leakage_coefficient", 0.1, "small") < 3.5);
   CHECK(errors_off(found, "leakage_coefficient", 0.6, "large") < 3.5);
   CHECK(found.rank == 4);
   CHECK(found.correlation.rows() == 4);
-  // 9000 residuals: chi-square scatters by 1.5 %; five times that.
+  // With 9000 residuals the standard deviation of chi-square is 1.5 %; the limit is five times
+  // that.
   CHECK_THAT(found.reduced_chi_square, WithinAbs(1.0, 0.075));
   CHECK(found.conditions.size() == 6);
   CHECK(found.conditions.front().channels.at(0).agreement->rho2 > 0.999);
@@ -109,7 +110,7 @@ TEST_CASE("fit: intervals cover the truth as often as they say", "[calib]") {
       covered += interval.first <= truth && truth <= interval.second ? 1 : 0;
     }
   }
-  // Binomial(40, 0.95): fewer than 33 about once in a thousand.
+  // Binomial(40, 0.95): fewer than 33 occurs about once in a thousand.
   CHECK(covered >= 33);
 }
 
@@ -119,12 +120,13 @@ TEST_CASE("fit: a prior pulls as its standard deviation says", "[calib]") {
   const Fit free = fit(twin.campaign, records, {});
   const FittedParameter alone = parameter(free, "mass");
   const double se = alone.standard_error.value();
-  // A prior as sure as the data meets them half way. Other unknowns move along, so the profile is
-  // that of the marginal error, and the model is linear over one standard error.
+  // A prior with the same uncertainty as the data moves the estimate halfway. The other unknowns
+  // adapt, so the marginal error applies, and the model is linear over one standard error.
   twin.setting("mass").prior = datasets::Prior{alone.value + 2.0 * se, se};
   const Fit pulled = fit(twin.campaign, records, {});
   REQUIRE(pulled.status == FitStatus::converged);
-  // 15 %: curvature over one error, chi-square not 1, and the optimum found to a hundredth of one.
+  // 15 % for curvature over one error, chi-square different from 1, and an optimum found to a
+  // hundredth of an error.
   CHECK_THAT(parameter(pulled, "mass").value - alone.value, WithinRel(se, 0.15));
   CHECK_THAT(parameter(pulled, "mass").standard_error.value(), WithinRel(se / std::sqrt(2.0), 0.1));
   CHECK(pulled.residual_count == free.residual_count + 1);
@@ -160,7 +162,8 @@ TEST_CASE("fit: leakage at zero has a one-sided interval", "[calib]") {
 TEST_CASE("fit: where the only start finds no minimum others are tried", "[calib]") {
   Twin twin = small_twin();
   twin.noise_sd_m = 1e-7;
-  twin.campaign.simulation.tolerance = 1e-2;  // errors far above the noise: nowhere a minimum
+  twin.campaign.simulation.tolerance = 1e-2;  // errors far above the noise, so that no point is a
+                                              // minimum
   const auto records = twin.records(250, 500.0, 3);
   FitOptions options;
   const Fit alone = fit(twin.campaign, records, options);
@@ -171,7 +174,7 @@ TEST_CASE("fit: where the only start finds no minimum others are tried", "[calib
   CHECK(found.status == FitStatus::failed);
   CHECK(mentions(found.warnings, "led to no minimum (" + alone.message + "): 2 further starts"));
   CHECK(found.evaluations > alone.evaluations);
-  // What a multi-start would have made of the same.
+  // The corresponding multi-start.
   options.starts = 3;
   const Fit several = fit(twin.campaign, records, options);
   REQUIRE(found.starts.size() == several.starts.size());
@@ -264,7 +267,8 @@ TEST_CASE("fit: limits and signals stop it with the best so far", "[calib]") {
     const Fit found = fit(twin.campaign, records, options);
     CHECK(found.status == FitStatus::stopped);
     CHECK(found.cost < found.starts.at(0).initial_cost);
-    // Somebody waits for the end: robust errors of a point that is no minimum are not made.
+    // The user is waiting for the end, so robust errors are not computed at a point that is not a
+    // minimum.
     CHECK_THAT(found.interval_advice, Contains("no interval is reliable"));
     CHECK(std::none_of(found.parameters.begin(), found.parameters.end(),
                        [](const auto& each) { return each.robust_standard_error.has_value(); }));
@@ -316,7 +320,7 @@ TEST_CASE("fit: unknown noise is estimated and said so", "[calib]") {
   CHECK(errors_off(found, "mass", 85.0) < 3.5);
   CHECK_THAT(found.reduced_chi_square, WithinAbs(1.0, 0.05));  // by construction, to 1 %
   const Fit told = fit(twin.campaign, twin.records(500, 500.0, 3), {});
-  // sd of 500 samples is known to 3 %; four times that.
+  // The sd of 500 samples is known to 3 %; the limit is four times that.
   CHECK_THAT(parameter(found, "mass").standard_error.value(),
              WithinRel(parameter(told, "mass").standard_error.value(), 0.13));
 }
@@ -341,7 +345,7 @@ TEST_CASE("fit: records without noise converge to the truth", "[calib]") {
       CHECK(found.status == FitStatus::converged);
       CHECK_THAT(found.tolerance, WithinRel(tolerance, 1e-12));
       CHECK(mentions(found.warnings, "resolve"));
-      // An error of the simulation of the order of its tolerance moves the mass by a multiple.
+      // A simulation error of the order of the tolerance moves the mass by a multiple of it.
       CHECK_THAT(parameter(found, "mass").value, WithinRel(85.0, 1e3 * tolerance));
       CHECK_THAT(parameter(found, "valve_gain").value, WithinRel(0.0406e-3, 1e2 * tolerance));
     }

@@ -12,7 +12,7 @@ inline std::string shake_table_file() {
   return std::string(RIGCAL_SOURCE_DIR) + "/datasets/rigs/uis_shake_table/campaign.toml";
 }
 
-/// The source paper's rig with its published tables.
+/// The rig of the source paper with its published tables.
 struct LeakRig {
   datasets::Campaign campaign = datasets::load_campaign(shake_table_file());
   datasets::LeakTableSettings settings = datasets::leak_table_settings(campaign);

@@ -17,7 +17,7 @@
 
 namespace rigcal::calib {
 
-/// A known value of a campaign.
+/// Returns a known value for a campaign.
 inline datasets::ParameterSetting known(int index, double value) {
   datasets::ParameterSetting setting;
   setting.index = index;
@@ -25,8 +25,9 @@ inline datasets::ParameterSetting known(int index, double value) {
   return setting;
 }
 
-/// A rig whose parameters are known: the paper's, with a servo valve that answers within a second.
-/// Its campaign starts away from the truth, its records are simulated at the truth plus noise.
+/// A rig with known parameters: the paper's rig with a servo loop that settles within a second. The
+/// campaign starts from other values than the true ones. The records are simulated with the true
+/// values, with noise added.
 struct Twin {
   datasets::Campaign campaign;
   datasets::Campaign truth;
@@ -105,7 +106,8 @@ struct Twin {
     return values;
   }
 
-  /// Records of all conditions, each of `samples` at `rate_hz`; noise of position from the seed.
+  /// Simulates records of all conditions, each with `samples` samples at `rate_hz`. The seed
+  /// determines the noise.
   std::vector<datasets::Record> records(int samples, double rate_hz, unsigned seed,
                                         model::InitialState initial = model::InitialState::rest,
                                         bool tell_sd = true) const {
@@ -146,7 +148,7 @@ struct Twin {
   }
 };
 
-/// The parameter of a fit by key and level; throws if it is not there.
+/// Returns the parameter of a fit with this key and level; throws if there is none.
 inline const FittedParameter& parameter(const Fit& fit, std::string_view key,
                                         const std::string& level = {}) {
   for (const FittedParameter& each : fit.parameters) {
@@ -155,7 +157,7 @@ inline const FittedParameter& parameter(const Fit& fit, std::string_view key,
   throw std::runtime_error("no parameter " + std::string(key) + " " + level);
 }
 
-/// Mass and valve gain unknown, one square wave.
+/// One square wave with mass and valve gain unknown.
 inline Twin one_square() {
   Twin twin;
   twin.free("mass", 80.0, 10.0, 500.0);
@@ -164,7 +166,7 @@ inline Twin one_square() {
   return twin;
 }
 
-/// The problem of all conditions of a twin.
+/// Returns the problem with all conditions of a twin.
 inline Problem problem_of(const Twin& twin, const std::vector<datasets::Record>& records) {
   std::vector<const datasets::Condition*> conditions;
   for (const auto& condition : twin.campaign.conditions) conditions.push_back(&condition);

@@ -18,7 +18,8 @@ using datasets::Scope;
 using datasets::Use;
 using datasets::Waveform;
 
-/// Leakage per level, a position offset per condition that is estimated anew in validation.
+/// Leakage for each level, and a position offset for each condition that is estimated again in
+/// validation.
 Twin two_days() {
   Twin twin;
   twin.free("valve_gain", 0.03e-3, 0.01e-3, 0.2e-3);
@@ -67,7 +68,7 @@ TEST_CASE("fit: validate conditions are scored with their own nuisance offset", 
   CHECK(offset.nuisance);
   CHECK(std::abs(offset.value + 2e-3) < 3.5 * offset.standard_error.value());
   const ChannelScore& score = found.conditions[2].channels.at(0);
-  CHECK(score.agreement->ccc > 0.999);  // blind to nothing: a wrong offset of 2 mm would show
+  CHECK(score.agreement->ccc > 0.999);  // ccc would detect a wrong offset of 2 mm
   REQUIRE(score.noise_floor.has_value());
   CHECK_THAT(score.gain_ratio.value(), WithinAbs(1.0, 0.01));
 }
@@ -106,7 +107,8 @@ TEST_CASE("validate: without values, those of the campaign hold", "[calib]") {
   const Fit found = validate(twin.campaign, twin.records(400, 500.0, 5), nullptr, {});
   CHECK(found.status == FitStatus::converged);
   CHECK(found.evaluations == 0);
-  CHECK(found.conditions.at(0).channels.at(0).agreement->rho2 < 0.999);  // the start's valve gain
+  CHECK(found.conditions.at(0).channels.at(0).agreement->rho2 < 0.999);  // scored with the start
+                                                                         // value of the valve gain
 }
 
 TEST_CASE("validate: a leak level that the fit does not have is an error", "[calib]") {
@@ -230,7 +232,8 @@ TEST_CASE("acceptance: by the guard band a limit is kept by more than the uncert
   CHECK(guarded(0.995, 0.004).verdict == Verdict::pass);
   CHECK(guarded(0.995, 0.006).verdict == Verdict::warn);
   CHECK(guarded(0.995, std::nullopt).verdict == Verdict::warn);
-  CHECK(guarded(0.98, 0.1).verdict == Verdict::fail);  // never taken for better than it is
+  CHECK(guarded(0.98, 0.1).verdict == Verdict::fail);  // a large uncertainty never improves the
+                                                       // verdict
   CHECK(judged(0.995, 0.006, DecisionRule::simple).verdict == Verdict::pass);
   const ConditionScore near = guarded(0.995, 0.006);
   CHECK(near.checks.at(0).in_guard_band);

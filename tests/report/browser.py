@@ -1,4 +1,4 @@
-"""Headless Chromium, driven over its DevTools pipe: the standard library is all it takes."""
+"""Drives headless Chromium over its DevTools pipe, using only the standard library."""
 
 import base64
 import json
@@ -10,12 +10,12 @@ import time
 
 
 def chromium():
-    """Path of the browser; None where there is none."""
+    """Returns the path of the browser, or None if there is none."""
     return next((p for name in ("chromium", "chromium-browser", "google-chrome") if (p := shutil.which(name))), None)
 
 
 class Browser:
-    """One page. Records its errors (`problems`) and every address that it requests (`requests`)."""
+    """A page. Records its errors (`problems`) and every address that it requests (`requests`)."""
 
     FLAGS = [
         "--headless", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
@@ -29,12 +29,12 @@ class Browser:
         flags = self.FLAGS + ([] if os.getuid() else ["--no-sandbox"])
 
         def place():
-            # The browser reads commands from 3 and answers on 4; free both before they are filled.
+            # The browser reads commands from descriptor 3 and answers on 4. Free both before they are assigned.
             read, write = os.dup(to_read), os.dup(from_write)
             os.dup2(read, 3)
             os.dup2(write, 4)
 
-        # Free places above 4, so that place() closes nothing that it still needs.
+        # Use descriptors above 4, so that place() does not close one that it still needs.
         to_read, from_write = (os.dup2(fd, free) for fd, free in ((to_read, 60), (from_write, 61)))
         self.process = subprocess.Popen(
             [chromium(), *flags, f"--user-data-dir={self.profile}", f"--window-size={width},{height}", "about:blank"],
@@ -45,7 +45,7 @@ class Browser:
         self.number = 0
         self.problems = []
         self.requests = []
-        self.contexts = {}  # contexts of scripts, by frame
+        self.contexts = {}  # script contexts by frame
         self.loaded = False
         target = next(t for t in self.call("Target.getTargets")["targetInfos"] if t["type"] == "page")
         self.session = self.call("Target.attachToTarget", targetId=target["targetId"], flatten=True)["sessionId"]
@@ -102,7 +102,7 @@ class Browser:
             self._note(self._receive())
 
     def run(self, script, frame=None):
-        """Value of a JavaScript expression; waits for a promise. `frame` is a part of the address of a frame of the page."""
+        """Returns the value of a JavaScript expression, awaiting promises. `frame`: part of the address of a frame."""
         where = {}
         if frame:
             frames = self.call("Page.getFrameTree")["frameTree"].get("childFrames", [])

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Compares the model in a page with the command, in headless Chromium. usage: live_test.py RIGCAL SOURCES. Exit code 77: no
-browser, or a program without the model for pages."""
+"""Compares the model in a page with the command, in headless Chromium. usage: live_test.py RIGCAL SOURCES
+Exit code 77: there is no browser, or the program was built without the model for pages."""
 
 import base64
 import csv
@@ -15,7 +15,7 @@ import tempfile
 
 from browser import Browser, chromium
 
-# A rig with every feature that the shipped rigs have: two chambers, hoses, second-order valve,
+# A rig with every feature of the shipped rigs: two chambers, hoses, second-order valve,
 # friction, delay, lag, sampled loop.
 TWO_CHAMBER = """schema = "rigcal.campaign/1"
 name = "</script><b>rig</b> & \\"more\\""
@@ -127,7 +127,7 @@ def compare(browser, rigcal, campaign, what):
     check(len(page["times"]) == len(native["time_s"]), f"{what}: {len(page['times'])} samples, {len(native['time_s'])} of the command")
     worst = 0.0
     for name, live_values in page["outputs"].items():
-        if name not in native:  # an output that the rig lacks
+        if name not in native:  # the rig does not have this output
             check(not any(live_values), f"{what}: {name}, which the command does not write")
             continue
         peak = max(map(abs, native[name])) or 1.0
@@ -138,7 +138,7 @@ def compare(browser, rigcal, campaign, what):
 
 
 def table_of_levels(browser, rigcal, campaign):
-    """The live table of leak levels has the numbers of `leak-table`, and follows values and drive."""
+    """Checks that the live table of leak levels has the numbers from `leak-table`, and follows values and drive."""
     run(rigcal, "leak-table", campaign.name, "--out", "table", "--quiet", cwd=campaign.parent)
     rows = json.loads((campaign.parent / "table" / "leak_table.json").read_text())["features"]
     browser.wait_for("window.rigcalLive.levels !== undefined", "no numbers of the leak levels")
@@ -152,7 +152,7 @@ def table_of_levels(browser, rigcal, campaign):
     shown = "[...document.querySelectorAll('#live-table tbody tr')].map((row) => row.innerText)"
     printed = browser.run(shown)
     check("2.07" in printed[1] and "2.0887" in printed[1] and "9.77 %" in printed[1] and "0.022 *" in printed[1], printed)
-    # A click chooses a level; a value moves the table; another drive has no published numbers.
+    # A click selects a level, a changed value updates the table, and another drive has no published numbers.
     moved(browser, "document.querySelector('#live-table [data-level=\"3\"]').click()")
     check(browser.run("document.getElementById('live-of-leakage_coefficient').value") == "0.6", "the level of a row")
     check(browser.run("document.querySelector('#live-table tr.chosen button').textContent") == "Critical", "the chosen row")
@@ -228,7 +228,7 @@ def a_rig_with_everything(rigcal, folder):
 
 
 def the_fitted_rig(rigcal, campaign, folder, what, *options):
-    """The page of a fit: at the estimates its curves have the scores of fit.json, and they follow a slider."""
+    """Checks the page of a fit: at the estimates its curves have the scores in fit.json, and they follow a slider."""
     fit_folder = folder / "fit"
     done = subprocess.run([rigcal, "fit", campaign, "--out", fit_folder, "--quiet", "--force", *options], capture_output=True, text=True, check=False)
     check(done.returncode in (0, 1), f"{what}: {done.stderr}")
@@ -283,7 +283,7 @@ def fitted_rigs(rigcal, sources, folder):
     text, result = (fit / "report.html").read_text(), json.loads((fit / "fit.json").read_text())
 
     def replace_live(content):
-        """Puts other content into live.json, with its hash."""
+        """Replaces the content of live.json, and its hash."""
         (fit / "live.json").write_text(content)
         named = next(each for each in result["provenance"]["files"] if each["path"] == "live.json")
         named["sha256"] = hashlib.sha256(content.encode()).hexdigest()
@@ -309,7 +309,7 @@ def fitted_rigs(rigcal, sources, folder):
 
 
 def leaking_rigs(rigcal, sources, folder):
-    """The pages of a diagnosis and of a leak table: the rig begins at the leak that was found, or at the smallest published one."""
+    """Checks the pages of a diagnosis and a leak table: the rig starts at the leak found, or the smallest published."""
     made = folder / "leaks"
     run(rigcal, "synthesize", sources / "datasets/rigs/uis_shake_table/diagnosis.toml", "--seed", "1", "--out", made, "--quiet", cwd=folder)
     campaign = made / "campaign.toml"

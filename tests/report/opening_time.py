@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""How long a report takes to open in headless Chromium, by the browser's own clock: opening_time.py REPORT [--sheets].
+"""Measures how long a report takes to open in headless Chromium, with the clock of the browser.
+usage: opening_time.py REPORT [--sheets]
 
-Prints the medians of five: until all is loaded and laid out, and until the first plots can be zoomed. With --sheets also
-how many sheets of A4 it fills.
+Prints two medians of five runs: the time until everything is loaded and laid out, and the time until the first plots
+can be zoomed. With --sheets it also prints the number of A4 sheets.
 """
 
 import pathlib
@@ -15,7 +16,7 @@ import tempfile
 from browser import Browser, chromium
 
 LOADED = "performance.getEntriesByType('navigation')[0].loadEventEnd"
-# Two frames after the first plot has been drawn it is on the screen.
+# The first plot is on the screen two frames after it has been drawn.
 LIVE = """new Promise((done) => {
   const wait = () => document.querySelector('figure.live') ? requestAnimationFrame(() => requestAnimationFrame(
     () => done(performance.now()))) : requestAnimationFrame(wait);
@@ -25,7 +26,7 @@ LIVE = """new Promise((done) => {
 
 
 def opened(path):
-    """Seconds until the page is loaded, and from the jump to the first condition until its plots are live."""
+    """Returns the seconds until the page is loaded, and from jumping to the first condition to live plots."""
     with Browser() as page:
         page.open(path)
         page.wait_for(f"{LOADED} > 0", "loaded")

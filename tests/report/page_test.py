@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Opens reports in headless Chromium as a reader does: page_test.py RIGCAL SOURCES. Exit code 77: no browser."""
+"""Opens reports in headless Chromium as a reader would. usage: page_test.py RIGCAL SOURCES
+Exit code 77: there is no browser."""
 
 import collections
 import json
@@ -18,7 +19,7 @@ SECTIONS = ["verdict", "assessment", "overview", "matrix", "parameters", "condit
 
 AXE = pathlib.Path(__file__).resolve().parents[2] / "node_modules" / "axe-core" / "axe.min.js"
 
-# Names that would do harm if a page took them for anything but text.
+# Names that would do harm if a page interpreted them as anything but text.
 NAME = "<script>alert(1)</script> \"quoted\" 'rig' & \u00fcber \u2192\nnext {{line}}"
 LEVEL = "<img src=x onerror=alert(2)>"
 
@@ -122,7 +123,7 @@ def check_access(page):
 
 
 def check_axe(page):
-    """No violation of WCAG 2.2 AA that axe-core finds, light and dark, with everything unfolded and drawn."""
+    """Checks that axe-core finds no violation of WCAG 2.2 AA, light and dark, with everything unfolded and drawn."""
     closed = "document.querySelectorAll('details:not([open])')"
     page.run(f"window.were_closed = [...{closed}]; were_closed.forEach(d => {{ d.open = true; }})")
     page.run(AXE.read_text() + "; 1")
@@ -147,10 +148,10 @@ def check_widths(page):
 
 
 def check_paper(page):
-    """On a sheet of A4 nothing is cut off at the right: the words of every table are there."""
+    """Checks that nothing is cut off at the right edge of an A4 sheet: the words of every table are printed."""
     if shutil.which("pdftotext") is None:
         return
-    margin = 595 - 14 / 25.4 * 72 + 1  # points
+    margin = 595 - 14 / 25.4 * 72 + 1  # in points
     with tempfile.NamedTemporaryFile(suffix=".pdf") as sheet:
         page.pdf(sheet.name)
         boxes = subprocess.run(["pdftotext", "-bbox", sheet.name, "-"], capture_output=True, check=True).stdout.decode()
@@ -162,7 +163,7 @@ def check_paper(page):
     page.run("document.querySelectorAll('details').forEach(d => { d.open = true; })")
     rows = page.run("[...document.querySelectorAll('main tbody')].filter(b => !b.closest('.uplot, #try'))"
                     ".map(b => b.innerText).join(' ')")
-    # Plain words alone: what is longer may be broken.
+    # Only plain words, because longer texts may be broken across lines.
     shown = collections.Counter(word for word in rows.split() if re.fullmatch("[a-z]{4,12}", word))
     lost = {word: count for word, count in shown.items() if printed[word] < count}
     check(not lost, f"in tables, but not on paper: {lost}")
@@ -189,7 +190,7 @@ def check_narrow(page):
 
 
 def check_agreement(page, channels):
-    """The folded figures: parity, histogram and, of a sine and a square, gain and phase."""
+    """Checks the folded figures: parity, histogram and, for a sine and a square, gain and phase."""
     page.run("document.querySelectorAll('details.agreement').forEach(d => { d.open = true; })")
     titles = page.run("[...document.querySelectorAll('details.agreement svg title')].map(t => t.textContent)")
     for what in ("model against measured", "histogram and normal density", "gain of ", "phase of "):
@@ -240,7 +241,7 @@ def check_numbers(page, result):
 
 
 def check_cells(page):
-    """A cell of the matrix leads to its condition."""
+    """Checks that a cell of the matrix links to its condition."""
     page.run("document.querySelector('a.cell[title=square]').click()")
     page.wait_for("location.hash === '#condition-square'", "the cell's address")
     page.wait_for("(r => r.top > -5 && r.top < innerHeight)(document.getElementById('condition-square')"
@@ -248,7 +249,7 @@ def check_cells(page):
 
 
 def check_zoom(page):
-    """Dragging across a plot zooms it and those beside it; the keyboard too; 0 shows all."""
+    """Checks that dragging across a plot, or the keyboard, zooms it and the plots beside it; 0 shows everything."""
     figure = "document.querySelector('#condition-sine figure.plot')"
     page.run(f"{figure}.scrollIntoView()")
     page.wait_for("document.querySelectorAll('#condition-sine figure.live').length >= 2", "two plots are live")
@@ -295,7 +296,7 @@ def check_good(binary, work):
         check_agreement(page, sum(len(c["metrics"]) for c in result["conditions"]))
         check_narrow(page)
         check_widths(page)
-        # What is folded on a screen is open on paper, and its text can be found.
+        # Content that is folded on a screen is unfolded on paper, and its text can be found.
         page.run("document.querySelectorAll('details').forEach(d => { d.open = false; })")
         check_printed(page, work, ["PASS", "Known values", "Residual tests", "How each number is computed",
                                    "model = measured", "measured [mm]", "95 % prediction", "phase [°]"])
@@ -304,7 +305,7 @@ def check_good(binary, work):
 
 
 def check_many(binary, work):
-    """Of many conditions the worst are there in full; a line of another is drawn when it is opened, here by its link."""
+    """Checks that only the worst of many conditions are shown in full. Others are drawn when opened, here by a link."""
     campaign = (work / "twin" / "campaign.toml").read_text()
     head, sine, square = campaign.split("[[condition]]\n")
     copies = [sine.replace('id = "sine"', f'id = "s{i}"') for i in range(90)]
@@ -316,7 +317,7 @@ def check_many(binary, work):
         check_sections(page)
         check(page.run("[document.querySelectorAll('article.condition').length, document.querySelectorAll('.sketch').length]") == [20, 71],
               "twenty in full, the others in a line each")
-        # The last one is in the second of the packed streams.
+        # The last condition is in the second compressed stream.
         last = page.run("[...document.querySelectorAll('.sketch')].pop().id")
         page.run(f"location.hash = '#{last}'")
         line = f"document.getElementById('{last}')"
@@ -332,7 +333,7 @@ def check_many(binary, work):
 
 
 def check_bad(binary, work):
-    """A failed and a poor result say so at their top."""
+    """Checks that a failed and a poor result are marked as such at the top."""
     campaign = (work / "twin" / "campaign.toml").read_text()
     (work / "twin" / "hopeless.toml").write_text(campaign + "\n[simulation]\nmax_seconds = 1e-6\n")
     check(rigcal(binary, work, "fit", "twin/hopeless.toml", "--out", "failed") == 3, "the fit fails")
@@ -356,7 +357,7 @@ def check_bad(binary, work):
 
 
 def check_leak_table(binary, work, sources):
-    """The paper's table: every coefficient of leak_table.json is on the page, with its grade."""
+    """Checks the table from the paper: every coefficient in leak_table.json is on the page, with its grade."""
     campaign = sources / "datasets" / "rigs" / "uis_shake_table" / "campaign.toml"
     check(rigcal(binary, work, "leak-table", campaign, "--out", "leaks") == 0, "leak table")
     path = work / "leaks" / "report.html"
@@ -373,7 +374,7 @@ def check_leak_table(binary, work, sources):
 
 
 def check_diagnosis(binary, work):
-    """A leak that is there is found; the numbers are those of diagnosis.json."""
+    """Checks that an existing leak is found, and that the numbers agree with diagnosis.json."""
     leaking = (CAMPAIGN.replace("[acceptance]", "[leak_level.leaking]\n[acceptance]")
                .replace("leakage_coefficient = 0.3", "leakage_coefficient = 0")
                .replace('use = "validate"', 'use = "diagnose"\nparameters = { leakage_coefficient = 0.3 }')
@@ -397,7 +398,7 @@ def check_diagnosis(binary, work):
 
 
 def check_models(page, compared):
-    """The likelihood-ratio table: a row per result after the first, with the numbers of comparison.json."""
+    """Checks the likelihood-ratio table: a row for each result after the first, with the numbers in comparison.json."""
     check(page.run("document.querySelector('.models caption').textContent").startswith("AIC"), "its caption is to be seen")
     shown = page.run("[...document.querySelectorAll('.models tbody tr')].map(r => [...r.cells].slice(1, 4)"
                      ".map(c => c.querySelector('data')?.value ?? ''))")
@@ -408,7 +409,7 @@ def check_models(page, compared):
 
 
 def check_average(binary, work):
-    """The repeats: numbers of average.json, a picture of every mean, on every width and on paper."""
+    """Checks the repeats: numbers in average.json and a picture of every mean, at every width and on paper."""
     check(rigcal(binary, work, "average", "twin/campaign.toml", "--out", "mean") == 0, "average")
     path = work / "mean" / "report.html"
     records = json.loads((work / "mean" / "average.json").read_text())["records"]
@@ -425,7 +426,7 @@ def check_average(binary, work):
 
 
 def check_plan(binary, work):
-    """Checks the information of each record: numbers of plan.json."""
+    """Checks the information in each record against plan.json."""
     check(rigcal(binary, work, "plan", "twin/campaign.toml", "--out", "planned") == 0, "plan")
     path = work / "planned" / "report.html"
     plan = json.loads((work / "planned" / "plan.json").read_text())
@@ -439,7 +440,7 @@ def check_plan(binary, work):
 
 
 def check_model_choice(binary, work):
-    """Two fits to the same records, of which one contains the other."""
+    """Checks the comparison of two nested fits to the same records."""
     check(rigcal(binary, work, "fit", "twin/campaign.toml", "--free", "valve_gain", "--out", "smaller") in (0, 1),
           "the smaller model")
     check(rigcal(binary, work, "compare", "smaller", "good", "--out", "choice") == 0, "compare")
@@ -482,7 +483,7 @@ def check_comparison(binary, work):
 
 
 def check_names(binary, work):
-    """Files and folders of any name are text too, and the command on the page makes the result again."""
+    """Checks that file and folder names are shown as text, and that the command on the page reproduces the result."""
     shutil.copytree(work / "twin", work / "odd")
     odd = "<b>bold \"q\" 'a' $(id) \n\u00fc \u2192.csv"
     campaign = work / "odd" / "campaign.toml"
@@ -518,7 +519,7 @@ def check_names(binary, work):
 
 
 def recordings(sources, name):
-    """Folder of a real machine's recordings; None, said so, where it is not."""
+    """Returns the folder with recordings of a real machine. If there is none, prints a message and returns None."""
     data = sources.parent / "shared" / "data" / name
     if data.is_dir():
         return data
@@ -527,7 +528,7 @@ def recordings(sources, name):
 
 
 def check_recorded(folder, file, sections):
-    """The page of a real machine."""
+    """Checks the page for a real machine."""
     path = folder / "report.html"
     result = json.loads((folder / file).read_text())
     with Browser() as page:
@@ -546,7 +547,7 @@ def check_utfsm(binary, work, sources):
     if data is None:
         return
     campaign = sources / "datasets" / "rigs" / "utfsm_mts" / "campaign.toml"
-    # One parameter alone, for the time it takes: what is tested is the page.
+    # Only one parameter is fitted, to save time: this tests only the page.
     status = rigcal(binary, work, "fit", campaign, "--data", data, "--out", "utfsm", "--free", "valve_gain")
     check(status in (0, 1), "fit of UTFSM's machine")
     check_recorded(work / "utfsm", "fit.json", SECTIONS)
@@ -557,7 +558,7 @@ def check_festo(binary, work, sources):
     if data is None:
         return
     campaign = sources / "datasets" / "rigs" / "festo_tp511" / "campaign.toml"
-    # What is tested is the page, for which the starts of the campaign do; a fit takes longer.
+    # This tests only the page, for which the start values of the campaign are enough; a fit would take longer.
     check(rigcal(binary, work, "validate", campaign, "--data", data, "--out", "festo") in (0, 1), "Festo's machine")
     check_recorded(work / "festo", "validation.json", SECTIONS)
 

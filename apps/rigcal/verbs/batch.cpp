@@ -27,7 +27,8 @@ struct BatchOptions {
   JobOptions common;
 };
 
-/// Relative record paths start at the campaign file's folder wherever the command runs.
+/// Returns the command line for one rig. It does not pass a data folder, so that relative record
+/// paths start at the folder of the campaign file wherever the command runs.
 std::vector<std::string> arguments_for(const char* verb, const report::BatchRig& rig,
                                        const BatchOptions& options) {
   const int threads = std::max(1, options.common.threads / options.jobs);
@@ -57,7 +58,7 @@ report::VerbEnd diagnose_rig(const report::BatchRig& rig, const BatchOptions& op
   return run_child(arguments, cancel);
 }
 
-/// Each rig is fitted and diagnosed in processes of its own.
+/// Runs the batch. Each rig is fitted and diagnosed in separate processes.
 ExitCode run_batch(const BatchOptions& options, const Invocation& invocation) {
   const report::BatchRequest request{options.folder,   options.root,           options.earlier,
                                      options.choices,  options.choices.strict, options.resume,

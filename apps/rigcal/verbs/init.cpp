@@ -36,7 +36,7 @@ std::size_t count_of(const std::string& text, const std::string& part) {
   return count;
 }
 
-/// The terms that the residuals of an earlier fit ask for.
+/// Returns the terms that the residuals of an earlier fit call for.
 std::vector<report::MissingTerm> terms_of(const std::filesystem::path& file) {
   const report::Json json = report::read_json(file, "the fit.json of an earlier fit");
   const auto fit = report::as<report::StoredFit>(json, "", file.string());
@@ -59,7 +59,7 @@ ExitCode run_init(const InitRequest& options) {
   const auto terms =
       options.fit.empty() ? std::vector<report::MissingTerm>() : terms_of(options.fit);
   report::write_results(held, {{"campaign.toml", report::with_terms(draft.text, terms)}}, {});
-  // The first blank is in the head, which explains them.
+  // The first blank is in the header, which explains what blanks are.
   const std::size_t blanks = count_of(draft.text, datasets::kBlank) - 1;
   report::Json json;
   json["campaign"] = path.string();

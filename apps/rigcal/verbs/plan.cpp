@@ -25,7 +25,7 @@ Run add_plan(CLI::App& verb) {
       ->delimiter(',')
       ->check(not_empty());
   return [options](const Invocation& invocation) {
-    // A signal ends a plan at once; of a design it keeps the best drive until then.
+    // A signal ends a plan at once. During a design the best drive so far is kept.
     const auto kept = options->design.empty() ? nullptr : std::make_unique<const Kept>();
     return run_job("plan", options->common, invocation, [&](const report::JobTerms& terms) {
       return report::plan_job(load(options->common), *options, terms);

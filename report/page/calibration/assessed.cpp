@@ -73,7 +73,8 @@ std::string correlation_words(const StoredCorrelation& correlation) {
 }
 
 doc::Section assessment_section(const StoredFit& fit) {
-  // Reasons against; the others are counted here and listed in the sections.
+  // Only reasons against the result are shown; the sections list the others, which are counted
+  // here.
   constexpr std::size_t kShown = 3;
   doc::Section section{"assessment", "Assessment"};
   if (fit.assessment) {

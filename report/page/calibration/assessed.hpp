@@ -24,12 +24,12 @@ inline constexpr std::array kAspects{
     AspectName{&StoredAssessment::adequacy, "Adequacy of the model", "Adequacy", "conditions"},
     AspectName{&StoredAssessment::parameters, "Parameters", "Parameters", "parameters"}};
 
-/// Id of the section with the evidence for a reason.
+/// Returns the id of the section with the evidence for a reason.
 ///
-/// @param section  section of the reason's aspect
+/// @param section  section that belongs to the aspect
 std::string evidence_of(const StoredFit& fit, const StoredReason& reason, const char* section);
 
-/// Whether an aspect has a reason of this code.
+/// Returns true if an aspect has a reason with this code.
 bool names_reason(const StoredFit& fit, StoredAspect StoredAssessment::*aspect,
                   std::string_view code);
 
@@ -39,10 +39,10 @@ std::string open_aspects(const StoredFit& fit);
 /// Explains a decision rule to the reader of the verdict (ISO/IEC 17025, 7.8.6).
 std::string rule_words(datasets::DecisionRule rule);
 
-/// Describes how strongly estimates are correlated; estimates without a number are omitted.
+/// Describes how strongly the estimates are correlated. Leaves out estimates without a correlation.
 std::string correlation_words(const StoredCorrelation& correlation);
 
-/// Section with the reasons of every aspect and the end of the search.
+/// Returns the section with the reasons for every aspect and the outcome of the search.
 doc::Section assessment_section(const StoredFit& fit);
 
 }  // namespace rigcal::report

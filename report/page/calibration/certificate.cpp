@@ -27,7 +27,7 @@ using calib::Verdict;
 using doc::Line;
 using doc::State;
 
-/// Rows on page one; further ones are only counted.
+/// Maximum numbers of rows on the first page; further rows are only counted.
 constexpr std::size_t kSignals = 8;
 constexpr std::size_t kValues = 12;
 constexpr std::size_t kDoubts = 9;
@@ -36,7 +36,7 @@ std::string plural(std::size_t count, const std::string& noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
-/// A signal with a limit.
+/// A signal for which there is a limit.
 struct Judged {
   const StoredCondition* condition = nullptr;
   std::size_t number = 0;  ///< index of the condition
@@ -51,7 +51,7 @@ struct Judged {
   Verdict verdict() const { return check != nullptr ? check->verdict : Verdict::fail; }
 };
 
-/// All judged signals: those of validation records first, then by how bad they are.
+/// Returns all judged signals: first those in validation records, then the worst first.
 std::vector<Judged> judged_signals(const StoredFit& fit) {
   std::vector<Judged> signals;
   for (std::size_t i = 0; i < fit.conditions.size(); ++i) {
@@ -79,7 +79,7 @@ std::vector<Judged> judged_signals(const StoredFit& fit) {
   return signals;
 }
 
-/// Estimates on the certificate; nuisance parameters are left out.
+/// Returns the estimates for the certificate, without nuisance parameters.
 std::vector<const StoredParameter*> signed_estimates(const StoredFit& fit) {
   std::vector<const StoredParameter*> found;
   for (const StoredParameter& p : fit.parameters)
@@ -87,7 +87,7 @@ std::vector<const StoredParameter*> signed_estimates(const StoredFit& fit) {
   return found;
 }
 
-/// "with at most 13 % of the permitted error"
+/// Returns, for example, "with at most 13 % of the permitted error".
 std::string tolerance_words(const std::vector<Judged>& signals) {
   double used = 0.0;
   for (const Judged& each : signals) used = std::max(used, each.used());
@@ -170,7 +170,7 @@ doc::Verdict failed_verdict(const StoredFit& fit) {
   return {{State::bad, "FAIL"}, std::move(sentence)};
 }
 
-/// A reason with a link to its evidence, and the number of similar ones.
+/// Returns a reason with a link to its evidence and the number of similar ones.
 Line doubt_line(const StoredFit& fit, const StoredReason& reason, const char* section,
                 std::size_t others) {
   Line line{doc::Link{"#" + evidence_of(fit, reason, section), reason.words}};
@@ -178,7 +178,8 @@ Line doubt_line(const StoredFit& fit, const StoredReason& reason, const char* se
   return line;
 }
 
-/// One doubt of each kind, the gravest first: reasons against the result, notes, and warnings.
+/// Collects one doubt of each kind, the most serious first: reasons against the result, notes, and
+/// warnings.
 doc::Doubts doubts_of(const StoredFit& fit) {
   doc::Doubts doubts;
   std::vector<std::pair<AspectState, Line>> found;
@@ -187,7 +188,8 @@ doc::Doubts doubts_of(const StoredFit& fit) {
       const std::vector<StoredReason>& reasons = ((*fit.assessment).*aspect.aspect).reasons;
       for (std::size_t i = 0; i < reasons.size(); ++i) {
         const StoredReason& reason = reasons[i];
-        // The table of values names exact ones below it; that starts were looked at is no doubt.
+        // Two reasons are not doubts: exact values are listed below the table of values, and
+        // "further_starts" only reports that starts were added.
         if (reason.state == AspectState::pass || reason.code == "exact_values" ||
             reason.code == "further_starts")
           continue;
@@ -232,7 +234,8 @@ doc::Doubts doubts_of(const StoredFit& fit) {
   return doubts;
 }
 
-/// Half an interval, where it is as wide on both sides; nothing where it is not, or unknown.
+/// Returns half the length of an interval that is symmetric about the value. Returns std::nullopt
+/// if it is asymmetric or unknown.
 std::optional<double> expanded_uncertainty(const StoredParameter& p,
                                            const doc::Interval& interval) {
   constexpr double kSymmetric = 0.01;
@@ -244,7 +247,7 @@ std::optional<double> expanded_uncertainty(const StoredParameter& p,
   return 0.5 * (above + below);
 }
 
-/// U divided by the standard error from which it follows.
+/// Returns the expanded uncertainty U divided by the standard error it was derived from.
 std::optional<double> coverage_factor(const StoredParameter& p) {
   if (p.budget) return p.budget->coverage_factor;
   const auto half = expanded_uncertainty(p, p.ci95);
@@ -253,7 +256,7 @@ std::optional<double> coverage_factor(const StoredParameter& p) {
   return *half / error->standard_error;
 }
 
-/// "± 0.05", or both ends where it is not as wide on both sides.
+/// Formats the uncertainty as "± 0.05", or as both ends if the interval is asymmetric.
 Line uncertainty_line(const StoredParameter& p, const doc::Interval& interval,
                       const RowUnit& unit) {
   if (const auto half = expanded_uncertainty(p, interval))
@@ -264,7 +267,7 @@ Line uncertainty_line(const StoredParameter& p, const doc::Interval& interval,
   return estimate.has_interval ? estimate.interval() : Line{"–"};
 }
 
-/// @param both  with the uncertainty if the model were exact
+/// @param both  whether to include the uncertainty that would apply if the model were exact
 doc::Row value_row(const StoredParameter& p, bool judged, bool both) {
   const RowUnit unit = unit_of(p);
   const doc::Estimate estimate =
@@ -281,7 +284,8 @@ doc::Row value_row(const StoredParameter& p, bool judged, bool both) {
   return row;
 }
 
-/// "k = 1.96", "k = 1.96 to 2.1"; empty if no value has a U.
+/// Returns, for example, "k = 1.96" or "k = 1.96 to 2.1"; empty if no value has an expanded
+/// uncertainty.
 std::string coverage_words(const std::vector<const StoredParameter*>& found) {
   double least = HUGE_VAL;
   double largest = 0.0;
@@ -297,12 +301,12 @@ std::string coverage_words(const std::vector<const StoredParameter*>& found) {
   return low == high ? fmt::format("k = {}, ", low) : fmt::format("k = {} to {}, ", low, high);
 }
 
-/// Adds the calibrated values. A validation that estimated nothing has none.
+/// Adds the calibrated values. A validation that did not estimate anything has none.
 void add_values(const StoredFit& fit, bool judged, doc::Blocks& blocks) {
   std::vector<const StoredParameter*> found = signed_estimates(fit);
   if (found.empty()) return;
   const std::size_t more = found.size() > kValues ? found.size() - kValues : 0;
-  // The table is cut, so the least certain values come first.
+  // The least certain values come first because the table is truncated.
   if (more > 0)
     std::stable_sort(found.begin(), found.end(), [](const auto* a, const auto* b) {
       return relative_half_width(*a) > relative_half_width(*b);
@@ -345,7 +349,7 @@ void add_values(const StoredFit& fit, bool judged, doc::Blocks& blocks) {
     blocks.emplace_back(doc::Paragraph{std::move(notes), doc::Paragraph::Tone::small});
 }
 
-/// Residual of a whole record against the band that its limit allows.
+/// Plots the residual of a whole record against the band that its limit allows.
 Plot residual_strip(const Judged& signal, const std::vector<double>& residual, double allowed) {
   constexpr std::size_t kColumns = 250;  // width in pixels
   Plot plot;
@@ -362,8 +366,8 @@ Plot residual_strip(const Judged& signal, const std::vector<double>& residual, d
     band.upper = {allowed, allowed};
     plot.traces.push_back(std::move(band));
   }
-  // Each pixel column has one bar from the least to the largest residual, so all peaks are visible
-  // and no false ones appear.
+  // Each pixel column has one bar from the smallest to the largest residual, so that all peaks are
+  // visible and no spurious ones appear.
   Trace bars = empty_trace(Trace::Kind::line, "residual");
   for (std::size_t i = 0; i < kColumns; ++i) {
     const std::size_t begin = i * residual.size() / kColumns;
@@ -384,7 +388,7 @@ Plot residual_strip(const Judged& signal, const std::vector<double>& residual, d
   return plot;
 }
 
-/// Finite samples of one column of a channel that lie within the windows.
+/// Returns the finite samples of one column of a channel that are inside the windows.
 std::vector<double> counted_samples(const Table& series, const std::string& column) {
   const auto* values = series.find(column);
   const auto* in_window = series.find("in_window");
@@ -409,14 +413,14 @@ std::string signal_words(const StoredCondition& condition) {
   return text;
 }
 
-/// Adds the score of the deciding check: "rho2 0.9987 ± 0.0002, limit 0.99".
+/// Adds the score in the deciding check: "rho2 0.9987 ± 0.0002, limit 0.99".
 void add_score(const Judged& signal, doc::Cell& cell) {
   const StoredLimitCheck& check = *signal.check;
   cell.line = {check.metric == "absolute_error_percent" ? "error % " : spaced(check.metric) + " ",
                doc::score(check.metric, check.value)};
   Line limit;
   const auto& two_sided = signal.condition->two_sided_uncertainty;
-  // Files of earlier versions have the one-sided one alone.
+  // Files from earlier versions only have the one-sided uncertainty.
   const auto& all = two_sided ? two_sided : signal.condition->expanded_uncertainty;
   const auto* known = all ? find(*all, signal.channel) : nullptr;
   if (known != nullptr && *known) {
@@ -470,7 +474,8 @@ doc::Row signal_row(const Calibration& stored, const Judged& signal) {
   return {{std::move(name), std::move(strip), std::move(rms), std::move(score), std::move(used)}};
 }
 
-/// "Not judged, no limit agreed: load pressure (lowest rho2 0.973, sine_3Hz)."
+/// Returns, for example, "Not judged, no limit agreed: load pressure (lowest rho2 0.973,
+/// sine_3Hz)."
 std::string not_judged_words(const StoredFit& fit) {
   std::vector<std::string> found;
   std::vector<std::string> seen;
@@ -559,7 +564,7 @@ void add_aspects(const StoredFit& fit, doc::Blocks& blocks) {
   blocks.emplace_back(std::move(aspects));
 }
 
-/// Range of one quantity in the fitted conditions and in the validation.
+/// Formats the range of one quantity in the fitted conditions and in the validation.
 std::string coverage_text(const std::optional<Range>& fitted, const std::optional<Range>& validated,
                           std::string_view unit) {
   if (!validated || (fitted && fitted->low == validated->low && fitted->high == validated->high))
@@ -569,7 +574,8 @@ std::string coverage_text(const std::optional<Range>& fitted, const std::optiona
                      in_words(*validated, unit));
 }
 
-/// Adds the decision rule and the range of validity; without a validation, the tested range.
+/// Adds the decision rule and the range of validity, or the tested range if there was no
+/// validation.
 void add_scope(const StoredFit& fit, doc::Blocks& blocks) {
   if (!fit.acceptance.empty()) {
     const auto rule = fit.decision.value_or(datasets::DecisionRule::simple);
@@ -582,7 +588,7 @@ void add_scope(const StoredFit& fit, doc::Blocks& blocks) {
   const auto add = [&](std::optional<Range> StoredValidity::*range, const char* name,
                        std::string_view unit) {
     const std::optional<Range>& fitted = fit.validity.*range;
-    // The ranges of a pure validation are in `validity` already.
+    // For a validation without a fit, `validity` already contains the ranges.
     const std::optional<Range> validated =
         is_fit_schema(fit.schema) && fit.validated ? (*fit.validated).*range : std::nullopt;
     if (fitted || validated)
@@ -622,7 +628,7 @@ doc::Verdict fit_verdict(const StoredFit& fit) {
     if (stopped) add_reason(verdict, fit.message, "starts");
     return verdict;
   }
-  // FAIL comes first: a broken limit stays broken, whatever was not finished.
+  // FAIL comes first, because an exceeded limit remains exceeded whatever was left unfinished.
   if (stopped) return unfinished({State::warn, "STOPPED"}, stopped_sentence(*fit.stopped_in));
   if (fit.verdict) {
     doc::Verdict verdict{doc::badge(*fit.verdict), {}};

@@ -10,34 +10,37 @@
 
 namespace rigcal::report {
 
-/// Three numbers, and a small picture of measurement and model for every condition. Nothing if
-/// nothing was scored.
+/// Returns three key numbers, and a small picture of measurement and model for every condition.
+/// Returns std::nullopt if no condition was scored.
 std::optional<doc::Section> overview_section(const Calibration& stored);
-/// For each channel, scores by signal and leak level, then group means.
+/// Lists the scores for each channel by signal and leak level, followed by group means.
 ///
-/// @param unfinished  the search did not converge
+/// @param unfinished  whether the search did not converge
 doc::Section scores_section(const StoredFit& fit, bool unfinished);
-/// @param judged  whether a search converged, so that estimates have grades
+/// @param judged  whether a search converged, so that the estimates have grades
 doc::Section parameters_section(const std::vector<StoredParameter>& parameters,
                                 const StoredCorrelation& correlation, bool judged);
-/// What contributes to the uncertainty of each estimate; nothing where no effects were considered.
+/// Adds the contributions to the uncertainty of each estimate. Adds nothing if no effects were
+/// considered.
 void add_budget(const std::vector<StoredParameter>& parameters, doc::Blocks& blocks);
-/// One article for each condition: what it is, its scores, its plots and residual tests.
+/// Returns one article for each condition, with its description, scores, plots and residual tests.
 ///
 /// @param curves  whether plots and residual tests are drawn
 doc::Section conditions_section(const Calibration& stored, int threads, bool curves);
-/// Evidence on the estimates: singular values, profiles, bootstrap, lack of fit, predictions.
+/// Returns the evidence for the estimates: singular values, profiles, bootstrap, lack of fit,
+/// predictions.
 doc::Section identifiability_section(const StoredFit& fit);
 /// Adds the singular values of the Jacobian with an explanation.
 void add_singular_values(const StoredFit& fit, doc::Blocks& blocks);
-/// Draws of the posterior: quantiles, diagnostics, limits, pairs; nothing where there are none.
+/// Adds a summary of the posterior draws: quantiles, diagnostics, limits, pairs. Adds nothing if
+/// there are no draws.
 void add_posterior(const StoredFit& fit, doc::Blocks& blocks);
-/// Small effects that the model leaves out, and which of them the residuals ask for.
+/// Adds the small effects that the model leaves out, and marks those that the residuals call for.
 void add_considered(const StoredFit& fit, doc::Blocks& blocks);
-/// Estimates from the validation records alone, beside those of the fit.
+/// Adds the estimates from the validation records only, beside those of the fit.
 void add_stability(const StoredFit& fit, doc::Blocks& blocks);
 doc::Section starts_section(const StoredFit& fit);
-/// Failures and warnings.
+/// Lists failures and warnings.
 doc::Section warnings_section(const StoredFit& fit);
 
 /// Adds residual tests and curves for the channels of a condition.

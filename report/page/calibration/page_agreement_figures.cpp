@@ -17,10 +17,10 @@
 namespace rigcal::report {
 namespace {
 
-/// Fewer make neither a histogram nor a spectrum.
+/// Fewer samples are not enough for a histogram or a spectrum.
 constexpr std::size_t kLeastSamples = 64;
-/// Samples per period of a periodic drive; if they do not divide a period, their number varies by
-/// one.
+/// Minimum number of samples per period of a periodic drive. If the samples do not divide the
+/// period exactly, the number varies by one.
 constexpr double kLeastPerPeriod = 10.0;
 
 struct Drive {
@@ -46,7 +46,7 @@ bool all_finite(std::span<const double> values) {
   return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
 }
 
-/// Interval between samples; nothing if it varies by more than rounding.
+/// Returns the sampling interval, or std::nullopt if the samples are not equidistant to within 1 %.
 std::optional<double> equal_steps(std::span<const double> time_s) {
   const double step = (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1);
   if (!(step > 0.0)) return std::nullopt;
@@ -55,7 +55,7 @@ std::optional<double> equal_steps(std::span<const double> time_s) {
   return step;
 }
 
-/// The samples from the first to the last that count.
+/// The samples from the first to the last scored one.
 struct Stretch {
   std::size_t begin = 0;
   std::size_t size = 0;
@@ -70,7 +70,7 @@ Stretch counted_stretch(std::size_t samples, const std::vector<double>* window) 
           static_cast<std::size_t>(last.base() - first)};
 }
 
-/// Gain in a unit that suits the largest: "mm/V", "MPa/mm", "1".
+/// Sets a unit for the gain that suits its largest value: "mm/V", "MPa/mm", "1".
 void set_gain_unit(ResponseCurves& curves, std::string_view output_unit,
                    std::string_view drive_unit, double output_size, double drive_size) {
   if (output_unit == drive_unit) {

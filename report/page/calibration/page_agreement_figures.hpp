@@ -9,26 +9,27 @@
 
 namespace rigcal::report {
 
-/// The figures of one channel of a condition that show the agreement of model and record: parity,
-/// histogram of the residual and, if the signals allow it, gain and phase over frequency.
+/// The figures that show, for one channel of a condition, how well the model agrees with the
+/// record: parity, histogram of the residual and, if the signals allow it, gain and phase over
+/// frequency.
 struct ChannelAgreement {
   std::string channel;
   std::vector<Figure> figures;
-  std::string residual;  ///< mean and standard deviation of the residual in words
-  std::string response;  ///< input of gain and phase, or why there are none
+  std::string residual;  ///< mean and standard deviation of the residual, in words
+  std::string response;  ///< input used for gain and phase, or why there are none
 };
 
-/// @param condition     its id
-/// @param frequency_hz  of a periodic drive; else nothing
-/// @param series        residuals/<condition>.csv
+/// @param condition     id of the condition
+/// @param frequency_hz  frequency of a periodic drive; absent for other drives
+/// @param series        contents of residuals/<condition>.csv
 std::vector<ChannelAgreement> channel_agreements(const std::string& condition,
                                                  std::optional<double> frequency_hz,
                                                  const Table& series);
 
-/// Frequency of a condition's drive where it is periodic, from its entry in fit.json.
+/// Returns the drive frequency of a condition from its entry in fit.json, if the drive is periodic.
 std::optional<double> periodic_frequency(const StoredCondition& condition);
 
-/// The figures of every channel with explanations.
+/// Returns the figures of every channel with explanations.
 doc::Blocks agreement_blocks(const std::string& condition, std::optional<double> frequency_hz,
                              const Table& series);
 

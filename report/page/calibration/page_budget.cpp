@@ -36,9 +36,9 @@ doc::Row budget_row(const StoredParameter& p) {
            largest == nullptr ? std::string("–") : spaced(largest->source)}};
 }
 
-/// The lines of one budget; those that hardly count are one line together.
+/// Adds the rows of one uncertainty budget. Negligible contributions are combined in one row.
 void add_lines(const StoredParameter& p, std::vector<doc::Row>& rows) {
-  constexpr double kHardly = 1e-3;  // fraction of the variance
+  constexpr double kHardly = 1e-3;  // as a fraction of the variance
   const RowUnit unit = unit_of(p);
   const StoredBudget& budget = *p.budget;
   const double whole = budget.combined * budget.combined;
@@ -59,7 +59,7 @@ void add_lines(const StoredParameter& p, std::vector<doc::Row>& rows) {
   if (others > 0.0) add("all others", others);
 }
 
-/// A size or an estimate of an effect in the unit that suits its size.
+/// Formats the size or an estimate of an effect in a suitable unit.
 Line effect_number(const std::optional<double>& value, const std::optional<double>& half_width,
                    const RowUnit& unit) {
   Line line{doc::in_unit(value, unit.si, kBudgetDigits)};
@@ -84,7 +84,8 @@ doc::Row effect_row(const StoredEffect& effect, bool missing) {
   return row;
 }
 
-/// Sizes of the effects of a refitted model: "valve_time_constant 0.21 ms, ki 5.0 V/(m s)".
+/// Lists the effects in a refitted model with their sizes: "valve_time_constant 0.21 ms, ki 5.0
+/// V/(m s)".
 std::string refit_sizes(const StoredConsidered& considered, const StoredRefit& model) {
   std::vector<std::string> words;
   for (std::size_t i = 0; i < std::min(model.effects.size(), model.sizes.size()); ++i) {
@@ -100,7 +101,7 @@ std::string refit_sizes(const StoredConsidered& considered, const StoredRefit& m
   return words.empty() ? std::string("as it is") : fmt::format("{}", fmt::join(words, ", "));
 }
 
-/// The models that were refitted, and the estimates over them.
+/// Adds the refitted models and the estimates that each of them gives.
 void add_refits(const StoredFit& fit, doc::Blocks& blocks) {
   const StoredConsidered& considered = *fit.considered;
   if (considered.refitted.empty()) return;

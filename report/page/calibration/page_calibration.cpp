@@ -13,7 +13,7 @@
 namespace rigcal::report {
 namespace {
 
-/// Verdict on a fit to published tables, which has no records.
+/// Returns the verdict on a fit to published tables, which has no records.
 doc::Verdict tables_verdict(const StoredTablesFit& fit) {
   using calib::FitStatus;
   if (fit.status != FitStatus::converged) {

@@ -6,7 +6,8 @@
 
 namespace rigcal::report {
 
-/// fit.json or validation.json: a fit or validation, or a fit to published tables.
+/// Returns the part of the page for fit.json or validation.json: a fit or validation, or a fit to
+/// published tables.
 Part calibration_part(const ResultFolder& folder);
 std::vector<Figure> calibration_figures(const ResultFolder& folder);
 

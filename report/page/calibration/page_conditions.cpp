@@ -19,7 +19,7 @@ namespace {
 
 using Kind = doc::Column::Kind;
 
-/// Uncertainty of the scores of a channel; null if unknown.
+/// Returns the uncertainty of the scores for a channel, or null if it is unknown.
 const StoredAgreement* uncertainty_of(const StoredCondition& condition,
                                       const std::string& channel) {
   if (!condition.expanded_uncertainty) return nullptr;
@@ -85,7 +85,7 @@ doc::Line facts_of(const StoredCondition& condition) {
   return facts;
 }
 
-/// JSON of a plot over time for the page's script.
+/// Describes a plot over time as JSON for the script on the page.
 Json live_plot(const TimePlot& plot, SeriesData& data) {
   Json lines = Json::array();
   for (const TimeLine& line : plot.lines) {
@@ -113,7 +113,7 @@ Json live_plot(const TimePlot& plot, SeriesData& data) {
   return entry;
 }
 
-/// Adds the plots over time with the series for zooming.
+/// Adds the plots over time, with the data series for zooming.
 ///
 /// @param points  approximate number of points per series
 /// @return        number of plots
@@ -144,7 +144,7 @@ std::size_t add_plots(const StoredCondition& condition, const Table& series, std
   return count;
 }
 
-/// What a condition is, and its scores.
+/// Describes a condition and lists its scores.
 doc::Article facts_article(const StoredCondition& condition) {
   const doc::Badge verdict = doc::badge(condition.verdict);
   doc::Article article{anchor(condition.id), {verdict, " " + condition.id}, {}};
@@ -164,15 +164,16 @@ doc::Article facts_article(const StoredCondition& condition) {
   return article;
 }
 
-/// @param series  residuals/<condition>.csv
-/// @param curves  its entry in residual_tests.json, or null
-/// @param open    whether its curves are unfolded
+/// @param series  contents of residuals/<condition>.csv
+/// @param curves  entry for the condition in residual_tests.json, or null
+/// @param open    whether the curves are unfolded
 void add_curves(const StoredCondition& condition, const Table& series,
                 const StoredChannelCurves* curves, std::size_t points, bool open,
                 doc::Blocks& blocks) {
   doc::Fold curves_of{"", {}, open, "curves"};
   const std::size_t plots = add_plots(condition, series, points, curves_of.blocks);
-  // Every scored condition must have a series; without it the page would only look complete.
+  // Every scored condition must have a series. Without this message the page would look complete
+  // although it is not.
   if (!condition.metrics.empty() && plots == 0)
     blocks.emplace_back(doc::Paragraph{
         {fmt::format("residuals/{}.csv is missing or has no rows: nothing can be drawn.",
@@ -191,10 +192,10 @@ void add_curves(const StoredCondition& condition, const Table& series,
   blocks.emplace_back(std::move(curves_of));
 }
 
-/// Points of a line in a sketch: every sample of two periods with up to 200.
+/// Maximum number of points on a line in a sketch: two periods with up to 200 samples each.
 constexpr std::size_t kSketchPoints = 400;
 
-/// The last two periods of what was measured and simulated, for the page's script.
+/// Returns the last two periods of the measured and simulated signals for the script on the page.
 Json sketched_series(const StoredCondition& condition, const Table& series) {
   if (series.columns.empty() || series.columns.front().empty()) return nullptr;
   Table part;
@@ -202,7 +203,7 @@ Json sketched_series(const StoredCondition& condition, const Table& series) {
   const std::size_t first = time_s == nullptr ? 0 : first_of_last_periods(condition, *time_s);
   for (std::size_t i = 0; i < series.columns.size(); ++i) {
     const std::string& name = series.names[i];
-    // A band would take as much room as the lines.
+    // Bands are left out because they would take as much space as the lines.
     if (name.starts_with("sd_") || name.starts_with("prediction_sd_")) continue;
     part.names.push_back(name);
     part.columns.emplace_back(series.columns[i].begin() + static_cast<std::ptrdiff_t>(first),
@@ -227,7 +228,7 @@ std::string plain_text(const doc::Line& line) {
   return text;
 }
 
-/// @param series  null: without its curves
+/// @param series  null: the sketch has no curves
 doc::Sketches::Sketch sketch_of(const StoredCondition& condition, const Table* series) {
   doc::Sketches::Sketch sketch{
       anchor(condition.id), doc::badge(condition.verdict), {doc::Strong{condition.id}}, {}};
@@ -245,12 +246,12 @@ doc::Sketches::Sketch sketch_of(const StoredCondition& condition, const Table* s
   return sketch;
 }
 
-/// Approximate size of all interactive series of a page.
+/// Approximate total size of the interactive series on a page.
 constexpr std::size_t kSeriesBytes = 3'600'000;
 constexpr double kBytesPerPoint = 2.0 * 4.0 / 3.0;
 constexpr std::size_t kLeastPoints = 2000;
 
-/// Number of points per series with which all series together have that size.
+/// Returns the number of points per series at which all series together reach that size.
 std::size_t points_of(const Calibration& stored, const std::vector<std::size_t>& shown) {
   std::size_t columns = 0;
   for (const std::size_t i : shown) columns += stored.series(i)->columns.size();
@@ -293,8 +294,8 @@ doc::Section conditions_section(const Calibration& stored, int threads, bool cur
   const std::size_t points = curves ? points_of(stored, shown) : 0;
   std::vector<doc::Rendered> articles(conditions.size());
   std::vector<doc::Sketches::Sketch> sketches(conditions.size());
-  // Each article is rendered right away. Keeping the series of all articles would need most of the
-  // memory of a page.
+  // Each article is rendered immediately. Keeping the series of all articles would account for most
+  // of the memory that a page needs.
   parallel_for(conditions.size(), threads, [&](std::size_t i) {
     const StoredCondition& condition = conditions[i];
     const bool in_full = std::binary_search(shown.begin(), shown.end(), i);

@@ -13,7 +13,7 @@
 #include "report/page/page_parts.hpp"
 #include "report/text/readable.hpp"
 
-// First screen after the verdict: three numbers, and every condition as a small picture.
+// The first screen after the verdict: three key numbers, and every condition as a small picture.
 
 namespace rigcal::report {
 namespace {
@@ -72,7 +72,7 @@ std::optional<Extreme> extreme(const std::vector<StoredCondition>& conditions,
   return found;
 }
 
-/// "load pressure of sine_2Hz, limit 0.9, U 0.00021".
+/// Returns, for example, "load pressure of sine_2Hz, limit 0.9, U 0.00021".
 std::string whose(const Extreme& worst, const std::string& metric,
                   double metrics::Agreement::*value) {
   const StoredCondition& condition = *worst.condition;
@@ -93,8 +93,8 @@ std::string whose(const Extreme& worst, const std::string& metric,
   return text;
 }
 
-/// The estimate with the largest relative interval, nuisance parameters excluded; null if there is
-/// none.
+/// Returns the estimate with the largest relative interval, ignoring nuisance parameters; null if
+/// there is none.
 const StoredParameter* least_certain(const std::vector<StoredParameter>& parameters) {
   const StoredParameter* least = nullptr;
   for (const StoredParameter& p : parameters) {

@@ -22,7 +22,8 @@ Range bounds_of(const StoredParameter& p) {
   return {p.lower.value_or(kAnywhere.low), p.upper.value_or(kAnywhere.high)};
 }
 
-/// Cell with an error and the 95 % interval from this error alone, by the normal distribution.
+/// Returns a cell with a standard error and the 95 % interval based only on this error, assuming a
+/// normal distribution.
 doc::Cell error_cell(const StoredParameter& p, const std::optional<double>& error,
                      const RowUnit& unit) {
   constexpr double kNormalQuantile = 1.96;
@@ -34,7 +35,7 @@ doc::Cell error_cell(const StoredParameter& p, const std::optional<double>& erro
 }
 
 /// @param judged  whether the search converged
-/// @param reason  reason that applies to this estimate alone
+/// @param reason  a reason that applies only to this estimate
 doc::Row fitted_row(const StoredParameter& p, bool judged, const std::string& reason) {
   const RowUnit unit = unit_of(p);
   const doc::Estimate estimate = doc::estimate(p.value, p.ci95, unit.si, bounds_of(p));
@@ -71,7 +72,7 @@ doc::Row known_row(const StoredParameter& p) {
            doc::in_unit(p.value, unit.si, 6), unit.name, p.reason}};
 }
 
-/// Correlation of two estimates; NaN where it is not known.
+/// Returns the correlation of two estimates; NaN if it is unknown.
 double at(const StoredCorrelation& correlation, std::size_t i, std::size_t j) {
   const auto& matrix = correlation.matrix;
   return i < matrix.size() && j < matrix[i].size() ? matrix[i][j] : std::nan("");
@@ -113,7 +114,7 @@ std::string joined_reason(const std::vector<std::string>& parts) {
   return text;
 }
 
-/// Reasons that all of several estimates have in common, to be shown once.
+/// Returns the reasons that all estimates have in common, so that they are shown only once.
 std::vector<std::string> common_reasons(const std::vector<const StoredParameter*>& fitted) {
   std::vector<std::string> common;
   if (fitted.size() < 2) return common;
@@ -128,7 +129,7 @@ std::vector<std::string> common_reasons(const std::vector<const StoredParameter*
   return common;
 }
 
-/// Reason of one estimate without the common ones.
+/// Returns the reason for one estimate without the common ones.
 std::string own_reason(const StoredParameter& p, const std::vector<std::string>& common) {
   auto parts = parts_of_reason(p.reason);
   std::erase_if(parts, [&](const std::string& part) {

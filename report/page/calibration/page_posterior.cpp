@@ -63,10 +63,10 @@ doc::Table limits_table(const StoredPosterior& found) {
   return table;
 }
 
-/// A parameter with whose it is, as columns of posterior.csv are called.
+/// Returns the column name of a parameter in posterior.csv, which includes its scope.
 std::string named_as(const StoredParameter& p) { return parameter_label(p.name, p.scope, p.level); }
 
-/// The stored parameter of that name; null where there is none.
+/// Returns the stored parameter with this name, or null if there is none.
 const StoredParameter* named(const StoredFit& fit, const std::string& name) {
   const auto found = std::find_if(fit.parameters.begin(), fit.parameters.end(),
                                   [&](const auto& p) { return p.fitted && named_as(p) == name; });

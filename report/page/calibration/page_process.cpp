@@ -29,7 +29,7 @@ doc::Table start_table(const StoredFit& fit) {
   return table;
 }
 
-/// Text about further starts for a fit with one start.
+/// Explains the further starts of a fit for which one start was requested.
 std::string further_starts_of(const StoredFit& fit) {
   if (fit.assessment) {
     for (const StoredReason& reason : fit.assessment->parameters.reasons) {
@@ -39,7 +39,7 @@ std::string further_starts_of(const StoredFit& fit) {
   return "One start alone: whether another minimum is lower was not looked for.";
 }
 
-/// Summary of all starts.
+/// Summarises all starts.
 ///
 /// @param costs  final costs of the starts, sorted
 std::string start_reading(const StoredFit& fit, const std::vector<double>& costs) {
@@ -101,7 +101,7 @@ doc::Section warnings_section(const StoredFit& fit) {
   doc::Section section{"warnings", "Failures and warnings"};
   doc::List warnings{{}, doc::State::warn};
   for (const std::string& warning : fit.warnings) {
-    // The table of parameters already shows this reason.
+    // The parameter table already shows this reason.
     const bool told =
         std::any_of(fit.parameters.begin(), fit.parameters.end(), [&](const StoredParameter& p) {
           return p.fitted && !p.reason.empty() && warning.ends_with(": " + p.reason);
@@ -170,7 +170,7 @@ void add_fact(doc::Facts& facts, const char* fact, const std::optional<double>& 
   if (value) facts.rows.push_back({fact, {fmt::format("{:.{}g}{}", *value, digits, unit)}});
 }
 
-/// The parts that fits to records and to published tables have in common.
+/// Adds the facts that fits to records and fits to published tables have in common.
 template <typename Fit>
 void add_effort(const Fit& fit, doc::Facts& facts) {
   add_fact(facts, "Residuals", static_cast<double>(fit.residual_count), 12);

@@ -27,7 +27,7 @@ Plot correlation_plot(const StoredCorrelogram& curve, const std::string& title, 
   double size = 0.0;
   for (std::size_t i = 0; i < curve.values.size(); ++i) {
     const double lag = curve.first_lag_s + curve.lag_step_s * static_cast<double>(i);
-    // The autocorrelation at lag 0 is 1 and would only flatten the rest.
+    // The autocorrelation at lag 0 is 1 and would compress the rest of the plot.
     if (bars && lag == 0.0) continue;
     trace.x.push_back(lag);
     trace.y.push_back(curve.values[i]);

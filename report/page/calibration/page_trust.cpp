@@ -29,7 +29,8 @@ std::string end_words(const StoredProfileEnd& end, const RowUnit& unit, const ch
                   : std::string());
 }
 
-/// Rise of the cost with a parameter fixed at each value; a rise of 1 ends the 95 % interval.
+/// Plots the increase in cost when a parameter is fixed at each value. The 95 % interval ends where
+/// the increase is 1.
 Plot profile_plot(const StoredParameter& parameter, const StoredProfile& profile) {
   const RowUnit unit = unit_of(parameter);
   Plot plot;
@@ -44,7 +45,7 @@ Plot profile_plot(const StoredParameter& parameter, const StoredProfile& profile
   trace.style = "reference";
   for (std::size_t i = 0; i < std::min(profile.values.size(), profile.rises.size()); ++i) {
     if (std::isnan(profile.values[i]) || std::isnan(profile.rises[i])) continue;
-    // Values far beyond the end would only flatten the rest.
+    // Values far outside the interval would compress the rest of the plot.
     if (profile.rises[i] > kHighestRise) continue;
     trace.x.push_back(profile.values[i] / unit.si);
     trace.y.push_back(profile.rises[i]);
@@ -122,7 +123,7 @@ void add_lack_of_fit(const StoredFit& fit, doc::Blocks& blocks) {
                                 {lack_of_fit_table(fit)}});
 }
 
-/// "27.05 um (27.01 um where it was fitted)" per channel.
+/// Returns, for each channel, for example "27.05 um (27.01 um where it was fitted)".
 std::string prediction_words(const StoredHeldOut& held) {
   std::string text;
   for (const auto& [channel, value] : held.rmse) {

@@ -8,12 +8,12 @@
 
 namespace rigcal::report {
 
-/// A column for each metric of metrics/metric_table.hpp.
+/// Returns a column for each metric in metrics/metric_table.hpp.
 std::vector<doc::Column> score_columns();
 
-/// The scores of a channel in these columns, each with its expanded uncertainty below.
+/// Returns the scores of a channel in these columns, each with its expanded uncertainty below it.
 ///
-/// @param uncertainty  of each score; null if it is not known
+/// @param uncertainty  uncertainty of each score; null if unknown
 /// @param unit         SI unit of the channel
 std::vector<doc::Cell> score_cells(const metrics::Agreement& scores,
                                    const metrics::Agreement* uncertainty, std::string_view unit);

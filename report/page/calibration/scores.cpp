@@ -18,7 +18,7 @@ using doc::Line;
 using Kind = doc::Column::Kind;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Frequency to sort by, and "sine 0.1 Hz".
+/// Returns the frequency to sort by, and a name such as "sine 0.1 Hz".
 std::pair<double, std::string> signal_of(const StoredCondition& condition) {
   const std::string waveform =
       condition.waveform ? std::string(to_string(*condition.waveform)) : std::string();
@@ -29,7 +29,8 @@ std::pair<double, std::string> signal_of(const StoredCondition& condition) {
 
 std::string level_of(const StoredCondition& condition) { return condition.leak_level.value_or(""); }
 
-/// "rho2 0.99 (warning at 0.995), ccc 0.99"; empty if the channel has no limits.
+/// Returns, for example, "rho2 0.99 (warning at 0.995), ccc 0.99"; empty if the channel has no
+/// limits.
 std::string limits_text(const std::vector<StoredLimit>& limits, const std::string& channel) {
   std::string text;
   for (const StoredLimit& limit : limits) {
@@ -41,7 +42,8 @@ std::string limits_text(const std::vector<StoredLimit>& limits, const std::strin
   return text;
 }
 
-/// Caption of a channel with its limits, and those of conditions that have their own.
+/// Returns the caption of a channel with its limits, including those of conditions with limits of
+/// their own.
 Line caption_of(const StoredFit& fit, const std::string& channel) {
   const std::string limits = limits_text(fit.acceptance, channel);
   std::string rest =
@@ -55,7 +57,8 @@ Line caption_of(const StoredFit& fit, const std::string& channel) {
   return {channel, doc::Soft{rest}};
 }
 
-/// Tile of a condition; nothing if the condition does not compare the channel.
+/// Returns the tile of a condition, or std::nullopt if the channel is not compared in that
+/// condition.
 std::optional<doc::Tile> tile_of(const StoredCondition& condition, const std::string& channel) {
   const StoredScore* scores = find(condition.metrics, channel);
   if (scores == nullptr && !condition.failure) return std::nullopt;
@@ -72,7 +75,8 @@ std::optional<doc::Tile> tile_of(const StoredCondition& condition, const std::st
   return tile;
 }
 
-/// One tile for many conditions of a cell: how many of each verdict, and the worst of them.
+/// Returns one tile for many conditions in a cell, with the number of each verdict and the worst
+/// condition.
 doc::Tile summary_of(const std::vector<const StoredCondition*>& conditions,
                      const std::string& channel) {
   std::map<std::optional<calib::Verdict>, std::size_t> counts;
@@ -95,10 +99,10 @@ doc::Tile summary_of(const std::vector<const StoredCondition*>& conditions,
   return tile;
 }
 
-/// A cell with more conditions shows their number and the worst of them.
+/// A cell with more conditions shows only their number and the worst one.
 constexpr std::size_t kMostTiles = 8;
 
-/// A table of signals by leak levels for each channel.
+/// Returns a table for each channel, with signals in rows and leak levels in columns.
 std::vector<doc::Table> matrices(const StoredFit& fit) {
   std::vector<std::string> channels;
   std::map<std::pair<double, std::string>,

@@ -7,14 +7,14 @@
 namespace rigcal::report {
 namespace {
 
-/// Each condition in full takes about 200 kB of a page and half a printed sheet.
+/// A condition shown in full takes about 200 kB and half a printed sheet.
 constexpr std::size_t kMostInFull = 40;
-/// With more conditions than that, this many are shown in full; the others are sketches.
+/// If there are more conditions than that, this many are shown in full and the others as sketches.
 constexpr std::size_t kInFullOfMany = 20;
-/// Periods that a small picture has room for.
+/// Number of periods that fit in a small picture.
 constexpr double kPeriods = 2.0;
 
-/// Orders conditions: the largest value is the worst condition.
+/// Returns a sort key for conditions; the worst condition has the largest key.
 auto badness(const StoredCondition& condition) {
   const bool unusable = condition.failure.has_value() || condition.not_scored.has_value();
   double used = 0.0;

@@ -14,7 +14,7 @@ namespace {
 using Catch::Contains;
 using Catch::StartsWith;
 
-/// A twin, one record of which is of another format: the file that is damaged.
+/// A twin in which one record has another format. That file is damaged.
 struct Scene {
   Scene(const CommandFolder& of, const RecordFormat& format)
       : folder(of), file("twin/records/sine_bad" + format.extension) {
@@ -38,7 +38,7 @@ struct Scene {
   std::string whole;
 };
 
-/// One line, which names the file and blames no bug.
+/// Checks for one line that names the file and does not blame a bug.
 void check_refused(const Scene& scene, const Outcome& outcome) {
   CAPTURE(outcome.err);
   CHECK(outcome.exit_code == 2);
@@ -66,8 +66,8 @@ TEST_CASE("check: an HDF5 file or a workbook that is cut or changed", "[apps]") 
     CAPTURE(name, bytes, size);
     check_refused(scene, scene.check(scene.whole.substr(0, bytes)));
   }
-  // A changed number cannot be detected, but nothing may crash. The descriptions are at the
-  // beginning of HDF5 files, and at the end of archives.
+  // A changed number cannot be detected, but nothing may crash. Descriptions are at the beginning
+  // of HDF5 files and at the end of archives.
   const std::size_t changes = kSanitized ? 12 : 80;
   for (std::size_t i = 0; i < changes; ++i) {
     const std::size_t from_edge = i * std::min<std::size_t>(size, 4096) / changes;

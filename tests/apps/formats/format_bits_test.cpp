@@ -17,7 +17,7 @@ std::string replaced_all(std::string text, const std::string& from, const std::s
   return text;
 }
 
-/// Results of a fit, without paths, times and hashes of inputs.
+/// Returns the results of a fit without paths, times and hashes of inputs.
 json found(const CommandFolder& folder, const std::string& out) {
   json result = json::parse(folder.read(out + "/fit.json"));
   result.erase("wall_seconds");
@@ -26,7 +26,8 @@ json found(const CommandFolder& folder, const std::string& out) {
   return result;
 }
 
-/// The campaign of `twin/` with its records in another format, in a folder of that name.
+/// Writes the campaign of `twin/` with its records in another format to a folder named after the
+/// format.
 void write_as(const CommandFolder& folder, const RecordFormat& format) {
   for (const std::string& file : folder.files()) {
     if (!file.starts_with("twin/records/")) continue;

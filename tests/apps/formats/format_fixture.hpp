@@ -42,7 +42,7 @@ inline RecordColumns record_columns_of(const std::string& csv) {
   return columns;
 }
 
-/// The columns as variables of a MAT file.
+/// Writes the columns as variables of a MAT file.
 inline void as_mat(const RecordColumns& columns, const std::filesystem::path& path,
                    MatFormat format) {
   std::vector<matvar_t*> variables;
@@ -51,7 +51,7 @@ inline void as_mat(const RecordColumns& columns, const std::filesystem::path& pa
   write_mat(path, format, variables);
 }
 
-/// The columns as datasets, every second one in packed chunks.
+/// Writes the columns as datasets, every second one in compressed chunks.
 inline void as_hdf5(const RecordColumns& columns, const std::filesystem::path& path) {
   const Hdf5Writer file(path);
   for (std::size_t k = 0; k < columns.names.size(); ++k)
@@ -68,7 +68,7 @@ inline void as_xlsx(const RecordColumns& columns, const std::filesystem::path& p
   write_xlsx(path, {{"Log", rows}});
 }
 
-/// The recordings of a format, and how they are written.
+/// A recording format, and a function that writes recordings in it.
 struct RecordFormat {
   std::string name;
   std::string extension;

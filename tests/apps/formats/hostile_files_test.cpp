@@ -22,11 +22,11 @@ using Catch::Contains;
 using Catch::StartsWith;
 using Arguments = CommandFolder::Arguments;
 
-/// Puts something in the place of a file.
+/// Replaces a file with something else.
 struct Damage {
   std::string name;
   std::function<void(const fs::path&)> put;
-  std::string word;  ///< word in the message
+  std::string word;  ///< word that the message must contain
 };
 
 const std::vector<Damage> kNoFiles{
@@ -35,7 +35,7 @@ const std::vector<Damage> kNoFiles{
     {"a folder", [](const fs::path& at) { fs::create_directory(at); }, "folder"},
 };
 
-/// Ends with exit code 2 and one line that names the file, and blames no bug.
+/// Checks for exit code 2 and one line that names the file and does not blame a bug.
 void check_no_input(const CommandFolder& folder, const Arguments& arguments,
                     const std::string& file, const std::string& word) {
   std::string command = "rigcal";
@@ -53,13 +53,13 @@ void put_in_place(const CommandFolder& folder, const std::string& file, const Da
   damage.put(folder.work() / file);
 }
 
-/// A twin and its fit in `fit/`.
+/// Writes a twin and its fit to `fit/`.
 void write_fitted_twin(const CommandFolder& folder) {
   REQUIRE(write_twin(folder).exit_code == 0);
   REQUIRE(folder.run({"fit", "twin/campaign.toml", "--out", "fit", "--quiet"}).exit_code == 0);
 }
 
-/// Every command that reads fit.json, here that of `bad/`.
+/// Every command that reads fit.json, here with the one in `bad/`.
 const std::vector<Arguments> kReadersOfFit{
     {"validate", "twin/campaign.toml", "--fit", "bad/fit.json", "--out", "v"},
     {"report", "bad"},
@@ -85,7 +85,7 @@ TEST_CASE("hostile files: a pipe, device or folder is no input", "[apps]") {
     check_no_input(folder, {"fit", "twin/campaign.toml", "--resume", "--out", "bad", "--quiet"},
                    "bad", "checkpoint.json");
     for (const std::string kind : {"csv", "mat", "h5", "xlsx"}) {
-      if (damage.name != "a folder") {  // read by `init`
+      if (damage.name != "a folder") {  // `init` reads these
         put_in_place(folder, "no." + kind, damage);
         check_no_input(folder, {"init", "no." + kind, "--out", "i"}, "no." + kind, damage.word);
       }
@@ -124,7 +124,8 @@ TEST_CASE("hostile files: a result that exhausts stack, memory or time is refuse
     for (const Arguments& reader : kReadersOfFit)
       check_no_input(folder, reader, each.place, each.word);
   }
-  fs::resize_file(folder.work() / "bad/fit.json", std::uintmax_t{3} << 30);  // takes no disk
+  fs::resize_file(folder.work() / "bad/fit.json", std::uintmax_t{3} << 30);  // a sparse file that
+                                                                             // takes no disk space
   for (const Arguments& reader : kReadersOfFit)
     check_no_input(folder, reader, "bad/fit.json", "at most 128 MB");
 }
@@ -133,7 +134,7 @@ TEST_CASE("hostile files: a result of unheard-of numbers is no bug", "[apps]") {
   const CommandFolder folder;
   write_fitted_twin(folder);
   const std::string whole = folder.read("fit/fit.json");
-  // A number beyond the limit is refused at its position, before its key is known.
+  // A number beyond the limit is rejected at its position, before its key is known.
   for (const auto& [rank, named] : {std::pair("1e308", "number 1e308"), std::pair("-3", "'rank'"),
                                     std::pair("0.5", "'rank'")}) {
     folder.write("bad/fit.json", replaced(whole, "\"rank\": 2", std::string("\"rank\": ") + rank));
@@ -197,7 +198,7 @@ TEST_CASE("rigcal: a limit of the size of files is an error of writing", "[apps]
   rlimit unlimited{};
   REQUIRE(::getrlimit(RLIMIT_FSIZE, &unlimited) == 0);
   rlimit small = unlimited;
-  small.rlim_cur = 8192;  // fit.json is larger, what the command prints is not
+  small.rlim_cur = 8192;  // smaller than fit.json, but larger than the output of the command
   REQUIRE(::setrlimit(RLIMIT_FSIZE, &small) == 0);
   const Outcome outcome =
       folder.run({"fit", "twin/campaign.toml", "--seed", "7", "--out", "fit", "--quiet"});
@@ -211,7 +212,7 @@ TEST_CASE("rigcal: a limit of the size of files is an error of writing", "[apps]
 TEST_CASE("rigcal: two runs into one folder", "[apps]") {
   const CommandFolder folder;
   write_fitted_twin(folder);
-  // What a run does with its folder as long as it lasts.
+  // A run locks its folder like this for as long as it lasts.
   const int other = ::open((folder.work() / "fit").c_str(), O_RDONLY | O_DIRECTORY);
   REQUIRE(::flock(other, LOCK_EX | LOCK_NB) == 0);
   const std::string before = folder.read("fit/fit.json");

@@ -16,7 +16,7 @@ namespace {
 using Catch::WithinAbs;
 using Catch::WithinRel;
 
-/// A short campaign of which mass, bulk modulus and valve gain are free.
+/// A short campaign with mass, bulk modulus and valve gain free.
 struct SmallRig : Twin {
   SmallRig() {
     free("mass", 90.0, 20.0, 400.0);
@@ -35,7 +35,7 @@ const ConsideredEffect* effect(const Fit& fit, const std::string& key) {
   return nullptr;
 }
 
-/// Rows of the effects at a fraction of their sizes, at the truth.
+/// Returns the rows of the effects at a fraction of their sizes, at the true values.
 Eigen::MatrixXd rows_at(const SmallRig& rig, const std::vector<datasets::Record>& records,
                         double fraction, std::vector<std::string>& keys) {
   std::vector<const datasets::Condition*> conditions;
@@ -61,7 +61,7 @@ TEST_CASE("considered: secants at the plausible size are near those of a smaller
     CAPTURE(keys[static_cast<std::size_t>(k)]);
     REQUIRE(whole.col(k).allFinite());
     REQUIRE(whole.col(k).norm() > 0.0);
-    // Play is no linear operator: the larger, the more of the motion it hides.
+    // Play is not linear: the larger it is, the larger the fraction of the motion that it hides.
     const double allowed = keys[static_cast<std::size_t>(k)] == "position_hysteresis" ? 0.5 : 0.3;
     CHECK((whole.col(k) - part.col(k)).norm() < allowed * whole.col(k).norm());
   }
@@ -224,7 +224,7 @@ TEST_CASE("considered: a linkage has effects in radians and of its pilot", "[cal
   const auto effects = effects_of(problem, problem.start());
   std::set<std::string> keys;
   for (const Effect& each : effects) keys.insert(each.about.key);
-  // The dead band is given, so that it is none of them; the pressures are not compared.
+  // The dead band is known, so it is not among the effects. The pressures are not compared.
   CHECK(keys == std::set<std::string>{"valve_time_constant", "transport_delay", "joint_friction",
                                       "laminar_leakage", "leakage_coefficient", "dead_volume_a",
                                       "dead_volume_b", "supply_sag", "angle_lag", "angle_gain",
@@ -243,13 +243,14 @@ TEST_CASE("considered: a linkage has effects in radians and of its pilot", "[cal
     if (each.about.key == "joint_friction")  // 0.1 % of lever, area and supply
       CHECK_THAT(each.about.size, WithinRel(1e-3 * 0.3 * 4e-3 * 2e7, 1e-12));
     if (each.about.key == "angle_offset") CHECK_THAT(each.about.size, WithinRel(2e-4 * 2.0, 1e-12));
-    if (each.about.key == "laminar_leakage") {  // 5 % of the flow at pilot_range, over the supply
+    if (each.about.key == "laminar_leakage") {  // 5 % of the flow at pilot_range, divided by the
+                                                // supply pressure
       const double flow = 0.65 * 0.02 * 4.8e-10 * 2e6 * std::sqrt(2e7 / 870.0);
       CHECK_THAT(each.about.size, WithinRel(0.05 * flow / 2e7, 1e-9));
     }
   }
   CHECK_THAT(column("angle_offset").minCoeff(), WithinAbs(4e-4 / 5e-4, 1e-9));
-  // The bow is even about the middle between the stops, 0.4 rad, where it is 0.
+  // The bow is symmetric about the middle between the stops, 0.4 rad, where it is 0.
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(effects.size()));
   const Eigen::VectorXd reading =
       outputs_with(problem, 0, problem.start(), effects, none, Derivatives::none, nullptr).outputs;
@@ -329,7 +330,7 @@ TEST_CASE("considered: a band of prediction includes an effect less what the fit
           "[calib]") {
   SmallRig rig;
   rig.add("faster", datasets::Waveform::sine, 6.0, 0.01).use = datasets::Use::validate;
-  // What estimates and effects add to the noise, over all samples.
+  // The contribution of estimates and effects in addition to the noise, over all samples.
   const auto beyond_noise = [&](datasets::Use use) {
     const Fit found = rig.fitted();
     double sum = 0.0;

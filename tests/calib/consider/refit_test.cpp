@@ -19,8 +19,8 @@ using Catch::WithinAbs;
 using Catch::WithinRel;
 using datasets::Channel;
 
-/// A fit of five values to records of an integrator and a right-hand side of their own
-/// (bench/foreign_rig.hpp): a small study of what scripts/coverage-study --effects makes at length.
+/// A fit of five values to records from an independent integrator and right-hand side
+/// (bench/foreign_rig.hpp): a small version of the long study by scripts/coverage-study --effects.
 struct ForeignFit {
   static constexpr std::array<std::pair<const char*, double bench::ForeignRig::*>, 5> kFree{
       {{"mass", &bench::ForeignRig::mass_kg},
@@ -29,8 +29,8 @@ struct ForeignFit {
        {"valve_gain", &bench::ForeignRig::valve_gain_m_per_v},
        {"leakage_coefficient", &bench::ForeignRig::leak_coefficient}}};
   Fit fit;
-  std::string named;  ///< the effect that the residuals ask for first
-  int held = 0;       ///< intervals that include the truth
+  std::string named;  ///< the effect that the residuals call for first
+  int held = 0;       ///< number of intervals that include the true value
 
   ForeignFit(const bench::ForeignRig& rig, unsigned seed) {
     const std::vector<bench::Reference> references{
@@ -114,7 +114,8 @@ TEST_CASE("refit: unknowns and effect end at the truth of noiseless records", "[
   for (ProblemCondition& condition : problem.conditions) {
     for (ProblemChannel& channel : condition.channels) channel.sd = 1e-5;
   }
-  const std::vector<double> z = problem.start();  // the values are the truth's, the model lacks it
+  const std::vector<double> z = problem.start();  // the values are the true ones, but the model
+                                                  // lacks the friction
   std::vector<Effect> effects = effects_of(problem, z);
   std::erase_if(effects, [](const Effect& each) { return each.about.key != "coulomb_friction"; });
   REQUIRE(effects.size() == 1);

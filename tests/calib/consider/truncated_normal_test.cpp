@@ -27,7 +27,7 @@ TEST_CASE("truncated normal: far inside nothing is cut off, far outside the edge
   const auto inside = cut_at_zero(normal(10.0, 1.0), {0});
   CHECK_THAT(inside.mean(0), WithinRel(10.0, 1e-9));
   CHECK_THAT(inside.covariance(0, 0), WithinRel(1.0, 1e-9));
-  // The tail beyond a is that of an exponential distribution of mean 1 / a.
+  // The tail beyond a is approximately exponential with mean 1 / a.
   const auto outside = cut_at_zero(normal(-30.0, 1.0), {0});
   CHECK_THAT(outside.mean(0), WithinRel(1.0 / 30.0, 0.01));
   CHECK_THAT(outside.covariance(0, 0), WithinRel(1.0 / 900.0, 0.01));
@@ -37,7 +37,7 @@ TEST_CASE("truncated normal: what is correlated with a cut component moves with 
   NormalMoments pair{Eigen::Vector2d(0.5, -1.0), Eigen::Matrix2d()};
   pair.covariance << 1.0, 0.6, 0.6, 2.0;
   const auto cut = cut_at_zero(pair, {0});
-  // The second is 0.6 of the first and a rest that is independent of it.
+  // The second is 0.6 times the first, plus a remainder that is independent of it.
   const auto first = cut_at_zero(normal(0.5, 1.0), {0});
   CHECK_THAT(cut.mean(1), WithinRel(-1.0 + 0.6 * (first.mean(0) - 0.5), 1e-9));
   CHECK_THAT(cut.covariance(1, 1), WithinRel(2.0 - 0.36 + 0.36 * first.covariance(0, 0), 1e-9));

@@ -10,7 +10,7 @@
 namespace rigcal::calib {
 namespace {
 
-/// A problem of a few unknowns in a box, with analytical derivatives.
+/// A problem with a few unknowns in a box, with analytical derivatives.
 struct TestProblem {
   Eigen::VectorXd lower, upper;
   std::function<Linearisation(const Eigen::VectorXd&)> at;
@@ -64,7 +64,7 @@ TestProblem brown_dennis() {
                     });
 }
 
-/// Jennrich and Sampson: the cost is 62.1811 at x = y = 0.257825 (problem 6 there).
+/// Jennrich and Sampson: the cost is 62.1811 at x = y = 0.257825 (problem 6 in the same paper).
 TestProblem jennrich_sampson() {
   return problem_in(Eigen::Vector2d(-1.0, -1.0), Eigen::Vector2d(1.0, 1.0),
                     [](const Eigen::VectorXd& x) {
@@ -128,7 +128,7 @@ TEST_CASE("adaptive descent: small residuals take no more evaluations than by Ce
 }
 
 TEST_CASE("adaptive descent: bounds are met within a step, and left again", "[calib]") {
-  // With y <= 0.25 the cost is (1 - x)^2 + 100 (0.25 - x^2)^2.
+  // On the bound y = 0.25 the cost is (1 - x)^2 + 100 (0.25 - x^2)^2.
   TestProblem problem = curved_valley(0.25);
   std::vector<double> z = problem.unit(Eigen::Vector2d(-1.2, -1.0));
   CHECK(descend_adaptively(problem.options(), z).converged);
@@ -143,7 +143,7 @@ TEST_CASE("adaptive descent: bounds are met within a step, and left again", "[ca
 }
 
 TEST_CASE("adaptive descent: from where the cost curves down", "[calib]") {
-  // (2 - x^2)^2 / 2 from 0.01, and a second, independent unknown.
+  // (2 - x^2)^2 / 2, starting at 0.01, and a second, independent unknown.
   TestProblem problem = problem_in(
       Eigen::Vector2d(-3.0, -3.0), Eigen::Vector2d(3.0, 3.0), [](const Eigen::VectorXd& x) {
         Linearisation at{Eigen::MatrixXd(2, 2), Eigen::Vector2d(2.0 - x(0) * x(0), x(1) - 1.0)};
@@ -194,7 +194,7 @@ TEST_CASE("adaptive descent: ends where it is told to, or cannot go on", "[calib
   CHECK(cut_short.iterations == 2);
   CHECK(cut_short.failure.empty());
 
-  // No point near the start can be evaluated.
+  // No point close to the start can be evaluated.
   z = start;
   options = problem.options();
   const auto whole = options.linearise;

@@ -52,8 +52,8 @@ TEST_CASE("box_step: negative curvature is followed, with a gradient along it or
   const BoxStep found = box_step(model, wide(2, 1.0));
   CHECK(found.at_radius);
   CHECK(found.step.norm() == Approx(1.0).epsilon(1e-6));
-  // Without gradient along it: 1 - y^2 from the curvature -2, and y = -1 / 6, where both
-  // multipliers are 2.
+  // Without a gradient along the negative curvature, the fall on the unit circle is 1 - 3 y^2 - y.
+  // It is largest at y = -1 / 6, where both components have the multiplier 2.
   if (slope < 0.01) CHECK(found.fall == Approx(1.0 + 1.0 / 12.0).epsilon(1e-6));
   for (int k = 0; k < 3600; ++k) {
     const double angle = k * M_PI / 1800.0;
@@ -76,7 +76,7 @@ TEST_CASE("box_step: an unknown at its bound stays there, or is drawn back insid
   QuadraticModel model{Eigen::Matrix2d::Identity(), Eigen::Vector2d(0.5, -1.0)};
   CHECK(box_step(model, limits).step(0) == 0.0);
   CHECK(box_step(model, limits).step(1) == Approx(1.0));
-  // The step of the other one turns the slope round: -0.8 * 1 + 0.5 < 0.
+  // The step in the other unknown reverses the sign of the slope: -0.8 * 1 + 0.5 < 0.
   model.hessian.blocks.shared(0, 1) = model.hessian.blocks.shared(1, 0) = -0.8;
   const BoxStep found = box_step(model, limits);
   CHECK((model.hessian * found.step + model.gradient).norm() < 1e-12);

@@ -8,7 +8,8 @@ using namespace rigcal::calib;
 
 namespace {
 
-/// Rosenbrock's valley over [-2, 2]^2: 10 (y - x^2) and 1 - x, the minimum at (1, 1).
+/// Rosenbrock's valley over [-2, 2]^2 with residuals 10 (y - x^2) and 1 - x; the minimum is at (1,
+/// 1).
 DescentOptions valley() {
   DescentOptions options;
   options.linearise = [](std::span<const double> z, bool) -> std::optional<Linearisation> {
@@ -30,7 +31,7 @@ Descent descend(const DescentOptions& options, std::vector<double>& z) {
 }  // namespace
 
 TEST_CASE("descend: to the minimum of a curved valley", "[calib]") {
-  std::vector<double> z{0.2, 0.75};  // (-1.2, 1), from which it is always begun
+  std::vector<double> z{0.2, 0.75};  // (-1.2, 1), the traditional start point
   int told = 0;
   DescentOptions options = valley();
   options.enough = [&](const DescentStep& step) { return step.number != told++; };
@@ -43,7 +44,8 @@ TEST_CASE("descend: to the minimum of a curved valley", "[calib]") {
 }
 
 TEST_CASE("descend: an unknown at an active bound stays there", "[calib]") {
-  std::vector<double> z{0.2, 0.5};  // y = 0: the least of 100 x^4 + (1 - x)^2 is at x = 0.16126...
+  std::vector<double> z{0.2, 0.5};  // at y = 0 the minimum of 100 x^4 + (1 - x)^2 is at x =
+                                    // 0.16126...
   CHECK(rigcal::calib::descend(valley(), 2, {false, true}, z).converged);
   CHECK(z[1] == 0.5);
   const double x = 4.0 * z[0] - 2.0;

@@ -14,7 +14,8 @@ namespace {
 using Catch::Contains;
 using datasets::DriveFamily;
 
-/// The response by a simulation of its own: finer in time and tolerance than the design's.
+/// Simulates the response independently, with finer time steps and a smaller tolerance than the
+/// design.
 Eigen::MatrixXd replayed(const datasets::Campaign& campaign, const Design& made) {
   std::vector<double> times;
   constexpr int kParts = 8;
@@ -46,7 +47,7 @@ TEST_CASE("design: every family keeps every limit, and uses one of them", "[cali
     REQUIRE(made.trials.size() == 1);
     CHECK(made.trials[0].evaluations == 24);
     const Eigen::MatrixXd run = replayed(twin.campaign, made);
-    constexpr double kBetweenSamples = 1.01;  // the replay looks at other instants
+    constexpr double kBetweenSamples = 1.01;  // the replay also evaluates times between the samples
     CHECK(run.col(0).minCoeff() > -0.012 * kBetweenSamples);
     CHECK(run.col(0).maxCoeff() < 0.015 * kBetweenSamples);
     CHECK(run.col(1).cwiseAbs().maxCoeff() < 0.15 * kBetweenSamples);
@@ -120,7 +121,7 @@ TEST_CASE("design: own signals count by their time, whatever their length and ra
   twin.campaign.design->evaluations = 6;
   const double sd = designed(twin.campaign, {"mass"}).parameters[0].sd_own.value();
   datasets::Condition& own = twin.campaign.conditions.back();
-  own.duration_s = 20.0;  // ten times as long; a square wave of 2 Hz repeats itself
+  own.duration_s = 20.0;  // ten times as long; a 2 Hz square wave repeats
   const double longer = designed(twin.campaign, {"mass"}).parameters[0].sd_own.value();
   CHECK(longer == Approx(sd).epsilon(0.06));
   own.sample_rate_hz = 1000.0;
@@ -172,7 +173,7 @@ TEST_CASE("design: real fits scatter as predicted", "[calib]") {
   drive.role = datasets::ChannelRole::input;
   drive.recognise = false;
   campaign.channels[drive.channel] = drive;
-  // The truth is what was designed for; a fit begins beside it.
+  // The design's values are the true ones; each fit starts from different values.
   const auto truth = [&](std::size_t j) { return made.parameters[j].parameter.value; };
   for (auto& setting : campaign.parameters)
     if (setting.fit) setting.value *= 1.1;
@@ -200,7 +201,7 @@ TEST_CASE("design: real fits scatter as predicted", "[calib]") {
   for (std::size_t j = 0; j < 2; ++j) {
     CAPTURE(j);
     const double ratio = std::sqrt(squares[j] / kFits) / made.parameters[j].sd.value();
-    // The root mean square of 40 differs from the truth by 11 %, one standard deviation.
+    // The root mean square of 40 values has a standard deviation of 11 %.
     CHECK(ratio > 0.7);
     CHECK(ratio < 1.35);
   }

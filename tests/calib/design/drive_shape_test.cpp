@@ -49,7 +49,7 @@ TEST_CASE("drive shapes: each coordinate changes the drive", "[calib]") {
 
 TEST_CASE("drive shapes: a chirp of one frequency is a sine", "[calib]") {
   const DriveGrid grid{2001, 200.0, 1.0, 4.0};
-  Eigen::VectorXd point = point_of(DriveFamily::chirp, 0.5);  // 2 Hz at either end, no offset
+  Eigen::VectorXd point = point_of(DriveFamily::chirp, 0.5);  // 2 Hz at each end, no offset
   const DriveShape shape = drive_shape(DriveFamily::chirp, point, grid);
   double peak = 0.0;
   for (std::size_t i = 0; i < 2001; ++i)
@@ -62,7 +62,7 @@ TEST_CASE("drive shapes: a chirp of one frequency is a sine", "[calib]") {
 }
 
 TEST_CASE("drive shapes: a pseudo-random sequence repeats itself after 2047 bits only", "[calib]") {
-  // A bit of two samples, a rise of one: every second sample is a whole level.
+  // A bit has two samples and a rise has one, so every second sample is at full level.
   const DriveGrid grid{2 * 4096 + 1, 2.0, 0.1, 0.5};
   Eigen::VectorXd point = point_of(DriveFamily::prbs, 0.5);
   point(2) = 0.0;  // the shortest bit: 1 s
@@ -72,7 +72,7 @@ TEST_CASE("drive shapes: a pseudo-random sequence repeats itself after 2047 bits
   std::vector<int> bits;
   for (std::size_t i = 1; i < shape.values.size(); i += 2)
     bits.push_back(shape.values[i] > 0.0 ? 1 : 0);
-  // All words of 11 bits but that of eleven equal ones occur once in a period.
+  // Every 11-bit word except the one with eleven equal bits occurs once in a period.
   std::set<int> words;
   for (std::size_t i = 0; i < 2047; ++i) {
     int word = 0;

@@ -11,7 +11,7 @@ constexpr auto kNeverStopped = [] { return false; };
 }  // namespace
 
 TEST_CASE("evolution: finds the top of a narrow ridge, within its evaluations", "[calib]") {
-  // A quadratic whose axes differ by a factor of 30 and lie across the coordinates.
+  // A quadratic whose axes differ by a factor of 30 and are oblique to the coordinates.
   const Eigen::Vector3d top(0.3, 0.65, 0.9);
   int made = 0;
   const auto scores = [&](const std::vector<Eigen::VectorXd>& points) {

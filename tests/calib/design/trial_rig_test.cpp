@@ -62,7 +62,7 @@ TEST_CASE("trial rig: limits are those of the response and of the reference", "[
   std::vector<double> drive(rig.time_s().size(), 0.0);
   const auto at_rest = rig.uses_under(drive, 1e-8).value();
   CHECK(largest_share(at_rest) == 0.0);
-  // A peak of the reference that the rig is too slow to follow.
+  // A peak in the reference that the rig is too slow to follow.
   drive[100] = 0.03;
   const auto uses = rig.uses_under(drive, 1e-8).value();
   CHECK(uses[1].words == "highest position");

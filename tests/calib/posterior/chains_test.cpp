@@ -27,8 +27,8 @@ Chains golden_chains(const std::string& name) {
 }  // namespace
 
 TEST_CASE("chains: as the definitions give them in Python", "[calib]") {
-  // tests/golden/make_statistics_golden.py: slow chains, one that is apart, one that is wider, and
-  // chains whose draws alternate, which are worth more than their number.
+  // From tests/golden/make_statistics_golden.py: slow chains, one chain at a different location,
+  // one wider chain, and chains with alternating draws, which are worth more than their number.
   for (const std::string name :
        {"chains.slow", "chains.apart", "chains.spread", "chains.alternating"}) {
     CAPTURE(name);
@@ -49,10 +49,10 @@ TEST_CASE("chains: an autoregression is worth (1 - phi) / (1 + phi) of its draws
       auto stream = datasets::random_stream(3, {chain});
       chains.push_back(datasets::ar1_noise(stream, 20000, 1.0, phi));
     }
-    // The estimate itself scatters by some per cent.
+    // The estimate itself varies by a few per cent.
     CHECK_THAT(effective_draws(chains), WithinRel(80000.0 * (1.0 - phi) / (1.0 + phi), 0.1));
     CHECK(split_r_hat(chains) < 1.005);
-    // Independent draws move the energy by twice its variance each time.
+    // With independent draws, the mean squared change in energy is twice its variance.
     CHECK_THAT(energy_fraction(chains.front()), WithinRel(2.0 * (1.0 - phi), 0.1));
   }
 }

@@ -13,8 +13,8 @@ using Catch::WithinAbs;
 using Catch::WithinRel;
 using Eigen::VectorXd;
 
-/// A rig with unknowns of all kinds: in the logarithm with a stated prior (mass), in the value with
-/// one (damping), without a prior, and one per leak level.
+/// A rig with all kinds of unknowns: a logarithmic one with a stated prior (mass), a linear one
+/// with a prior (damping), one without a prior, and one for each leak level.
 struct Scene {
   Twin twin;
   std::vector<datasets::Record> records;
@@ -40,7 +40,7 @@ struct Scene {
       : twin(rig(tolerance)),
         records(twin.records(150, 300.0, 5)),
         problem(problem_of(twin, records)) {
-    // At the truth, where the residuals are noise.
+    // The optimum is at the true values, where the residuals are noise.
     std::vector<double> z;
     for (std::size_t j = 0; j < problem.map.unknowns().size(); ++j) {
       const Unknown& unknown = problem.map.unknowns()[j];
@@ -54,7 +54,8 @@ struct Scene {
     look_at(z);
   }
 
-  /// The point about which the density is made; standard errors as of white noise.
+  /// Sets the point around which the density is built; the standard errors are those for white
+  /// noise.
   void look_at(const std::vector<double>& z) {
     optimum = evaluate_at(problem, z, 1, {Fidelity::full, nullptr, true});
     REQUIRE(optimum.ok);
@@ -93,8 +94,8 @@ TEST_CASE("posterior density: white noise of known size gives the cost of the fi
   there += 0.05 * VectorXd::LinSpaced(y.size(), -1.0, 1.0);
   const std::vector<double> z = density.to_unit(there);
   const Evaluation other = evaluate_at(scene.problem, z, 1);
-  // The prior of the mass is normal in the mass, whose logarithm is the coordinate: its density
-  // there is that of the mass times the mass.
+  // The prior of the mass is normal in the mass, but the coordinate is its logarithm. The density
+  // in this coordinate is the density of the mass times the mass.
   const double scales = std::log(scene.problem.map.to_physical(0, z[0]) /
                                  scene.problem.map.to_physical(0, scene.optimum.z[0]));
   CHECK_THAT(density.at(there).value - here,
@@ -104,10 +105,9 @@ TEST_CASE("posterior density: white noise of known size gives the cost of the fi
 }
 
 TEST_CASE("posterior density: its gradient is that of its value", "[calib]") {
-  // Simulations as exact as they can be, so that finite differences are accurate.
+  // The simulations are as accurate as possible, so that finite differences are accurate.
   Scene scene(1e-12);
-  // Correlated residuals: each unknown is less certain than white noise would make it, by a factor
-  // of its own.
+  // Correlated residuals make each unknown less certain than white noise would, by its own factor.
   const double stretched[] = {1.5, 1.2, 3.0, 2.0, 1.1};
   for (std::size_t j = 0; j < scene.parameters.size(); ++j)
     scene.found.standard_error[j] = stretched[j] * scene.white_error(j);
@@ -132,9 +132,9 @@ TEST_CASE("posterior density: its gradient is that of its value", "[calib]") {
 
 TEST_CASE("posterior density: its curvature is that of the errors that the fit states", "[calib]") {
   Scene scene;
-  const std::size_t j = 2;  // valve gain
-  // All unknowns but one are fixed by the search direction: the curvature along an unknown is the
-  // inverse of the covariance, whose shape a common stretch keeps.
+  const std::size_t j = 2;  // index of the valve gain
+  // The search direction fixes all unknowns but one. The curvature along that unknown is the
+  // inverse of the covariance, whose shape does not change if all unknowns are scaled alike.
   const auto curvature = [&](const PosteriorDensity& density) {
     const VectorXd centre = density.from_unit(scene.optimum.z);
     const double step = 2e-3;
@@ -150,11 +150,11 @@ TEST_CASE("posterior density: its curvature is that of the errors that the fit s
     scene.found.standard_error[k] = 3.0 * scene.white_error(k);
   const PosteriorDensity wide = scene.density();
   CHECK_THAT(wide.noise(), WithinRel(9.0, 1e-6));
-  // The transform's own curvature, 2 z (1 - z), is not stretched.
+  // The curvature of the transform itself, 2 z (1 - z), is not scaled.
   const double z = scene.optimum.z[j];
   const double own = 2.0 * z * (1.0 - z);
   CHECK_THAT((plain - own) / (curvature(wide) - own), WithinRel(9.0, 0.02));
-  // The robust error counts where the interval rests on it.
+  // The robust error is used if the interval is based on it.
   for (FittedParameter& each : scene.parameters)
     each.interval = IntervalSource::robust_standard_error;
   for (std::size_t k = 0; k < scene.parameters.size(); ++k)
@@ -166,7 +166,8 @@ TEST_CASE("posterior density: the normal approximation is that of the density", 
   const Scene scene;
   const PosteriorDensity density = scene.density();
   const VectorXd centre = density.centre();
-  // Gradient along a small step, against what the covariance predicts: all but linear.
+  // Compares the gradient along a small step, which is almost linear, with what the covariance
+  // predicts.
   const Eigen::LLT<Eigen::MatrixXd> factor(density.covariance());
   const Eigen::MatrixXd lower = factor.matrixL();
   const VectorXd base = density.at(centre).gradient;

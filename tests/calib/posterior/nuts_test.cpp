@@ -24,7 +24,8 @@ ChainState state_at(const VectorXd& position) {
   return state;
 }
 
-/// Four chains from far-off points, each of a mass that knows nothing of the density.
+/// Runs four chains from distant points. Their initial mass contains no information about the
+/// density.
 std::vector<std::vector<Draw>> four_chains(const LogDensityOf& density, double far,
                                            double acceptance) {
   std::vector<std::vector<Draw>> chains;
@@ -51,7 +52,7 @@ Chains of_draws(const std::vector<std::vector<Draw>>& draws, const Function& fun
   return chains;
 }
 
-/// The mean of a function over all draws is `expected`, within four of its standard errors.
+/// Checks that the mean of a function over all draws is within four standard errors of `expected`.
 template <typename Function>
 void check_mean(const std::vector<std::vector<Draw>>& draws, const Function& function,
                 double expected) {
@@ -109,7 +110,8 @@ TEST_CASE("nuts: a normal distribution of correlation 0.99", "[calib]") {
     double acceptance = 0.0;
     for (const Draw& draw : chain) {
       CHECK_FALSE(draw.diverged);
-      CHECK(draw.doublings <= 5);  // the mass was learnt: nothing is narrow in its coordinates
+      CHECK(draw.doublings <= 5);  // the mass has adapted, so the density is not narrow in its
+                                   // coordinates
       acceptance += draw.acceptance / kDraws;
     }
     CHECK_THAT(acceptance, WithinAbs(0.85, 0.1));
@@ -117,8 +119,8 @@ TEST_CASE("nuts: a normal distribution of correlation 0.99", "[calib]") {
 }
 
 TEST_CASE("nuts: a banana", "[calib]") {
-  // x normal, y normal about x^2, with standard deviation 1: narrow far out, where
-  // the steps of the usual acceptance are too long.
+  // x is normal, and y is normal around x^2, with standard deviation 1. The density is narrow far
+  // out, where the steps for the usual acceptance are too long.
   const LogDensityOf banana = [](const VectorXd& at) {
     const double off = at(1) - at(0) * at(0);
     return LogDensity{-0.5 * at(0) * at(0) - 0.5 * off * off,
@@ -138,7 +140,7 @@ TEST_CASE("nuts: a banana", "[calib]") {
 }
 
 TEST_CASE("nuts: where there is no density nothing is drawn", "[calib]") {
-  // Half of a normal distribution in x, a whole one in y.
+  // Half of a normal distribution in x, a full one in y.
   const LogDensityOf half = [](const VectorXd& at) {
     if (at(0) < 0.0) return LogDensity{};
     return LogDensity{-0.5 * at.squaredNorm(), -at};

@@ -33,7 +33,7 @@ FitOptions few_draws() {
   return options;
 }
 
-/// Keeps every result, as the file of kept tasks does, and may be stopped after some of them.
+/// Keeps every result, as the file of kept tasks does, and can be stopped after a number of tasks.
 class KeepingFarm final : public TaskFarm {
  public:
   std::vector<TaskResult> run(const FarmJob& job, const Task& task, const Done& done) override {
@@ -145,7 +145,7 @@ TEST_CASE("posterior: the same bits in any number of threads, in pieces, and els
   std::atomic<bool> cancel = false;
   KeepingFarm farm;
   farm.cancel = &cancel;
-  farm.stop_after = 6;  // within the first stretch of draws
+  farm.stop_after = 6;  // during the first group of draws
   options.threads = 1;
   options.farm = &farm;
   options.cancel = &cancel;
@@ -158,7 +158,8 @@ TEST_CASE("posterior: the same bits in any number of threads, in pieces, and els
   CHECK_THAT(stopped.message, Contains("sampling of the posterior was stopped on request"));
 
   cancel = false;
-  farm.stop_after = farm.made + 3;  // two end the first stretch, one is of the next
+  farm.stop_after = farm.made + 3;  // two tasks complete the first group, and one belongs to the
+                                    // next
   const Fit partly = fit(twin.campaign, records, options);
   CHECK(partly.status == FitStatus::stopped);
   REQUIRE(partly.posterior);
@@ -176,7 +177,8 @@ TEST_CASE("posterior: a limit of evaluations ends it between stretches", "[calib
   const Twin twin = drawn_rig();
   const auto records = twin.records(200, 500.0, 3);
   FitOptions options = few_draws();
-  options.max_evaluations = 4000;  // less than warm-up and a stretch of four chains
+  options.max_evaluations = 4000;  // fewer than the warm-up and one group of draws of four chains
+                                   // need
   const Fit stopped = fit(twin.campaign, records, options);
   REQUIRE(stopped.posterior);
   CHECK(stopped.status == FitStatus::stopped);
@@ -186,8 +188,8 @@ TEST_CASE("posterior: a limit of evaluations ends it between stretches", "[calib
 }
 
 TEST_CASE("posterior: the ranks of truths among their draws are uniform", "[calib]") {
-  // Simulation-based calibration (Talts et al., arXiv:1804.06788): truths from the prior, records
-  // from the truths. bench/posterior_study.cpp does it 500 times.
+  // Simulation-based calibration (Talts et al., arXiv:1804.06788): true values are drawn from the
+  // prior, and records are simulated from them. bench/posterior_study.cpp does this 500 times.
   constexpr int kCampaigns = test::kSanitized ? 10 : 40;
   constexpr int kBins = 5;
   std::map<int, std::vector<int>> counts;

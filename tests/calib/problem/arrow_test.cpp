@@ -18,14 +18,15 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// A system of some conditions with their own unknowns between the shared ones, and the same dense.
+/// A system of several conditions with own unknowns placed between the shared ones, and the same
+/// system as a dense one.
 struct RandomSystem {
   std::mt19937 random;
   Linearisation arrow;
   Linearisation dense;
   static constexpr Index kShared = 3;
 
-  /// @param counts  own unknowns of each condition
+  /// @param counts  number of own unknowns for each condition
   RandomSystem(unsigned seed, const std::vector<int>& counts) : random(seed) {
     const int all = std::accumulate(counts.begin(), counts.end(), static_cast<int>(kShared));
     std::vector<int> order(static_cast<std::size_t>(all));
@@ -77,7 +78,7 @@ double distance(const MatrixXd& a, const MatrixXd& b) {
   return (a - b).norm() / std::max(1e-300, b.norm());
 }
 
-/// All entries of R R^T.
+/// Returns all entries of R R^T.
 MatrixXd all_products(const ArrowRoot& root) {
   const Index n = root.unknowns();
   return MatrixXd::NullaryExpr(n, n, [&](Index i, Index k) { return root.product(i, k); });
@@ -124,7 +125,7 @@ TEST_CASE("arrow: step, rank and covariance are those of the dense system", "[ca
     const MatrixXd inverse = dense.root() * dense.root().transpose();
     CHECK(distance(all_products(arrow.root()), inverse) < 1e-11);
     CHECK(distance(all_products(arrow.spread(2.0, 1e-9)), 4.0 * inverse) < 1e-11);
-    // The volume of the covariance, by the singular values.
+    // The volume of the covariance, from the singular values.
     CHECK(arrow.singular_values().array().log().sum() ==
           Approx(dense.singular_values().array().log().sum()));
     CHECK(arrow.undetermined().empty());
@@ -168,7 +169,7 @@ TEST_CASE("arrow: an own unknown that nothing tells is left out, its rows tell t
 
 TEST_CASE("arrow: a shared unknown that own ones replace is undetermined with them", "[calib]") {
   RandomSystem system(5, {1, 1, 1, 1});
-  // An offset of all records beside that of each.
+  // An offset common to all records, in addition to that of each record.
   system.arrow.jacobian.col(1).setZero();
   for (Linearisation::Own& own : system.arrow.own) own.coupling.col(1) = own.jacobian.col(0);
   system.flatten();
@@ -231,7 +232,7 @@ TEST_CASE("sandwich: own directions tell the same as dense ones", "[calib]") {
   RandomSystem system(11, {1, 2, 1});
   constexpr Index kSamples = 400;
   const Index n = system.arrow.unknowns();
-  // Records of three conditions: own unknowns and the shared ones act in each.
+  // Records of three conditions; own unknowns and the shared ones act in each.
   std::vector<MatrixXd> jacobians;
   MatrixXd normal = MatrixXd::Zero(n, n);
   std::vector<std::vector<int>> acting;
@@ -242,7 +243,7 @@ TEST_CASE("sandwich: own directions tell the same as dense ones", "[calib]") {
     normal(unknowns, unknowns) += jacobians.back().transpose() * jacobians.back();
   }
   const ArrowRoot root = ArrowSvd(system.arrow, 1e-8).root();
-  // The same root over all directions: those of the conditions in turn, then the shared ones.
+  // The same root over all directions: those of each condition in turn, then the shared ones.
   Index directions = root.shared().cols();
   for (std::size_t i = 0; i < 3; ++i) directions += root.own_directions(i);
   MatrixXd flat = MatrixXd::Zero(n, directions);
@@ -279,7 +280,8 @@ TEST_CASE("sandwich: own directions tell the same as dense ones", "[calib]") {
       CHECK(a.freedom == Approx(b.freedom).epsilon(1e-11));
       CHECK(a.own == Approx(b.own).epsilon(1e-11));
     } else {
-      // By way of shared unknowns other conditions have the least freedom of those.
+      // Other conditions contribute through the shared unknowns, with the minimum of their degrees
+      // of freedom.
       CHECK(a.freedom <= b.freedom * (1.0 + 1e-11));
       CHECK(a.freedom > 0.5 * b.freedom);
       CHECK(a.own <= b.own + 1e-11);

@@ -11,7 +11,7 @@ using Catch::WithinRel;
 
 namespace {
 
-/// The valve gain of a rig, by records of one sine per date.
+/// A rig with unknown valve gain and the record of one sine for each date.
 calib::Twin dated_twin(const std::vector<std::string>& dates) {
   calib::Twin twin;
   twin.free("valve_gain", 4.5e-5, 1e-5, 1e-4);
@@ -43,7 +43,7 @@ TEST_CASE("day_errors: an estimate moves with the supply of its day", "[calib]")
     twin.setting("supply_pressure").value = factor * supply;
     return only(fitted()).value;
   };
-  // The usual size is 0.5 % of the supply.
+  // The assumed size is 0.5 % of the supply pressure.
   const double moved = (gain_at(0.995) - gain_at(1.005)) / 2.0;
   CHECK_THAT(*only(fit).between_days_error, WithinRel(std::abs(moved), 0.03));
   CHECK(*only(fit).between_days_error > 1e-3 * only(fit).value);

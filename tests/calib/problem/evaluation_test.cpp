@@ -19,7 +19,7 @@ Twin twin_of_every_scope() {
   twin.add_channel(datasets::Channel::load_pressure);
   twin.free("mass", 60.0, 10.0, 500.0);                                // logarithmic
   twin.free("kp", 300.0, 200.0, 500.0);                                // controller, linear
-  twin.free("leakage_coefficient", 0.3, 0.0, 5.0, Scope::leak_level);  // per level
+  twin.free("leakage_coefficient", 0.3, 0.0, 5.0, Scope::leak_level);  // one for each level
   twin.free("position_offset", 1e-3, -5e-3, 5e-3, Scope::condition);   // sensor
   twin.campaign.initial = datasets::InitialMode::fit;                  // initial state
   twin.campaign.simulation.tolerance = 1e-9;
@@ -38,7 +38,7 @@ TEST_CASE("problem: derivatives of an uncertainty are coarser, unless the campai
   twin.campaign.simulation.tolerance.reset();
   Problem problem = problem_of(twin, records);
   CHECK(problem.derivative_options(0).tolerance == 1e-5);
-  problem.tolerance = 2e-5;  // records with less accuracy
+  problem.tolerance = 2e-5;  // as for less accurate records
   CHECK(problem.derivative_options(0).tolerance == 2e-5);
 }
 
@@ -65,8 +65,8 @@ TEST_CASE("evaluation: Jacobian equals finite differences for every scope", "[ca
       const Eigen::VectorXd difference = (up.residual - down.residual) / (2.0 * h);
       const Eigen::VectorXd column = rows.jacobian.col(static_cast<Eigen::Index>(j));
       CAPTURE(i, problem.name(static_cast<std::size_t>(acting[j])));
-      // h^2 curvature is about 1e-4 of the column at the steepest (soft_l1), noise of the solver
-      // less.
+      // The error from h^2 and the curvature is about 1e-4 of the column in the steepest case
+      // (soft_l1), and the solver noise is smaller.
       CHECK((difference - column).norm() < 2e-3 * difference.norm());
     }
   }
@@ -84,13 +84,13 @@ TEST_CASE("evaluation: the R factor keeps cost and normal equations", "[calib]")
   full << rows.jacobian, rows.residual;
   const Eigen::MatrixXd expected = full.transpose() * full;
   const Eigen::MatrixXd actual = found.r_factor.transpose() * found.r_factor;
-  // 1e-12: rounding of 2600 products, against the largest element.
+  // 1e-12 is the rounding error of 2600 products, relative to the largest element.
   CHECK((actual - expected).cwiseAbs().maxCoeff() < 1e-12 * expected.cwiseAbs().maxCoeff());
   CHECK_THAT(found.cost(), WithinRel(0.5 * rows.residual.squaredNorm(), 1e-12));
 }
 
 TEST_CASE("R factor: a column of almost nothing leaves the others alone", "[calib]") {
-  // The sensitivity to an initial state that decays: its squares are no normal numbers.
+  // The sensitivity to an initial state that decays: its squares are subnormal numbers.
   const double size = GENERATE(0.0, 1e-162, 1e-157, 1e-155);
   Eigen::MatrixXd rows = Eigen::MatrixXd::Random(700, 3);
   rows.col(1) *= size;
@@ -123,7 +123,7 @@ TEST_CASE("loss: a least-squares residual whose slope is its derivative", "[cali
     const double difference =
         (apply_loss(loss, 3.0, r + h).residual - apply_loss(loss, 3.0, r - h).residual) / (2.0 * h);
     CAPTURE(r);
-    // 1e-8: rounding of a difference over 2e-6 of values up to 50.
+    // 1e-8 is the rounding error of a difference over 2e-6 between values of up to 50.
     CHECK_THAT(apply_loss(loss, 3.0, r).slope, WithinAbs(difference, 1e-7));
   }
   CHECK(apply_loss(loss, 3.0, 0.0).residual == 0.0);

@@ -28,7 +28,7 @@ TEST_CASE("initial state: chamber pressures are read without their sensors' offs
   CHECK(plan.state == model::InitialState::given);
   for (const auto& [index, value] : plan.known) values.set(index, value);
 
-  // The plant starts at what the record says minus the offset of its load pressure's sensor.
+  // The plant starts at the recorded load pressure minus the offset of its sensor.
   const double start_pa = values["initial_load_pressure"] - values["load_pressure_offset"];
   CHECK(start_pa == Approx(3.4e6 - 3.1e6));
   CHECK(values["initial_position"] == Approx(1e-3));

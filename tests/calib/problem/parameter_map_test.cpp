@@ -97,9 +97,10 @@ TEST_CASE("parameter map: round trip and slope", "[calib]") {
   for (int j = 0; j < static_cast<int>(map.unknowns().size()); ++j) {
     for (const double z : {0.05, 0.3, 0.9}) {
       CAPTURE(j, z);
-      // 1e-12: an exp and a log of bounds a decade or two apart, or one subtraction.
+      // 1e-12 is the error of an exp and a log for bounds one or two decades apart, or of one
+      // subtraction.
       CHECK_THAT(map.to_unit(j, map.to_physical(j, z)), WithinAbs(z, 1e-12));
-      // Central difference: error h^2 / 6 times the third derivative, 1e-10 of the slope here.
+      // Central difference with error h^2 / 6 times the third derivative: 1e-10 of the slope here.
       constexpr double h = 1e-5;
       const double difference = (map.to_physical(j, z + h) - map.to_physical(j, z - h)) / (2.0 * h);
       CHECK_THAT(map.slope(j, z), WithinRel(difference, 1e-8));
@@ -114,7 +115,7 @@ TEST_CASE("parameter map: the faces of the box are the bounds, exactly", "[calib
     const Unknown& u = map.unknowns()[static_cast<std::size_t>(j)];
     CHECK(map.to_physical(j, 0.0) >= u.lower);
     CHECK(map.to_physical(j, 1.0) <= u.upper);
-    CHECK_THAT(map.to_physical(j, 1.0), WithinRel(u.upper, 1e-14));  // a few roundings
+    CHECK_THAT(map.to_physical(j, 1.0), WithinRel(u.upper, 1e-14));  // a few rounding errors
   }
 }
 
@@ -122,7 +123,7 @@ TEST_CASE("parameter map: logarithmic where the bounds span more than a decade",
   const Twin twin = three_scopes();
   const ParameterMap map(twin.campaign, all(twin.campaign), false);
   CHECK_THAT(map.to_physical(0, 0.5), WithinRel(std::sqrt(10.0 * 500.0), 1e-12));  // mass
-  CHECK_THAT(map.to_physical(1, 0.5), WithinRel(2500.0, 1e-12));  // damping, from 0
+  CHECK_THAT(map.to_physical(1, 0.5), WithinRel(2500.0, 1e-12));  // damping, with lower bound 0
 }
 
 TEST_CASE("parameter map: a scope of leak levels needs a leak level", "[calib]") {

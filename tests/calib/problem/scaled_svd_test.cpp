@@ -16,7 +16,7 @@ TEST_CASE("scaled_svd: the step of least squares, whatever the units of the colu
   CHECK(step(1) == Approx(2.3e-9).epsilon(1e-12));
   CHECK(svd.explained(residual).squaredNorm() ==
         Approx(residual.squaredNorm() - (residual + jacobian * step).squaredNorm()).epsilon(1e-12));
-  // (J^T J)^-1 of a straight line: 0.7, -0.3, 0.2.
+  // (J^T J)^-1 for a straight line: 0.7, -0.3, 0.2.
   const Eigen::MatrixXd inverse = svd.root() * svd.root().transpose();
   CHECK(inverse(0, 0) == Approx(0.7).epsilon(1e-12));
   CHECK(inverse(0, 1) == Approx(-0.3e-9).epsilon(1e-12));
@@ -25,14 +25,15 @@ TEST_CASE("scaled_svd: the step of least squares, whatever the units of the colu
 
 TEST_CASE("scaled_svd: what a Jacobian does not determine stays where it is", "[calib]") {
   Eigen::MatrixXd jacobian(3, 3);
-  jacobian << 1.0, 2.0, 0.0, 1.0, 2.0, 0.0, 1.0, 2.0, 0.0;  // the second twice the first, a third
+  jacobian << 1.0, 2.0, 0.0, 1.0, 2.0, 0.0, 1.0, 2.0, 0.0;  // the second column is twice the first
   const Eigen::Vector3d residual(-4.0, -4.0, -4.0);
   const ScaledSvd svd(jacobian, 1e-8);
   CHECK(svd.rank() == 1);
   CHECK(svd.inverse_lengths()(2) == 0.0);
   const Eigen::VectorXd step = svd.step(residual);
   CHECK((residual + jacobian * step).norm() < 1e-12);
-  CHECK(step(0) == Approx(2.0).epsilon(1e-12));  // shortest where both columns have length 1
+  CHECK(step(0) == Approx(2.0).epsilon(1e-12));  // the shortest step when both columns are scaled
+                                                 // to length 1
   CHECK(step(1) == Approx(1.0).epsilon(1e-12));
   CHECK(step(2) == 0.0);
   CHECK(ScaledSvd(Eigen::MatrixXd::Zero(3, 2), 1e-8).rank() == 0);

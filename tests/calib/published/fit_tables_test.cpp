@@ -14,7 +14,7 @@ using Catch::WithinRel;
 
 namespace {
 
-/// The last column of Table 3, a sine of 10 Hz, and three rows of Table 4.
+/// The last column in Table 3, a 10 Hz sine, and three rows of Table 4.
 test::LeakRig small_rig() {
   test::LeakRig rig;
   rig.settings.signals.erase(rig.settings.signals.begin(), rig.settings.signals.begin() + 5);
@@ -22,7 +22,7 @@ test::LeakRig small_rig() {
   return rig;
 }
 
-/// Coarse enough to be quick.
+/// Options that are coarse enough to be quick.
 calib::LeakTableOptions quick() {
   calib::LeakTableOptions options;
   options.periodic.simulation.tolerance = 1e-4;
@@ -44,7 +44,8 @@ std::vector<int> free_of(const datasets::LeakTableSettings& settings) {
 TEST_CASE("table_residuals: count, names and weights of what is published", "[calib]") {
   const test::LeakRig rig;
   const calib::TableResiduals all(rig.campaign, rig.settings, free_of(rig.settings), {});
-  // 24 shares, Normal's servo flow, 5 numbers of each leaking row but the slight std.
+  // 24 shares, the servo flow of Normal, and 5 numbers for each leaking row except the std of
+  // Slight.
   CHECK(all.size() == 24 + 1 + 4 * 5 - 1);
   double weights = 0.0;
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -77,7 +78,7 @@ TEST_CASE("table_residuals: derivatives are those of differences", "[calib]") {
         (2.0 * h);
     for (Eigen::Index i = 0; i < difference.size(); ++i) {
       CAPTURE(residuals.name(static_cast<std::size_t>(i)), j);
-      // By the logarithm of the value: 1e-4 of noise over 2e-2.
+      // Derivative with respect to the logarithm of the value: noise of 1e-4 over a step of 2e-2.
       CHECK_THAT(values[j] * at.jacobian(i, static_cast<Eigen::Index>(j)),
                  WithinAbs(values[j] * difference(i), 0.01));
     }
@@ -86,7 +87,7 @@ TEST_CASE("table_residuals: derivatives are those of differences", "[calib]") {
 
 TEST_CASE("fit_tables: a twin's values come back from a far start, a gain from zero", "[calib]") {
   test::LeakRig rig = small_rig();
-  // What the rig of the campaign itself gives takes the place of what was published.
+  // The published values are replaced by those of the campaign's own rig.
   auto& signal = rig.settings.signals[0];
   const auto table = calib::leak_table(rig.campaign, rig.settings, quick());
   for (const calib::LeakEntry& entry : table.entries) {
@@ -109,7 +110,8 @@ TEST_CASE("fit_tables: a twin's values come back from a far start, a gain from z
     const auto& spec = datasets::assumption_spec(rig.campaign.rig.plant, p.index);
     CAPTURE(spec.key, p.start, p.value);
     CHECK(p.start != rig.settings.assumption(p.index)->value);
-    // The flows are good to 1e-3, which leaves some percent of what acts weakly.
+    // The flows are accurate to 1e-3. For values with little influence this leaves an error of some
+    // percent.
     CHECK_THAT(p.value, WithinRel(rig.settings.assumption(p.index)->value, 0.05));
     REQUIRE(p.ci95);
     CHECK(p.ci95->first < p.value);

@@ -46,8 +46,8 @@ double error_of(const calib::FeatureRow& row, Feature feature) {
 
 TEST_CASE("leak_table: the paper's Table 3 comes out as an independent computation has it",
           "[calib]") {
-  // Signals in the order of the campaign, targets 10, 20, 30, 50 %; found before by a separate
-  // program on the same assumptions, printed to three digits.
+  // Signals in the order of the campaign, targets 10, 20, 30, 50 %. The values were computed
+  // earlier by a separate program with the same assumptions, and printed with three digits.
   constexpr std::array kCoefficients{
       0.250, 0.528, 0.851, 1.748,  // square 0.1 Hz
       0.154, 0.345, 0.588, 1.334,  // sine 0.1 Hz
@@ -83,7 +83,7 @@ TEST_CASE("leak_table: the paper's Table 3 is met as far as it can be", "[calib]
     CHECK((entry.grade == LeakGrade::outlier) == misprint);
     CHECK(entry.note.empty() != misprint);
   }
-  // Counts and the root mean square are those of the cells.
+  // The counts and the root mean square agree with the cells.
   int within_10 = 0;
   double largest_percent = 0.0;
   for (const calib::LeakEntry& entry : paper().entries) {
@@ -113,7 +113,7 @@ TEST_CASE("leak_table: the paper's Table 4 is met, what cannot be is apart", "[c
   }
   const calib::FeatureRow& normal = table.features.front();
   REQUIRE_FALSE(normal.printed.leaking);
-  // The printed leak flow needs a tenth of the printed coefficient.
+  // The published leak flow needs a tenth of the published coefficient.
   CHECK_THAT(normal.leak_flow_m3_per_s * 60e3, WithinRel(0.0204, 0.02));
   REQUIRE(normal.coefficients_for_leak_flow.size() == 1);
   CHECK_THAT(normal.coefficients_for_leak_flow[0], WithinRel(0.0013, 0.03));
@@ -152,7 +152,7 @@ TEST_CASE("leak_table: intervals are those by which coefficients move with the r
       kCorrelation * gain_error * damping_error, damping_error * damping_error;
   const auto table = calib::leak_table(rig.campaign, rig.settings, options);
 
-  // Tables of rigs that are one standard error off, in either direction.
+  // Tables for rigs that are one standard error off in either direction.
   const auto table_with = [&](int index, double change) {
     test::LeakRig moved = rig;
     for (datasets::Assumption& each : moved.settings.assumptions)
@@ -203,7 +203,8 @@ TEST_CASE("leak_table: the exact symmetry of the model leaves every coefficient 
   rig.settings.features.clear();
   const double before =
       calib::leak_table(rig.campaign, rig.settings, {}).entries[0].roots[0].coefficient;
-  // (m, b, beta, P_s) times s with (k_sv, w_leak) over sqrt(s); eps is a pressure too.
+  // (m, b, beta, P_s) are multiplied by s, and (k_sv, w_leak) divided by sqrt(s); eps is also a
+  // pressure.
   const double s = 1.7;
   for (datasets::Assumption& a : rig.settings.assumptions) {
     const auto& key = datasets::assumption_spec(rig.campaign.rig.plant, a.index).key;
@@ -240,7 +241,8 @@ TEST_CASE("leak_table: the same bits for any number of threads", "[calib]") {
 TEST_CASE("leak_table: a coefficient on a plateau is not determined, and said so", "[calib]") {
   test::LeakRig rig;
   rig.settings.signals = {rig.drive(Waveform::square, 10.0).signal};
-  // Between coefficients of 0.42 and 0.53 the share stays within 13.76 and 13.82 %, up and down.
+  // Between coefficients of 0.42 and 0.53 the share varies non-monotonically between 13.76 and
+  // 13.82 %.
   rig.settings.targets_percent = {13.79};
   rig.settings.features.clear();
   const auto table = calib::leak_table(rig.campaign, rig.settings, {});
@@ -306,7 +308,7 @@ TEST_CASE("flow_curve: finds every root, a close pair on a flat top too", "[cali
   CHECK_THAT(hump(curve.at(two[0])), WithinRel(0.3, 1e-3));
   CHECK_THAT(hump(curve.at(two[1])), WithinRel(0.3, 1e-3));
   CHECK(two[0] < two[1]);
-  // Shares of 0.584 and 0.616: between two points of the scan.
+  // Shares of 0.584 and 0.616, between two points of the scan.
   REQUIRE(curve.roots(hump, 0.3598).size() == 2);
   CHECK(curve.roots(hump, 0.37).empty());
 }
@@ -321,6 +323,6 @@ TEST_CASE("flow_curve: the local slope is that of differences", "[calib]") {
   const double difference =
       std::log(curve.at(0.5 * std::exp(h)).share() / curve.at(0.5 * std::exp(-h)).share()) /
       (2.0 * h);
-  // 2e-5 of noise over 0.02.
+  // Noise of 2e-5 over a step of 0.02.
   CHECK_THAT(curve.log_slope(0.5), WithinAbs(difference, 3e-3));
 }

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::array kFlows{model::Output::servo_flow, model::Output::leakage_flow};
 
-/// Share over the last of many periods, sampled densely, by a run of its own.
+/// Computes the share in the last of many periods with a separate, densely sampled simulation.
 double long_run_share(const test::LeakRig& rig, Waveform waveform, double frequency_hz,
                       double coefficient, int periods, int samples) {
   model::SimulationInputs in;
@@ -32,7 +32,7 @@ double long_run_share(const test::LeakRig& rig, Waveform waveform, double freque
   const auto run =
       model::simulate(rig.campaign.rig, rig.leaking(coefficient), {}, in, times, kFlows, options);
   REQUIRE(run.ok());
-  // Midpoints: no sample falls on a jump.
+  // Samples are at midpoints, so that none falls on a jump.
   const auto rows = static_cast<Eigen::Index>(samples);
   return run.outputs.col(1).bottomRows(rows).cwiseAbs().sum() /
          run.outputs.col(0).bottomRows(rows).cwiseAbs().sum();
@@ -74,7 +74,7 @@ TEST_CASE("periodic_flow: agrees with a long run of its own", "[calib]") {
     REQUIRE(flow.ok());
     const double share =
         long_run_share(rig, c.waveform, c.frequency_hz, 0.25, c.periods, c.samples);
-    // 2e-4 each of transient and sampling, in either flow.
+    // 2e-4 each from transient and sampling, in both flows.
     CHECK_THAT(flow.share(), WithinRel(share, 6e-4));
   }
 }
@@ -115,8 +115,8 @@ TEST_CASE("periodic_flow: slopes are those of differences", "[calib]") {
     const auto f = calib::periodic_flow(drive, ahead, {}, options);
     const auto g = calib::periodic_flow(drive, behind, {}, options);
     const double p = rig.leaking(0.3)[keys[j]];
-    // The means are good to about 1e-5, so that a difference over 2e-3 is good to half a percent of
-    // a derivative whose logarithm is about one.
+    // The means are accurate to about 1e-5. A difference over 2e-3 is then accurate to half a
+    // percent for a logarithmic derivative of about one.
     CHECK_THAT(p * flow.leak_slope(j) / flow.leak_flow_m3_per_s,
                WithinAbs(std::log(f.leak_flow_m3_per_s / g.leak_flow_m3_per_s) / (2.0 * h), 0.01));
     CHECK_THAT(
@@ -144,7 +144,7 @@ TEST_CASE("periodic_flow: a loop that cycles by itself is given up early", "[cal
 
 TEST_CASE("periodic_flow: what does not become periodic is no result", "[calib]") {
   const test::LeakRig rig;
-  // A constant load drives the position away over minutes: the loop's time constant is 1000 s.
+  // A constant load moves the position away over minutes: the time constant of the loop is 1000 s.
   auto values = rig.leaking(0.3);
   values.set("kp", 0.04);
   values.set("kd", 0.0);

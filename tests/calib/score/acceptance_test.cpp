@@ -98,14 +98,15 @@ TEST_CASE("acceptance: the tolerance is that of the limit, of the warning limit 
   CHECK_THAT(used({"absolute_error_percent", 4.0, 2.0}, 8.0), WithinRel(2.0, 1e-12));
   CHECK_THAT(used({"nrmse_fit_percent", 90.0, {}}, 95.0), WithinRel(0.5, 1e-12));  // ideal: 100
   CHECK_THAT(used({"rmse", 2e-3, {}}, 5e-4), WithinRel(0.25, 1e-12));
-  // A limit equal to the ideal.
+  // A limit equal to the ideal value.
   CHECK(used({"rho2", 1.0, {}}, 1.0) == 0.0);
   CHECK(std::isinf(used({"rho2", 1.0, {}}, 0.999)));
   CHECK(used({"absolute_error_percent", 0.0, {}}, 0.0) == 0.0);
 }
 
 TEST_CASE("acceptance: the guard band ends where the uncertainty does", "[calib]") {
-  // Sums of powers of two, so that a score can be exactly at the end of its guard band.
+  // The numbers are sums of powers of two, so that a score can be exactly at the end of its guard
+  // band.
   const auto guarded = [](double value, Value uncertainty, const Question& question) {
     ConditionScore score = scored(question.metric, value);
     if (uncertainty) {
@@ -134,7 +135,7 @@ TEST_CASE("acceptance: the guard band ends where the uncertainty does", "[calib]
   CHECK(guarded(0.99, std::nullopt, rho2).verdict == Verdict::warn);
   CHECK_FALSE(guarded(0.99, std::nullopt, rho2).expanded_uncertainty.has_value());
   CHECK(guarded(0.75, 0.125, rho2).expanded_uncertainty == 0.125);
-  // Between the two limits only the limit has a guard band; the warning limit has none.
+  // Only the limit has a guard band; the warning limit has none.
   const Question both{"rho2", 0.5, 0.75, DecisionRule::guard_band};
   CHECK_FALSE(guarded(0.625, 0.5, both).in_guard_band);
   CHECK(guarded(0.625, 0.5, both).verdict == Verdict::warn);

@@ -110,7 +110,7 @@ TEST_CASE("agreement: a channel without a limit is a reservation, unless it may 
   scene.campaign.conditions[1].not_judged = {Channel::pressure_a};
   stated();
   scene.campaign.conditions[1].not_judged.clear();
-  scene.campaign.conditions[0].not_judged = {Channel::pressure_a};  // another condition
+  scene.campaign.conditions[0].not_judged = {Channel::pressure_a};  // a different condition
   CHECK(scene.assessed().agreement.state == AspectState::reservation);
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 using Catch::Contains;
 
-/// A condition with these checks: verdict and used fraction of the tolerance.
+/// The result of a check: verdict, and used fraction of the tolerance.
 struct Checked {
   Verdict verdict = Verdict::pass;
   double used = 0.0;
@@ -44,7 +44,7 @@ std::vector<Reason> judged(const std::vector<ConditionScore>& scores) {
   return reasons;
 }
 
-/// "code of subject" of each reason.
+/// Returns "code of subject" for each reason.
 std::vector<std::string> codes(const std::vector<Reason>& reasons) {
   std::vector<std::string> list;
   for (const Reason& each : reasons) list.push_back(each.code + " of " + each.subject);

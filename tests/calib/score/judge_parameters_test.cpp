@@ -87,7 +87,7 @@ TEST_CASE("parameters: each is identified, or negligible", "[calib]") {
       return known.index;
     };
     add("piston_area");
-    add("leakage_smoothing");  // a parameter of the computation, not of the rig
+    add("leakage_smoothing");  // a numerical parameter, not a property of the rig
     add("initial_position");
     datasets::ParameterSetting supply;
     supply.index = add("supply_pressure");

@@ -31,16 +31,16 @@ TEST_CASE("basins: starts that ended at one point, and those that did not", "[ca
   CHECK_THAT(words, Contains("2 of 4 starts") && Contains("1 other minimum") &&
                         Contains("1 did not converge"));
   CHECK(agreement_of({starts[0]}, found, 1.0).empty());
-  // A start that did not converge has a lower cost: none of the converged ones is the best.
+  // A start that did not converge has a lower cost, so none of the converged starts is the best.
   std::vector<StartReport> beneath = starts;
   beneath[3].final_cost = 9.0;
   const std::string told = agreement_of(beneath, found, 1.0);
   CHECK_THAT(told, Contains("start 4 of 4") && Contains("did not converge") && Contains("by 1 "));
-  // A start without any point has no cost either.
+  // A start without any point has no cost, either.
   beneath[3].final_cost = 0.0;
   beneath[3].end_values.clear();
   CHECK(agreement_of(beneath, found, 1.0) == words);
-  // Equal cost at two points: a tenth of the interval's width is 0.02.
+  // Equal cost at two points: a tenth of the interval width is 0.02.
   const auto apart = [&](double distance) {
     return basins({start(1, 10.0, 1.0, FitStatus::converged),
                    start(2, 10.0, 1.0 + distance, FitStatus::converged)},
@@ -49,12 +49,12 @@ TEST_CASE("basins: starts that ended at one point, and those that did not", "[ca
   };
   CHECK(apart(0.019) == 1);
   CHECK(apart(0.021) == 2);
-  // Where the residuals are far beyond the noise so are differences of cost that mean nothing.
+  // If the residuals are far above the noise, larger differences in cost are also insignificant.
   const std::vector<StartReport> rough{start(1, 4e6, 1.0, FitStatus::converged),
                                        start(2, 4e6 + 9.0, 1.0, FitStatus::converged)};
   CHECK(basins(rough, {parameter}, 1.0).size() == 2);
   CHECK(basins(rough, {parameter}, 8000.0).size() == 1);
-  // Nor do differences that are errors of the simulations.
+  // Differences due to simulation errors are insignificant, too.
   const std::vector<StartReport> even{start(1, 42865.883, 1.0, FitStatus::converged),
                                       start(2, 42865.915, 1.00001, FitStatus::converged)};
   CHECK(basins(even, {parameter}, 1.0).size() == 1);
@@ -73,8 +73,8 @@ TEST_CASE("basins: the start of lower cost is better, whatever ended it", "[cali
     const StartReport lower = start(30249.0, status);
     CHECK(better_start(lower, converged, 17.9));
     CHECK_FALSE(better_start(converged, lower, 17.9));
-    // The difference is below 0.02 variances (0.358): the costs are equal, so the converged start
-    // wins.
+    // The difference is below 0.02 variances (0.358). The costs count as equal, so the converged
+    // start wins.
     const StartReport beneath = start(34875.0 - 0.35, status);
     CHECK(better_start(converged, beneath, 17.9));
     CHECK_FALSE(better_start(beneath, converged, 17.9));

@@ -10,7 +10,7 @@ namespace {
 
 using Catch::Contains;
 
-/// A fit with a validation that has a nuisance parameter of its own.
+/// A fit with a validation that has its own nuisance parameter.
 struct Job {
   Twin twin;
   std::vector<datasets::Record> records;
@@ -88,7 +88,7 @@ TEST_CASE("budget: a stop beside the fit keeps the fit, its scores, and what was
         score(whole, "other").channels.at(0).agreement->rho2);
   for (std::size_t j = 0; j < whole.parameters.size(); ++j) {
     CHECK(stopped.parameters[j].value == whole.parameters[j].value);
-    if (!stopped.parameters[j].profile) continue;  // a nuisance parameter, or known
+    if (!stopped.parameters[j].profile) continue;  // a nuisance parameter, or a known value
     CHECK(stopped.parameters[j].profile->low.lost);
     CHECK_THAT(stopped.parameters[j].reason, Contains("stopped by the limit of evaluations"));
   }

@@ -18,7 +18,7 @@ const FitOptions kOptions = [] {
   return options;
 }();
 
-/// 2 s at 1 kHz of three signals, mass and valve gain free.
+/// Three signals, 2 s each at 1 kHz, with mass and valve gain free.
 Twin three_signals() {
   Twin twin;
   twin.free("mass", 60.0, 10.0, 500.0);
@@ -54,15 +54,15 @@ TEST_CASE("fidelity: the first period of a sine or square, all of another signal
 
 TEST_CASE("fidelity: horizons grow from four samples to the longest first period", "[calib]") {
   Twin twin = three_signals();
-  twin.campaign.conditions.pop_back();  // the sweep, which does not repeat itself
+  twin.campaign.conditions.pop_back();  // the sweep, which is not periodic
   const auto records = twin.records(2000, 1000.0, 1);
   const std::vector<double> lengths_s = horizons_s(problem_of(twin, records));
-  REQUIRE(lengths_s.size() == 5);  // four steps of at most 4 from 4 ms to 0.5 s
+  REQUIRE(lengths_s.size() == 5);  // four steps of at most a factor of 4, from 4 ms to 0.5 s
   CHECK_THAT(lengths_s.front(), WithinRel(4e-3, 1e-12));
   CHECK_THAT(lengths_s.back(), WithinRel(0.5, 1e-12));
   for (std::size_t k = 1; k < lengths_s.size(); ++k)
     CHECK_THAT(lengths_s[k] / lengths_s[k - 1], WithinRel(std::pow(125.0, 0.25), 1e-9));
-  // An unknown that only one record determines needs four samples more.
+  // An unknown that only one record determines needs four more samples.
   twin.free("position_offset", 0.0, -5e-3, 5e-3, datasets::Scope::condition);
   CHECK_THAT(horizons_s(problem_of(twin, records)).front(), WithinRel(8e-3, 1e-12));
 }
@@ -86,7 +86,7 @@ TEST_CASE("fidelity: each record is simulated as exactly as its own noise asks",
       const ProblemChannel& channel = problem.conditions[i].channels.front();
       return channel.sd / channel.peak_to_peak;
     };
-    // The same noise, a smaller motion.
+    // The same noise, but a smaller motion.
     REQUIRE(share(1) > 3.0 * share(0));
     CHECK_THAT(problem.tolerance_of(1) / problem.tolerance_of(0),
                WithinRel(share(1) / share(0), 1e-9));
@@ -120,7 +120,7 @@ TEST_CASE("fidelity: the cost of a start needs no derivatives", "[calib]") {
 TEST_CASE("search: first periods that mislead are not believed", "[calib]") {
   const Twin twin = three_signals();
   auto records = twin.records(2000, 1000.0, 1);
-  // Someone leant on the rig: all of the first period, a quarter of the record.
+  // Somebody leaned on the rig during the whole first period, which is a quarter of the record.
   for (std::size_t i = 0; i < 500; ++i) {
     double& x = records[0].channels.at(datasets::Channel::position).mean[i];
     x = 0.3 * x + 0.01;
@@ -145,7 +145,7 @@ TEST_CASE("search: first periods that mislead are not believed", "[calib]") {
 TEST_CASE("search: horizons that mislead are not believed", "[calib]") {
   const Twin twin = three_signals();
   auto records = twin.records(2000, 1000.0, 1);
-  for (std::size_t i = 0; i < 12; ++i)  // a plug that was not in yet
+  for (std::size_t i = 0; i < 12; ++i)  // a plug that was not yet connected
     records[1].channels.at(datasets::Channel::position).mean[i] += 0.01 * (i % 2 == 0 ? 1.0 : -1.0);
   const Problem problem = problem_of(twin, records);
   Budget budget;
@@ -155,7 +155,7 @@ TEST_CASE("search: horizons that mislead are not believed", "[calib]") {
   const std::vector<double> values = problem.to_physical(evaluator.best().z);
   CHECK_THAT(values[0], WithinRel(85.0, 0.05));
   CHECK_THAT(values[1], WithinRel(0.0406e-3, 0.02));
-  // Wherever it is stopped among them it ends no worse than it began.
+  // Wherever the search is stopped, it never ends at a worse point than its start.
   const double at_start = evaluate_at(problem, problem.start(), 1).cost;
   for (long most = 1; most <= 20; ++most) {
     Budget limited(nullptr, {}, {}, most);
@@ -167,8 +167,7 @@ TEST_CASE("search: horizons that mislead are not believed", "[calib]") {
 }
 
 TEST_CASE("search: more records of the same take no more evaluations", "[calib]") {
-  // The paper's rig from a start far off, in the first samples of which the leak falls to its
-  // bound.
+  // The paper's rig from a distant start. In its first samples the leak falls to its bound.
   const auto evaluations = [](int copies) {
     Twin twin;
     twin.free("mass", 50.0, 17.0, 425.0);
@@ -192,7 +191,8 @@ TEST_CASE("search: more records of the same take no more evaluations", "[calib]"
 }
 
 TEST_CASE("search: what rings is found from a start that is out of step", "[calib]") {
-  // Three times the frequency of the truth: out of step by a cycle within 6 ms.
+  // The frequency is three times the true one, so that the phase is off by a full cycle within 6
+  // ms.
   Twin twin;
   twin.add_channel(datasets::Channel::load_pressure);
   twin.free("mass", 40.0, 10.0, 500.0);
@@ -218,7 +218,7 @@ TEST_CASE("search: what rings is found from a start that is out of step", "[cali
   const std::vector<double> truth{85.0, 689e6, 0.0406e-3};
   for (std::size_t j = 0; j < truth.size(); ++j)
     CHECK_THAT(by_growing_horizon[j], WithinRel(truth[j], 0.05));
-  // What horizons are for: else the start ends in a valley of another frequency.
+  // This is why horizons are used: otherwise the start ends in a valley with a different frequency.
   CHECK(std::abs(all_at_once[1] / truth[1] - 1.0) > 0.5);
 }
 

@@ -16,7 +16,7 @@ using Catch::Contains;
 using Catch::WithinRel;
 using datasets::Waveform;
 
-/// Records of a campaign in ../shared/data; empty if they are absent.
+/// Records of a campaign in ../shared/data; empty if they are not available.
 struct Recorded {
   datasets::Campaign campaign;
   std::vector<datasets::Record> records;
@@ -62,7 +62,7 @@ TEST_CASE("further starts: where the campaign's misleads, one that leads lower i
   CHECK(found.further_starts->followed >= 1);
   REQUIRE(further_starts_reason(found) != nullptr);
   CHECK_THAT(further_starts_reason(found)->words, Contains("reached a lower cost"));
-  // Any number of threads gives the same bits.
+  // The results are bitwise identical for any number of threads.
   options.threads = 2;
   const Fit threaded = fit(boom->campaign, boom->records, options);
   CHECK(threaded.cost == found.cost);
@@ -99,7 +99,7 @@ TEST_CASE("further starts: where none leads lower the result is that of one star
   CHECK(further_starts_reason(found)->state == AspectState::note);
   CHECK_THAT(further_starts_reason(found)->words, Contains("none reached a lower cost"));
   CHECK(found.evaluations > alone.evaluations);
-  // Nor are they evaluated if the user states the number of starts.
+  // If the user specifies the number of starts, no further starts are evaluated, either.
   options.starts = 2;
   CHECK_FALSE(fit(twin.campaign, records, options).further_starts);
 }
@@ -136,7 +136,7 @@ TEST_CASE("obstacle: the valley that a search stopped in is named", "[calib]") {
   twin.free("mass", 60.0, 10.0, 500.0);
   twin.free("bulk_modulus", 600e6, 70e6, 7000e6);
   twin.free("valve_gain", 0.03e-3, 0.01e-3, 0.2e-3);
-  twin.add("sine", Waveform::sine, 5.0, 0.01);  // mass and oil are hard to separate in it
+  twin.add("sine", Waveform::sine, 5.0, 0.01);  // in this signal, mass and oil are hard to separate
   const auto records = twin.records(2000, 500.0, 1);
   const Problem problem = problem_of(twin, records);
   Budget budget;

@@ -16,13 +16,13 @@ namespace {
 using Catch::Contains;
 using datasets::Channel;
 
-/// A single-rod cylinder of known parameters with a recorded command. Its position is the integral
-/// of the flow, so any error of the valve drifts until the piston reaches a stop.
+/// A single-rod cylinder with known parameters and a recorded command. Its position is the integral
+/// of the flow, so any valve error makes it drift until the piston reaches a stop.
 struct OpenLoop {
   datasets::Campaign campaign;
   model::ParameterValues truth = model::ParameterValues::defaults(model::PlantKind::two_chamber);
   std::vector<Channel> recorded{Channel::position};
-  bool rings = false;  ///< the valve opens for a quarter of the time and is closed for the rest
+  bool rings = false;  ///< the valve is open for a quarter of the time and closed for the rest
 
   OpenLoop() {
     campaign.file = "open_loop.toml";
@@ -75,7 +75,7 @@ struct OpenLoop {
     }
   }
 
-  /// The record of a command that changes every 0.15 s, a second for each condition.
+  /// Makes records with a command that changes every 0.15 s, one second for each condition.
   std::vector<datasets::Record> records(int conditions, unsigned seed) {
     boost::random::mt19937_64 random(seed);
     boost::random::normal_distribution<double> normal;
@@ -123,7 +123,7 @@ struct OpenLoop {
   }
 };
 
-/// Largest distance of the unknowns from some values, in standard errors of a fit.
+/// Returns the largest distance of the unknowns from given values, in standard errors of a fit.
 double errors_off(const Fit& fit, const std::vector<double>& values) {
   double worst = 0.0;
   std::size_t j = 0;
@@ -149,7 +149,7 @@ Problem problem_of(const datasets::Campaign& campaign,
   return make_problem(campaign, records, conditions, false, nullptr);
 }
 
-/// Multiple shooting alone, from the campaign's start values.
+/// Runs only multiple shooting, from the campaign's start values.
 ShootingResult shoot(const Problem& problem, double interval_s, int threads = 1) {
   Budget budget;
   Evaluator evaluator(problem, budget, threads);
@@ -167,8 +167,8 @@ TEST_CASE("multiple shooting: by itself it ends where single shooting does", "[c
   rig.free("bulk_modulus", 600e6, 70e6, 7000e6);
   rig.free("valve_gain", 5e-6, 0.4e-6, 40e-6);
   rig.free("laminar_leakage", 4e-13, 0.0, 1e-11);
-  // Fine enough that the errors of the simulations, which are others in pieces, are not the
-  // difference.
+  // The tolerance is so small that simulation errors, which are different for pieces, do not
+  // matter.
   rig.campaign.simulation.tolerance = 1e-9;
   const auto records = rig.records(1, 5);
   const Fit single = fit(rig.campaign, records, {});
@@ -206,8 +206,9 @@ TEST_CASE("multiple shooting: an interval longer than the records leaves nothing
 }
 
 TEST_CASE("multiple shooting: finds what single shooting does not", "[calib]") {
-  // The oil rings for eleven periods after each pulse of the valve. From a mass that is off by 3.75
-  // every run loses count of them, and the fit ends in one of many minima of no meaning.
+  // After each pulse of the valve the oil rings for eleven periods. If the initial mass is wrong by
+  // a factor of 3.75, every simulation loses count of the periods, and the fit ends in one of many
+  // meaningless minima.
   OpenLoop rig;
   rig.rings = true;
   rig.recorded = {Channel::position, Channel::pressure_a, Channel::pressure_b};

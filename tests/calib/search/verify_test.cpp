@@ -21,7 +21,7 @@ Twin two_signals() {
   return twin;
 }
 
-/// A search that claims to have ended at z.
+/// Returns the result of a search that claims to have ended at z.
 MultiStart claimed_at(const Problem& problem, const std::vector<double>& z) {
   MultiStart found;
   found.best = 1;

@@ -21,7 +21,8 @@ Twin of_two_minds() {
   twin.free("valve_gain", 3e-5, 1e-5, 2e-4);
   twin.add("large", Waveform::square, 2.0, 0.02);
   twin.add("small", Waveform::sine, 3.0, 0.002);
-  twin.offsets["small"] = {Twin::index("valve_gain"), 3.6e-5};  // beside 4.06e-5
+  twin.offsets["small"] = {Twin::index("valve_gain"), 3.6e-5};  // compared with 4.06e-5 in the
+                                                                // other condition
   return twin;
 }
 
@@ -34,7 +35,7 @@ double rmse(const Fit& found, std::size_t condition) {
 TEST_CASE("weights: a channel ends with its residual over all records for its noise", "[calib]") {
   const Twin twin = of_two_minds();
   auto records = twin.records(500, 500.0, 3, model::InitialState::rest, false);
-  records[1].time_s.resize(250);  // records weigh by their number of samples
+  records[1].time_s.resize(250);  // the weight of a record depends on its number of samples
   auto& small = records[1].channels[datasets::Channel::position];
   small.mean.resize(250);
   small.sd.resize(std::min<std::size_t>(small.sd.size(), 250));
@@ -42,7 +43,7 @@ TEST_CASE("weights: a channel ends with its residual over all records for its no
   const Fit found = fit(twin.campaign, records, {});
   REQUIRE(found.status == FitStatus::converged);
   REQUIRE(rmse(found, 1) > 1.5 * rmse(found, 0));
-  // The same residuals, stated as noise, lead to the same estimate.
+  // If the same residuals are stated as noise, the estimate is the same.
   const double squares = 500.0 * std::pow(rmse(found, 0), 2) + 250.0 * std::pow(rmse(found, 1), 2);
   for (auto& record : records)
     record.channels[datasets::Channel::position].sd_of_mean = std::sqrt(squares / 750.0);
@@ -57,11 +58,11 @@ TEST_CASE("weights: a channel ends with its residual over all records for its no
 TEST_CASE("weights: iterations of all rounds count", "[calib]") {
   const Twin twin = of_two_minds();
   auto records = twin.records(500, 500.0, 3, model::InitialState::rest, false);
-  // Beside a record of known noise the weight of the other record moves the optimum.
+  // Together with a record of known noise, the weight of the other record moves the optimum.
   records[1].channels[datasets::Channel::position].sd_of_mean = 5e-5;
   const Fit found = fit(twin.campaign, records, {});
   REQUIRE(found.starts.size() == 1);
-  // The start ends before the first round, and a round takes an iteration at least.
+  // The start ends before the first round, and a round takes at least one iteration.
   int total = 0;
   REQUIRE(std::sscanf(found.message.c_str(), "converged after %d iterations", &total) == 1);
   CAPTURE(found.message);

@@ -49,7 +49,8 @@ TEST_CASE("between repeats: variance of the mean, freedom by Satterthwaite", "[c
   CHECK_THAT(found.variance, WithinRel(1.0 + 4.0 / 3.0, 1e-12));
   CHECK_THAT(found.freedom, WithinRel(std::pow(7.0 / 3.0, 2) / (1.0 + 16.0 / 18.0), 1e-12));
 
-  // A condition with one repeat adds the variance from its residuals; a prior adds its own.
+  // A condition with one repeat adds the variance from its residuals. A prior adds its own
+  // variance.
   const auto mixed =
       repeat_variance({row({1.0, -1.0}), MatrixXd()}, {scatter(9.0, 9.0), scatter(3.0, 4.0)},
                       MatrixXd::Constant(1, 1, 0.5), kOne, 0);
@@ -58,7 +59,8 @@ TEST_CASE("between repeats: variance of the mean, freedom by Satterthwaite", "[c
 }
 
 TEST_CASE("between repeats: a known random effect of a linear model", "[calib]") {
-  // Repeat r measures a_r g beside the model: the estimate of the mean is off by mean(a) g . j.
+  // Repeat r measures an additional a_r g, so that the estimate from the mean is off by mean(a) g .
+  // j.
   const VectorXd j = VectorXd::LinSpaced(50, 0.0, 1.0).normalized();
   const VectorXd g = VectorXd::Constant(50, 2.0);
   const std::vector<double> a{3.0, -1.0, 0.5, 1.5};
@@ -89,8 +91,8 @@ TEST_CASE("between repeats: the upper quartile of F decides", "[calib]") {
   CHECK(rests_on_repeats({2.0 * 1.47, 4.0}, robust));
 }
 
-/// Fraction of draws in which the interval includes the truth, if a slow effect of this size
-/// differs between four repeats of six conditions.
+/// Returns the fraction of draws in which the interval includes the true value, if a slow effect of
+/// this size differs between four repeats of six conditions.
 double coverage(double effect_sd, int draws) {
   constexpr Index kSamples = 60;
   constexpr Index kRepeats = 4;
@@ -142,7 +144,7 @@ TEST_CASE("between repeats: what aligned repeats were shifted by is theirs again
   settings.waveform = datasets::Waveform::sine;
   datasets::Record record;
   record.repeat_reports = {{"a", 0.002, 0.0, false, 0.002}, {"b", -0.002, 0.0, false, -0.002}};
-  datasets::Series ramp;  // 3 m/s
+  datasets::Series ramp;  // slope of 3 m/s
   for (int i = 0; i < 5; ++i) {
     record.time_s.push_back(0.01 * i);
     ramp.mean.push_back(0.03 * i);
@@ -170,7 +172,7 @@ TEST_CASE("between repeats: starts at different times are named, a mixture is no
   twin.add("square", datasets::Waveform::square, 2.0, 0.01);
   auto records = twin.records(40, 500.0, 1);
   datasets::Series& ramp = records[0].channels[datasets::Channel::position];
-  for (std::size_t i = 0; i < 40; ++i) ramp.mean[i] = 3.0 * records[0].time_s[i];  // 3 m/s
+  for (std::size_t i = 0; i < 40; ++i) ramp.mean[i] = 3.0 * records[0].time_s[i];  // slope of 3 m/s
   const Problem problem = problem_of(twin, records);
   const double sd = problem.conditions[0].channels[0].sd;
   ScoreRows rows;
@@ -179,7 +181,7 @@ TEST_CASE("between repeats: starts at different times are named, a mixture is no
     const double phase = 0.1 * static_cast<double>(t);
     rows.jacobian.row(t) << std::sin(phase), std::cos(2.0 * phase), phase * phase;
   }
-  // Four repeats that began at these times: their standard deviation is sqrt(14 / 3) ms.
+  // The four repeats began at these times, whose standard deviation is sqrt(14 / 3) ms.
   const std::vector<double> late_s{3e-3, -1e-3, 0.0, -2e-3};
   MatrixXd deviations(40, 4);
   for (Index r = 0; r < 4; ++r)
@@ -193,7 +195,8 @@ TEST_CASE("between repeats: starts at different times are named, a mixture is no
   CHECK_THAT(found->sd, WithinRel(1e-3 * std::sqrt(14.0 / 3.0), 1e-9));
   CHECK_THAT(found->explained, WithinRel(1.0, 1e-9));
 
-  // As much again in each direction across that: no cause explains four fifths.
+  // With an equal amount in each direction perpendicular to the cause, no cause explains four
+  // fifths.
   MatrixXd mixture = scores;
   const VectorXd along = scores.col(0).normalized();
   for (Index r = 0; r < 3; ++r) {
@@ -203,7 +206,7 @@ TEST_CASE("between repeats: starts at different times are named, a mixture is no
   CHECK_FALSE(likely_difference(effects, {rows}, {mixture}));
 }
 
-/// Five repeats per condition of a rig whose supply pressure differs by 2 % from run to run.
+/// Five repeats for each condition of a rig whose supply pressure differs by 2 % from run to run.
 struct DifferingSupply {
   Twin twin;
   std::vector<datasets::Record> records;
@@ -266,7 +269,7 @@ TEST_CASE("between repeats: a supply that is declared to differ accounts for wha
     CHECK(each.nuisance);
     CHECK(std::abs(each.value / supply.value - 1.0) < 4.0 * 0.02 / std::sqrt(5.0));
   }
-  CHECK(nuisances == 2);  // one per condition
+  CHECK(nuisances == 2);  // one for each condition
   for (const auto& [key, truth] : {std::pair{"valve_gain", 4.06e-5}, std::pair{"mass", 85.0}}) {
     const auto& each = parameter(found, key);
     CAPTURE(key, each.value, each.ci95->first, each.ci95->second);
@@ -291,7 +294,7 @@ TEST_CASE("difference by noise: F along the direction of a cause", "[calib]") {
   };
   CHECK(p_of(problem) < 1e-6);
 
-  // Noise alone: of 40 campaigns about a tenth is below a tenth.
+  // With noise only, p is below 0.1 in about a tenth of 40 campaigns.
   int below = 0;
   std::vector<datasets::Record> records = rig.records;
   boost::random::mt19937_64 bits(7);

@@ -12,8 +12,8 @@ namespace {
 using Catch::WithinAbs;
 using Catch::WithinRel;
 
-/// A rig whose one unknown, the offset of its position sensor, is the mean of measured minus
-/// simulated: what replicates estimate is what was drawn.
+/// A rig whose only unknown, the offset of its position sensor, is the mean of measured minus
+/// simulated. What the replicates estimate is therefore exactly what was drawn.
 struct OffsetAlone {
   Twin twin;
   std::vector<datasets::Record> records;
@@ -69,13 +69,13 @@ TEST_CASE("bootstrap: three repeats that differ by their offset", "[calib]") {
   for (const double size : {2.0, -1.0, -1.0})
     rig.position().deviations.emplace_back(50, size * kUnit);
   const BootstrapSpread spread = rig.draw(300);
-  // Three draws of 2, -1, -1, enlarged by sqrt(3 / 2): means of 2 (once in 27), 1, 0 and -1 (eight
-  // times), whose standard deviation is that of the mean of three repeats, sqrt(3 / 3).
+  // Three draws from 2, -1, -1, scaled by sqrt(3 / 2), have means of 2 (once in 27), 1, 0 and -1
+  // (eight times). Their standard deviation is that of the mean of three repeats, sqrt(3 / 3).
   const double enlarged = std::sqrt(1.5) * kUnit;
   CHECK_THAT(spread.standard_error, WithinRel(kUnit, 0.1));
   CHECK(spread.freedom == 2.0);
-  // Both ends are ends of that distribution, times t of two degrees of freedom over the normal
-  // quantile (scipy.stats: 4.302652730 / 1.959963985).
+  // Both ends are the extremes of that distribution, multiplied by t for two degrees of freedom
+  // over the normal quantile (scipy.stats: 4.302652730 / 1.959963985).
   constexpr double kWidened = 2.195271;
   CHECK_THAT(spread.ci95.first, WithinRel(-enlarged * kWidened, 1e-3));
   CHECK_THAT(spread.ci95.second, WithinRel(2.0 * enlarged * kWidened, 1e-3));
@@ -88,7 +88,8 @@ TEST_CASE("bootstrap: the standard deviation has one degree of freedom less", "[
     rig.position().deviations.emplace_back(50, size * kUnit);
   constexpr int kDrawn = 21;
   const BootstrapSpread spread = rig.draw(kDrawn);
-  // Replicates are whole numbers of this, so that their sum and sum of squares are too.
+  // Replicates are integer multiples of this step. In units of it, their sum and their sum of
+  // squares are therefore integers, too.
   const double step = std::sqrt(1.5) * kUnit;
   const double sum = kDrawn * spread.bias / step;
   const double squares =
@@ -99,7 +100,8 @@ TEST_CASE("bootstrap: the standard deviation has one degree of freedom less", "[
 }
 
 TEST_CASE("bootstrap: the bias is mean of the replicates minus estimate", "[calib]") {
-  // Without repeats residuals are drawn: here every one is 1 mm, which the estimate leaves.
+  // Without repeats, residuals are drawn. Here each residual is 1 mm, because the estimate was not
+  // adapted.
   OffsetAlone rig;
   for (double& each : rig.position().mean) each += 1e-3;
   const BootstrapSpread spread = rig.draw(20);

@@ -13,7 +13,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 TEST_CASE("coherent error: size of sensitivity times size of residual", "[calib]") {
-  // |J c| = 0.6 and |r| = 2 of the first channel, 0.8 and 3 of the second.
+  // |J c| = 0.6 and |r| = 2 for the first channel, 0.8 and 3 for the second.
   ScoreRows rows;
   rows.channels = 2;
   rows.jacobian = MatrixXd(8, 1);
@@ -21,11 +21,12 @@ TEST_CASE("coherent error: size of sensitivity times size of residual", "[calib]
   rows.residual = VectorXd(8);
   rows.residual << 1.0, 1.0, 1.0, -1.0, 1.5, -1.5, 1.5, 1.5;
   const MatrixXd one = MatrixXd::Identity(1, 1);
-  const double both = 0.6 * 2.0 + 0.8 * 3.0;  // one simulation: channels add up
+  const double both = 0.6 * 2.0 + 0.8 * 3.0;  // the channels come from one simulation, so they add
+                                              // linearly
   CHECK_THAT(coherent_errors({rows}, {{true, true}}, one)(0), WithinRel(both, 1e-12));
   CHECK_THAT(coherent_errors({rows}, {{false, true}}, one)(0), WithinRel(2.4, 1e-12));
   CHECK(coherent_errors({rows}, {{false, false}}, one)(0) == 0.0);
-  // Conditions err independently; a combination of twice the length errs twice as much.
+  // Conditions have independent errors. A combination of twice the length has twice the error.
   CHECK_THAT(coherent_errors({rows, rows}, {{true, true}, {true, true}}, one)(0),
              WithinRel(both * std::sqrt(2.0), 1e-12));
   CHECK_THAT(coherent_errors({rows}, {{true, true}}, 2.0 * one)(0), WithinRel(2.0 * both, 1e-12));
@@ -51,13 +52,13 @@ TEST_CASE("coherent error: which residuals are no noise", "[calib]") {
   };
   const std::vector<std::vector<bool>> noise{{false}};
   const std::vector<std::vector<bool>> none{{true}};
-  CHECK(flags(1e-7, true) == noise);   // `sd` states the noise
+  CHECK(flags(1e-7, true) == noise);   // `sd` specifies the noise
   CHECK(flags(1e-7, false) == none);   // a hundred-thousandth of the range
-  CHECK(flags(1e-4, false) == noise);  // a hundredth
+  CHECK(flags(1e-4, false) == noise);  // a hundredth of the range
 }
 
 TEST_CASE("coherent error: the interval of a fit without noise holds the truth", "[calib]") {
-  // The rig that made the records is stiffer by 0.3 % than the model that is fitted.
+  // The rig that made the records is stiffer by 0.3 % than the fitted model.
   Twin twin = free_gain();
   twin.noise_sd_m = 0.0;
   twin.truth = twin.campaign;

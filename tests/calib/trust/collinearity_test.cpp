@@ -30,8 +30,8 @@ TEST_CASE("collinearity: estimates that others make up together are named", "[ca
   CHECK_THAT(collinearity_words({"a", "b"}, pair(0.95)), !Contains("all can be told apart"));
   CHECK_THAT(collinearity_words({"a", "b"}, pair(0.999)),
              Contains("combination of the two") && Contains("a 500 times"));
-  // c is the sum of a and b except for a hundredth of its variance. No pair is correlated by more
-  // than 0.71, yet c is hardly determined.
+  // c is the sum of a and b except for a hundredth of its variance. No pairwise correlation exceeds
+  // 0.71, but c is hardly determined.
   Eigen::MatrixXd sum = Eigen::MatrixXd::Identity(3, 3);
   sum(0, 2) = sum(2, 0) = sum(1, 2) = sum(2, 1) = std::sqrt(0.99 / 2.0);
   CHECK_THAT(variance_inflation(sum)(2), WithinRel(100.0, 1e-9));

@@ -48,12 +48,12 @@ TEST_CASE("combinations: the scaling symmetry is named, with mass and supply pre
   CHECK(mentions(found.combinations, "scaling symmetry", "supply_pressure_pa"));
   CHECK(mentions(found.combinations, "leaves all positions unchanged",
                  "valve_gain_m_per_v (by sqrt(s))"));
-  // What is fixed all the same: mass over damping, 85 kg / (1000 N s/m).
+  // The records still determine mass over damping, 85 kg / (1000 N s/m).
   CHECK(mentions(found.combinations, "mass/", "the records fix"));
   for (const auto* key : {"mass", "supply_pressure"}) {
     CHECK(parameter(found, key).identifiability == Identifiability::not_identifiable);
     CHECK_THAT(parameter(found, key).reason, Contains("a prior on"));
-    // The smoothing of the roots determines the scale in the model, but in no real rig.
+    // In the model the smoothing of the roots determines the scale, but not in a real rig.
     CHECK_FALSE(parameter(found, key).standard_error);
     CHECK_FALSE(parameter(found, key).ci95);
   }
@@ -73,7 +73,7 @@ TEST_CASE("combinations: the scaling symmetry is named, with mass and supply pre
   twin.setting("stiffness").value = 2e4;
   const Fit resting = fit(twin.campaign, records, {});
   CHECK(mentions(resting.combinations, "only through the fixed stiffness_n_per_m", "mass_kg"));
-  // With a known supply pressure there is no symmetry left.
+  // If the supply pressure is known, there is no symmetry.
   twin.setting("supply_pressure").fit = false;
   twin.setting("supply_pressure").value = 6.2e6;
   CHECK_FALSE(mentions(fit(twin.campaign, records, {}).combinations, "scaling", "symmetry"));
@@ -107,7 +107,7 @@ TEST_CASE("combinations: the power that is fixed, and how well", "[calib]") {
   REQUIRE(product.size() == 1);
   CHECK_THAT(product[0], Contains("mass * damping = 8e+04"));
   CHECK_THAT(product[0], Contains("(to 7.8 %)"));    // 1.96 times 4 %
-  CHECK(words_of({0.5, 0.2}, {0.5, -0.2}).empty());  // to 78 % at best
+  CHECK(words_of({0.5, 0.2}, {0.5, -0.2}).empty());  // 78 % at best
 }
 
 TEST_CASE("combinations: a slow sine leaves the bulk modulus open, fast squares do not",

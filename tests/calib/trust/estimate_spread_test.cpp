@@ -10,7 +10,7 @@
 #include "calib/trust/prediction_band.hpp"
 #include "tests/calib/twin.hpp"
 
-// Covariance of the estimates and band about a prediction, computed by hand.
+// Covariance of the estimates and band around a prediction, compared with hand calculations.
 
 namespace rigcal::calib {
 namespace {
@@ -22,7 +22,7 @@ using datasets::Scope;
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-/// Two unknowns, the first with an optional prior, and the inputs of their uncertainty.
+/// Two unknowns, the first with an optional prior, and the inputs for their uncertainty.
 struct Scene {
   Twin twin;
   std::vector<datasets::Record> records;
@@ -54,12 +54,13 @@ struct Scene {
   double slope(int j) const {
     return std::abs(problem.map.slope(j, z[static_cast<std::size_t>(j)]));
   }
-  /// Standard deviations of the estimates in the unit box: in SI, divided by the slopes.
+  /// Returns the standard deviations of the estimates in the unit box, that is, in SI divided by
+  /// the slopes.
   std::pair<double, double> in_box() const {
     const MatrixXd& root = estimate_spread(problem, z, uncertainty).root;
     return {root.row(0).norm() / slope(0), root.row(1).norm() / slope(1)};
   }
-  /// Standard error of an estimate, SI, from one in the unit box.
+  /// Converts a standard error from the unit box to SI.
   std::optional<double> error(int j, double boxed) const { return boxed * slope(j); }
 
   void add_scatter(double first, double second, double both = 0.0) {
@@ -83,12 +84,12 @@ TEST_CASE("estimate_spread: without scatter, sigma^2 (J^T J)^-1 of the misfit", 
   require_box(scene, 1.0, 1.0);
   scene.uncertainty.root = (Eigen::Matrix2d() << 2.0, 0.0, 0.0, 3.0).finished();
   require_box(scene, 2.0, 3.0);
-  // If the model fits worse than the noise, standard deviations grow with the root of chi-square.
+  // If the residuals exceed the noise, standard deviations grow with the square root of chi-square.
   scene.uncertainty.reduced_chi_square = 4.0;
   require_box(scene, 4.0, 6.0);
   scene.uncertainty.reduced_chi_square = 1.0001;
   require_box(scene, 2.0 * std::sqrt(1.0001), 3.0 * std::sqrt(1.0001));
-  // The noise is known: a fit better than that carries no information.
+  // The noise is known, so residuals below it carry no information.
   scene.uncertainty.reduced_chi_square = 0.25;
   require_box(scene, 2.0, 3.0);
 }
@@ -109,7 +110,7 @@ TEST_CASE("estimate_spread: estimates with whose they are, and their correlation
 
 TEST_CASE("estimate_spread: with scatter, the sum of that of all conditions", "[calib]") {
   Scene scene;
-  scene.uncertainty.reduced_chi_square = 100.0;  // without effect in this case
+  scene.uncertainty.reduced_chi_square = 100.0;  // no effect in this case
   scene.add_scatter(4.0, 1.0);
   require_box(scene, 2.0, 1.0);
   scene.add_scatter(5.0, 24.0);
@@ -129,7 +130,7 @@ TEST_CASE("estimate_spread: a prior is one more source of scatter", "[calib]") {
   scene.add_scatter(4.0, 9.0);
   require_box(scene, std::sqrt(4.0 + weight * weight), 3.0);
   scene.uncertainty.scatter.clear();
-  require_box(scene, 1.0, 1.0);  // J^T J includes it already
+  require_box(scene, 1.0, 1.0);  // J^T J already includes it
 }
 
 TEST_CASE("estimate_spread: as wide as the widest interval by its own error", "[calib]") {
@@ -138,12 +139,12 @@ TEST_CASE("estimate_spread: as wide as the widest interval by its own error", "[
   scene.uncertainty.standard_error[0] = scene.error(0, 1.5);  // less than 2
   require_box(scene, 2.0, 3.0);
   scene.uncertainty.standard_error[0] = scene.error(0, 5.0);
-  require_box(scene, 5.0, 7.5);  // one factor for all, so that correlations stay
+  require_box(scene, 5.0, 7.5);  // one factor for all, so that correlations do not change
   scene.uncertainty.standard_error[1] = scene.error(1, 6.0);
   require_box(scene, 5.0, 7.5);
   scene.uncertainty.standard_error[1] = scene.error(1, 9.0);
   require_box(scene, 6.0, 9.0);
-  // Robust errors and quantiles have no effect without scatter.
+  // Without scatter, robust errors and quantiles have no effect.
   scene.uncertainty.robust_standard_error[0] = scene.error(0, 50.0);
   scene.uncertainty.robust_quantile = {20.0, 20.0};
   require_box(scene, 6.0, 9.0);
@@ -180,7 +181,7 @@ TEST_CASE("estimate_spread: known values add theirs, unwidened", "[calib]") {
   // The known value contributes 3 to the error of 5, so the records contribute 4: four times 1.
   scene.uncertainty.standard_error[0] = scene.error(0, 5.0);
   require_box(scene, 5.0, std::hypot(4.0, 4.0));
-  // An error below the contribution of known values widens nothing.
+  // An error smaller than the contribution of known values does not widen anything.
   scene.uncertainty.standard_error[0] = scene.error(0, 2.0);
   require_box(scene, std::hypot(1.0, 3.0), std::hypot(1.0, 4.0));
 }
@@ -200,13 +201,13 @@ TEST_CASE("estimate_spread: directions that are not determined have the spread o
 
 namespace {
 
-/// The band about the prediction of a condition, for given estimates.
+/// The prediction band of a condition for given estimates.
 struct Band {
   Twin twin;
   std::vector<datasets::Record> records;
   Problem problem;
 
-  /// @param known  whether the first condition knows its valve gain
+  /// @param known  whether the valve gain is known in the first condition
   explicit Band(bool known = false)
       : twin(twin_with(known)),
         records(twin.records(60, 500.0, 1)),
@@ -221,8 +222,8 @@ struct Band {
     return twin;
   }
 
-  /// Largest standard deviation of the band without noise, divided by the largest sensitivity to
-  /// the valve gain.
+  /// Returns the largest standard deviation of the band without noise, divided by the largest
+  /// sensitivity to the valve gain.
   double part(std::size_t condition, const std::vector<EstimateSpread::Estimate>& estimates,
               const std::vector<double>& sds) const {
     EstimateSpread spread;

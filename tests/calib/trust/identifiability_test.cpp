@@ -10,7 +10,7 @@ namespace {
 
 using Catch::WithinRel;
 
-/// A mass of 100 kg that is known with this error.
+/// A mass of 100 kg, known with this error.
 struct Graded {
   Twin twin;
   std::vector<datasets::Record> records;
@@ -30,7 +30,7 @@ struct Graded {
     found.reason.resize(1);
     found.root = Eigen::MatrixXd::Identity(1, 1);
     found.reduced_chi_square = 1.0;
-    found.freedom = 1e9;  // Student's t is the normal distribution
+    found.freedom = 1e9;  // Student's t equals the normal distribution
   }
 
   FittedParameter graded() const {

@@ -18,11 +18,12 @@ TEST_CASE("information: bounds of a matrix of two columns", "[calib]") {
   const Problem problem = problem_of(twin, records);
   REQUIRE(problem.spec(0).key == "position_offset");
   Eigen::MatrixXd jacobian(3, 2);
-  jacobian << 3.0, 1.0, 1.0, 2.0, 0.0, 1.0;  // J^T J = [10 5; 5 6], of determinant 35
+  jacobian << 3.0, 1.0, 1.0, 2.0, 0.0, 1.0;  // J^T J = [10 5; 5 6], determinant 35
   const auto found = cramer_rao(problem, problem.start(), jacobian);
   CHECK_THAT(found[0].value(), WithinRel(0.01 * std::sqrt(6.0 / 35.0), 1e-12));
   CHECK_THAT(found[1].value(), WithinRel(300.0 * std::sqrt(10.0 / 35.0), 1e-12));
-  // The same whatever the columns' sizes; of columns of one direction nothing is known.
+  // The result does not depend on the scale of the columns. If the columns are parallel, nothing is
+  // known.
   jacobian.col(0) *= 1e5;
   const auto stiff = cramer_rao(problem, problem.start(), jacobian);
   CHECK_THAT(stiff[0].value(), WithinRel(0.01e-5 * std::sqrt(6.0 / 35.0), 1e-9));

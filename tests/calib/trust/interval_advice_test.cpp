@@ -31,7 +31,7 @@ TEST_CASE("between repeats: the least p counts for all unknowns", "[calib]") {
                                                     Contains("up to 3 times") &&
                                                     Contains("p = 0.04"));
   found.repeats_p = {0.3, 0.03};
-  // By the residuals they do not differ, by their own noise they do.
+  // The repeats differ compared with their own noise, but not compared with the residuals.
   found.difference->p = 0.002;
   CHECK(between_repeats(problem, found)->differ);
   CHECK(between_repeats(problem, found)->p == 0.002);

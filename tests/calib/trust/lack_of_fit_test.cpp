@@ -18,7 +18,7 @@ using Catch::WithinRel;
 using datasets::Channel;
 using datasets::Waveform;
 
-/// Records of five repeats with AR(1) noise, as averaging would give them.
+/// Makes records of five repeats with AR(1) noise, as averaging would give them.
 std::vector<datasets::Record> repeated(Twin twin, double rho, std::uint64_t seed) {
   const double sd = twin.noise_sd_m;
   twin.noise_sd_m = 0.0;
@@ -80,7 +80,7 @@ TEST_CASE("lack of fit: closed forms of a first-order process", "[calib]") {
   CHECK(least_likely(tests)->p == std::min(tests[0].p, tests[1].p));
   CHECK(least_likely({}) == nullptr);
 
-  // Each of two tests has half the level: a p of 4 % is no lack of fit, one of 2 % is.
+  // Each of the two tests has half the level: p = 4 % is not a lack of fit, but p = 2 % is.
   const auto ratio_of = [&](double p) {
     double low = 1.0, high = 2.0;
     for (int i = 0; i < 60; ++i) {
@@ -91,7 +91,7 @@ TEST_CASE("lack of fit: closed forms of a first-order process", "[calib]") {
   };
   CHECK_FALSE(misfit(tests_of(ratio_of(0.04), 1.0)).value());
   CHECK(misfit(tests_of(ratio_of(0.02), 1.0)).value());
-  // The larger the residual, the less likely; at no size does the test pass again.
+  // A larger residual is always less likely; the test never passes again at a larger size.
   double last = 1.0;
   for (const double ratio : {0.5, 0.9, 1.1, 1.5, 3.0}) {
     const double p = tests_of(ratio, 1.0)[0].p;
@@ -108,7 +108,7 @@ TEST_CASE("lack of fit: hardly a degree of freedom is no pass", "[calib]") {
   series.sd.assign(series.mean.size(), 1e-5);
   const Problem problem = problem_of(twin, records);
   Uncertainty found;
-  // Half of the autocorrelation is left after 70 of 100 samples.
+  // Half of the autocorrelation remains after 70 of 100 samples.
   found.scatter.emplace_back().noise.push_back({{0.99}, 1.0 - 0.99 * 0.99});
   const auto tests = lack_of_fit(problem, found);
   REQUIRE(tests.size() == 1);
@@ -177,8 +177,8 @@ TEST_CASE("lack of fit: one failure is a misfit, one that cannot be judged leave
 }
 
 TEST_CASE("lack of fit: few independent samples cannot be judged", "[calib]") {
-  // Noise that hardly changes within the record leaves one or two degrees of freedom, with which
-  // four times the variance of the noise is no surprise.
+  // Noise that hardly changes during the record leaves only one or two degrees of freedom. Four
+  // times the variance of the noise is then not surprising.
   const Twin twin = one_square();
   const Fit found = fit(twin.campaign, repeated(twin, 0.999, 7), {});
   REQUIRE(found.lack_of_fit.size() == 1);
@@ -196,8 +196,9 @@ TEST_CASE("known values: their uncertainty is carried into the errors", "[calib]
   const auto records = twin.records(500, 500.0, 3);
   const double alone =
       parameter(fit(twin.campaign, records, {}), "valve_gain").standard_error.value();
-  // Servo flow goes as valve gain times the root of the supply pressure: 10 % of the one is 5 % of
-  // the other, which is far more than the noise leaves.
+  // The servo flow is proportional to the valve gain times the square root of the supply pressure.
+  // An error of 10 % in the pressure corresponds to 5 % in the gain, far more than the noise
+  // leaves.
   twin.setting("supply_pressure").prior = datasets::Prior{6.2e6, 0.62e6};
   const Fit carried = fit(twin.campaign, records, {});
   const FittedParameter& gain = parameter(carried, "valve_gain");
@@ -205,12 +206,12 @@ TEST_CASE("known values: their uncertainty is carried into the errors", "[calib]
   CHECK_THAT(gain.standard_error.value(), WithinRel(0.05 * gain.value, 0.2));
   CHECK_THAT(gain.robust_standard_error.value(), WithinRel(0.05 * gain.value, 0.2));
   CHECK_THAT(carried.interval_advice, Contains("supply_pressure_pa"));
-  // What a condition knows by itself is certain there.
+  // A value that a condition specifies itself is certain there.
   Twin own = twin;
   own.campaign.conditions[0].overrides.emplace_back(Twin::index("supply_pressure"), 6.2e6);
   CHECK_THAT(parameter(fit(own.campaign, records, {}), "valve_gain").standard_error.value(),
              WithinRel(alone, 1e-3));
-  // So uncertain that it decides: no record would help, an estimate of the supply pressure may.
+  // This uncertainty dominates: no record would help, but an estimate of the supply pressure may.
   twin.setting("supply_pressure").prior = datasets::Prior{6.2e6, 15e6};
   const Fit open = fit(twin.campaign, records, {});
   CHECK(parameter(open, "valve_gain").identifiability == Identifiability::not_identifiable);
@@ -222,7 +223,7 @@ TEST_CASE("known values: a sensor's gain or offset widens as it would if it were
   struct Sensor {
     const char* key;
     double value, lower, upper;
-    const char* moved;  ///< an unknown that follows it
+    const char* moved;  ///< an unknown that it affects
   };
   const auto sensor = GENERATE(Sensor{"position_gain", 1.0, 0.5, 2.0, "valve_gain"},
                                Sensor{"load_pressure_gain", 1.0, 0.5, 2.0, "mass"},
@@ -248,9 +249,10 @@ TEST_CASE("known values: a sensor's gain or offset widens as it would if it were
   const double carried = variance(known, sensor.moved) - exact;
   const double joint = variance(fit(open.campaign, records, {}), sensor.moved) - exact;
   CHECK(carried > 0.0);
-  // As free it is b^2 / (1 / prior_sd^2 + 1 / of_gain), b the change of the unknown with it; as
-  // known, where the records do not improve on the prior, b^2 prior_sd^2. 10 %: differences of
-  // variances whose scale, the reduced chi-square, moves by a few 1e-3.
+  // Let b be the change in the unknown per unit of the sensor parameter. If that parameter is free,
+  // it contributes b^2 / (1 / prior_sd^2 + 1 / of_gain). If it is known, the records do not improve
+  // on the prior, and it contributes b^2 prior_sd^2. The limit is 10 % because these are
+  // differences of variances scaled by the reduced chi-square, which varies by a few 1e-3.
   CHECK_THAT(carried / joint, WithinRel(1.0 + prior_sd * prior_sd / of_gain, 0.1));
   CHECK_THAT(known.interval_advice, Contains(sensor.key));
 }
@@ -279,7 +281,7 @@ TEST_CASE("known values: a certificate of the sensor counts as the prior of its 
   twin.campaign.channels.at(datasets::Channel::position).*way.stated = way.sd;
   CHECK_THAT(error(twin), WithinRel(error(prior), 1e-6));
   CHECK(error(twin) > exact);
-  // An estimated gain or offset covers its uncertainty already.
+  // An estimated gain or offset already covers its uncertainty.
   Twin open = twin;
   open.campaign.channels.at(datasets::Channel::position).*way.stated = 0.0;
   open.free(way.key, way.value, way.value - 0.01, way.value + 0.01);

@@ -32,7 +32,8 @@ TEST_CASE("model choice: two terms that explain little", "[calib]") {
   const double ratio = 4.0 * 995.0 / 996.0;
   CHECK(choice.freedom == 2);
   CHECK_THAT(choice.likelihood_ratio, WithinAbs(ratio, 1e-9));
-  CHECK_THAT(choice.p, WithinAbs(std::exp(-0.5 * ratio), 1e-9));  // chi-square of two
+  CHECK_THAT(choice.p, WithinAbs(std::exp(-0.5 * ratio), 1e-9));  // chi-square with two degrees of
+                                                                  // freedom
   CHECK_FALSE(choice.larger);
   CHECK_THAT(choice.delta_aic, WithinAbs(4.0 - ratio, 1e-9));
   CHECK_THAT(choice.delta_bic, WithinAbs(2.0 * std::log(1000.0) - ratio, 1e-9));
@@ -58,7 +59,7 @@ TEST_CASE("model choice: fits without noise and fits of other records", "[calib]
 TEST_CASE("model choice: neither contains the other", "[calib]") {
   const Candidate first = candidate("stribeck", 520.0, 5, 1000.0);
   const auto better = compare_information(first, candidate("friction", 498.0, 4, 1000.0));
-  // 2 (498 - 520) / (996 / 996), one parameter fewer
+  // 2 (498 - 520) / (996 / 996), with one parameter fewer
   CHECK_THAT(better.aic, WithinAbs(-44.0 - 2.0, 1e-9));
   CHECK_THAT(better.bic, WithinAbs(-44.0 - std::log(1000.0), 1e-9));
   CHECK_THAT(better.message, Contains("friction is preferred"));
@@ -67,7 +68,7 @@ TEST_CASE("model choice: neither contains the other", "[calib]") {
   CHECK_THAT(turned.message, Contains("friction is preferred"));
   const auto even = compare_information(first, candidate("other", 519.9, 5, 1000.0));
   CHECK_THAT(even.message, Contains("no difference to speak of"));
-  // Parameters that gain 3 each: AIC prefers them, BIC requires ln(1000) each.
+  // Each parameter gains 3: AIC prefers them, but BIC requires ln(1000) each.
   const auto unclear =
       compare_information(candidate("few", 503.0, 4, 1000.0), candidate("many", 497.0, 8, 1000.0));
   CHECK(unclear.aic < -2.0);

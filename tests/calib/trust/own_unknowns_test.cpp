@@ -15,7 +15,7 @@ using datasets::Waveform;
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-/// Conditions with an offset each, of which half an analyst knows something.
+/// Conditions with one offset each. There is prior knowledge about half of the offsets.
 struct Offsets {
   Twin twin;
   std::vector<datasets::Record> records;
@@ -150,7 +150,7 @@ TEST_CASE("own unknowns: a fit finds them, and stores correlations of the shared
   CHECK(found.correlation_names == std::vector<std::string>{"mass_kg", "damping_n_s_per_m"});
   CHECK(found.correlation.rows() == 2);
   CHECK(found.correlation(0, 1) == found.correlation(1, 0));
-  int beyond = 0;  // 95 % intervals that miss the truth
+  int beyond = 0;  // number of 95 % intervals that miss the true value
   for (const FittedParameter& each : found.parameters) {
     if (!each.fitted) continue;
     REQUIRE(each.ci95);
@@ -161,7 +161,7 @@ TEST_CASE("own unknowns: a fit finds them, and stores correlations of the shared
     CHECK(each.robust_standard_error.value() > 0.5 * each.standard_error.value());
     CHECK(each.robust_standard_error.value() < 2.0 * each.standard_error.value());
   }
-  CHECK(beyond <= 7);  // 2 expected of 38; P(more) = 2e-3 for independent ones
+  CHECK(beyond <= 7);  // 2 of 38 expected; P(more) = 2e-3 if they are independent
 }
 
 }  // namespace rigcal::calib

@@ -11,7 +11,7 @@ namespace {
 using Catch::Contains;
 using Catch::WithinRel;
 
-/// One condition that is planned, of a rig whose mass is unknown.
+/// A campaign with one planned condition for a rig with unknown mass.
 datasets::Campaign planned_mass() {
   Twin twin;
   twin.free("mass", 80.0, 10.0, 500.0);
@@ -65,7 +65,7 @@ TEST_CASE("plan: a prior adds what it tells", "[calib]") {
   for (auto& setting : campaign.parameters) {
     if (setting.fit) setting.prior = datasets::Prior{80.0, 2.0 * alone};
   }
-  // Informations add: 1 + 1/4.
+  // Information adds up: 1 + 1/4.
   CHECK_THAT(planned_error(campaign), WithinRel(alone / std::sqrt(1.25), 1e-3));
 }
 

@@ -16,7 +16,7 @@ using datasets::Channel;
 
 namespace {
 
-/// Two unknowns, and a condition that only predicts.
+/// Two unknowns, and a condition that is only predicted.
 Twin predicting_twin() {
   Twin twin;
   twin.free("valve_gain", 4e-5, 1e-5, 2e-4);
@@ -36,7 +36,7 @@ const std::vector<double>& band_of(const Fit& fit, const std::string& id) {
   return score_of(fit, id).prediction_sd.at(Channel::position);
 }
 
-/// What the estimates alone add to the band, root mean square over the record.
+/// Returns what the estimates alone add to the band, root mean square over the record.
 double from_estimates(const Fit& fit, const std::string& id, double noise_sd) {
   double sum = 0.0;
   for (const double sd : band_of(fit, id)) sum += sd * sd - noise_sd * noise_sd;
@@ -73,7 +73,7 @@ TEST_CASE("prediction band: holds 95 % of the samples of fitted and new records"
       }
     }
     CAPTURE(id);
-    // 2000 samples: the binomial standard deviation is 0.5 %.
+    // With 2000 samples the binomial standard deviation is 0.5 %.
     CHECK_THAT(100.0 * within / all, WithinAbs(95.0, 2.0));
   }
 }
@@ -107,7 +107,7 @@ TEST_CASE("prediction band: without noise it holds the truth 95 times in a hundr
   Twin quiet = predicting_twin();
   quiet.noise_sd_m = 0.0;
   const auto truth = quiet.records(250, 500.0, 1);
-  constexpr std::size_t kSample = 180;  // on a flank of the second period
+  constexpr std::size_t kSample = 180;  // on a flank in the second period
   constexpr unsigned kFits = 60;
   int within = 0;
   for (unsigned seed = 1; seed <= kFits; ++seed) {
@@ -135,7 +135,7 @@ TEST_CASE("prediction band: grows with the covariance of the estimates", "[calib
   twin.noise_sd_m *= 3.0;
   const Fit noisier = fit(twin.campaign, twin.records(500, 500.0, 1), FitOptions());
   CHECK_THAT(from_estimates(noisier, "predicted", twin.noise_sd_m), WithinRel(3.0 * before, 0.3));
-  // A known value takes its part away.
+  // Knowing a value removes its contribution.
   Twin known_gain = predicting_twin();
   known_gain.campaign.considered.none = true;
   known_gain.setting("bulk_modulus").fit = false;
@@ -158,7 +158,7 @@ TEST_CASE("prediction band: an estimate of another leak level does not count", "
   spread.estimates = {{Twin::index("leakage_coefficient"), datasets::Scope::leak_level, "small"},
                       {Twin::index("leakage_coefficient"), datasets::Scope::leak_level, "large"}};
   spread.root = Eigen::MatrixXd::Zero(2, 2);
-  spread.root(1, 1) = 0.1;  // for the large one alone
+  spread.root(1, 1) = 0.1;  // only for the large one
   std::vector<ConditionScore> scores(2);
   for (std::size_t i = 0; i < 2; ++i) scores[i].time_s = records[i].time_s;
   add_prediction_sd(problem, z, spread, {}, 1, scores);

@@ -33,7 +33,7 @@ TEST_CASE("profile: where the cost is all but quadratic it ends where the interv
     CAPTURE(key, p.reason);
     REQUIRE(p.profile.has_value());
     const auto interval = p.ci95_if_exact.value();
-    // 10 %: curvature, the quantile of t, and a crossing that is found to 2 %.
+    // 10 % for curvature, the quantile of t, and a crossing located to 2 %.
     CHECK_THAT(p.profile->high.value.value() - p.value, WithinRel(interval.second - p.value, 0.1));
     CHECK_THAT(p.value - p.profile->low.value.value(), WithinRel(p.value - interval.first, 0.1));
     CHECK_FALSE(p.profile->lower_cost_found);
@@ -86,7 +86,7 @@ TEST_CASE("profile: one that was stopped, or cut off by a bound, says nothing of
 }
 
 TEST_CASE("profile: what a prior alone tells ends where the prior does", "[calib]") {
-  // Valve gain and discharge coefficient act as their product.
+  // Valve gain and discharge coefficient only act as a product.
   Twin twin = one_square();
   twin.free("discharge_coefficient", 0.6, 0.1, 1.0).prior = datasets::Prior{0.6, 0.02};
   FitOptions options;
@@ -96,7 +96,7 @@ TEST_CASE("profile: what a prior alone tells ends where the prior does", "[calib
   CAPTURE(p.reason);
   CHECK_THAT(p.standard_error.value(), WithinRel(0.02, 0.02));
   REQUIRE(p.profile.has_value());
-  // 1.96 standard deviations of it; a crossing is found to 2 % of the rise.
+  // 1.96 standard deviations of the prior; a crossing is located to 2 % of the rise.
   CHECK_THAT(p.profile->high.value.value() - p.value, WithinRel(1.96 * 0.02, 0.03));
   CHECK_THAT(p.value - p.profile->low.value.value(), WithinRel(1.96 * 0.02, 0.03));
 }
@@ -148,7 +148,7 @@ TEST_CASE("profile: a lower cost than that of the fit is told", "[calib]") {
 }
 
 TEST_CASE("profile: the error of simulations is no lower minimum", "[calib]") {
-  // In a direction that the records do not determine, the cost is as flat as simulations allow.
+  // In a direction that the records do not determine, the cost is flat up to simulation errors.
   Twin twin = one_square();
   twin.free("discharge_coefficient", 0.6, 0.1, 1.0);
   FitOptions options;
@@ -180,7 +180,8 @@ TEST_CASE("intervals: which of them to use", "[calib]") {
   CHECK(compare_intervals(problem, parameters) == "the bootstrap agrees with `ci95_if_exact`");
   CHECK_THAT(compare_intervals(problem, parameters, {"supply_pressure_pa"}),
              Contains("the bootstrap leaves out the uncertainty of supply_pressure_pa"));
-  drawn.ci95 = {84.99994, 85.00006};  // 0.6 times as wide: nine degrees of freedom may
+  drawn.ci95 = {84.99994, 85.00006};  // a ratio of 0.6 is possible by chance with nine degrees of
+                                      // freedom
   parameters[0].bootstrap = drawn;
   CHECK(compare_intervals(problem, parameters) == "the bootstrap agrees with `ci95_if_exact`");
   drawn.ci95 = {84.99996, 85.00004};
@@ -219,7 +220,7 @@ TEST_CASE("bootstrap: its spread is that of the noise, the same for any number o
   for (const auto* key : {"mass", "valve_gain"}) {
     const FittedParameter& p = parameter(found, key);
     REQUIRE(p.bootstrap.has_value());
-    // A standard deviation of 100 draws is known to 7 %; four times that.
+    // The standard deviation of 100 draws is known to 7 %; the limit is four times that.
     CHECK_THAT(p.bootstrap->standard_error, WithinRel(p.robust_standard_error.value(), 0.3));
     CHECK(std::abs(p.bootstrap->bias) < 0.5 * p.bootstrap->standard_error);
     CHECK(p.bootstrap->ci95.first < p.value);
@@ -280,7 +281,8 @@ TEST_CASE("cross-validation: each condition is predicted from the others", "[cal
     const HeldOut& held = found.cross_validation[i];
     CAPTURE(held.condition, held.problem);
     REQUIRE(held.rms.size() == 1);
-    // Two parameters against 250 samples: the noise decides, not what was left out.
+    // Two parameters compared with 250 samples: the noise dominates, not the condition that was
+    // left out.
     CHECK_THAT(held.rms[0].second, WithinRel(held.fitted_rms[0].second, 0.1));
     CHECK(std::abs(held.largest_shift) < 5.0);
   }

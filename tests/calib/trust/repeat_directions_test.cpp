@@ -7,7 +7,7 @@
 #include "metrics/distributions.hpp"
 #include "tests/calib/twin.hpp"
 
-// Deviations of repeats along one direction, computed by hand.
+// Deviations of repeats along one direction, compared with hand calculations.
 
 namespace rigcal::calib {
 namespace {
@@ -17,9 +17,9 @@ using datasets::Channel;
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-constexpr std::size_t kSamples = 40;  // twenty stretches of two samples
+constexpr std::size_t kSamples = 40;  // twenty intervals of two samples each
 
-/// One condition with a mean that rises by 3 m/s, and the given deviations of its repeats.
+/// One condition whose mean rises by 3 m/s, with given deviations of its repeats.
 struct Ramp {
   Twin twin;
   std::vector<datasets::Record> records;
@@ -41,8 +41,8 @@ struct Ramp {
   }
 };
 
-/// Two repeats with the deviations +-(common + ripple); the sign of the ripple changes every two
-/// samples.
+/// Returns two repeats with deviations +-(common + ripple); the sign of the ripple changes every
+/// two samples.
 std::vector<std::vector<double>> two_repeats(double common, double ripple) {
   std::vector<std::vector<double>> result(2);
   for (std::size_t i = 0; i < kSamples; ++i) {
@@ -56,9 +56,9 @@ std::vector<std::vector<double>> two_repeats(double common, double ripple) {
 }  // namespace
 
 TEST_CASE("difference by noise: nineteen degrees of freedom of twenty stretches", "[calib]") {
-  // Along a constant direction of length 1 the sum of squares is 2 * 40 * common^2. Each stretch
-  // has a noise of (2 ripple)^2 / 40; twenty of them in two repeats give 4 ripple^2, with nineteen
-  // degrees of freedom.
+  // Along a constant direction of length 1 the sum of squares is 2 * 40 * common^2. Each interval
+  // has a noise of (2 ripple)^2 / 40. Twenty intervals in two repeats give 4 ripple^2, with
+  // nineteen degrees of freedom.
   for (const double common : {0.2, 0.5, 1.0, 2.0}) {
     CAPTURE(common);
     const double ratio = 2.0 * 40.0 * common * common / (20.0 / 19.0 * 4.0);
@@ -110,7 +110,8 @@ TEST_CASE("repeat_deviations: weighted, what is missing as nothing", "[calib]") 
   CHECK_THAT(found(0, 0), WithinRel(1.2e-5 / sd, 1e-12));
   CHECK_THAT(found(2, 1), WithinRel(-0.8e-5 / sd, 1e-12));
   CHECK(found(3, 0) == 0.0);
-  // The part that recorded inputs explain is subtracted, if there is a column for each repeat.
+  // The component explained by recorded inputs is subtracted, provided that it has a column for
+  // each repeat.
   const MatrixXd half = 0.5 * found;
   CHECK((repeat_deviations(problem.conditions[0], half) - half).norm() < 1e-12);
   CHECK((repeat_deviations(problem.conditions[0], half.leftCols(1)) - found).norm() < 1e-12);

@@ -1,4 +1,5 @@
-// The covariance of the score by dense matrices (tests/golden/make_statistics_golden.py).
+// Compares the covariance of the score with dense matrices
+// (tests/golden/make_statistics_golden.py).
 
 #include <Eigen/Core>
 #include <catch2/catch.hpp>
@@ -24,8 +25,9 @@ TEST_CASE("golden: covariance of the score, its freedom and what the error adds"
   const auto& noise = scatter[0].noise.at(0);
   const std::vector<double> model = golden("sandwich.noise");
   REQUIRE(noise.phi.size() + 1 == model.size());
-  // 1e-9: the dense side inverts matrices of 150 samples, and reads 15 digits. The degrees of
-  // freedom depend on the integral of the squared kernel, which the source gives with six.
+  // 1e-9, because the dense calculation inverts matrices for 150 samples and reads 15 digits. The
+  // degrees of freedom depend on the integral of the squared kernel, which the source gives with
+  // six digits.
   CHECK_THAT(noise.variance, WithinRel(model[0], 1e-9));
   for (std::size_t k = 0; k < noise.phi.size(); ++k)
     CHECK_THAT(noise.phi[k], WithinRel(model[k + 1], 1e-9));

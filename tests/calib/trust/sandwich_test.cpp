@@ -19,7 +19,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// A linear model whose columns oscillate slowly, as those of a rig do, in orthonormal coordinates.
+/// A linear model in orthonormal coordinates whose columns oscillate slowly, like those of a rig.
 MatrixXd slow_model(Index samples) {
   MatrixXd columns(samples, 3);
   for (Index t = 0; t < samples; ++t) {
@@ -49,13 +49,13 @@ class Noise {
   boost::random::normal_distribution<double> normal_;
 };
 
-/// Part of an experiment's draws that is made.
+/// The number of draws is divided by this factor.
 constexpr int kPart = test::kSanitized ? 4 : 1;
-/// What a share of them scatters more for it.
+/// Factor by which the resulting fractions then vary more.
 const double kWider = std::sqrt(kPart);
 
-/// Fraction of draws in which the 95 % interval of a direction includes the truth, 0; also with
-/// Student's t by the degrees of freedom alone.
+/// Fraction of draws in which the 95 % interval of a direction includes the true value, 0; also for
+/// an interval that only uses Student's t with the degrees of freedom.
 struct Coverage {
   double found = 0.0;
   double by_freedom = 0.0;
@@ -82,14 +82,14 @@ std::vector<Coverage> coverage_of_each(const MatrixXd& model, double rho, int dr
   return covered;
 }
 
-/// For all directions together.
+/// Returns the coverage for all directions together.
 double coverage(const MatrixXd& model, double rho, int draws, double jump_at = 2.0) {
   double sum = 0.0;
   for (const Coverage& each : coverage_of_each(model, rho, draws, jump_at)) sum += each.found;
   return sum / static_cast<double>(model.cols());
 }
 
-/// An oscillation that decays within a few samples determines the first of two columns.
+/// The first of two columns is an oscillation that decays within a few samples.
 MatrixXd brief_model(Index samples) {
   MatrixXd columns = MatrixXd::Zero(samples, 2);
   for (Index t = 0; t < samples; ++t) {
@@ -110,7 +110,8 @@ TEST_CASE("sandwich: white noise gives the plain covariance", "[calib]") {
   const MatrixXd none = MatrixXd::Zero(3, 3);
   const auto scatter = score_scatter({{model, residual, 1}}, none, MatrixXd::Identity(3, 3));
   REQUIRE(scatter.size() == 1);
-  // A sum of 4000 squares scatters by 2 %; the kernel doubles that; four times.
+  // The standard deviation of a sum of 4000 squares is 2 %, and the kernel doubles it; the limit is
+  // four times that.
   CHECK((scatter[0].covariance - MatrixXd::Identity(3, 3)).cwiseAbs().maxCoeff() < 0.16);
   CHECK(scatter[0].noise.at(0).phi.empty());
   CHECK(scatter[0].independent_residuals == 4000.0);
@@ -119,9 +120,10 @@ TEST_CASE("sandwich: white noise gives the plain covariance", "[calib]") {
 
 TEST_CASE("sandwich: intervals cover under white, correlated and uneven noise", "[calib]") {
   const MatrixXd model = slow_model(1500);
-  // Binomial, the three directions of a draw independent: 600 at 95 % scatter by 0.9 %; 3.5 times.
+  // Binomial, with independent directions in each draw: 600 intervals at 95 % have a standard
+  // deviation of 0.9 %; the limit is 3.5 times that.
   CHECK_THAT(coverage(model, 0.0, 200 / kPart), WithinAbs(0.95, 0.031 * kWider));
-  // 38 effective samples determine their own correlation to a fifth; t is then not exactly right.
+  // 38 effective samples determine their own correlation to a fifth, so that t is not exact.
   CHECK_THAT(coverage(model, 0.95, 200 / kPart), WithinAbs(0.95, 0.035 * kWider));
   CHECK_THAT(coverage(model, 0.0, 200 / kPart, 0.8), WithinAbs(0.95, 0.031 * kWider));
 }
@@ -129,12 +131,13 @@ TEST_CASE("sandwich: intervals cover under white, correlated and uneven noise", 
 TEST_CASE("sandwich: what a few correlated samples tell is covered no more than it should be",
           "[calib]") {
   const auto covered = coverage_of_each(brief_model(1500), 0.95, 1000 / kPart);
-  // Binomial: 1000 draws at 95 % have a standard deviation of 0.7 %; 3.5 times that. The residuals
-  // of few samples contain their own error, so Student's t alone covers more.
+  // Binomial: 1000 draws at 95 % have a standard deviation of 0.7 %; the limit is 3.5 times that.
+  // If few samples matter, their residuals contain their own error, so that Student's t alone
+  // covers more.
   CHECK_THAT(covered[0].found, WithinAbs(0.95, 0.025 * kWider));
   CHECK(covered[0].by_freedom > 0.98);
   CHECK_THAT(covered[1].found, WithinAbs(0.95, 0.035 * kWider));
-  // Where least squares is the best estimate its residuals are independent of its error.
+  // If least squares is the best estimator, its residuals are independent of its error.
   const MatrixXd model = brief_model(1500);
   const VectorXd noise = Noise(4).draw(1500, 0.0);
   const VectorXd residual = noise - model * (model.transpose() * noise);
@@ -148,7 +151,7 @@ TEST_CASE("sandwich: half width of the interval", "[calib]") {
   RobustVariance robust{1.0, 10.0, 0.0};
   CHECK_THAT(robust.quantile(), WithinRel(student_t(10.0), 1e-12));
   // Three squares that include the error: |sum| / root(sum of squares) is root 3 times the cosine
-  // to a fixed direction in space, which is uniform for normal numbers.
+  // of the angle to a fixed direction in space, which is uniform for normal numbers.
   robust = {1.0, 3.0, 1.0 / 3.0};
   CHECK_THAT(robust.quantile(), WithinRel(0.95 * std::sqrt(3.0), 1e-9));
   robust = {1.0, std::numeric_limits<double>::infinity(), 0.0};
@@ -167,7 +170,8 @@ TEST_CASE("sandwich: two channels with the same noise count once", "[calib]") {
   const MatrixXd each = MatrixXd::Identity(3, 3);
   const auto shared = score_scatter({{model, residual, 2}}, none, each);
   const auto single = score_scatter({{slow_model(2000), residual.head(2000), 1}}, none, each);
-  // Twice that of one channel in these coordinates; 5 %: the small-sample corrections differ.
+  // Twice the variance of one channel in these coordinates. The limit is 5 % because the
+  // small-sample corrections differ.
   CHECK_THAT(robust_variance(shared, none, each, 0).variance,
              WithinRel(2.0 * robust_variance(single, none, each, 0).variance, 0.05));
 }
@@ -193,7 +197,7 @@ TEST_CASE("sandwich: residuals of zero and records of few samples stay finite", 
   const auto few = score_scatter({{slow_model(4), VectorXd::Constant(4, 0.1), 1}}, none, each);
   CHECK(few[0].covariance.allFinite());
   CHECK(std::isfinite(robust_variance(few, none, each, 1).freedom));
-  // A residual that is all drift: no correlation time, but a number all the same.
+  // A residual that is pure drift has no correlation time, but must still give finite values.
   const auto drift =
       score_scatter({{slow_model(200), VectorXd::LinSpaced(200, -1.0, 1.0), 1}}, none, each);
   CHECK(drift[0].covariance.allFinite());
@@ -202,8 +206,9 @@ TEST_CASE("sandwich: residuals of zero and records of few samples stay finite", 
 
 TEST_CASE("sandwich: far from an optimum, one record much further than the other, it stays finite",
           "[calib]") {
-  // The model lacks most of the first record, whose errors are then said to be in what is left of
-  // the second. Less all that, these autocovariances are of no series.
+  // The model misses most of the first record, and the correction then attributes its errors to the
+  // residuals of the second. After subtracting all that, the autocovariances do not belong to any
+  // series.
   constexpr Index kSamples = 1000;
   const MatrixXd slow = slow_model(kSamples) / std::sqrt(2.0);
   MatrixXd fast(kSamples, 3);
@@ -211,7 +216,7 @@ TEST_CASE("sandwich: far from an optimum, one record much further than the other
   VectorXd near(kSamples);
   for (Index t = 0; t < kSamples; ++t) {
     const double turn = 2.0 * std::acos(-1.0) * static_cast<double>(t);
-    // Orthonormal but for the root of 2 that it shares with `slow`.
+    // Orthonormal except for a factor of sqrt(2) that `slow` also has.
     fast.row(t) << std::sin(turn / 20.0), std::cos(turn / 20.0), std::sin(turn / 25.0);
     far(t) = 1.4 * std::cos(turn / 800.0);
     near(t) = std::sin(turn / 200.0) + 0.1 * std::sin(turn / 70.0);
@@ -222,7 +227,8 @@ TEST_CASE("sandwich: far from an optimum, one record much further than the other
   const auto scatter = score_scatter({{slow, far, 1}, {fast, near, 1}}, none, each);
   for (Index j = 0; j < 3; ++j) {
     const RobustVariance robust = robust_variance(scatter, none, each, j);
-    // The square of a combination of all residuals whose squares sum to one is less.
+    // Upper limit: the square of a normalised combination of all residuals cannot exceed their sum
+    // of squares.
     CHECK(robust.variance > 0.0);
     CHECK(robust.variance < far.squaredNorm() + near.squaredNorm());
     CHECK(std::isfinite(robust.quantile()));

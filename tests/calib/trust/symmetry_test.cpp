@@ -13,8 +13,8 @@ using Catch::Contains;
 using datasets::Waveform;
 using model::Experiment;
 
-/// Every term with a force, a pressure or a flow, on. Air is not: it compares pressures with that
-/// of the atmosphere.
+/// A rig with every term that involves a force, a pressure or a flow. Air is left out, because it
+/// compares pressures with atmospheric pressure.
 Experiment everything(model::PlantKind plant) {
   const bool chambers = plant == model::PlantKind::two_chamber;
   Experiment e = chambers ? model::two_chamber_rig() : Experiment();
@@ -42,7 +42,8 @@ Experiment everything(model::PlantKind plant) {
   return e;
 }
 
-/// Largest change of the position, of its peak, where all but `left_out` are scaled by s = 2.
+/// Returns the largest change in position, relative to its peak, if everything except `left_out` is
+/// scaled by s = 2.
 double change(const Experiment& e, std::string_view left_out) {
   Experiment scaled = e;
   for (const model::ParameterSpec& spec : model::parameter_table(e.rig.plant)) {
@@ -64,13 +65,13 @@ TEST_CASE("scaling_exponent: positions stay where all that has one is scaled", "
   const auto plant = GENERATE(model::PlantKind::load_pressure, model::PlantKind::two_chamber);
   const Experiment e = everything(plant);
   CAPTURE(to_string(plant));
-  // The tolerance of the simulations, at the end stops above all.
+  // The limit is the tolerance of the simulations, which matters most at the end stops.
   CHECK(change(e, "") < 5e-6);
   for (const model::ParameterSpec& spec : model::parameter_table(plant)) {
     if (scaling_exponent(spec) == 0.0) continue;
     if (plant == model::PlantKind::two_chamber && spec.key == "payload_mass") continue;
     CAPTURE(spec.key);
-    // Each of them acts here, and counts.
+    // Each of these parameters acts here and matters.
     CHECK(spec.can_be_fitted);
     CHECK(e.values[spec.key] != 0.0);
     CHECK(change(e, spec.key) > 2e-5);
@@ -90,7 +91,8 @@ TEST_CASE("scaling_exponent: what it is of", "[calib]") {
   for (const char* key : {"laminar_leakage", "hose_capacity_a", "supply_capacity"})
     CHECK(exponent(key) == -1.0);
   for (const char* key : {"valve_gain", "leakage_coefficient"}) CHECK(exponent(key) == -0.5);
-  // Density stays, sensors and controllers know positions and volts, smoothing is no physics.
+  // Density is not scaled, sensors and controllers only involve positions and volts, and smoothing
+  // has no physical meaning.
   for (const char* key : {"density", "area_a", "pressure_a_offset", "pressure_a_maximum", "kp",
                           "leakage_smoothing", "stop_damping"})
     CHECK(exponent(key) == 0.0);
@@ -112,7 +114,7 @@ TEST_CASE("symmetry: a prior alone tells the scale, as well as it is stated", "[
   const auto found = scaling_symmetry(problem, problem.start(), 1.0, 1);
   REQUIRE(found.has_value());
   CHECK(found->unknowns.size() == 7);
-  // By a factor of 1.5 the prior is felt with 0.5 / 0.05, per logarithm.
+  // Scaling by a factor of 1.5 changes the residual of the prior by 0.5 / 0.05, divided by ln 1.5.
   CHECK_THAT(found->relative_sd, Catch::WithinRel(0.05 * std::log(1.5) / 0.5, 0.02));
   CHECK_FALSE(found->holds());
   twin.setting("supply_pressure").prior->sd *= 10.0;  // half of the value
@@ -120,8 +122,8 @@ TEST_CASE("symmetry: a prior alone tells the scale, as well as it is stated", "[
 }
 
 TEST_CASE("symmetry: a known supply pressure leaves none", "[calib]") {
-  // Slow and short: mass and bulk modulus together are determined to 10 % at best, but a known
-  // supply pressure, valve gain and damping fix the scale.
+  // A slow, short signal: mass and bulk modulus together are determined to 10 % at best, but a
+  // known supply pressure, valve gain and damping fix the scale.
   Twin twin;
   twin.free("mass", 70.0, 17.0, 425.0);
   twin.free("bulk_modulus", 800e6, 138e6, 3445e6);

@@ -10,7 +10,7 @@
 #include "report/page/page_batch.hpp"
 #include "tests/report/stored_fixture.hpp"
 
-// The row of a rig, and the summary of all rows.
+// Tests for the row of a rig and the summary of all rows.
 
 using Catch::Contains;
 using namespace rigcal::report;
@@ -69,7 +69,7 @@ StoredRigTrend trend_of(const std::string& of, double slope, bool significant) {
   return trend;
 }
 
-/// Cells of a line of a CSV text whose cells contain no commas.
+/// Returns the cells in a line of CSV text. The cells must not contain commas.
 std::vector<std::string> cells(const std::string& text, std::size_t line) {
   std::size_t begin = 0;
   for (; line > 0; --line) begin = text.find('\n', begin) + 1;
@@ -147,7 +147,7 @@ TEST_CASE("batch row: the worst scores, FAIL before WARN, then by rho2", "[repor
                           condition_of("warned", 0.97, "WARN")};
   CHECK(worst(rig_row(run_of(result))) ==
         std::vector<std::string>{"warned", "passes badly", "passes"});
-  // A score without a number may be anything.
+  // A score without a number could have any value, so it is listed before the others.
   result["conditions"][0]["metrics"]["position"]["rho2"] = nullptr;
   CHECK(worst(rig_row(run_of(result))) ==
         std::vector<std::string>{"warned", "passes", "passes badly"});

@@ -15,7 +15,7 @@
 #include "tests/report/stored_fixture.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-// Which differences a comparison reports, their size and order.
+// Which differences a comparison reports, with their size and order.
 
 using Catch::Contains;
 using Catch::WithinRel;
@@ -26,7 +26,7 @@ using rigcal::test::stored_result;
 
 namespace {
 
-/// A fit of the mass to records of its own.
+/// A fit of the mass to its own records.
 ComparedJson fit_of(const std::string& name, double mass_kg, double error_kg = 0.3) {
   Json result = stored_result();
   Json& mass = result["parameters"][0];
@@ -50,7 +50,7 @@ StoredDifference difference(const ComparedJson& first, const ComparedJson& other
   return list[0].differences.at(1).value();
 }
 
-/// Reported percentage of a mass with this interval, if there is one.
+/// Returns the reported percentage for a mass with this interval, if there is one.
 std::optional<double> percent_of(double value, double low, double high, double other = 20.0) {
   ComparedJson first = fit_of("first", value);
   first.result["parameters"][0]["ci95"] = {low, high};
@@ -148,7 +148,7 @@ TEST_CASE("comparison: a difference between two dates contains two days", "[repo
   CHECK_FALSE(same.of_other_dates.has_value());
   CHECK_FALSE(
       difference(on("a", 85.0, nullptr), on("b", 84.0, "2026-03-01")).of_other_dates.has_value());
-  // The page says so.
+  // The page mentions it.
   const auto words = [&](const char* date) {
     StoredComparison comparison = comparison_of(
         compared_parameters(compared_all({on("a", 85.0, "2026-03-01"), on("b", 84.0, date)})));
@@ -157,7 +157,7 @@ TEST_CASE("comparison: a difference between two dates contains two days", "[repo
   };
   CHECK_THAT(words("2026-03-02"), Contains("Fits of different dates"));
   CHECK_THAT(words("2026-03-01"), !Contains("Fits of different dates"));
-  // Each point of a trend has a day of its own.
+  // Each point on a trend has a different day.
   const auto points = trends(compared_all({on("a", 85.0, "2026-03-01")}), "mass").at(0).points;
   CHECK_THAT(*points.at(0).standard_error, WithinRel(std::hypot(0.3, 1.2), 1e-12));
 }
@@ -173,7 +173,7 @@ TEST_CASE("comparison: a known value has no error, and is not fitted to anything
     CHECK_THAT(*found.standard_error, WithinRel(0.3, 1e-12));
     CHECK(found.significant == true);
   }
-  // Also for the same records: a known value does not depend on them.
+  // Known values do not depend on the records, so using the same records makes no difference.
   ComparedJson same = fit_of("fitted", 85.0);
   same.result["provenance"]["inputs"] = known.result["provenance"]["inputs"];
   CHECK(difference(known, same).significant == true);
@@ -212,7 +212,7 @@ TEST_CASE("comparison: a parameter is the same by name, scope and level", "[repo
   nuisance["nuisance"] = true;
   other.result["parameters"].push_back(nuisance);
   const auto list = compared_parameters(compared_all({fit_of("first", 85.0), other}));
-  REQUIRE(list.size() == 4);  // the mass of the rig, the known pressure, the mass of two levels
+  REQUIRE(list.size() == 4);  // mass of the rig, known pressure, mass for each of two levels
   CHECK_FALSE(list[0].estimates[1].has_value());
   CHECK_FALSE(list[0].differences[1].has_value());
   CHECK(list[2].level == "33 %");
@@ -341,7 +341,7 @@ TEST_CASE("comparison: records by their content, whatever their names", "[report
   CHECK(list[2].in == std::vector<bool>{true, true});
   CHECK(share_records(a, b));
   b.result["provenance"]["inputs"][2]["sha256"] = "4";
-  CHECK_FALSE(share_records(a, b));  // campaign file and earlier fit are no records
+  CHECK_FALSE(share_records(a, b));  // campaign file and earlier fit are not records
   CHECK(record_hashes(Compared(b).result).size() == 2);
 }
 
@@ -414,7 +414,7 @@ TEST_CASE("comparison: scores by mean over the conditions of both, an error the 
   add(other, "c1", 0.9, 1.0);
   add(first, "c2", 0.6, 3.0);
   add(other, "c2", 0.5, 2.0);
-  add(first, "c3", 0.7, 1.0);  // in the second result only
+  add(first, "c3", 0.7, 1.0);  // only in the second result
   const auto conditions = compared_conditions(compared_all({first, other}));
   REQUIRE(conditions.size() == 4);
   CHECK(conditions[1].id == "c1");
@@ -526,11 +526,11 @@ TEST_CASE("comparison: estimates of one fit, each of its own conditions, make a 
   REQUIRE(list[0].points.size() == 4);
   CHECK(list[0].points[2].level == "c2");
   CHECK(*list[0].points[2].day - *list[0].points[0].day == 4.0);
-  // They share the files of the fit, but each is estimated from its own.
+  // All estimates come from the same files, but each level from different records.
   CHECK_FALSE(list[0].along_date.reason.has_value());
   CHECK(list[0].along_date.points == 4);
   CHECK_THAT(*list[0].along_date.slope, WithinRel(0.01, 1e-9));
-  // Other parameters and known ones have no trend.
+  // Other parameters and known values have no trend.
   CHECK(trends({Compared(fit)}, "damping").empty());
   CHECK(trends({Compared(fit)}, "supply_pressure").empty());
 }
@@ -562,7 +562,7 @@ TEST_CASE("comparison: an estimate lies at the mean of the days of its condition
     REQUIRE(list[0].points.size() == 1);
     const StoredTrendPoint& point = list[0].points[0];
     CHECK_THAT(*point.temperature_k - 300.0, WithinRel(*point.day - 20512.0, 1e-9));
-    return *point.day - 20512.0;  // day of March 2026
+    return *point.day - 20512.0;  // day in March 2026
   };
   CHECK_THAT(place("rig", nullptr), WithinRel(4.0, 1e-12));
   CHECK_THAT(place("leak_level", "none"), WithinRel(4.5, 1e-12));

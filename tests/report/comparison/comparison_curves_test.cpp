@@ -16,7 +16,7 @@ using namespace rigcal::report;
 
 namespace {
 
-/// A sine of 1 Hz for `seconds` at 100 Hz, and a model that is too high by `error`.
+/// A 1 Hz sine of `seconds` duration sampled at 100 Hz, and a model that is too high by `error`.
 Table sine_series(double seconds, double error, double step_s = 0.01) {
   Table table;
   table.names = {"time_s", "measured_position_m", "simulated_position_m"};
@@ -60,7 +60,7 @@ TEST_CASE("overlaid: other sample times are read between", "[report]") {
       overlaid({{0, sine_series(1.0, 0.0)}, {1, sine_series(0.5, 0.0, 0.004)}}, 0.0);
   const auto& other = table.columns[3];
   CHECK(other[33] == Approx(std::sin(2.0 * M_PI * 0.33)).margin(1e-3));
-  CHECK(std::isnan(other.back()));  // it ended before
+  CHECK(std::isnan(other.back()));  // this record ended earlier
 }
 
 TEST_CASE("overlaid: its CSV is read back to the same bits", "[report]") {

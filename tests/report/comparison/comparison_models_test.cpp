@@ -36,7 +36,7 @@ ComparedJson mass_alone(const std::string& name, double cost) {
   return {name, name + "/fit.json", result};
 }
 
-/// The same with a friction free, which the other one does not have.
+/// The same fit with an additional free parameter, a friction that the other fit does not have.
 ComparedJson with_friction(const std::string& name, double cost) {
   ComparedJson compared = mass_alone(name, cost);
   Json friction = compared.result["parameters"][0];
@@ -55,7 +55,7 @@ TEST_CASE("models: a term that explains more than noise is preferred", "[report]
   const Json json = models_json({mass_alone("plain", 520.0), with_friction("friction", 499.0)});
   REQUIRE(json.size() == 2);
   CHECK(json[0].is_null());
-  // 2 (520 - 499) / (998 / 998) = 42, one parameter more.
+  // 2 (520 - 499) / (998 / 998) = 42, with one more parameter.
   CHECK_THAT(json[1]["likelihood_ratio"].get<double>(), WithinRel(42.0, 1e-12));
   CHECK_THAT(json[1]["delta_aic"].get<double>(), WithinRel(2.0 - 42.0, 1e-12));
   CHECK_THAT(json[1]["delta_bic"].get<double>(), WithinRel(std::log(1000.0) - 42.0, 1e-12));
@@ -63,7 +63,7 @@ TEST_CASE("models: a term that explains more than noise is preferred", "[report]
   CHECK(json[1]["larger"] == "friction");
   CHECK(json[1]["reason"].is_null());
   CHECK_THAT(json[1]["verdict"].get<std::string>(), Contains("friction is preferred"));
-  // The other way round the signs turn, the test does not.
+  // In reverse order the signs change, but the test result does not.
   const Json turned = models_json({with_friction("friction", 499.0), mass_alone("plain", 520.0)});
   CHECK_THAT(turned[1]["delta_aic"].get<double>(), WithinRel(42.0 - 2.0, 1e-12));
   CHECK(turned[1]["p_value"] == json[1]["p_value"]);
@@ -73,7 +73,8 @@ TEST_CASE("models: the share of independent residuals is that of the better one"
   ComparedJson plain = mass_alone("plain", 5000.0);
   plain.result["independent_residuals"] = 20.0;
   const Json json = models_json({plain, with_friction("friction", 499.0)});
-  // With shares of their own the worse model would have 5000 * 2 / 50 against 998.
+  // With a separate fraction for each model, the worse model would have 5000 * 2 / 50 compared with
+  // 998.
   CHECK_THAT(json[1]["delta_aic"].get<double>(), WithinRel(2.0 - 9002.0, 1e-12));
 }
 
@@ -84,7 +85,7 @@ TEST_CASE("models: estimated noise is compared at its own likeliest size", "[rep
   plain.result["weights"][0]["rms"] = 2e-5;
   more.result["weights"][0]["rms"] = 1e-5;
   const Json json = models_json({plain, more});
-  // 2 1000 ln 2, whatever weights the fits ended with, over a variance of 1000 / 998.
+  // 2 * 1000 * ln 2, whatever weights the fits ended with, divided by a variance of 1000 / 998.
   CHECK_THAT(json[1]["likelihood_ratio"].get<double>(),
              WithinRel(2000.0 * std::log(2.0) * 0.998, 1e-12));
 }
@@ -111,7 +112,7 @@ TEST_CASE("models: what is not nested is told by the criteria alone", "[report]"
   known.result["parameters"].push_back(friction);
   CHECK_THAT(models_json({known, bounded})[1]["reason"].get<std::string>(),
              Contains("coulomb_friction lies outside the bounds"));
-  // A term whose bounds leave its absence out, and a fit that is no minimum.
+  // The model with the additional term fits worse, so its fit is not at a minimum.
   const Json worse = models_json({mass_alone("plain", 520.0), with_friction("friction", 900.0)});
   CHECK_THAT(worse[1]["reason"].get<std::string>(),
              Contains("friction has more free parameters and fits worse"));

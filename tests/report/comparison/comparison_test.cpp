@@ -25,7 +25,7 @@ Json comparison_json(const std::vector<ComparedJson>& results, const Provenance&
   return json_of(rigcal::report::compared({results.begin(), results.end()}, provenance));
 }
 
-/// comparison.json as it is read back.
+/// Reads back comparison.json.
 StoredComparison read_back(const Json& json) {
   return rigcal::report::as<StoredComparison>(json, "", "comparison.json");
 }
@@ -42,7 +42,7 @@ rigcal::report::doc::Verdict comparison_headline(const Json& json) {
   return rigcal::report::comparison_headline(read_back(json));
 }
 
-/// Text of a reason, which is a link.
+/// Returns the text of a reason, which is a link.
 std::string reason_of(const rigcal::report::doc::Verdict& verdict, std::size_t i) {
   return std::get<rigcal::report::doc::Link>(verdict.reasons.at(i).front()).words;
 }
@@ -51,7 +51,7 @@ std::string sentence_of(const rigcal::report::doc::Verdict& verdict) {
   return rigcal::report::doc::html(verdict.sentence);
 }
 
-/// A fit with this mass and leak, of records of its own.
+/// A fit with this mass and leak, to its own records.
 ComparedJson compared_fit(const std::string& name, double mass_kg, double leak,
                           double day_shift = 0.0) {
   Json result = stored_result();
@@ -90,9 +90,9 @@ TEST_CASE("comparison: the difference with the errors that the intervals rest on
   CHECK(difference["difference"] == 1.0);
   CHECK_THAT(difference["percent"].get<double>(), WithinRel(100.0 / 85.0, 1e-12));
   CHECK_THAT(difference["standard_error"].get<double>(), WithinRel(std::hypot(0.4, 0.4), 1e-12));
-  // 2 Phi(-1.7678), by an independent computation (scipy.stats.norm)
+  // 2 Phi(-1.7678), computed independently (scipy.stats.norm)
   CHECK_THAT(difference["p_value"].get<double>(), WithinRel(0.07709987174, 1e-8));
-  // The smallest of two, the other being 1.
+  // The smallest of two p-values; the other one is 1.
   CHECK_THAT(difference["p_value_of_all"].get<double>(), WithinRel(2.0 * 0.07709987174, 1e-8));
   CHECK(difference["significant"] == false);
 }
@@ -123,7 +123,7 @@ TEST_CASE("comparison: what both models leave out counts by how differently it m
   const Json same = difference(4e3, 4e3);
   CHECK_THAT(same["standard_error"].get<double>(), WithinRel(std::hypot(0.4, 0.4), 1e-12));
   CHECK_FALSE(same.contains("by_effects"));
-  // Root of the second moment 5e-4 s, times the difference of the moves per second.
+  // Square root of the second moment, 5e-4 s, times the difference in shift per second.
   const Json other = difference(4e3, 1e3);
   CHECK_THAT(other["by_effects"].get<double>(), WithinRel(1.5, 1e-9));
   CHECK_THAT(other["standard_error"].get<double>(), WithinRel(std::hypot(0.4, 0.4, 1.5), 1e-9));
@@ -140,7 +140,8 @@ TEST_CASE("comparison: a clear change is significant, and said so", "[report]") 
 }
 
 TEST_CASE("comparison: several differences are judged together", "[report]") {
-  // 2.1 standard errors each, p = 0.036 (2 Phi(-2.1)): by itself significant, one of two not.
+  // Each differs by 2.1 standard errors, p = 0.036 (2 Phi(-2.1)): significant on its own, but not
+  // as one of two.
   const double mass_kg = 85.0 + 2.1 * std::hypot(0.4, 0.4);
   const double leak = 0.3 + 2.1 * std::hypot(0.01, 0.01);
   const Json both = comparison_json(
@@ -162,12 +163,12 @@ TEST_CASE("comparison: nothing is a percentage of what may be zero", "[report]")
   CHECK_THAT(comparison_text(json, {}), Contains("+0.3 significant p"));
   CHECK_THAT(reason_of(comparison_headline(json), 0),
              Contains("leakage_coefficient differs in after by +0.3 (p"));
-  // Not zero, but its interval includes zero: 0.03 would be +200 %.
+  // The first value is not zero, but its interval includes zero: 0.03 would be +200 %.
   ComparedJson other = compared_fit("after", 87.0, 0.03);
   other.result["provenance"]["inputs"][1]["sha256"] = "before";
   json = comparison_json({compared_fit("before", 85.0, 0.01), other}, {});
   CHECK(json["parameters"][2]["differences"][1]["percent"].is_null());
-  // Two standard errors against 3.5: the mass comes first, though neither can be tested.
+  // Two standard errors compared with 3.5: the mass comes first, although neither can be tested.
   CHECK_THAT(reason_of(comparison_headline(json), 0),
              Contains("mass differs in after by +2.35 %, not tested"));
 }
@@ -206,7 +207,7 @@ TEST_CASE("comparison: errors of few degrees of freedom are judged by Student's 
     compared.result["parameters"][0]["degrees_of_freedom"] = freedom;
     return compared;
   };
-  // 2.5 errors: p = 0.012 by the normal distribution, 0.067 by t with 2 + 2 degrees of freedom.
+  // 2.5 errors: p = 0.012 for the normal distribution, 0.067 for t with 2 + 2 degrees of freedom.
   const double mass_kg = 85.0 + 2.5 * std::hypot(0.4, 0.4);
   const Json json = comparison_json({fit("before", 85.0, 2.0), fit("after", mass_kg, 2.0)}, {});
   const Json& difference = json["parameters"][0]["differences"][1];
@@ -220,7 +221,7 @@ TEST_CASE("comparison: a file without degrees of freedom has those of its interv
   Json& mass = old.result["parameters"][0];
   mass.erase("degrees_of_freedom");
   mass.erase("ci95_from");
-  // With three degrees of freedom the quantile of t is 3.182446. A bound cuts the lower end.
+  // With three degrees of freedom the quantile of t is 3.182446. A bound truncates the lower end.
   mass["ci95"] = {84.9, 85.0 + 3.182446305 * 0.4};
   const Json json = comparison_json({old, compared_fit("after", 86.0, 0.3)}, {});
   CHECK_THAT(json["parameters"][0]["estimates"][0]["degrees_of_freedom"].get<double>(),
@@ -242,7 +243,7 @@ TEST_CASE("comparison: repeats that differ are said of the fit that warned of th
 
 namespace {
 
-/// A fit to one record that scores another one, too; both are among its inputs.
+/// A fit to one record that also scores another one. Both are among its inputs.
 ComparedJson half(const std::string& name, double mass_kg, const std::string& fitted,
                   const std::string& scored) {
   ComparedJson compared = compared_fit(name, mass_kg, 0.3);
@@ -271,7 +272,7 @@ TEST_CASE("comparison: halves that score each other's records are independent", 
   const ComparedJson first = half("h1", 85.0, "one", "two");
   CHECK(is_tested(first, half("h2", 86.0, "two", "one")));
   CHECK_FALSE(is_tested(first, half("again", 86.0, "one", "two")));
-  // Either may come from an earlier version, which does not name the fitted records.
+  // Either result may come from an earlier version, which does not name the fitted records.
   ComparedJson old = half("old", 86.0, "two", "one");
   for (Json& condition : old.result["conditions"]) condition.erase("record_sha256");
   CHECK_FALSE(is_tested(first, old));
@@ -354,7 +355,7 @@ TEST_CASE("comparison: scores over the conditions that both have", "[report]") {
   CHECK(rho2["worse"] == 1);
   CHECK(rho2["mean"] == 0.9);
   CHECK(rho2["mean_of_first"] == 0.99876543);
-  // The sign of one condition proves nothing.
+  // The sign in a single condition proves nothing.
   CHECK(rho2["p_value"].is_null());
   CHECK(rho2["significant"].is_null());
   CHECK(rho2["reason"] == "not tested: 1 condition, and a sign test needs 6");
@@ -378,7 +379,7 @@ TEST_CASE("comparison: a sign test needs six conditions, of records of their own
   CHECK(rho2["p_value"] == 0.03125);  // 2 / 2^6
   CHECK(rho2["significant"] == true);
   CHECK(rho2["reason"].is_null());
-  // A tie speaks for neither.
+  // A tie does not count for either result.
   ComparedJson tied = worse;
   tied.result["conditions"][0]["metrics"]["position"]["rho2"] = 0.99876543;
   const Json of_five = comparison_json({good, tied}, {})["metrics"][0]["against_first"][1];
@@ -400,7 +401,7 @@ TEST_CASE("comparison: what was not tested is not called insignificant", "[repor
   const Json json = comparison_json({compared_fit("one", 85.0, 0.3), other}, {});
   const Json& found = json["significance"][1];
   CHECK(json["significance"][0].is_null());
-  CHECK(found["compared"] == 2);  // the third is known in both
+  CHECK(found["compared"] == 2);  // the third parameter is known in both
   CHECK(found["tested"] == 0);
   CHECK(found["text"] ==
         "2 parameters compared, 0 tested; not tested: mass, leakage_coefficient, because estimated "
@@ -410,7 +411,7 @@ TEST_CASE("comparison: what was not tested is not called insignificant", "[repor
   CHECK(headline.badge.words == "COMPARED");
   CHECK(sentence_of(headline) ==
         "2 results, 2 parameter differences; none could be tested for significance.");
-  // The largest first
+  // The largest comes first.
   CHECK_THAT(reason_of(headline, 0),
              Contains("leakage_coefficient differs in other by -50 %, not tested: estimated from"));
   CHECK_THAT(reason_of(headline, 1), Contains("mass differs in other"));

@@ -43,7 +43,7 @@ TEST_CASE("decimate: few samples stay as they are", "[report]") {
 }
 
 TEST_CASE("decimate: a smooth curve stays smooth", "[report]") {
-  // Least and largest values that are drawn at common times turn a rise into a staircase.
+  // Drawing minimum and maximum at common times would turn a rising curve into a staircase.
   std::vector<double> time(5000);
   std::vector<double> sine(time.size());
   for (std::size_t i = 0; i < time.size(); ++i) {
@@ -56,7 +56,7 @@ TEST_CASE("decimate: a smooth curve stays smooth", "[report]") {
   REQUIRE(x.size() == y.size());
   for (std::size_t i = 0; i < x.size(); ++i) CHECK(y[i] == std::sin(x[i]));
   CHECK(std::is_sorted(x.begin(), x.end()));
-  // A bucket without numbers keeps its times.
+  // A bucket without finite values keeps its times.
   std::fill(sine.begin(), sine.begin() + 100, std::nan(""));
   const std::vector<double> gap = thinned_times(time, sine, thin);
   CHECK(std::all_of(gap.begin(), gap.end(), [](double t) { return std::isfinite(t); }));

@@ -24,7 +24,7 @@ const Trace& trace_named(const Plot& plot, const std::string& name) {
 
 TEST_CASE("histogram_plot: a density in the unit of its axis, over the normal one", "[report]") {
   std::mt19937 random(5);
-  std::normal_distribution<double> normal(1e-3, 2e-3);  // metres
+  std::normal_distribution<double> normal(1e-3, 2e-3);  // in metres
   std::vector<double> residual;
   for (int i = 0; i < 20'000; ++i) residual.push_back(normal(random));
   residual.push_back(std::numeric_limits<double>::quiet_NaN());
@@ -39,10 +39,10 @@ TEST_CASE("histogram_plot: a density in the unit of its axis, over the normal on
   CHECK(bins <= 41);
   const Trace& curve = trace_named(plot, "normal");
   const auto peak = std::max_element(curve.y.begin(), curve.y.end());
-  CHECK_THAT(*peak, WithinRel(1.0 / (2.0 * std::sqrt(2.0 * M_PI)), 0.02));  // 1/mm
+  CHECK_THAT(*peak, WithinRel(1.0 / (2.0 * std::sqrt(2.0 * M_PI)), 0.02));  // in 1/mm
   const double at = curve.x[static_cast<std::size_t>(peak - curve.y.begin())];
-  CHECK_THAT(at, WithinAbs(1.0, 0.2));  // mm
-  // Where a residual is normal, its histogram follows the curve.
+  CHECK_THAT(at, WithinAbs(1.0, 0.2));  // in mm
+  // The histogram of a normal residual follows the curve.
   CHECK_THAT(*std::max_element(area.upper.begin(), area.upper.end()), WithinRel(*peak, 0.15));
 }
 

@@ -62,7 +62,7 @@ TEST_CASE("parity_plot: a single sample far out is a cell of its own", "[report]
                                    [](const Trace& trace) { return trace.style == "sparse"; });
   REQUIRE(sparse != plot.traces.end());
   REQUIRE(sparse->x.size() == 1);
-  CHECK_THAT(sparse->x.front(), WithinAbs(0.0, 0.13));  // within a cell, in mm
+  CHECK_THAT(sparse->x.front(), WithinAbs(0.0, 0.13));  // within one cell, in mm
   CHECK_THAT(sparse->y.front(), WithinAbs(8.0, 0.13));
 }
 
@@ -71,7 +71,7 @@ TEST_CASE("parity_plot: limits of agreement stand where the residual lies", "[re
   std::vector<double> simulated;
   for (int i = 0; i < 100; ++i) {
     measured.push_back(i);
-    simulated.push_back(i + 2.0 + (i % 2 == 0 ? 1.0 : -1.0));  // 2 too high, give or take 1
+    simulated.push_back(i + 2.0 + (i % 2 == 0 ? 1.0 : -1.0));  // 2 too high, plus or minus 1
   }
   const Plot plot = parity_plot("x", measured, simulated, "1", 1.0);
   std::vector<double> shifts;
@@ -86,7 +86,8 @@ TEST_CASE("parity_plot: both axes have one range, so that equality is the diagon
   const std::vector<double> measured{0.0, 1.0, 2.0};
   const std::vector<double> simulated{0.0, 1.0, 10.0};
   const std::string text = svg(parity_plot("x", measured, simulated, "mm", 1.0));
-  // From the lower left corner of the axes (64, 238) to the upper right one, with a little room.
+  // From the lower left corner of the axes (64, 238) to the upper right corner, with a small
+  // margin.
   CHECK_THAT(text, Contains("class=\"line measured\" d=\"M70.1 231.9L273.9 28.1\""));
   CHECK_THAT(text, Contains("class=\"cells "));
 }

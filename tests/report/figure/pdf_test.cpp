@@ -25,7 +25,7 @@ TEST_CASE("pdf: a plot of every kind is a document, the same bytes each time", "
   CHECK(text.rfind("%%EOF") > text.size() - 10);
   CHECK(text.size() > 1000);
   CHECK(pdf(plot) == text);
-  CHECK_THAT(text, Contains("/FontFile2"));  // embedded
+  CHECK_THAT(text, Contains("/FontFile2"));  // the font is embedded
   CHECK_THAT(text, !Contains("Helvetica"));
   CHECK_THAT(pdf(Plot{}), StartsWith("%PDF-1."));
 }

@@ -14,7 +14,7 @@ using rigcal::report::Trace;
 
 namespace {
 
-/// What a program prints; nothing where it is not installed or fails.
+/// Returns the output of a program; empty if it is not installed or fails.
 std::string printed_by(const std::string& command) {
   std::string text;
   FILE* pipe = ::popen(command.c_str(), "r");

@@ -48,7 +48,7 @@ TEST_CASE("svg: a logarithmic axis leaves out what has no logarithm", "[report]"
 TEST_CASE("svg: ticks are round and within their range", "[report]") {
   CHECK(round_ticks(0.0, 10.0, 5) == std::vector<double>{0.0, 2.0, 4.0, 6.0, 8.0, 10.0});
   CHECK(round_ticks(1.0, 1.0, 5).empty());
-  // A step that is lost in rounding would never reach the end.
+  // If the step were lost in rounding, the loop would never reach the end.
   const double next = std::nextafter(1.0, 2.0);
   CHECK(round_ticks(1.0, next, 5).empty());
   CHECK(round_ticks(-next, -1.0, 5).empty());

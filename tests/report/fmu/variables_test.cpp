@@ -19,7 +19,7 @@
 #include "report/fmu/zip.hpp"
 #include "tests/model/linkage_rig.hpp"
 
-// The description of a rig that an importer reads.
+// The description of a rig as an importer reads it.
 
 using namespace rigcal;
 using Catch::Contains;
@@ -59,7 +59,7 @@ bool has(const std::vector<FmuVariable>& variables, const std::string& name) {
                      [&](const FmuVariable& each) { return each.name == name; });
 }
 
-/// Element of a variable in the XML.
+/// Returns the XML element of a variable.
 std::string element(const std::string& xml, const std::string& name) {
   const std::size_t at = xml.find("<ScalarVariable name=\"" + name + "\"");
   REQUIRE(at != std::string::npos);
@@ -121,7 +121,7 @@ TEST_CASE("fmu variables: an arm is told in radians, and its pilot pressure driv
   CHECK(variables.front().unit == "Pa");
   CHECK(named(variables, "angle").unit == "rad");
   CHECK(named(variables, "angle").is_state);
-  CHECK(named(variables, "position").causality == Causality::output);  // the piston's
+  CHECK(named(variables, "position").causality == Causality::output);  // the position of the piston
   CHECK(named(variables, "der(pump_demand)").unit == "1");
   CHECK(named(variables, "lever_curvature").unit == "m/rad3");
   for (const char* absent : {"external_force", "command", "payload_acceleration", "stroke"})
@@ -151,7 +151,7 @@ TEST_CASE("fmu variables: states, outputs and rates by their references", "[repo
   CHECK(force.unit == "N");
   CHECK(has(variables, "command"));
   CHECK_FALSE(named(variables, "command").causality == Causality::input);
-  // In an open loop the command is an input, so it is no output.
+  // In an open loop the command is an input and therefore not an output.
   CHECK(named(variables_of(load_rig(false)), "command").causality == Causality::input);
   std::size_t rates = 0;
   for (const FmuVariable& each : variables) {
@@ -266,7 +266,7 @@ TEST_CASE("fmu description: each kind of variable", "[report]") {
                                  "dependenciesKind=\"constant\"/>\n      <Unknown index=\"5\""));
   CHECK_THAT(element(xml, "der(position)"), Contains("derivative=\"4\""));
   CHECK_THAT(element(xml, "der(velocity)"), Contains("derivative=\"5\""));
-  // Initial unknowns are all outputs, states and rates, each listed once.
+  // The initial unknowns are all outputs, states and rates, each listed once.
   const std::string initial = structure.substr(structure.find("<InitialUnknowns>"));
   const auto variables = variables_of(rig);
   for (std::size_t i = 0; i < variables.size(); ++i) {

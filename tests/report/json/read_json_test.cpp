@@ -26,10 +26,10 @@ TEST_CASE("read_json: every kind of value, with brackets and quotes within texts
   const Json json =
       parsed_as(R"({"a": [1, -2.5e3, 1e-999, true, null], "b": "[{\"\\", "c": {"d": ":,"}})");
   CHECK(json.at("a").at(1) == -2500.0);
-  CHECK(json.at("a").at(2) == 0.0);  // too small for a double is zero
+  CHECK(json.at("a").at(2) == 0.0);  // a number too small for a double becomes zero
   CHECK(json.at("b") == "[{\"\\");
   CHECK(json.at("c").at("d") == ":,");
-  // Behind a quote that is escaped, brackets are text still.
+  // After an escaped quote, brackets are still text.
   JsonLimits limits;
   limits.depth = 1;
   CHECK(parsed_as(R"(["\"[[["])", limits).at(0) == "\"[[[");
@@ -50,7 +50,7 @@ TEST_CASE("read_json: a number beyond the range of a double", "[report]") {
   CHECK_THROWS_WITH(parsed_as("[1,\n 4.57e299]"),
                     Contains("f.json:2:2: the number 4.57e299 is too large"));
   CHECK(parsed_as("[1e149, -1e149]").size() == 2);
-  // Too large by its digits, not by its exponent.
+  // These are too large because of their digits, not their exponent.
   CHECK_THROWS_AS(parsed_as("[1" + std::string(400, '0') + "]"), InputError);
   CHECK_THROWS_AS(parsed_as("[1" + std::string(400, '0') + "e-1]"), InputError);
   CHECK(parsed_as("[0." + std::string(400, '0') + "1]").at(0) == 0.0);
@@ -77,7 +77,7 @@ TEST_CASE("read_json: each limit, kept and broken by one", "[report]") {
   CHECK_NOTHROW(parsed_as("[1]", limits));
   CHECK_THROWS_WITH(parsed_as("[12]", limits), Contains("has 4 bytes"));
   limits = {};
-  limits.key_comparisons = 8;  // two objects of two keys
+  limits.key_comparisons = 8;  // two objects with two keys each
   CHECK_NOTHROW(parsed_as(R"([{"a": 1, "b": 2}, {"a": 1, "b": 2}])", limits));
   CHECK_THROWS_WITH(parsed_as(R"([{"a": 1, "b": 2}, {"a": 1, "b": 2, "c": 3}])", limits),
                     Contains("an object of 3 keys"));

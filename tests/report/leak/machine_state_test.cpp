@@ -107,7 +107,7 @@ TEST_CASE("machine_state: numbers of a verdict, nothing without one", "[report]"
   CHECK(told.nearest_limit->distance_percentage_points == Approx(5.0));
   CHECK(told.agreement->agree);
   const auto json = report::json_of(told);
-  CHECK(json["class"] == "medium");  // among the keys of the state itself
+  CHECK(json["class"] == "medium");  // one of the keys of the state itself
   CHECK(json["class_probabilities"]["medium"] == 0.98);
   state.failure = "it did not run";
   const auto failed = report::json_of(report::stored(state));

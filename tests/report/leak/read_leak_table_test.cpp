@@ -43,7 +43,7 @@ EarlierLeakTable read_table_text(const std::string& text) {
   return read_leak_table(folder.write("leak_table.json", text), model::PlantKind::load_pressure);
 }
 
-/// The message about the table in which `from` was replaced.
+/// Returns the error message for the table with `from` replaced.
 std::string table_complaint(const std::string& from, const std::string& to) {
   try {
     read_table_text(test::replaced(kTable, from, to));
@@ -92,7 +92,7 @@ TEST_CASE("take_limits: rows are the upper limits of slight, medium and critical
   CHECK(limits_by({2.0, 8.0, 18.0, 28.0, 50.0}) == std::array{0.02, 0.08, 0.18, 0.28});
   CHECK_THROWS_WITH(limits_by({10.0, 20.0}), Contains("2 rows"));
   CHECK_THROWS_WITH(limits_by({1.0, 2.0, 3.0, 4.0, 5.0, 6.0}), Contains("6 rows"));
-  // The limit of normal as the first of four rows would shift all classes by one.
+  // If the first of four rows were the limit of normal, all classes would shift by one.
   CHECK_THROWS_WITH(limits_by({1.0, 10.0, 20.0, 30.0}), Contains("normal ends at 1 %"));
   datasets::DiagnosisSettings settings;
   take_limits(settings, {10.0, 20.0, 30.0, 50.0}, "leak_table.json");
@@ -119,7 +119,7 @@ TEST_CASE("rig_differences: names what flows depend on, with both values", "[rep
   const auto differences = rig_differences(table, campaign, fitted);
   REQUIRE(differences.size() == 1);
   CHECK(differences[0] == "mass is 60 kg in the table, 85 kg in the diagnosis");
-  // A term that the table's rig had.
+  // A term that only the table's rig has.
   table.rig.emplace_back(index("coulomb_friction"), 50.0);
   CHECK_THAT(rig_differences(table, campaign, {}).at(0), Contains("coulomb_friction is 50 N"));
 }

@@ -44,7 +44,7 @@ TEST_CASE("live rig: ranges are the bounds of the campaign, else around the valu
   CHECK(kp.at("group") == "controller");
   CHECK(kp.at("slider").at("upper") == 5.0 * 78.74);
   CHECK(parameter(rig, "leakage_coefficient").at("slider").at("scale") == "cubic");
-  // An absent spring has neither bounds nor a value from which a range could follow.
+  // A spring that does not exist has neither bounds nor a value to derive a range from.
   CHECK(parameter(rig, "stiffness").at("slider").is_null());
   CHECK(parameter(rig, "valve_gain").at("unit") == "µm/V");
 }
@@ -72,7 +72,7 @@ TEST_CASE("live rig: the published table is there for its own rig and drive", "[
   CHECK(slight.at("printed").at("std").at("left_out") == true);
   CHECK_THAT(slight.at("reason").get<std::string>(), Catch::Contains("printed std"));
   CHECK(rig.at("residual_scale") == 55.35);
-  // With another drive, or with the values of a fit, the levels remain, but not what was published.
+  // With another drive, or with fitted values, the levels remain but the published values do not.
   cases.erase(cases.begin(), cases.begin() + 6);
   const Json other = live_rig(campaign, cases);
   REQUIRE(other.at("levels").size() == 5);

@@ -79,10 +79,10 @@ TEST_CASE("average_figures: the band is the variation between repeats", "[report
   REQUIRE(figures.size() == 2);
   const Trace& band = figures[0].plot.traces[0];
   CHECK(band.kind == Trace::Kind::band);
-  CHECK(band.y[1] == Approx(18.0));  // mm
+  CHECK(band.y[1] == Approx(18.0));  // in mm
   CHECK(band.upper[1] == Approx(22.0));
   CHECK(figures[1].plot.traces[0].y[1] == Approx(2.0));
-  // One repeat alone has no scatter.
+  // A single repeat has no scatter.
   const Table single =
       parse_table("time_s,position_m_mean,position_m_sd,position_m_count\n0,0.01,,1\n0.1,0.02,,1\n",
                   "sine.csv");
@@ -105,12 +105,13 @@ TEST_CASE("page: what each record tells of each parameter", "[report]") {
   CHECK_THAT(html, Contains("bulk_modulus_pa is not determined: add a pressure"));
   CHECK_THAT(html, Contains("2 fast (planned)") && Contains("From all records but one (2)"));
   const auto figures = plan_figures({as<StoredPlan>(stored_plan(), "folder", "plan.json"), {}});
-  REQUIRE(figures.size() == 1);  // nothing is known about the other
+  REQUIRE(figures.size() == 1);  // nothing is known about the other record
   REQUIRE(figures[0].plot.traces.size() == 2);
   CHECK(figures[0].plot.traces[0].upper[0] == Approx(25.0));  // (0.4 / 0.8)^2
   CHECK(figures[0].plot.traces[1].upper[0] == Approx(64.0));
   CHECK(figures[0].plot.traces[0].style != figures[0].plot.traces[1].style);
-  // A record of which nothing is known says nothing of any parameter; half a list is none.
+  // A record about which nothing is known gives no information on any parameter. An incomplete list
+  // is an error.
   Json json = stored_plan();
   json["records"][1]["sd_alone"] = json["records"][1]["sd_without"] = Json::array();
   CHECK_THAT(page_with("plan.json", json), Contains("2 fast (planned)"));

@@ -32,7 +32,7 @@ std::string page(const Json& json, const std::string& file = "fit.json", int thr
   return result_page(read, "folder", threads).html;
 }
 
-/// Text between the tags of the first element of this class.
+/// Returns the text inside the first element with this class.
 std::string word_of(const std::string& html) {
   const std::size_t begin = html.find("<p class=\"word\">");
   return html.substr(begin, html.find("</p>", begin) - begin);
@@ -40,7 +40,7 @@ std::string word_of(const std::string& html) {
 
 }  // namespace
 
-/// Adds a reason to an aspect, and gives the aspect its state.
+/// Adds a reason to an aspect, and sets the state of the aspect.
 void speak(Json& json, const char* aspect, const char* state, const char* code,
            const std::string& words) {
   Json& found = json["assessment"][aspect];
@@ -64,7 +64,7 @@ TEST_CASE("page: sections in the order of the guide", "[report]") {
     at = found;
   }
   CHECK_THAT(html, Contains("href=\"#condition-sine\"") && Contains("id=\"condition-sine\""));
-  // The plot library names its home in a comment; nothing leads out of the page.
+  // The plot library names its website in a comment, but nothing links outside the page.
   for (const char* outside : {"src=\"", "href=\"http", "@import", "url(http"})
     CHECK_THAT(html, !Contains(outside));
 }
@@ -96,7 +96,8 @@ TEST_CASE("page: of many conditions the worst are shown in full", "[report]") {
   const std::string few = with(40);
   for (int i = 0; i < 40; ++i) CHECK(is_full(few, fmt::format("c{}", i)));
   const std::string many = with(101);
-  // One that could not be simulated, one that fails, and those that use most of their limits.
+  // Shown in full: the condition that could not be simulated, the one that fails, and those that
+  // use most of their limits.
   for (int i = 0; i < 101; ++i) {
     CAPTURE(i);
     CHECK(is_full(many, fmt::format("c{}", i)) == (i == 1 || i == 3 || (i % 2 == 0 && i >= 66)));
@@ -129,8 +130,8 @@ TEST_CASE("page: three numbers and every condition as a picture", "[report]") {
   CHECK_THAT(cells, Contains("href=\"#condition-sine\""));
   CHECK_THAT(cells, Contains("class=\"line measured\"") && Contains("class=\"line model\""));
   CHECK_THAT(cells, Contains("position of sine, measured and model"));
-  CHECK_THAT(cells, !Contains("class=\"line grid\""));  // no axes in a small picture
-  // What was not simulated has a cell without a picture.
+  CHECK_THAT(cells, !Contains("class=\"line grid\""));  // a small picture has no axes
+  // A condition that was not simulated has a cell without a picture.
   json["conditions"][0]["id"] = "lost";
   const std::string without = page(json);
   CHECK_THAT(without,
@@ -168,7 +169,7 @@ TEST_CASE("page: the three numbers are the worst of all channels and estimates",
       json["conditions"][0]["metrics"]["load_pressure"];
   json["conditions"][0]["expanded_uncertainty"]["load_pressure"]["rho2"] = 0.00123;
   CHECK_THAT(page(json), Contains("load pressure of sine, no limit, U 0.0012<"));
-  // A stopped search has no uncertainties and no grades.
+  // A stopped search has neither uncertainties nor grades.
   json["status"] = "stopped";
   json["stopped_in"] = "starts";
   const std::string stopped = page(json);
@@ -415,7 +416,7 @@ TEST_CASE("page: long lists are folded, with their number", "[report]") {
   const Json condition = json["conditions"][0];
   for (int i = 1; i < 9; ++i) {
     json["conditions"].push_back(condition);
-    json["conditions"].back()["id"] = "sine";  // whose series there is
+    json["conditions"].back()["id"] = "sine";  // there is a series for this condition
     json["warnings"].push_back("doubtful");
   }
   CHECK_THAT(page(json), Contains("<details open>\n<summary>Warnings (8)</summary>"));
@@ -538,7 +539,7 @@ TEST_CASE("page: refuses what is no result of this version", "[report]") {
 }
 
 TEST_CASE("page: 24 conditions stay below 8 MB, however long they are", "[report]") {
-  // From about 6000 samples on all are thinned to the same number of points.
+  // From about 6000 samples on, all records are thinned to the same number of points.
   constexpr int kSamples = 7000;
   Json json = stored_result();
   const Json condition = json["conditions"][0];
@@ -571,7 +572,7 @@ TEST_CASE("page: 24 conditions stay below 8 MB, however long they are", "[report
 
 TEST_CASE("page: page one is what is signed", "[report]") {
   Json json = stored_result();
-  json["parameters"][0]["ci95"] = {84.96043529, 85.06235529};  // 1.96 errors to both sides
+  json["parameters"][0]["ci95"] = {84.96043529, 85.06235529};  // 1.96 standard errors on each side
   Json& condition = json["conditions"][0];
   condition["use"] = "validate";
   condition["expanded_uncertainty"]["position"] = condition["metrics"]["position"];
@@ -652,8 +653,8 @@ TEST_CASE("page: the foot of every sheet says whose report it is", "[report]") {
   CHECK_THAT(style,
              Contains("Bench 4 · PASS · issued 2026-03-02 · relates only to the items tested"));
   CHECK_THAT(style, Contains("SHA-256 of fit.json ") && Contains("counter(page)"));
-  // A sensor that was overdue on the last day of the test is red; one that is due on that day is
-  // not.
+  // A sensor whose calibration was overdue on the last day of the test is red; one that is due on
+  // that day is not.
   CHECK_THAT(
       html, Contains("<span class=\"tag bad\"><span aria-hidden=\"true\">✕</span> due 2025-01-31"));
   CHECK_THAT(html, Contains("LVDT, due 2026-02-27"));

@@ -18,7 +18,7 @@ TEST_CASE("fit choices: what nobody asked for is the campaign's", "[report][run]
   calib::FitOptions settings = fit_options(campaign, 3, cancel);
   apply({}, settings);
   CHECK(settings.starts == 4);
-  CHECK(settings.further_starts == 3);  // where that ends at no minimum
+  CHECK(settings.further_starts == 3);  // used if the single start does not end at a minimum
   CHECK(settings.max_seconds == 7.0);
   CHECK(settings.max_iterations == 11);
   CHECK(settings.posterior == 700);
@@ -68,7 +68,7 @@ TEST_CASE("fit choices: a provenance names inputs and what the starts rest on", 
   CHECK(provenance.seed == 3);
   CHECK(provenance.options == std::vector<std::pair<std::string, std::string>>{
                                   {"set", ""}, {"free", ""}, {"starts", "6"}});
-  REQUIRE(provenance.inputs.size() == 7);  // the campaign, two conditions of three repeats
+  REQUIRE(provenance.inputs.size() == 7);  // the campaign, and two conditions with three repeats
   CHECK(provenance.inputs.front().path == campaign.file.string());
 }
 

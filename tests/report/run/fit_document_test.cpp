@@ -4,7 +4,7 @@
 #include "report/document/render_terminal.hpp"
 #include "report/run/write_result.hpp"
 
-// What a terminal shows of a fit: the document of its page.
+// A terminal shows the same document for a fit as its page.
 
 namespace rigcal::report {
 namespace {
@@ -51,7 +51,7 @@ TEST_CASE("fit on a terminal: what was stopped says so first and grades nothing"
   CHECK_THAT(scene.shown(), StartsWith("STOPPED: Ended before") &&
                                 Contains("- stopped by the time limit") &&
                                 !Contains("identified") && !Contains("WARN"));
-  // After the search the estimates are shown, with the missing parts.
+  // After the search the estimates are shown, and the missing steps are named.
   scene.fit.stopped_in = calib::StoppedIn::bootstrap;
   CHECK_THAT(scene.shown(), StartsWith("STOPPED: ") && Contains("not all that was asked for") &&
                                 Contains("identified") && Contains("± 0.20"));

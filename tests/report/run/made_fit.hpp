@@ -11,7 +11,7 @@
 
 namespace rigcal::test {
 
-/// Their fit.
+/// A fit to the synthetic records of MadeRig.
 struct MadeFit : MadeRig {
   MadeFit() {
     report::apply({}, settings);

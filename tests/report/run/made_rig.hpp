@@ -9,7 +9,7 @@
 
 namespace rigcal::test {
 
-/// Synthetic records of the rig of the tutorial, in a folder that goes with the test.
+/// Synthetic records of the tutorial's rig, in a folder that is deleted after the test.
 class MadeRig {
  public:
   MadeRig() {

@@ -25,7 +25,7 @@ TEST_CASE("written result: the JSON comes last, and names the others", "[report]
   for (const Json& file : fit["provenance"]["files"])
     CHECK(sha256_of_file(out / file["path"].get<std::string>()) ==
           file["sha256"].get<std::string>());
-  // What a terminal shows is what the page shows.
+  // The terminal shows the same as the page.
   REQUIRE(written.documents.size() == 1);
   CHECK(doc::render_terminal(written.documents[0], {}) ==
         doc::render_terminal(document_of(fitted.result()), {}));

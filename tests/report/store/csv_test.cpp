@@ -9,7 +9,7 @@ using datasets::Channel;
 
 namespace {
 
-/// One condition of three samples, of which the last does not count.
+/// One condition with three samples. The last one is outside the window.
 struct ThreeSamples {
   datasets::Campaign campaign;
   std::vector<datasets::Record> records;
@@ -101,7 +101,8 @@ TEST_CASE("residual_table: what is read back of the text, to the last bit", "[re
   ThreeSamples result;
   calib::ConditionScore& score = result.fit.conditions[0];
   score.time_s = {0.1, 0.2, 0.1 + 0.2};
-  score.series[Channel::position] = {{1.0 / 3.0, -0.0, 1e-310}, {2e300, 1e17}};  // one is missing
+  score.series[Channel::position] = {{1.0 / 3.0, -0.0, 1e-310},
+                                     {2e300, 1e17}};  // one value is missing
   score.drive = {std::numeric_limits<double>::infinity(), -1e-5, 123456789012345680.0};
   const report::Table made = report::residual_table(
       {report::ResultKind::fit, result.campaign, result.records, result.fit, result.provenance},

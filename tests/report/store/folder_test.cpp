@@ -191,8 +191,8 @@ TEST_CASE("HeldFolder: a manifest lists each file with the hash of what stands",
     CHECK(file.sha256 == sha256_of_file(folder.work() / file.path));
     CHECK(file.verb == "fit");
   }
-  // A run that was killed before the last rename leaves both hashes of a file; both count as
-  // rigcal's.
+  // If a run was killed before the last rename, the manifest contains two hashes of a file. A file
+  // with either of them counts as written by rigcal.
   auto both = files;
   both.push_back({"sub/a", sha256_of_text("abc"), "fit"});
   folder.write(kManifestFile, manifest_text(both));

@@ -10,7 +10,7 @@
 #include "report/store/kept_tasks.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-// Which results of tasks are written, and which are read again.
+// Which task results are written, and which are read back.
 
 using rigcal::FarmJob;
 using rigcal::TaskResult;
@@ -28,7 +28,7 @@ Provenance seeded(unsigned long seed) {
   return provenance;
 }
 
-/// Tasks that were computed, and the bytes reported for each.
+/// The tasks that were computed, and the bytes reported for each task.
 struct Run {
   std::size_t found = 0;
   std::set<std::size_t> made;
@@ -55,7 +55,7 @@ Run run_kept(const std::filesystem::path& file, const FarmJob& job, bool resume 
 const FarmJob kJob{"profiles", "state", 3, 1, {}};
 const std::set<std::size_t> kAll{0, 1, 2};
 
-/// Start of each entry, which begins with its length in sixteen digits.
+/// Returns the start of each entry, which begins with its length in sixteen digits.
 std::vector<std::size_t> begins(const std::string& text) {
   std::vector<std::size_t> list;
   for (std::size_t at = 0; at < text.size();) {
@@ -105,7 +105,8 @@ TEST_CASE("kept tasks: a result belongs to its job by name, state, number of tas
   CHECK(run_kept(file, {"folds", "state", 3, 1, {}}).made == kAll);
   CHECK(run_kept(file, {"profiles", "other", 3, 1, {}}).made == kAll);
   CHECK(run_kept(file, {"profiles", "state", 4, 1, {}}).made.size() == 4);
-  CHECK(run_kept(file, {"profiles", "state", 3, 2, {}}).made.empty());  // lanes have no effect
+  CHECK(run_kept(file, {"profiles", "state", 3, 2, {}}).made.empty());  // the number of lanes has
+                                                                        // no effect
   CHECK(run_kept(file, kJob).made.empty());
   ThreadFarm farm;
   KeptTasks other(farm, file, seeded(8), true);
@@ -138,7 +139,8 @@ TEST_CASE("kept tasks: a damaged entry and all behind it are made again, those b
   CHECK(found_in("") == 0);
   for (std::size_t entry = 0; entry < 3; ++entry) {
     CAPTURE(entry);
-    // A digit of the length, of the hash and of the content, and an end within each of them.
+    // Damages a digit of the length, of the hash and of the content, and truncates within each of
+    // them.
     for (const std::size_t place :
          {std::size_t{15}, std::size_t{16}, std::size_t{79}, std::size_t{80}, std::size_t{95}}) {
       CAPTURE(place);

@@ -19,7 +19,7 @@ using rigcal::test::text_of;
 
 namespace {
 
-/// Runs a job of ten tasks; every third is cut short.
+/// Runs a job with ten tasks; every third task is interrupted.
 struct Made {
   std::size_t found = 0;
   int calls = 0;
@@ -53,7 +53,7 @@ TEST_CASE("kept tasks: what is whole is not made again", "[report]") {
   CHECK(run(file, provenance, false).calls == 10);
   const Made again = run(file, provenance, true, "state", true);
   CHECK(again.found == 6);
-  CHECK(again.calls == 4);  // 0, 3, 6 and 9 were cut short
+  CHECK(again.calls == 4);  // tasks 0, 3, 6 and 9 were interrupted
   REQUIRE(again.results.size() == 10);
   for (std::size_t i = 0; i < 10; ++i)
     CHECK(again.results[i].bytes == "result " + std::to_string(i));

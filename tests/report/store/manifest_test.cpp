@@ -38,12 +38,12 @@ TEST_CASE("manifest: results of earlier versions are known by hash, schema and h
   folder.write("fit.json",
                result("rigcal.fit/1", R"(, "files": [)" + named("residuals/a.csv", "x") + ", " +
                                           named("fitted.toml", "x") + "]"));
-  // A fit and a validation share a file name; the later result wrote the file.
+  // A fit and a validation both have a file of this name; the later result wrote it.
   folder.write("validation.json", result("rigcal.validation/1",
                                          R"(, "files": [)" + named("residuals/a.csv", "y") + "]"));
   folder.write("residuals/a.csv", "y");
   folder.write("fitted.toml", "# Written by rigcal fit, and edited");  // its hash differs
-  folder.write("average.json", result("rigcal.average/1", ""));        // it lists no files
+  folder.write("average.json", result("rigcal.average/1", ""));        // it does not list any files
   folder.write("averaged/a.csv", "time_s,position_m_mean,position_m_sd,position_m_count\n0,1,,1\n");
   folder.write("averaged/b.csv", "t,x_mean,y\n");
   folder.write("plan.json", result("rigcal.fit/1", ""));

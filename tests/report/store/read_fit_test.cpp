@@ -10,7 +10,7 @@ using namespace rigcal::report;
 
 namespace {
 
-/// A fit of mass and damping, and of the valve gain if the matrix has three rows.
+/// Returns a fit of mass and damping, and also of the valve gain if the matrix has three rows.
 Json fit_of(const Json& matrix) {
   Json fit = rigcal::test::stored_result();
   Json names = Json::array({"mass_kg"});
@@ -68,7 +68,7 @@ TEST_CASE("read_fit: own values of conditions without correlations have their er
   REQUIRE(spread.own.size() == 2);
   CHECK(spread.own[0].estimates.at(0).level == "first");
   CHECK(spread.own[1].estimates.at(0).level == "second");
-  const double widened = shared(0, 0) / (0.026 * 0.026);  // to the interval of mass
+  const double widened = shared(0, 0) / (0.026 * 0.026);  // widened to the interval of the mass
   for (std::size_t i = 0; i < 2; ++i) {
     const Eigen::MatrixXd all = spread.own[i].root * spread.own[i].root.transpose();
     REQUIRE(all.rows() == 3);

@@ -13,7 +13,7 @@ using namespace rigcal::report;
 
 namespace {
 
-/// JSON with what fits on a line on one.
+/// Formats JSON so that everything that fits on one line is written on one line.
 std::string compact(const Json& json, const std::string& indent = "") {
   constexpr std::size_t kLine = 110;
   const std::string line = json.dump();
@@ -53,10 +53,11 @@ void check_schema(const std::string& name) {
   check_schema(name, schema_of<T>());
 }
 
-/// Schema of a fit to records, or to published tables, which says so in a key and has no records.
+/// Returns the schema for a fit. A fit to published tables has a key that says so, and has no
+/// records.
 Json result_schema() {
   Json of_records = schema_of<StoredFit>();
-  // A result without estimation has no cost: zero would look like a perfect fit.
+  // A result without estimation has no cost, because zero would look like a perfect fit.
   of_records["anyOf"] = {{{"properties", {{"starts", {{"minItems", 1}}}}}},
                          {{"properties", {{"cost", {{"type", "null"}}}}}}};
   of_records["not"] = {{"required", Json::array({"of"})}};
@@ -67,7 +68,7 @@ Json result_schema() {
 
 }  // namespace
 
-// RIGCAL_WRITE_SCHEMAS=1 build/release/tests/report_tests "schema: *" writes them anew.
+// To regenerate the files: RIGCAL_WRITE_SCHEMAS=1 build/release/tests/report_tests "schema: *"
 TEST_CASE("schema: files in docs/schema are those of the types", "[report]") {
   check_schema("result", result_schema());
   check_schema<StoredAverage>("average");

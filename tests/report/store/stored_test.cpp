@@ -14,7 +14,7 @@ using namespace rigcal::report;
 
 namespace {
 
-/// Reads only these JSON files, and notes which others were requested.
+/// Reads only these JSON files, and records which other files were requested.
 struct StoredFiles {
   std::map<std::string, Json> json;
   std::vector<std::string> others;
@@ -61,7 +61,7 @@ TEST_CASE("stored: the files of another run are refused", "[report]") {
   CHECK_THROWS_WITH(load_calibration(files.reader(), "folder", 1),
                     Contains("folder/residual_tests.json") &&
                         Contains("is not the file that fit.json was written with"));
-  fit["provenance"].erase("files");  // by an earlier version
+  fit["provenance"].erase("files");  // as in a file from an earlier version
   CHECK_NOTHROW(load_calibration(files.reader(), "folder", 1));
 }
 

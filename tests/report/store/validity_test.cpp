@@ -52,7 +52,8 @@ TEST_CASE("coverage: what conditions and the narrower scope of a fit tell", "[re
     return p;
   };
   rigcal::calib::Fit fit;
-  // Whatever the order, a condition's own value beats its leak level's, and that the rig's.
+  // Whatever the order, a condition's own value overrides that of its leak level, which overrides
+  // that of the rig.
   fit.parameters = {parameter("leakage_coefficient", Scope::condition, "sine", 0.7),
                     parameter("leakage_coefficient", Scope::condition, "other", 9.0),
                     parameter("leakage_coefficient", Scope::leak_level, "none", 5.0),
@@ -71,7 +72,7 @@ TEST_CASE("coverage: what conditions and the narrower scope of a fit tell", "[re
     CHECK(range->high == high);
   };
   is(found.frequency_hz, 0.5, 8.0);
-  is(found.amplitude, 0.002, 0.004);  // half of -1 to 3 mm
+  is(found.amplitude, 0.002, 0.004);  // half of the range from -1 to 3 mm
   is(found.supply_pressure_pa, 6.1e6, 7e6);
   auto recorded = campaign;
   recorded.conditions = {chirp};

@@ -11,7 +11,8 @@ namespace {
 
 double number_of(const std::string& text) { return std::stod(text); }
 
-/// Place value of the last digit of a text; for a whole number, of its last digit that is not zero.
+/// Returns the place value of the last digit in a text; for a whole number, of its last non-zero
+/// digit.
 double step_of(const std::string& text) {
   const std::size_t exponent = std::min(text.find('e'), text.size());
   const int power = exponent < text.size() ? std::stoi(text.substr(exponent + 1)) : 0;
@@ -23,7 +24,7 @@ double step_of(const std::string& text) {
                   power + static_cast<double>(digits.size() - 1 - digits.find_last_not_of('0')));
 }
 
-/// Number of significant digits of a text.
+/// Returns the number of significant digits in a text.
 int significant_digits(const std::string& text) {
   const std::string digits = text.substr(0, text.find('e'));
   int count = 0;
@@ -68,7 +69,7 @@ TEST_CASE("estimate: rounding crosses no bound", "[report]") {
 }
 
 TEST_CASE("estimate: of any value, error and bounds the text is true", "[report]") {
-  std::mt19937_64 random(20261125);  // NOLINT: the same in every run
+  std::mt19937_64 random(20261125);  // NOLINT: a fixed seed makes runs reproducible
   std::uniform_real_distribution<double> power(-15.0, 9.0);
   std::uniform_real_distribution<double> ratio(-6.0, 6.0);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
@@ -86,7 +87,7 @@ TEST_CASE("estimate: of any value, error and bounds the text is true", "[report]
   for (int i = 0; i < 20'000; ++i) {
     const double value = std::pow(10.0, power(random)) * (unit(random) < 0.2 ? -1.0 : 1.0);
     const double error = std::abs(value) * std::pow(10.0, ratio(random));
-    // Often at a bound, as undetermined estimates are.
+    // Values are often at a bound, as undetermined estimates are.
     const double below = unit(random) < 0.3 ? 0.0 : std::abs(value) * std::pow(10.0, ratio(random));
     const double above = unit(random) < 0.3 ? 0.0 : std::abs(value) * std::pow(10.0, ratio(random));
     const Range bounds{value - below, value + above};

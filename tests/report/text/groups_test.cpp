@@ -57,7 +57,7 @@ TEST_CASE("groups: means and the worst by signal, frequency, waveform and leak l
   CHECK_THAT(use.mean.rho2, WithinRel(0.75, 1e-14));
   CHECK(use.worst.rho2 == 0.6);
   CHECK_THAT(use.worst.rmse, WithinRel(0.4, 1e-14));
-  // Each of three counts a third: (0.9 + 0.9 + 0.6) / 3.
+  // Each of the three conditions has a weight of one third: (0.9 + 0.9 + 0.6) / 3.
   fit.conditions[1] = score("b", 0.9);
   for (const report::Group& group : report::groups(campaign, fit)) {
     if (group.by == "use") CHECK_THAT(group.channels.at(position).mean.rho2, WithinRel(0.8, 1e-14));

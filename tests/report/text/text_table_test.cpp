@@ -56,7 +56,7 @@ TEST_CASE("TextTable: what is too wide follows in blocks, each with its keys", "
   CHECK(table.text(26) ==
         "rig  level  first  second\na    0 %    1      2\n"
         "rig  level  third\na    0 %    3\n");
-  CHECK(table.text(1) == table.text(19));  // narrower than a column: one each
+  CHECK(table.text(1) == table.text(19));  // narrower than a column, so each block has one column
   CHECK(table.text(0) == "rig  level  first  second  third\na    0 %    1      2       3\n");
 }
 

@@ -9,13 +9,13 @@ using rigcal::report::TimeLeft;
 TEST_CASE("TimeLeft: the change of the cost tells how far a start is", "[report]") {
   TimeLeft left(1, 1e-10);
   CHECK_FALSE(left.seconds(1.0));
-  left.note(1, 0.0);  // nothing was tried yet
+  left.note(1, 0.0);  // no step has been tried yet
   CHECK_FALSE(left.seconds(1.0));
   left.note(1, 1e-2);
   CHECK_THAT(*left.seconds(2.0), WithinRel(8.0, 1e-12));
   left.note(1, 1e-5);
   CHECK_THAT(*left.seconds(3.0), WithinRel(3.0, 1e-12));
-  left.note(1, 1e-1);  // a step back is not believed
+  left.note(1, 1e-1);  // a step backwards is ignored
   CHECK_THAT(*left.seconds(3.0), WithinRel(3.0, 1e-12));
   left.note(1, 1e-12);
   CHECK(*left.seconds(19.0) < 1.01);
@@ -23,10 +23,10 @@ TEST_CASE("TimeLeft: the change of the cost tells how far a start is", "[report]
 
 TEST_CASE("TimeLeft: starts that are done count whole, resumed ones not at all", "[report]") {
   TimeLeft left(10, 1e-10);
-  left.note(5, 1e-2);  // 5 to 10 are to be made
+  left.note(5, 1e-2);  // starts 5 to 10 must be made
   left.note(8, 0.0);
   CHECK_THAT(*left.seconds(30.0), WithinRel(30.0, 1e-12));
-  left.note(6, 1e-3);  // the best start is refined at last
+  left.note(6, 1e-3);  // the best start is refined at the end
   CHECK(*left.seconds(60.0) <= 60.0);
   left.note(10, 1e-9);
   CHECK_THAT(*left.seconds(59.0), WithinRel(1.0, 1e-12));

@@ -9,7 +9,7 @@ using Catch::Contains;
 
 namespace {
 
-/// A record of `seconds` at 200 Hz, and a model that is late by 10 ms.
+/// A record of `seconds` duration at 200 Hz, and a model that lags by 10 ms.
 Table driven(double seconds, double frequency_hz) {
   Table table;
   table.names = {"time_s", "measured_position_m", "simulated_position_m", "in_window",
@@ -21,7 +21,7 @@ Table driven(double seconds, double frequency_hz) {
     const auto sine = [&](double at) {
       return 0.05 * std::sin(2.0 * std::numbers::pi * frequency_hz * at);
     };
-    // A noise that does not repeat itself from period to period.
+    // Noise that does not repeat from period to period.
     const double noise = 1e-4 * ((i * 7919 % 1009) / 1009.0 - 0.5);
     table.columns[0].push_back(t);
     table.columns[1].push_back(sine(t) + noise);
@@ -42,10 +42,10 @@ TEST_CASE("channel_agreements: four figures where a drive tells gain and phase",
   for (const Figure& figure : channels[0].figures) names.push_back(figure.name);
   CHECK(names == std::vector<std::string>{"position_parity", "position_histogram", "position_gain",
                                           "position_phase"});
-  CHECK_THAT(channels[0].residual, Contains("over 980 samples"));  // those in the window
+  CHECK_THAT(channels[0].residual, Contains("over 980 samples"));  // only those in the window
   CHECK_THAT(channels[0].response,
              Contains("position over reference at the fundamental") && Contains("95 % intervals"));
-  // The model is late by 10 ms, 7.2 degrees at 2 Hz.
+  // The model lags by 10 ms, which is 7.2 degrees at 2 Hz.
   const Plot& phase = channels[0].figures[3].plot;
   CHECK_THAT(phase.traces.front().y.front(), Catch::WithinAbs(-7.2, 0.01));
   CHECK_THAT(phase.traces.back().y.front(), Catch::WithinAbs(0.0, 0.05));

@@ -88,7 +88,7 @@ TEST_CASE("stored residual tests: to which side a residual is skewed, and its ta
   CHECK_THAT(of(right), Contains("heavy tails or rare bursts, skewed to the right"));
   CHECK_THAT(of(left), Contains("heavy tails or rare bursts, skewed to the left"));
   std::vector<double> light = white(2000, 11);
-  for (double& each : light) each = std::erf(each);  // all but uniform
+  for (double& each : light) each = std::erf(each);  // almost uniform
   CHECK_THAT(of(light), Contains("light tails") && !Contains("heavy") && !Contains("skewed"));
 }
 
@@ -98,7 +98,7 @@ TEST_CASE("stored residual tests: a trend is told over the whole record", "[repo
   tests.sample_interval_s = 0.01;
   tests.drift.outcome = rigcal::metrics::TestOutcome::failed;
   tests.drift.mean = 1.5e-3;
-  tests.drift.slope_per_s = 2e-4;  // times 20 s
+  tests.drift.slope_per_s = 2e-4;  // multiplied by 20 s
   CHECK_THAT(words(residual_tests_json(tests, "m"), "drift"),
              Contains("offset 1.5 mm") && Contains("trend 4 mm over the record"));
 }
