@@ -18,7 +18,7 @@ using Eigen::VectorXd;
 constexpr double kLeastDistance = 1e-6;
 constexpr double kMostDistance = 0.25;
 /// Minimum eigenvalue of the covariance of the score, relative to the mean eigenvalue.
-constexpr double kLeastShare = 1e-6;
+constexpr double kLeastEigenvalue = 1e-6;
 
 double logistic(double y) {
   // The smaller of z and 1 - z is exact, however far out.
@@ -86,7 +86,7 @@ MatrixXd score_covariance(const Problem& problem, const Evaluation& optimum,
   }
   const MatrixXd symmetric = 0.5 * (covariance + covariance.transpose());
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(symmetric);
-  const double least = kLeastShare * std::max(solver.eigenvalues().mean(), 1e-300);
+  const double least = kLeastEigenvalue * std::max(solver.eigenvalues().mean(), 1e-300);
   return solver.eigenvectors() * solver.eigenvalues().cwiseMax(least).asDiagonal() *
          solver.eigenvectors().transpose();
 }

@@ -52,7 +52,7 @@ std::string not_reached(const FlowCurve& curve, double target) {
   return note;
 }
 
-LeakGrade grade_of(const LeakComparison& comparison) {
+LeakGrade leak_grade(const LeakComparison& comparison) {
   if (!comparison.relative_error_percent) return LeakGrade::outlier;
   const double error = std::abs(*comparison.relative_error_percent);
   if (error <= kGoodPercent + kHair) return LeakGrade::within_10;
@@ -134,7 +134,7 @@ Column column_of(const PeriodicDrive& drive, const model::ParameterValues& value
     const auto printed = drive.signal.printed.find(target);
     if (printed != drive.signal.printed.end()) {
       entry.comparison = compare(curve, printed->second, entry.roots);
-      entry.grade = grade_of(*entry.comparison);
+      entry.grade = leak_grade(*entry.comparison);
     }
     entry.note = note_of(entry, curve);
     column.entries.push_back(std::move(entry));

@@ -122,7 +122,7 @@ std::map<Channel, std::string> columns_of(const Campaign& campaign, const Repeat
   return columns;
 }
 
-std::string shown(const fs::path& path) {
+std::string folder_text(const fs::path& path) {
   return path.empty() ? std::string("the working folder") : fmt::format("'{}'", path.string());
 }
 
@@ -138,11 +138,11 @@ std::vector<RepeatSource> sources_of(const Campaign& campaign, const Condition& 
                                  condition.id, file, kMostEntries));
   }
   if (expansion.files.empty()) {
-    throw InputError(
-        condition.where,
-        fmt::format("condition \"{}\": no file fits '{}' in {}; expected at least one "
-                    "record (relative paths start at {})",
-                    condition.id, file, shown(expansion.searched), shown(campaign.data_dir)));
+    throw InputError(condition.where,
+                     fmt::format("condition \"{}\": no file fits '{}' in {}; expected at least one "
+                                 "record (relative paths start at {})",
+                                 condition.id, file, folder_text(expansion.searched),
+                                 folder_text(campaign.data_dir)));
   }
   std::vector<RepeatSource> sources;
   for (const fs::path& path : expansion.files) {

@@ -19,7 +19,7 @@ constexpr std::array<std::pair<std::string_view, Before>, 3> kBefore{
     {{"hold", Before::hold}, {"rest", Before::rest}, {"steady", Before::steady}}};
 
 /// Shortest digits that read back to the same bits.
-std::string digits(double value) {
+std::string all_digits(double value) {
   std::array<char, 32> text{};
   const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
   return {text.data(), end};
@@ -133,10 +133,10 @@ std::string exported_rig_text(const ExportedRig& rig) {
   text += rig.rig.initial == InitialState::given ? "\ninitial given" : "\ninitial rest";
   for (const auto& [name, before] : kBefore)
     if (rig.rig.before == before) text += "\nbefore " + std::string(name);
-  text += "\ntolerance " + digits(rig.tolerance) + "\n";
+  text += "\ntolerance " + all_digits(rig.tolerance) + "\n";
   for (std::size_t i = 0; i < table.size(); ++i) {
     if (!rig.values.given[i]) continue;
-    text += "parameter " + std::string(table[i].key) + " " + digits(rig.values.value[i]) + "\n";
+    text += "parameter " + std::string(table[i].key) + " " + all_digits(rig.values.value[i]) + "\n";
   }
   return text;
 }

@@ -11,7 +11,7 @@
 namespace rigcal::model {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNever = std::numeric_limits<double>::infinity();
 /// A tick this close, in periods, is now: times that an importer adds up are rounded.
 constexpr double kSamePart = 1e-6;
 
@@ -236,7 +236,7 @@ bool FmuInstance::new_discrete_states() {
 double FmuInstance::next_tick_s() const { return next_tick_s(state_); }
 
 double FmuInstance::next_tick_s(const InstanceState& state) const {
-  if (!equations_->layout().sampled()) return kInfinity;
+  if (!equations_->layout().sampled()) return kNever;
   return state.start_s + static_cast<double>(state.ticks) * state.values["sample_time"];
 }
 

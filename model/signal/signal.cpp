@@ -168,7 +168,8 @@ SignalSample Signal::sample(std::size_t segment, double t) const {
       return {segment % 2 == 0 ? amplitude_ : -amplitude_, 0.0};
     case Kind::shaped: {
       const auto pieces = static_cast<std::size_t>(shape_->pieces);
-      const double phase = frequency_hz_ * t - static_cast<double>(segment / pieces);
+      const std::size_t period = segment / pieces;
+      const double phase = frequency_hz_ * t - static_cast<double>(period);
       const SignalSample unit = shape_->at(static_cast<int>(segment % pieces), phase);
       return {amplitude_ * unit.value, amplitude_ * frequency_hz_ * unit.slope};
     }

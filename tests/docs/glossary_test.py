@@ -31,5 +31,15 @@ class Glossary(unittest.TestCase):
                         self.assertRegex(text, rf"\b{part}\b")
 
 
+    def test_the_two_main_words_are_defined_as_the_model_has_them(self):
+        rows = {cells[0].strip(): cells[1] for line in (ROOT / "docs" / "glossary.md").read_text().splitlines()
+                if line.startswith("|") and len(cells := line.strip("|").split("|")) == 3}
+        specification = (ROOT / "model" / "plant" / "parameter_values.hpp").read_text()
+        meaning = re.search(r'"leakage_coefficient", "C_leak", "1", "([^;"]+)', specification).group(1)
+        self.assertIn(meaning.split(" of ")[0], rows["leakage coefficient"])  # a discharge coefficient
+        self.assertNotIn("per unit", rows["leakage coefficient"])
+        self.assertRegex(rows["share"], "fraction of the servo flow")
+
+
 if __name__ == "__main__":
     sys.exit(unittest.main())

@@ -163,6 +163,28 @@ TEST_CASE("agreement_uncertainty: a sensor's gain and offset", "[metrics]") {
              WithinRel(std::hypot(gain->one_sided.rmse, offset->one_sided.rmse), 1e-6));
 }
 
+TEST_CASE("agreement_uncertainty: a sensor's gain may be too low as well as too high",
+          "[metrics]") {
+  const std::vector<double> truth = sine(300, 1.0);
+  // The mean reads 0.5 % too high, or too low: the gain that moves it away counts, the other moves
+  // it through the truth.
+  for (const double reading : {1.005, 0.995}) {
+    CAPTURE(reading);
+    Repeats repeats{truth, {}};
+    for (double& y : repeats.mean) y *= reading;
+    repeats.deviations.emplace_back(truth.size(), 1e-9);
+    repeats.deviations.emplace_back(truth.size(), -1e-9);
+    MeasuredMean with = measured(repeats);
+    with.gain_sd = 0.01;
+    const double farthest =
+        std::max(std::abs(reading * 1.01 - 1.0), std::abs(reading * 0.99 - 1.0));
+    const double expected = 1.959964 * (farthest - std::abs(reading - 1.0)) / std::sqrt(2.0);
+    const auto found = agreement_uncertainty(with, truth);
+    REQUIRE(found.has_value());
+    CHECK_THAT(found->one_sided.rmse, WithinRel(expected, 1e-2));
+  }
+}
+
 TEST_CASE("agreement_uncertainty: where repeats lack samples the others speak", "[metrics]") {
   const std::vector<double> truth = sine(100, 1.0);
   Repeats repeats{truth, {}};

@@ -52,6 +52,7 @@ TEST_CASE("significance: a difference by few degrees of freedom is one of Studen
   CHECK_THAT(both.freedom, WithinRel(625.0 / (81.0 / 4.0 + 256.0 / 9.0), 1e-12));
   // An exactly known value adds no uncertainty.
   CHECK_THAT(error_of_difference({3.0, 4.0}, {}).freedom, WithinRel(4.0, 1e-12));
+  CHECK(error_of_difference({3.0, 1.0}, {}).freedom == 1.0);  // two repeats have no more
   CHECK(error_of_difference({3.0}, {4.0}).freedom == kManyDegrees);
   // The result does not depend on the unit.
   for (const double unit : {1e-150, 1e-90, 1e90, 1e150}) {

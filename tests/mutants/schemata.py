@@ -236,6 +236,8 @@ def changed(mutant, tokens, at):
     if front == last:  # a pure insertion
         begin = tokens[at + front].begin if front < len(original) else tokens[at + front - 1].end
         return begin, begin, f" {instead} "
+    if not mutated and original[-1].text == ";":
+        instead = ";"  # a loop without braces keeps a statement
     return tokens[at + front].begin, tokens[at + last - 1].end, instead
 
 

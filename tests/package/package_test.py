@@ -1,5 +1,6 @@
 """`cmake --install` installs everything for projects and readers. usage: package_test.py BUILD COMPILER"""
 import json
+import os
 import pathlib
 import re
 import shutil
@@ -57,6 +58,20 @@ class Installed(unittest.TestCase):
         self.assertTrue((self.folder / "results" / "report.html").is_file())
         source = (ROOT / "tests" / "package" / "consumer" / "consumer.cpp").read_text()
         self.assertIn(f"```cpp\n{source}```\n", (ROOT / "docs" / "install.md").read_text())
+
+    def test_the_serial_hdf5_is_linked_where_hdf5_means_a_parallel_one(self):
+        source = self.folder / "hdf5"
+        source.mkdir()
+        (source / "hdf5.pc").write_text("Name: hdf5\nDescription: parallel\nVersion: 1.14.0\nLibs: -lhdf5_openmpi -lmpi\n")
+        (source / "CMakeLists.txt").write_text(
+            "cmake_minimum_required(VERSION 3.25)\nproject(hdf5 LANGUAGES C CXX)\n"
+            f"include({ROOT}/cmake/packages.cmake)\n"
+            "get_target_property(libraries PkgConfig::hdf5 INTERFACE_LINK_LIBRARIES)\nmessage(STATUS \"linked: ${libraries}\")\n")
+        printed = run("cmake", "-S", source, "-B", source / "build", "-G", "Ninja", f"-DCMAKE_CXX_COMPILER={COMPILER}",
+                      env={**os.environ, "PKG_CONFIG_PATH": str(source)})
+        linked = re.search(r"linked: (.*)", printed).group(1)
+        self.assertIn("hdf5", linked)
+        self.assertNotRegex(linked, "openmpi|mpi")
 
     def test_another_minor_version_is_refused(self):
         source = self.folder / "another"

@@ -126,7 +126,7 @@ std::vector<CsvName> header_names(std::string_view header, char separator) {
     // With blanks as separators, a unit in brackets is a separate field.
     const bool is_unit = separator == ' ' && !names.empty() && brackets_at_end(full) == 0;
     if (is_unit) {
-      full = names.back().full + " " + full;
+      full.insert(0, names.back().full + " ");
       names.pop_back();
     }
     names.push_back({full, without_unit(full)});

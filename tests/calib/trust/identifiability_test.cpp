@@ -65,8 +65,11 @@ TEST_CASE("identifiability: the robust error, unless it is small and hardly know
   rig.found.robust_standard_error = {5.0};
   CHECK(rig.graded().interval == IntervalSource::robust_standard_error);
   CHECK_THAT(rig.graded().ci95->second, WithinRel(110.0, 1e-12));
+  CHECK(rig.graded().degrees_of_freedom == 50.0);
   rig.found.robust_freedom = {2.0};
+  rig.found.freedom = 7.0;
   CHECK(rig.graded().interval == IntervalSource::standard_error);
+  CHECK(rig.graded().degrees_of_freedom == 7.0);
   rig.found.robust_standard_error = {15.0};
   CHECK(rig.graded().interval == IntervalSource::robust_standard_error);
   // Residuals far below the stated noise carry no information about it.

@@ -2,6 +2,9 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <set>
+
+#include "diagnosis/leak/leak_memo.hpp"
 
 using namespace rigcal::diagnosis;
 using Catch::WithinAbs;
@@ -66,4 +69,25 @@ TEST_CASE("curve_about: from no leak on where that is within reach", "[diagnosis
   // The slope of a leak of a fiftieth: 1 - exp(-x) over x = 1 - x / 2.
   CHECK_THAT(curve.share_slope(0.0), WithinRel(1.0 - 1e-3, 1e-6));
   CHECK_THAT(curve.points().back().coefficient, WithinRel(0.1, 1e-12));
+}
+
+TEST_CASE("curve_about: records of a condition that do not leak share their simulations",
+          "[diagnosis]") {
+  std::vector<double> simulated;
+  const LeakAt simulate = [&](double c) {
+    simulated.push_back(c);
+    return saturating(c);
+  };
+  LeakMemo memo;
+  const LeakAt remembered = [&](double c) { return memo.at(c, simulate); };
+  // Ten records, whose coefficients differ by noise around zero.
+  for (int i = 0; i < 10; ++i) {
+    const LeakCurve curve = curve_about(remembered, 0.001 * (i - 5), 0.25);
+    CHECK(curve.share(0.25) == saturating(0.25).share);
+  }
+  CHECK(std::set<double>(simulated.begin(), simulated.end()).size() == simulated.size());
+  CHECK(simulated.size() == 2);
+  // A leak has three points of its own; the same leak once more has none.
+  for (int i = 0; i < 2; ++i) curve_about(remembered, 1.0, 0.25);
+  CHECK(simulated.size() == 5);
 }

@@ -307,6 +307,8 @@ TEST_CASE("page: says at its top what cannot be trusted", "[report]") {
     const std::string html = page(json);
     CHECK_THAT(word_of(html), Contains("FAIL"));
     CHECK_THAT(html, Contains("sine: position: rho2 = 0.5 is below 0.9"));
+    // What failed is validated for nothing.
+    CHECK_THAT(html, Contains("Conditions tested: ") && !Contains("Validated for: "));
     CHECK_THAT(html, Contains("class=\"cell bad\""));
   }
   SECTION("poor, where the campaign has no limits") {
