@@ -17,7 +17,7 @@ namespace rigcal::datasets {
 namespace {
 
 constexpr double kFewestSamples = 0.02;  // a smaller shift is not worth an interpolation
-constexpr double kSignificance = 3.0;    // standard deviations
+constexpr double kSignificance = 3.0;    // in standard deviations of the offset
 constexpr int kSearchSamples = 200;      // searched first, then ten times as many
 constexpr double kDisproportion =
     10.0;  // distance of an offset from the median, in median distances
