@@ -72,7 +72,7 @@ struct FileState {
   std::string path;
   std::uint64_t inode = 0;
   std::uint64_t bytes = 0;
-  std::int64_t changed_ns = 0;  ///< since 1970: last change of its content or inode
+  std::int64_t changed_ns = 0;  ///< time since 1970 of the last change to content or inode
   bool operator==(const FileState&) const = default;
 };
 

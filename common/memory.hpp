@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cstdlib>  // defines which C library this is
+#include <cstdlib>  // defines __GLIBC__
 
 #ifdef __GLIBC__
 #include <malloc.h>

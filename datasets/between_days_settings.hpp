@@ -20,7 +20,8 @@ struct DayQuantityName {
 /// Key for the start time of a record relative to its drive. No parameter of the rig describes it.
 inline constexpr const char* kTriggerKey = "trigger";
 
-/// Returns those of supply, oil, zero of the position sensor and trigger that the plant has.
+/// Returns the quantities that the plant has, out of supply, oil, zero of the position sensor, and
+/// trigger.
 std::vector<DayQuantityName> day_quantity_names(model::PlantKind plant);
 
 /// Section [between_days]: how much quantities vary between days.
@@ -34,7 +35,7 @@ struct BetweenDaysSettings {
     const auto found = sds.find(key);
     return found == sds.end() ? std::nullopt : std::optional(found->second);
   }
-  /// Whether the campaign makes any statement here. If so, no standard deviation is estimated.
+  /// Whether the campaign states anything here. If so, no standard deviation is estimated.
   bool is_stated() const { return none || !sds.empty() || !left_out.empty(); }
 };
 

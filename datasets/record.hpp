@@ -61,7 +61,7 @@ struct TimeHole {
 struct Repeat {
   std::string source;  ///< file, and the set of columns if one file has several repeats
   std::vector<double> time_s;
-  std::map<Channel, std::vector<double>> values;  ///< each of the shape of time_s
+  std::map<Channel, std::vector<double>> values;  ///< each with the shape of time_s
   std::vector<std::string> warnings{};            ///< doubts about its files, in words
   std::vector<TimeHole> holes{};  ///< gaps in the times of its file, in increasing order
   /// Marks samples that are missing from the file, shape of time_s; empty if none are. They are

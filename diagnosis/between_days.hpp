@@ -12,7 +12,7 @@
 
 namespace rigcal::diagnosis {
 
-/// Source of the size of the variation between days.
+/// Where the assumed size of the variation between days comes from.
 enum class DaySource { usual, stated, estimated };
 
 /// Variation between the days of a campaign. Each quantity has a separate deviation on each day.

@@ -33,7 +33,7 @@ double independent_samples(const Eigen::MatrixXd& series) {
 
 CommonCauses common_causes(const Eigen::MatrixXd& residuals) {
   const Eigen::Index records = residuals.cols();
-  const Eigen::Index most = records - 1;  // their sum is zero
+  const Eigen::Index most = records - 1;  // because the residuals sum to zero
   CommonCauses result{Eigen::MatrixXd(residuals.rows(), 0), residuals};
   const double own = static_cast<double>(most) / static_cast<double>(records);
   const Eigen::MatrixXd deviations = own * residuals;

@@ -7,8 +7,7 @@
 namespace rigcal::diagnosis {
 namespace {
 
-/// If a relative change of the coefficient changes the share by less than this fraction, it is a
-/// plateau.
+/// The share is on a plateau if its relative change is below this fraction of the coefficient's.
 constexpr double kFlat = 0.1;
 /// Fractions of the difference from the healthy model that a leak leaves unexplained: one that is
 /// reported, and one that is too large to assign a class.

@@ -82,7 +82,7 @@ struct FalseAlarmCheck {
 };
 
 struct Parity {
-  std::vector<ParityCondition> conditions;  ///< campaign order
+  std::vector<ParityCondition> conditions;  ///< in campaign order
   std::vector<ParitySignal> signals;        ///< in order of their first appearance
   FalseAlarmCheck check;
   BetweenDays between_days;

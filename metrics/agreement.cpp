@@ -16,7 +16,7 @@ namespace {
 static_assert(sizeof(Agreement) == kMetrics.size() * sizeof(double),
               "a member of Agreement has no row in the table, or a row no member");
 
-/// Number of rows, from the first, that agreement() computes together.
+/// Number of rows at the top of the table that agreement() computes together.
 constexpr std::size_t kOfMoments = 7;
 static_assert(kMetrics.size() >= kOfMoments && kMetrics[kOfMoments - 1].name == "maximum_error",
               "a metric of its own has its row below those that agreement() computes together");

@@ -59,7 +59,7 @@ double largest_noise(const MeasuredMean& measured) {
 ///
 /// @param noise   largest noise in the mean
 /// @param half    half width of the interval without bias
-/// @param factor  factor in `half` on the standard uncertainty
+/// @param factor  factor on the standard uncertainty that `half` contains
 double half_with_bias(const std::vector<Agreement>& without, const Agreement& found,
                       double Agreement::*score, double noise, double half, double factor) {
   const auto repeats = static_cast<double>(without.size());

@@ -15,7 +15,7 @@ std::vector<double> extended(const std::vector<double>& phi, double partial) {
   return next;
 }
 
-/// Partial autocorrelation that comes after a model of the first autocovariances.
+/// Returns the next partial autocorrelation, given a model of the first autocovariances.
 double next_partial(const Autoregression& model, std::span<const double> gamma) {
   const std::size_t m = model.phi.size();
   double unexplained = gamma[m + 1];

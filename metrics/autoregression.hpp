@@ -18,7 +18,8 @@ struct Autoregression {
 /// Autocovariances about zero, sum_t x[t] x[t + h] / n for h = 0..lags (0 beyond the series).
 std::vector<double> autocovariance(std::span<const double> series, int lags);
 
-/// Maximum number of lags to be summed for a model, which limits the time that a slow drift takes.
+/// Maximum number of lags to be summed for a model, which limits the computing time for a slow
+/// drift.
 inline constexpr int kLongestMemory = 5000;
 
 /// Whether a series can have these autocovariances, starting at lag 0: gamma[0] > 0, and all

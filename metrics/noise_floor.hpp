@@ -11,9 +11,9 @@ struct NoiseFloor {
   double absolute_error_percent = 0.0;
 };
 
-/// Computes the agreement that any model can reach, given the noise in a record. The record is y =
-/// t + n: the truth t plus noise n that is independent of t, with zero mean and variance sigma^2 =
-/// sd_of_mean^2. Averaged over draws, to O(1/n_samples),
+/// Computes how well a model can agree with a record, given the noise in the record. The record is
+/// y = t + n: the truth t plus noise n that is independent of t, with zero mean and variance
+/// sigma^2 = sd_of_mean^2. Averaged over draws, to O(1/n_samples),
 ///
 ///   var(y) = var(t) + sigma^2,  cov(y, t) = var(t),  mean y = mean t,  var(y - t) = sigma^2
 ///

@@ -16,7 +16,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// With this many samples, a fifth of them gives three lags to test.
+/// Minimum number of samples. A fifth of them are used as lags, which leaves three to test.
 constexpr std::size_t kLeastSamples = 16;
 constexpr int kTestedLags = 25;
 

@@ -66,7 +66,7 @@ struct Drift : Judged {
 struct ResidualTests {
   long samples = 0;
   double std = 0.0;                ///< standard deviation of the residual
-  double effective_samples = 0.0;  ///< effective_sample_size()
+  double effective_samples = 0.0;  ///< see effective_sample_size()
   double sample_interval_s = 0.0;
   Autocorrelation autocorrelation;
   std::optional<CrossCorrelation> cross_correlation;  ///< absent if the input is constant

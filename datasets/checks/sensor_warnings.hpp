@@ -13,7 +13,7 @@ struct SensorFault {
   enum class Kind { clipped_at_highest, clipped_at_lowest, frozen };
   Channel channel = Channel::position;
   Kind kind = Kind::frozen;
-  std::string source;  ///< source of the repeat
+  std::string source;  ///< as in Repeat::source
   TimeWindow stretch;  ///< from its first sample to its last
   std::size_t samples = 0;
   double value = 0.0;

@@ -17,10 +17,9 @@ namespace rigcal::datasets {
 namespace {
 
 constexpr double kFewestSamples = 0.02;  // a smaller shift is not worth an interpolation
-constexpr double kSignificance = 3.0;    // standard deviations
+constexpr double kSignificance = 3.0;    // in standard deviations of the offset
 constexpr int kSearchSamples = 200;      // searched first, then ten times as many
-constexpr double kDisproportion =
-    10.0;  // distance of an offset from the median, in median distances
+constexpr double kDisproportion = 10.0;  // distance from the median, in median distances
 
 double interval(const Repeat& repeat) {
   const auto n = repeat.time_s.size();

@@ -89,7 +89,7 @@ Span covered_span(const std::map<Channel, Stack>& stacks, std::size_t samples) {
   return longest;
 }
 
-/// Value of the first row that has sample i.
+/// Value from the first row that has sample i.
 double value_at(const Stack& stack, std::size_t i) {
   const auto found = std::find_if(stack.rows.begin(), stack.rows.end(),
                                   [i](const auto& row) { return !std::isnan(row[i]); });

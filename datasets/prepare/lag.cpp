@@ -266,7 +266,7 @@ std::vector<std::optional<Lag>> find_lags(const std::vector<double>& a,
     coarse.push_back(coarse_peak(x, y.back(), a.empty() ? 0.0 : a.front(),
                                  b->empty() ? 0.0 : b->front(), max_lag));
   }
-  // Smoothing removes noise but also, where the record has edges, signal.
+  // Smoothing removes noise, but where the record has edges it also removes signal.
   for (const double smoothing : {0.7, 1.5, 3.0, 6.0, 12.0, 24.0}) {
     std::optional<Trace> smooth_x;
     for (std::size_t k = 0; k < others.size(); ++k) {

@@ -14,11 +14,10 @@ constexpr double kStepShare = 0.05;   // fraction of the command's range
 constexpr double kLongestRise = 0.1;  // fraction of the time for which the command is constant
 constexpr double kLeastTravelShare = 0.05;  // fraction of the range of positions
 constexpr double kArrivedShare = 0.01;      // fraction of the travel
-constexpr double kNoiseFactor = 6.0;        // standard deviations
-constexpr double kSpreadFactor = 2.0;       // standard deviations over the repeats
-constexpr double kTailShare =
-    0.05;  // final fraction of a constant command, which shows where motion ends
-constexpr std::size_t kFewestHeld = 5;  // samples
+constexpr double kNoiseFactor = 6.0;        // in standard deviations of the noise
+constexpr double kSpreadFactor = 2.0;       // in standard deviations over the repeats
+constexpr double kTailShare = 0.05;     // final fraction of a level that shows where motion ends
+constexpr std::size_t kFewestHeld = 5;  // samples at one level
 
 /// Samples [begin, end).
 struct SampleSpan {

@@ -23,7 +23,7 @@ namespace {
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr std::size_t kFewestToRecognise = 32;
 constexpr double kOfStep = 0.75;    // a rounded value is off by half a step at most
-constexpr double kMostStep = 0.02;  // fraction of the amplitude: a coarser record shows no waveform
+constexpr double kMostStep = 0.02;  // fraction of the amplitude; a coarser record shows no waveform
 constexpr double kExact = 1e-9;     // fraction of the amplitude: rounding errors in the computation
 constexpr double kMostErrors = 5.0;  // in standard deviations of the stated noise
 constexpr double kMostRms = 1.2;     // in standard deviations of the stated noise

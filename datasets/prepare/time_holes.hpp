@@ -12,8 +12,8 @@ namespace rigcal::datasets {
 std::vector<TimeHole> time_holes(const std::vector<double>& time_s);
 
 /// Describes, for each repeat, the holes that affect the result, with file, row and times. A hole
-/// outside all windows is harmless unless the drive is a recorded command without a loop. The drive
-/// during the hole is then unknown, and the piston does not return to where it would have been.
+/// outside all windows is harmless unless the drive is a recorded command in open loop. The unknown
+/// command during the hole then displaces the piston permanently.
 ///
 /// @param repeats  as read from their files
 /// @param windows  windows of the condition; empty: the whole record

@@ -28,7 +28,7 @@ struct ConfinedReader {
 RecordTable load_confined(const std::filesystem::path& path, const ConfinedReader& reader,
                           std::size_t columns, const std::function<RecordTable()>& read);
 
-/// Calls `list` in the way that load_confined() calls `read`.
+/// Like load_confined(), but for a function that lists columns.
 std::vector<RecordColumn> list_confined(const std::filesystem::path& path,
                                         const ConfinedReader& reader,
                                         const std::function<std::vector<RecordColumn>()>& list);

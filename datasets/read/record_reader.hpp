@@ -33,8 +33,8 @@ const RecordReader& record_reader(const std::filesystem::path& path);
 /// Whether the name of a file is that of a recording in a format that rigcal reads.
 bool has_record_name(const std::filesystem::path& path);
 
-/// Whether the name may be that of a recording, like ".txt" and ".dat", which other text files
-/// have, too.
+/// Whether the name may be that of a recording. This includes ".txt" and ".dat", which other text
+/// files have, too.
 bool may_be_recording(const std::filesystem::path& path);
 
 /// Whether the name is that of a recording in a format that rigcal does not read.

@@ -273,8 +273,8 @@ void describe(const calib::Problem& problem, const RigFit& rig, const LeakProble
   fit.white_freedom = std::max(1, static_cast<int>(left.size() - step.size()));
   fit.cluster_se = std::sqrt(covariance(leak, leak) + of_priors.squaredNorm());
   fit.cluster_freedom = freedom;
-  // The mean of the healthy repeats has noise, too. The residuals show it, but it is not in the
-  // record.
+  // The residuals also contain the noise in the mean of the healthy repeats, which is not part of
+  // the record.
   fit.noise_se = noise_se / std::sqrt(1.0 + (reference > 0 ? 1.0 / reference : 0.0));
   // The optimiser need not have converged, since the last step is taken here by linear
   // continuation, but that step must not be long. A record that is its own reference may have no
@@ -396,7 +396,7 @@ RigFit rig_fit_of(const calib::Fit& fit) {
 }
 
 void RigFit::consider(const calib::EstimateSpread& spread) {
-  // The leak itself, which is to be estimated, is not an effect that was left out.
+  // The leak is to be estimated, so it is not one of the effects that were left out.
   const calib::EffectSpread& all = spread.effects;
   std::vector<Eigen::Index> kept;
   effects = {};

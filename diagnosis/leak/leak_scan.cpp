@@ -10,7 +10,7 @@
 namespace rigcal::diagnosis {
 namespace {
 
-/// Ratio between successive coefficients. A fit can converge from the nearest one.
+/// Ratio between successive coefficients, small enough for a fit to converge from the nearest one.
 constexpr double kRatio = 1.35;
 constexpr double kFirst = 1e-3;
 constexpr double kLargest = 1e3;

@@ -25,11 +25,11 @@ struct SteadyLeak {
   bool is_periodic = false;         ///< whether it is for the periodic state, not the record
 };
 
-/// The only definition of the share. For a generated sine or square with all other inputs constant,
-/// it is the share in the periodic state, from the same simulation as in a leak table
-/// (calib::periodic_flow), however few periods a record has. With recorded inputs, or if the rig
-/// does not become periodic, there is no periodic state, and the flows are averaged over the record
-/// (record_share.hpp).
+/// Computes the leak in one condition. This is the only definition of its share. For a generated
+/// sine or square with all other inputs constant, the share is that of the periodic state, from the
+/// same simulation as in a leak table (calib::periodic_flow), however few periods a record has.
+/// With recorded inputs, or if the rig does not become periodic, there is no periodic state, and
+/// the flows are averaged over the record (record_share.hpp).
 ///
 /// @param values  SI, including the leakage coefficient, which must be above 0 for slopes
 /// @param free    table indices for the slopes

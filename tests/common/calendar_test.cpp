@@ -8,7 +8,7 @@ using rigcal::day_of;
 TEST_CASE("calendar: days since 1970-01-01", "[common]") {
   CHECK(day_of("1970-01-01") == 0);
   CHECK(day_of("1969-12-31") == -1);
-  CHECK(day_of("2000-03-01") == 11017);  // 2000 is a leap year: date -ud 2000-03-01 +%s / 86400
+  CHECK(day_of("2000-03-01") == 11017);  // 2000 was a leap year; date -ud 2000-03-01 +%s / 86400
   CHECK(day_of("2026-11-24") == 20781);
 }
 

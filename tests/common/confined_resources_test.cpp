@@ -18,7 +18,7 @@ using rigcal::run_confined;
 
 namespace {
 
-/// Lowers a limit of this process while the object lives.
+/// Lowers a limit of this process during the lifetime of the object.
 class LowerLimit {
  public:
   LowerLimit(decltype(RLIMIT_AS) resource, rlim_t most) : resource_(resource) {
@@ -39,7 +39,7 @@ class LowerLimit {
 
 TEST_CASE("confined: a process that cannot be made is no fault of the work", "[common]") {
   std::exception_ptr thrown;
-  {  // a short scope: the sanitizers need to open files
+  {  // in a short scope, because sanitizers need to open files
     const LowerLimit files(RLIMIT_NOFILE, 0);
     try {
       run_confined([] { return std::string("never"); }, {});

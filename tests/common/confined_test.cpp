@@ -65,7 +65,7 @@ TEST_CASE("confined: what the work prints is dropped", "[common]") {
 TEST_CASE("confined: a crash ends the child alone", "[common]") {
   for (const int signal : {SIGSEGV, SIGABRT}) {
     const auto crash = [signal] {
-      std::signal(signal, SIG_DFL);  // a sanitizer would report it
+      std::signal(signal, SIG_DFL);  // otherwise a sanitizer would report it
       std::raise(signal);
       return std::string("not reached");
     };
@@ -75,7 +75,7 @@ TEST_CASE("confined: a crash ends the child alone", "[common]") {
 }
 
 TEST_CASE("confined: what the work throws unwinds nothing of the parent", "[common]") {
-  // Shared with the child, whose copy of any other variable nobody would see.
+  // Shared with the child. In its copy of any other variable, a change would not be visible here.
   auto* const unwound = static_cast<std::atomic<int>*>(
       ::mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
   REQUIRE(unwound != MAP_FAILED);
@@ -89,7 +89,7 @@ TEST_CASE("confined: what the work throws unwinds nothing of the parent", "[comm
   };
   CHECK_THROWS_WITH(parent_frame([]() -> std::string { throw std::length_error("too long"); }),
                     Contains("it crashed"));
-  CHECK(*unwound == 1);  // here, and not in the child
+  CHECK(*unwound == 1);  // in the parent and not in the child
   const auto before = std::set_new_handler([] { ::_exit(0); });
   CHECK(run_confined([] { return std::get_new_handler() == nullptr ? "none" : "the parent's"; },
                      {}) == "none");
@@ -134,7 +134,7 @@ TEST_CASE("confined: what ends the process ends the work", "[common]") {
   CHECK(::read(ends[0], &byte, 1) == 1);
   ::kill(process, SIGKILL);
   ::waitpid(process, nullptr, 0);
-  // It had the other end of the pipe open.
+  // The other end of the pipe was open in that process.
   pollfd closed{ends[0], POLLIN, 0};
   REQUIRE(::poll(&closed, 1, 60'000) == 1);
   CHECK(::read(ends[0], &byte, 1) == 0);
@@ -142,7 +142,7 @@ TEST_CASE("confined: what ends the process ends the work", "[common]") {
 }
 
 TEST_CASE("confined: memory is limited", "[common]") {
-  if (rigcal::test::kSanitized) return;  // AddressSanitizer needs terabytes of addresses
+  if (rigcal::test::kSanitized) return;  // AddressSanitizer needs terabytes of address space
   Confinement small;
   small.bytes = std::size_t{32} << 20;
   const auto take = [](std::size_t bytes) {

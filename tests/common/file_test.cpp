@@ -82,7 +82,7 @@ TEST_CASE("write_file_atomically: a full disk leaves the old file as it was", "[
   write_file_atomically(folder / "out.csv", "old");
   rlimit before{};
   REQUIRE(::getrlimit(RLIMIT_FSIZE, &before) == 0);
-  const auto handler = std::signal(SIGXFSZ, SIG_IGN);  // so that write() fails instead
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);  // makes write() fail instead
   rlimit small = before;
   small.rlim_cur = 4096;
   REQUIRE(::setrlimit(RLIMIT_FSIZE, &small) == 0);
@@ -178,7 +178,7 @@ TEST_CASE("read_file: all bytes of a regular file, up to a limit", "[common]") {
   CHECK(read_file(folder.write("empty", ""), 0, "a test").empty());
   CHECK_THROWS_WITH(read_file(file, 4, "a test"),
                     Contains("file: has 5 bytes; expected a test of at most"));
-  // The system reports its size as zero, so it has to be read to its end.
+  // The system reports a size of zero for this file, so it must be read to its end.
   CHECK(read_file("/proc/self/status", 1 << 20, "a test").find("Name:") == 0);
   CHECK_THROWS_AS(read_file("/proc/self/status", 10, "a test"), InputError);
 }
@@ -197,7 +197,7 @@ TEST_CASE("read_file: never waits for a pipe, never reads a device", "[common]")
 }
 
 TEST_CASE("sha256_of_file: published test vectors", "[common]") {
-  // FIPS 180-2, appendix B: "abc", the 56-byte message, and a million times "a".
+  // FIPS 180-2, appendix B: "abc", the message with 56 bytes, and "a" repeated a million times.
   const TemporaryFolder folder;
   const auto sum = [&folder](const std::string& text) {
     write_file_atomically(folder / "text", text);
@@ -229,9 +229,9 @@ TEST_CASE("sha256_of_unchanged: the hash is of the bytes that were read", "[comm
                       Contains("data.csv: was changed while it was read"));
     before = rigcal::state_of_file(file);
   };
-  std::ofstream(file, std::ios::app) << "2\n";  // it grows
+  std::ofstream(file, std::ios::app) << "2\n";  // the file grows
   refused();
-  fs::rename(folder.write("other.csv", "1\n2\n"), file);  // another of the same content
+  fs::rename(folder.write("other.csv", "1\n2\n"), file);  // another file with the same content
   refused();
   fs::resize_file(file, 2);
   refused();

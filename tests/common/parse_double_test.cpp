@@ -18,9 +18,10 @@ namespace {
 
 constexpr int kDraws = rigcal::test::kSanitized ? 20'000 : 500'000;
 
-/// Whether both read the same bits from the text, as far, and with the same error.
+/// Whether both functions read the same bits from the text, stop at the same place, and report the
+/// same error.
 bool same_as_standard(const std::string& text) {
-  double expected = -7.0;  // the value stays if nothing is read
+  double expected = -7.0;  // the value is unchanged if nothing is read
   double value = -7.0;
   const char* const end = text.data() + text.size();
   const auto [standard_rest, standard_error] = std::from_chars(text.data(), end, expected);
@@ -29,7 +30,7 @@ bool same_as_standard(const std::string& text) {
          std::bit_cast<std::uint64_t>(value) == std::bit_cast<std::uint64_t>(expected);
 }
 
-/// The exact decimal text of the number half way between a double and the next.
+/// Returns the exact decimal text of the number half way between a double and the next one.
 std::string half_way_above(double x) {
   const double next = std::nextafter(x, std::numeric_limits<double>::infinity());
   const long double middle = 0.5L * (static_cast<long double>(x) + static_cast<long double>(next));
@@ -124,7 +125,7 @@ TEST_CASE("parse_double: half way between two doubles", "[common]") {
     std::string text = half_way_above(size(engine));
     CAPTURE(text);
     REQUIRE(same_as_standard(text));
-    text.back() = '1';  // just above
+    text.back() = '1';  // slightly above
     REQUIRE(same_as_standard(text));
     REQUIRE(same_as_standard(text.substr(0, 19)));
     REQUIRE(same_as_standard(text.substr(0, 17)));

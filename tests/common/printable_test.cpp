@@ -17,7 +17,7 @@ TEST_CASE("printable: what a terminal would obey is shown", "[common]") {
            Row{"\u009b2J", "\\u009B2J"},  // C1 in UTF-8
            Row{"\x9b"
                "2J",
-               "\\x9B2J"},  // as a byte
+               "\\x9B2J"},  // as a single byte
            Row{"\u0080\u009f\u00a0", "\\u0080\\u009F\u00a0"},
            Row{"gpj\u202exslx", "gpj\\u202Exslx"},
            Row{"\u202a\u2066\u2069\u200e\u200f\u061c",

@@ -18,7 +18,8 @@ using rigcal::unit_conversion;
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-// A conversion is a handful of multiplications; each may be off by half a unit in the last place.
+// A conversion takes a few multiplications, each of which may be off by half a unit in the last
+// place.
 constexpr double kRounding = 1e-14;
 
 std::string error_of(const std::string& text, const std::string& unit) {
@@ -70,10 +71,10 @@ TEST_CASE("parse_quantity: dimensionless values", "[common]") {
 
 TEST_CASE("parse_quantity: temperatures have an offset", "[common]") {
   CHECK_THAT(parse_quantity("38 degC", "K"), WithinRel(311.15, kRounding));
-  CHECK_THAT(parse_quantity("-40 degF", "degC"), WithinRel(-40.0, 1e-12));  // difference of ~460
+  CHECK_THAT(parse_quantity("-40 degF", "degC"), WithinRel(-40.0, 1e-12));  // subtracts ~460
   CHECK_THAT(parse_quantity("311.15 K", "degC"), WithinRel(38.0, 1e-12));
   CHECK_THAT(parse_quantity("212 degF", "K"), WithinRel(373.15, kRounding));
-  // In a compound unit a degree is a difference.
+  // In a compound unit, a degree is a temperature difference.
   CHECK_THAT(parse_quantity("2 bar/degC", "Pa/K"), WithinRel(2e5, kRounding));
 }
 
@@ -92,7 +93,7 @@ TEST_CASE("unit_conversion: there and back is the identity", "[common]") {
   for (const auto& [from, to] : std::vector<std::pair<std::string, std::string>>{
            {"degF", "K"}, {"Hz", "rad/s"}, {"gpm", "m3/s"}, {"psi", "Pa"}, {"rpm", "Hz"}}) {
     CAPTURE(from, to);
-    // The offset of temperatures costs two digits.
+    // The offset of temperature scales costs two digits.
     CHECK_THAT(unit_conversion(to, from)(unit_conversion(from, to)(12.5)), WithinRel(12.5, 1e-12));
   }
 }
@@ -121,7 +122,7 @@ TEST_CASE("parse_quantity: 1/s is neither Hz nor rad/s", "[common]") {
 }
 
 TEST_CASE("parse_quantity: a period is no frequency", "[common]") {
-  // UDUNITS itself would convert by the reciprocal.
+  // UDUNITS by itself would convert using the reciprocal.
   CHECK_THAT(error_of("10 s", "Hz"), Contains("'s' is the unit of a time"));
   CHECK_THAT(error_of("10 s", "1/s"), Contains("'s' is the unit of a time"));
 }
@@ -130,7 +131,7 @@ TEST_CASE("parse_quantity: lpm and gpm, alone and in compound units", "[common]"
   const double litre_per_minute = 1e-3 / 60.0;
   const double gallon_per_minute = 3.785411784e-3 / 60.0;  // 231 cubic inches
   CHECK_THAT(parse_quantity("10 lpm", "m3/s"), WithinRel(10.0 * litre_per_minute, kRounding));
-  // The database gives the gallon 7 digits.
+  // The database defines the gallon with 7 digits.
   CHECK_THAT(parse_quantity("10 gpm", "m3/s"), WithinRel(10.0 * gallon_per_minute, 1e-6));
   CHECK_THAT(parse_quantity("1 lpm/bar", "m3/(s Pa)"),
              WithinRel(litre_per_minute / 1e5, kRounding));
@@ -227,7 +228,7 @@ TEST_CASE("parse_quantity: threads do not disturb each other", "[common]") {
 }
 
 TEST_CASE("parse_quantity: a locale with decimal comma changes nothing", "[common]") {
-  // Where no such locale is installed, the plain one is tested once more.
+  // If no such locale is installed, the plain one is tested again.
   const std::string before = std::setlocale(LC_ALL, nullptr);
   for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "pt_PT.UTF-8"})
     if (std::setlocale(LC_ALL, name) != nullptr) break;

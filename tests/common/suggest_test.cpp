@@ -17,7 +17,7 @@ TEST_CASE("nearest_name: finds slips of the pen", "[common]") {
   CHECK(nearest_name("mas", kKeys) == "mass");         // omission
   CHECK(nearest_name("masss", kKeys) == "mass");       // insertion
   CHECK(nearest_name("dampimg", kKeys) == "damping");  // substitution
-  CHECK(nearest_name("dmaping", kKeys) == "damping");  // exchange
+  CHECK(nearest_name("dmaping", kKeys) == "damping");  // transposition
   CHECK(nearest_name("Mass", kKeys) == "mass");        // case
   CHECK(nearest_name("bulk modulus", kKeys) == "bulk_modulus");
   CHECK(nearest_name("mass", kKeys) == "mass");

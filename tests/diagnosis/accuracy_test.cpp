@@ -10,7 +10,7 @@ using Catch::WithinAbs;
 using rigcal::datasets::LeakClass;
 
 TEST_CASE("wilson_interval: the paper's 17 of 18", "[diagnosis]") {
-  // R's prop.test(17, 18, correct = FALSE): 0.7424 to 0.9901.
+  // R's prop.test(17, 18, correct = FALSE) gives 0.7424 to 0.9901.
   const auto [low, high] = wilson_interval(17.0 / 18.0, 18.0);
   CHECK_THAT(low, WithinAbs(0.7424, 5e-5));
   CHECK_THAT(high, WithinAbs(0.9901, 5e-5));

@@ -13,7 +13,7 @@ using diagnosis::alarm_threshold;
 using diagnosis::moving_rms;
 
 TEST_CASE("alarm_threshold: the prediction bound of a logarithm", "[diagnosis]") {
-  // Logarithms 1, 2, 3: mean 2, sd 1; t(2; 0.95) = 2.9199856 (tables), sqrt(4/3).
+  // The logarithms 1, 2, 3 have mean 2 and sd 1. t(2; 0.95) = 2.9199856 (tables), times sqrt(4/3).
   const std::vector<double> healthy{std::exp(1.0), std::exp(2.0), std::exp(3.0)};
   CHECK_THAT(*alarm_threshold(healthy, 0.05),
              Catch::WithinRel(std::exp(2.0 + 2.91998558 * std::sqrt(4.0 / 3.0)), 1e-7));
@@ -32,7 +32,7 @@ TEST_CASE("alarm_threshold: exceeded as often as stated", "[diagnosis]") {
       for (double& value : healthy) value = std::exp(datasets::normal(stream, 0.3));
       if (std::exp(datasets::normal(stream, 0.3)) > *alarm_threshold(healthy, 0.05)) ++alarms;
     }
-    // Four standard errors of the share
+    // The tolerance is four standard errors of the fraction.
     CHECK(std::abs(alarms / static_cast<double>(kTrials) - 0.05) <
           4.0 * std::sqrt(0.05 * 0.95 / kTrials));
   }
@@ -62,7 +62,8 @@ TEST_CASE("threshold_with: one cause is the prediction bound of t, several are w
   CHECK_THAT(diagnosis::threshold_with(3.0, one, 0.01),
              Catch::WithinRel(std::hypot(3.0, 2.0 * 4.604095), 1e-6));
   CHECK(diagnosis::threshold_with(3.0, {}, 0.01) == 3.0);
-  // Known exactly, and two alike: chi-square of two degrees of freedom, 9.2103 at 1 %.
+  // Two equal causes that are known exactly: chi-square with two degrees of freedom exceeds 9.2103
+  // in 1 % of cases.
   const std::array<CausePart, 2> two{CausePart{1.0, 1e9}, CausePart{1.0, 1e9}};
   CHECK_THAT(diagnosis::threshold_with(0.0, two, 0.01), Catch::WithinRel(std::sqrt(9.21034), 1e-4));
 }

@@ -43,11 +43,12 @@ TEST_CASE("day_weights: the record's own day less those of its reference", "[dia
   const auto other = day_weights(between, campaign, second, {&first, &first});
   CHECK_THAT(other.norm(), WithinRel(std::sqrt(2.0), 1e-12));
   CHECK_THAT(other.norm_of_another_day(), WithinRel(std::sqrt(2.0), 1e-12));
-  // Half of the reference is of the record's own day: 1 - 1/2, and -1/2.
+  // Half of the reference is from the record's own day, which gives 1 - 1/2 and -1/2.
   const auto mixed = day_weights(between, campaign, second, {&first, &second});
   CHECK_THAT(mixed.norm(), WithinRel(std::sqrt(0.5), 1e-12));
   CHECK_THAT(mixed.norm_of_another_day(), WithinRel(std::sqrt(1.5), 1e-12));
-  // Without a reference the fit is one, which may be of records that the campaign does not have.
+  // Without a reference, the fit takes its place. It may have used records that the campaign does
+  // not have.
   CHECK_THAT(day_weights(between, campaign, first, {}).norm(), WithinRel(std::sqrt(2.0), 1e-12));
 }
 
@@ -58,8 +59,8 @@ TEST_CASE("day_label: only a date says that two records are of one day", "[diagn
 }
 
 TEST_CASE("estimate_days: healthy records of four dates tell how days differ", "[diagnosis]") {
-  // Squares of 5 and 10 in each signal, of which 1 is its own error, where the usual sizes would
-  // cause 2: (4 + 9) / (2 + 2).
+  // The squares are 5 and 10, of which 1 is the record's own error. The usual sizes would cause 2
+  // each, so the factor is (4 + 9) / (2 + 2).
   const std::vector<diagnosis::HealthyDay> healthy{{std::sqrt(5.0), 1.0, 2.0},
                                                    {-std::sqrt(10.0), 1.0, 2.0}};
   BetweenDays between = days({});
@@ -79,7 +80,7 @@ TEST_CASE("estimate_days: healthy records of four dates tell how days differ", "
   stated.source = DaySource::stated;
   diagnosis::estimate_days(healthy, stated);
   CHECK(stated.variance == 1.0);
-  // No more scatter than the records' own.
+  // The records vary no more than by their own errors.
   BetweenDays alike = days({});
   alike.dates = 5;
   diagnosis::estimate_days({{0.1, 1.0, 2.0}}, alike);
@@ -167,7 +168,7 @@ TEST_CASE("fit_leak: a supply of another day moves the coefficient as it says", 
   const auto fit = fitted(6.2e6);
   REQUIRE(fit.ok());
   REQUIRE(fit.day_effects.size() == 4);
-  // The model's supply is as much too low as the record's would be too high.
+  // An error in the model's supply has the opposite effect of one in the record's.
   const double step = 3.1e3;
   const double moved =
       (fitted(6.2e6 - step).coefficient - fitted(6.2e6 + step).coefficient) / (2.0 * step);
@@ -200,7 +201,7 @@ TEST_CASE("healthy_day_changes: differences of simulations, per standard deviati
   for (std::size_t i = 0; i < low.size(); ++i)
     CHECK_THAT(changes(static_cast<Eigen::Index>(i), 0),
                WithinAbs((low[i] - high[i]) / 2.0, 0.05 * largest));
-  // A shifted zero shifts every sample; a later start is speed times time.
+  // A shifted zero shifts every sample; a later start changes the position by speed times time.
   CHECK_THAT(changes(100, 2), WithinRel(problem.day_quantities[2].sd, 1e-9));
   CHECK_THAT(problem.day_quantities[3].sd, WithinRel(0.5e-3, 1e-12));
   const auto model = residual(6.2e6);

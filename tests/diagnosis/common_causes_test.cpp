@@ -12,8 +12,8 @@ namespace {
 constexpr Eigen::Index kSamples = 1000;
 constexpr Eigen::Index kRecords = 5;
 
-/// Records of noise of one unit, with a sine whose amplitude differs between them, each less the
-/// mean of the others.
+/// Records of unit noise plus a sine whose amplitude varies between them, each minus the mean of
+/// the others.
 Eigen::MatrixXd residuals_with(double cause, std::uint64_t seed) {
   boost::random::mt19937_64 stream(seed);
   boost::random::normal_distribution<double> normal;
@@ -42,7 +42,7 @@ TEST_CASE("common_causes: noise has none, a sine that differs is one", "[diagnos
     found += causes.patterns.cols() == 1 ? 1 : 0;
     if (causes.patterns.cols() > 0)
       power += causes.patterns.col(0).squaredNorm() / kSamples / 100.0;
-    // What is left is as large as noise less the mean of the others: 1 + 1/4.
+    // The rest is as large as noise minus the mean of the others: 1 + 1/4.
     CHECK(causes.rest.squaredNorm() / (kSamples * kRecords) > 0.9);
     CHECK(causes.rest.squaredNorm() / (kSamples * kRecords) < 1.7);
   }

@@ -21,14 +21,14 @@ int row_of(const Campaign& campaign, const char* key) {
   return model::parameter_index(campaign.rig.plant, key);
 }
 
-/// The paper's campaign with one signal, few samples and the coefficients of 0, 5, 15 and 25 %.
+/// The paper's campaign with one signal, few samples, and coefficients for 0, 5, 15 and 25 %.
 Campaign small_campaign() {
   Campaign campaign =
       datasets::load_campaign(RIGCAL_SOURCE_DIR "/datasets/rigs/uis_shake_table/diagnosis.toml");
   std::erase_if(campaign.conditions, [](const Condition& c) {
     return c.waveform != datasets::Waveform::sine || c.frequency_hz != 1.0;
   });
-  // Shares over the last whole periods; what is checked is the class, far from its limits.
+  // Shares refer to the last whole periods. The test checks only the class, far from its limits.
   const std::vector<double> coefficients{0.0, 0.116, 0.395, 0.71};
   for (std::size_t i = 0; i < campaign.conditions.size(); ++i) {
     Condition& condition = campaign.conditions[i];
@@ -61,7 +61,7 @@ std::vector<datasets::RepeatRecords> records_of(const Campaign& campaign, std::u
   return records;
 }
 
-/// The rig as [synthetic] of the file has it.
+/// Rig with the values from [synthetic] in the file.
 diagnosis::RigFit known_rig(const Campaign& campaign) {
   diagnosis::RigFit rig;
   for (const auto& [index, value] : campaign.synthetic_settings->parameters)
@@ -87,14 +87,14 @@ TEST_CASE("diagnose: every repeat and average in its class, by the true shares",
   CHECK(found.records.size() == 16);
   CHECK(found.single.records == 12);
   CHECK(found.single.right == 12);
-  CHECK(found.averaged.records == 3);  // the healthy one is the reference of the others
+  CHECK(found.averaged.records == 3);  // the healthy average is the reference for the others
   CHECK(found.averaged.right == 3);
   for (const auto& record : found.records) {
     CAPTURE(record.condition, record.repeat.value_or(0));
     REQUIRE(record.fit.ok());
     REQUIRE(record.true_share);
     CHECK_FALSE(record.unexplained);
-    // 0.05 mm of noise on 750 samples leave the share uncertain by less than a percent point.
+    // Noise of 0.05 mm on 750 samples leaves the share uncertain by less than a percentage point.
     CHECK(std::abs(record.estimate.share - *record.true_share) < 0.01);
     CHECK(record.is_reference == (!record.repeat && record.truth == LeakClass::normal));
     CHECK(record.leak_class.has_value() == !record.is_reference);
@@ -104,8 +104,8 @@ TEST_CASE("diagnose: every repeat and average in its class, by the true shares",
   CHECK(found.signals.front().smallest_leak->share > 0.0);
   CHECK(found.signals.front().smallest_leak->share < 0.02);
   // The error for a mean of three is that of one repeat times sqrt(1/3 + 1/3) / sqrt(1 + 1/2). Its
-  // limit is lower than that of a repeat, but of the same order. An average minus itself has no
-  // error.
+  // limit is therefore lower than that of a repeat, but of the same order. An average minus itself
+  // would have no error.
   REQUIRE(found.signals.front().smallest_single_leak);
   const double of_average = found.signals.front().smallest_leak->coefficient;
   const double of_single = found.signals.front().smallest_single_leak->coefficient;
@@ -121,7 +121,8 @@ TEST_CASE("diagnose: every repeat and average in its class, by the true shares",
 }
 
 TEST_CASE("diagnose: a coefficient of the leak table has the table's share", "[diagnosis]") {
-  // Two periods from rest: the first is transient, and a share of the record would be another.
+  // The record has two periods from rest. The first is a transient, so the share in the record
+  // would differ.
   for (const auto waveform : {datasets::Waveform::sine, datasets::Waveform::square}) {
     Campaign campaign =
         datasets::load_campaign(RIGCAL_SOURCE_DIR "/datasets/rigs/uis_shake_table/diagnosis.toml");
@@ -154,7 +155,7 @@ TEST_CASE("diagnose: a coefficient of the leak table has the table's share", "[d
     const auto& average = found.records.at(4);
     REQUIRE(average.condition == campaign.conditions[1].id);
     REQUIRE(average.fit.ok());
-    CHECK(std::abs(*average.true_share - 0.10) < 2e-5);  // the table's own tolerance
+    CHECK(std::abs(*average.true_share - 0.10) < 2e-5);  // tolerance of the table
     CAPTURE(average.estimate.share, average.estimate.share_ci95.first,
             average.estimate.share_ci95.second);
     CHECK(average.estimate.share_ci95.first < 0.10);
@@ -190,7 +191,7 @@ TEST_CASE("diagnose: a supply half a percent lower on another day is no leak", "
     REQUIRE(found.records.at(4).fit.ok());
     return found;
   };
-  // On the day of the reference, as both dates say, it is one.
+  // If both are from one day, as their dates say, the lower supply passes for a leak.
   const Diagnosis same = diagnosed();
   CHECK(same.records.at(4).estimate.leak_detected);
   CHECK(same.other_days.empty());
@@ -212,11 +213,11 @@ TEST_CASE("diagnose: a supply half a percent lower on another day is no leak", "
   CHECK(limits.smallest_leak_same_day->coefficient ==
         same.signals.front().smallest_leak->coefficient);
   CHECK(limits.smallest_leak->coefficient > 2.0 * limits.smallest_leak_same_day->coefficient);
-  // A share moves with the day, too.
+  // The day affects the share, too.
   CHECK(other.records.at(4).estimate.share_ci95.second >
         same.records.at(4).estimate.share_ci95.second);
 
-  // Without a date no one knows.
+  // Without a date, the record may be from another day.
   campaign.conditions[1].date.reset();
   CHECK_FALSE(diagnosed().records.at(4).estimate.leak_detected);
   campaign.conditions[1].date = "2026-03-01";
@@ -226,8 +227,8 @@ TEST_CASE("diagnose: a supply half a percent lower on another day is no leak", "
 
 TEST_CASE("diagnose: over many days alarms are as stated, and the smallest leak is found",
           "[diagnosis]") {
-  // The small version of bench/days_study.cpp: supplies at the quantiles of the difference of two
-  // days, of which the reference's is one.
+  // A small version of bench/days_study.cpp. The supplies are quantiles of the difference between
+  // two days, one of which is the day of the reference.
   constexpr int kDays = 20;
   Campaign campaign = small_campaign();
   campaign.conditions.resize(1);
@@ -268,7 +269,7 @@ TEST_CASE("diagnose: over many days alarms are as stated, and the smallest leak 
   REQUIRE(none.signals.front().smallest_leak);
   const double limit = none.signals.front().smallest_leak->coefficient;
   CHECK(alarms_of(diagnosed(limit)) >= 18);
-  // The days themselves make the limit: half the leak is missed in half of them.
+  // The variation between days determines the limit, so half of this leak is often missed.
   CHECK(alarms_of(diagnosed(0.5 * limit)) < 17);
   campaign.between_days = {};
   campaign.between_days.none = true;
@@ -295,7 +296,7 @@ TEST_CASE("diagnose: healthy records of many dates tell how days differ", "[diag
   CHECK(found.between_days.source == diagnosis::DaySource::estimated);
   CHECK(found.between_days.dates == 5);
   CHECK(found.between_days.freedom == 4.0);
-  // Supplies differ by 1 % (standard deviation), twice the usual size.
+  // The supplies vary by 1 % (standard deviation), twice the usual size.
   CHECK(std::sqrt(found.between_days.variance) > 1.0);
   CHECK(std::sqrt(found.between_days.variance) < 4.0);
 }
@@ -315,14 +316,14 @@ TEST_CASE("diagnose: another fault is not called a leak", "[diagnosis]") {
                   [&](const auto& each) { return each.condition == campaign.conditions[0].id; });
     return found;
   };
-  for (const auto& record : found_with("position_offset", 2e-3)) {  // a sensor that slipped
+  for (const auto& record : found_with("position_offset", 2e-3)) {  // a sensor that has slipped
     CAPTURE(record.fit.parity_rms_m, record.fit.misfit_rms_m, record.estimate.share);
     CHECK(record.unexplained);
     CHECK_FALSE(record.leak_class);
     REQUIRE_FALSE(record.warnings.empty());
     CHECK_THAT(record.warnings.front(), Catch::StartsWith("not explained by a leak"));
   }
-  // Dry friction loses motion like a leak; its other effects cause a warning.
+  // Dry friction reduces motion like a leak, but its other effects cause a warning.
   for (const auto& record : found_with("coulomb_friction", 3000.0)) {
     CAPTURE(record.fit.parity_rms_m, record.fit.misfit_rms_m, record.estimate.share);
     REQUIRE_FALSE(record.warnings.empty());
@@ -370,7 +371,7 @@ TEST_CASE("diagnose: a record of one sample is told to be too short", "[diagnosi
     CHECK_FALSE(record.fit.ok());
     CHECK_THAT(record.fit.failure, Catch::Contains("one sample counts"));
   }
-  // Two samples define a flow over a time.
+  // Two samples are enough to define a flow over a time.
   const Diagnosis two =
       diagnosis::diagnose(campaign, records_of(campaign, 1, 2), known_rig(campaign), {});
   for (const auto& record : two.records)

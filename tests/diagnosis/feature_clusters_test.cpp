@@ -47,7 +47,7 @@ TEST_CASE("class_without_repeat: own signal, other repeats", "[diagnosis]") {
   const auto all = two_signals();
   CHECK(class_without_repeat(all, all[0]) == LeakClass::normal);
   CHECK(class_without_repeat(all, all[3]) == LeakClass::slight);
-  // Only the slight repeat of its signal is left.
+  // Only the slight repeat of this signal is left.
   CHECK(class_without_repeat(all, all[4]) == LeakClass::slight);
 }
 

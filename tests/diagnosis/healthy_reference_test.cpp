@@ -13,11 +13,11 @@ TEST_CASE("take_off: the mean of the healthy residuals goes, at the nearest samp
   record.time_s = {0.0, 1.0, 2.0, 3.0};
   record.channels[Channel::position].mean = {10.0, 20.0, 30.0, 40.0};
   record.channels[Channel::pressure_a].mean = {1.0, 2.0, 3.0, 4.0};
-  // Its samples are 0.4 s late: the nearest to record time t is the one at t + 0.4 (not the one at
-  // t - 0.6); none is beyond the last.
+  // The samples of the first reference are 0.4 s late. The one nearest to record time t is at t +
+  // 0.4, not at t - 0.6, and there is none beyond the last.
   const std::map<Channel, std::vector<double>> late{{Channel::position, {1.0, 2.0, 3.0, 4.0}}};
   const std::vector<double> late_s{0.4, 1.4, 2.4, 3.4};
-  // And 0.4 s early: the nearest is the one below.
+  // The samples of the second one are 0.4 s early, so the nearest is the one below.
   const std::map<Channel, std::vector<double>> early{{Channel::position, {3.0, 6.0, 9.0, 12.0}}};
   const std::vector<double> early_s{-0.4, 0.6, 1.6, 2.6};
   const std::vector<TimedResidual> healthy{{&late, &late_s}, {&early, &early_s}};
@@ -27,7 +27,7 @@ TEST_CASE("take_off: the mean of the healthy residuals goes, at the nearest samp
   CHECK_THAT(position[1], WithinAbs(20.0 - 4.0, 1e-12));
   CHECK_THAT(position[2], WithinAbs(30.0 - 6.0, 1e-12));
   CHECK_THAT(position[3], WithinAbs(40.0 - 8.0, 1e-12));
-  // A channel that the reference does not have stays.
+  // A channel that the reference does not have is unchanged.
   CHECK(record.channels[Channel::pressure_a].mean == std::vector<double>{1.0, 2.0, 3.0, 4.0});
 }
 

@@ -10,14 +10,15 @@
 
 namespace rigcal::test {
 
-/// One record of a short 1 Hz sine, healthy unless it is made with a leak.
+/// One record of a short 1 Hz sine, healthy unless it is created with a leak.
 struct HealthySine {
   datasets::Campaign campaign;
   datasets::Record record;
 };
 
+/// Simulates the record.
 ///
-/// @param further  other values of the rig that makes the record
+/// @param further  other values for the rig that creates the record
 inline HealthySine healthy_sine(double leakage_coefficient = 0.0,
                                 const datasets::Overrides& further = {}) {
   HealthySine made;
@@ -43,7 +44,7 @@ inline HealthySine healthy_sine(double leakage_coefficient = 0.0,
   return made;
 }
 
-/// The true rig, its valve gain known within 1 %.
+/// Returns the true rig, with a valve gain known within 1 %.
 inline diagnosis::RigFit rig_of(const datasets::Campaign& campaign) {
   diagnosis::RigFit rig;
   for (const auto& [index, value] : campaign.synthetic_settings->parameters)

@@ -10,7 +10,7 @@ using Catch::StartsWith;
 
 namespace {
 
-/// A medium leak that is sure and explains all.
+/// Returns a record with a medium leak that is certain and explains everything.
 RecordDiagnosis sure_record() {
   RecordDiagnosis record;
   record.fit.coefficient = 0.4;
@@ -45,7 +45,8 @@ std::string told(const RecordDiagnosis& record) {
   return text;
 }
 
-/// A leak takes the residual from 1 to `left`, without noise: left^2 of the power is unexplained.
+/// Returns a record in which a leak reduces the residual from 1 to `left`, without noise, so that
+/// left^2 of the power is unexplained.
 RecordDiagnosis leaving(double left) {
   RecordDiagnosis record = sure_record();
   record.fit.noise_rms_m = 0.0;
@@ -107,14 +108,14 @@ TEST_CASE("judge: no class of a share that cannot be", "[diagnosis]") {
 }
 
 TEST_CASE("judge: a plateau is told of by the relative slope", "[diagnosis]") {
-  // d ln share / d ln C = slope C / share.
+  // The relative slope is d ln share / d ln C = slope C / share.
   RecordDiagnosis flat = sure_record();
   flat.fit.coefficient = 0.02;  // 0.375 * 0.02 / 0.15 = 0.05
   CHECK_THAT(told(judged(flat)), Contains("the share hardly depends on the coefficient"));
   CHECK_THAT(told(judged(flat)), Contains("d ln C = 0.05"));
-  flat.fit.coefficient = 0.06;  // 0.15
+  flat.fit.coefficient = 0.06;  // relative slope 0.15
   CHECK(told(judged(flat)).empty());
-  // A share that falls by as much is no plateau, and one of nothing is not judged.
+  // A share that falls as fast is not a plateau, and a share of zero is not judged.
   flat.estimate.share_slope = -0.375;
   CHECK(told(judged(flat)).empty());
   flat.estimate.share = 0.0;

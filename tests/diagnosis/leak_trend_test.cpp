@@ -13,7 +13,7 @@ namespace {
 
 const Eigen::MatrixXd kNoRig = Eigen::MatrixXd::Zero(0, 0);
 
-/// share = 0.2 C.
+/// A state on a date, with share = 0.2 C.
 MachineState on(const std::string& date, double coefficient, double own_se, double freedom = 1e6,
                 double move = 0.0) {
   MachineState state;
@@ -49,7 +49,7 @@ TEST_CASE("leak_trends: two dates are no trend, and said so", "[diagnosis]") {
 }
 
 TEST_CASE("leak_trends: the line through three dates, in their order", "[diagnosis]") {
-  // Only the two ends have weight in the slope; with 4 degrees of freedom each, their sum has 8.
+  // Only the two ends have weight in the slope. With 4 degrees of freedom each, their sum has 8.
   const LeakTrend trend =
       only_trend({on("2026-01-11", 0.5, 0.03, 4.0), on("2026-01-01", 0.3, 0.03, 4.0),
                   on("2026-01-06", 0.4, 0.01, 1.0)});
@@ -57,7 +57,8 @@ TEST_CASE("leak_trends: the line through three dates, in their order", "[diagnos
   CHECK(trend.last_day - trend.first_day == 10);
   CHECK_THAT(trend.coefficient_per_day, WithinRel(0.02, 1e-9));
   CHECK_THAT(trend.share_per_day, WithinRel(0.004, 1e-9));
-  // Error 0.03 sqrt(2) / 10 per day; 97.5 % quantile of t with 8 degrees of freedom.
+  // The error is 0.03 sqrt(2) / 10 per day. The quantile is the 97.5 % one of t with 8 degrees of
+  // freedom.
   CHECK_THAT(trend.share_per_day_ci95.second - trend.share_per_day,
              WithinRel(0.2 * 0.003 * std::sqrt(2.0) * 2.306004135, 1e-6));
   CHECK(trend.significant);
@@ -65,7 +66,8 @@ TEST_CASE("leak_trends: the line through three dates, in their order", "[diagnos
 }
 
 TEST_CASE("leak_trends: when the line reaches the next limit", "[diagnosis]") {
-  // 2 % on the last day, 0.4 points a day: 10 %, where medium begins, 20 days later.
+  // The share is 2 % on the last day and rises by 0.4 points per day, so it reaches 10 %, where
+  // medium begins, 20 days later.
   const LeakTrend trend = only_trend(
       {on("2026-01-01", 0.06, 1e-3), on("2026-01-02", 0.08, 1e-3), on("2026-01-03", 0.1, 1e-3)});
   REQUIRE(trend.next_class == datasets::LeakClass::medium);
@@ -74,7 +76,7 @@ TEST_CASE("leak_trends: when the line reaches the next limit", "[diagnosis]") {
   CHECK(trend.earliest_day < trend.reached_day);
   REQUIRE(trend.latest_day);
   CHECK(*trend.latest_day > trend.reached_day);
-  // Falling, or beyond the last limit: nothing to reach.
+  // If the share falls, or is beyond the last limit, there is no limit to reach.
   for (const double change : {-0.1, 0.2}) {
     const double first = change < 0.0 ? 0.3 : 2.0;
     const LeakTrend other =
@@ -99,7 +101,7 @@ TEST_CASE("leak_trends: no trend within the errors", "[diagnosis]") {
 }
 
 TEST_CASE("leak_trends: an error that all dates share is no trend", "[diagnosis]") {
-  // A rig that is known within 50 % moves every date alike.
+  // If the rig is known only within 50 %, this error shifts all dates alike.
   const Eigen::MatrixXd rig = Eigen::MatrixXd::Constant(1, 1, 0.25);
   const auto states = [](double move) {
     return std::vector{on("2026-01-01", 0.3, 0.01, 1e6, move),
@@ -110,7 +112,7 @@ TEST_CASE("leak_trends: an error that all dates share is no trend", "[diagnosis]
   const LeakTrend shared = only_trend(states(0.3), rig);
   CHECK_THAT(shared.p, WithinRel(exact.p, 1e-6));
   CHECK_THAT(shared.coefficient_per_day, WithinRel(0.01, 1e-9));
-  // It counts where it moves one date more than the other: by 0.1 * 0.5 over ten days.
+  // The error counts if it shifts one date more than the other: by 0.1 * 0.5 over ten days.
   const LeakTrend uneven =
       only_trend({on("2026-01-01", 0.3, 0.01, 1e6, 0.3), on("2026-01-06", 0.35, 0.01, 1e6, 0.35),
                   on("2026-01-11", 0.4, 0.01, 1e6, 0.4)},
@@ -120,7 +122,8 @@ TEST_CASE("leak_trends: an error that all dates share is no trend", "[diagnosis]
 }
 
 TEST_CASE("leak_trends: dates that lie off a line widen its error", "[diagnosis]") {
-  // 0, 6, 0, 6 errors of 0.01: about the line 1.2 x + 1.2 errors, chi-square 28.8 of 2 degrees.
+  // The values are 0, 6, 0, 6 errors of 0.01. Around the line 1.2 x + 1.2 errors, chi-square is
+  // 28.8 with 2 degrees of freedom.
   const LeakTrend trend = only_trend({on("2026-01-01", 0.30, 0.01), on("2026-01-02", 0.36, 0.01),
                                       on("2026-01-03", 0.30, 0.01), on("2026-01-04", 0.36, 0.01)});
   CHECK_THAT(trend.coefficient_per_day, WithinRel(0.012, 1e-9));

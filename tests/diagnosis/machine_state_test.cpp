@@ -32,18 +32,19 @@ LeakEstimate estimate_of(double share, double low, double high) {
 }  // namespace
 
 TEST_CASE("pooled_leak: weights are the inverse variances", "[diagnosis]") {
-  // 1 / 0.1^2 = 100 and 1 / 0.2^2 = 25: (100 * 1 + 25 * 1.1) / 125, error 1 / sqrt(125).
+  // The weights are 1 / 0.1^2 = 100 and 1 / 0.2^2 = 25, which gives (100 * 1 + 25 * 1.1) / 125 with
+  // an error of 1 / sqrt(125).
   const auto pooled =
       diagnosis::pooled_leak({member(1.0, 0.1, 8.0), member(1.1, 0.2, 4.0)}, kExactRig);
   CHECK_THAT(pooled.coefficient, WithinRel(1.02, 1e-12));
   CHECK_THAT(pooled.error.own_se, WithinRel(1.0 / std::sqrt(125.0), 1e-12));
   CHECK(pooled.error.rig_se == 0.0);
   CHECK(pooled.widened == 1.0);
-  // Chi-square: 0.1^2 / (0.1^2 + 0.2^2) with one degree of freedom.
+  // Chi-square is 0.1^2 / (0.1^2 + 0.2^2), with one degree of freedom.
   CHECK_THAT(pooled.chi_squared, WithinRel(0.2, 1e-9));
   CHECK(pooled.freedom == 1.0);
   CHECK_THAT(pooled.p, WithinAbs(std::erfc(std::sqrt(0.1)), 1e-9));
-  // Welch and Satterthwaite: the parts of the variance are 0.8 and 0.2 of it.
+  // Welch and Satterthwaite: the contributions are 0.8 and 0.2 of the variance.
   CHECK_THAT(pooled.error.freedom, WithinRel(1.0 / (0.64 / 8.0 + 0.04 / 4.0), 1e-9));
 }
 
@@ -54,16 +55,16 @@ TEST_CASE("pooled_leak: an error that all members share does not average out", "
   CHECK_THAT(same.error.own_se, WithinRel(0.1, 1e-12));
   CHECK_THAT(same.error.rig_se, WithinRel(0.3, 1e-12));
   CHECK_THAT(same.rig_moves(0), WithinRel(1.0, 1e-12));
-  // Two members that the rig moves in opposite directions determine their mean without it.
+  // If the rig shifts two members in opposite directions, their mean does not depend on it.
   const auto opposite =
       diagnosis::pooled_leak({member(0.4, 0.01, 1e6, 1.0), member(0.6, 0.01, 1e6, -1.0)}, rig);
   CHECK_THAT(opposite.coefficient, WithinRel(0.5, 1e-12));
   CHECK_THAT(opposite.error.rig_se, WithinAbs(0.0, 1e-12));
-  CHECK(opposite.p > 0.5);  // what they differ by is the rig's error
+  CHECK(opposite.p > 0.5);  // the error of the rig explains their difference
 }
 
 TEST_CASE("pooled_leak: members that disagree widen the interval by Birge's ratio", "[diagnosis]") {
-  // Scores of -3, 0 and 3 about the mean: chi-square 18 with 2 degrees of freedom.
+  // The scores around the mean are -3, 0 and 3, so chi-square is 18 with 2 degrees of freedom.
   const auto pooled =
       diagnosis::pooled_leak({member(0.7, 0.1), member(1.0, 0.1), member(1.3, 0.1)}, kExactRig);
   CHECK_THAT(pooled.coefficient, WithinRel(1.0, 1e-12));
@@ -77,7 +78,7 @@ TEST_CASE("pooled_leak: members that disagree widen the interval by Birge's rati
 }
 
 TEST_CASE("nearest_limit: how far a share is from the next class", "[diagnosis]") {
-  const datasets::DiagnosisSettings settings;  // 1, 10, 20, 30 %
+  const datasets::DiagnosisSettings settings;  // limits are 1, 10, 20 and 30 %
   const auto below = diagnosis::nearest_limit(estimate_of(0.17, 0.165, 0.175), settings);
   CHECK(below.above == datasets::LeakClass::critical);
   CHECK_THAT(below.distance, WithinAbs(-0.03, 1e-12));
@@ -86,7 +87,8 @@ TEST_CASE("nearest_limit: how far a share is from the next class", "[diagnosis]"
   CHECK(above.above == datasets::LeakClass::medium);
   CHECK_THAT(above.distance, WithinAbs(0.02, 1e-12));
   CHECK(diagnosis::nearest_limit(estimate_of(0.12, 0.095, 0.145), settings).on_limit);
-  // Within a twentieth of the limit, however sure: what a table of rounded shares may mean.
+  // A share within 5 % of the limit counts as on it, however certain, because a table may list
+  // rounded shares.
   CHECK(diagnosis::nearest_limit(estimate_of(0.2099, 0.2098, 0.21), settings).on_limit);
   CHECK_FALSE(diagnosis::nearest_limit(estimate_of(0.2101, 0.2100, 0.2102), settings).on_limit);
 }

@@ -15,7 +15,7 @@ using diagnosis::RecordDiagnosis;
 
 namespace {
 
-/// Sines of 1 Hz and of 0.5 Hz at one leak level.
+/// Sines of 1 Hz and 0.5 Hz at one leak level.
 struct TwoSines {
   test::HealthySine made = test::healthy_sine(0.3);
   std::array<datasets::RepeatRecords, 2> records;

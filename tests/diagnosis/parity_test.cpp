@@ -18,8 +18,8 @@ int leak_row(const Campaign& campaign) {
   return model::parameter_index(campaign.rig.plant, "leakage_coefficient");
 }
 
-/// Sines of 1 Hz for three seconds: healthy ones to be fitted, healthy ones of another day, and a
-/// leak of this coefficient.
+/// Sines of 1 Hz that last three seconds: healthy ones for the fit, healthy ones from another day,
+/// and some with a leak of this coefficient.
 Campaign three_conditions(double coefficient) {
   Campaign campaign =
       datasets::load_campaign(RIGCAL_SOURCE_DIR "/datasets/rigs/uis_shake_table/diagnosis.toml");
@@ -64,10 +64,11 @@ diagnosis::RigFit true_rig(const Campaign& campaign) {
 struct AlarmCounts {
   int alarms = 0;
   int records = 0;
-  int with_cause = 0;  ///< campaigns whose repeats are found to have a cause in common
+  int with_cause = 0;  ///< number of campaigns whose repeats are found to have a common cause
 };
 
-/// Alarms of healthy records of campaigns whose repeats differ by their supply, all alike.
+/// Counts the alarms of healthy records in campaigns whose repeats all differ in their supply in
+/// the same way.
 AlarmCounts alarms_of_healthy(double rate, double supply_sd, std::uint64_t first, int campaigns) {
   Campaign campaign = three_conditions(0.1);
   campaign.conditions.resize(2);
@@ -99,7 +100,7 @@ TEST_CASE("parity: a leak raises an alarm within a period, healthy records do no
   CHECK(signal.healthy_records == 5);
   CHECK(signal.window_s == 1.0);
   REQUIRE(signal.threshold_m);
-  // White noise of 0.05 mm less the mean of five others of it; the largest of several windows.
+  // White noise of 0.05 mm minus the mean of five other records; the largest of several windows.
   CHECK(*signal.threshold_m > 0.05e-3 * std::sqrt(1.2));
   CHECK(*signal.threshold_m < 0.07e-3);
   for (const auto& condition : found.conditions) {
@@ -154,8 +155,8 @@ TEST_CASE("parity: false alarms on another day are as many as stated", "[diagnos
   }
   CAPTURE(alarms);
   CHECK(records == 300);
-  // Five records share one threshold, so they scatter more than 300 independent ones would:
-  // 0.1 +- 0.05 is three standard errors.
+  // Five records share one threshold, so their alarms vary more than those of 300 independent
+  // records: 0.1 +- 0.05 is three standard errors.
   CHECK(alarms > 15);
   CHECK(alarms < 45);
 }
@@ -164,13 +165,13 @@ TEST_CASE("parity: the stated rate holds where repeats differ by their supply", 
   const AlarmCounts found = alarms_of_healthy(0.05, 0.02, 1, 60);
   CAPTURE(found.alarms, found.with_cause);
   CHECK(found.records == 300);
-  // 0.05 +- 0.033 is two standard errors of campaigns that share one threshold.
+  // 0.05 +- 0.033 is two standard errors for campaigns with one threshold each.
   CHECK(found.alarms > 4);
   CHECK(found.alarms < 26);
   CHECK(found.with_cause > 50);
 }
 
-// The table of docs/parity.md: diagnosis_tests "[parity-study]".
+// Prints the table in docs/parity.md; run with diagnosis_tests "[parity-study]".
 TEST_CASE("parity: alarms at stated rates, printed", "[.parity-study]") {
   for (const double supply_sd : {0.0, 0.005, 0.02}) {
     for (const double rate : {0.01, 0.05}) {
@@ -206,7 +207,7 @@ TEST_CASE("parity: a record of another day has a threshold of its own", "[diagno
   REQUIRE(signal.threshold_of_another_day_m);
   CHECK(*signal.threshold_of_another_day_m > 1.5 * *signal.threshold_m);
   CHECK(other.conditions[1].records.front().threshold_m == signal.threshold_of_another_day_m);
-  // Without a date it counts as of the day of the healthy ones, and a warning says so.
+  // Without a date, it counts as recorded on the day of the healthy records, and a warning says so.
   campaign.conditions[1].date.reset();
   const Parity undated = diagnosis::parity(campaign, records, true_rig(campaign), {});
   CHECK(alarms_of(undated) == 5);
@@ -262,7 +263,7 @@ TEST_CASE("parity: how probable as many false alarms are", "[diagnosis]") {
   leaks_later.conditions[1].overrides = {{leak_row(campaign), 0.1}};
   const auto found = diagnosis::parity(campaign, made(leaks_later, 1), true_rig(campaign), {});
   CHECK(found.check.alarms == 5);
-  // Five of five at 1 % each.
+  // Five alarms out of five, at 1 % each.
   CHECK(std::abs(found.check.p - 1e-10) < 1e-12);
 }
 
@@ -276,7 +277,7 @@ TEST_CASE("parity: without enough healthy records nothing is judged, and why", "
   CHECK_THAT(found.signals.front().reason, Catch::Contains("0 healthy records of this signal"));
   CHECK_FALSE(found.conditions.front().records.front().alarm);
   CHECK(found.conditions.front().records.front().peak_m > 0.0);
-  // Said to be healthy, it is its own reference.
+  // If it is declared healthy, it is its own reference.
   campaign.diagnosis.level_class[*campaign.conditions.front().leak_level] =
       datasets::LeakClass::normal;
   CHECK(diagnosis::parity(campaign, records, true_rig(campaign), {})

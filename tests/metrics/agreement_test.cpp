@@ -22,10 +22,10 @@ namespace {
 
 using Values = std::vector<double>;
 
-// The promise of the metrics: 1e-12 of the value, wherever the value itself is well conditioned.
+// The metrics promise 1e-12 of the value, wherever the value itself is well conditioned.
 constexpr double kRelative = 1e-12;
 
-// 113 bits, and by the textbook formula: nothing in common with the code under test.
+// Uses 113 bits and the textbook formulas, which have nothing in common with the code under test.
 __extension__ using Quad = __float128;
 
 Quad quad_sqrt(Quad x) {
@@ -143,7 +143,7 @@ TEST_CASE("agreement: tiny and huge scales lose nothing", "[metrics]") {
   check_against(quad_metrics(measured, simulated), measured, simulated);
 }
 
-// Integers in a power-of-two unit: their sums are exact in 128 bits, for as many samples as wanted.
+// Integers in a power-of-two unit have exact sums in 128 bits, for any number of samples needed.
 TEST_CASE("agreement: 1e7 samples on an offset of 1e9 as in integer arithmetic", "[metrics]") {
   __extension__ using Integer = __int128;
   constexpr std::size_t kCount = 10'000'000;
@@ -163,7 +163,7 @@ TEST_CASE("agreement: 1e7 samples on an offset of 1e9 as in integer arithmetic",
     square += Integer{b - a} * (b - a), absolute += b - a;
     low = std::min(low, a), high = std::max(high, a), largest = std::max(largest, b - a);
   }
-  // n^2 times the moments, in units squared: below 1e7 * 1e7 * 2e13 = 2e27, exact.
+  // n^2 times the moments, in squared units, is below 1e7 * 1e7 * 2e13 = 2e27, hence exact.
   const Integer n = kCount;
   const auto real = [](Integer value) { return static_cast<long double>(value); };
   const Integer var_y = n * yy - y * y, var_s = n * ss - s * s, cov = n * ys - y * s;
@@ -184,8 +184,8 @@ TEST_CASE("agreement: 1e7 samples on an offset of 1e9 as in integer arithmetic",
 }
 
 TEST_CASE("rho2: its distance from 1 keeps all digits", "[metrics]") {
-  // A residual of 1e-6, 1e-9 of the signal; 1 - rho2 itself resolves 1e-12 to 1e-4, and 1e-18 not
-  // at all.
+  // Residuals of 1e-6 and 1e-9 of the signal. Computing 1 - rho2 would resolve 1e-12 only to 1e-4,
+  // and 1e-18 not at all.
   const double noise = GENERATE(1e-6, 1e-9);
   const double offset = GENERATE(0.0, 1e3);
   const Values measured = normal_values(1000, offset, 1.0, 3);
@@ -246,18 +246,18 @@ TEST_CASE("concordance: eq. 17 as printed equals Lin's form", "[metrics]") {
   const double d = mean(kMeasured) - mean(kSimulated);
   const double printed =
       (var(kSimulated) + var(kMeasured) - var(e)) / (var(kSimulated) + var(kMeasured) + d * d);
-  // Five samples of order 1: a few roundings of 1e-16.
+  // For five samples of order 1, there are a few roundings of 1e-16.
   CHECK_THAT(concordance(kMeasured, kSimulated), WithinRel(printed, 1e-14));
 }
 
 TEST_CASE("agreement: what each metric is blind to", "[metrics]") {
-  // Powers of two, so that shifting and scaling round nothing.
+  // Powers of two are used, so that shifting and scaling do not round.
   Values shifted = kMeasured, doubled = kMeasured;
   for (double& value : shifted) value += 0.5;
   for (double& value : doubled) value *= 2.0;
   CHECK(rho2(kMeasured, shifted) == 1.0);
   CHECK(correlation(kMeasured, shifted) == 1.0);
-  // var = 2 each, offset 0.5: 4 / (4 + 0.25), to a few roundings.
+  // The variances are 2 and the offset is 0.5, which gives 4 / (4 + 0.25), up to a few roundings.
   CHECK_THAT(concordance(kMeasured, shifted), WithinRel(4.0 / 4.25, 1e-15));
   CHECK(correlation(kMeasured, doubled) == 1.0);
   CHECK(rho2(kMeasured, doubled) == 0.0);
@@ -278,7 +278,7 @@ TEST_CASE("agreement: a constant simulated signal has a rho2 and a concordance, 
 }
 
 TEST_CASE("agreement: a constant measured signal is refused wherever it divides", "[metrics]") {
-  // The mean of these does not round to their value; they are constant all the same.
+  // The mean of these samples does not round to their value, but they are constant all the same.
   const Values flat(7, GENERATE(0.0, 0.1, 1e9 + 0.1, 1e-310));
   const Values moving = normal_values(7, 0.0, 1.0, 6);
   for (const Values& simulated : {moving, flat}) {

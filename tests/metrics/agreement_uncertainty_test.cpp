@@ -24,7 +24,7 @@ std::vector<double> sine(std::size_t samples, double amplitude) {
   return values;
 }
 
-/// Repeats about a truth: each with a gain of its own, and noise with memory.
+/// Repeats of a truth, each with a separate gain and with autocorrelated noise.
 struct Repeats {
   std::vector<double> mean;
   std::vector<std::vector<double>> deviations;
@@ -56,7 +56,7 @@ MeasuredMean measured(const Repeats& repeats) { return {repeats.mean, repeats.de
 
 TEST_CASE("agreement_uncertainty: of a constant error it is t times the standard error",
           "[metrics]") {
-  // Each repeat is the truth plus an offset: the RMSE of their mean is the mean offset.
+  // Each repeat is the truth plus an offset, so the RMSE of their mean is the mean offset.
   const std::vector<double> truth = sine(300, 1.0);
   const std::vector<double> offsets{0.10, 0.12, 0.11, 0.15, 0.12};
   const double mean = 0.12;
@@ -71,12 +71,13 @@ TEST_CASE("agreement_uncertainty: of a constant error it is t times the standard
   REQUIRE(found.has_value());
   CHECK_THAT(found->one_sided.rmse,
              WithinRel(student_t_quantile(0.975, 4.0) * std::sqrt(squares / 4.0 / 5.0), 1e-9));
-  CHECK(found->one_sided.rho2 < 1e-12);  // blind to an offset
+  CHECK(found->one_sided.rho2 < 1e-12);  // insensitive to an offset
 }
 
 TEST_CASE("agreement_uncertainty: two-sided, the score of unlimited repeats is within it",
           "[metrics]") {
-  // A model that is exact, off by less than the noise, and by more; noise without and with memory.
+  // The model is exact, off by less than the noise, or off by more. The noise is white or
+  // autocorrelated.
   std::mt19937_64 random(20261126);
   const std::vector<double> truth = sine(400, 1.0);
   constexpr int kDraws = 400;
@@ -104,7 +105,7 @@ TEST_CASE("agreement_uncertainty: two-sided, the score of unlimited repeats is w
 
 TEST_CASE("agreement_uncertainty: the score of unlimited repeats is seldom worse than it allows",
           "[metrics]") {
-  // A quarter of the draws has little but the gain of each repeat, a quarter little but noise.
+  // A quarter of the draws is dominated by the gain of each repeat, and a quarter by noise.
   std::mt19937_64 random(20261125);
   const std::vector<double> truth = sine(400, 1.0);
   std::vector<double> simulated = sine(400, 0.97);
@@ -124,7 +125,7 @@ TEST_CASE("agreement_uncertainty: the score of unlimited repeats is seldom worse
     for (std::size_t m = 0; m < kMetrics.size(); ++m) {
       const auto score = kMetrics[m].value;
       const double sign = kMetrics[m].higher_is_better ? -1.0 : 1.0;
-      const double distance = sign * (exact.*score - found.*score);  // above zero: worse than found
+      const double distance = sign * (exact.*score - found.*score);  // > 0: the true score is worse
       if (distance > uncertainty->one_sided.*score) ++worse[m];
       widths[m] += uncertainty->one_sided.*score / kDraws;
       scatter[m] += distance * distance / kDraws;
@@ -132,8 +133,8 @@ TEST_CASE("agreement_uncertainty: the score of unlimited repeats is seldom worse
   }
   for (std::size_t m = 0; m < kMetrics.size(); ++m) {
     CAPTURE(kMetrics[m].name, worse[m], widths[m], std::sqrt(scatter[m]));
-    CHECK(worse[m] <= kDraws * 0.04);                // 2.5 % and its scatter
-    CHECK(widths[m] < 6.0 * std::sqrt(scatter[m]));  // and not for being boundless
+    CHECK(worse[m] <= kDraws * 0.04);                // 2.5 % plus statistical variation
+    CHECK(widths[m] < 6.0 * std::sqrt(scatter[m]));  // but not because it is unlimited
   }
 }
 
@@ -151,9 +152,9 @@ TEST_CASE("agreement_uncertainty: a sensor's gain and offset", "[metrics]") {
   with.offset_sd = 0.02;
   const auto offset = agreement_uncertainty(with, truth);
   CHECK_THAT(offset->one_sided.maximum_error, WithinRel(1.959964 * 0.02, 1e-5));
-  CHECK_THAT(offset->one_sided.rmse, WithinRel(1.959964 * 0.02, 1e-5));  // the same at every sample
-  // rho2 is blind to a constant, so the offset goes from -0.02 at one end of the range to 0.02 at
-  // the other.
+  CHECK_THAT(offset->one_sided.rmse, WithinRel(1.959964 * 0.02, 1e-5));  // same at every sample
+  // rho2 is insensitive to a constant, so the offset changes from -0.02 at one end of the range to
+  // 0.02 at the other.
   CHECK_THAT(offset->one_sided.rho2, WithinRel(1.959964 * std::pow(0.02 / 0.98, 2.0), 1e-2));
   with.offset_sd = 20.0;  // larger than the signal
   CHECK(agreement_uncertainty(with, truth)->one_sided.rho2 > 0.9);
@@ -190,7 +191,7 @@ TEST_CASE("agreement_uncertainty: where repeats lack samples the others speak", 
   Repeats repeats{truth, {}};
   for (const double offset : {-0.1, 0.0, 0.1}) repeats.deviations.emplace_back(100, offset);
   const auto whole = agreement_uncertainty(measured(repeats), truth);
-  // Where but one repeat has a sample there is no mean of the others.
+  // If only one repeat has a sample, there is no mean of the others.
   repeats.deviations[0][0] = repeats.deviations[1][0] = kNan;
   repeats.deviations[0][1] = kNan;
   const auto part = agreement_uncertainty(measured(repeats), truth);

@@ -28,7 +28,7 @@ TEST_CASE("autoregression: its autocovariances are those of the closed form", "[
   const auto first = autocovariance(Autoregression{{0.8}, 2.0}, 3);
   for (std::size_t h = 0; h < first.size(); ++h)  // 1e-12: rounding
     CHECK_THAT(first[h], WithinRel(2.0 / (1.0 - 0.64) * std::pow(0.8, h), 1e-12));
-  // Second order: Yule and Walker's equations are satisfied.
+  // For the second order, the Yule-Walker equations must be satisfied.
   const std::vector<double> phi{0.5, -0.3};
   const auto gamma = autocovariance(Autoregression{phi, 1.0}, 4);
   CHECK_THAT(gamma[0], WithinAbs(phi[0] * gamma[1] + phi[1] * gamma[2] + 1.0, 1e-12));
@@ -53,9 +53,10 @@ TEST_CASE("autoregression: order and coefficient from a series", "[metrics]") {
   const auto slow = series({0.95}, 2000, 3);
   const Autoregression found = fit_autoregression(autocovariance(slow, 20), 2000.0);
   REQUIRE(found.phi.size() == 1);
-  // sqrt((1 - 0.95^2) / 2000) = 0.007; four times that.
+  // The standard error is sqrt((1 - 0.95^2) / 2000) = 0.007; the tolerance is four times that.
   CHECK_THAT(found.phi[0], WithinAbs(0.95, 0.028));
-  // (1 - 0.95) / (1 + 0.95) of the samples, 51; four errors of the coefficient halve or double it.
+  // A fraction (1 - 0.95) / (1 + 0.95) of the samples is 51. Four errors of the coefficient halve
+  // or double it.
   CHECK(found.effective_samples(2000.0) > 20.0);
   CHECK(found.effective_samples(2000.0) < 120.0);
 }
@@ -72,7 +73,7 @@ TEST_CASE("autoregression: constant, empty and short series give a white model",
 
 TEST_CASE("autoregression: of a series that repeats itself the model stays within bounds",
           "[metrics]") {
-  // Two partial autocorrelations describe a sine; the rest is rounding divided by nearly zero.
+  // Two partial autocorrelations describe a sine. The rest is rounding divided by almost zero.
   std::vector<double> sine(3001);
   for (std::size_t t = 0; t < sine.size(); ++t)
     sine[t] = std::sin(2.0 * 3.14159265358979 * static_cast<double>(t) / 10.0);
@@ -87,7 +88,7 @@ TEST_CASE("autoregression: of a series that repeats itself the model stays withi
     response.push_back(next);
     largest = std::max(largest, std::abs(next));
   }
-  CHECK(largest < 100.0);  // 1.7e7 with every partial autocorrelation cut and used
+  CHECK(largest < 100.0);  // 1.7e7 if every partial autocorrelation were limited and used
   CHECK(found.variance > 0.0);
 }
 
@@ -96,7 +97,8 @@ TEST_CASE("autoregression: which sequences are autocovariances", "[metrics]") {
   CHECK(is_autocovariance(autocovariance(Autoregression{{0.5, -0.3}, 1.0}, 10)));
   CHECK(is_autocovariance(autocovariance(series({0.95}, 500, 3), 20)));
   CHECK_FALSE(is_autocovariance(std::vector{1.0, 1.01}));
-  // Each lag alone would do: cos(acos(0.9) + acos(0.9)) = 0.62 is the least after 0.9.
+  // Each lag by itself would be possible: cos(acos(0.9) + acos(0.9)) = 0.62 is the minimum after
+  // 0.9.
   CHECK(is_autocovariance(std::vector{1.0, 0.9, 0.63}));
   CHECK_FALSE(is_autocovariance(std::vector{1.0, 0.9, 0.61}));
   CHECK_FALSE(is_autocovariance(std::vector{0.0, 0.0}));

@@ -20,7 +20,7 @@ TEST_CASE("distributions: normal", "[metrics]") {
 TEST_CASE("distributions: Student's t", "[metrics]") {
   CHECK_THAT(student_t_quantile(0.975, 10.0), WithinRel(2.228138852, 1e-9));
   CHECK_THAT(student_t_cdf(-2.228138852, 10.0), WithinRel(0.025, 1e-8));
-  // With one degree of freedom it is Cauchy's: tan(pi (p - 1/2)).
+  // With one degree of freedom, it is the Cauchy distribution: tan(pi (p - 1/2)).
   CHECK_THAT(student_t_quantile(0.75, 1.0), WithinRel(1.0, 1e-12));
   CHECK(std::isinf(student_t_quantile(0.975, 1e-6)));
   CHECK_THROWS_AS(student_t_cdf(1.0, 0.0), std::domain_error);

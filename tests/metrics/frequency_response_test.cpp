@@ -32,7 +32,7 @@ Values values_at(const Values& time_s, Function function) {
   return result;
 }
 
-/// One part of a drive, and what a first-order lag makes of it once it has settled.
+/// A sine that is one component of a drive.
 struct Tone {
   double amplitude, frequency_hz, phase_rad;
 };
@@ -54,7 +54,7 @@ Values through_lag(const Values& time_s, const std::vector<Tone>& tones, double 
   });
 }
 
-/// A tone per line from 1 Hz to 40 Hz of a record of 20 s: periodic noise.
+/// Periodic noise: one tone for each line from 1 Hz to 40 Hz in a record of 20 s.
 std::vector<Tone> many_tones() {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> turn(0.0, 2.0 * std::numbers::pi);
@@ -74,7 +74,7 @@ Values with_noise(Values values, double sd, unsigned seed) {
 
 TEST_CASE("periodic_response: an output that owes nothing to the input has no interval",
           "[metrics]") {
-  const Values time_s = even_times(128, 1.0 / 64.0);  // two periods, to the last bit
+  const Values time_s = even_times(128, 1.0 / 64.0);  // two periods, exact to the last bit
   const auto wave = [](double t) { return std::sin(2.0 * std::numbers::pi * (t - std::floor(t))); };
   const Values input = values_at(time_s, wave);
   const Values output = values_at(time_s, [&](double t) { return t < 1.0 ? wave(t) : -wave(t); });
@@ -105,11 +105,11 @@ TEST_CASE("periodic_response: a square wave through a first-order lag, at its od
     CAPTURE(frequency);
     const std::complex<double> h = lag(frequency, time_constant_s);
     CHECK_THAT(points[i].frequency_hz, WithinRel(frequency, 1e-12));
-    // Sums of sines are fitted without error but for rounding.
+    // Sums of sines are fitted without error except for rounding.
     CHECK_THAT(points[i].gain, WithinRel(std::abs(h), 1e-9));
     CHECK_THAT(points[i].phase_deg, WithinAbs(std::arg(h) * 180.0 / std::numbers::pi, 1e-7));
     CHECK_THAT(points[i].coherence, WithinAbs(1.0, 1e-9));
-    CHECK(points[i].independent == 7.0);  // the first is a transient
+    CHECK(points[i].independent == 7.0);  // the first period is a transient
     REQUIRE(points[i].interval.has_value());
     CHECK_THAT(points[i].interval->gain_high, WithinRel(points[i].gain, 1e-3));
   }
@@ -119,7 +119,7 @@ TEST_CASE("periodic_response: a pure delay turns the phase in proportion to the 
           "[metrics]") {
   const double f = 5.0;
   const double delay_s = 0.011;
-  // 1 ms does not divide this period: its samples are never the same twice.
+  // This period is not a multiple of 1 ms, so samples never repeat.
   const double f_odd = 4.937;
   for (const double frequency : {f, f_odd}) {
     CAPTURE(frequency);
@@ -148,7 +148,7 @@ TEST_CASE("periodic_response: one period tells no scatter", "[metrics]") {
 
 TEST_CASE("periodic_response: 95 % intervals hold the truth about as often", "[metrics]") {
   const double f = 2.0;
-  const Values t = even_times(3500, 1e-3);  // seven periods, of which six count
+  const Values t = even_times(3500, 1e-3);  // seven periods, six of which count
   const std::vector<Tone> tone{{1.0, f, 0.0}};
   const Values u =
       values_at(t, [&](double time) { return std::sin(2.0 * std::numbers::pi * f * time); });
@@ -170,7 +170,7 @@ TEST_CASE("periodic_response: 95 % intervals hold the truth about as often", "[m
                   ? 1
                   : 0;
   }
-  // 380 expected; the binomial standard deviation is 4.4.
+  // The expected number is 380, with a binomial standard deviation of 4.4.
   CHECK(gains > 362);
   CHECK(gains < 396);
   CHECK(phases > 362);
@@ -204,7 +204,7 @@ TEST_CASE("broadband_response: noise through a first-order lag", "[metrics]") {
     if (point.frequency_hz < 1.2 || point.frequency_hz > 38.0) continue;
     CAPTURE(point.frequency_hz);
     const std::complex<double> h = lag(point.frequency_hz, time_constant_s);
-    // Within a bin of a twelfth of a decade the lag bends by this much.
+    // Within a bin of a twelfth of a decade, the lag varies by this much.
     CHECK_THAT(point.gain, WithinRel(std::abs(h), 0.02));
     CHECK_THAT(point.phase_deg, WithinAbs(std::arg(h) * 180.0 / std::numbers::pi, 1.5));
     CHECK(point.coherence > 0.98);
@@ -238,7 +238,7 @@ TEST_CASE("broadband_response: a sweep through a pure delay, with drift", "[metr
     ++within;
   }
   CHECK(within > 6);
-  // Beyond the sweep the drive has no power.
+  // Beyond the end of the sweep, the drive has no power.
   CHECK(points.back().frequency_hz < 100.0);
 }
 
@@ -258,7 +258,7 @@ TEST_CASE("broadband_response: intervals widen as coherence falls", "[metrics]")
     }
     CHECK(width > 3.0 * before);
     before = width;
-    // 95 % of some 25 bins; five are beyond by chance once in a hundred records.
+    // 95 % of about 25 bins. Five are outside by chance once in a hundred records.
     CHECK(held >= static_cast<int>(points.size()) - 5);
   }
   const auto points = broadband_response(step_s, u, with_noise(u, 1.0, 4));

@@ -18,7 +18,7 @@ namespace {
 using Values = std::vector<double>;
 
 constexpr double kPi = std::numbers::pi;
-// A fit of a pure sine is exact but for the rounding of its samples.
+// A fit to a pure sine is exact except for the rounding of its samples.
 constexpr double kExact = 1e-12;
 
 Values times(std::size_t n, double step_s, double start_s = 0.0) {
@@ -65,7 +65,7 @@ TEST_CASE("fundamental: sample times need not be equidistant", "[metrics]") {
 }
 
 TEST_CASE("fundamental: of a square wave is 4 / pi of it", "[metrics]") {
-  // Sampled between the edges, n = 1000 per period: 4 / pi up to (pi / n)^2 / 6 = 2e-6.
+  // Sampled between the edges with n = 1000 per period, it is 4 / pi up to (pi / n)^2 / 6 = 2e-6.
   const Values t = times(2000, 1e-3, 5e-4);
   const Values square =
       sampled(t, [](double s) { return std::sin(2.0 * kPi * s) > 0 ? 1.0 : -1.0; });
@@ -75,7 +75,8 @@ TEST_CASE("fundamental: of a square wave is 4 / pi of it", "[metrics]") {
 }
 
 TEST_CASE("fundamental: whole periods leave harmonics out", "[metrics]") {
-  // Periods that the record ends short of or goes beyond: the window must still be whole ones.
+  // The record ends before or after a whole number of periods. The window must still contain whole
+  // periods.
   const std::size_t samples = GENERATE(1000, 1001, 1700, 2000, 2001, 3000, 3001, 4600);
   CAPTURE(samples);
   const Values t = times(samples, 1e-3);
@@ -128,7 +129,7 @@ TEST_CASE("compare_fundamentals: the phase is above -180 and at most 180 degrees
   };
   CHECK_THAT(phase(-3.0, 3.0), WithinAbs(6.0 * 180.0 / kPi - 360.0, 1e-9));
   CHECK_THAT(phase(3.0, -3.0), WithinAbs(360.0 - 6.0 * 180.0 / kPi, 1e-9));
-  // On the edge rounding may choose the side, but never -180 itself.
+  // Exactly on the edge, rounding may choose the side, but never -180 itself.
   CHECK_THAT(std::abs(phase(0.0, kPi)), WithinAbs(180.0, 1e-9));
   CHECK(phase(0.0, kPi) > -180.0);
 }

@@ -13,9 +13,9 @@ using rigcal::metrics::mean_absolute_slope;
 
 namespace {
 
-constexpr double kRounding = 1e-14;  // relative, a few units in the last place
+constexpr double kRounding = 1e-14;  // relative; a few units in the last place
 
-/// One period of 1 s, both ends included.
+/// Times for one period of 1 s, both ends included.
 std::vector<double> times(std::size_t intervals) {
   std::vector<double> t;
   for (std::size_t i = 0; i <= intervals; ++i) {
@@ -36,11 +36,11 @@ std::vector<double> sine(const std::vector<double>& t, double amplitude, double 
 TEST_CASE("mean_absolute: straight lines are exact, whatever the spacing", "[metrics]") {
   CHECK_THAT(mean_absolute(std::vector{0.0, 1.0, 4.0}, std::vector{2.0, 2.0, 6.0}),
              WithinRel((2.0 + 3.0 * 4.0) / 4.0, kRounding));
-  // From -1 to 3 the line is below zero for a quarter of the time: (0.25 0.5 + 0.75 1.5).
+  // From -1 to 3, the line is below zero for a quarter of the time: 0.25 * 0.5 + 0.75 * 1.5.
   CHECK_THAT(mean_absolute(std::vector{0.0, 2.0}, std::vector{-1.0, 3.0}),
              WithinRel(1.25, kRounding));
   CHECK(mean_absolute(std::vector{0.0, 1.0, 2.0}, std::vector{0.0, 0.0, 0.0}) == 0.0);
-  // A sign change at a sample, and through a sample of zero.
+  // The sign changes at a sample, and this sample is zero.
   CHECK_THAT(mean_absolute(std::vector{0.0, 1.0, 2.0}, std::vector{-2.0, 0.0, 2.0}),
              WithinRel(1.0, kRounding));
 }
@@ -50,7 +50,7 @@ TEST_CASE("mean_absolute: of a sine is 2/pi, with a square-law error wherever th
   for (const double phase_rad : {0.0, 0.1, 0.02}) {
     const auto t = times(100);
     const double mean = mean_absolute(t, sine(t, 2.0, phase_rad));
-    // (2 pi / 100)^2 / 12 = 3.3e-4 of the trapezoidal rule.
+    // The trapezoidal rule has an error of (2 pi / 100)^2 / 12 = 3.3e-4.
     CHECK_THAT(mean, WithinRel(4.0 / std::numbers::pi, 4e-4));
     CHECK(mean < 4.0 / std::numbers::pi);  // chords are inside the arc
   }
@@ -68,9 +68,9 @@ TEST_CASE("mean_absolute_slope: against central differences, through sign change
     behind[i] -= h * direction[i];
   }
   const double difference = (mean_absolute(t, ahead) - mean_absolute(t, behind)) / (2.0 * h);
-  // Rounding of the difference: 1e-16 / 1e-6.
+  // Rounding limits the difference to 1e-16 / 1e-6.
   CHECK_THAT(mean_absolute_slope(t, y, direction), WithinRel(difference, 1e-8));
-  // Scaling the signal scales its mean.
+  // Scaling a signal scales its mean.
   CHECK_THAT(mean_absolute_slope(t, y, y), WithinRel(mean_absolute(t, y), 1e-13));
   CHECK_THROWS_AS(mean_absolute_slope(t, y, std::vector{1.0}), std::invalid_argument);
 }

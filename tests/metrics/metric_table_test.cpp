@@ -50,7 +50,7 @@ TEST_CASE("kMetrics: a scaled channel scales the metrics in its unit and no othe
   for (double& value : simulated_4) value *= 4.0;
   for (const MetricSpec& metric : kMetrics) {
     CAPTURE(metric.name);
-    // A factor of four rounds nothing.
+    // Multiplying by four does not round.
     CHECK(metric.compute(measured_4, simulated_4) ==
           metric.compute(measured, simulated) * (metric.unit == "channel" ? 4.0 : 1.0));
   }

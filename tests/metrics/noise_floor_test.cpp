@@ -29,7 +29,7 @@ Values sine(double amplitude) {
   return values;
 }
 
-/// Mean of repeated recordings of `truth`: noise of `sd_of_mean` is left of theirs.
+/// Mean of repeated recordings of `truth`, with noise of `sd_of_mean` left in it.
 Values recorded(const Values& truth, double sd_of_mean, std::mt19937_64& generator) {
   std::normal_distribution<double> noise(0.0, sd_of_mean);
   Values mean = truth;
@@ -56,8 +56,8 @@ TEST_CASE("noise_floor: is what the truth scores against noisy means of repeats"
     scored.absolute_error_percent += all.absolute_error_percent / kDraws;
   }
   CAPTURE(sd_of_mean, floor.rho2, floor.ccc);
-  // var(n) scatters by sqrt(2 / 2000) = 3 % per draw, 0.16 % in the mean of 400; 1 / 2000 is the
-  // term that the formulas leave out. The mean of |n| scatters by half of that.
+  // var(n) varies by sqrt(2 / 2000) = 3 % per draw, and by 0.16 % in the mean of 400. The term that
+  // the formulas leave out is 1 / 2000. The mean of |n| varies by half as much.
   CHECK_THAT(1.0 - scored.rho2, WithinRel(1.0 - floor.rho2, 0.01));
   CHECK_THAT(1.0 - scored.ccc, WithinRel(1.0 - floor.ccc, 0.01));
   CHECK_THAT(scored.absolute_error_percent, WithinRel(floor.absolute_error_percent, 0.005));
@@ -81,7 +81,7 @@ TEST_CASE("noise_floor: a raised gain beats the truth's concordance by x^2 / 8 a
           "[metrics]") {
   const double sd_of_mean = 0.3;
   const Values truth = sine(1.0);
-  const double x = 2.0 * sd_of_mean * sd_of_mean;  // over var(t) = 1/2
+  const double x = 2.0 * sd_of_mean * sd_of_mean;  // divided by var(t) = 1/2
   Values model = truth;
   for (double& value : model) value = 3.0 + std::sqrt(1.0 + x) * (value - 3.0);
   std::mt19937_64 generator(13);
@@ -95,7 +95,7 @@ TEST_CASE("noise_floor: a raised gain beats the truth's concordance by x^2 / 8 a
 }
 
 TEST_CASE("noise_floor: closed values for a signal of known variance", "[metrics]") {
-  // var = 1, peak to peak 2.
+  // The variance is 1, and the peak-to-peak value is 2.
   const Values measured{-1.0, 1.0, 1.0, -1.0};
   const NoiseFloor floor = noise_floor(measured, 0.5);
   CHECK(floor.rho2 == 0.75);

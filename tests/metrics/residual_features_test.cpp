@@ -12,12 +12,12 @@ using rigcal::metrics::residual_features;
 
 namespace {
 
-constexpr double kFeatureRounding = 1e-14;  // relative, a few units in the last place
+constexpr double kFeatureRounding = 1e-14;  // relative; a few units in the last place
 
 }  // namespace
 
 TEST_CASE("residual_features: by hand", "[metrics]") {
-  // |r| = 1, 2, 2, 3: mean 2, mean square 18/4, variance 1/2.
+  // |r| = 1, 2, 2, 3 has mean 2, mean square 18/4 and variance 1/2.
   const auto f = residual_features(std::vector{1.0, -2.0, 2.0, -3.0});
   CHECK_THAT(f.mean, WithinRel(2.0, kFeatureRounding));
   CHECK_THAT(f.rms, WithinRel(std::sqrt(4.5), kFeatureRounding));
@@ -33,8 +33,8 @@ TEST_CASE("residual_features: a sine over whole periods has 2/pi, 1/sqrt(2) and 
     r[i] = 3.0 * std::sin(2.0 * kPi * 5.0 * (static_cast<double>(i) + 0.5) / 1e5);
   }
   const auto f = residual_features(r);
-  // The midpoint rule errs by the square of the step in phase, (2 pi 5 / 1e5)^2 / 24 = 4e-9 of the
-  // mean; the spread, a difference, by ten times that.
+  // The relative error of the midpoint rule in the mean is the square of the phase step, (2 pi 5 /
+  // 1e5)^2 / 24 = 4e-9. The standard deviation is a difference, so its error is ten times as large.
   CHECK_THAT(f.mean, WithinRel(6.0 / kPi, 1e-8));
   CHECK_THAT(f.rms, WithinRel(3.0 / std::sqrt(2.0), 1e-8));
   CHECK_THAT(f.std, WithinRel(3.0 * std::sqrt(0.5 - 4.0 / (kPi * kPi)), 1e-7));

@@ -50,7 +50,8 @@ TEST_CASE("residual_tests: each is passed by white noise about as often as its l
     shape += tests.normality.passed() ? 0 : 1;
     drift += tests.drift.passed() ? 0 : 1;
   }
-  // 5 % of 200 is 10 with a standard deviation of 3.1; Bonferroni keeps the cross test below.
+  // 5 % of 200 are 10, with a standard deviation of 3.1. The cross test is below this because of
+  // Bonferroni's correction.
   CHECK(colour <= 22);
   CHECK(colour >= 2);
   CHECK(cross <= 22);
@@ -94,9 +95,9 @@ TEST_CASE("residual_tests: the periodogram finds a line and keeps the power", "[
   const ResidualTests tests = residual_tests(residual, {}, 0.001);
   CHECK_FALSE(tests.periodogram.passed());
   CHECK_THAT(tests.periodogram.peak_frequency_hz, Catch::WithinAbs(10.0, 0.21));
-  // 2 of 3 units of variance
+  // The line has 2 of 3 units of variance.
   CHECK_THAT(tests.periodogram.peak_share, Catch::WithinAbs(2.0 / 3.0, 0.05));
-  // White noise of variance 1 at 1 kHz: one-sided density 2 / 1000
+  // White noise with variance 1 at 1 kHz has a one-sided density of 2 / 1000.
   const ResidualTests noise = residual_tests(white(5000, 6), {}, 0.001);
   CHECK_THAT(noise.periodogram.density.back(), Catch::WithinRel(0.002, 0.2));
 }
@@ -113,7 +114,7 @@ TEST_CASE("residual_tests: heavy tails and trends are named", "[metrics]") {
   for (std::size_t i = 0; i < trend.size(); ++i) trend[i] += 0.02 * 0.01 * static_cast<double>(i);
   const ResidualTests drift = residual_tests(trend, {}, 0.01);
   CHECK_FALSE(drift.drift.passed());
-  // Standard error of the slope: 1 / (sqrt(2000) * 5.77 s) = 0.004 per s
+  // The standard error of the slope is 1 / (sqrt(2000) * 5.77 s) = 0.004 per s.
   CHECK_THAT(drift.drift.slope_per_s, Catch::WithinAbs(0.02, 0.016));
 }
 
@@ -132,7 +133,7 @@ TEST_CASE("residual_tests: a normal sample lies on the line of the normal plot",
   REQUIRE(plot.normal_quantile.size() == plot.residual_quantile.size());
   for (std::size_t i = 0; i < plot.normal_quantile.size(); ++i) {
     CAPTURE(plot.normal_quantile[i]);
-    // The value drawn is the nearest of the sample: half a rank away at most.
+    // The value drawn is the nearest one in the sample, so it is at most half a rank away.
     const double drawn = rigcal::metrics::normal_cdf(plot.residual_quantile[i] * tests.std / 3.0);
     CHECK(std::abs(drawn - rigcal::metrics::normal_cdf(plot.normal_quantile[i])) <
           0.5001 / kSamples);
@@ -140,7 +141,8 @@ TEST_CASE("residual_tests: a normal sample lies on the line of the normal plot",
 }
 
 TEST_CASE("residual_tests: offset and trend are tested at half the level each", "[metrics]") {
-  // White noise whose mean and trend are taken off; what is put on has the p that is wanted.
+  // Mean and trend of the white noise are removed, and replaced by a mean and trend that give the
+  // wanted p-value.
   constexpr std::size_t kCount = 400;
   std::vector<double> noise = white(kCount, 21);
   std::vector<double> time(kCount);
@@ -161,7 +163,7 @@ TEST_CASE("residual_tests: offset and trend are tested at half the level each", 
     }
     return residual_tests(residual, {}, 0.01).drift.outcome;
   };
-  // The normal quantile of 1.25 % is 2.2414; a trend that size adds 0.6 % to the variance.
+  // The normal quantile for 1.25 % is 2.2414. A trend of this size increases the variance by 0.6 %.
   using rigcal::metrics::TestOutcome;
   CHECK(outcome_of(2.20, 0.0) == TestOutcome::passed);
   CHECK(outcome_of(-2.20, 0.0) == TestOutcome::passed);
@@ -173,7 +175,7 @@ TEST_CASE("residual_tests: offset and trend are tested at half the level each", 
 }
 
 TEST_CASE("residual_tests: a test without power is no pass", "[metrics]") {
-  // Half a wave fills the record: hardly an independent sample is left.
+  // Half a wave fills the record, which leaves hardly any independent samples.
   std::vector<double> slow = sine(2000, 0.25, 0.001);
   const std::vector<double> noise = white(2000, 11);
   for (std::size_t i = 0; i < slow.size(); ++i) slow[i] += 0.01 * noise[i];
@@ -185,12 +187,12 @@ TEST_CASE("residual_tests: a test without power is no pass", "[metrics]") {
   CHECK(tests.normality.outcome == TestOutcome::not_judged);
   CHECK(tests.drift.outcome == TestOutcome::not_judged);
   CHECK_FALSE(tests.drift.reason.empty());
-  // All 2000 samples count against whiteness.
+  // For the tests of whiteness, all 2000 samples count.
   CHECK(tests.autocorrelation.outcome == TestOutcome::failed);
   CHECK(tests.periodogram.outcome == TestOutcome::failed);
 
   // 50 white samples can show offsets, trends and correlations of half a standard deviation, but
-  // not the tails of a distribution; 16 cannot show a spectrum either.
+  // not the tails of a distribution. 16 samples cannot show a spectrum either.
   const ResidualTests some = residual_tests(white(50, 12), white(50, 13), 0.001);
   CHECK(some.drift.outcome == TestOutcome::passed);
   CHECK(some.cross_correlation->outcome == TestOutcome::passed);
@@ -206,10 +208,10 @@ TEST_CASE("effective_sample_size: closed form of a geometric decay", "[metrics]"
   std::vector<double> rho(1000, 0.0);
   for (std::size_t k = 0; k < rho.size(); ++k) rho[k] = std::pow(0.5, static_cast<double>(k));
   CHECK_THAT(effective_sample_size(rho), Catch::WithinRel(1000.0 / 3.0, 1e-12));
-  // Only values before the first that is not positive count.
+  // Only values before the first one that is not positive count.
   rho[2] = 0.0;
   CHECK_THAT(effective_sample_size(rho), Catch::WithinRel(500.0, 1e-12));
-  // The first within 1.96 / sqrt(1000) = 0.06198: white.
+  // The first value is within 1.96 / sqrt(1000) = 0.06198, so the residual counts as white.
   rho[1] = 0.0619;
   CHECK(effective_sample_size(rho) == 1000.0);
   rho[1] = 0.0620;

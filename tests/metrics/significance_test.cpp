@@ -12,7 +12,7 @@ using Catch::WithinRel;
 using namespace rigcal::metrics;
 
 TEST_CASE("significance: a difference of 1.96 standard errors has 5 %", "[metrics]") {
-  // Quantile of the normal distribution, to its printed digits.
+  // Quantile of the normal distribution, with as many digits as printed in tables.
   CHECK_THAT(difference_p_value(-1.959963985 * 0.3, {0.3}), WithinRel(0.05, 1e-8));
   CHECK(difference_p_value(0.0, {2.0}) == 1.0);
   CHECK_THROWS_AS(difference_p_value(1.0, {0.0}), std::invalid_argument);
@@ -21,7 +21,7 @@ TEST_CASE("significance: a difference of 1.96 standard errors has 5 %", "[metric
 }
 
 TEST_CASE("significance: Holm's steps, in the order of the input", "[metrics]") {
-  // By hand: 4 x 0.005, 3 x 0.01, 2 x 0.03, 1 x 0.04 but not below 0.06.
+  // By hand: 4 x 0.005, 3 x 0.01, 2 x 0.03, and 1 x 0.04, which must not be below 0.06.
   const std::vector<double> p = holm(std::vector<double>{0.04, 0.01, 0.03, 0.005});
   CHECK_THAT(p[3], WithinAbs(0.02, 1e-15));
   CHECK_THAT(p[1], WithinAbs(0.03, 1e-15));
@@ -64,8 +64,8 @@ TEST_CASE("significance: a difference by few degrees of freedom is one of Studen
 
 namespace {
 
-/// An estimate as in a fit of conditions with few repeats: the mean over conditions, with the
-/// standard error from the repeats of each, and Satterthwaite's degrees of freedom.
+/// An estimate like those from a fit to conditions with few repeats: the mean over the conditions,
+/// the standard error computed from the repeats of each, and Satterthwaite's degrees of freedom.
 struct Drawn {
   double value = 0.0;
   EstimateError error;
@@ -110,8 +110,8 @@ TEST_CASE("significance: equal rigs of few repeats are told apart in 5 % of case
     found_by_normal += difference_p_value(a.value - b.value, {both.standard_error}) < 0.05 ? 1 : 0;
   }
   CAPTURE(repeats, found, found_by_normal);
-  // Expected are 200, with a standard deviation of 14; fewer for two repeats, where the degrees of
-  // freedom are estimated, too.
+  // The expected number is 200, with a standard deviation of 14. It is lower for two repeats, for
+  // which the degrees of freedom are estimated, too.
   CHECK(found > (repeats == 2 ? 40 : 120));
   CHECK(found < 260);
   // The normal distribution ignores the uncertainty of the errors.

@@ -1,4 +1,5 @@
-// The statistics of this folder by SciPy and statsmodels (tests/golden/make_statistics_golden.py).
+// Compares the statistics in this folder with SciPy and statsmodels
+// (tests/golden/make_statistics_golden.py).
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -24,7 +25,7 @@ using rigcal::test::golden_lines;
 
 namespace {
 
-// Both sides round, in sums of hundreds of terms and in series of special functions.
+// Both sides round, in sums of hundreds of terms and in series for special functions.
 constexpr double kGoldenRounding = 1e-10;
 
 void check_value(double found, double expected) {
@@ -41,7 +42,7 @@ void check_values(const std::vector<double>& found, const std::vector<double>& e
 
 using Function = std::function<double(const std::vector<double>&)>;
 
-// 1e-8: SciPy's quantile of t has nine digits.
+// The tolerance is 1e-8 because SciPy's quantile of t has nine digits.
 void check_function(const std::string& name, const Function& function) {
   for (const std::vector<double>& line : golden_lines(name)) {
     CAPTURE(name, line);
@@ -91,11 +92,11 @@ TEST_CASE("golden: residual tests", "[metrics]") {
 
   const Periodogram& spectrum = tests.periodogram;
   check_value(spectrum.distance, value("periodogram_distance"));
-  // 1.3581, printed with four digits.
+  // The constant 1.3581 is printed with four digits.
   CHECK_THAT(spectrum.limit, WithinRel(value("periodogram_limit"), 1e-4));
   check_value(spectrum.frequency_hz.front(), golden(name + ".periodogram_lowest")[0]);
-  // With an even number of samples the last line represents one frequency, not two. This moves the
-  // others by half its fraction of the power, here at most 3 %.
+  // If the number of samples is even, the last line represents one frequency rather than two. This
+  // changes the other lines by half of its fraction of the power, here at most 3 %.
   CHECK_THAT(spectrum.density.front(), WithinRel(golden(name + ".periodogram_lowest")[1], 0.04));
   check_value(spectrum.median_frequency_hz, value("periodogram_median_hz"));
   check_value(spectrum.peak_frequency_hz, golden(name + ".periodogram_peak")[0]);

@@ -17,7 +17,7 @@ TEST_CASE("judge: a pass needs power, a failure a level that holds", "[metrics]"
   };
   CHECK(outcome(false, 100.0, 0.3) == TestOutcome::passed);
   CHECK(outcome(true, 100.0, 0.3) == TestOutcome::failed);
-  // What a weak test rejects all the same is rejected.
+  // A rejection counts even if the test is weak.
   CHECK(outcome(true, 10.0, 0.9) == TestOutcome::failed);
   CHECK(outcome(false, 10.0, 0.5) == TestOutcome::passed);
   CHECK(outcome(false, 10.0, 0.51) == TestOutcome::not_judged);

@@ -17,9 +17,9 @@ using Errors = std::vector<EstimateError>;
 
 constexpr int kTrials = 4000;
 
-/// Fraction of kTrials in which a trend is significant at 5 %. Points at 0, 1, 2 and so on have an
-/// error of 1, a day effect of this standard deviation that the errors do not include, and a slope
-/// of this many of its standard errors.
+/// Fraction of kTrials in which a trend is significant at 5 %. Points at 0, 1, 2, ... have an error
+/// of 1, a day effect with standard deviation `day_sd` that the errors do not include, and a slope
+/// of `slope_in_errors` times its standard error.
 double share_found(std::size_t points, double day_sd, double slope_in_errors) {
   std::mt19937_64 random(4);
   std::normal_distribution<double> normal;
@@ -51,7 +51,7 @@ TEST_CASE("trend: the exact line where the points lie on one", "[metrics]") {
   const Trend trend = weighted_trend(x, y, Errors(4, {0.1}));
   CHECK_THAT(trend.slope, WithinRel(-0.5, 1e-12));
   CHECK_THAT(trend.intercept, WithinRel(2.0, 1e-12));
-  // sum (x - 2.75)^2 = 22.75; error 0.1 / sqrt(22.75), by the normal distribution
+  // sum (x - 2.75)^2 = 22.75, so the error is 0.1 / sqrt(22.75), with the normal distribution.
   CHECK_THAT(trend.slope_standard_error, WithinRel(0.1 / std::sqrt(22.75), 1e-12));
   CHECK_THAT(trend.reduced_chi_square, WithinAbs(0.0, 1e-20));
   CHECK_THAT(trend.ci95_high + 0.5, WithinRel(1.959963985 * trend.slope_standard_error, 1e-8));
@@ -60,7 +60,7 @@ TEST_CASE("trend: the exact line where the points lie on one", "[metrics]") {
 
 TEST_CASE("trend: few false alarms where the errors tell the scatter", "[metrics]") {
   const std::size_t points = GENERATE(3U, 4U, 5U);
-  // Some of these are widened needlessly, so slightly fewer than 5 %.
+  // Some of these are widened unnecessarily, so slightly fewer than 5 % are found.
   const double found = share_found(points, 0.0, 0.0);
   CAPTURE(points, found);
   CHECK(found > 0.02);
@@ -89,27 +89,28 @@ TEST_CASE("trend: a steep line is found from three points on", "[metrics]") {
 
 TEST_CASE("trend: the scatter of many points tells errors that are stated too small", "[metrics]") {
   const double found = share_found(8, std::sqrt(8.0), 0.0);  // errors three times too small
-  // Expected is 5 %, with a standard deviation of 0.35 %.
+  // The expected value is 5 %, with a standard deviation of 0.35 %.
   CHECK(found > 0.036);
   CHECK(found < 0.064);
 }
 
 TEST_CASE("trend: points off the line widen it by Birge's ratio, tested by t with n - 2",
           "[metrics]") {
-  // 0, 6, 0, 6 errors: about the line 1.2 x + 1.2 chi-square is 28.8, with 2 degrees of freedom.
+  // The values are 0, 6, 0, 6 errors. Around the line 1.2 x + 1.2, chi-square is 28.8, with 2
+  // degrees of freedom.
   const Trend trend = weighted_trend(Values{0, 1, 2, 3}, Values{0, 6, 0, 6}, Errors(4, {1.0}));
   CHECK_THAT(trend.slope, WithinRel(1.2, 1e-12));
   CHECK_THAT(trend.chi_square, WithinRel(28.8, 1e-12));
   CHECK_THAT(trend.widened, WithinRel(std::sqrt(14.4), 1e-12));
   CHECK(trend.freedom == 2.0);
   CHECK_THAT(trend.slope_standard_error, WithinRel(std::sqrt(14.4 / 5.0), 1e-12));
-  // t = 0.7071; its tail with 2 degrees of freedom is 1/2 - t / (2 sqrt(2 + t^2)).
+  // t = 0.7071. Its tail probability with 2 degrees of freedom is 1/2 - t / (2 sqrt(2 + t^2)).
   CHECK_THAT(trend.p_value, WithinRel(1.0 - std::sqrt(0.5 / 2.5), 1e-9));
 }
 
 TEST_CASE("trend: errors of few degrees of freedom are those of t", "[metrics]") {
-  // Points on a line, 1 and 4 degrees of freedom at the ends; the middle one has no weight in the
-  // slope.
+  // The points are on a line, and the ends have 4 degrees of freedom each. The middle point has no
+  // weight in the slope.
   const Trend trend =
       weighted_trend(Values{0, 1, 2}, Values{0, 1, 2}, Errors{{0.3, 4.0}, {0.5, 1.0}, {0.3, 4.0}});
   CHECK_THAT(trend.freedom, WithinRel(8.0, 1e-9));

@@ -43,7 +43,7 @@ FilePtr open_text(const std::filesystem::path& path, std::size_t max_bytes) {
                                         bytes, max_bytes));
   FilePtr file(std::fopen(path.c_str(), "rb"));
   if (!file) throw InputError(where, "cannot be opened: " + reason(errno));
-  std::setvbuf(file.get(), nullptr, _IONBF, 0);  // LineReader reads in blocks of megabytes
+  std::setvbuf(file.get(), nullptr, _IONBF, 0);  // LineReader already reads blocks of megabytes
   return file;
 }
 

@@ -37,7 +37,7 @@ struct Header {
   bool last_may_lack = false;  ///< the last column is a comment that rows may omit
 };
 
-/// Lines of a file, of which the first ones can be viewed in advance.
+/// Lines of a file, the first of which can be viewed in advance.
 class HeadedLines {
  public:
   explicit HeadedLines(CsvLines& lines) : lines_(lines) {}
@@ -426,7 +426,7 @@ class RowReader {
 std::size_t most_rows(const std::filesystem::path& path, const Header& header) {
   std::error_code error;
   const std::uintmax_t bytes = std::filesystem::file_size(path, error);
-  if (error) return kMostValues;  // a pipe
+  if (error) return kMostValues;  // a pipe has no size
   return static_cast<std::size_t>(bytes / (2 * header.names.size()) + 1);
 }
 

@@ -60,7 +60,8 @@ class MatSource {
                                       const std::string& column) = 0;
 };
 
-/// Whether a double certainly represents a number exactly; false for 64-bit integers beyond 2^53.
+/// Whether a double is certain to represent a number exactly; false for 64-bit integers beyond
+/// 2^53.
 template <typename Number>
 bool is_exact_as_double(Number number) {
   if constexpr (std::is_integral_v<Number> && sizeof(Number) == 8) {

@@ -143,8 +143,8 @@ struct SheetColumn {
   std::string name;  ///< in its header
 };
 
-/// Splits names such as "Sheet2!x" and "'My sheet'!x". Without a sheet, a name is that of a column
-/// on the first one.
+/// Splits names such as "Sheet2!x" and "'My sheet'!x". A name without a sheet refers to the first
+/// one.
 SheetColumn place_of(const XlsxBook& book, const std::string& column) {
   for (std::size_t at = column.find('!'); at != std::string::npos; at = column.find('!', at + 1)) {
     std::string name = column.substr(0, at);

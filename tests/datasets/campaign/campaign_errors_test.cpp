@@ -27,11 +27,11 @@ Failure failure_of(const std::string& text) {
   return {-1, "(loaded)"};
 }
 
-/// One change that makes the example wrong.
+/// A change that makes the example wrong.
 struct Mistake {
   std::string from;
   std::string to;
-  std::string at;  ///< text in the line of the message
+  std::string at;  ///< text in the line that the message gives
   std::vector<std::string> says;
 };
 
@@ -444,7 +444,7 @@ TEST_CASE("load_campaign: the column is told as well", "[datasets]") {
   const TemporaryFolder folder;
   const auto file = folder.write("c.toml", replaced(kExample, "lower = \"10 kg\"", "lower = 10"));
   const long line = line_of(kExample, "mass = ");
-  // `mass = { start = "60 kg", lower = 10`: the value is in column 35.
+  // In `mass = { start = "60 kg", lower = 10`, the value is in column 35.
   CHECK_THROWS_WITH(load_campaign(file),
                     Catch::StartsWith(file.string() + ":" + std::to_string(line) +
                                       ":35: key "

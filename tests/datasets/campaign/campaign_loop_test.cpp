@@ -1,4 +1,4 @@
-// Loops on quantities other than position, and second masses: keys, channels and errors.
+// Tests loops on quantities other than position, and second masses: keys, channels and errors.
 
 #include <catch2/catch.hpp>
 
@@ -16,7 +16,7 @@ const std::string kLoopGain = "kp = \"78.74 V/m\"";
 const std::string kKnownMass =
     R"(mass = { start = "60 kg", lower = "10 kg", upper = "500 kg", fit = true })";
 
-/// The example with a force loop and a reference in N.
+/// Returns the example with a force loop and a reference in N.
 std::string force_loop(const std::string& gains) {
   std::string text = replaced(kExample, kLoopGain, "feedback = \"force\"\n" + gains);
   for (std::size_t at = text.find("50.8 mm"); at != std::string::npos; at = text.find("50.8 mm"))

@@ -11,7 +11,7 @@ using Catch::Contains;
 
 namespace {
 
-/// Every value that the plant needs, whatever it is.
+/// Sets every value that the plant needs to an arbitrary number.
 model::ParameterValues complete_values(model::PlantKind plant) {
   auto values = model::ParameterValues::defaults(plant);
   for (const std::string& key : values.missing()) values.set(key, 1.0);

@@ -25,7 +25,7 @@ due = 2027-01-31
 TEST_CASE("load_campaign: what a test report states", "[datasets]") {
   const datasets::Campaign campaign = load_text(kExample + kReport);
   using Fields = datasets::ReportSettings::Fields;
-  // In the order of the page, whatever that of the file.
+  // The fields are in the order of the page, whatever their order in the file.
   CHECK(campaign.report.fields ==
         Fields{{"number", "2026-041"}, {"issued", "2026-03-02"}, {"approver", "A. Head"}});
   REQUIRE(campaign.report.sensors.size() == 1);

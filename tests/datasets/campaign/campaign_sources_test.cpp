@@ -91,7 +91,7 @@ TEST_CASE("inputs_of: generated waveforms", "[datasets]") {
   const Campaign campaign = load_text(kExample);
   const Condition& sine = campaign.conditions[0];
   const auto inputs = inputs_of(campaign, sine, values_in(campaign, sine), nullptr);
-  // A quarter of the period of 0.1 Hz.
+  // 2.5 s is a quarter of the period at 0.1 Hz.
   CHECK_THAT(inputs.drive.value(2.5), WithinRel(0.0508, 1e-12));
   CHECK_FALSE(inputs.external_force_n.has_value());
   CHECK_FALSE(inputs.supply_pressure_pa.has_value());
@@ -108,7 +108,7 @@ TEST_CASE("inputs_of: generated waveforms", "[datasets]") {
   CHECK_THROWS_AS(inputs_of(campaign, chirp, values_in(campaign, chirp), nullptr), InputError);
   chirp.sweep_s = 10.0;
   const auto sweep = inputs_of(campaign, chirp, values_in(campaign, chirp), nullptr);
-  // Phase of a linear chirp: 2 pi (f0 t + (f1 - f0) t^2 / (2 T)).
+  // The phase of a linear chirp is 2 pi (f0 t + (f1 - f0) t^2 / (2 T)).
   CHECK_THAT(sweep.drive.value(2.0),
              WithinAbs(0.0508 * std::sin(2.0 * std::acos(-1.0) * (0.2 + 0.9 * 4.0 / 20.0)), 1e-9));
 }
@@ -146,7 +146,7 @@ TEST_CASE("sample_times: of the record, or of duration and rate", "[datasets]") 
   CHECK_THROWS_AS(sample_times(condition, nullptr), InputError);
   condition.duration_s = 0.3;
   condition.sample_rate_hz = 10.0;
-  // 0.3 * 10 is 3 or a bit less: the last sample must not be lost.
+  // 0.3 * 10 may be slightly less than 3, but the last sample must not be lost.
   CHECK(sample_times(condition, nullptr).size() == 4);
   CHECK(sample_times(condition, nullptr).back() == 0.3);
   const Record record = ramp_record(Channel::position);

@@ -113,7 +113,7 @@ TEST_CASE("load_campaign: gain and offset act before the unit, sd behind the gai
       load_text(replaced(kExample, "unit = \"mm\", sd = \"0.05 mm\"",
                          "unit = \"mm\", gain = 25.4, offset = \"-0.2 cm\", sd = \"0.05 mm\""));
   const ChannelSetting& position = campaign.channels.at(Channel::position);
-  // 25.4 * 2 - 2 = 48.8 mm
+  // 25.4 * 2 - 2 = 48.8 mm.
   CHECK_THAT(position.to_si(2.0), WithinRel(0.0488, kRounding));
   CHECK_THAT(position.sd.value(), WithinRel(5e-5, kRounding));
 }
@@ -123,7 +123,7 @@ TEST_CASE("load_campaign: a spread in degC is one in K", "[datasets]") {
       load_text(replaced(kExample, "[averaging]",
                          "temperature = { column = \"T\", unit = \"degC\", sd = \"0.5 degC\" }\n"
                          "[averaging]"));
-  // The origin of the scale is 273.15: its subtraction costs three digits.
+  // The scale is shifted by 273.15, and subtracting this costs three digits.
   CHECK_THAT(campaign.channels.at(Channel::temperature).sd.value(), WithinAbs(0.5, 1e-12));
 }
 
@@ -173,7 +173,7 @@ TEST_CASE("load_campaign: acceptance limits", "[datasets]") {
   CHECK_FALSE(limit(Channel::position, "ccc").warn.has_value());
   CHECK_THAT(limit(Channel::position, "rmse").limit.value(), WithinRel(4e-4, kRounding));
   CHECK_THAT(limit(Channel::pressure_a, "rmse").warn.value(), WithinRel(1e5, kRounding));
-  // A channel's own entry replaces limit and warning of the general one.
+  // The entry of a channel replaces both limit and warning of the general one.
   CHECK(limit(Channel::position, "rho2").limit == 0.9);
   CHECK_FALSE(limit(Channel::position, "rho2").warn.has_value());
 }
@@ -269,7 +269,7 @@ parameters = { leakage_coefficient = 0.4 }
   CHECK(synthetic.supply_ripple_hz == 60.0);
   CHECK(synthetic.variation.begin()->second == 0.01);
   CHECK(synthetic.level_parameters.at("33.33 %").at(0).second == 0.4);
-  // [synthetic] says how long where a condition has no record.
+  // If a condition has no record, [synthetic] gives the duration.
   CHECK(campaign.conditions[0].duration_s == 20.0);
   CHECK(campaign.conditions[0].sample_rate_hz == 500.0);
   CHECK_FALSE(campaign.conditions[1].duration_s.has_value());
@@ -359,7 +359,7 @@ TEST_CASE("set_value: a pair may be set one by one", "[datasets]") {
   CHECK_THROWS_WITH(check_values(campaign), Catch::Contains("valve_damping_ratio"));
   set_value(campaign, "valve_damping_ratio=0.7");
   CHECK_NOTHROW(check_values(campaign));
-  // 80 Hz are 160 pi rad/s; pi itself is rounded.
+  // 80 Hz is 160 pi rad/s, and pi itself is rounded.
   CHECK_THAT(setting_of(campaign, "valve_frequency").value,
              WithinRel(160.0 * std::acos(-1.0), 1e-13));
 }

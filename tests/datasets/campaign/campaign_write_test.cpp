@@ -48,7 +48,7 @@ TEST_CASE("fitted_campaign_text: loads again with the same values", "[datasets]"
   CHECK(sine["leakage_coefficient"] == 0.35);
   CHECK(steps["leakage_coefficient"] == kLeak);
   CHECK_FALSE(again.setting(index_of(again, "mass"))->fit);
-  // Every condition has a value: what the fit started from is no value for another level.
+  // Every condition has a value. The start value of the fit does not apply to other levels.
   CHECK(again.setting(index_of(again, "leakage_coefficient")) == nullptr);
   const ParameterSetting* offset = again.setting(index_of(again, "position_offset"));
   REQUIRE(offset != nullptr);
@@ -63,7 +63,7 @@ TEST_CASE("fitted_campaign_text: loads again with the same values", "[datasets]"
   CHECK(again.conditions[1].date == campaign.conditions[1].date);
   CHECK(again.conditions[1].temperature_k == campaign.conditions[1].temperature_k);
   CHECK(again.acceptance.size() == campaign.acceptance.size());
-  // The order of the file is kept, so that a reader finds his way.
+  // The order of the file is kept, so that readers can find their way around.
   CHECK(written.find("schema") < written.find("[rig.parameters]"));
   CHECK(written.find("[rig.parameters]") < written.find("[acceptance]"));
 }

@@ -49,7 +49,7 @@ LeakTableSettings settings_of(const std::string& section) {
   return leak_table_settings(campaign_with(section, folder));
 }
 
-/// The message about a section in which `from` was replaced.
+/// Message about a section in which `from` was replaced with `to`.
 std::string complaint(const std::string& from, const std::string& to) {
   try {
     settings_of(test::replaced(kSection, from, to));
@@ -72,7 +72,7 @@ TEST_CASE("leak_table_settings: reads what is there, in SI", "[datasets]") {
   CHECK(signal.name() == "square_0.1Hz");
   CHECK_THAT(signal.amplitude, WithinRel(0.0508, 1e-12));
   REQUIRE(signal.printed.size() == 2);
-  // The number of printed digits gives the rounding.
+  // The rounding follows from the number of printed digits.
   CHECK_THAT(signal.printed.at(10.0).half_digit, WithinRel(0.005, 1e-12));
   CHECK_THAT(signal.printed.at(50.0).half_digit, WithinRel(0.05, 1e-12));
   CHECK(signal.printed.at(50.0).note == "a misprint");
@@ -231,7 +231,7 @@ TEST_CASE("leak table settings: a fit's values replace assumptions and say what"
   CHECK(mass->source == "fit, in place of 85 kg (Table 2)");
   CHECK(settings.assumption(index("damping"))->source == "fit");
   CHECK(settings.assumption(index("leakage_coefficient")) == nullptr);
-  CHECK_FALSE(settings.assumption(index("kp"))->fitted);  // the fit knows nothing of it
+  CHECK_FALSE(settings.assumption(index("kp"))->fitted);  // the fit does not include it
   CHECK(leak_table_values(campaign, settings)["mass"] == 90.0);
   CHECK(leak_table_values(campaign, settings)["damping"] == 700.0);
   Campaign set = campaign;
@@ -251,5 +251,5 @@ TEST_CASE("leak table settings: a rig needs a single value", "[datasets]") {
       Contains("coulomb_friction was fitted per condition") && Contains("--set coulomb_friction"));
   const int mass = model::parameter_index(campaign.rig.plant, "mass");
   take_fitted(settings, campaign, {{mass, Scope::leak_level, "none", 90.0}});
-  CHECK(settings.assumption(mass)->value == 85.0);  // which the campaign states for the rig
+  CHECK(settings.assumption(mass)->value == 85.0);  // value that the campaign states for the rig
 }

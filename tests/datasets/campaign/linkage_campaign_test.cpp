@@ -1,4 +1,4 @@
-// A rig in radians: its keys and units, what drives it, and what does not go together.
+// Tests a rig in radians: its keys and units, what drives it, and what cannot be combined.
 
 #include <catch2/catch.hpp>
 
@@ -74,7 +74,7 @@ TEST_CASE("load_campaign: a linkage is in radians, and a pilot pressure drives i
   CHECK(pilot.minus == "in_bar");  // one column per direction
   CHECK(campaign.channels.at(Channel::angle).role == ChannelRole::output);
   CHECK(*campaign.channels.at(Channel::angle).sd == Approx(0.1 * 3.14159265358979 / 180.0));
-  // A limit without a channel is that of the motion.
+  // A limit without a channel applies to the motion.
   REQUIRE(campaign.acceptance.size() == 1);
   CHECK(campaign.acceptance.front().channel == Channel::angle);
   const int inertia = model::parameter_index(model::PlantKind::linkage, "inertia");

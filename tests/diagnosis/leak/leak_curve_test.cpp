@@ -12,7 +12,7 @@ using Catch::WithinRel;
 
 namespace {
 
-/// share = C^3 - C^2 + 0.5 C, flow = 1e-5 C^2: what a cubic with exact slopes must follow.
+/// share = C^3 - C^2 + 0.5 C, flow = 1e-5 C^2. A cubic with exact slopes must reproduce these.
 LeakPoint cubic(double c) {
   return {c, c * c * c - c * c + 0.5 * c, 1e-5 * c * c, 3.0 * c * c - 2.0 * c + 0.5, 2e-5 * c};
 }
@@ -30,14 +30,15 @@ TEST_CASE("LeakCurve: a cubic of exact slopes is followed exactly", "[diagnosis]
     CHECK_THAT(curve.share_slope(c), WithinAbs(cubic(c).share_slope, 1e-12));
     CHECK_THAT(curve.leak_flow_m3_per_s(c), WithinRel(1e-5 * c * c, 1e-12));
   }
-  // Straight on beyond both ends; nothing leaks backwards.
+  // The curve is a straight line beyond both ends, and a leak is never negative.
   CHECK_THAT(curve.share(4.0), WithinRel(cubic(3.0).share + cubic(3.0).share_slope, 1e-12));
   CHECK_THAT(curve.share_slope(4.0), WithinRel(cubic(3.0).share_slope, 1e-12));
   CHECK_THAT(curve.leak_flow_m3_per_s(0.4), WithinRel(1e-5 * (0.25 - 0.1), 1e-12));
   CHECK(curve.share(0.0) == 0.0);
   CHECK(curve.share(-1.0) == 0.0);
   CHECK(curve.leak_flow_m3_per_s(-1.0) == 0.0);
-  // Nor where a straight line from the first point would say so.
+  // The share at zero is zero even if a straight line from the first point would give another
+  // value.
   CHECK(LeakCurve({saturating(0.5), saturating(1.0)}).share(0.0) == 0.0);
 }
 
@@ -56,7 +57,7 @@ TEST_CASE("curve_about: simulated at the estimate and at both ends", "[diagnosis
   const LeakCurve curve = curve_about(leak_at, 1.0, 0.25);
   CHECK(simulated == std::vector<double>{0.75, 1.0, 1.25});
   CHECK(curve.share(1.0) == saturating(1.0).share);
-  // A cubic is off by the fourth derivative (1 at most) times width^4 / 384.
+  // The error of a cubic is the fourth derivative (at most 1) times width^4 / 384.
   for (double c = 0.75; c < 1.25; c += 0.05)
     CHECK_THAT(curve.share(c), WithinAbs(saturating(c).share, std::pow(0.25, 4) / 384.0));
 }
@@ -66,7 +67,7 @@ TEST_CASE("curve_about: from no leak on where that is within reach", "[diagnosis
   REQUIRE(curve.points().size() == 2);
   CHECK(curve.points().front().coefficient == 0.0);
   CHECK(curve.points().front().share == 0.0);
-  // The slope of a leak of a fiftieth: 1 - exp(-x) over x = 1 - x / 2.
+  // The slope is that of a fiftieth of the range: (1 - exp(-x)) / x = 1 - x / 2.
   CHECK_THAT(curve.share_slope(0.0), WithinRel(1.0 - 1e-3, 1e-6));
   CHECK_THAT(curve.points().back().coefficient, WithinRel(0.1, 1e-12));
 }

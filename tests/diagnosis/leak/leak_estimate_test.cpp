@@ -10,12 +10,12 @@ using Catch::WithinRel;
 
 namespace {
 
-/// share = C / 10: straight, so that errors carry over one to one.
+/// share = C / 10, a straight line, so that errors carry over in proportion.
 LeakCurve straight() {
   return LeakCurve({{0.0, 0.0, 0.0, 0.1, 1e-5}, {8.0, 0.8, 8e-5, 0.1, 1e-5}});
 }
 
-/// A record whose coefficient is known within `se`, with all degrees of freedom one could wish for.
+/// A record whose coefficient is known within `se`, with practically unlimited degrees of freedom.
 LeakFit fit_of(double coefficient, double se) {
   LeakFit fit;
   fit.coefficient = coefficient;
@@ -44,7 +44,8 @@ TEST_CASE("estimate_leak: class probabilities follow the interval", "[diagnosis]
   CHECK(sure.most_probable == LeakClass::medium);
   CHECK(probability(sure, LeakClass::medium) > 0.999);
   CHECK_THAT(sure.share, WithinRel(0.15, 1e-9));
-  // Normal quantile 1.96 of 0.02, a tenth of which is the share's; 401 draws resolve a hundredth.
+  // The normal quantile is 1.96 times 0.02, and the error of the share is a tenth of that. 401
+  // draws resolve a hundredth.
   CHECK_THAT(sure.share_ci95.first, WithinAbs(0.15 - 0.00392, 1e-4));
   CHECK_THAT(sure.ci95.second, WithinAbs(1.5 + 0.0392, 1e-5));
 
@@ -59,14 +60,15 @@ TEST_CASE("estimate_leak: class probabilities follow the interval", "[diagnosis]
 
 TEST_CASE("estimate_leak: beforehand normal is as probable as slight, without a step between them",
           "[diagnosis]") {
-  // A record that hardly determines shares below 10 %: only the prior counts.
+  // The record hardly determines shares below 10 %, so only the prior counts.
   const auto vague = estimated(fit_of(0.0, 50.0));
   CHECK_THAT(probability(vague, LeakClass::normal) / probability(vague, LeakClass::slight),
              WithinRel(1.0, 0.1));
-  // At a limit a record decides: 1.1 % with an error of 0.2 %, the same integrals as above.
+  // At a limit the record decides: 1.1 % with an error of 0.2 %, using the same integrals as above.
   const auto near = estimated(fit_of(0.11, 0.02));
   CHECK_THAT(probability(near, LeakClass::slight), WithinAbs(0.6268, 4e-3));
-  // Limits of which no offset makes the classes equal: every share is as probable as any other.
+  // For these limits, no offset makes the classes equally probable, so every share is as probable
+  // as any other.
   rigcal::datasets::DiagnosisSettings close;
   close.limits = {0.10, 0.15, 0.2, 0.3};
   const LeakFit fit = fit_of(1.0, 0.1);
@@ -89,7 +91,7 @@ TEST_CASE("estimate_leak: every source of error is in the interval", "[diagnosis
   LeakFit fit = fit_of(1.5, 0.03);
   fit.rig_se = 0.04;
   SignalErrors errors;
-  errors.between_m = 0.12e-3;  // 0.12 of the coefficient
+  errors.between_m = 0.12e-3;  // 0.12 in terms of the coefficient
   errors.repeat_freedom = 16;
   errors.healthy_m = 0.05e-3;
   const auto single = estimated(fit, errors, 1, 0);
@@ -115,7 +117,7 @@ TEST_CASE("coefficient_error: clusters count where the signal has misfit and the
   CHECK(with(false, 0.09).own_se == 0.03);
   CHECK(with(true, 0.09).own_se == 0.09);
   CHECK_THAT(with(true, 0.09).freedom, WithinRel(9.0, 1e-9));
-  // The upper quartile of chi-square over 9 degrees of freedom is 1.265.
+  // The upper quartile of chi-square divided by its 9 degrees of freedom is 1.265.
   CHECK(with(true, 0.03 * std::sqrt(1.25)).own_se == 0.03);
   CHECK(with(true, 0.03 * std::sqrt(1.28)).own_se > 0.03);
 }
@@ -123,15 +125,15 @@ TEST_CASE("coefficient_error: clusters count where the signal has misfit and the
 TEST_CASE("estimate_leak: a reference adds its own scatter and takes the model's off",
           "[diagnosis]") {
   SignalErrors errors;
-  errors.between_m = 0.12e-3;  // 0.12 of the coefficient
+  errors.between_m = 0.12e-3;  // 0.12 in terms of the coefficient
   errors.repeat_freedom = 16;
   errors.healthy_m = 0.05e-3;
   const LeakFit fit = fit_of(1.5, 0.03);
   const auto corrected = estimated(fit, errors, 1, 3);
   CHECK_THAT(corrected.standard_error,
              WithinRel(std::sqrt(0.03 * 0.03 + 0.12 * 0.12 * (1.0 + 1.0 / 3.0)), 1e-9));
-  // Welch and Satterthwaite: the part of the repeats has 16 degrees of freedom, that of the
-  // residuals 1e6.
+  // Welch and Satterthwaite: the contribution of the repeats has 16 degrees of freedom, and that of
+  // the residuals 1e6.
   const double repeats = 0.12 * 0.12 * (1.0 + 1.0 / 3.0);
   CHECK_THAT(corrected.freedom, WithinRel(std::pow(0.03 * 0.03 + repeats, 2) /
                                               (repeats * repeats / 16.0 + std::pow(0.03, 4) / 1e6),
@@ -139,7 +141,7 @@ TEST_CASE("estimate_leak: a reference adds its own scatter and takes the model's
 }
 
 TEST_CASE("estimate_leak: a leak is detected from the level of false alarms on", "[diagnosis]") {
-  // The normal quantile of 1 % false alarms is 2.3263.
+  // The normal quantile for 1 % false alarms is 2.3263.
   REQUIRE(kSettings.false_alarms == 0.01);
   CHECK_FALSE(estimated(fit_of(0.232, 0.1)).leak_detected);
   CHECK(estimated(fit_of(0.233, 0.1)).leak_detected);
@@ -148,13 +150,14 @@ TEST_CASE("estimate_leak: a leak is detected from the level of false alarms on",
 
 TEST_CASE("estimate_leak: the rig's error blurs the share", "[diagnosis]") {
   const auto found = estimated(fit_of(1.5, 1e-9), {}, 1, 0, 0.01);
-  // 1.96 standard errors; the search stops at 1e-15 of the range.
+  // 1.96 standard errors. The search stops at 1e-15 of the range.
   CHECK_THAT(found.share_ci95.first, WithinAbs(0.15 - 0.0195996, 1e-6));
   CHECK_THAT(found.share_ci95.second, WithinAbs(0.15 + 0.0195996, 1e-6));
 }
 
 TEST_CASE("estimate_leak: an upper limit where no leak is detected", "[diagnosis]") {
-  // Half a normal distribution with sd 0.1: 95 % are below 1.959964; the share is a tenth of it.
+  // Half a normal distribution with sd 0.1: 95 % of it are below 1.959964 sd, and the share is a
+  // tenth of the coefficient.
   const auto none = estimated(fit_of(0.0, 0.1));
   REQUIRE(none.share_upper_limit);
   CHECK_THAT(*none.share_upper_limit, WithinAbs(0.0196, 1e-4));
@@ -167,16 +170,16 @@ TEST_CASE("estimate_leak: an upper limit where no leak is detected", "[diagnosis
 
 TEST_CASE("estimate_leak: no interval ends at zero, however far below it the estimate lies",
           "[diagnosis]") {
-  // Without a leak: 95 % of half a normal distribution is below 1.959964.
+  // Without a leak, 95 % of half a normal distribution are below 1.959964 sd.
   const auto none = estimated(fit_of(0.0, 0.1));
   CHECK(none.ci95.first == 0.0);
   CHECK_THAT(none.ci95.second, WithinRel(0.1959964, 1e-5));
-  // Two errors below zero: P(Z > 2) = 0.0227501 remains above zero, and a twentieth of it is beyond
-  // 3.05176 errors.
+  // At two errors below zero, P(Z > 2) = 0.0227501 is left above zero, and a twentieth of it is
+  // beyond 3.05176 errors.
   const auto below = estimated(fit_of(-0.2, 0.1));
   CHECK_FALSE(below.incompatible);
   CHECK_THAT(below.ci95.second, WithinAbs(0.1 * (3.05176 - 2.0), 1e-5));
-  // Beyond 2.3263 errors (1 % false alarms) no leak explains such a record.
+  // Beyond 2.3263 errors (1 % false alarms), no leak explains the record.
   CHECK_FALSE(estimated(fit_of(-0.232, 0.1)).incompatible);
   const auto beyond = estimated(fit_of(-0.233, 0.1));
   CHECK(beyond.incompatible);
@@ -186,7 +189,8 @@ TEST_CASE("estimate_leak: no interval ends at zero, however far below it the est
 }
 
 TEST_CASE("estimate_leak: a share is within 0 and 1, or none", "[diagnosis]") {
-  // share = C / 10: the interval of a coefficient of 9 with an error of 2 includes shares above 1.
+  // share = C / 10. For a coefficient of 9 with an error of 2, the interval includes shares above
+  // 1.
   const auto wide = estimated(fit_of(9.0, 2.0));
   CHECK(wide.has_share());
   CHECK(wide.share_ci95.second == 1.0);
@@ -195,17 +199,17 @@ TEST_CASE("estimate_leak: a share is within 0 and 1, or none", "[diagnosis]") {
 }
 
 TEST_CASE("detection_limit: Currie's sum of both quantiles", "[diagnosis]") {
-  // 2.3263 + 1.6449
+  // The sum of the quantiles is 2.3263 + 1.6449.
   const CoefficientError error = coefficient_error(fit_of(0.0, 0.01), {}, 1, 0);
   CHECK_THAT(detection_limit(error, kSettings), WithinRel(0.039712, 1e-4));
 }
 
 TEST_CASE("error_of_averages: from the spread between repeats, of both means", "[diagnosis]") {
   SignalErrors errors;
-  // A record that is its own reference has no residual, and so no error.
+  // A record that is its own reference has no residual and therefore no error.
   const LeakFit reference = fit_of(0.0, 0.0);
   CHECK_FALSE(error_of_averages(reference, errors, 5, 5));
-  errors.repeat_m = 0.12e-3;  // in units of the coefficient: 0.12
+  errors.repeat_m = 0.12e-3;  // 0.12 in terms of the coefficient
   errors.repeat_freedom = 4;
   const auto error = error_of_averages(reference, errors, 5, 3);
   REQUIRE(error);

@@ -43,8 +43,8 @@ TEST_CASE("fit_leak: a healthy reference takes the rig's error off a healthy rec
     REQUIRE(fit.ok());
     return fit.rig_se;
   };
-  // Where nothing leaks a wrong rig makes the same error with and without the leak; alone, 1 % of
-  // the valve gain passes for a leak.
+  // If nothing leaks, a wrong rig causes the same error with and without the leak. Without a
+  // reference, 1 % of the valve gain is mistaken for a leak.
   CHECK(error(0) > 1e-3);
   CHECK(error(5) < 0.2 * error(0));
 }
@@ -87,12 +87,12 @@ TEST_CASE("fit_leak: a supply that differs between repeats is part of the error"
     datasets::differ_between_repeats(datasets::spec_of(campaign.rig.plant, supply),
                                      0.02 * setting.value, setting);
   }
-  // With 40 independent scores the 0.1 and 99.9 % quantiles of the rms are 0.68 and 1.35.
+  // For 40 independent scores, the 0.1 and 99.9 % quantiles of the rms are 0.68 and 1.35.
   const double score = rms_score(0);
   CHECK(score > 0.68);
   CHECK(score < 1.35);
-  // A reference of one repeat differs by as much again; the record determines a part of its own
-  // supply.
+  // A reference of one repeat adds as much variation again, whereas the record partly determines
+  // its own supply.
   CHECK(rms_score(1) < score);
 }
 
@@ -126,7 +126,7 @@ TEST_CASE("fit_leak: the simulation without a leak serves all records that have 
     CHECK(shared.coefficient == alone.coefficient);
     CHECK_THAT(shared.parity_rms_m, WithinRel(alone.parity_rms_m, 1e-5));
   }
-  // One that is marked shows where it is taken: not for another drive, state, time or value.
+  // Modified outputs show where the run is reused: not for another drive, state, time or value.
   const datasets::Record& single = records.singles.front();
   const double alone = fit(single, nullptr).parity_rms_m;
   runs->healthy.outputs.array() += 0.1;
@@ -149,7 +149,7 @@ TEST_CASE("rig_fit_of: the larger error of each value, and their correlation", "
   calib::Fit fit;
   fit.parameters = {fitted(1, 2.0, 3.0), fitted(4, 5.0, 4.0), fitted(2, 7.0, std::nullopt)};
   fit.parameters.push_back(fitted(3, 1.0, 9.0));
-  fit.parameters.back().nuisance = true;  // a condition's own value, not the rig's
+  fit.parameters.back().nuisance = true;  // belongs to the condition, not to the rig
   fit.correlation = Eigen::MatrixXd::Identity(4, 4);
   fit.correlation(0, 1) = fit.correlation(1, 0) = 0.5;
   const diagnosis::RigFit rig = diagnosis::rig_fit_of(fit);
@@ -189,7 +189,7 @@ TEST_CASE("rig_fit_of: what has no error counts with its whole range", "[diagnos
   fit.correlation = Eigen::MatrixXd::Identity(1, 1);
   const diagnosis::RigFit rig = diagnosis::rig_fit_of(fit);
   CHECK(rig.indices == std::vector<int>{1, 4, 2});
-  // A uniform distribution of width w has the variance w^2 / 12.
+  // A uniform distribution of width w has a variance of w^2 / 12.
   const Eigen::Vector3d variances(1.0, 3.0, 0.75);
   CHECK((rig.covariance - Eigen::MatrixXd(variances.asDiagonal())).norm() < 1e-12);
 }
@@ -209,7 +209,7 @@ TEST_CASE("RigFit: an effect and what the fit has mistaken for it go together", 
   spread.effects.moves.row(1) << 100.0, 100.0;
   spread.effects.moves.row(2) << 100.0, -3.0;
   rig.consider(spread);
-  // The leak is what a diagnosis looks for: no effect beside it.
+  // The leak is what a diagnosis looks for, so it is not one of the effects.
   REQUIRE(rig.effects.keys == std::vector<std::string>{"ki"});
   Eigen::Matrix3d expected;
   expected << 9.0 + 36.0, -60.0, -12.0,  //
@@ -246,9 +246,9 @@ TEST_CASE("fit_leak: an effect that the model lacks moves a coefficient as far a
   const double moved = fit(with, 0).coefficient - without.coefficient;
   CHECK_THAT(without.rig_moves(1) * kSize, WithinRel(moved, 0.1));
   CHECK(moved > 0.0);
-  // A healthy reference has the effect, too.
+  // A healthy reference includes the effect, too.
   CHECK(std::abs(fit(made, 5).rig_moves(1)) < 0.5 * std::abs(without.rig_moves(1)));
-  // Without the error of the valve gain only the effect is left.
+  // Without the error in the valve gain, only the effect is left.
   rig.covariance(0, 0) = 0.0;
   CHECK_THAT(fit(made, 0).rig_se, WithinRel(std::abs(without.rig_moves(1)) * kSize, 1e-9));
 }
@@ -262,7 +262,7 @@ TEST_CASE("fit_leak: the noise of the reference is not the record's own", "[diag
                                std::nullopt, reference, nullptr, nullptr)
         .noise_se;
   };
-  // Less the mean of four, the noise of a record is the root of 5/4 as large.
+  // After subtracting the mean of four, the noise of a record is sqrt(5/4) times as large.
   CHECK_THAT(noise_se(0) / noise_se(4), WithinRel(std::sqrt(1.25), 1e-9));
 }
 
@@ -292,7 +292,7 @@ TEST_CASE("share_rig_error: what the rig moves, with the coefficient and by itse
   CHECK_THAT(error(), WithinRel(std::abs(itself) * sd, 1e-3));
   fit.rig_moves(0) = 3.0 * itself / share_slope;
   CHECK_THAT(error(), WithinRel(4.0 * std::abs(itself) * sd, 1e-3));
-  // Where nothing leaks a share moves by the coefficient alone.
+  // If nothing leaks, a share changes only through the coefficient.
   fit.coefficient = -0.1;
   CHECK_THAT(error(), WithinRel(3.0 * std::abs(itself) * sd, 1e-9));
 }

@@ -8,7 +8,8 @@ using namespace rigcal::diagnosis;
 using Catch::WithinRel;
 
 TEST_CASE("cluster_sandwich: one mean of two clusters", "[diagnosis]") {
-  // The scores 2 and -2 move a mean of four by 1/2 each; two clusters less one unknown: factor 2.
+  // The scores 2 and -2 each change a mean of four by 1/2. Two clusters minus one unknown give a
+  // factor of 2.
   const Eigen::MatrixXd jacobian = Eigen::MatrixXd::Ones(4, 1);
   const Eigen::VectorXd residual = (Eigen::VectorXd(4) << 1.0, 1.0, -1.0, -1.0).finished();
   const Eigen::MatrixXd bread = Eigen::MatrixXd::Constant(1, 1, 0.25);
@@ -19,8 +20,8 @@ TEST_CASE("cluster_sandwich: one mean of two clusters", "[diagnosis]") {
 
 TEST_CASE("cluster_sandwich: a cluster each is White's covariance times n / (n - p)",
           "[diagnosis]") {
-  // A mean of ten with residuals +-a: sum of squares 10 a^2 / 100, times 10 / 9: the squared error
-  // of a mean, s^2 / 10 with s^2 = 10 a^2 / 9.
+  // For a mean of ten with residuals +-a, the sum of squares 10 a^2 / 100 times 10 / 9 is the
+  // squared error of a mean, s^2 / 10 with s^2 = 10 a^2 / 9.
   constexpr double kA = 0.3;
   Eigen::VectorXd residual(10);
   std::vector<int> clusters;
@@ -35,7 +36,8 @@ TEST_CASE("cluster_sandwich: a cluster each is White's covariance times n / (n -
 }
 
 TEST_CASE("cluster_sandwich: channels of one sample fall into one cluster", "[diagnosis]") {
-  // Two samples of two channels; each cluster sums its sample over both channels: 3 and -3.
+  // There are two samples of two channels. Each cluster sums its sample over both channels: 3 and
+  // -3.
   const Eigen::VectorXd residual = (Eigen::VectorXd(4) << 1.0, -1.0, 2.0, -2.0).finished();
   const auto [covariance, freedom] = cluster_sandwich(
       Eigen::MatrixXd::Ones(4, 1), residual, Eigen::MatrixXd::Constant(1, 1, 0.25), {3, 7});

@@ -10,7 +10,7 @@ using Catch::WithinRel;
 
 namespace {
 
-/// Samples of a condition 10 ms apart, of which all count.
+/// Samples of a condition at intervals of 10 ms, all of which count.
 struct Sampled {
   datasets::Condition condition;
   datasets::Record record;
@@ -40,8 +40,8 @@ TEST_CASE("steady_part: the last whole periods, of three or more without the fir
     return std::pair(found.first, found.count);
   };
   CHECK(part(51) == std::pair<std::size_t, std::size_t>(0, 51));     // half a period
-  CHECK(part(101) == std::pair<std::size_t, std::size_t>(0, 101));   // one
-  CHECK(part(251) == std::pair<std::size_t, std::size_t>(50, 201));  // two and a half
+  CHECK(part(101) == std::pair<std::size_t, std::size_t>(0, 101));   // one period
+  CHECK(part(251) == std::pair<std::size_t, std::size_t>(50, 201));  // two and a half periods
   CHECK(part(301) == std::pair<std::size_t, std::size_t>(100, 201));
   CHECK(part(551) == std::pair<std::size_t, std::size_t>(150, 401));
   CHECK_THROWS_AS(part(1), NoResultError);
@@ -69,7 +69,7 @@ TEST_CASE("leak_in_record: means of the flows' sizes, and their slopes", "[diagn
   CHECK(plain.share_slope.size() == 0);
   CHECK_FALSE(plain.is_periodic);
   run.sensitivities.assign(3, Eigen::MatrixXd::Zero(201, 1));
-  run.sensitivities[1].setConstant(-2.0);  // |servo| grows by 2
+  run.sensitivities[1].setConstant(-2.0);  // |servo| increases by 2
   run.sensitivities[2].setConstant(3.0);
   const auto sloped = diagnosis::leak_in_record(sampled.prepared, run, 1);
   CHECK_THAT(sloped.flow_slope(0), WithinRel(3.0, 1e-12));

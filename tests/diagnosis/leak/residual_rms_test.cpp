@@ -7,7 +7,7 @@ using namespace rigcal::diagnosis;
 using Catch::WithinRel;
 
 TEST_CASE("noise_rms: an alternating series is all noise, a ramp next to none", "[diagnosis]") {
-  // Von Neumann: half the mean square of successive differences. +1, -1, +1, ... differs by 2.
+  // Von Neumann: half the mean square of successive differences, which are 2 for +1, -1, +1, ...
   CHECK_THAT(noise_rms({1.0, -1.0, 1.0, -1.0, 1.0}), WithinRel(std::sqrt(2.0), 1e-12));
   CHECK_THAT(noise_rms({0.0, 1.0, 2.0, 3.0}), WithinRel(std::sqrt(0.5), 1e-12));
   CHECK(noise_rms({7.0, 7.0, 7.0}) == 0.0);
@@ -16,7 +16,8 @@ TEST_CASE("noise_rms: an alternating series is all noise, a ramp next to none", 
 }
 
 TEST_CASE("noise_rms: independent samples have their own standard deviation", "[diagnosis]") {
-  // Minimal standard generator (Park and Miller): uniform in (-1, 1), standard deviation 1/sqrt 3.
+  // The minimal standard generator (Park and Miller), uniform in (-1, 1), with a standard deviation
+  // of 1/sqrt 3.
   std::vector<double> x;
   long long state = 1;
   for (int i = 0; i < 20000; ++i) {

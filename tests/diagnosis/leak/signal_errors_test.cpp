@@ -37,7 +37,7 @@ TEST_CASE("signal_errors: pooled over conditions, a degree of freedom less for e
   const LeakFit healthy_b = fit_with(-4.0, 1e-3);
   const auto errors =
       signal_errors({{{&a}, {&b}}, {{&c}, {&d}, {&e}}, {{&alone}}}, {&healthy_a, &healthy_b}, {});
-  // Sums of squares about the means: 2 * 1e-6 and 8 * 4e-6, of 1 + 2 degrees of freedom.
+  // The sums of squares around the means are 2 * 1e-6 and 8 * 4e-6, with 1 + 2 degrees of freedom.
   REQUIRE(errors.repeat_m);
   CHECK_THAT(*errors.repeat_m, WithinRel(std::sqrt(34e-6 / 3.0), 1e-12));
   CHECK(errors.repeat_freedom == 3);
@@ -50,9 +50,9 @@ TEST_CASE("signal_errors: pooled over conditions, a degree of freedom less for e
 
 TEST_CASE("separate_noise: what white noise explains is no variation between repeats",
           "[diagnosis]") {
-  // Coefficients 1 and 3 differ with a variance of 2. White noise alone accounts for 0.5 of it, or
-  // for all but a third, which one degree of freedom may show by chance (chi-square 1.5, its upper
-  // quartile 1.32; a ratio of 1.25 is below it).
+  // Coefficients of 1 and 3 have a variance of 2. White noise accounts for 0.5 of it, or for all
+  // but a third, which still leaves a difference: chi-square with one degree of freedom is
+  // then 1.5, and its upper quartile is 1.32. A ratio of 1.25 is below that.
   LeakFit a = fit_with(1.0, 1e-3);
   LeakFit b = fit_with(3.0, 1e-3);
   const auto separated = [&](double noise_variance) {
@@ -78,14 +78,15 @@ TEST_CASE("separate_noise: repeats of one signal differ by chance where all toge
     errors.repeat_freedom = freedom;
     return errors;
   };
-  // Upper quartiles of chi-square over its degrees of freedom: 1.27 of 8, 1.08 of 108.
+  // The upper quartiles of chi-square divided by its degrees of freedom are 1.27 for 8 and 1.08 for
+  // 108.
   SignalErrors odd = errors_of(2.0, 8);
   SignalErrors quiet = errors_of(0.95, 100);
   separate_noise({&odd, &quiet});
   CHECK(*odd.between_m == 0.0);
   separate_noise({&odd});
   CHECK_THAT(*odd.between_m, WithinRel(1e-4, 1e-12));
-  // 2 of 8 and 1.14 of 100 are 1.20 of 108.
+  // A ratio of 2 with 8 degrees of freedom and 1.14 with 100 give 1.20 with 108.
   SignalErrors many = errors_of(1.14, 100);
   separate_noise({&odd, &many});
   CHECK_THAT(*odd.between_m, WithinRel(1e-4, 1e-12));
@@ -108,16 +109,16 @@ TEST_CASE("signal_errors: misfit is what all records together show beyond white 
     }
     return signal_errors({}, {}, averages).misfit;
   };
-  // The upper quartile of chi-square over its 225 degrees of freedom is 1.06.
+  // The upper quartile of chi-square divided by its 225 degrees of freedom is 1.06.
   CHECK_FALSE(misfit(1.0));
   CHECK_FALSE(misfit(1.05));
   CHECK(misfit(1.07));
-  CHECK(signal_errors({}, {}, {}).misfit);  // nothing says that there is none
+  CHECK(signal_errors({}, {}, {}).misfit);  // nothing shows that there is none
 }
 
 TEST_CASE("signal_errors: healthy repeats that correct each other lie farther apart",
           "[diagnosis]") {
-  // Each less the mean of the four others: 5/4 of what the repeats themselves differ by.
+  // A repeat minus the mean of the four others deviates 5/4 times as much as the repeat itself.
   const double itself[] = {2.0, 5.0, -1.0, 0.0, 4.0};
   std::vector<LeakFit> fits;
   std::vector<LeakFit> corrected;
@@ -137,14 +138,16 @@ TEST_CASE("signal_errors: healthy repeats that correct each other lie farther ap
 
 TEST_CASE("unexplained_share: powers beyond noise and beyond what healthy records leave",
           "[diagnosis]") {
-  // Left 25 - 9 = 16, of which healthy records leave 1; a leak took 50 - 25: 15 / (15 + 25).
+  // What is left is 25 - 9 = 16, of which healthy records explain 1, and a leak removed 50 - 25: 15
+  // / (15 + 25).
   CHECK_THAT(unexplained_share(rms_of(std::sqrt(50.0), 5.0, 3.0), 1.0), WithinRel(0.375, 1e-12));
-  // A leak that takes nothing explains nothing, nor does one that makes it worse.
+  // A leak that removes nothing explains nothing, nor does one that increases the residual.
   CHECK_THAT(unexplained_share(rms_of(5.0, 5.0, 3.0), 1.0), WithinRel(1.0, 1e-12));
   CHECK_THAT(unexplained_share(rms_of(4.0, 5.0, 3.0), 1.0), WithinRel(1.0, 1e-12));
-  // What is left, 4, is no more than twice the 2.1 of healthy records; 1.9 is another matter.
+  // What is left, 4, does not exceed twice the 2.1 of healthy records, but it does exceed twice
+  // 1.9.
   CHECK(unexplained_share(rms_of(5.0, 5.0, 3.0), 2.1) == 0.0);
   CHECK(unexplained_share(rms_of(5.0, 5.0, 3.0), 1.9) > 0.0);
-  // Nor more than noise: structured part 3, noise 4.
+  // It does not exceed the noise either: the structured part is 3, the noise 4.
   CHECK(unexplained_share(rms_of(9.0, 5.0, 4.0), 0.0) == 0.0);
 }

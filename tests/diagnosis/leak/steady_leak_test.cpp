@@ -17,7 +17,7 @@ TEST_CASE("steady_leak: of the periodic state where nothing but a wave drives th
   prepared.values.set("leakage_coefficient", 0.3);
   const auto periodic = diagnosis::steady_leak(problem, prepared, prepared.values, {});
   CHECK(periodic.is_periodic);
-  // A recorded force of zero changes nothing, but it is an input of the record's own.
+  // A recorded force of zero changes nothing, but it is an input that belongs to the record.
   prepared.inputs.external_force_n = model::Signal::held(
       records.front().time_s, std::vector<double>(records.front().time_s.size()));
   const auto recorded = diagnosis::steady_leak(problem, prepared, prepared.values, {});
