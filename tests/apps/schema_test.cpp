@@ -58,7 +58,7 @@ TEST_CASE("schema: results of fits and validations, good and failed", "[apps]") 
 
   REQUIRE(fit["parameters"][0].contains("identifiability"));
   REQUIRE(fit.contains("cross_validation"));
-  // The additional findings of such a fit are on its page.
+  // The page shows the additional findings of such a fit.
   const std::string page = folder.read("fit/report.html");
   for (const char* title :
        {"<h3>Profiles", "<h3>Bootstrap", "<h3>Posterior", "<h3>Lack of fit", "left out"})

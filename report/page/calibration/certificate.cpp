@@ -124,7 +124,7 @@ void add_numbers(const StoredFit& fit, Line& sentence) {
   std::size_t determined = 0;
   const auto found = signed_estimates(fit);
   for (const StoredParameter* p : found) {
-    // A parameter that is only bounded is known by its limit, not by a half width.
+    // A bounded parameter is described by its limit, not by a half-width.
     if (p->identifiability == calib::Identifiability::bounded) continue;
     widest = std::max(widest, relative_half_width(*p));
     ++determined;
