@@ -47,7 +47,8 @@ struct Design {
   std::map<datasets::Channel, double> noise_sd;  ///< per sample of one repeat, SI
   std::vector<std::string> own_conditions;       ///< the campaign's own signals
   double own_duration_s = 0.0;                   ///< total duration of the campaign's own signals
-  bool stopped = false;                          ///< true if stopped by the flag; best drive so far
+  bool stopped = false;                          ///< true if stopped by the flag; the drive is the
+                                                 ///< best so far
   std::vector<std::string> messages;
 };
 

@@ -40,8 +40,7 @@ struct FitRun {
 /// What the caller provides for a job.
 struct JobTerms {
   std::string command;                                       ///< command line for the provenance
-  std::vector<std::pair<std::string, std::string>> options;  ///< campaign choices, for the same
-                                                             ///< purpose
+  std::vector<std::pair<std::string, std::string>> options;  ///< campaign choices, for provenance
   int threads = 1;
   const std::atomic<bool>& cancel;  ///< set to true to stop the job
   std::filesystem::path out = {};   ///< folder for the files, if it is known

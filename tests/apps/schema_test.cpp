@@ -64,7 +64,7 @@ TEST_CASE("schema: results of fits and validations, good and failed", "[apps]") 
        {"<h3>Profiles", "<h3>Bootstrap", "<h3>Posterior", "<h3>Lack of fit", "left out"})
     CHECK_THAT(page, Catch::Contains(title));
 
-  // All draws, and what was derived from them.
+  // All draws are stored, together with what was derived from them.
   REQUIRE(fit["posterior"]["draws"] == 100);
   CHECK(fit["posterior"]["effects"] == false);
   CHECK(fit["parameters"][0].contains("posterior"));

@@ -189,7 +189,7 @@ doc::Doubts doubts_of(const StoredFit& fit) {
       for (std::size_t i = 0; i < reasons.size(); ++i) {
         const StoredReason& reason = reasons[i];
         // Two reasons are not doubts: exact values are listed below the table of values, and
-        // "further_starts" only reports that starts were added.
+        // "further_starts" only reports that further starts were evaluated.
         if (reason.state == AspectState::pass || reason.code == "exact_values" ||
             reason.code == "further_starts")
           continue;
