@@ -44,7 +44,7 @@ std::string frame_of(const std::string& page);
 inline pybind11::object notebook(const char* name) {
   return pybind11::module_::import("rigcal.notebook").attr(name);
 }
-/// Returns such a function as a method without arguments.
+/// Returns a method without arguments that calls a function from rigcal/notebook.py.
 inline auto of_notebook(const char* name) {
   return [name](const pybind11::object& self) { return notebook(name)(self); };
 }

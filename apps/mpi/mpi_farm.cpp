@@ -149,8 +149,7 @@ class Lanes {
   std::vector<std::pair<std::size_t, Slot>> made_;
   int idle_;
   bool ended_ = false;
-  std::vector<std::jthread> threads_;  // last member, so that the threads end before the members
-                                       // that they use
+  std::vector<std::jthread> threads_;  // last, so that threads end before what they use
 };
 
 class MpiFarm final : public TaskFarm {
@@ -298,9 +297,8 @@ class MpiFarm final : public TaskFarm {
 
   int rank_ = 0;
   int processes_ = 1;
-  int gone_ = 0;                                         ///< number of processes that have sent
-                                                         ///< their last message
-  std::map<std::string, std::vector<Slot>> finished_{};  ///< results of finished jobs, kept by the
+  int gone_ = 0;                                         ///< processes that sent their last message
+  std::map<std::string, std::vector<Slot>> finished_{};  ///< results of finished jobs, on the
                                                          ///< leader
   std::vector<Message> early_{};                         ///< messages to the leader that arrived
                                                          ///< before it reached the job
@@ -311,6 +309,5 @@ class MpiFarm final : public TaskFarm {
 
 /// The caller owns the farm and must destroy it before the process ends.
 extern "C" rigcal::TaskFarm* rigcal_mpi_farm() {
-  return new rigcal::MpiFarm;  // NOLINT(cppcoreguidelines-owning-memory): a C interface cannot
-                               // return a smart pointer
+  return new rigcal::MpiFarm;  // NOLINT(cppcoreguidelines-owning-memory): this is a C interface
 }

@@ -24,7 +24,7 @@ static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler must not
   FilesInWriting::remove_all();
   report::HeldFolder::remove_if_empty();
   if (::write(STDERR_FILENO, kWords.data(), kWords.size()) < 0) {
-    // At this point the error can no longer be reported.
+    // The process is ending, so this error cannot be reported.
   }
   ::_exit(static_cast<int>(ExitCode::stopped));
 }

@@ -10,8 +10,8 @@ namespace rigcal::app {
 /// but does not end the process.
 const std::atomic<bool>& watch_signals();
 
-/// While such an object exists, a signal does not discard the work. The work must check the flag,
-/// and its results so far are written.
+/// Protects the results of a computation from signals. While an object exists, a signal does not
+/// discard the work. The computation must check the flag, and its results so far are written.
 class Kept {
  public:
   Kept();

@@ -52,9 +52,11 @@ report::Holding holding(std::string verb, bool force, const PrintOptions& print)
 /// Returns the width of the terminal behind a stream, or 0 if the stream is redirected.
 std::size_t terminal_columns(int stream);
 
-/// Uses colour on a terminal unless NO_COLOR is set. Tables are as wide as the terminal.
+/// Returns the style for the terminal: in colour unless NO_COLOR is set, with tables as wide as the
+/// terminal.
 report::Style terminal_style();
-/// Also limits the number of lines, unless the user asks for all of them.
+/// Returns the style for the terminal with a limited number of lines, unless the user asks for all
+/// of them.
 report::Style terminal_style(const PrintOptions& options);
 
 /// Prints a result on stdout as text or as JSON.

@@ -13,7 +13,7 @@ namespace rigcal::app {
 /// Adds --strict.
 void add_strict_option(CLI::App& verb, bool& strict);
 
-/// Loads the campaign for a fit, which shares its ownership.
+/// Loads the campaign. The pointer is shared because a fit keeps its campaign alive.
 std::shared_ptr<const datasets::Campaign> loaded(const CampaignOptions& options);
 
 using Job = std::function<report::JobResult(const report::JobTerms&)>;

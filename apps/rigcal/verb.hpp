@@ -14,8 +14,7 @@ namespace rigcal::app {
 struct Invocation {
   std::string command;              ///< the command line
   const std::atomic<bool>& cancel;  ///< becomes true when a signal asks the run to stop
-  TaskFarm* processes = nullptr;    ///< processes that were started together; null if there is only
-                                    ///< this one
+  TaskFarm* processes = nullptr;    ///< processes started together; null if there is only this one
 
   /// Returns true if this process writes and prints. Among cooperating processes only the first one
   /// does.

@@ -40,8 +40,8 @@ class CeresWatch final : public ceres::IterationCallback {
 
 inline ceres::Solver::Options quiet_settings() {
   ceres::Solver::Options settings;
-  settings.num_threads = 1;  // more threads would sum in a different order; the simulations run in
-                             // parallel anyway
+  settings.num_threads = 1;  // more threads would change the order of sums; simulations are
+                             // parallel
   settings.logging_type = ceres::SILENT;
   settings.minimizer_progress_to_stdout = false;
   return settings;

@@ -46,9 +46,9 @@ struct Design {
   std::vector<FamilyTrial> trials;
   std::map<datasets::Channel, double> noise_sd;  ///< per sample of one repeat, SI
   std::vector<std::string> own_conditions;       ///< the campaign's own signals
-  double own_duration_s = 0.0;                   ///< total duration of these signals
-  bool stopped = false;                          ///< true if stopped by the flag: the best drive
-                                                 ///< until then
+  double own_duration_s = 0.0;                   ///< total duration of the campaign's own signals
+  bool stopped = false;                          ///< true if stopped by the flag; the drive is the
+                                                 ///< best so far
   std::vector<std::string> messages;
 };
 

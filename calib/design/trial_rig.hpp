@@ -40,7 +40,7 @@ class TrialRig {
   const std::vector<double>& time_s() const { return record_.time_s; }
   /// Returns the drive at which the rig is at rest at the first sample, SI.
   double neutral() const { return neutral_; }
-  /// Returns the largest allowed distance of a drive from this value.
+  /// Returns the largest allowed distance of a drive from neutral().
   double reach() const { return reach_; }
 
   /// Returns the use of each limit under a drive, or std::nullopt if it cannot be simulated.

@@ -29,7 +29,7 @@ struct ChainState {
   /// would round differently, depending on where a group of draws begins. Empty before the first
   /// draw.
   Eigen::VectorXd whitened;
-  double step = 0.0;   ///< in units of that covariance
+  double step = 0.0;   ///< in units of the covariance
   long iteration = 0;  ///< number of draws so far, including the warm-up
 };
 

@@ -26,8 +26,8 @@ using Eigen::VectorXd;
 /// is wider than the posterior, so that R-hat can detect chains that have not forgotten their
 /// start.
 constexpr double kScattered = 2.0;
-/// Maximum number of attempts to draw such a point, each half as far out, if it cannot be
-/// simulated.
+/// Maximum number of attempts to draw a start point that can be simulated. Each attempt is half as
+/// far from the optimum.
 constexpr int kMostTries = 8;
 /// Fraction of missing information below which the tails may not be reached.
 constexpr double kLeastEnergyFraction = 0.3;

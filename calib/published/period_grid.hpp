@@ -13,8 +13,7 @@ namespace rigcal::calib {
 /// jump. In the pieces of a square the samples are denser after the jump.
 struct PeriodGrid {
   std::vector<double> offset_s;  ///< from the start of the period, increasing
-  std::size_t pieces = 1;        ///< number of pieces, one after another, with equal numbers of
-                                 ///< samples
+  std::size_t pieces = 1;        ///< number of consecutive pieces with equal numbers of samples
 };
 
 /// @param intervals  intervals per piece; must be even
@@ -27,7 +26,7 @@ PeriodGrid period_grid(datasets::Waveform waveform, double period_s, int interva
 double mean_absolute(const PeriodGrid& grid, std::span<const double> signal,
                      std::size_t stride = 1);
 
-/// Returns the derivative of that mean in the direction dy.
+/// Returns the derivative of mean_absolute() in the direction dy.
 double mean_absolute_slope(const PeriodGrid& grid, std::span<const double> signal,
                            std::span<const double> signal_slope);
 

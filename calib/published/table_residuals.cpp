@@ -16,8 +16,7 @@ namespace {
 using datasets::Feature;
 
 constexpr std::array kPosition{model::Output::position};
-constexpr int kSettlingPeriods = 2;  ///< factor for the position, which settles more slowly than
-                                     ///< the flows
+constexpr int kSettlingPeriods = 2;  ///< for the position, which settles more slowly than the flows
 
 /// A positive quantity and its derivatives with respect to the free parameters of the rig.
 struct Quantity {
@@ -114,7 +113,7 @@ TableResiduals::Evaluation TableResiduals::evaluate(const std::vector<double>& v
   datasets::LeakTableSettings settings = settings_;
   double scale = 1.0;
   std::vector<int> of_rig;                  // table indices of the free parameters of the rig
-  std::vector<Eigen::Index> column_of_rig;  // and their columns
+  std::vector<Eigen::Index> column_of_rig;  // columns of these parameters in the Jacobian
   Eigen::Index column_of_scale = -1;
   for (std::size_t j = 0; j < free_.size(); ++j) {
     for (datasets::Assumption& assumption : settings.assumptions) {

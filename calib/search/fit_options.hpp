@@ -24,21 +24,18 @@ struct FitOptions {
   int max_iterations = 200;             ///< per start
   std::optional<long> max_evaluations;  ///< limit for the whole job; status `stopped` if reached
   std::optional<double> max_seconds;    ///< limit for the whole job; status `stopped` if reached
-  bool consider = true;                 ///< whether to consider small effects that the model leaves
-                                        ///< out
-  int bootstrap = 0;                    ///< number of replicates, each fitted from the optimum; 0:
-                                        ///< none
+  bool consider = true;                 ///< whether to consider small effects missing from the
+                                        ///< model
+  int bootstrap = 0;                    ///< replicates, each fitted from the optimum; 0: none
   int posterior = 0;                    ///< number of posterior draws per chain; 0: none
-  bool profiles = false;                ///< profile likelihood of every unknown except nuisance
-                                        ///< parameters
+  bool profiles = false;                ///< profile likelihood of all unknowns except nuisances
   bool cross_validate = false;          ///< leave out one condition at a time
   const Checkpoint* resume = nullptr;   ///< checkpoint to continue from
   std::function<void(const Checkpoint&)> checkpoint;  ///< called after every completed start
   /// Runs starts (if it has several processes), replicates, profiles and folds. If null, the
   /// threads of this process run them.
   TaskFarm* farm = nullptr;
-  const std::atomic<bool>* cancel = nullptr;  ///< set to true to end the fit with the best point so
-                                              ///< far
+  const std::atomic<bool>* cancel = nullptr;  ///< set to true to end the fit with the best point
   /// Called after every iteration with start (from 1), iteration, cost, relative change of cost,
   /// seconds.
   std::function<void(int, int, double, double, double)> progress;

@@ -198,8 +198,7 @@ void make_in_farm(const Problem& problem, Evaluator& evaluator, const FitOptions
 struct Approach {
   std::size_t start = 0;
   std::vector<double> end;
-  double cost = 0.0;  ///< predicted cost after the remaining step, from coarse simulations of whole
-                      ///< records
+  double cost = 0.0;  ///< predicted after the remaining step, from coarse whole-record simulations
 };
 
 /// Evaluates further starts coarsely, then fully searches those that lead to a lower cost than the

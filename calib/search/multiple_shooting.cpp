@@ -430,7 +430,7 @@ ShootingResult multiple_shooting(const Problem& problem, Evaluator& evaluator,
                                  Iterations& iterations) {
   ShootingResult result{std::move(z), 0, 0.0};
   Pieces pieces(problem, evaluator, interval_s);
-  if (pieces.nodes().empty()) return result;  // a single piece
+  if (pieces.nodes().empty()) return result;  // the whole record is a single piece
   result.largest_gap = std::numeric_limits<double>::infinity();
   if (!pieces.begin_at(result.z, interval_s)) return result;
   const int end = iterations.used() + most;

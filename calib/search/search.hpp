@@ -50,8 +50,7 @@ class Search {
   double begin_cost_ = 0.0;                ///< cost of whole records at the start point
   std::vector<double> before_;             ///< start point of the last horizon
   double foreseen_ = 0.0;                  ///< mean square residual at the end of the last horizon
-  int horizons_until_ = 0;                 ///< horizons end once this many iterations have been
-                                           ///< used
+  int horizons_until_ = 0;                 ///< number of used iterations after which horizons end
   std::vector<std::vector<double>> ends_;  ///< end points of the stages
 };
 

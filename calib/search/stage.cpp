@@ -7,9 +7,9 @@
 namespace rigcal::calib {
 namespace {
 
-/// If the samples resolve an oscillation, this number of samples is less than a cycle. Each unknown
-/// that only one record determines (its initial state, the offset of a sensor) adds the same
-/// number.
+/// If the samples resolve an oscillation, this number of samples spans less than a cycle. Each
+/// unknown that only one record determines (its initial state, the offset of a sensor) adds the
+/// same number.
 constexpr std::size_t kShortestSamples = 4;
 /// Largest ratio of the length of a horizon to that of the one before.
 constexpr double kGrowth = 4.0;

@@ -23,7 +23,7 @@ std::vector<ConditionRows> verify_optimum(const Problem& problem, Evaluator& eva
     return {};
   }
   found.result.check = check_optimum(problem, found.optimum);
-  evaluator.forget();  // frees a second copy
+  evaluator.forget();  // frees a second copy of the rows
   std::vector<ConditionRows> rows = std::move(*found.optimum.rows);
   found.optimum.rows.reset();
   return rows;

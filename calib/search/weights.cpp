@@ -62,8 +62,7 @@ double update(Problem& problem, const Evaluation& optimum) {
     // The tolerance never becomes coarser again: each change gives a different cost with a
     // different minimum.
     problem.tolerance = std::min(problem.tolerance, tolerance_from_noise(problem.conditions, true));
-    for_each_estimated(problem, optimum, set);  // a finer simulation allows a smaller standard
-                                                // deviation
+    for_each_estimated(problem, optimum, set);  // a finer simulation allows a smaller sd
   }
   return largest;
 }

@@ -215,8 +215,7 @@ std::optional<LikelyDifference> likely_difference(CauseEffects& effects,
   std::vector<std::string> causes = effects.causes();
   causes.emplace_back("start");
   const auto count = static_cast<Index>(causes.size());
-  VectorXd explained = VectorXd::Zero(count);  // sum of squares that each cause explains in the
-                                               // scores
+  VectorXd explained = VectorXd::Zero(count);  // sum of squares of the scores, for each cause
   VectorXd size = VectorXd::Zero(count);
   double all = 0.0;
   for (std::size_t i = 0; i < scores.size(); ++i) {

@@ -24,7 +24,7 @@ namespace rigcal::calib {
 Eigen::MatrixXd repeat_deviations(const ProblemCondition& condition,
                                   const Eigen::MatrixXd& explained);
 
-/// Returns the component of these deviations that declared parameters explain
+/// Returns the component of the repeat deviations that declared parameters explain
 /// (datasets::ParameterSetting::between_repeats), from their linear effects and their priors. Same
 /// shape as `deviations`.
 Eigen::MatrixXd explained_by_declared(const Problem& problem, std::size_t condition,
@@ -68,10 +68,8 @@ double exceedance(const RepeatVariance& repeats, const RobustVariance& robust);
 struct LikelyDifference {
   std::string cause;       ///< key of a parameter, or "start" for the time when the run began
   double sd = 0.0;         ///< standard deviation between repeats: relative, or in s for the start
-  double explained = 0.0;  ///< fraction of the repeats' squared scores that the cause explains, 0
-                           ///< to 1
-  double p = 1.0;          ///< probability that noise alone explains the difference, see
-                           ///< difference_by_noise()
+  double explained = 0.0;  ///< explained fraction of the repeats' squared scores, 0 to 1
+  double p = 1.0;          ///< probability under noise alone, see difference_by_noise()
 };
 
 /// Returns the cause (supply pressure, bulk modulus or start) whose scores best explain those of

@@ -18,12 +18,12 @@ namespace {
 /// in uncertainty().
 constexpr double kLost = 0.1;
 constexpr double kTriedPrior = 0.05;      // relative standard deviation of the prior to try
-constexpr double kPressureNoise = 0.003;  // as a fraction of the supply pressure; typical of a
-                                          // simple sensor
+constexpr double kPressureNoise = 0.003;  // fraction of the supply pressure; a simple sensor
 /// Length of the record to try: half a period of the slowest signal, sampled at 1 kHz or less.
 constexpr double kTriedSeconds = 5.0;
 constexpr std::size_t kMostSamples = 5000;
-/// One of these is enough for the reader; more would make the sentence long.
+/// Maximum number of priors to suggest. One is enough for the reader; more would make the sentence
+/// long.
 constexpr std::size_t kMostPriors = 2;
 
 bool tells(const Problem& problem, std::span<const double> z, const Eigen::MatrixXd& jacobian,

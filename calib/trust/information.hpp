@@ -37,7 +37,7 @@ FittedParameter parameter_at(const Problem& problem, std::span<const double> z,
 Eigen::MatrixXd weighted_jacobian(const Problem& problem, const Evaluation& at,
                                   const std::vector<double>& weights);
 
-/// Returns the half-width of the 95 % interval for such a standard deviation, as a fraction of the
+/// Converts a standard deviation to the half-width of the 95 % interval, as a fraction of the
 /// value. Returns std::nullopt if `sd` is absent or the value is 0.
 std::optional<double> relative_half_width(const std::optional<double>& sd, double value);
 

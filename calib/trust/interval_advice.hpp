@@ -19,8 +19,8 @@ std::string interval_advice(const Problem& problem, const OptimumCheck& check,
 /// Describes the differences between repeats; std::nullopt if no condition has single repeats.
 std::optional<BetweenRepeats> between_repeats(const Problem& problem, const Uncertainty& found);
 
-/// Explains these differences, their effect on the intervals and a remedy. Empty if the repeats
-/// differ by no more than their noise.
+/// Explains the differences between repeats, their effect on the intervals, and a remedy. Empty if
+/// the repeats differ by no more than their noise.
 std::string between_repeats_warning(const BetweenRepeats& repeats);
 
 /// Explains, in words, the errors in channels whose residuals contain no noise.

@@ -20,7 +20,7 @@ struct KnownUncertainty {
   Eigen::MatrixXd response;
 };
 
-/// Returns the names of these values for messages.
+/// Returns the names of the uncertain known values for messages.
 std::vector<std::string> uncertain_names(const Problem& problem);
 
 /// Returns the weighted sensitivities of one condition to parameters that are known in it, per SI

@@ -72,7 +72,8 @@ const LackOfFit* least_likely(const std::vector<LackOfFit>& tests) {
 }
 
 void judge_together(std::vector<LackOfFit>& tests) {
-  const double level = metrics::kWarningLevel / static_cast<double>(tests.size());  // Bonferroni
+  const double level =
+      metrics::kWarningLevel / static_cast<double>(tests.size());  // Bonferroni correction
   for (LackOfFit& test : tests) static_cast<metrics::Judged&>(test) = judged(test, level);
 }
 

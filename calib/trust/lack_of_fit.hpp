@@ -23,7 +23,7 @@ namespace rigcal::calib {
 /// @param found  must include `scatter`; without it there is no test
 std::vector<LackOfFit> lack_of_fit(const Problem& problem, const Uncertainty& found);
 
-/// Tests a prediction in the same way. No parameter was estimated from its record, so the ratio is
+/// Tests a prediction for lack of fit. No parameter was estimated from its record, so the ratio is
 /// the mean square of the residual divided by the variance of the mean of the repeats.
 ///
 /// @param residual  shape (samples in windows), measured - simulated, SI

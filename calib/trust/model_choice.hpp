@@ -20,8 +20,8 @@ struct Candidate {
 };
 
 /// Compares two models that need not be nested. The noise is taken from the residual of the model
-/// that is closer to the records. With the deviance D, and n_e independent ones among the n
-/// residuals,
+/// that is closer to the records. D is the deviance, and n_e of the n residuals count as
+/// independent. Then
 ///
 ///   delta AIC = 2 (p_other - p_first) + (D_other - D_first) / (2 cost / (n - p)) * n_e / n
 ///
@@ -36,8 +36,8 @@ struct InformationDifference {
 /// @throws std::invalid_argument  if the models have different residuals
 InformationDifference compare_information(const Candidate& first, const Candidate& other);
 
-/// Compares two nested models. The noise is the residual variance of the larger model, with n_e
-/// independent ones among its n residuals. If the smaller model is right,
+/// Compares two nested models. The noise is the residual variance of the larger model, of whose n
+/// residuals n_e count as independent. If the smaller model is right,
 ///
 ///   L = (D_small - D_large) / (2 cost_large / (n - p_large)) * n_e / n
 ///

@@ -13,8 +13,7 @@ namespace rigcal::calib {
 struct PlannedRecord {
   std::string condition;
   bool recorded = false;                       ///< false: planned, only simulated
-  std::string problem;                         ///< why nothing is known about the record; else
-                                               ///< empty
+  std::string problem;                         ///< why nothing is known; otherwise empty
   std::vector<std::optional<double>> alone;    ///< sd of each unknown from this record only, SI;
                                                ///< shape (unknowns), even if nothing is known
   std::vector<std::optional<double>> without;  ///< sd from all records except this one; same shape
@@ -23,8 +22,7 @@ struct PlannedRecord {
 /// Cramer-Rao standard deviations at given values, for white noise, a correct model and all
 /// unknowns free. A real fit is less precise.
 struct Plan {
-  std::vector<FittedParameter> parameters;      ///< value and bounds of each unknown, without
-                                                ///< errors
+  std::vector<FittedParameter> parameters;      ///< value and bounds of each unknown, no errors
   std::vector<std::optional<double>> recorded;  ///< sd from all existing records
   std::vector<std::optional<double>> all;       ///< sd with the planned records included
   std::vector<PlannedRecord> records;

@@ -86,7 +86,7 @@ double widening(const Problem& problem, std::span<const double> z, const Uncerta
   return widen;
 }
 
-/// Returns S of the full covariance of these unknowns, SI.
+/// Returns the square root S of the full covariance of the joint unknowns, SI.
 Eigen::MatrixXd spread_of(const Problem& problem, std::span<const double> z,
                           const Uncertainty& found, const Joint& joint, double widen) {
   const auto n = static_cast<Eigen::Index>(joint.unknowns.size());

@@ -195,8 +195,8 @@ MatrixXd kernel_covariance(const RowMajor& scores, double width) {
 struct ChannelSums {
   RowMajor scores;   ///< contributions of the samples to the score
   RowMajor weights;  ///< variance of each combination of these contributions
-  RowMajor own;  ///< their covariance with the error of each combination, divided by its standard
-                 ///< error
+  RowMajor own;  ///< covariance of the contributions with the error of each combination, divided by
+                 ///< its standard error
   double independent_residuals = 0.0;
 };
 

@@ -24,13 +24,11 @@ struct ScoreRows {
 /// Contribution of one condition to the long-run covariance of the score J^T r.
 struct ScoreScatter {
   Eigen::MatrixXd covariance;  ///< shape (directions, directions), positive semidefinite
-  Eigen::VectorXd freedom;     ///< degrees of freedom of this contribution to the variance of each
-                               ///< combination
+  Eigen::VectorXd freedom;     ///< degrees of freedom of its variance, for each combination
   /// Contribution to this variance from the error of each combination itself, if that error is one
   /// standard error, divided by the expected variance over all conditions. Empty if there is none.
   Eigen::VectorXd own;
-  std::vector<metrics::Autoregression> noise;  ///< models of the weighted residuals, one per
-                                               ///< channel
+  std::vector<metrics::Autoregression> noise;  ///< models of the weighted residuals, by channel
   double independent_residuals = 0.0;          ///< sum over all channels
 };
 

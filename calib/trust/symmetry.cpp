@@ -17,8 +17,7 @@ namespace {
 
 /// Relative standard error above which the common scale counts as weak (kWeak, 95 %).
 constexpr double kScaleKnown = 0.1;
-constexpr std::string_view kSmoothing = "leakage_smoothing";  // has no physical meaning, hence no
-                                                              // exponent of its own
+constexpr std::string_view kSmoothing = "leakage_smoothing";  // no physical meaning, so no exponent
 constexpr std::string_view kSupply = "supply_pressure";
 
 bool positions_alone(const Problem& problem) {

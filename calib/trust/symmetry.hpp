@@ -16,7 +16,7 @@ namespace rigcal::calib {
 /// density. It is 0 if the parameter is not scaled.
 double scaling_exponent(const model::ParameterSpec& spec);
 
-/// How closely a problem has this symmetry.
+/// How closely a problem has the scaling symmetry.
 struct ScalingSymmetry {
   std::vector<std::size_t> unknowns;  ///< parameters that are scaled, at least two
   std::vector<std::string> known;     ///< names of known values that would have to be scaled, too

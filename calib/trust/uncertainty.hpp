@@ -36,13 +36,11 @@ struct Uncertainty {
   /// ratio if repeats differ only by noise.
   std::vector<bool> from_repeats;
   std::vector<double> repeats_ratio, repeats_p;
-  std::optional<LikelyDifference> difference;  ///< present if repeats differ by more than their
-                                               ///< noise
+  std::optional<LikelyDifference> difference;  ///< if repeats differ by more than their noise
   int noiseless = 0;  ///< number of channels whose residual is not noise, see coherent_error.hpp
   std::vector<std::string> reason;  ///< in words, why there is no standard error
   int rank = 0;
-  std::vector<double> singular_values;  ///< descending; the Jacobian has columns
-                                        ///< of length 1
+  std::vector<double> singular_values;  ///< descending, columns scaled to length 1
   double reduced_chi_square = 0.0;      ///< 2 cost / (residuals - rank)
   double freedom = 1.0;                 ///< degrees of freedom of standard_error, at least 1
   /// S, where S S^T is the covariance in the unit box. Directions that the data do not determine

@@ -51,8 +51,7 @@ struct StoredRigTrend {
 struct StoredRig {
   std::string rig;       ///< folder of the rig, relative to the batch folder
   std::string campaign;  ///< path of the campaign file
-  std::string folder;    ///< folder with the results of this rig, relative to the results folder of
-                         ///< the batch
+  std::string folder;    ///< folder with its results, relative to the batch's results folder
   std::optional<std::string> name;
   int exit_code = 0;
   bool unchanged = false;  ///< the result existed before this run and was reused

@@ -12,8 +12,8 @@ namespace rigcal::report {
 
 /// A rig found by `batch`.
 struct BatchRig {
-  std::string rig;                 ///< its folder, relative to the batch folder: "lab/bench_2"
-  std::filesystem::path campaign;  ///< its campaign.toml
+  std::string rig;                 ///< folder, relative to the batch folder: "lab/bench_2"
+  std::filesystem::path campaign;  ///< path of its campaign.toml
   std::string folder;              ///< folder for its results, relative to --out
 };
 
@@ -27,9 +27,8 @@ std::vector<BatchRig> find_rigs(const std::filesystem::path& folder,
 /// Outcome of running one rig.
 struct RigEnd {
   ExitCode code = ExitCode::internal;
-  bool left_result = false;  ///< this run wrote the fit.json in the results folder, or found it up
-                             ///< to date
-  bool unchanged = false;    ///< that fit.json already existed before this run
+  bool left_result = false;  ///< this run wrote fit.json, or found it up to date
+  bool unchanged = false;    ///< the fit.json already existed before this run
   double seconds = 0.0;
   std::string error;
 };

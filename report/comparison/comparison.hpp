@@ -14,8 +14,7 @@ struct Compared {
   std::string name;            ///< shortest path that is unique among the results
   std::filesystem::path file;  ///< fit.json, or validation.json if there is no fit
   StoredFit result;
-  bool of_tables = false;                      ///< true for a fit to published tables, which has no
-                                               ///< records
+  bool of_tables = false;                      ///< a fit to published tables, without records
   std::vector<std::string> published_numbers;  ///< the published tables used in the fit, by number
 };
 

@@ -112,8 +112,8 @@ std::string not_contained(const StoredFit& smaller_result, const StoredFit& larg
   const Terms larger(larger_result);
   for (const auto& [key, scope] : smaller.free) {
     const auto found = larger.free.find(key);
-    if (found == larger.free.end() || found->second < scope)  // the scope must not become coarser:
-                                                              // condition, leak level, rig
+    if (found == larger.free.end() || found->second < scope)  // scopes are ordered from rig to
+                                                              // condition
       return fmt::format("{} is free in one alone, and something else in the other", key);
   }
   for (const auto& [id, value] : smaller.known) {

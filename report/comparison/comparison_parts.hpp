@@ -47,8 +47,7 @@ std::vector<std::optional<StoredSignificance>> tested_parameters(
 struct Change {
   std::string parameter, result;
   std::string by;           ///< "+1.2 %", or "+0.3 mm" if the first value may be zero
-  std::optional<double> p;  ///< adjusted for all parameters; absent if the difference was not
-                            ///< tested
+  std::optional<double> p;  ///< adjusted for all parameters; absent if not tested
   std::string reason;       ///< why the difference was not tested
 };
 /// Returns the significant changes first, in order of increasing p-value. Untested changes follow,

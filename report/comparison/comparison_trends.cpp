@@ -105,8 +105,7 @@ StoredTrendPoint point_of(const Compared& compared, const StoredParameter& param
                                   });
   point.value = parameter.value;
   if (const auto error = interval_error(parameter)) {
-    const bool dated = point.day.has_value();  // results from different dates differ in their day
-                                               // effects
+    const bool dated = point.day.has_value();  // results of other dates have other day effects
     const metrics::EstimateError all =
         dated ? with_days(*error, parameter.between_days_error) : *error;
     if (dated && parameter.between_days_error)

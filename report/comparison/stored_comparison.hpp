@@ -122,8 +122,7 @@ struct StoredComparedMetric {
 /// Result of the model comparison: which model the records prefer.
 struct StoredModelChoice {
   std::optional<double> delta_aic, delta_bic;
-  std::optional<std::string> smaller, larger;  ///< names of the results, if one model contains the
-                                               ///< other
+  std::optional<std::string> smaller, larger;  ///< names of the results, if models are nested
   std::optional<double> likelihood_ratio;
   std::optional<int> freedom;
   std::optional<double> p_value;
@@ -157,8 +156,7 @@ struct StoredTrend {
   long points = 0;  ///< points that have both an error and a position
   std::optional<double> slope, intercept, standard_error;
   Later<std::optional<double>> degrees_of_freedom;  ///< degrees of freedom of the slope's error
-  Later<std::optional<double>> widened;  ///< factor by which the slope's error is enlarged for
-                                         ///< scatter about the line
+  Later<std::optional<double>> widened;  ///< factor on the slope's error for scatter about the line
   std::optional<Range> ci95;
   std::optional<double> p_value, reduced_chi_square;
   std::optional<bool> significant;

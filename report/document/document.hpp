@@ -95,7 +95,6 @@ struct Column {
   std::string title;
   Kind kind = Kind::text;
   int spare = 0;  ///< a narrow terminal omits the column with the highest number first; 0: never
-                  ///< omitted
   std::string below = {};  ///< second line of the title, shown on the page
 };
 
@@ -114,8 +113,7 @@ struct Table {
   Shape shape = Shape::list;
   std::string style = {};   ///< class in the style sheet
   std::size_t heading = 0;  ///< index of the column that names the row
-  std::size_t keys = 1;     ///< number of leading columns to repeat in every block on a narrow
-                            ///< terminal
+  std::size_t keys = 1;     ///< leading columns to repeat in every block on a narrow terminal
   std::string file = {};    ///< file that contains the omitted columns and rows
   std::size_t most = 1000;  ///< maximum number of rows on a page, about twenty printed sheets;
                             ///< further rows are only counted
@@ -188,8 +186,7 @@ struct Verdict {
 /// Everything the reader must know before signing the result.
 struct Doubts {
   Lines items;
-  std::optional<Line> warnings = {};  ///< last item on a page; a terminal shows the warnings
-                                      ///< section instead
+  std::optional<Line> warnings = {};  ///< last on a page; a terminal shows the warnings section
 };
 /// Separately judged aspects, shown side by side.
 struct Aspects {

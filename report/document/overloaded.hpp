@@ -8,6 +8,6 @@ struct Overloaded : Cases... {
   using Cases::operator()...;
 };
 template <typename... Cases>
-Overloaded(Cases...) -> Overloaded<Cases...>;  // clang 14 does not deduce it
+Overloaded(Cases...) -> Overloaded<Cases...>;  // deduction guide needed by clang 14
 
 }  // namespace rigcal::report::doc

@@ -342,8 +342,7 @@ std::size_t lines_in(const std::string& text) {
 }  // namespace
 
 std::string render_terminal(const Document& document, const Style& style) {
-  constexpr std::size_t kFewestRows = 3;  // with fewer rows, the sentences that explain them are
-                                          // omitted
+  constexpr std::size_t kFewestRows = 3;  // below this, explanatory sentences are omitted
   const std::size_t all = std::numeric_limits<std::size_t>::max();
   std::string text = rendered(document, style, all, false);
   if (style.lines == 0) return text;

@@ -10,7 +10,7 @@ namespace rigcal::report {
 /// Returns the sources, sorted by their path within sources/.
 const std::map<std::string_view, std::string_view>& fmu_sources();
 
-/// Returns the shared library compiled from these sources.
+/// Returns the shared library compiled from fmu_sources().
 std::string_view fmu_library();
 
 }  // namespace rigcal::report

@@ -68,8 +68,8 @@ const char* causality(const FmuVariable& variable) {
   return "";
 }
 
-/// Omits `initial`, because the defaults of the standard follow from causality and variability:
-/// exact for parameters, calculated for outputs and local variables.
+/// Omits `initial`. Its default in the standard follows from causality and variability: exact for
+/// parameters, calculated for outputs and local variables.
 std::string scalar_variable(const FmuVariable& variable) {
   const char* variability = variable.causality != Causality::parameter ? "continuous"
                             : variable.tunable                         ? "tunable"

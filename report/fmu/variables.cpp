@@ -99,9 +99,7 @@ void add_states(const ExportedRig& rig, const Layout& layout, std::vector<FmuVar
 void add_outputs(const ExportedRig& rig, std::vector<FmuVariable>& variables) {
   for (const OutputRow& row : kOutputs) {
     const bool drives = row.output == Output::command || row.output == Output::pilot_pressure;
-    if (drives && rig.rig.controller == model::ControllerKind::none)
-      continue;  // without a controller this is
-                 // the input
+    if (drives && rig.rig.controller == model::ControllerKind::none) continue;  // it is the input
     if (!has_output(rig.values, row.output)) continue;
     const bool is_state = std::any_of(variables.begin(), variables.end(),
                                       [&](const auto& each) { return each.name == row.name; });

@@ -10,8 +10,7 @@
 namespace rigcal::report {
 namespace {
 
-constexpr zip_uint16_t kDate = 0x0021;  ///< 1980-01-01, the earliest date that the format can
-                                        ///< represent
+constexpr zip_uint16_t kDate = 0x0021;  ///< 1980-01-01, the earliest possible date
 constexpr zip_uint32_t kReadable = 0100644U << 16U;
 
 [[noreturn]] void fail(const std::string& what, const char* why) {
@@ -63,8 +62,7 @@ std::string zipped(const std::vector<FmuFile>& files) {
   if (!memory) fail("memory", zip_error_strerror(&error));
   std::unique_ptr<zip_t, Discard> archive(zip_open_from_source(memory.get(), ZIP_TRUNCATE, &error));
   if (!archive) fail("memory", zip_error_strerror(&error));
-  zip_source_keep(memory.get());  // the archive releases its own reference; this one keeps the
-                                  // bytes for reading
+  zip_source_keep(memory.get());  // the archive releases its own reference; this one is for reading
   for (const FmuFile& file : files) add(archive.get(), file);
   if (zip_close(archive.get()) != 0) fail("its end", zip_strerror(archive.get()));
   static_cast<void>(archive.release());

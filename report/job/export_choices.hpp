@@ -27,7 +27,7 @@ struct ExportChoice {
 /// from the fit override those of the campaign, and values from --set override both.
 ///
 /// @throws UsageError, InputError  if the leak level is ambiguous, a value is missing, or the rig
-///                      has a term that an FMU cannot represent
+///                                 has a term that an FMU cannot represent
 ExportChoice choose_export(const datasets::Campaign& campaign, const CampaignChoice& choice,
                            const ExportRequest& request);
 

@@ -98,9 +98,10 @@ void search(FitRun& run, Unfinished& kept, bool resume, const JobTerms& terms,
                            settings.starts > 1 ? "" : " (a fit of one start keeps none)"));
   if (settings.starts > 1)
     settings.checkpoint = [&](const calib::Checkpoint& reached) { kept.checkpoint.keep(reached); };
-  give_freed_memory_back();  // memory of the single repeats
+  give_freed_memory_back();  // frees the memory of the single repeats
   run.fit = calib::fit(*run.campaign, run.records, settings);
-  // The files and the page do not need the deviations, and making them takes as much memory again.
+  // The deviations are dropped here: the files and the page do not need them, and creating the
+  // files takes as much memory again.
   datasets::drop_deviations(run.records);
   give_freed_memory_back();
   give_large_blocks_back();

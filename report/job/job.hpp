@@ -40,8 +40,7 @@ struct FitRun {
 /// What the caller provides for a job.
 struct JobTerms {
   std::string command;                                       ///< command line for the provenance
-  std::vector<std::pair<std::string, std::string>> options;  ///< choices from the campaign, also
-                                                             ///< for the provenance
+  std::vector<std::pair<std::string, std::string>> options;  ///< campaign choices, for provenance
   int threads = 1;
   const std::atomic<bool>& cancel;  ///< set to true to stop the job
   std::filesystem::path out = {};   ///< folder for the files, if it is known
@@ -54,8 +53,7 @@ struct JobTerms {
   /// place of the start number.
   std::function<void(calib::FitOptions&, const std::string& work)> watch = {};
   std::function<void(const std::string&)> note = {};  ///< passes a sentence to the user
-  TaskFarm* processes = nullptr;  ///< processes that run the same job together; null if this
-                                  ///< process works alone
+  TaskFarm* processes = nullptr;  ///< processes running the same job; null: only this process
 
   /// Returns true if this process produces the result. Among cooperating processes only the first
   /// one does.
@@ -101,7 +99,7 @@ struct FitSource {
 /// @throws InputError  if a record is invalid, or there are no records
 std::vector<datasets::Record> averaged_records(const datasets::Campaign& campaign,
                                                const JobTerms& terms);
-/// Writes the averaged records with their repeatability.
+/// Reports the averaged records with their repeatability.
 JobResult average_job(const datasets::Campaign& campaign,
                       const std::vector<datasets::Record>& records, const JobTerms& terms);
 
@@ -130,7 +128,7 @@ JobResult validation_job(std::shared_ptr<const datasets::Campaign> campaign,
 
 struct DiagnosisRequest {
   FitSource fit;
-  std::filesystem::path table;       ///< leak_table.json whose rows define the class limits; may be
+  std::filesystem::path table;       ///< leak_table.json that defines the class limits; may be
                                      ///< empty
   std::vector<std::string> healthy;  ///< additional leak levels that count as healthy
 };
@@ -152,11 +150,9 @@ JobResult parity_job(datasets::Campaign campaign, const ParityRequest& request,
                      const JobTerms& terms);
 
 struct LeakTableRequest {
-  FitSource fit;                        ///< if absent, the campaign's values and assumptions are
-                                        ///< used
+  FitSource fit;                        ///< if absent, campaign values and assumptions are used
   std::vector<double> targets_percent;  ///< empty: the targets in the campaign
-  std::vector<std::string> signals;     ///< for example "sine@0.1Hz@20mm"; empty: the signals in
-                                        ///< the campaign
+  std::vector<std::string> signals;     ///< such as "sine@0.1Hz@20mm"; empty: the campaign's
 };
 /// Estimates the assumptions of a leak table from its published numbers, and computes the table
 /// with them.

@@ -12,8 +12,7 @@ namespace rigcal::report {
 /// The records to be searched for leaks.
 struct LeakRecords {
   std::vector<datasets::RepeatRecords> conditions;
-  std::vector<std::string> left_out;  ///< conditions that cannot be diagnosed, with the reason in
-                                      ///< words
+  std::vector<std::string> left_out;  ///< conditions that cannot be diagnosed, with reasons
 
   std::vector<datasets::Record> averages() const;
 };

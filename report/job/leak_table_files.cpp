@@ -23,8 +23,7 @@ LeakTableInput load_leak_table(const CampaignChoice& choice) {
   // The residual scale is not a parameter of the rig; only the leak table has it.
   std::erase_if(of_campaign.set,
                 [](const std::string& text) { return text.starts_with(kResidualScale); });
-  of_campaign.free.clear();  // the free parameters of the leak table differ from those of the
-                             // records
+  of_campaign.free.clear();  // the leak table has free parameters of its own
   LeakTableInput input{load(of_campaign), {}};
   input.settings = leak_table_settings(input.campaign);
   for (const std::string& assignment : choice.set) {

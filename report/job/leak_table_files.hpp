@@ -17,6 +17,8 @@ struct LeakTableInput {
   datasets::LeakTableSettings settings;
 };
 
+/// Loads a campaign and its [leak_table], and applies --set.
+///
 /// @throws InputError, UsageError
 LeakTableInput load_leak_table(const CampaignChoice& choice);
 

@@ -51,18 +51,14 @@ struct Later : T {
   using T::T;
   using T::operator=;
   Later() = default;
-  Later(T value)
-      : T(std::move(value)) {}  // NOLINT(google-explicit-constructor): this conversion
-                                // is intended
+  Later(T value) : T(std::move(value)) {}  // NOLINT(google-explicit-constructor): intended
 };
 
 /// A struct whose keys are merged into those of the struct that contains it.
 template <typename T>
 struct Inlined : T {
   Inlined() = default;
-  Inlined(T value)
-      : T(std::move(value)) {}  // NOLINT(google-explicit-constructor): this conversion
-                                // is intended
+  Inlined(T value) : T(std::move(value)) {}  // NOLINT(google-explicit-constructor): intended
 };
 
 /// Keys and values in insertion order.

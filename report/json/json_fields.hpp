@@ -12,13 +12,15 @@ using Json = nlohmann::ordered_json;
 /// Returns the text for a key, or an empty string if it is null or missing.
 std::string text_of(const Json& json, const std::string& key);
 
+/// Reports a JSON error as an InputError.
+///
 /// @throws InputError  always
 [[noreturn]] void refuse_json(const std::string& where, const Json::exception& error);
 
 /// Runs `work` on JSON from outside. Converts JSON errors to InputError, because the JSON is then
 /// not a result of this version.
 ///
-/// @param where        the file or folder, for the message
+/// @param where  the file or folder, for the message
 /// @throws InputError  if a value is missing or has another type
 template <typename Work>
 void with_json_errors(const std::string& where, const Work& work) {

@@ -25,13 +25,13 @@ struct JsonLimits {
 
 /// Parses a JSON text and checks it against the limits.
 ///
-/// @param file         name for messages
+/// @param file  name for messages
 /// @throws InputError  if the text is not JSON or exceeds a limit; starts with file:line:column
 Json parse_json(std::string_view text, const std::string& file, const JsonLimits& limits = {});
 
 /// Reads and parses a JSON file.
 ///
-/// @param expected     what the file should be, in words: "the fit.json of an earlier fit"
+/// @param expected  what the file should be, in words: "the fit.json of an earlier fit"
 /// @throws InputError  as for parse_json(), or if the file cannot be read, is not a regular file or
 ///                     is too large
 Json read_json(const std::filesystem::path& file, const std::string& expected,

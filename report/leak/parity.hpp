@@ -14,8 +14,7 @@ struct ParityResult {
   const datasets::Campaign& campaign;
   const diagnosis::Parity& parity;
   const std::vector<std::string>& reasons;  ///< why the check was declined; empty if it was not
-  double false_alarm = 0.0;                 ///< specified probability of an alarm for a healthy
-                                            ///< record
+  double false_alarm = 0.0;                 ///< specified false-alarm probability
   const Provenance& provenance;
 };
 

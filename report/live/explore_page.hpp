@@ -9,8 +9,8 @@ namespace rigcal::report {
 
 /// Makes a self-contained page that simulates the rig. Its curves follow every change of a value.
 ///
-/// @param cases        at least one; a still picture shows the first
-/// @param inputs       files that the page is made from
+/// @param cases   at least one; a still picture shows the first
+/// @param inputs  files that the page is made from
 /// @throws InputError  if the first case cannot be simulated; names its place
 /// @throws UsageError  if this program was built without the module
 std::string explore_page(const datasets::Campaign& campaign, const std::vector<LiveCase>& cases,

@@ -322,8 +322,7 @@ std::vector<LiveCase> live_cases(const Campaign& campaign,
     try {
       values = fitted.empty() ? values_in(campaign, condition)
                               : calib::values_with(campaign, condition, fitted);
-    } catch (const InputError& error) {  // the fit has no value for the leak level of this
-                                         // condition
+    } catch (const InputError& error) {  // the fit has no value for this leak level
       if (!problem) problem.emplace(error);
       continue;
     }

@@ -23,8 +23,8 @@ struct LiveCase {
 /// Lists the signals of a [leak_table] with its assumed values, then every condition that is not
 /// ignored and whose rig is known.
 ///
-/// @param fitted       estimates that replace the campaign's values. The leak table is then left
-///                     out, because its values are assumed.
+/// @param fitted  estimates that replace the campaign's values. The leak table is then left out,
+///                because its values are assumed.
 /// @throws InputError  if no case can be simulated or a recording cannot be read; names its place
 std::vector<LiveCase> live_cases(const datasets::Campaign& campaign,
                                  const std::vector<datasets::FittedValue>& fitted = {});

@@ -32,7 +32,7 @@ struct ResultPage {
 ResultPage result_page(const ReadFile& read, const std::string& where, int threads,
                        const ReadTable& made = {});
 
-/// Returns the same results without a page, and without the curves of single conditions.
+/// Returns the results in a folder without drawing a page or the curves of single conditions.
 std::vector<ResultDocument> result_documents(const ReadFile& read, const std::string& where,
                                              const ReadTable& made = {});
 

@@ -51,7 +51,7 @@ Identity identity_of(const Json& report) {
     add("Tested", first == last ? first : fmt::format("{} to {}", first, last));
   }
   for (const datasets::ReportField& field : datasets::kReportFields) {
-    // These appear at the top of the page or in the signatures at the bottom.
+    // These fields appear at the top of the page or in the signatures at the bottom.
     if (field.key == "number" || field.key == "issued" || field.key == "laboratory" ||
         field.key == "customer" || field.key == "operator" || field.key == "approver")
       continue;

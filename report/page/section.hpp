@@ -38,8 +38,7 @@ struct Part : doc::Document {
 
 struct Section {
   std::string name;                ///< for example "leak_table"
-  std::vector<std::string> files;  ///< a folder with this kind of result has at least one of these
-                                   ///< files
+  std::vector<std::string> files;  ///< at least one exists in a folder with this kind of result
   std::function<Part(const ResultFolder&)> part;
   std::function<std::vector<Figure>(const ResultFolder&)> figures;
 };

@@ -12,8 +12,7 @@ namespace rigcal::report {
 /// The chosen campaign, with changes from the command line.
 struct CampaignChoice {
   std::filesystem::path campaign;
-  std::filesystem::path data;     ///< base folder for relative record paths; empty: the folder of
-                                  ///< the campaign file
+  std::filesystem::path data;     ///< base of relative record paths; empty: the campaign's folder
   std::filesystem::path root;     ///< no file outside this folder is read; empty: no restriction
   std::vector<std::string> set;   ///< each as name="value unit"
   std::vector<std::string> free;  ///< the only parameters to fit; empty: those of the campaign

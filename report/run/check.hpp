@@ -17,7 +17,7 @@ struct Check {
 
 /// Reads and checks every record, one at a time.
 ///
-/// @param keep         receives each record in campaign order; may be empty
+/// @param keep  receives each record in campaign order; may be empty
 /// @throws InputError  if a record is invalid
 Check check(const datasets::Campaign& campaign,
             const std::function<void(datasets::Record)>& keep = {});

@@ -10,8 +10,7 @@ namespace rigcal::report {
 
 /// A term that the model lacks, in the form of a line for a campaign file.
 struct MissingTerm {
-  bool of_controller = false;  ///< the line belongs in [rig.controller]; otherwise in
-                               ///< [rig.parameters]
+  bool of_controller = false;  ///< belongs in [rig.controller]; otherwise [rig.parameters]
   std::string line;            ///< "valve_time_constant = { start = ..., fit = true }"
 };
 
@@ -22,7 +21,8 @@ struct MissingTerm {
 std::vector<MissingTerm> missing_terms(model::PlantKind plant,
                                        const std::vector<std::pair<std::string, double>>& sizes);
 
-/// Inserts these lines at the beginning of their tables in the text of a campaign file.
+/// Inserts the lines for missing terms at the beginning of their tables in the text of a campaign
+/// file.
 std::string with_terms(std::string campaign, const std::vector<MissingTerm>& terms);
 
 }  // namespace rigcal::report

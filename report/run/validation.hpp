@@ -17,8 +17,8 @@ std::vector<std::string> doubts_about(const EarlierFit& earlier,
 /// Scores the `fit` and `validate` conditions with the values from an earlier fit, and warns if
 /// they exceed the range covered by that fit.
 ///
-/// @param earlier      null: the campaign's own values are used
-/// @param provenance   provenance of the validation; its inputs show which records the fit has seen
+/// @param earlier     null: the campaign's own values are used
+/// @param provenance  provenance of the validation; its inputs show which records the fit has seen
 /// @throws InputError  as for calib::validate()
 calib::Fit validate(const datasets::Campaign& campaign,
                     const std::vector<datasets::Record>& records, const EarlierFit* earlier,

@@ -43,8 +43,7 @@ json batch_of(const CommandFolder& folder, const std::string& out) {
 json without_run(json fit) {
   fit.erase("wall_seconds");
   fit["provenance"].erase("command");
-  fit["provenance"].erase("files");  // report.html and other files beside fit.json contain the
-                                     // command
+  fit["provenance"].erase("files");  // report.html and other files contain the command
   return fit;
 }
 
@@ -106,7 +105,7 @@ TEST_CASE("batch: a second one makes only what has changed", "[apps]") {
   CHECK(batch["rigs"][2]["unchanged"] == false);
   CHECK(folder.read("out/bench_1/fit.json") == first);
   CHECK(folder.has("out/lab/bench_3/scorecard.csv"));
-  // The options request other intervals.
+  // The additional option requests other intervals, so the fit is repeated.
   REQUIRE(folder.run({"batch", "lab_a", "--out", "out", "--resume", "--profiles", "--quiet"})
               .exit_code == 0);
   CHECK(batch_of(folder, "out")["rigs"][0]["unchanged"] == false);
@@ -139,7 +138,7 @@ TEST_CASE("batch: a leak that grows is a significant trend of its rig alone", "[
       REQUIRE(trend["series"]["points"].size() == 4);
       if (trend["key"] == "leakage_coefficient" && row["rig"] == "lab/bench_2") {
         CHECK(trend["series"]["along_date"]["significant"] == true);
-        // 0.3 in 92 days.
+        // The coefficient changes by 0.3 in 92 days.
         CHECK(trend["series"]["along_date"]["slope_per_day"].get<double>() ==
               Approx(0.3 / 92.0).epsilon(0.15));
       }

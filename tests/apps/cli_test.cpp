@@ -576,7 +576,8 @@ TEST_CASE("fit and validate: a twin from its records to its verdict", "[apps]") 
     CHECK_FALSE(folder.has("val/fitted.toml"));
     CHECK_THAT(validation.out, Contains("rigcal.validation/1"));
     check_complete(validation.out);
-    // Its band equals that of the fit, because fit.json contains errors and correlations.
+    // The prediction band equals that of the fit, because fit.json contains errors and
+    // correlations.
     const auto theirs = column(folder.read("out/residuals/square.csv"), "prediction_sd_position_m");
     const auto ours = column(folder.read("val/residuals/square.csv"), "prediction_sd_position_m");
     REQUIRE(theirs.size() == ours.size());

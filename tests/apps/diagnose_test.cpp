@@ -19,8 +19,7 @@ namespace {
 
 /// One healthy and one leaking condition with the same sine.
 const std::string kDiagnosed =
-    edited(kCampaign, {{"1000 V/m", "300 V/m"},  // otherwise the healthy loop would oscillate by
-                                                 // itself
+    edited(kCampaign, {{"1000 V/m", "300 V/m"},  // otherwise the healthy loop would oscillate
                        {"leakage_coefficient = 0.3", "leakage_coefficient = 0"},
                        {"[leak_level.\"none\"]",
                         "[leak_level.\"none\"]\nparameters = { leakage_coefficient = 0 }\n"
@@ -49,8 +48,7 @@ TEST_CASE("diagnose: from synthetic records to classes", "[apps]") {
   CHECK_THAT(outcome.out, Contains("leaking") && Contains("Smallest leak"));
   const json result = json::parse(folder.read("diagnosis/diagnosis.json"));
   CHECK(result["status"] == "done");
-  REQUIRE(result["records"].size() == 8);  // two averages of three repeats each, and the repeats
-                                           // themselves
+  REQUIRE(result["records"].size() == 8);  // two averages and their three repeats each
   for (const json& record : result["records"]) {
     CAPTURE(record.dump());
     CHECK(record["failure"].is_null());

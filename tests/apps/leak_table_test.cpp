@@ -295,7 +295,7 @@ TEST_CASE("fit-tables: finds the values behind tables that leak-table made", "[a
   CHECK_THAT(fit["parameters"][0]["value"].get<double>(), WithinRel(1000.0, 0.01));
   CHECK_THAT(fit["parameters"][1]["value"].get<double>(), WithinRel(1e-6, 0.01));
   CHECK(fit["parameters"][1]["name"] == "leakage_area_m2");
-  // The campaign that it writes gives the same table.
+  // The fitted.toml that it writes gives the same table.
   REQUIRE(folder.run({"leak-table", "out/fitted.toml", "--out", "again", "--quiet"}).exit_code ==
           0);
   CHECK(json::parse(folder.read("again/leak_table.json"))["entries"] ==

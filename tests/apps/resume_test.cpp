@@ -101,9 +101,7 @@ TEST_CASE("resume: a fit that was killed in what it makes beside the search lose
   for (int i = 0; i < 3; ++i) {
     killed += folder.run_and_kill(parts, "parts/checkpoint.tasks", "0").exit_code == -SIGKILL;
     if (parts.back() != "--resume") parts.push_back("--resume");
-    if (!folder.has("parts/checkpoint.tasks"))
-      break;  // the fit completed before it could be
-              // killed
+    if (!folder.has("parts/checkpoint.tasks")) break;  // the fit was too fast to be killed
     const std::size_t bytes = folder.read("parts/checkpoint.tasks").size();
     CHECK(bytes >= kept);
     kept = bytes;

@@ -58,13 +58,13 @@ TEST_CASE("schema: results of fits and validations, good and failed", "[apps]") 
 
   REQUIRE(fit["parameters"][0].contains("identifiability"));
   REQUIRE(fit.contains("cross_validation"));
-  // The additional findings of such a fit are on its page.
+  // The page shows the additional findings of such a fit.
   const std::string page = folder.read("fit/report.html");
   for (const char* title :
        {"<h3>Profiles", "<h3>Bootstrap", "<h3>Posterior", "<h3>Lack of fit", "left out"})
     CHECK_THAT(page, Catch::Contains(title));
 
-  // All draws, and what was derived from them.
+  // All draws are stored, together with what was derived from them.
   REQUIRE(fit["posterior"]["draws"] == 100);
   CHECK(fit["posterior"]["effects"] == false);
   CHECK(fit["parameters"][0].contains("posterior"));

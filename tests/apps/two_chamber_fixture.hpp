@@ -46,7 +46,7 @@ use = "fit"
 repeats = ["records/square_*.csv"]
 )";
 
-/// Its true parameters and the noise of the records.
+/// The true parameters of the single-rod rig, and the noise of its records.
 inline const std::string kTwoChamberTruth = R"([synthetic]
 parameters = { mass = "5 kg", valve_gain = "4e-6 m/V" }
 repeats = 3

@@ -34,8 +34,7 @@ TEST_CASE("cross-validation: a shift goes to where the others lead", "[calib]") 
   twin.free("valve_gain", 4e-5, 1e-5, 2e-4);
   twin.add("low", datasets::Waveform::square, 2.0, 0.01);
   twin.add("high", datasets::Waveform::square, 2.0, 0.01);
-  twin.offsets["high"] = {Twin::index("valve_gain"), 4.3e-5};  // compared with 4.06e-5 in the other
-                                                               // condition
+  twin.offsets["high"] = {Twin::index("valve_gain"), 4.3e-5};  // instead of 4.06e-5
   FitOptions options;
   options.cross_validate = true;
   const Fit found = fit(twin.campaign, twin.records(250, 500.0, 3), options);

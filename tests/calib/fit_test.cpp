@@ -162,8 +162,7 @@ TEST_CASE("fit: leakage at zero has a one-sided interval", "[calib]") {
 TEST_CASE("fit: where the only start finds no minimum others are tried", "[calib]") {
   Twin twin = small_twin();
   twin.noise_sd_m = 1e-7;
-  twin.campaign.simulation.tolerance = 1e-2;  // errors far above the noise, so that no point is a
-                                              // minimum
+  twin.campaign.simulation.tolerance = 1e-2;  // errors far above the noise: no point is a minimum
   const auto records = twin.records(250, 500.0, 3);
   FitOptions options;
   const Fit alone = fit(twin.campaign, records, options);

@@ -107,8 +107,8 @@ TEST_CASE("validate: without values, those of the campaign hold", "[calib]") {
   const Fit found = validate(twin.campaign, twin.records(400, 500.0, 5), nullptr, {});
   CHECK(found.status == FitStatus::converged);
   CHECK(found.evaluations == 0);
-  CHECK(found.conditions.at(0).channels.at(0).agreement->rho2 < 0.999);  // scored with the start
-                                                                         // value of the valve gain
+  CHECK(found.conditions.at(0).channels.at(0).agreement->rho2 <
+        0.999);  // scored with the start value
 }
 
 TEST_CASE("validate: a leak level that the fit does not have is an error", "[calib]") {
@@ -232,8 +232,7 @@ TEST_CASE("acceptance: by the guard band a limit is kept by more than the uncert
   CHECK(guarded(0.995, 0.004).verdict == Verdict::pass);
   CHECK(guarded(0.995, 0.006).verdict == Verdict::warn);
   CHECK(guarded(0.995, std::nullopt).verdict == Verdict::warn);
-  CHECK(guarded(0.98, 0.1).verdict == Verdict::fail);  // a large uncertainty never improves the
-                                                       // verdict
+  CHECK(guarded(0.98, 0.1).verdict == Verdict::fail);  // a large uncertainty does not help
   CHECK(judged(0.995, 0.006, DecisionRule::simple).verdict == Verdict::pass);
   const ConditionScore near = guarded(0.995, 0.006);
   CHECK(near.checks.at(0).in_guard_band);

@@ -13,7 +13,7 @@ inline constexpr const char* kNoCurves =
     R"({"status": "converged", "schema": "rigcal.residual_tests/1", "of": "rigcal.fit/1",
         "conditions": {}})";
 
-/// A result that is compared, in JSON.
+/// A result in JSON that is compared with others.
 struct ComparedJson {
   std::string name;
   std::filesystem::path file;
@@ -22,7 +22,7 @@ struct ComparedJson {
   operator report::Compared() const { return report::compared_of(result, file, name); }
 };
 
-/// A small result, as in fit.json.
+/// Returns a small result in the format of fit.json.
 inline nlohmann::ordered_json stored_result() {
   return nlohmann::ordered_json::parse(R"({
     "status": "converged", "schema": "rigcal.fit/1", "verdict": "PASS", "message": "converged",

@@ -124,7 +124,7 @@ void add_numbers(const StoredFit& fit, Line& sentence) {
   std::size_t determined = 0;
   const auto found = signed_estimates(fit);
   for (const StoredParameter* p : found) {
-    // A parameter that is only bounded is known by its limit, not by a half width.
+    // A bounded parameter is described by its limit, not by a half-width.
     if (p->identifiability == calib::Identifiability::bounded) continue;
     widest = std::max(widest, relative_half_width(*p));
     ++determined;
@@ -189,7 +189,7 @@ doc::Doubts doubts_of(const StoredFit& fit) {
       for (std::size_t i = 0; i < reasons.size(); ++i) {
         const StoredReason& reason = reasons[i];
         // Two reasons are not doubts: exact values are listed below the table of values, and
-        // "further_starts" only reports that starts were added.
+        // "further_starts" only reports that further starts were evaluated.
         if (reason.state == AspectState::pass || reason.code == "exact_values" ||
             reason.code == "further_starts")
           continue;

@@ -85,7 +85,7 @@ TEST_CASE("hostile files: a pipe, device or folder is no input", "[apps]") {
     check_no_input(folder, {"fit", "twin/campaign.toml", "--resume", "--out", "bad", "--quiet"},
                    "bad", "checkpoint.json");
     for (const std::string kind : {"csv", "mat", "h5", "xlsx"}) {
-      if (damage.name != "a folder") {  // `init` reads these
+      if (damage.name != "a folder") {  // `init` may read a folder
         put_in_place(folder, "no." + kind, damage);
         check_no_input(folder, {"init", "no." + kind, "--out", "i"}, "no." + kind, damage.word);
       }
@@ -124,8 +124,7 @@ TEST_CASE("hostile files: a result that exhausts stack, memory or time is refuse
     for (const Arguments& reader : kReadersOfFit)
       check_no_input(folder, reader, each.place, each.word);
   }
-  fs::resize_file(folder.work() / "bad/fit.json", std::uintmax_t{3} << 30);  // a sparse file that
-                                                                             // takes no disk space
+  fs::resize_file(folder.work() / "bad/fit.json", std::uintmax_t{3} << 30);  // a sparse file
   for (const Arguments& reader : kReadersOfFit)
     check_no_input(folder, reader, "bad/fit.json", "at most 128 MB");
 }

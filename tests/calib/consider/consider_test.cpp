@@ -243,8 +243,7 @@ TEST_CASE("considered: a linkage has effects in radians and of its pilot", "[cal
     if (each.about.key == "joint_friction")  // 0.1 % of lever, area and supply
       CHECK_THAT(each.about.size, WithinRel(1e-3 * 0.3 * 4e-3 * 2e7, 1e-12));
     if (each.about.key == "angle_offset") CHECK_THAT(each.about.size, WithinRel(2e-4 * 2.0, 1e-12));
-    if (each.about.key == "laminar_leakage") {  // 5 % of the flow at pilot_range, divided by the
-                                                // supply pressure
+    if (each.about.key == "laminar_leakage") {  // 5 % of the flow at pilot_range over the supply
       const double flow = 0.65 * 0.02 * 4.8e-10 * 2e6 * std::sqrt(2e7 / 870.0);
       CHECK_THAT(each.about.size, WithinRel(0.05 * flow / 2e7, 1e-9));
     }

@@ -114,8 +114,7 @@ TEST_CASE("refit: unknowns and effect end at the truth of noiseless records", "[
   for (ProblemCondition& condition : problem.conditions) {
     for (ProblemChannel& channel : condition.channels) channel.sd = 1e-5;
   }
-  const std::vector<double> z = problem.start();  // the values are the true ones, but the model
-                                                  // lacks the friction
+  const std::vector<double> z = problem.start();  // the true values, but without friction
   std::vector<Effect> effects = effects_of(problem, z);
   std::erase_if(effects, [](const Effect& each) { return each.about.key != "coulomb_friction"; });
   REQUIRE(effects.size() == 1);

@@ -44,8 +44,7 @@ TEST_CASE("descend: to the minimum of a curved valley", "[calib]") {
 }
 
 TEST_CASE("descend: an unknown at an active bound stays there", "[calib]") {
-  std::vector<double> z{0.2, 0.5};  // at y = 0 the minimum of 100 x^4 + (1 - x)^2 is at x =
-                                    // 0.16126...
+  std::vector<double> z{0.2, 0.5};  // at y = 0, 100 x^4 + (1 - x)^2 has its minimum at x = 0.16126
   CHECK(rigcal::calib::descend(valley(), 2, {false, true}, z).converged);
   CHECK(z[1] == 0.5);
   const double x = 4.0 * z[0] - 2.0;
@@ -81,7 +80,7 @@ TEST_CASE("descend: what is thrown comes out again", "[calib]") {
     return whole(at, jacobian);
   };
   CHECK_THROWS_WITH(descend(options, z), "out of order");
-  CHECK(calls == 4);  // not called again
+  CHECK(calls == 4);  // not called again after the exception
 
   options = valley();
   options.enough = [](const DescentStep&) -> bool { throw std::runtime_error("no more"); };

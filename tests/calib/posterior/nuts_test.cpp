@@ -110,8 +110,7 @@ TEST_CASE("nuts: a normal distribution of correlation 0.99", "[calib]") {
     double acceptance = 0.0;
     for (const Draw& draw : chain) {
       CHECK_FALSE(draw.diverged);
-      CHECK(draw.doublings <= 5);  // the mass has adapted, so the density is not narrow in its
-                                   // coordinates
+      CHECK(draw.doublings <= 5);  // the density is not narrow for the adapted mass
       acceptance += draw.acceptance / kDraws;
     }
     CHECK_THAT(acceptance, WithinAbs(0.85, 0.1));

@@ -158,8 +158,7 @@ TEST_CASE("posterior: the same bits in any number of threads, in pieces, and els
   CHECK_THAT(stopped.message, Contains("sampling of the posterior was stopped on request"));
 
   cancel = false;
-  farm.stop_after = farm.made + 3;  // two tasks complete the first group, and one belongs to the
-                                    // next
+  farm.stop_after = farm.made + 3;  // two complete the first group; one is in the next
   const Fit partly = fit(twin.campaign, records, options);
   CHECK(partly.status == FitStatus::stopped);
   REQUIRE(partly.posterior);
@@ -177,8 +176,7 @@ TEST_CASE("posterior: a limit of evaluations ends it between stretches", "[calib
   const Twin twin = drawn_rig();
   const auto records = twin.records(200, 500.0, 3);
   FitOptions options = few_draws();
-  options.max_evaluations = 4000;  // fewer than the warm-up and one group of draws of four chains
-                                   // need
+  options.max_evaluations = 4000;  // not enough for the warm-up and one group of draws
   const Fit stopped = fit(twin.campaign, records, options);
   REQUIRE(stopped.posterior);
   CHECK(stopped.status == FitStatus::stopped);

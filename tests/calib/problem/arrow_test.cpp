@@ -243,7 +243,8 @@ TEST_CASE("sandwich: own directions tell the same as dense ones", "[calib]") {
     normal(unknowns, unknowns) += jacobians.back().transpose() * jacobians.back();
   }
   const ArrowRoot root = ArrowSvd(system.arrow, 1e-8).root();
-  // The same root over all directions: those of each condition in turn, then the shared ones.
+  // The same root as a dense matrix over all directions: those of each condition in turn, then the
+  // shared ones.
   Index directions = root.shared().cols();
   for (std::size_t i = 0; i < 3; ++i) directions += root.own_directions(i);
   MatrixXd flat = MatrixXd::Zero(n, directions);

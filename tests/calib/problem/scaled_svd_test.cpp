@@ -32,8 +32,7 @@ TEST_CASE("scaled_svd: what a Jacobian does not determine stays where it is", "[
   CHECK(svd.inverse_lengths()(2) == 0.0);
   const Eigen::VectorXd step = svd.step(residual);
   CHECK((residual + jacobian * step).norm() < 1e-12);
-  CHECK(step(0) == Approx(2.0).epsilon(1e-12));  // the shortest step when both columns are scaled
-                                                 // to length 1
+  CHECK(step(0) == Approx(2.0).epsilon(1e-12));  // the shortest step for columns of length 1
   CHECK(step(1) == Approx(1.0).epsilon(1e-12));
   CHECK(step(2) == 0.0);
   CHECK(ScaledSvd(Eigen::MatrixXd::Zero(3, 2), 1e-8).rank() == 0);

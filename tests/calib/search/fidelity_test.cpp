@@ -86,7 +86,7 @@ TEST_CASE("fidelity: each record is simulated as exactly as its own noise asks",
       const ProblemChannel& channel = problem.conditions[i].channels.front();
       return channel.sd / channel.peak_to_peak;
     };
-    // The same noise, but a smaller motion.
+    // The second record has the same noise but a smaller motion.
     REQUIRE(share(1) > 3.0 * share(0));
     CHECK_THAT(problem.tolerance_of(1) / problem.tolerance_of(0),
                WithinRel(share(1) / share(0), 1e-9));

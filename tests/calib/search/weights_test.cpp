@@ -21,8 +21,7 @@ Twin of_two_minds() {
   twin.free("valve_gain", 3e-5, 1e-5, 2e-4);
   twin.add("large", Waveform::square, 2.0, 0.02);
   twin.add("small", Waveform::sine, 3.0, 0.002);
-  twin.offsets["small"] = {Twin::index("valve_gain"), 3.6e-5};  // compared with 4.06e-5 in the
-                                                                // other condition
+  twin.offsets["small"] = {Twin::index("valve_gain"), 3.6e-5};  // instead of 4.06e-5
   return twin;
 }
 

@@ -21,8 +21,7 @@ TEST_CASE("coherent error: size of sensitivity times size of residual", "[calib]
   rows.residual = VectorXd(8);
   rows.residual << 1.0, 1.0, 1.0, -1.0, 1.5, -1.5, 1.5, 1.5;
   const MatrixXd one = MatrixXd::Identity(1, 1);
-  const double both = 0.6 * 2.0 + 0.8 * 3.0;  // the channels come from one simulation, so they add
-                                              // linearly
+  const double both = 0.6 * 2.0 + 0.8 * 3.0;  // channels of one simulation add linearly
   CHECK_THAT(coherent_errors({rows}, {{true, true}}, one)(0), WithinRel(both, 1e-12));
   CHECK_THAT(coherent_errors({rows}, {{false, true}}, one)(0), WithinRel(2.4, 1e-12));
   CHECK(coherent_errors({rows}, {{false, false}}, one)(0) == 0.0);

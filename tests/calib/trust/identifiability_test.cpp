@@ -10,7 +10,7 @@ namespace {
 
 using Catch::WithinRel;
 
-/// A mass of 100 kg, known with this error.
+/// A mass of 100 kg whose standard error a test sets.
 struct Graded {
   Twin twin;
   std::vector<datasets::Record> records;

@@ -32,8 +32,7 @@ TEST_CASE("model choice: two terms that explain little", "[calib]") {
   const double ratio = 4.0 * 995.0 / 996.0;
   CHECK(choice.freedom == 2);
   CHECK_THAT(choice.likelihood_ratio, WithinAbs(ratio, 1e-9));
-  CHECK_THAT(choice.p, WithinAbs(std::exp(-0.5 * ratio), 1e-9));  // chi-square with two degrees of
-                                                                  // freedom
+  CHECK_THAT(choice.p, WithinAbs(std::exp(-0.5 * ratio), 1e-9));  // chi-square, two degrees
   CHECK_FALSE(choice.larger);
   CHECK_THAT(choice.delta_aic, WithinAbs(4.0 - ratio, 1e-9));
   CHECK_THAT(choice.delta_bic, WithinAbs(2.0 * std::log(1000.0) - ratio, 1e-9));

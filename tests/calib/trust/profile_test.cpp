@@ -180,8 +180,7 @@ TEST_CASE("intervals: which of them to use", "[calib]") {
   CHECK(compare_intervals(problem, parameters) == "the bootstrap agrees with `ci95_if_exact`");
   CHECK_THAT(compare_intervals(problem, parameters, {"supply_pressure_pa"}),
              Contains("the bootstrap leaves out the uncertainty of supply_pressure_pa"));
-  drawn.ci95 = {84.99994, 85.00006};  // a ratio of 0.6 is possible by chance with nine degrees of
-                                      // freedom
+  drawn.ci95 = {84.99994, 85.00006};  // a ratio of 0.6 can be chance with nine degrees
   parameters[0].bootstrap = drawn;
   CHECK(compare_intervals(problem, parameters) == "the bootstrap agrees with `ci95_if_exact`");
   drawn.ci95 = {84.99996, 85.00004};

@@ -51,7 +51,7 @@ class Noise {
 
 /// The number of draws is divided by this factor.
 constexpr int kPart = test::kSanitized ? 4 : 1;
-/// Factor by which the resulting fractions then vary more.
+/// Fewer draws widen the limits on coverage by this factor.
 const double kWider = std::sqrt(kPart);
 
 /// Fraction of draws in which the 95 % interval of a direction includes the true value, 0; also for

@@ -71,7 +71,7 @@ TEST_CASE("scaling_exponent: positions stay where all that has one is scaled", "
     if (scaling_exponent(spec) == 0.0) continue;
     if (plant == model::PlantKind::two_chamber && spec.key == "payload_mass") continue;
     CAPTURE(spec.key);
-    // Each of these parameters acts here and matters.
+    // Each scaled parameter acts in this rig and matters for the symmetry.
     CHECK(spec.can_be_fitted);
     CHECK(e.values[spec.key] != 0.0);
     CHECK(change(e, spec.key) > 2e-5);
@@ -117,7 +117,7 @@ TEST_CASE("symmetry: a prior alone tells the scale, as well as it is stated", "[
   // Scaling by a factor of 1.5 changes the residual of the prior by 0.5 / 0.05, divided by ln 1.5.
   CHECK_THAT(found->relative_sd, Catch::WithinRel(0.05 * std::log(1.5) / 0.5, 0.02));
   CHECK_FALSE(found->holds());
-  twin.setting("supply_pressure").prior->sd *= 10.0;  // half of the value
+  twin.setting("supply_pressure").prior->sd *= 10.0;  // now half of the value
   CHECK(scaling_symmetry(problem_of(twin, records), problem.start(), 1.0, 1)->holds());
 }
 

@@ -148,7 +148,7 @@ TEST_CASE("comparison: a difference between two dates contains two days", "[repo
   CHECK_FALSE(same.of_other_dates.has_value());
   CHECK_FALSE(
       difference(on("a", 85.0, nullptr), on("b", 84.0, "2026-03-01")).of_other_dates.has_value());
-  // The page mentions it.
+  // The page mentions the different dates.
   const auto words = [&](const char* date) {
     StoredComparison comparison = comparison_of(
         compared_parameters(compared_all({on("a", 85.0, "2026-03-01"), on("b", 84.0, date)})));

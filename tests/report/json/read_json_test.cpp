@@ -50,7 +50,7 @@ TEST_CASE("read_json: a number beyond the range of a double", "[report]") {
   CHECK_THROWS_WITH(parsed_as("[1,\n 4.57e299]"),
                     Contains("f.json:2:2: the number 4.57e299 is too large"));
   CHECK(parsed_as("[1e149, -1e149]").size() == 2);
-  // These are too large because of their digits, not their exponent.
+  // These numbers are too large because of their digits, not their exponent.
   CHECK_THROWS_AS(parsed_as("[1" + std::string(400, '0') + "]"), InputError);
   CHECK_THROWS_AS(parsed_as("[1" + std::string(400, '0') + "e-1]"), InputError);
   CHECK(parsed_as("[0." + std::string(400, '0') + "1]").at(0) == 0.0);

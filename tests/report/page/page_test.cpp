@@ -424,7 +424,7 @@ TEST_CASE("page: long lists are folded, with their number", "[report]") {
   CHECK_THAT(page(json), Contains("<details open>\n<summary>Warnings (8)</summary>"));
   json["warnings"].push_back("doubtful");
   const std::string html = page(json);
-  CHECK(opened(html, open) == 1);  // the first
+  CHECK(opened(html, open) == 1);  // only the first is open
   CHECK(opened(html, closed) == 8);
   CHECK_THAT(html, Contains("<details>\n<summary>Warnings (9)</summary>"));
   CHECK_THAT(html, Contains("Known values (1)"));

@@ -11,7 +11,7 @@ TEST_CASE("check: tells of every record, and hands it on", "[report][run]") {
   test::MadeRig rig;
   datasets::Campaign campaign = load(rig.choice);
   campaign.conditions[0].repeats.clear();
-  campaign.conditions[1].duration_s = 100.0;  // its records are 4 s long
+  campaign.conditions[1].duration_s = 100.0;  // but its records are 4 s long
   std::vector<std::string> kept;
   const Check found =
       check(campaign, [&](const datasets::Record& record) { kept.push_back(record.condition); });

@@ -59,7 +59,7 @@ TEST_CASE("validation: without an earlier fit the campaign's own values count", 
       validate(fitted.campaign, fitted.records, nullptr, fitted.provenance, fitted.settings);
   const int mass = model::parameter_index(fitted.campaign.rig.plant, "mass");
   for (const calib::FittedParameter& parameter : validated.parameters)
-    if (parameter.index == mass) CHECK(parameter.value == 60.0);  // its start value
+    if (parameter.index == mass) CHECK(parameter.value == 60.0);  // the start value of the mass
 }
 
 }  // namespace

@@ -105,8 +105,7 @@ TEST_CASE("kept tasks: a result belongs to its job by name, state, number of tas
   CHECK(run_kept(file, {"folds", "state", 3, 1, {}}).made == kAll);
   CHECK(run_kept(file, {"profiles", "other", 3, 1, {}}).made == kAll);
   CHECK(run_kept(file, {"profiles", "state", 4, 1, {}}).made.size() == 4);
-  CHECK(run_kept(file, {"profiles", "state", 3, 2, {}}).made.empty());  // the number of lanes has
-                                                                        // no effect
+  CHECK(run_kept(file, {"profiles", "state", 3, 2, {}}).made.empty());  // lanes have no effect
   CHECK(run_kept(file, kJob).made.empty());
   ThreadFarm farm;
   KeptTasks other(farm, file, seeded(8), true);

@@ -35,7 +35,7 @@ TEST_CASE("TimeLeft: starts that are done count whole, resumed ones not at all",
 TEST_CASE("TimeLeft: a start beyond those planned counts too", "[report]") {
   TimeLeft left(1, 1e-8);
   left.note(1, 1e-4);
-  left.note(2, 1e-4);  // one and a half of two
+  left.note(2, 1e-4);  // one and a half of two starts are done
   CHECK_THAT(left.seconds(30.0).value(), WithinRel(10.0, 1e-9));
 }
 
