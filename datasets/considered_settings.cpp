@@ -10,12 +10,15 @@ constexpr std::array kOfParameters{"valve_time_constant",
                                    "valve_offset",
                                    "valve_dead_band",
                                    "coulomb_friction",
+                                   "stribeck_friction",
                                    "laminar_leakage",
+                                   "valve_null_leakage",
                                    "leakage_coefficient",
                                    "transport_delay",
                                    "ki",
                                    "kp",
                                    "kd",
+                                   "sample_time",
                                    "total_volume",
                                    "dead_volume_a",
                                    "dead_volume_b",
@@ -41,7 +44,10 @@ constexpr std::array kOfParameters{"valve_time_constant",
                                    "force_offset",
                                    "acceleration_lag",
                                    "acceleration_gain",
-                                   "acceleration_offset"};
+                                   "acceleration_offset",
+                                   "payload_acceleration_lag",
+                                   "payload_acceleration_gain",
+                                   "payload_acceleration_offset"};
 
 }  // namespace
 
@@ -50,11 +56,16 @@ std::vector<EffectName> effect_names(model::PlantKind plant) {
   for (const char* key : kOfParameters) {
     const int index = model::parameter_index(plant, key);
     if (index < 0) continue;
+    // There it is the same term as a laminar leak.
+    if (plant == model::PlantKind::load_pressure && key == std::string_view("valve_null_leakage"))
+      continue;
     const auto& spec = model::parameter_table(plant)[static_cast<std::size_t>(index)];
     names.push_back({key, std::string(spec.unit)});
   }
   names.push_back({"supply_sag", "1"});
   const bool turns = plant == model::PlantKind::linkage;
+  names.push_back({"valve_hysteresis", "V"});
+  if (turns) names.push_back({"pilot_hysteresis", "Pa"});
   for (const char* effect : {"_bow", "_wave", "_hysteresis"})
     names.push_back({(turns ? "angle" : "position") + std::string(effect), turns ? "rad" : "m"});
   return names;

@@ -19,7 +19,7 @@ struct EffectName {
 
 /// Effects that may be considered with a plant: optional terms by the key of their parameter,
 /// volumes that hoses may enlarge, and what no parameter describes ("supply_sag",
-/// "position_hysteresis").
+/// "position_hysteresis", "valve_hysteresis").
 std::vector<EffectName> effect_names(model::PlantKind plant);
 
 /// [considered]: what the campaign says of the small effects that its model leaves out.

@@ -28,6 +28,11 @@ std::vector<MissingTerm> missing_terms(model::PlantKind plant,
       return spec.unit == "1" ? fmt::format("{:.3g}", value)
                               : fmt::format("\"{:.3g} {}\"", value, spec.unit);
     };
+    if (!spec.can_be_fitted) {
+      terms.push_back({spec.kind == model::ParameterKind::controller,
+                       fmt::format("{} = {}", key, number(size))});
+      continue;
+    }
     // A gain is about its neutral value, all other terms are about none.
     const double start = spec.default_value.value_or(0.0) + size;
     const double reach = kWidestTerm * std::abs(size);

@@ -225,11 +225,11 @@ TEST_CASE("considered: a linkage has effects in radians and of its pilot", "[cal
   std::set<std::string> keys;
   for (const Effect& each : effects) keys.insert(each.about.key);
   // The dead band is given, so that it is none of them; the pressures are not compared.
-  CHECK(keys == std::set<std::string>{"valve_time_constant", "transport_delay", "joint_friction",
-                                      "laminar_leakage", "leakage_coefficient", "dead_volume_a",
-                                      "dead_volume_b", "supply_sag", "angle_lag", "angle_gain",
-                                      "angle_offset", "angle_bow", "angle_wave",
-                                      "angle_hysteresis"});
+  CHECK(keys == std::set<std::string>{
+                    "valve_time_constant", "transport_delay", "joint_friction", "laminar_leakage",
+                    "leakage_coefficient", "valve_null_leakage", "pilot_hysteresis",
+                    "dead_volume_a", "dead_volume_b", "supply_sag", "angle_lag", "angle_gain",
+                    "angle_offset", "angle_bow", "angle_wave", "angle_hysteresis"});
   const Eigen::MatrixXd rows = effect_rows(problem, 0, problem.start(), effects, nullptr);
   REQUIRE(rows.allFinite());
   const auto column = [&](std::string_view key) -> Eigen::VectorXd {
