@@ -25,8 +25,8 @@ struct RigScale {
   double middle_rad = 0.0;     ///< angle midway between the stops
   double pressure_pa = 0.0;    ///< supply
   double sample_s = 0.0;       ///< shortest sampling interval
-  double kp_v_per_m = 0.0;
-  double kd_v_s_per_m = 0.0;
+  double kp = 0.0;             ///< of the loop that the rig has, in its units
+  double kd = 0.0;
   double mass_kg = 0.0;
   double leak_per_coefficient = 0.0;  ///< flow of the orifice leak at supply, per coefficient
 };
@@ -38,7 +38,8 @@ struct EffectSize {
 };
 
 /// One row of the catalogue. To add an effect: a row here and its key in
-/// datasets/considered_settings.cpp.
+/// datasets/considered_settings.cpp. The rows of kp, ki and kd stand for the gains of whichever
+/// loop the rig has.
 struct CatalogueRow {
   const char* key;
   EffectKind kind;
@@ -138,15 +139,15 @@ constexpr std::array kCatalogue{
                  }},
     CatalogueRow{"ki", EffectKind::parameter, true, "integral gain of the controller",
                  [](const RigScale& rig) {
-                   return EffectSize{0.02 * rig.kp_v_per_m, "a reset time of 50 s"};
+                   return EffectSize{0.02 * rig.kp, "a reset time of 50 s"};
                  }},
     CatalogueRow{"kp", EffectKind::parameter, false, "error of the proportional gain",
                  [](const RigScale& rig) {
-                   return EffectSize{2e-3 * rig.kp_v_per_m, "0.2 % of its value"};
+                   return EffectSize{2e-3 * rig.kp, "0.2 % of its value"};
                  }},
     CatalogueRow{"kd", EffectKind::parameter, false, "error of the derivative gain",
                  [](const RigScale& rig) {
-                   return EffectSize{0.01 * rig.kd_v_s_per_m, "1 % of its value"};
+                   return EffectSize{0.01 * rig.kd, "1 % of its value"};
                  }},
     CatalogueRow{"sample_time", EffectKind::sampling, true, "sampling of the controller",
                  [](const RigScale& rig) {
@@ -304,8 +305,9 @@ RigScale scale_of(const Problem& problem, std::span<const double> z) {
                         get("pilot_range") * std::sqrt(rig.pressure_pa / get("density"));
   }
   rig.sample_s = shortest_interval(problem);
-  rig.kp_v_per_m = get("kp");
-  rig.kd_v_s_per_m = get("kd");
+  const model::FeedbackRow& loop = model::gain_keys(problem.campaign->rig.feedback);
+  rig.kp = get(loop.kp);
+  rig.kd = get(loop.kd);
   rig.mass_kg = get("mass");
   rig.leak_per_coefficient =
       get("leakage_area") * std::sqrt(2.0 * rig.pressure_pa / get("density"));
@@ -335,13 +337,22 @@ bool is_volume(std::string_view key) {
   return key == "total_volume" || key.starts_with("dead_volume");
 }
 
-bool is_of_controller(std::string_view key) {
-  return key == "kp" || key == "ki" || key == "kd" || key == "sample_time";
+/// Key of a row in the loop that a rig has: "kp" is "force_kp" of a loop on force.
+std::string_view key_in_loop(std::string_view key, const model::FeedbackRow& loop) {
+  if (key == "kp") return loop.kp;
+  if (key == "ki") return loop.ki;
+  return key == "kd" ? loop.kd : key;
+}
+
+bool is_of_controller(std::string_view key, const model::FeedbackRow& loop) {
+  return key == loop.kp || key == loop.ki || key == loop.kd || key == "sample_time";
 }
 
 /// Whether an effect is an error of a value that the model has: hoses add to a volume, converters
 /// change a gain.
-bool changes_value(std::string_view key) { return is_volume(key) || key == "kp" || key == "kd"; }
+bool changes_value(std::string_view key, const model::FeedbackRow& loop) {
+  return is_volume(key) || key == loop.kp || key == loop.kd;
+}
 
 /// Whether the model has the effect already, or its size is stated elsewhere: a parameter that is
 /// free or given in any condition, a sensor with a certificate.
@@ -352,12 +363,13 @@ bool is_in_model(const Problem& problem, std::string_view key, int index) {
     return true;
   const auto* setting = problem.campaign->setting(index);
   if (setting != nullptr && (setting->fit || setting->prior)) return true;
-  if (is_of_controller(key) &&
+  const model::FeedbackRow& loop = model::gain_keys(problem.campaign->rig.feedback);
+  if (is_of_controller(key, loop) &&
       std::any_of(problem.conditions.begin(), problem.conditions.end(), [](const auto& each) {
         return each.rig.controller == model::ControllerKind::none;
       }))
     return true;
-  if (changes_value(key)) return false;
+  if (changes_value(key, loop)) return false;
   const auto& spec =
       model::parameter_table(problem.campaign->rig.plant)[static_cast<std::size_t>(index)];
   const double neutral = spec.default_value.value_or(0.0);
@@ -381,19 +393,21 @@ std::vector<Effect> possible_effects(const Problem& problem, std::span<const dou
   const RigScale rig = scale_of(problem, z);
   const model::ParameterValues values = problem.values_at(0, z);
   const auto names = datasets::effect_names(plant);
+  const model::FeedbackRow& loop = model::gain_keys(problem.campaign->rig.feedback);
   for (const CatalogueRow& row : kCatalogue) {
-    const auto name = std::find_if(names.begin(), names.end(),
-                                   [&](const auto& each) { return each.key == row.key; });
+    const std::string_view key = key_in_loop(row.key, loop);
+    const auto name =
+        std::find_if(names.begin(), names.end(), [&](const auto& each) { return each.key == key; });
     if (name == names.end()) continue;
-    if (is_of_other_valve(row.key, problem.campaign->rig.pilot)) continue;
+    if (is_of_other_valve(key, problem.campaign->rig.pilot)) continue;
     Effect effect;
     effect.kind = row.kind;
-    effect.curved = is_curved(row.key);
-    const auto channel = sensor_channel(row.key);
+    effect.curved = is_curved(key);
+    const auto channel = sensor_channel(key);
     if (channel && !is_compared(problem, *channel)) continue;
     if (row.kind == EffectKind::parameter || row.kind == EffectKind::sampling) {
-      effect.index = model::parameter_index(plant, row.key);
-      if (is_in_model(problem, row.key, effect.index)) continue;
+      effect.index = model::parameter_index(plant, key);
+      if (is_in_model(problem, key, effect.index)) continue;
     }
     effect.range = row.kind == EffectKind::supply_sag ? rig.flow_m3_per_s : rig.travel_m;
     if (channel == Channel::angle) {
@@ -401,7 +415,7 @@ std::vector<Effect> possible_effects(const Problem& problem, std::span<const dou
       effect.middle = rig.middle_rad;
     }
     EffectSize size = row.size(rig);
-    if (is_volume(row.key)) {
+    if (is_volume(key)) {
       const double area = first_finite(value_of_key(problem, values, "piston_area"),
                                        value_of_key(problem, values, "area_a"));
       size.value *= area;
@@ -413,7 +427,7 @@ std::vector<Effect> possible_effects(const Problem& problem, std::span<const dou
     if (row.kind == EffectKind::supply_sag && has_pump(values))
       continue;  // the pump decides how far its pressure falls
     if (!(effect.range > 0.0) || !std::isfinite(size.value) || !(size.value > 0.0)) continue;
-    effect.about.key = row.key;
+    effect.about.key = key;
     effect.about.meaning = row.meaning;
     effect.about.unit = name->unit;
     effect.about.size = size.value;
@@ -468,6 +482,11 @@ model::SimulationOptions effect_options(const Problem& problem, std::size_t cond
 }  // namespace
 
 std::optional<Channel> sensor_channel(std::string_view key) {
+  // "force_kp" is a gain of a loop, "force_gain" that of a sensor.
+  const std::string_view error = key.substr(std::min(key.rfind('_'), key.size()));
+  if (error != "_lag" && error != "_gain" && error != "_offset" && error != "_bow" &&
+      error != "_wave" && error != "_hysteresis")
+    return std::nullopt;
   for (const Channel channel :
        {Channel::load_pressure, Channel::pressure_a, Channel::pressure_b, Channel::position,
         Channel::angle, Channel::force, Channel::acceleration, Channel::payload_acceleration}) {

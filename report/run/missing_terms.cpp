@@ -6,12 +6,20 @@
 #include <cmath>
 
 #include "model/plant/parameter_values.hpp"
+#include "model/simulate.hpp"
 
 namespace rigcal::report {
 namespace {
 
 /// Bounds of a term about the size that the residuals ask for.
 constexpr double kWidestTerm = 10.0;
+
+/// Whether a key is that of a gain which a loop has anyway.
+bool is_stated_gain(std::string_view key) {
+  return std::any_of(
+      model::kFeedbacks.begin(), model::kFeedbacks.end(),
+      [key](const model::FeedbackRow& loop) { return key == loop.kp || key == loop.kd; });
+}
 
 }  // namespace
 
@@ -23,7 +31,7 @@ std::vector<MissingTerm> missing_terms(model::PlantKind plant,
     if (index < 0) continue;
     const auto& spec = model::parameter_table(plant)[static_cast<std::size_t>(index)];
     // An error of a value that a campaign states anyway is no term.
-    if (!spec.default_value || key == "kp" || key == "kd") continue;
+    if (!spec.default_value || is_stated_gain(key)) continue;
     const auto number = [&](double value) {
       return spec.unit == "1" ? fmt::format("{:.3g}", value)
                               : fmt::format("\"{:.3g} {}\"", value, spec.unit);

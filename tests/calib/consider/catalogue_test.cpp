@@ -141,6 +141,28 @@ TEST_CASE("catalogue: the leak of closed edges is an effect where it is no lamin
   CHECK_FALSE(has(model::PlantKind::two_chamber, "pilot_hysteresis"));
 }
 
+TEST_CASE("catalogue: gains are those of the loop that the rig has", "[calib]") {
+  Twin twin = one_square();
+  twin.setting("kp").value = 0.0;
+  twin.setting("force_kp").value = 1e-3;
+  twin.campaign.rig.feedback = model::Feedback::force;
+  twin.campaign.conditions.front().amplitude = 500.0;
+  twin.truth = twin.campaign;
+  const auto records = twin.records(500, 1000.0, 1);
+  const Problem problem = problem_of(twin, records);
+  std::vector<std::string> gains;
+  for (const Effect& each : effects_of(problem, problem.start())) {
+    const std::string& key = each.about.key;
+    if (key.ends_with("_kp") || key.ends_with("_ki") || key == "kp" || key == "ki")
+      gains.push_back(key);
+    if (key == "force_kp") CHECK_THAT(each.about.size, WithinRel(2e-6, 1e-12));
+  }
+  CHECK(gains == std::vector<std::string>{"force_ki", "force_kp"});
+  CHECK_FALSE(sensor_channel("force_kp"));
+  CHECK(sensor_channel("force_gain") == datasets::Channel::force);
+  CHECK(sensor_channel("payload_acceleration_lag") == datasets::Channel::payload_acceleration);
+}
+
 TEST_CASE("catalogue: a controller's period is an effect only of a loop that has none", "[calib]") {
   Twin twin = one_square();
   const auto keys = [&] {
