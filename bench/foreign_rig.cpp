@@ -17,7 +17,7 @@ using ForeignState = std::array<double, 8>;
 
 /// What changes between steps alone.
 struct Memory {
-  double played = 0.0;  ///< what the spool stands at
+  double played = 0.0;  ///< signal of the spool, behind its play
   double held = 0.0;    ///< command of a sampled controller
 };
 

@@ -37,7 +37,7 @@ struct ForeignRig {
   double oil_drift = 0.0;             ///< relative change of the bulk modulus over a record
   double supply_drift = 0.0;          ///< relative fall of the supply over a record
   double volume_bow = 0.0;            ///< oil under the piston less by this part at either end
-  double reference_lag_s = 0.0;       ///< of what makes the reference
+  double reference_lag_s = 0.0;       ///< a filter ahead of the controller
   double quantum_m = 0.0;             ///< step of the converter, of which the noise is a part
 };
 

@@ -25,7 +25,7 @@ struct RigScale {
   double middle_rad = 0.0;     ///< angle midway between the stops
   double pressure_pa = 0.0;    ///< supply
   double sample_s = 0.0;       ///< shortest sampling interval
-  double kp = 0.0;             ///< of the loop that the rig has, in its units
+  double kp = 0.0;             ///< gain of the loop that the rig has, in its units
   double kd = 0.0;
   double mass_kg = 0.0;
   double leak_per_coefficient = 0.0;  ///< flow of the orifice leak at supply, per coefficient
@@ -38,7 +38,7 @@ struct EffectSize {
 };
 
 /// One row of the catalogue. To add an effect: a row here and its key in
-/// datasets/considered_settings.cpp. The rows of kp, ki and kd stand for the gains of whichever
+/// datasets/considered_settings.cpp. The rows of kp, ki and kd are the gains of whichever
 /// loop the rig has.
 struct CatalogueRow {
   const char* key;
