@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "calib/consider/catalogue.hpp"
 #include "calib/consider/refit.hpp"
@@ -594,7 +595,10 @@ VectorXd variances_by_effect(const VectorXd& moves, const MatrixXd& covariance) 
 /// Budget of one estimate with the error that it would have if the model were exact.
 ///
 /// @param moves  change of the estimate by each effect at its plausible size, SI
-/// @param shift  of the middle of the interval, SI
+/// Where an effect was refitted, the averaged estimate is corrected without a linear model. What
+/// the linear correction differs by from it is a contribution, evenly distributed within that.
+///
+/// @param shift  by the mean sizes of the effects, SI
 Budget95 budget_of(const Uncertainty& found, std::size_t unknown, const FittedParameter& parameter,
                    double slope, const Seen& seen, const VectorXd& moves, const Sizes& sizes,
                    double shift) {
@@ -619,7 +623,13 @@ Budget95 budget_of(const Uncertainty& found, std::size_t unknown, const FittedPa
     const ConsideredEffect& about = seen.effects[static_cast<std::size_t>(k)].about;
     budget.lines.push_back({about.key, "effect", std::sqrt(parts(k)), moves(k) / about.size});
   }
-  const double rest = known + parts.sum();
+  double rest = known + parts.sum();
+  if (parameter.averaged) {
+    const double differ = parameter.averaged->value - (parameter.value + shift);
+    const double evenly = std::abs(differ) / std::numbers::sqrt3;
+    budget.lines.push_back({"nonlinearity", "effect", evenly, 0.0});
+    rest += evenly * evenly;
+  }
   budget.combined = std::sqrt(noise * noise + rest);
   const std::vector<metrics::ErrorPart> variances{
       {noise * noise, parameter.degrees_of_freedom.value_or(metrics::kManyDegrees)}, {rest}};

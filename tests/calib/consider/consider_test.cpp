@@ -1,5 +1,6 @@
 #include "calib/consider/consider.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
@@ -314,6 +315,13 @@ TEST_CASE("considered: the missing effect is refitted, and the estimates with it
       CHECK(std::abs(each.averaged->value - value) < 3.5 * each.averaged->standard_error);
       CHECK(each.ci95->first <= value);
       CHECK(value <= each.ci95->second);
+      const Budget95& budget = each.budget.value();
+      const auto line = std::find_if(budget.lines.begin(), budget.lines.end(),
+                                     [](const auto& one) { return one.source == "nonlinearity"; });
+      REQUIRE(line != budget.lines.end());
+      const double differ = each.averaged->value - each.value - budget.shift;
+      CHECK_THAT(line->uncertainty, WithinRel(std::abs(differ) / std::sqrt(3.0), 1e-9));
+      CHECK(budget.combined >= line->uncertainty);
     }
   }
 }
