@@ -25,6 +25,20 @@ struct ForeignRig {
   double hose_volume_m3 = 0.0, sag = 0.0;  ///< fraction of the supply at the flow of full command
   double sensor_lag_s = 0.0, sensor_gain = 0.0, sensor_offset_m = 0.0;  ///< gain: relative error
   double sensor_bow_m = 0.0, sensor_wave_m = 0.0, sensor_hysteresis_m = 0.0;
+  double valve_play_v = 0.0;  ///< half width: the spool follows where the signal has taken it up
+  double breakaway_n = 0.0;   ///< friction above Coulomb's at rest; fades over 10 mm/s
+  double controller_tick_s = 0.0;  ///< whole steps of 10 us; 0: continuous
+
+  // Effects that the product has no row for.
+  double valve_corner_hz = 0.0;       ///< second order, damping 0.7; 0: none. In place of the lag
+  double pressure_friction_m2 = 0.0;  ///< friction of the seals per load pressure
+  double square_damping = 0.0;        ///< force per square of the speed [N s2/m2]
+  double valve_skew = 0.0;            ///< the valve passes 1 + this out, 1 - this in
+  double oil_drift = 0.0;             ///< relative change of the bulk modulus over a record
+  double supply_drift = 0.0;          ///< relative fall of the supply over a record
+  double volume_bow = 0.0;            ///< oil under the piston less by this part at either end
+  double reference_lag_s = 0.0;       ///< a filter ahead of the controller
+  double quantum_m = 0.0;             ///< step of the converter, of which the noise is a part
 };
 
 /// Readings of the position sensor at a sampling rate of 1 kHz, without noise, from rest.

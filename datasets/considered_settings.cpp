@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "model/simulate.hpp"
+
 namespace rigcal::datasets {
 namespace {
 
@@ -10,12 +12,12 @@ constexpr std::array kOfParameters{"valve_time_constant",
                                    "valve_offset",
                                    "valve_dead_band",
                                    "coulomb_friction",
+                                   "stribeck_friction",
                                    "laminar_leakage",
+                                   "valve_null_leakage",
                                    "leakage_coefficient",
                                    "transport_delay",
-                                   "ki",
-                                   "kp",
-                                   "kd",
+                                   "sample_time",
                                    "total_volume",
                                    "dead_volume_a",
                                    "dead_volume_b",
@@ -41,20 +43,30 @@ constexpr std::array kOfParameters{"valve_time_constant",
                                    "force_offset",
                                    "acceleration_lag",
                                    "acceleration_gain",
-                                   "acceleration_offset"};
+                                   "acceleration_offset",
+                                   "payload_acceleration_lag",
+                                   "payload_acceleration_gain",
+                                   "payload_acceleration_offset"};
 
 }  // namespace
 
 std::vector<EffectName> effect_names(model::PlantKind plant) {
   std::vector<EffectName> names;
-  for (const char* key : kOfParameters) {
+  std::vector<std::string_view> keys(kOfParameters.begin(), kOfParameters.end());
+  for (const model::FeedbackRow& loop : model::kFeedbacks)
+    keys.insert(keys.end(), {loop.kp, loop.ki, loop.kd});
+  for (const std::string_view key : keys) {
     const int index = model::parameter_index(plant, key);
     if (index < 0) continue;
+    // There it is the same term as a laminar leak.
+    if (plant == model::PlantKind::load_pressure && key == "valve_null_leakage") continue;
     const auto& spec = model::parameter_table(plant)[static_cast<std::size_t>(index)];
-    names.push_back({key, std::string(spec.unit)});
+    names.push_back({std::string(key), std::string(spec.unit)});
   }
   names.push_back({"supply_sag", "1"});
   const bool turns = plant == model::PlantKind::linkage;
+  names.push_back({"valve_hysteresis", "V"});
+  if (turns) names.push_back({"pilot_hysteresis", "Pa"});
   for (const char* effect : {"_bow", "_wave", "_hysteresis"})
     names.push_back({(turns ? "angle" : "position") + std::string(effect), turns ? "rad" : "m"});
   return names;

@@ -19,7 +19,7 @@ struct EffectName {
 
 /// Returns the effects that can be considered for a plant: optional terms, by the key of their
 /// parameter; volumes that hoses may enlarge; and effects that no parameter describes
-/// ("supply_sag", "position_hysteresis").
+/// ("supply_sag", "position_hysteresis", "valve_hysteresis").
 std::vector<EffectName> effect_names(model::PlantKind plant);
 
 /// Section [considered]: the small effects that the model leaves out.

@@ -223,7 +223,7 @@ bool too_fast(const SimulationInputs& inputs, std::span<const double> times_s) {
     return signal->max_step() < least_s || (period_s > 0.0 && period_s < kMostEdges * least_s);
   };
   return fast(inputs.drive) || fast(inputs.external_force_n) || fast(inputs.supply_pressure_pa) ||
-         fast(inputs.tank_pressure_pa);
+         fast(inputs.tank_pressure_pa) || fast(inputs.spool_error);
 }
 
 /// @param state  to go on from; null: the rig's initial one

@@ -99,6 +99,8 @@ struct SimulationInputs {
   std::optional<Signal> supply_pressure_pa;  ///< in place of the parameter `supply_pressure`
   std::optional<Signal> tank_pressure_pa{};  ///< in place of the parameter `tank_pressure`
   double drive_begins_s = 0.0;               ///< time of its first sample; see Rig::before
+  /// Added to the signal of the spool [V, or Pa of a pilot]: the play of a valve.
+  std::optional<Signal> spool_error{};
 };
 
 enum class Method {

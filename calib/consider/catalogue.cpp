@@ -25,8 +25,8 @@ struct RigScale {
   double middle_rad = 0.0;     ///< angle midway between the stops
   double pressure_pa = 0.0;    ///< supply
   double sample_s = 0.0;       ///< shortest sampling interval
-  double kp_v_per_m = 0.0;
-  double kd_v_s_per_m = 0.0;
+  double kp = 0.0;             ///< gain of the loop that the rig has, in its units
+  double kd = 0.0;
   double mass_kg = 0.0;
   double leak_per_coefficient = 0.0;  ///< flow of the orifice leak at supply, per coefficient
 };
@@ -38,7 +38,8 @@ struct EffectSize {
 };
 
 /// One row of the catalogue. To add an effect: a row here and its key in
-/// datasets/considered_settings.cpp.
+/// datasets/considered_settings.cpp. The rows of kp, ki and kd are the gains of whichever
+/// loop the rig has.
 struct CatalogueRow {
   const char* key;
   EffectKind kind;
@@ -52,6 +53,11 @@ constexpr double kUsualCommand_v = 10.0;
 /// Lags and delays are of the order of the sampling interval, and within this.
 constexpr double kLeastLag_s = 0.05e-3;
 constexpr double kMostLag_s = 0.5e-3;
+/// Usual periods of controllers.
+constexpr double kShortestPeriod_s = 0.1e-3;
+constexpr double kLongestPeriod_s = 1e-3;
+/// How often the play of a valve is worked out anew from the command that it brings about.
+constexpr int kPlayRounds = 2;
 
 /// An effect moves an output by a ten-thousandth of its peak or more: this resolves a hundredth of
 /// it.
@@ -63,6 +69,17 @@ double lag_of(double intervals, const RigScale& rig) {
 
 EffectSize sensor_lag(const RigScale& rig) {
   return {lag_of(1.0 / std::numbers::pi, rig), "a filter at half the sampling rate"};
+}
+EffectSize valve_play(const RigScale& rig) {
+  return {1e-3 * rig.command_v, "0.1 % of full command"};
+}
+EffectSize dry_friction_size(const RigScale& rig) {
+  return {1e-3 * rig.force_n, "0.1 % of area times supply"};
+}
+EffectSize acceleration_gain(const RigScale&) { return {0.01, "1 % of the reading"}; }
+EffectSize acceleration_offset(const RigScale& rig) {
+  return {1e-3 * rig.force_n / rig.mass_kg,
+          "0.1 % of what area times supply accelerates the mass by"};
 }
 EffectSize pressure_gain(const RigScale&) { return {5e-3, "0.5 % of the reading"}; }
 EffectSize pressure_offset(const RigScale& rig) {
@@ -86,11 +103,17 @@ constexpr std::array kCatalogue{
                  [](const RigScale& rig) {
                    return EffectSize{1e-3 * rig.command_v, "0.1 % of full command"};
                  }},
+    CatalogueRow{"valve_hysteresis", EffectKind::valve_play, true, "hysteresis of the valve",
+                 valve_play},
     CatalogueRow{"coulomb_friction", EffectKind::parameter, true, "friction of the seals",
-                 [](const RigScale& rig) {
-                   return EffectSize{1e-3 * rig.force_n, "0.1 % of area times supply"};
-                 }},
+                 dry_friction_size},
+    CatalogueRow{"stribeck_friction", EffectKind::parameter, true, "breakaway of the seals",
+                 dry_friction_size},
     CatalogueRow{"pilot_dead_band", EffectKind::parameter, true, "overlap of the spool",
+                 [](const RigScale& rig) {
+                   return EffectSize{1e-3 * rig.command_v, "0.1 % of full pilot pressure"};
+                 }},
+    CatalogueRow{"pilot_hysteresis", EffectKind::valve_play, true, "hysteresis of the valve",
                  [](const RigScale& rig) {
                    return EffectSize{1e-3 * rig.command_v, "0.1 % of full pilot pressure"};
                  }},
@@ -103,6 +126,12 @@ constexpr std::array kCatalogue{
                    return EffectSize{0.05 * rig.flow_m3_per_s / rig.pressure_pa,
                                      "5 % of the valve's flow at full command"};
                  }},
+    CatalogueRow{"valve_null_leakage", EffectKind::parameter, true,
+                 "leak of the valve's closed edges",
+                 [](const RigScale& rig) {
+                   return EffectSize{0.02 * rig.flow_m3_per_s / rig.pressure_pa,
+                                     "2 % of the valve's flow at full command"};
+                 }},
     CatalogueRow{"leakage_coefficient", EffectKind::parameter, true, "leak through an orifice",
                  [](const RigScale& rig) {
                    return EffectSize{0.02 * rig.flow_m3_per_s / rig.leak_per_coefficient,
@@ -110,15 +139,20 @@ constexpr std::array kCatalogue{
                  }},
     CatalogueRow{"ki", EffectKind::parameter, true, "integral gain of the controller",
                  [](const RigScale& rig) {
-                   return EffectSize{0.02 * rig.kp_v_per_m, "a reset time of 50 s"};
+                   return EffectSize{0.02 * rig.kp, "a reset time of 50 s"};
                  }},
     CatalogueRow{"kp", EffectKind::parameter, false, "error of the proportional gain",
                  [](const RigScale& rig) {
-                   return EffectSize{2e-3 * rig.kp_v_per_m, "0.2 % of its value"};
+                   return EffectSize{2e-3 * rig.kp, "0.2 % of its value"};
                  }},
     CatalogueRow{"kd", EffectKind::parameter, false, "error of the derivative gain",
                  [](const RigScale& rig) {
-                   return EffectSize{0.01 * rig.kd_v_s_per_m, "1 % of its value"};
+                   return EffectSize{0.01 * rig.kd, "1 % of its value"};
+                 }},
+    CatalogueRow{"sample_time", EffectKind::sampling, true, "sampling of the controller",
+                 [](const RigScale& rig) {
+                   return EffectSize{std::clamp(rig.sample_s, kShortestPeriod_s, kLongestPeriod_s),
+                                     "a controller as fast as the sampling"};
                  }},
     CatalogueRow{"total_volume", EffectKind::parameter, true, "oil of hoses and ports",
                  [](const RigScale& rig) {
@@ -203,14 +237,15 @@ constexpr std::array kCatalogue{
     CatalogueRow{"acceleration_lag", EffectKind::parameter, true, "lag of the accelerometer",
                  sensor_lag},
     CatalogueRow{"acceleration_gain", EffectKind::parameter, false, "gain of the accelerometer",
-                 [](const RigScale&) {
-                   return EffectSize{0.01, "1 % of the reading"};
-                 }},
+                 acceleration_gain},
     CatalogueRow{"acceleration_offset", EffectKind::parameter, false, "offset of the accelerometer",
-                 [](const RigScale& rig) {
-                   return EffectSize{1e-3 * rig.force_n / rig.mass_kg,
-                                     "0.1 % of what area times supply accelerates the mass by"};
-                 }},
+                 acceleration_offset},
+    CatalogueRow{"payload_acceleration_lag", EffectKind::parameter, true,
+                 "lag of the payload's accelerometer", sensor_lag},
+    CatalogueRow{"payload_acceleration_gain", EffectKind::parameter, false,
+                 "gain of the payload's accelerometer", acceleration_gain},
+    CatalogueRow{"payload_acceleration_offset", EffectKind::parameter, false,
+                 "offset of the payload's accelerometer", acceleration_offset},
     CatalogueRow{"force_lag", EffectKind::parameter, true, "lag of the load cell", sensor_lag},
     CatalogueRow{"force_gain", EffectKind::parameter, false, "gain of the load cell",
                  [](const RigScale&) {
@@ -270,8 +305,9 @@ RigScale scale_of(const Problem& problem, std::span<const double> z) {
                         get("pilot_range") * std::sqrt(rig.pressure_pa / get("density"));
   }
   rig.sample_s = shortest_interval(problem);
-  rig.kp_v_per_m = get("kp");
-  rig.kd_v_s_per_m = get("kd");
+  const model::FeedbackRow& loop = model::gain_keys(problem.campaign->rig.feedback);
+  rig.kp = get(loop.kp);
+  rig.kd = get(loop.kd);
   rig.mass_kg = get("mass");
   rig.leak_per_coefficient =
       get("leakage_area") * std::sqrt(2.0 * rig.pressure_pa / get("density"));
@@ -287,25 +323,36 @@ bool is_compared(const Problem& problem, Channel channel) {
 
 bool is_curved(std::string_view key) {
   return key == "coulomb_friction" || key == "joint_friction" || key == "valve_dead_band" ||
-         key == "pilot_dead_band" || key == "position_hysteresis" || key == "angle_hysteresis";
+         key == "pilot_dead_band" || key == "stribeck_friction" || key.ends_with("_hysteresis");
 }
 
 /// Whether a key belongs to the kind of valve that the rig lacks: driven by a voltage, or by a
 /// pilot.
 bool is_of_other_valve(std::string_view key, bool pilot) {
-  if (key == "pilot_dead_band") return !pilot;
-  return pilot && (key == "valve_dead_band" || key == "valve_offset");
+  if (key.starts_with("pilot_")) return !pilot;
+  return pilot && (key == "valve_dead_band" || key == "valve_offset" || key == "valve_hysteresis");
 }
 
 bool is_volume(std::string_view key) {
   return key == "total_volume" || key.starts_with("dead_volume");
 }
 
-bool is_of_controller(std::string_view key) { return key == "kp" || key == "ki" || key == "kd"; }
+/// Key of a row in the loop that a rig has: "kp" is "force_kp" of a loop on force.
+std::string_view key_in_loop(std::string_view key, const model::FeedbackRow& loop) {
+  if (key == "kp") return loop.kp;
+  if (key == "ki") return loop.ki;
+  return key == "kd" ? loop.kd : key;
+}
+
+bool is_of_controller(std::string_view key, const model::FeedbackRow& loop) {
+  return key == loop.kp || key == loop.ki || key == loop.kd || key == "sample_time";
+}
 
 /// Whether an effect is an error of a value that the model has: hoses add to a volume, converters
 /// change a gain.
-bool changes_value(std::string_view key) { return is_volume(key) || key == "kp" || key == "kd"; }
+bool changes_value(std::string_view key, const model::FeedbackRow& loop) {
+  return is_volume(key) || key == loop.kp || key == loop.kd;
+}
 
 /// Whether the model has the effect already, or its size is stated elsewhere: a parameter that is
 /// free or given in any condition, a sensor with a certificate.
@@ -316,12 +363,13 @@ bool is_in_model(const Problem& problem, std::string_view key, int index) {
     return true;
   const auto* setting = problem.campaign->setting(index);
   if (setting != nullptr && (setting->fit || setting->prior)) return true;
-  if (is_of_controller(key) &&
+  const model::FeedbackRow& loop = model::gain_keys(problem.campaign->rig.feedback);
+  if (is_of_controller(key, loop) &&
       std::any_of(problem.conditions.begin(), problem.conditions.end(), [](const auto& each) {
         return each.rig.controller == model::ControllerKind::none;
       }))
     return true;
-  if (changes_value(key)) return false;
+  if (changes_value(key, loop)) return false;
   const auto& spec =
       model::parameter_table(problem.campaign->rig.plant)[static_cast<std::size_t>(index)];
   const double neutral = spec.default_value.value_or(0.0);
@@ -345,19 +393,21 @@ std::vector<Effect> possible_effects(const Problem& problem, std::span<const dou
   const RigScale rig = scale_of(problem, z);
   const model::ParameterValues values = problem.values_at(0, z);
   const auto names = datasets::effect_names(plant);
+  const model::FeedbackRow& loop = model::gain_keys(problem.campaign->rig.feedback);
   for (const CatalogueRow& row : kCatalogue) {
-    const auto name = std::find_if(names.begin(), names.end(),
-                                   [&](const auto& each) { return each.key == row.key; });
+    const std::string_view key = key_in_loop(row.key, loop);
+    const auto name =
+        std::find_if(names.begin(), names.end(), [&](const auto& each) { return each.key == key; });
     if (name == names.end()) continue;
-    if (is_of_other_valve(row.key, problem.campaign->rig.pilot)) continue;
+    if (is_of_other_valve(key, problem.campaign->rig.pilot)) continue;
     Effect effect;
     effect.kind = row.kind;
-    effect.curved = is_curved(row.key);
-    const auto channel = sensor_channel(row.key);
+    effect.curved = is_curved(key);
+    const auto channel = sensor_channel(key);
     if (channel && !is_compared(problem, *channel)) continue;
-    if (row.kind == EffectKind::parameter) {
-      effect.index = model::parameter_index(plant, row.key);
-      if (is_in_model(problem, row.key, effect.index)) continue;
+    if (row.kind == EffectKind::parameter || row.kind == EffectKind::sampling) {
+      effect.index = model::parameter_index(plant, key);
+      if (is_in_model(problem, key, effect.index)) continue;
     }
     effect.range = row.kind == EffectKind::supply_sag ? rig.flow_m3_per_s : rig.travel_m;
     if (channel == Channel::angle) {
@@ -365,7 +415,7 @@ std::vector<Effect> possible_effects(const Problem& problem, std::span<const dou
       effect.middle = rig.middle_rad;
     }
     EffectSize size = row.size(rig);
-    if (is_volume(row.key)) {
+    if (is_volume(key)) {
       const double area = first_finite(value_of_key(problem, values, "piston_area"),
                                        value_of_key(problem, values, "area_a"));
       size.value *= area;
@@ -377,7 +427,7 @@ std::vector<Effect> possible_effects(const Problem& problem, std::span<const dou
     if (row.kind == EffectKind::supply_sag && has_pump(values))
       continue;  // the pump decides how far its pressure falls
     if (!(effect.range > 0.0) || !std::isfinite(size.value) || !(size.value > 0.0)) continue;
-    effect.about.key = row.key;
+    effect.about.key = key;
     effect.about.meaning = row.meaning;
     effect.about.unit = name->unit;
     effect.about.size = size.value;
@@ -400,19 +450,24 @@ model::Signal sagging_supply(const Effect& effect, const model::ParameterValues&
   return model::Signal::linear({time_s.begin(), time_s.end()}, std::move(supply));
 }
 
-/// Outputs of a condition, the servo flow last.
-std::vector<Output> outputs_and_flow(const ProblemCondition& condition) {
-  std::vector<Output> outputs = condition.outputs;
-  outputs.push_back(Output::servo_flow);
-  return outputs;
+/// What the valve is driven by.
+Output valve_drive(const model::ParameterValues& values) {
+  return model::has_output(values, Output::command) ? Output::command : Output::pilot_pressure;
 }
 
-/// Reading of a sensor with play: it follows the quantity where that has taken up the play.
+/// Position behind a play, of a sensor or a spool: it follows where that has been taken up.
 Eigen::VectorXd with_play(const Eigen::VectorXd& x, double half_width) {
   Eigen::VectorXd y = x;
   for (Eigen::Index i = 1; i < x.size(); ++i)
     y(i) = std::clamp(y(i - 1), x(i) - half_width, x(i) + half_width);
   return y;
+}
+
+/// What the spool is off by if it follows its signal with a play.
+model::Signal spool_error(std::span<const double> time_s, const Eigen::VectorXd& signal,
+                          double half_width) {
+  const Eigen::VectorXd error = with_play(signal, half_width) - signal;
+  return model::Signal::linear({time_s.begin(), time_s.end()}, {error.begin(), error.end()});
 }
 
 /// Options of the simulations of effects.
@@ -427,9 +482,14 @@ model::SimulationOptions effect_options(const Problem& problem, std::size_t cond
 }  // namespace
 
 std::optional<Channel> sensor_channel(std::string_view key) {
+  // "force_kp" is a gain of a loop, "force_gain" that of a sensor.
+  const std::string_view error = key.substr(std::min(key.rfind('_'), key.size()));
+  if (error != "_lag" && error != "_gain" && error != "_offset" && error != "_bow" &&
+      error != "_wave" && error != "_hysteresis")
+    return std::nullopt;
   for (const Channel channel :
        {Channel::load_pressure, Channel::pressure_a, Channel::pressure_b, Channel::position,
-        Channel::angle, Channel::force, Channel::acceleration}) {
+        Channel::angle, Channel::force, Channel::acceleration, Channel::payload_acceleration}) {
     const std::string_view name = datasets::info(channel).key;
     if (key.starts_with(name) && key.substr(name.size()).starts_with('_')) return channel;
   }
@@ -476,29 +536,63 @@ OutputsWith outputs_with(const Problem& problem, std::size_t condition, std::spa
   const std::vector<int> free =
       derivatives == Derivatives::of_unknowns ? data.free : std::vector<int>();
   model::ParameterValues values = problem.values_at(condition, z);
-  model::SimulationInputs inputs = data.inputs;
-  const auto run = [&](const std::vector<int>& rows) {
-    return model::simulate(data.rig, values, rows, inputs, data.fit_times(), outputs_and_flow(data),
-                           options);
-  };
   const auto size_of = [&](std::size_t e) {
     return effects[e].about.size * sizes(static_cast<Eigen::Index>(e));
   };
-  bool sags = false;
+  double sag = 0.0;
+  const Effect* line = nullptr;
+  double play = 0.0;
+  std::size_t sampling = effects.size();
   for (std::size_t e = 0; e < effects.size(); ++e) {
+    if (size_of(e) == 0.0) continue;
     const int index = effects[e].index;
-    if (effects[e].kind == EffectKind::parameter && size_of(e) != 0.0)
+    if (effects[e].kind == EffectKind::parameter) {
       values.set(index, values.value[static_cast<std::size_t>(index)] + size_of(e));
-    sags = sags || (effects[e].kind == EffectKind::supply_sag && size_of(e) != 0.0);
+    } else if (effects[e].kind == EffectKind::supply_sag) {
+      sag = size_of(e);
+      line = &effects[e];
+    } else if (effects[e].kind == EffectKind::valve_play) {
+      play = size_of(e);
+    } else if (effects[e].kind == EffectKind::sampling) {
+      sampling = e;
+    }
   }
-  model::Simulation simulation = run(sags ? std::vector<int>() : free);
-  for (std::size_t e = 0; e < effects.size() && simulation.ok(); ++e) {
-    if (effects[e].kind != EffectKind::supply_sag || size_of(e) == 0.0) continue;
-    inputs.supply_pressure_pa = sagging_supply(effects[e], values, data.fit_times(),
-                                               simulation.outputs.col(channels), size_of(e));
-    simulation = run(free);
-  }
+  const auto run = [&](const model::ParameterValues& at, const std::vector<int>& rows) {
+    std::vector<Output> outputs = data.outputs;
+    const auto simulated = [&](const model::SimulationInputs& inputs,
+                               const std::vector<int>& columns) {
+      return model::simulate(data.rig, at, columns, inputs, data.fit_times(), outputs, options);
+    };
+    if (line == nullptr && play == 0.0) return simulated(data.inputs, rows);
+    outputs.insert(outputs.end(), {Output::servo_flow, valve_drive(at)});
+    model::SimulationInputs inputs = data.inputs;
+    model::Simulation simulation = simulated(inputs, {});
+    const int rounds = play != 0.0 ? kPlayRounds : 1;
+    for (int round = 1; round <= rounds && simulation.ok(); ++round) {
+      if (line != nullptr && round == 1) {
+        inputs.supply_pressure_pa =
+            sagging_supply(*line, at, data.fit_times(), simulation.outputs.col(channels), sag);
+      }
+      if (play != 0.0) {
+        inputs.spool_error =
+            spool_error(data.fit_times(), simulation.outputs.col(channels + 1), play);
+      }
+      simulation = simulated(inputs, round == rounds ? rows : std::vector<int>());
+    }
+    return simulation;
+  };
+  model::Simulation simulation = run(values, free);
   if (!simulation.ok()) return {};
+  // Edges between the ticks of another period are seen later by a part of it: no smooth function
+  // of the period, whose effect is therefore taken in proportion to that of the plausible one.
+  if (sampling < effects.size()) {
+    model::ParameterValues ticking = values;
+    ticking.set(effects[sampling].index, effects[sampling].about.size);
+    const model::Simulation sampled = run(ticking, {});
+    if (!sampled.ok()) return {};
+    simulation.outputs +=
+        sizes(static_cast<Eigen::Index>(sampling)) * (sampled.outputs - simulation.outputs).eval();
+  }
   OutputsWith result;
   result.outputs.resize(samples * channels);
   result.jacobian.resize(samples * channels, static_cast<Eigen::Index>(free.size()));
@@ -545,13 +639,17 @@ std::vector<Eigen::MatrixXd> effect_changes(const Problem& problem, std::size_t 
   };
   const model::Simulation base = run_with(values, data.inputs, outputs);
   if (!base.ok()) return result;
-  // By itself: a flow makes a simulation take more steps, and its samples longer to read.
+  // By themselves: a flow makes a simulation take more steps, and its samples longer to read.
   Eigen::VectorXd flow;
-  if (std::any_of(effects.begin(), effects.end(),
-                  [](const Effect& each) { return each.kind == EffectKind::supply_sag; })) {
-    const model::Simulation run = run_with(values, data.inputs, {Output::servo_flow});
+  Eigen::VectorXd drive;
+  if (std::any_of(effects.begin(), effects.end(), [](const Effect& each) {
+        return each.kind == EffectKind::supply_sag || each.kind == EffectKind::valve_play;
+      })) {
+    const model::Simulation run =
+        run_with(values, data.inputs, {Output::servo_flow, valve_drive(values)});
     if (!run.ok()) return result;
     flow = run.outputs.col(0);
+    drive = run.outputs.col(1);
   }
   for (std::size_t e = 0; e < effects.size(); ++e) {
     const Effect& effect = effects[e];
@@ -565,14 +663,25 @@ std::vector<Eigen::MatrixXd> effect_changes(const Problem& problem, std::size_t 
     } else {
       model::ParameterValues changed = values;
       model::SimulationInputs inputs = data.inputs;
-      if (effect.kind == EffectKind::parameter) {
-        changed.set(effect.index, values.value[static_cast<std::size_t>(effect.index)] + size);
+      model::Simulation run;
+      if (effect.kind == EffectKind::valve_play) {
+        std::vector<Output> and_drive = outputs;
+        and_drive.push_back(valve_drive(values));
+        Eigen::VectorXd driven = drive;
+        for (int round = 0; round < kPlayRounds && run.ok(); ++round) {
+          inputs.spool_error = spool_error(times_s, driven, size);
+          run = run_with(changed, inputs, and_drive);
+          if (run.ok()) driven = run.outputs.col(kept);
+        }
       } else {
-        inputs.supply_pressure_pa = sagging_supply(effect, values, times_s, flow, size);
+        if (effect.kind == EffectKind::supply_sag)
+          inputs.supply_pressure_pa = sagging_supply(effect, values, times_s, flow, size);
+        else
+          changed.set(effect.index, values.value[static_cast<std::size_t>(effect.index)] + size);
+        run = run_with(changed, inputs, outputs);
       }
-      const model::Simulation run = run_with(changed, inputs, outputs);
       if (!run.ok()) continue;
-      change = run.outputs - base.outputs;
+      change = run.outputs.leftCols(kept) - base.outputs;
     }
     for (Eigen::Index k = 0; k < kept; ++k)
       result[static_cast<std::size_t>(k)].col(static_cast<Eigen::Index>(e)) =

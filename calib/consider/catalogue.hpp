@@ -16,7 +16,9 @@ namespace rigcal::calib {
 /// How an effect enters a simulation.
 enum class EffectKind {
   parameter,   ///< it is added to a parameter: an optional term, a volume
+  sampling,    ///< the controller works at ticks; its parameter is the period between them
   supply_sag,  ///< the supply falls with the flow that it feeds
+  valve_play,  ///< the spool follows where the signal has taken up the play
   bow,         ///< nonlinearity of the sensor of the motion, in the square of the reading
   wave,        ///< the same, one wave over the range
   hysteresis,  ///< play of the sensor of the motion
@@ -39,7 +41,7 @@ struct Effect {
 
   /// Whether it changes the reading of the sensor of the motion, not the motion itself.
   bool is_of_sensor() const {
-    return kind != EffectKind::parameter && kind != EffectKind::supply_sag;
+    return kind == EffectKind::bow || kind == EffectKind::wave || kind == EffectKind::hysteresis;
   }
 };
 
@@ -87,7 +89,8 @@ struct OutputsWith {
 enum class Derivatives { none, of_unknowns };
 
 /// Weighted outputs of one condition with all effects at once. Derivatives take the errors of the
-/// position sensor and the supply's fall as given.
+/// position sensor, the supply's fall and the play of the valve as given, the controller as
+/// continuous.
 ///
 /// @param sizes  of the effects over their plausible sizes
 OutputsWith outputs_with(const Problem& problem, std::size_t condition, std::span<const double> z,

@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "calib/consider/catalogue.hpp"
 #include "calib/consider/refit.hpp"
@@ -42,8 +43,10 @@ constexpr int kMostSecants = 2;
 /// More terms than this at once are a guess.
 constexpr std::size_t kMostMissing = 3;
 /// How many effects are refitted alone, and what part of the best explanation is worth it.
-constexpr std::size_t kMostCandidates = 6;
+constexpr std::size_t kMostCandidates = 8;
 constexpr double kWorthRefitting = 0.2;
+/// By how many times a score test may mistake the size of an effect.
+constexpr double kMistakenSize = 3.0;
 /// Size at which the refit of a further effect begins, as a multiple of its plausible size.
 constexpr double kFirstSize = 0.3;
 
@@ -455,9 +458,17 @@ std::vector<RefittedFit> refit_best(const Problem& problem, std::span<const doub
   };
   auto plain = refit({}, {z.begin(), z.end()}, VectorXd::Zero(0));
   if (!plain) return models;
+  const double scale = score_inflation(seen, scores, missing.front());
+  // Each by itself, not all together: that some effect is there is decided, and where the linear
+  // model is far off the test of the right one may be no clear one. What only a size beyond all
+  // plausible ones would explain, as a hose in place of the oil, would be named by nobody.
+  const auto plausible = [&](std::size_t e) {
+    const double size = about[e].alone.value_or(0.0) / about[e].size / kMistakenSize;
+    return size * size < about[missing.front()].explains / scale;
+  };
   std::vector<std::size_t> candidates;
   for (std::size_t e = 0; e < about.size(); ++e) {
-    if (e == missing.front() || about[e].p_of_all.value_or(1.0) < kMissingLevel)
+    if (e == missing.front() || (about[e].p_value.value_or(1.0) < kMissingLevel && plausible(e)))
       candidates.push_back(e);
   }
   const auto explains_more = [&](std::size_t a, std::size_t b) {
@@ -480,7 +491,6 @@ std::vector<RefittedFit> refit_best(const Problem& problem, std::span<const doub
     if (each && each->sizes(0) != 0.0) models.push_back({{e}, std::move(*each)});
   }
   if (models.empty()) return models;
-  const double scale = score_inflation(seen, scores, missing.front());
   const auto leaves_less = [&](const RefittedFit& a, const RefittedFit& b) {
     return a.misfit(scale) < b.misfit(scale);
   };
@@ -585,7 +595,10 @@ VectorXd variances_by_effect(const VectorXd& moves, const MatrixXd& covariance) 
 /// Budget of one estimate with the error that it would have if the model were exact.
 ///
 /// @param moves  change of the estimate by each effect at its plausible size, SI
-/// @param shift  of the middle of the interval, SI
+/// Where an effect was refitted, the averaged estimate is corrected without a linear model. What
+/// the linear correction differs by from it is a contribution, evenly distributed within that.
+///
+/// @param shift  by the mean sizes of the effects, SI
 Budget95 budget_of(const Uncertainty& found, std::size_t unknown, const FittedParameter& parameter,
                    double slope, const Seen& seen, const VectorXd& moves, const Sizes& sizes,
                    double shift) {
@@ -610,7 +623,13 @@ Budget95 budget_of(const Uncertainty& found, std::size_t unknown, const FittedPa
     const ConsideredEffect& about = seen.effects[static_cast<std::size_t>(k)].about;
     budget.lines.push_back({about.key, "effect", std::sqrt(parts(k)), moves(k) / about.size});
   }
-  const double rest = known + parts.sum();
+  double rest = known + parts.sum();
+  if (parameter.averaged) {
+    const double differ = parameter.averaged->value - (parameter.value + shift);
+    const double evenly = std::abs(differ) / std::numbers::sqrt3;
+    budget.lines.push_back({"nonlinearity", "effect", evenly, 0.0});
+    rest += evenly * evenly;
+  }
   budget.combined = std::sqrt(noise * noise + rest);
   const std::vector<metrics::ErrorPart> variances{
       {noise * noise, parameter.degrees_of_freedom.value_or(metrics::kManyDegrees)}, {rest}};

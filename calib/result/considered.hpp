@@ -33,7 +33,8 @@ struct ConsideredEffect {
 
 /// One contribution to the uncertainty of an estimate.
 struct BudgetLine {
-  std::string source;        ///< "noise", "repeats", or the key of a known value or an effect
+  /// "noise", "repeats", the key of a known value or an effect, or "nonlinearity" of the effects.
+  std::string source;
   std::string kind;          ///< "records", "known_value" or "effect"
   double uncertainty = 0.0;  ///< standard uncertainty that it contributes, SI
   /// Change of the estimate per unit of an effect's size, SI; 0 elsewhere.

@@ -266,7 +266,8 @@ ConsideredSettings read_considered(const TomlNode& node, const Campaign& campaig
     }
     const double size = entry.difference(name->unit);
     if (!(size > 0.0)) entry.fail("is not above zero: expected a plausible size, or false");
-    const double most = index < 0 ? (name->unit == "1" ? 1.0 : 1e3) : spec_of(plant, index).upper;
+    const double of_no_parameter = name->unit == "1" ? 1.0 : name->unit == "Pa" ? 1e9 : 1e3;
+    const double most = index < 0 ? of_no_parameter : spec_of(plant, index).upper;
     if (!(size <= most))
       entry.fail(
           fmt::format("is larger than {:g} {}, which such a term may be at most: expected "

@@ -28,12 +28,14 @@ class System {
   /// @param free  table indices of the P (or fewer) parameters of the sensitivity columns
   System(const Layout& layout, const ParameterValues& values, std::span<const int> free,
          InputTrack drive, std::optional<InputTrack> external_force,
-         std::optional<InputTrack> supply_pressure, std::optional<InputTrack> tank_pressure)
+         std::optional<InputTrack> supply_pressure, std::optional<InputTrack> tank_pressure,
+         std::optional<InputTrack> spool_error = std::nullopt)
       : layout_(layout),
         drive_(std::move(drive)),
         external_force_(std::move(external_force)),
         supply_pressure_(std::move(supply_pressure)),
-        tank_pressure_(std::move(tank_pressure)) {
+        tank_pressure_(std::move(tank_pressure)),
+        spool_error_(std::move(spool_error)) {
     passive_ = coefficients<double>(values, free);
     if constexpr (P > 0) {
       active_ = coefficients<C>(values, free);
@@ -56,6 +58,7 @@ class System {
   std::optional<InputTrack>& external_force() { return external_force_; }
   std::optional<InputTrack>& supply_pressure() { return supply_pressure_; }
   std::optional<InputTrack>& tank_pressure() { return tank_pressure_; }
+  std::optional<InputTrack>& spool_error() { return spool_error_; }
   /// Sensitivity column of the transport delay among the P directions, or -1.
   int delay_direction() const { return delay_direction_; }
 
@@ -472,6 +475,8 @@ class System {
     if constexpr (N > Plant::kStates) {
       if (layout_.valve_order > 0) in.spool_command_v = x[static_cast<std::size_t>(layout_.valve)];
     }
+    if (spool_error_)
+      in.spool_command_v = in.spool_command_v + input_value(by, *spool_error_, t, false);
     if (layout_.terms.external_force) {
       in.external_force_n = Number<K>(p.external_force_n);
       if (external_force_)
@@ -598,6 +603,7 @@ class System {
   std::optional<InputTrack> external_force_;
   std::optional<InputTrack> supply_pressure_;
   std::optional<InputTrack> tank_pressure_;
+  std::optional<InputTrack> spool_error_;
   int delay_direction_ = -1;
   C while_it_waits_{0.0};  ///< value of the drive before its first sample
 };

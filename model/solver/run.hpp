@@ -103,6 +103,7 @@ class Run {
     if (system_.external_force()) f(*system_.external_force());
     if (system_.supply_pressure()) f(*system_.supply_pressure());
     if (system_.tank_pressure()) f(*system_.tank_pressure());
+    if (system_.spool_error()) f(*system_.spool_error());
   }
 
   double sample_time(std::size_t sample) const { return times_s_[sample] - times_s_.front(); }

@@ -6,12 +6,20 @@
 #include <cmath>
 
 #include "model/plant/parameter_values.hpp"
+#include "model/simulate.hpp"
 
 namespace rigcal::report {
 namespace {
 
 /// Half-width of the bounds, as a multiple of the size that the residuals suggest.
 constexpr double kWidestTerm = 10.0;
+
+/// Whether a key is that of a gain which a loop has anyway.
+bool is_stated_gain(std::string_view key) {
+  return std::any_of(
+      model::kFeedbacks.begin(), model::kFeedbacks.end(),
+      [key](const model::FeedbackRow& loop) { return key == loop.kp || key == loop.kd; });
+}
 
 }  // namespace
 
@@ -23,11 +31,16 @@ std::vector<MissingTerm> missing_terms(model::PlantKind plant,
     if (index < 0) continue;
     const auto& spec = model::parameter_table(plant)[static_cast<std::size_t>(index)];
     // A wrong value of a parameter that every campaign specifies is not a missing term.
-    if (!spec.default_value || key == "kp" || key == "kd") continue;
+    if (!spec.default_value || is_stated_gain(key)) continue;
     const auto number = [&](double value) {
       return spec.unit == "1" ? fmt::format("{:.3g}", value)
                               : fmt::format("\"{:.3g} {}\"", value, spec.unit);
     };
+    if (!spec.can_be_fitted) {
+      terms.push_back({spec.kind == model::ParameterKind::controller,
+                       fmt::format("{} = {}", key, number(size))});
+      continue;
+    }
     // The neutral value is the default of a gain, and zero for all other terms.
     const double start = spec.default_value.value_or(0.0) + size;
     const double reach = kWidestTerm * std::abs(size);

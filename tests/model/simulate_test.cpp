@@ -319,6 +319,29 @@ TEST_CASE("simulate: a recorded force and supply act as the parameters do", "[mo
   CHECK(difference(ok(by_parameter).outputs, ok(by_signal).outputs) < 1e-12);
 }
 
+TEST_CASE("simulate: an error of the spool acts as a null shift, and as a command that varies",
+          "[model]") {
+  Experiment by_parameter = paper(Signal::sine(0.02, 2.0));
+  by_parameter.set("valve_offset", 0.2);
+  Experiment by_signal = paper(Signal::sine(0.02, 2.0));
+  by_signal.inputs.spool_error = Signal::constant(0.2);
+  CHECK(difference(ok(by_parameter).outputs, ok(by_signal).outputs) < 1e-5);
+  const std::vector<double> times{0.0, 0.3, 1.0};
+  Experiment by_command = open_loop(Signal::linear(times, {0.0, 1.5, -0.5}));
+  Experiment by_error = open_loop(Signal::linear(times, {0.0, 1.0, -1.0}));
+  by_error.inputs.spool_error = Signal::linear(times, {0.0, 0.5, 0.5});
+  for (Experiment* each : {&by_command, &by_error}) {
+    each->set("valve_time_constant", 1e-4);
+    each->free = {parameter_index(PlantKind::load_pressure, "mass")};
+    each->options.tolerance = 1e-8;
+  }
+  const Simulation command = ok(by_command);
+  const Simulation error = ok(by_error);
+  // The error acts behind the valve's lag, which hardly matters here.
+  CHECK(difference(command.outputs, error.outputs) < 1e-3);
+  CHECK(difference(command.sensitivities[0], error.sensitivities[0]) < 1e-2);
+}
+
 TEST_CASE("simulate: sensor offsets shift their output and nothing else", "[model]") {
   Experiment e = paper(Signal::sine(0.02, 2.0));
   e.outputs = {Output::position,   Output::load_pressure, Output::pressure_a,

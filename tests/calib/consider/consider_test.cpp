@@ -1,5 +1,6 @@
 #include "calib/consider/consider.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
@@ -225,11 +226,11 @@ TEST_CASE("considered: a linkage has effects in radians and of its pilot", "[cal
   std::set<std::string> keys;
   for (const Effect& each : effects) keys.insert(each.about.key);
   // The dead band is known, so it is not among the effects. The pressures are not compared.
-  CHECK(keys == std::set<std::string>{"valve_time_constant", "transport_delay", "joint_friction",
-                                      "laminar_leakage", "leakage_coefficient", "dead_volume_a",
-                                      "dead_volume_b", "supply_sag", "angle_lag", "angle_gain",
-                                      "angle_offset", "angle_bow", "angle_wave",
-                                      "angle_hysteresis"});
+  CHECK(keys == std::set<std::string>{
+                    "valve_time_constant", "transport_delay", "joint_friction", "laminar_leakage",
+                    "leakage_coefficient", "valve_null_leakage", "pilot_hysteresis",
+                    "dead_volume_a", "dead_volume_b", "supply_sag", "angle_lag", "angle_gain",
+                    "angle_offset", "angle_bow", "angle_wave", "angle_hysteresis"});
   const Eigen::MatrixXd rows = effect_rows(problem, 0, problem.start(), effects, nullptr);
   REQUIRE(rows.allFinite());
   const auto column = [&](std::string_view key) -> Eigen::VectorXd {
@@ -314,6 +315,13 @@ TEST_CASE("considered: the missing effect is refitted, and the estimates with it
       CHECK(std::abs(each.averaged->value - value) < 3.5 * each.averaged->standard_error);
       CHECK(each.ci95->first <= value);
       CHECK(value <= each.ci95->second);
+      const Budget95& budget = each.budget.value();
+      const auto line = std::find_if(budget.lines.begin(), budget.lines.end(),
+                                     [](const auto& one) { return one.source == "nonlinearity"; });
+      REQUIRE(line != budget.lines.end());
+      const double differ = each.averaged->value - each.value - budget.shift;
+      CHECK_THAT(line->uncertainty, WithinRel(std::abs(differ) / std::sqrt(3.0), 1e-9));
+      CHECK(budget.combined >= line->uncertainty);
     }
   }
 }

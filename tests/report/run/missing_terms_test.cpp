@@ -10,9 +10,10 @@ TEST_CASE("missing_terms: a line for each term that a campaign may estimate", "[
                                                                      {"position_gain", -0.004},
                                                                      {"ki", 5.0},
                                                                      {"kp", 0.3},
+                                                                     {"sample_time", 1e-3},
                                                                      {"total_volume", 1e-6},
                                                                      {"position_wave", 1e-4}});
-  REQUIRE(terms.size() == 3);
+  REQUIRE(terms.size() == 4);
   CHECK(terms[0].line ==
         "valve_time_constant = { start = \"0.0002 s\", lower = \"1e-06 s\", upper = \"0.0022 s\", "
         "fit = true }");
@@ -23,6 +24,8 @@ TEST_CASE("missing_terms: a line for each term that a campaign may estimate", "[
   CHECK(
       terms[2].line ==
       "ki = { start = \"5 V/(m s)\", lower = \"0 V/(m s)\", upper = \"55 V/(m s)\", fit = true }");
+  // No derivative by a period exists.
+  CHECK(terms[3].line == "sample_time = \"0.001 s\"");
 }
 
 TEST_CASE("with_terms: each line stands at the head of its table", "[report]") {

@@ -1,0 +1,193 @@
+#include "calib/consider/catalogue.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <string>
+
+#include "bench/foreign_campaign.hpp"
+#include "calib/problem/problem.hpp"
+#include "tests/calib/twin.hpp"
+#include "tests/datasets/campaign_fixture.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+using Catch::WithinRel;
+
+/// What a foreign rig reads in one condition, and the problem of its user at the true values.
+struct ForeignProblem {
+  bench::ForeignRig rig;
+  datasets::Campaign campaign;
+  std::vector<datasets::Record> records;
+
+  explicit ForeignProblem(const bench::Reference& reference) : reference_(reference) {
+    campaign = bench::foreign_campaign(rig);
+    for (const auto& [key, value] :
+         {std::pair{"mass", rig.mass_kg}, std::pair{"damping", rig.damping_n_s_per_m},
+          std::pair{"bulk_modulus", rig.bulk_modulus_pa},
+          std::pair{"valve_gain", rig.valve_gain_m_per_v},
+          std::pair{"leakage_coefficient", rig.leak_coefficient}})
+      campaign.parameters.push_back(known(Twin::index(key), value));
+    // One unknown, since a problem without any is none.
+    datasets::ParameterSetting& mass =
+        *std::find_if(campaign.parameters.begin(), campaign.parameters.end(),
+                      [](const auto& each) { return each.index == Twin::index("mass"); });
+    mass.fit = true;
+    mass.lower = 20.0;
+    mass.upper = 500.0;
+    datasets::Condition& condition = campaign.conditions.emplace_back();
+    condition.id = "one";
+    condition.waveform =
+        reference.waveform == "sine" ? datasets::Waveform::sine : datasets::Waveform::square;
+    condition.frequency_hz = reference.frequency_hz;
+    condition.amplitude = reference.amplitude_m;
+    condition.duration_s = reference.duration_s;
+    datasets::Record& record = records.emplace_back();
+    record.condition = "one";
+    datasets::Series series;
+    series.mean = bench::foreign_readings(rig, reference);
+    series.sd_of_mean = 1.0;
+    for (std::size_t k = 0; k < series.mean.size(); ++k)
+      record.time_s.push_back(static_cast<double>(k) / 1000.0);
+    record.channels[datasets::Channel::position] = series;
+  }
+
+  /// Change of the reading by an effect that the foreign rig has.
+  Eigen::VectorXd change(void (*apply)(bench::ForeignRig&, double), double size) const {
+    bench::ForeignRig with = rig;
+    apply(with, size);
+    const std::vector<double> there = bench::foreign_readings(with, reference_);
+    const std::vector<double>& here = records[0].channels.at(datasets::Channel::position).mean;
+    Eigen::VectorXd result(static_cast<Eigen::Index>(here.size()));
+    for (std::size_t k = 0; k < here.size(); ++k)
+      result(static_cast<Eigen::Index>(k)) = there[k] - here[k];
+    return result;
+  }
+
+ private:
+  bench::Reference reference_;
+};
+
+/// An effect with its counterpart in the other integrator.
+struct CounterpartRow {
+  const char* key;
+  void (*apply)(bench::ForeignRig&, double size);
+  double size;     ///< plausible size on this rig
+  double allowed;  ///< largest distance of the two changes, over their size
+};
+
+const std::vector<CounterpartRow> kCounterparts{
+    {"valve_hysteresis", [](bench::ForeignRig& r, double s) { r.valve_play_v = s; }, 0.01, 0.1},
+    {"valve_dead_band", [](bench::ForeignRig& r, double s) { r.dead_band_v = s; }, 0.01, 0.02},
+    {"coulomb_friction", [](bench::ForeignRig& r, double s) { r.friction_n = s; },
+     1e-3 * 1.62e-3 * 6.2e6, 0.02},
+    {"stribeck_friction", [](bench::ForeignRig& r, double s) { r.breakaway_n = s; },
+     1e-3 * 1.62e-3 * 6.2e6, 0.02},
+    {"sample_time", [](bench::ForeignRig& r, double s) { r.controller_tick_s = s; }, 1e-3, 0.02},
+    {"supply_sag", [](bench::ForeignRig& r, double s) { r.sag = s; }, 0.01, 0.1},
+    {"ki", [](bench::ForeignRig& r, double s) { r.integral_v_per_m_s = s; }, 2.4, 0.02},
+    {"valve_time_constant", [](bench::ForeignRig& r, double s) { r.valve_lag_s = s; }, 0.5e-3,
+     0.02},
+    {"total_volume", [](bench::ForeignRig& r, double s) { r.hose_volume_m3 = s; }, 2.46888e-6,
+     0.02}};
+
+TEST_CASE("catalogue: what an effect does to a record is what another integrator makes of it",
+          "[calib]") {
+  for (const bench::Reference& reference :
+       {bench::Reference{"square", 4.0, 0.02, 0.5}, bench::Reference{"sine", 5.0, 0.02, 0.4}}) {
+    const ForeignProblem foreign(reference);
+    const Problem problem = make_problem(foreign.campaign, foreign.records,
+                                         {&foreign.campaign.conditions.front()}, false, nullptr);
+    std::vector<double> z = problem.start();
+    const auto effects = effects_of(problem, z);
+    const Eigen::MatrixXd rows = effect_rows(problem, 0, z, effects, nullptr);
+    for (const CounterpartRow& row : kCounterparts) {
+      CAPTURE(reference.waveform, row.key);
+      const auto found = std::find_if(effects.begin(), effects.end(), [&](const Effect& each) {
+        return each.about.key == row.key;
+      });
+      REQUIRE(found != effects.end());
+      CHECK_THAT(found->about.size, WithinRel(row.size, 1e-6));
+      CHECK(found->about.one_sided);
+      const Eigen::VectorXd ours = rows.col(found - effects.begin());
+      const Eigen::VectorXd theirs = foreign.change(row.apply, row.size);
+      CHECK((ours - theirs).norm() < row.allowed * theirs.norm());
+      // All at once is what a refit simulates.
+      Eigen::VectorXd sizes = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(effects.size()));
+      const Eigen::VectorXd none =
+          outputs_with(problem, 0, z, effects, sizes, Derivatives::none, nullptr).outputs;
+      sizes(found - effects.begin()) = 1.0;
+      const OutputsWith with =
+          outputs_with(problem, 0, z, effects, sizes, Derivatives::of_unknowns, nullptr);
+      REQUIRE(with.ok());
+      CHECK((with.outputs - none - theirs).norm() < row.allowed * theirs.norm());
+      CHECK(with.jacobian.norm() > 0.0);
+    }
+  }
+}
+
+TEST_CASE("catalogue: the leak of closed edges is an effect where it is no laminar leak",
+          "[calib]") {
+  const auto has = [](model::PlantKind plant, const char* key) {
+    const auto names = datasets::effect_names(plant);
+    return std::any_of(names.begin(), names.end(),
+                       [&](const auto& each) { return each.key == key; });
+  };
+  CHECK_FALSE(has(model::PlantKind::load_pressure, "valve_null_leakage"));
+  CHECK(has(model::PlantKind::two_chamber, "valve_null_leakage"));
+  CHECK(has(model::PlantKind::linkage, "valve_null_leakage"));
+  CHECK(has(model::PlantKind::linkage, "pilot_hysteresis"));
+  CHECK_FALSE(has(model::PlantKind::two_chamber, "pilot_hysteresis"));
+}
+
+TEST_CASE("catalogue: gains are those of the loop that the rig has", "[calib]") {
+  Twin twin = one_square();
+  twin.setting("kp").value = 0.0;
+  twin.setting("force_kp").value = 1e-3;
+  twin.campaign.rig.feedback = model::Feedback::force;
+  twin.campaign.conditions.front().amplitude = 500.0;
+  twin.truth = twin.campaign;
+  const auto records = twin.records(500, 1000.0, 1);
+  const Problem problem = problem_of(twin, records);
+  std::vector<std::string> gains;
+  for (const Effect& each : effects_of(problem, problem.start())) {
+    const std::string& key = each.about.key;
+    if (key.ends_with("_kp") || key.ends_with("_ki") || key == "kp" || key == "ki")
+      gains.push_back(key);
+    if (key == "force_kp") CHECK_THAT(each.about.size, WithinRel(2e-6, 1e-12));
+  }
+  CHECK(gains == std::vector<std::string>{"force_ki", "force_kp"});
+  CHECK_FALSE(sensor_channel("force_kp"));
+  CHECK(sensor_channel("force_gain") == datasets::Channel::force);
+  CHECK(sensor_channel("payload_acceleration_lag") == datasets::Channel::payload_acceleration);
+}
+
+TEST_CASE("catalogue: a controller's period is an effect only of a loop that has none", "[calib]") {
+  Twin twin = one_square();
+  const auto keys = [&] {
+    const auto records = twin.records(500, 1000.0, 1);
+    const Problem problem = problem_of(twin, records);
+    std::vector<std::string> all;
+    for (const Effect& each : effects_of(problem, problem.start())) all.push_back(each.about.key);
+    return all;
+  };
+  const auto contains = [](const std::vector<std::string>& all, const char* key) {
+    return std::find(all.begin(), all.end(), key) != all.end();
+  };
+  CHECK(contains(keys(), "sample_time"));
+  twin.campaign.parameters.push_back(known(Twin::index("sample_time"), 2e-3));
+  twin.truth.parameters.push_back(known(Twin::index("sample_time"), 2e-3));
+  CHECK_FALSE(contains(keys(), "sample_time"));
+  Twin driven = one_square();
+  driven.campaign.rig.controller = model::ControllerKind::none;
+  driven.campaign.conditions.front().amplitude = 0.5;
+  driven.truth = driven.campaign;
+  twin = driven;
+  const auto open = keys();
+  CHECK_FALSE(contains(open, "sample_time"));
+  CHECK(contains(open, "valve_hysteresis"));
+}
+
+}  // namespace
+}  // namespace rigcal::calib
