@@ -27,6 +27,49 @@ X friction(const X& v, const CommonParameters<C>& p, const PresentTerms& terms) 
                       p.friction_smoothing_m_per_s);
 }
 
+/// Internal leakage across the piston, A to B [m3/s]: orifice (eq. 11), behind a laminar path where
+/// that was given, and a laminar path beside it.
+///
+/// @param p  with leak_conductance, orifice_conductance() of the leak
+template <typename X, typename P>
+X internal_leak(const X& load_pressure_pa, const P& p, const PresentTerms& terms) {
+  const X laminar = load_pressure_pa * p.laminar_leakage_m3_per_s_pa;
+  if (!terms.orifice_leak) return laminar;
+  if (terms.leak_line)
+    return laminar + flow_before_line(load_pressure_pa, X(p.leak_conductance),
+                                      p.leakage_resistance_pa_s_per_m3, p.leakage_smoothing_pa);
+  return laminar + orifice_leakage(load_pressure_pa, p.leak_conductance, p.leakage_smoothing_pa);
+}
+
+/// Rate of the force of the bristles [N/s].
+///
+/// @param velocity  index of the piston's velocity
+template <typename X, std::size_t M, typename C>
+X bristle_rate(const std::array<X, M>& x, int velocity, const CommonParameters<C>& p,
+               const PresentTerms& terms) {
+  const X& v = x[static_cast<std::size_t>(velocity)];
+  const X sliding_n = terms.stribeck
+                          ? sliding_friction(v, p.coulomb_friction_n, p.stribeck_friction_n,
+                                             p.stribeck_velocity_m_per_s)
+                          : X(p.coulomb_friction_n);
+  return bristle_rate(x[static_cast<std::size_t>(terms.bristles)], v, sliding_n,
+                      p.bristle_stiffness_n_per_m);
+}
+
+/// Dry friction [N], by its pre-sliding where the rig has bristles.
+///
+/// @tparam Plant  has the velocity, and no state after its own in its smallest solver
+template <typename Plant, typename X, std::size_t M, typename C>
+X friction_of(const std::array<X, M>& x, const CommonParameters<C>& p, const PresentTerms& terms) {
+  if constexpr (M > static_cast<std::size_t>(Plant::kStates)) {
+    if (terms.bristles >= 0)
+      return x[static_cast<std::size_t>(terms.bristles)] +
+             bristle_rate(x, Plant::velocity, p, terms) *
+                 (p.bristle_damping_n_s_per_m / p.bristle_stiffness_n_per_m);
+  }
+  return friction(x[static_cast<std::size_t>(Plant::velocity)], p, terms);
+}
+
 /// Load against positive travel [N]: the external force and the part that varies with the travel.
 template <typename X, typename C>
 X external_load(const X& x, const PlantInput<X>& in, const CommonParameters<C>& p,
