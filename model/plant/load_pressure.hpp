@@ -89,7 +89,7 @@ struct LoadPressurePlant {
   /// Internal leakage across the piston [m3/s]: orifice (eq. 11) and laminar path.
   template <typename X, typename C>
   static X leakage_flow(const X& P_L, const Coefficients<C>& p, const PresentTerms& terms) {
-    if (!terms.laminar_leak)
+    if (!terms.laminar_leak && !terms.leak_line)
       return terms.orifice_leak ? orifice_leakage(P_L, p.leak_conductance, p.leakage_smoothing_pa)
                                 : X(0.0);
     return internal_leak(P_L, p, terms);

@@ -142,6 +142,25 @@ TEST_CASE("load_campaign: what does not go together behind a valve of two chambe
                       Catch::Contains(message));
 }
 
+TEST_CASE("load_campaign: feed-forward is of a position loop with a filter", "[datasets]") {
+  const auto loop = [](const std::string& lines) {
+    const std::string text = replaced(electric(), "type = \"none\"", "type = \"pid\"\n" + lines);
+    return replaced(text, "command = { column = \"u_V\", unit = \"V\" }",
+                    "reference = { column = \"r_mm\", unit = \"mm\" }\n"
+                    "force_reference = { column = \"r_kN\", unit = \"kN\", role = \"ignore\" }");
+  };
+  const std::string gains = "kp = \"10 V/m\"\nvelocity_feedforward = \"2 V s/m\"\n";
+  CHECK_THROWS_WITH(load_text(loop(gains)),
+                    Catch::Contains("velocity_feedforward without derivative_filter"));
+  CHECK_THROWS_WITH(load_text(loop("feedback = \"force\"\nforce_kp = \"1 V/kN\"\n"
+                                   "derivative_filter = \"300 rad/s\"\n"
+                                   "acceleration_feedforward = \"0.1 V s2/m\"\n")),
+                    Catch::Contains("feeds the rate of a position forward, and this loop is on "
+                                    "force"));
+  const Campaign campaign = load_text(loop(gains + "derivative_filter = \"300 rad/s\"\n"));
+  CHECK(values_in(campaign, campaign.conditions.front())["velocity_feedforward"] == 2.0);
+}
+
 TEST_CASE("load_campaign: a rig with more states than its solver has room for is an error",
           "[datasets]") {
   std::string text = replaced(
