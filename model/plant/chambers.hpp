@@ -76,7 +76,8 @@ struct Chambers {
   static X opening(bool to_tank, const X& signal, const C& overlap_v, const P& p,
                    const PresentTerms& terms) {
     const bool own_band = to_tank && terms.return_band;
-    const X beyond = signal - (own_band ? p.return_dead_band_pa : p.dead_band) - overlap_v;
+    X beyond = signal - (own_band ? p.return_dead_band_pa : p.dead_band);
+    if (terms.overlaps) beyond = beyond - overlap_v;
     if (!terms.null_opening && !(value_of(beyond) > 0.0)) return X(0.0);
     X y = terms.null_opening ? leaking_opening(beyond, p.valve_null_opening_v) : beyond;
     const bool own_power = to_tank && terms.return_power;
@@ -92,11 +93,10 @@ struct Chambers {
 
   /// Flow of an edge with any of the terms of a valve [m3/s].
   template <typename X, typename P, typename C>
-  static X shaped_edge(bool to_tank, const X& signal, const C& area, const C& overlap_v,
-                       const X& up_pa, const X& down_pa, const P& p, const PresentTerms& terms) {
+  static X shaped_edge(bool to_tank, const X& opening_m, const C& area, const X& up_pa,
+                       const X& down_pa, const P& p, const PresentTerms& terms) {
     const X head_pa = up_pa - down_pa;
     const X leak = null_leak(head_pa, p, terms);
-    const X opening_m = opening(to_tank, signal, overlap_v, p, terms);
     if (!(value_of(opening_m) > 0.0)) return leak;
     const X by_root = opening_m * (area * p.conductance);
     if (to_tank && terms.return_loss)
@@ -114,13 +114,18 @@ struct Chambers {
                                           const P& p, const PresentTerms& terms) {
     const X out = in.spool_command_v + p.valve_offset_v;
     const X back = -out;
+    const X out_m = opening(false, out, p.overlap_supply_to_a_v, p, terms);
+    const X back_m = opening(false, back, p.overlap_supply_to_b_v, p, terms);
+    // Edges that open alike are computed once.
+    const bool own = terms.return_band || terms.return_power || terms.return_line || terms.overlaps;
+    const X back_return_m = own ? opening(true, back, p.overlap_a_to_tank_v, p, terms) : back_m;
+    const X out_return_m = own ? opening(true, out, p.overlap_b_to_tank_v, p, terms) : out_m;
     const X &p_A = x[pressure_a], &p_B = x[pressure_b];
     const X &P_s = in.supply_pressure_pa, &P_t = in.tank_pressure_pa;
-    return {
-        shaped_edge(false, out, p.gain_supply_to_a, p.overlap_supply_to_a_v, P_s, p_A, p, terms),
-        shaped_edge(true, back, p.gain_a_to_tank, p.overlap_a_to_tank_v, p_A, P_t, p, terms),
-        shaped_edge(false, back, p.gain_supply_to_b, p.overlap_supply_to_b_v, P_s, p_B, p, terms),
-        shaped_edge(true, out, p.gain_b_to_tank, p.overlap_b_to_tank_v, p_B, P_t, p, terms)};
+    return {shaped_edge(false, out_m, p.gain_supply_to_a, P_s, p_A, p, terms),
+            shaped_edge(true, back_return_m, p.gain_a_to_tank, p_A, P_t, p, terms),
+            shaped_edge(false, back_m, p.gain_supply_to_b, P_s, p_B, p, terms),
+            shaped_edge(true, out_return_m, p.gain_b_to_tank, p_B, P_t, p, terms)};
   }
 
   /// Spool travel where overlaps and shape of its edges count [m].

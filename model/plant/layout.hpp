@@ -13,36 +13,39 @@ namespace rigcal::model {
 
 /// Optional terms of a rig; an absent one costs nothing.
 struct PresentTerms {
-  bool friction = false;        ///< Coulomb or breakaway friction was given
-  bool stribeck = false;        ///< breakaway friction was given
-  int bristles = -1;            ///< index of the bristles' force; -1: friction without pre-sliding
-  bool orifice_leak = false;    ///< the leakage coefficient is not zero, or free
-  bool leak_line = false;       ///< the leak begins laminar: its resistance was given
-  bool laminar_leak = false;    ///< likewise
-  bool null_leak = false;       ///< likewise, across the null of the valve
-  bool valve_offset = false;    ///< null shift: not zero, or free
-  bool spool_shape = false;     ///< null shift or overlap: not zero, or free
-  bool external_force = false;  ///< recorded, or not zero, or free
-  bool varying_load = false;    ///< the load's gradient or curvature: not zero, or free
-  bool curved_load = false;     ///< the load's curvature: not zero, or free
-  bool null_opening = false;    ///< covered edges leak through an orifice
-  bool line_loss = false;       ///< the lines throttle, too
-  bool air = false;             ///< the bulk modulus falls at low pressure
-  bool external_leak = false;   ///< for either chamber: not zero, or free
-  int hoses = -1;               ///< index of the first state of yielding hoses; -1: rigid hoses
-  int payload = -1;             ///< index of the first state of the second mass; -1: none
-  bool pilot = false;           ///< the drive of the spool is a pilot pressure
-  bool power_opening = false;   ///< the spool opens by a power law
-  bool return_band = false;     ///< the edges to the tank have their own dead band
-  bool return_power = false;    ///< likewise, their own power law
-  bool return_line = false;     ///< the line to the tank throttles, too
-  bool return_loss = false;     ///< the line to the tank has a loss in proportion to its flow
-  bool bypass = false;          ///< a closed valve passes the pump's flow to the tank
-  bool table_opening = false;   ///< the spool opens by a table
-  bool compensator = false;     ///< edges from the supply are pressure-compensated
-  bool load_sensing = false;    ///< the pump follows the pressure of the driven chamber
-  bool accumulator = false;     ///< gas of an accumulator beside the supply's capacity
-  bool relief = false;          ///< a relief valve for each chamber
+  bool friction = false;         ///< Coulomb or breakaway friction was given
+  bool stribeck = false;         ///< breakaway friction was given
+  bool seal_friction = false;    ///< friction grows with the pressure across the piston
+  bool shaped_friction = false;  ///< it does, or has pre-sliding
+  int bristles = -1;             ///< index of the bristles' force; -1: friction without pre-sliding
+  bool orifice_leak = false;     ///< the leakage coefficient is not zero, or free
+  bool leak_line = false;        ///< the leak begins laminar: its resistance was given
+  bool laminar_leak = false;     ///< likewise
+  bool null_leak = false;        ///< likewise, across the null of the valve
+  bool valve_offset = false;     ///< null shift: not zero, or free
+  bool spool_shape = false;      ///< null shift or overlap: not zero, or free
+  bool external_force = false;   ///< recorded, or not zero, or free
+  bool varying_load = false;     ///< the load's gradient or curvature: not zero, or free
+  bool curved_load = false;      ///< the load's curvature: not zero, or free
+  bool overlaps = false;         ///< an overlap of an edge: not zero, or free
+  bool null_opening = false;     ///< covered edges leak through an orifice
+  bool line_loss = false;        ///< the lines throttle, too
+  bool air = false;              ///< the bulk modulus falls at low pressure
+  bool external_leak = false;    ///< for either chamber: not zero, or free
+  int hoses = -1;                ///< index of the first state of yielding hoses; -1: rigid hoses
+  int payload = -1;              ///< index of the first state of the second mass; -1: none
+  bool pilot = false;            ///< the drive of the spool is a pilot pressure
+  bool power_opening = false;    ///< the spool opens by a power law
+  bool return_band = false;      ///< the edges to the tank have their own dead band
+  bool return_power = false;     ///< likewise, their own power law
+  bool return_line = false;      ///< the line to the tank throttles, too
+  bool return_loss = false;      ///< the line to the tank has a loss in proportion to its flow
+  bool bypass = false;           ///< a closed valve passes the pump's flow to the tank
+  bool table_opening = false;    ///< the spool opens by a table
+  bool compensator = false;      ///< edges from the supply are pressure-compensated
+  bool load_sensing = false;     ///< the pump follows the pressure of the driven chamber
+  bool accumulator = false;      ///< gas of an accumulator beside the supply's capacity
+  bool relief = false;           ///< a relief valve for each chamber
   /// The valve has any term beside gains and overlaps of its edges, null opening and line loss.
   bool shaped_valve = false;
   bool pump_flow = false;  ///< the flow of the pump is limited
@@ -214,8 +217,10 @@ inline Layout layout_of(const Rig& rig, const ParameterValues& values, std::span
     if (given("sample_time")) layout.held = layout.add(kHeldOutput);
   }
   layout.terms.stribeck = given("stribeck_friction");
-  layout.terms.friction =
-      layout.terms.stribeck || given("coulomb_friction") || given("joint_friction");
+  layout.terms.seal_friction = given("seal_friction");
+  layout.terms.shaped_friction = layout.terms.seal_friction || layout.bristles >= 0;
+  layout.terms.friction = layout.terms.shaped_friction || layout.terms.stribeck ||
+                          given("coulomb_friction") || given("joint_friction");
   layout.terms.orifice_leak = acts("leakage_coefficient");
   layout.terms.leak_line = given("leakage_resistance");
   layout.terms.laminar_leak = acts("laminar_leakage");
@@ -226,6 +231,8 @@ inline Layout layout_of(const Rig& rig, const ParameterValues& values, std::span
   layout.terms.valve_offset = acts("valve_offset");
   layout.terms.spool_shape = layout.terms.valve_offset || acts("valve_dead_band");
   layout.terms.external_leak = acts("external_leakage_a") || acts("external_leakage_b");
+  layout.terms.overlaps = acts("overlap_supply_to_a") || acts("overlap_a_to_tank") ||
+                          acts("overlap_supply_to_b") || acts("overlap_b_to_tank");
   layout.terms.null_opening = given("valve_null_opening");
   layout.terms.line_loss = given("valve_line_opening");
   layout.terms.air = given("air_fraction");

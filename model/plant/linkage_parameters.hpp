@@ -127,10 +127,11 @@ constexpr auto linkage_fields() {
                                      Keys("initial_velocity"),
                                      Keys("initial_integral")};
   constexpr std::array kOtherLoads{
-      Keys("coulomb_friction"),   Keys("stribeck_friction"), Keys("stribeck_velocity"),
-      Keys("friction_smoothing"), Keys("bristle_stiffness"), Keys("bristle_damping"),
-      Keys("external_force"),     Keys("load_gradient"),     Keys("load_curvature"),
-      Keys("payload_mass"),       Keys("payload_frequency"), Keys("payload_damping_ratio")};
+      Keys("coulomb_friction"),     Keys("stribeck_friction"), Keys("stribeck_velocity"),
+      Keys("friction_smoothing"),   Keys("seal_friction"),     Keys("bristle_stiffness"),
+      Keys("bristle_damping"),      Keys("external_force"),    Keys("load_gradient"),
+      Keys("load_curvature"),       Keys("payload_mass"),      Keys("payload_frequency"),
+      Keys("payload_damping_ratio")};
   return joined(joint_rows<T>(), rows_without(chamber_rows<LinkageParameters, T>(), kSlides),
                 rows_without(oil_rows<LinkageParameters, T>(), kElectricGain),
                 electric_gain_rows<LinkageParameters, T>(), valve_rows<LinkageParameters, T>(),

@@ -95,6 +95,11 @@ struct LoadPressurePlant {
     return internal_leak(P_L, p, terms);
   }
 
+  template <typename X, std::size_t M>
+  static X pressure_across(const std::array<X, M>& x) {
+    return x[load_pressure];
+  }
+
   /// Time derivative of the state [m/s, m/s2, Pa/s].
   ///
   /// @param x  shape (kStates or more): the plant's states come first

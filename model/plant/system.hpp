@@ -572,10 +572,10 @@ class System {
         dx[payload + 1] = payload_acceleration(by, x);
       }
     }
-    if constexpr (!requires { Plant::angle; }) {
+    if constexpr (requires { Plant::pressure_across(x); }) {
       if (layout_.bristles >= 0)
         dx[static_cast<std::size_t>(layout_.bristles)] =
-            bristle_rate(x, Plant::velocity, p, layout_.terms);
+            bristle_rate_of<Plant>(x, p, layout_.terms);
     }
     if constexpr (requires { Plant::kHoses; }) {
       if (layout_.hoses >= 0) {

@@ -108,6 +108,11 @@ struct TwoChamberPlant : Chambers {
     return q.supply_to_a + q.supply_to_b;
   }
 
+  template <typename X, std::size_t M>
+  static X pressure_across(const std::array<X, M>& x) {
+    return x[pressure_a] - x[pressure_b];
+  }
+
   /// Force of both stops on the piston, positive outwards [N].
   template <typename X, typename C>
   static X stops_force(const X& x, const X& v, const Coefficients<C>& p,

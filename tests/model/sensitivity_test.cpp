@@ -80,6 +80,7 @@ const std::vector<Scenario>& scenarios() {
         {"stribeck_velocity", 0.02},
         {"bristle_stiffness", 2e6},
         {"bristle_damping", 2e3},
+        {"seal_friction", 2e-5},
         {"leakage_resistance", 2e11},
         {"derivative_filter", 300.0},
         {"velocity_feedforward", 20.0},

@@ -151,6 +151,33 @@ TEST_CASE("bristles: sensitivities are exact against differences", "[model]") {
     CHECK(seen.count(parameter_index(PlantKind::load_pressure, key)) == 1);
 }
 
+TEST_CASE("friction: seals rub more where pressure presses them on", "[model]") {
+  for (const double direction : {1.0, -1.0}) {
+    for (const bool pre_sliding : {false, true}) {
+      Experiment e = pushed_piston(Signal::constant(0.0), {0.0, 8.0});
+      e.inputs.external_force_n.reset();
+      e.inputs.drive = Signal::constant(0.5 * direction);
+      e.set("laminar_leakage", 0.0).set("stiffness", 0.0).set("seal_friction", 3e-4);
+      e.set("external_force", 500.0 * direction);
+      if (!pre_sliding) {
+        const auto index =
+            static_cast<std::size_t>(parameter_index(e.rig.plant, "bristle_stiffness"));
+        e.values.given[index] = false;
+      }
+      e.outputs = {Output::velocity, Output::load_pressure, Output::force};
+      const Simulation run = e();
+      REQUIRE(run.ok());
+      const double v = run.outputs(1, 0);
+      const double P_L = run.outputs(1, 1);
+      REQUIRE(direction * v > 0.01);
+      const double friction_n =
+          200.0 + 80.0 * std::exp(-std::pow(v / 0.02, 2)) + 3e-4 * std::abs(P_L);
+      CHECK_THAT(1.62e-3 * P_L, WithinRel(2e3 * v + direction * (500.0 + friction_n), 1e-5));
+      CHECK_THAT(run.outputs(1, 2), WithinRel(2e3 * v + direction * 500.0, 1e-5));
+    }
+  }
+}
+
 TEST_CASE("bristles: a record that begins in motion begins with bent bristles", "[model]") {
   Experiment e = single_rod_rig();
   e.rig.initial = InitialState::given;

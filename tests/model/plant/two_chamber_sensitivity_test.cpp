@@ -79,6 +79,7 @@ std::vector<std::pair<Scenario, Experiment>> two_chamber_scenarios() {
                             {"coulomb_friction", 2e3},
                             {"stribeck_friction", 800.0},
                             {"stribeck_velocity", 0.02},
+                            {"seal_friction", 1e-4},
                             {"bristle_stiffness", 2e7},
                             {"bristle_damping", 2e4}};
   const NamedValues by_table{
