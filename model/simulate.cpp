@@ -103,6 +103,18 @@ using Avx2Solvers = Solvers<RIGCAL_avx2_SOLVERS>;
 template <typename Plant, int... States>
 std::integer_sequence<int, States...> sizes_of(const Sized<Plant, States...>& solvers);
 
+template <int... States>
+constexpr int largest(std::integer_sequence<int, States...> /*sizes*/) {
+  return std::max({States...});
+}
+
+/// Room of the largest solver of a plant; the same with every instruction set.
+int largest_room(PlantKind plant) {
+  return with_plant(plant, []<typename Plant>() {
+    return largest(decltype(sizes_of<Plant>(std::declval<const BaseSolvers&>()))());
+  });
+}
+
 /// Runs the first solver that has room for all states.
 template <typename Plant, InstructionSet Set, int N, int... Larger>
 void run(std::integer_sequence<int, N, Larger...>, const SizedRequest& request,
@@ -317,6 +329,10 @@ Simulation simulate_either(const Eigen::VectorXd* state, const Rig& rig,
 }
 
 }  // namespace
+
+StateCount count_states(const Rig& rig, const ParameterValues& parameters) {
+  return {layout_of(rig, parameters, {}, plant_states(rig.plant)).states, largest_room(rig.plant)};
+}
 
 Simulation simulate(const Rig& rig, const ParameterValues& parameters, std::span<const int> free,
                     const SimulationInputs& inputs, std::span<const double> times_s,

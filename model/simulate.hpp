@@ -167,6 +167,13 @@ struct Rig {
   bool pilot = false;  ///< the drive is a pilot pressure [Pa], not a command [V]
 };
 
+/// How many states a rig has, and how many the solvers of its plant have room for.
+struct StateCount {
+  int needed = 0;
+  int room = 0;
+};
+StateCount count_states(const Rig& rig, const ParameterValues& parameters);
+
 /// Solves the model from the first of `times_s` to the last.
 ///
 /// @param parameters  SI values and which are given (decides the optional terms)

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -118,8 +119,13 @@ double scaling_exponent(const model::ParameterSpec& spec) {
   using model::ParameterKind;
   // Flows depend on the square root of pressure over density. The density is not scaled because it
   // is not a force.
-  if (spec.key == "valve_gain" || spec.key == "leakage_coefficient") return -0.5;
-  if (spec.key == "density" || spec.key == kSmoothing) return 0.0;
+  constexpr std::array<std::string_view, 5> kOpenings{
+      "valve_gain", "pilot_gain", "leakage_coefficient", "bypass_opening", "return_line_opening"};
+  if (std::find(kOpenings.begin(), kOpenings.end(), spec.key) != kOpenings.end()) return -0.5;
+  // The recorded pilot pressure stays, and what is compared with it.
+  constexpr std::array<std::string_view, 6> kStays{
+      "density", kSmoothing, "pilot_dead_band", "pilot_range", "return_dead_band", "bypass_range"};
+  if (std::find(kStays.begin(), kStays.end(), spec.key) != kStays.end()) return 0.0;
   if (spec.kind == ParameterKind::sensor || spec.kind == ParameterKind::controller) return 0.0;
   return mass_exponent(spec.unit);
 }

@@ -208,6 +208,11 @@ Overrides read_overrides(const TomlNode& table, model::PlantKind plant, Paramete
 
 namespace {
 
+/// Whether a key is in the table of a plant and was given.
+bool has_key(const model::ParameterValues& values, std::string_view key) {
+  return model::parameter_index(values.plant, key) >= 0 && values.is_given(key);
+}
+
 std::optional<ParameterConflict> find_supply_conflict(const model::ParameterValues& values) {
   if (model::parameter_index(values.plant, "supply_resistance") < 0) return std::nullopt;
   const bool resistance = values.is_given("supply_resistance");
@@ -234,39 +239,105 @@ std::optional<ParameterConflict> find_pilot_conflict(const model::Rig& rig,
     return ParameterConflict{"pilot_gain",
                              "pilot_gain decides what drives the rig, and some conditions alone "
                              "have it: expected it in [rig.parameters]"};
-  constexpr std::array kOfPilot{"pilot_dead_band",  "pilot_range",     "pilot_exponent",
-                                "return_dead_band", "return_exponent", "bypass_opening",
-                                "bypass_range"};
-  constexpr std::array kOfVolts{"valve_dead_band", "valve_offset", "valve_rate_limit"};
+  if (pilot && rig.controller != model::ControllerKind::none)
+    return ParameterConflict{
+        "pilot_gain",
+        "the controller's output is a voltage, and pilot_gain makes the pilot pressure the drive: "
+        "expected valve_gain, or type = \"none\" in [rig.controller] and the recorded "
+        "pilot_pressure"};
+  constexpr std::array kOfPilot{"pilot_dead_band", "pilot_range", "pilot_exponent",
+                                "return_dead_band", "bypass_range"};
+  constexpr std::array kOfVolts{
+      std::pair{"valve_dead_band", "pilot_dead_band for an overlap"},
+      std::pair{"valve_offset", "pilot_dead_band for an overlap"},
+      std::pair{"valve_rate_limit", "the lag of the valve"},
+      std::pair{"overlap_supply_to_a", "pilot_dead_band for an overlap"},
+      std::pair{"overlap_a_to_tank", "return_dead_band for the overlap of edges to the tank"},
+      std::pair{"overlap_supply_to_b", "pilot_dead_band for an overlap"},
+      std::pair{"overlap_b_to_tank", "return_dead_band for the overlap of edges to the tank"},
+      std::pair{"valve_null_opening", "valve_null_leakage for a leak"},
+      std::pair{"valve_line_opening", "return_line_opening for the line to the tank"},
+      std::pair{"valve_exponent", "pilot_exponent for a power law"},
+      std::pair{"valve_range", "pilot_range"},
+      std::pair{"valve_bypass_range", "bypass_range"}};
   for (const char* key : kOfPilot) {
-    if (pilot || !values.is_given(key)) continue;
+    if (pilot || !has_key(values, key)) continue;
     return ParameterConflict{key, fmt::format("{} is of a pilot-operated valve, and this one is "
                                               "driven by a voltage: expected pilot_gain",
                                               key)};
   }
-  for (const char* key : kOfVolts) {
-    if (!pilot || !values.is_given(key)) continue;
+  for (const auto& [key, instead] : kOfVolts) {
+    if (!pilot || !has_key(values, key)) continue;
     return ParameterConflict{
         key, fmt::format("{} is in volts, and pilot_gain makes the pilot pressure the drive: "
-                         "expected {} out, or pilot_dead_band for an overlap",
-                         key, key)};
+                         "expected {} out, or {}",
+                         key, key, instead)};
   }
   return std::nullopt;
 }
 
+/// One law says how far an edge opens.
+std::optional<ParameterConflict> find_opening_conflict(const model::ParameterValues& values) {
+  constexpr std::array kTable{"opening_20", "opening_40", "opening_60", "opening_80"};
+  const char* above = nullptr;
+  for (const char* key : kTable) {
+    for (const char* power : {"valve_exponent", "pilot_exponent"}) {
+      if (values.is_given(key) && values.is_given(power))
+        return ParameterConflict{key, fmt::format("{} (an opening by a table) stands together with "
+                                                  "{} (by a power): expected one of them",
+                                                  key, power)};
+    }
+    if (above != nullptr && values[key] < values[above])
+      return ParameterConflict{key, fmt::format("{} = {:g} is below {} = {:g}: expected openings "
+                                                "that do not fall (0.2, 0.4, 0.6 and 0.8 unless "
+                                                "given)",
+                                                key, values[key], above, values[above])};
+    above = key;
+  }
+  return std::nullopt;
+}
+
+/// What stands without that which it belongs to, and how this is called.
+struct Companion {
+  const char* key;
+  const char* needed;
+  const char* why;
+};
+
 std::optional<ParameterConflict> find_pump_conflict(const model::ParameterValues& values) {
-  if (values.is_given("pump_flow") && !values.is_given("supply_resistance"))
-    return ParameterConflict{"pump_flow",
-                             "a pump of limited flow needs supply_resistance (how far its pressure "
-                             "falls before it gives all of it) and supply_capacity: expected both"};
-  if (values.is_given("bypass_opening") && !values.is_given("supply_resistance"))
-    return ParameterConflict{
-        "bypass_opening",
-        "what passes the valve by shows in the pressure of a pump that gives way: expected "
-        "supply_resistance and supply_capacity"};
-  if (values.is_given("bypass_range") && !values.is_given("bypass_opening"))
-    return ParameterConflict{"bypass_range",
-                             "bypass_range without a bypass: expected bypass_opening"};
+  constexpr std::array kCompanions{
+      Companion{"pump_flow", "supply_resistance",
+                "a pump of limited flow needs supply_resistance (how far its pressure falls before "
+                "it gives all of it) and supply_capacity: expected both"},
+      Companion{"bypass_opening", "supply_resistance",
+                "what passes the valve by shows in the pressure of a pump that gives way: expected "
+                "supply_resistance and supply_capacity"},
+      Companion{"load_sensing_margin", "supply_resistance",
+                "a pump that follows the load needs supply_resistance (how far its pressure falls "
+                "per flow) and supply_capacity: expected both"},
+      Companion{"accumulator_volume", "supply_resistance",
+                "an accumulator fills through supply_resistance, and the oil beside it has "
+                "supply_capacity: expected both"},
+      Companion{"accumulator_volume", "accumulator_precharge",
+                "the gas law needs the pressure at which the gas has accumulator_volume: expected "
+                "accumulator_precharge as well"},
+      Companion{"accumulator_precharge", "accumulator_volume",
+                "accumulator_precharge without an accumulator: expected accumulator_volume"},
+      Companion{"accumulator_exponent", "accumulator_volume",
+                "accumulator_exponent without an accumulator: expected accumulator_volume"},
+      Companion{"bypass_range", "bypass_opening",
+                "bypass_range without a bypass: expected bypass_opening"},
+      Companion{"valve_bypass_range", "bypass_opening",
+                "valve_bypass_range without a bypass: expected bypass_opening"},
+      Companion{"relief_pressure", "relief_conductance",
+                "a relief valve needs relief_conductance (its flow per pressure beyond "
+                "relief_pressure): expected it as well"},
+      Companion{"relief_conductance", "relief_pressure",
+                "relief_conductance without a relief valve: expected relief_pressure"}};
+  for (const Companion& row : kCompanions) {
+    if (values.is_given(row.key) && !values.is_given(row.needed))
+      return ParameterConflict{row.key, row.why};
+  }
   constexpr std::array kSecond{"pump_second_flow", "pump_delay"};
   for (const char* key : {"pump_second_flow", "pump_delay", "pump_rise", "pump_first_rate"}) {
     if (!values.is_given(key)) continue;
@@ -282,6 +353,15 @@ std::optional<ParameterConflict> find_pump_conflict(const model::ParameterValues
     }
   }
   return std::nullopt;
+}
+
+/// Valve and pump of a cylinder with two chambers.
+std::optional<ParameterConflict> find_metering_conflict(const model::Rig& rig,
+                                                        const model::ParameterValues& values) {
+  if (model::parameter_index(values.plant, "pilot_gain") < 0) return std::nullopt;
+  if (const auto conflict = find_pilot_conflict(rig, values)) return conflict;
+  if (const auto conflict = find_opening_conflict(values)) return conflict;
+  return find_pump_conflict(values);
 }
 
 /// The lever must not change its sign between the stops.
@@ -318,8 +398,6 @@ std::optional<ParameterConflict> find_linkage_conflict(const model::Rig& rig,
         "",
         "the plant linkage has no controller yet: expected type = \"none\" in "
         "[rig.controller], and the recorded command or pilot_pressure as the drive"};
-  if (const auto conflict = find_pilot_conflict(rig, values)) return conflict;
-  if (const auto conflict = find_pump_conflict(values)) return conflict;
   return find_joint_conflict(values);
 }
 
@@ -338,14 +416,40 @@ std::optional<ParameterConflict> find_payload_conflict(const model::ParameterVal
                              fmt::format("a second mass needs payload_mass, payload_frequency and "
                                          "payload_damping_ratio: expected {} as well",
                                          absent)};
-  for (const char* hose : {"hose_yield", "hose_yield_ratio"}) {
-    if (!given(hose)) continue;
-    return ParameterConflict{hose, fmt::format("{} (hoses that yield) is combined with "
-                                               "payload_mass, and the solver has no room for the "
-                                               "states of both: expected one of them",
-                                               hose)};
-  }
   return std::nullopt;
+}
+
+/// Friction with pre-sliding needs the force at which it slides, and replaces the straightened
+/// sign.
+std::optional<ParameterConflict> find_bristle_conflict(const model::ParameterValues& values) {
+  if (has_key(values, "bristle_damping") && !has_key(values, "bristle_stiffness"))
+    return ParameterConflict{"bristle_damping",
+                             "bristle_damping without pre-sliding: expected bristle_stiffness"};
+  if (!has_key(values, "bristle_stiffness")) return std::nullopt;
+  if (!has_key(values, "coulomb_friction"))
+    return ParameterConflict{"bristle_stiffness",
+                             "friction with pre-sliding needs the force at which it slides: "
+                             "expected coulomb_friction as well"};
+  return std::nullopt;
+}
+
+/// The terms that bring states of their own, and how many; those that two keys stand for once.
+std::optional<ParameterConflict> find_room_conflict(const model::Rig& rig,
+                                                    const model::ParameterValues& values) {
+  const model::StateCount count = model::count_states(rig, values);
+  if (count.needed <= count.room) return std::nullopt;
+  constexpr std::array kTerms{
+      "hose_yield",        "hose_yield_ratio",         "payload_mass",         "pump_second_flow",
+      "bristle_stiffness", "acceleration_feedforward", "velocity_feedforward", "sample_time"};
+  std::vector<std::string_view> present;
+  for (const char* key : kTerms) {
+    if (has_key(values, key)) present.emplace_back(key);
+  }
+  return ParameterConflict{
+      present.empty() ? "" : std::string(present.front()),
+      fmt::format("the rig has {} states, and the solver of the plant {} has room for {}: expected "
+                  "fewer of {}",
+                  count.needed, to_string(values.plant), count.room, fmt::join(present, ", "))};
 }
 
 /// A loop needs the gains of its controlled quantity, and takes no others.
@@ -377,6 +481,19 @@ std::optional<ParameterConflict> find_loop_conflict(const model::Rig& rig,
         fmt::format("{} without derivative_filter: expected the corner N of its filter, such as "
                     "derivative_filter = \"500 rad/s\"",
                     loop.kd)};
+  }
+  for (const char* key : {"velocity_feedforward", "acceleration_feedforward"}) {
+    if (!given(key)) continue;
+    if (rig.feedback != model::Feedback::position)
+      return ParameterConflict{
+          key, fmt::format("{} feeds the rate of a position forward, and this loop is on {}: "
+                           "expected feedback = \"position\"",
+                           key, loop.name)};
+    if (!given("derivative_filter"))
+      return ParameterConflict{key, fmt::format("{} without derivative_filter: expected the corner "
+                                                "N of its filter, such as derivative_filter = "
+                                                "\"500 rad/s\"",
+                                                key)};
   }
   if (given("initial_integral") && !given(loop.ki))
     return ParameterConflict{"initial_integral",
@@ -420,8 +537,12 @@ std::optional<ParameterConflict> find_conflict(const model::Rig& rig,
   if (const auto conflict = find_supply_conflict(values)) return conflict;
   if (const auto conflict = find_payload_conflict(values)) return conflict;
   if (const auto conflict = find_linkage_conflict(rig, values)) return conflict;
-  if (rig.controller == model::ControllerKind::none) return std::nullopt;
-  return find_loop_conflict(rig, values);
+  if (const auto conflict = find_metering_conflict(rig, values)) return conflict;
+  if (const auto conflict = find_bristle_conflict(values)) return conflict;
+  if (rig.controller != model::ControllerKind::none) {
+    if (const auto conflict = find_loop_conflict(rig, values)) return conflict;
+  }
+  return find_room_conflict(rig, values);
 }
 
 }  // namespace rigcal::datasets

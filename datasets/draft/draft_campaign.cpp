@@ -235,10 +235,19 @@ const ChannelColumns* motion_of(const FileColumns& columns) {
   return angle != nullptr ? angle : find(columns, Channel::position);
 }
 
-/// Whether a pilot pressure drives the rig, which is possible only if a joint turns.
+/// Controlled quantity of the loop whose reference is recorded; none: no reference is recorded.
+std::optional<model::Feedback> loop_of(const FileColumns& columns) {
+  if (find(columns, Channel::angle) != nullptr) return std::nullopt;  // a joint has no controller
+  for (std::size_t i = 0; i < model::kFeedbackCount; ++i) {
+    const model::Rig rig{{}, model::ControllerKind::pid, {}, static_cast<model::Feedback>(i)};
+    if (find(columns, drive_channel(rig)) != nullptr) return rig.feedback;
+  }
+  return std::nullopt;
+}
+
+/// Whether a pilot pressure drives the rig: no controller does, whose output is a voltage.
 bool has_pilot(const FileColumns& columns) {
-  return find(columns, Channel::angle) != nullptr &&
-         find(columns, Channel::pilot_pressure) != nullptr;
+  return find(columns, Channel::pilot_pressure) != nullptr && !loop_of(columns);
 }
 
 /// Direction in which a drive column moves the machine, according to a word in its name: 1 out or
@@ -359,8 +368,9 @@ std::string channels_text(const fs::path& file, const FileColumns& columns) {
   std::vector<Channel> done;
   for (const ChannelColumns& column : columns.channels) {
     if (column.channel == Channel::pilot_pressure && !has_pilot(columns)) {
-      text += fmt::format("# '{}' looks like a pilot pressure, which drives a joint alone\n",
-                          column.stem);
+      text +=
+          fmt::format("# '{}' looks like a pilot pressure, which drives no rig with a controller\n",
+                      column.stem);
       continue;
     }
     if (column.channel == Channel::command && has_pilot(columns)) {
@@ -406,12 +416,12 @@ std::string rows_text(const fs::path& file, const FileColumns& columns) {
                                                                     : "one of these columns"));
 }
 
-/// Optional terms that a cylinder with two chambers usually has.
-constexpr std::array<std::string_view, 13> kTwoChamberTerms{
+/// Optional terms that a cylinder with both chambers mostly has.
+constexpr std::array<std::string_view, 15> kTwoChamberTerms{
     "retracted_position", "valve_dead_band",    "valve_time_constant", "transport_delay",
     "gain_b_to_tank",     "valve_null_leakage", "laminar_leakage",     "gravity",
-    "external_force",     "load_gradient",      "coulomb_friction",    "air_fraction",
-    "stop_stiffness"};
+    "external_force",     "load_gradient",      "coulomb_friction",    "bristle_stiffness",
+    "air_fraction",       "stop_stiffness",     "make_up_conductance"};
 
 /// Optional terms for a servo valve with a symmetric cylinder.
 constexpr std::array<std::string_view, 8> kLoadPressureTerms{
@@ -426,7 +436,12 @@ constexpr std::array<std::string_view, 15> kLinkageTerms{
     "gain_b_to_tank",  "make_up_conductance", "supply_resistance",
     "supply_capacity", "pump_flow",           "air_fraction"};
 
-/// Optional terms for a valve driven by a pilot pressure.
+/// Terms of pump and check valves of a cylinder that slides behind a pilot-operated valve.
+constexpr std::array<std::string_view, 6> kPumpTerms{"relief_pressure",     "supply_resistance",
+                                                     "supply_capacity",     "pump_flow",
+                                                     "load_sensing_margin", "compensator_pressure"};
+
+/// Terms of a valve that a pilot pressure drives.
 constexpr std::array<std::string_view, 6> kPilotTerms{
     "pilot_dead_band",     "pilot_exponent",         "return_exponent",
     "return_line_opening", "return_line_resistance", "bypass_opening"};
@@ -441,6 +456,11 @@ std::string terms_text(model::PlantKind plant, bool with_payload, bool pilot) {
   if (plant == model::PlantKind::two_chamber)
     terms.assign(kTwoChamberTerms.begin(), kTwoChamberTerms.end());
   if (plant == model::PlantKind::linkage) terms.assign(kLinkageTerms.begin(), kLinkageTerms.end());
+  if (pilot && plant == model::PlantKind::two_chamber) {
+    // Those in volts are not of this valve.
+    terms.erase(std::remove(terms.begin(), terms.end(), "valve_dead_band"), terms.end());
+    terms.insert(terms.end(), kPumpTerms.begin(), kPumpTerms.end());
+  }
   if (pilot) terms.insert(terms.end(), kPilotTerms.begin(), kPilotTerms.end());
   if (with_payload) terms.insert(terms.end(), kPayloadTerms.begin(), kPayloadTerms.end());
   std::string text = "# Terms that are absent unless given (rigcal params lists all):\n";
@@ -477,8 +497,8 @@ std::string rig_text(model::PlantKind plant, std::optional<model::Feedback> loop
       "true }\n"
       "[rig.parameters]\n";
   for (const model::ParameterSpec& spec : model::parameter_table(plant)) {
-    // The gain of a linkage's valve is one of two terms, depending on what drives the valve.
-    const bool needed = plant == model::PlantKind::linkage &&
+    // The gain of a valve of four edges is one of two terms, by what drives it.
+    const bool needed = plant != model::PlantKind::load_pressure &&
                         spec.key == std::string_view(pilot ? "pilot_gain" : "valve_gain");
     if (!needed && (spec.kind != model::ParameterKind::plant || spec.default_value)) continue;
     const std::string blank = spec.unit == "1"
@@ -585,16 +605,6 @@ std::string limits_of_others(const FileColumns& columns) {
         "# [acceptance.{0}]\n# rho2 = 0.95  # or, in [acceptance]: not_judged = [\"{0}\"]\n", key);
   }
   return text;
-}
-
-/// Controlled quantity of the loop whose reference is recorded; nullopt if none is.
-std::optional<model::Feedback> loop_of(const FileColumns& columns) {
-  if (find(columns, Channel::angle) != nullptr) return std::nullopt;  // a joint has no controller
-  for (std::size_t i = 0; i < model::kFeedbackCount; ++i) {
-    const model::Rig rig{{}, model::ControllerKind::pid, {}, static_cast<model::Feedback>(i)};
-    if (find(columns, drive_channel(rig)) != nullptr) return rig.feedback;
-  }
-  return std::nullopt;
 }
 
 /// Drive of the rig, if it is recorded.
@@ -806,7 +816,8 @@ Draft draft_campaign(const std::vector<fs::path>& files, const fs::path& folder)
       kBlank);
   for (const std::string& file : left_out) text += fmt::format("# left out: {}\n", file);
   if (!left_out.empty()) text += "\n";
-  auto plant = chambers ? model::PlantKind::two_chamber : model::PlantKind::load_pressure;
+  auto plant = chambers || has_pilot(columns) ? model::PlantKind::two_chamber
+                                              : model::PlantKind::load_pressure;
   if (find(columns, Channel::angle) != nullptr) plant = model::PlantKind::linkage;
   text += rig_text(
       plant, loop,

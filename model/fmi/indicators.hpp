@@ -27,21 +27,63 @@ void plant_indicators(const LoadPressurePlant::Coefficients<double>& p, const Pr
   indicators.push_back(spool_v + p.valve_offset_v + p.valve_dead_band_v);
 }
 
+/// Those of chambers, valve and pump. Pressures count from the tank's, whose changes are small.
+template <typename P, std::size_t N>
+void chamber_indicators(const P& p, const PresentTerms& terms, const std::array<double, N>& x,
+                        double spool, std::vector<double>& indicators) {
+  const auto pressures = {x[Chambers::pressure_a], x[Chambers::pressure_b]};
+  const double out = spool + p.valve_offset_v;
+  for (const double way : {out, -out}) {
+    if (terms.return_band) indicators.push_back(way - p.return_dead_band_pa);
+    if (terms.bypass)
+      indicators.push_back(p.dead_band +
+                           (terms.pilot ? p.bypass_range_pa : p.valve_bypass_range_v) - way);
+    if (terms.table_opening) {
+      const double range = terms.pilot ? p.pilot_range_pa : p.valve_range_v;
+      for (const double share : {0.2, 0.4, 0.6, 0.8})
+        indicators.push_back(way - p.dead_band - share * range);
+    }
+  }
+  if (terms.compensator) {
+    const double supply_pa =
+        terms.supply >= 0 ? x[static_cast<std::size_t>(terms.supply)] : p.supply_pressure_pa;
+    for (const double pressure : pressures)
+      indicators.push_back(supply_pa - pressure - p.compensator_pressure_pa);
+  }
+  for (const double pressure : pressures) {
+    if (terms.make_up) indicators.push_back(pressure - p.tank_pressure_pa);
+    if (terms.relief) indicators.push_back(p.relief_pressure_pa - pressure);
+  }
+  if (terms.supply < 0) return;
+  const double supply_pa = x[static_cast<std::size_t>(terms.supply)];
+  const PlantInput<double> in{spool, 0.0, supply_pa, p.tank_pressure_pa};
+  if (terms.load_sensing) {
+    indicators.push_back(Chambers::sensed_pressure(1e300, x, in, p, terms) - p.supply_pressure_pa);
+  }
+  if (terms.pump_flow) {
+    PresentTerms without = terms;
+    without.pump_flow = false;
+    indicators.push_back(Chambers::largest_flow(x, p, terms) -
+                         Chambers::pump_flow(p.supply_pressure_pa, x, in, p, without));
+  }
+}
+
 template <std::size_t N>
 void plant_indicators(const TwoChamberPlant::Coefficients<double>& p, const PresentTerms& terms,
                       const std::array<double, N>& x, const std::array<double, N>& dx,
                       double spool_v, std::vector<double>& indicators) {
   using Plant = TwoChamberPlant;
-  const double out_v = spool_v + p.valve_offset_v;
+  const double out = spool_v + p.valve_offset_v;
   if (!terms.null_opening) {  // else edges open smoothly
-    indicators.push_back(out_v - p.valve_dead_band_v - p.overlap_supply_to_a_v);
-    indicators.push_back(-out_v - p.valve_dead_band_v - p.overlap_a_to_tank_v);
-    indicators.push_back(-out_v - p.valve_dead_band_v - p.overlap_supply_to_b_v);
-    indicators.push_back(out_v - p.valve_dead_band_v - p.overlap_b_to_tank_v);
+    indicators.push_back(out - p.dead_band - p.overlap_supply_to_a_v);
+    indicators.push_back(-out - p.dead_band - p.overlap_a_to_tank_v);
+    indicators.push_back(-out - p.dead_band - p.overlap_supply_to_b_v);
+    indicators.push_back(out - p.dead_band - p.overlap_b_to_tank_v);
   }
   const double extended_m = x[Plant::position] - Plant::retracted_stop(p, terms);
   indicators.push_back(extended_m);
   indicators.push_back(p.stroke_m - extended_m);
+  chamber_indicators(p, terms, x, spool_v, indicators);
   if (terms.hoses < 0) return;  // else each hose yields in the direction of its pressure change
   indicators.push_back(dx[Plant::pressure_a]);
   indicators.push_back(dx[Plant::pressure_b]);
@@ -55,25 +97,16 @@ void plant_indicators(const LinkagePlant::Coefficients<double>& p, const Present
   const double out = spool + p.valve_offset_v;
   indicators.push_back(out - p.dead_band);
   indicators.push_back(-out - p.dead_band);
-  if (terms.return_band) {
-    indicators.push_back(out - p.return_dead_band_pa);
-    indicators.push_back(-out - p.return_dead_band_pa);
-  }
-  if (terms.bypass) {
-    indicators.push_back(p.dead_band + p.bypass_range_pa - out);
-    indicators.push_back(p.dead_band + p.bypass_range_pa + out);
-  }
   indicators.push_back(x[Plant::angle] - p.lower_stop_rad);
   indicators.push_back(p.upper_stop_rad - x[Plant::angle]);
-  if (terms.make_up) {  // pressures count from the tank's, whose changes are small
-    indicators.push_back(x[Plant::pressure_a] - p.tank_pressure_pa);
-    indicators.push_back(x[Plant::pressure_b] - p.tank_pressure_pa);
-  }
-  if (terms.pump_flow && terms.supply >= 0) {
-    const double asked = (p.supply_pressure_pa - x[static_cast<std::size_t>(terms.supply)]) /
-                         p.supply_resistance_pa_s_per_m3;
-    indicators.push_back(Plant::largest_flow(x, p, terms) - asked);
-  }
+  chamber_indicators(p, terms, x, spool, indicators);
+}
+
+/// The turn of the bristles.
+template <typename Plant, std::size_t N>
+void friction_indicators(const PresentTerms& terms, const std::array<double, N>& x,
+                         std::vector<double>& indicators) {
+  if (terms.bristles >= 0) indicators.push_back(x[Plant::velocity]);
 }
 
 /// Limits of the controller's output and of the spool's rate.

@@ -43,9 +43,25 @@ template <typename X>
 struct LoopError {
   X error{};        ///< reference minus controlled quantity, in the unit of that quantity
   X pressure_pa{};  ///< load pressure, where it is fed back
+  X reference{};    ///< where its rate is fed forward
 };
 
-/// u = K_p e + I + K_d N (e - e_f) - K_dp P_L, then the limit.
+/// Rate of the reference behind its filter [m/s]: v_f = N (r - r_f).
+template <typename X, typename State, typename P>
+X reference_rate(const LoopError<X>& loop, const State& state, const P& p, const Layout& layout) {
+  return (loop.reference - state[static_cast<std::size_t>(layout.reference)]) *
+         p.derivative_filter_rad_per_s;
+}
+
+/// Rate of that rate behind the same filter once more [m/s2]: a_f = N (v_f - v_ff).
+template <typename X, typename State, typename P>
+X reference_acceleration(const LoopError<X>& loop, const State& state, const P& p,
+                         const Layout& layout) {
+  return (reference_rate(loop, state, p, layout) - state[static_cast<std::size_t>(layout.rate)]) *
+         p.derivative_filter_rad_per_s;
+}
+
+/// u = K_p e + I + K_d N (e - e_f) - K_dp P_L + K_vf v_f + K_af a_f, then the limit.
 ///
 /// @param state  the whole state vector; `layout` has the indices of integral and filter
 template <typename X, typename State, typename P>
@@ -59,6 +75,11 @@ ControllerOutput<X> controller_output(const LoopError<X>& loop, const State& sta
                           (p.kd_v_s_per_m * p.derivative_filter_rad_per_s);
   }
   if (layout.pressure_feedback) wanted = wanted - loop.pressure_pa * p.pressure_feedback_v_per_pa;
+  if (layout.reference >= 0)
+    wanted = wanted + reference_rate(loop, state, p, layout) * p.velocity_feedforward_v_s_per_m;
+  if (layout.rate >= 0)
+    wanted = wanted +
+             reference_acceleration(loop, state, p, layout) * p.acceleration_feedforward_v_s2_per_m;
   return {wanted, clamp_symmetric(wanted, p.output_limit_v)};
 }
 
@@ -78,7 +99,7 @@ X integral_rate(const X& error, const ControllerOutput<X>& u, const P& p) {
   return error * p.ki_v_per_m_s + (u.limited - u.wanted) * anti_windup_rate(p);
 }
 
-/// One tick of the sampled controller. The filter advances by backward Euler, the output is
+/// One tick of the sampled controller. The filters advance by backward Euler, the output is
 /// constant until the next tick, and the integral advances by forward Euler with the same
 /// back-calculation. Back-calculation takes at least one period to reach the limit, so it cannot
 /// overshoot it.
@@ -86,11 +107,14 @@ template <typename X, typename State, typename P>
 void controller_tick(const LoopError<X>& loop, State& state, const P& p, const Layout& layout) {
   const X& error = loop.error;
   const double period_s = value_of(p.sample_time_s);
-  if (layout.filter >= 0) {
-    auto& filtered = state[static_cast<std::size_t>(layout.filter)];
+  const auto follow = [&](int index, const X& value) {
+    auto& filtered = state[static_cast<std::size_t>(index)];
     const X step = X(p.derivative_filter_rad_per_s * period_s);
-    filtered = (filtered + step * error) / (1.0 + step);
-  }
+    filtered = (filtered + step * value) / (1.0 + step);
+  };
+  if (layout.filter >= 0) follow(layout.filter, error);
+  if (layout.reference >= 0) follow(layout.reference, loop.reference);
+  if (layout.rate >= 0) follow(layout.rate, reference_rate(loop, state, p, layout));
   const ControllerOutput<X> u = controller_output(loop, state, p, layout);
   if (layout.integral >= 0) {
     auto& integral = state[static_cast<std::size_t>(layout.integral)];

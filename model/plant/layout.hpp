@@ -13,33 +13,45 @@ namespace rigcal::model {
 
 /// Optional terms of a rig; an absent one costs nothing.
 struct PresentTerms {
-  bool friction = false;        ///< Coulomb or breakaway friction was given
-  bool stribeck = false;        ///< breakaway friction was given
-  bool orifice_leak = false;    ///< the leakage coefficient is not zero, or free
-  bool laminar_leak = false;    ///< likewise
-  bool null_leak = false;       ///< likewise, across the null of the valve
-  bool valve_offset = false;    ///< null shift: not zero, or free
-  bool spool_shape = false;     ///< null shift or overlap: not zero, or free
-  bool external_force = false;  ///< recorded, or not zero, or free
-  bool varying_load = false;    ///< the load's gradient or curvature: not zero, or free
-  bool curved_load = false;     ///< the load's curvature: not zero, or free
-  bool null_opening = false;    ///< covered edges leak through an orifice
-  bool line_loss = false;       ///< the lines throttle, too
-  bool air = false;             ///< the bulk modulus falls at low pressure
-  bool external_leak = false;   ///< for either chamber: not zero, or free
-  int hoses = -1;               ///< index of the first state of yielding hoses; -1: rigid hoses
-  int payload = -1;             ///< index of the first state of the second mass; -1: none
-  bool pilot = false;           ///< the drive of the spool is a pilot pressure
-  bool power_opening = false;   ///< the spool opens by a power law
-  bool return_band = false;     ///< the edges to the tank have their own dead band
-  bool return_power = false;    ///< likewise, their own power law
-  bool return_line = false;     ///< the line to the tank throttles, too
-  bool return_loss = false;     ///< the line to the tank has a loss in proportion to its flow
-  bool bypass = false;          ///< a closed valve passes the pump's flow to the tank
-  bool pump_flow = false;       ///< the flow of the pump is limited
-  bool make_up = false;         ///< the tank fills a chamber that is pulled empty
-  int pump = -1;                ///< index of the time of demand; -1: its limit is constant
-  int supply = -1;              ///< index of the supply pressure at the valve; -1: the source's
+  bool friction = false;         ///< Coulomb or breakaway friction was given
+  bool stribeck = false;         ///< breakaway friction was given
+  bool seal_friction = false;    ///< friction grows with the pressure across the piston
+  bool shaped_friction = false;  ///< it does, or has pre-sliding
+  int bristles = -1;             ///< index of the bristles' force; -1: friction without pre-sliding
+  bool orifice_leak = false;     ///< the leakage coefficient is not zero, or free
+  bool leak_line = false;        ///< the leak begins laminar: its resistance was given
+  bool laminar_leak = false;     ///< likewise
+  bool null_leak = false;        ///< likewise, across the null of the valve
+  bool valve_offset = false;     ///< null shift: not zero, or free
+  bool spool_shape = false;      ///< null shift or overlap: not zero, or free
+  bool external_force = false;   ///< recorded, or not zero, or free
+  bool varying_load = false;     ///< the load's gradient or curvature: not zero, or free
+  bool curved_load = false;      ///< the load's curvature: not zero, or free
+  bool overlaps = false;         ///< an overlap of an edge: not zero, or free
+  bool null_opening = false;     ///< covered edges leak through an orifice
+  bool line_loss = false;        ///< the lines throttle, too
+  bool air = false;              ///< the bulk modulus falls at low pressure
+  bool external_leak = false;    ///< for either chamber: not zero, or free
+  int hoses = -1;                ///< index of the first state of yielding hoses; -1: rigid hoses
+  int payload = -1;              ///< index of the first state of the second mass; -1: none
+  bool pilot = false;            ///< the drive of the spool is a pilot pressure
+  bool power_opening = false;    ///< the spool opens by a power law
+  bool return_band = false;      ///< the edges to the tank have their own dead band
+  bool return_power = false;     ///< likewise, their own power law
+  bool return_line = false;      ///< the line to the tank throttles, too
+  bool return_loss = false;      ///< the line to the tank has a loss in proportion to its flow
+  bool bypass = false;           ///< a closed valve passes the pump's flow to the tank
+  bool table_opening = false;    ///< the spool opens by a table
+  bool compensator = false;      ///< edges from the supply are pressure-compensated
+  bool load_sensing = false;     ///< the pump follows the pressure of the driven chamber
+  bool accumulator = false;      ///< gas of an accumulator beside the supply's capacity
+  bool relief = false;           ///< a relief valve for each chamber
+  /// The valve has any term beside gains and overlaps of its edges, null opening and line loss.
+  bool shaped_valve = false;
+  bool pump_flow = false;  ///< the flow of the pump is limited
+  bool make_up = false;    ///< the tank fills a chamber that is pulled empty
+  int pump = -1;           ///< index of the time of demand; -1: its limit is constant
+  int supply = -1;         ///< index of the supply pressure at the valve; -1: the source's
   bool valve_rate_limit = false;
   bool retracted_position = false;     ///< else half a stroke below zero
   bool initial_load_pressure = false;  ///< else the load pressure starts in equilibrium
@@ -85,7 +97,13 @@ inline constexpr StateRow kPilotSignal{"valve_signal", "Pa",
 inline constexpr StateRow kPilotSignalRate{"valve_signal_rate", "Pa/s", "its rate", 1e5, 1e7};
 inline constexpr StateRow kPumpDemand{"pump_demand", "s",
                                       "time for which the pump has been asked for flow", 1e-3, 1.0};
+inline constexpr StateRow kBristleForce{
+    "bristle_force", "N", "force of seals and contacts before they slide", 0.1, 100.0};
 inline constexpr StateRow kIntegral{"controller_integral", "V", "integral action", 1e-3, 1.0};
+inline constexpr StateRow kFilteredReference{"controller_filtered_reference", "m",
+                                             "filtered reference", 1e-6, 0.01};
+inline constexpr StateRow kFilteredRate{"controller_filtered_rate", "m/s",
+                                        "filtered rate of the reference", 1e-5, 0.1};
 inline constexpr StateRow kHeldOutput{"controller_held_output", "V",
                                       "output of the sampled controller", 1e-3, 1.0};
 /// Filtered error, in the unit of the controlled quantity.
@@ -103,6 +121,7 @@ struct Layout {
   int supply = -1;      ///< supply pressure at the valve [Pa]
   int pump = -1;        ///< time for which the pump has been asked for flow [s]
   int payload = -1;     ///< position [m] and velocity [m/s] of the second mass
+  int bristles = -1;    ///< force of the bristles [N]
   int valve_order = 0;  ///< 0: spool follows the command; 1, 2: lag
   int valve = -1;       ///< first valve state: spool signal [V], then its rate [V/s]
   bool pid = false;
@@ -110,6 +129,8 @@ struct Layout {
   bool pressure_feedback = false;          ///< the load pressure is fed back inside the loop
   int integral = -1;                       ///< integral action [V]
   int filter = -1;                         ///< filtered error, in the unit of `feedback`
+  int reference = -1;                      ///< filtered reference of a feed-forward [m]
+  int rate = -1;                           ///< its rate, filtered once more [m/s]
   int held = -1;  ///< output of a sampled controller, constant between ticks [V]
   PresentTerms terms;
   int states = 0;
@@ -118,8 +139,15 @@ struct Layout {
   std::array<const StateRow*, kMostAdded> added{};  ///< the states after those of the plant
 
   bool sampled() const { return held >= 0; }
-  /// Whether the loop feeds back the position of the piston and nothing else.
-  bool position_alone() const { return feedback == Feedback::position && !pressure_feedback; }
+  /// Whether the loop feeds back the position of the piston and nothing else, and nothing forward.
+  bool position_alone() const {
+    return feedback == Feedback::position && !pressure_feedback && reference < 0;
+  }
+  /// Whether a state is one that a sampled controller's tick changes.
+  bool of_controller(int state) const {
+    return state >= 0 && (state == integral || state == filter || state == reference ||
+                          state == rate || state == held);
+  }
 
   /// @return  index of the state
   int add(const StateRow& row) {
@@ -165,6 +193,7 @@ inline Layout layout_of(const Rig& rig, const ParameterValues& values, std::span
     layout.payload = layout.add(kPayloadPosition);
     layout.add(kPayloadVelocity);
   }
+  if (given("bristle_stiffness")) layout.bristles = layout.add(kBristleForce);
   layout.terms.pilot = given("pilot_gain");
   const StateRow& signal = layout.terms.pilot ? kPilotSignal : kValveSignal;
   if (given("valve_frequency")) {
@@ -182,12 +211,18 @@ inline Layout layout_of(const Rig& rig, const ParameterValues& values, std::span
     if (given(gain_keys(rig.feedback).ki)) layout.integral = layout.add(kIntegral);
     if (given(gain_keys(rig.feedback).kd))
       layout.filter = layout.add(kFilteredError.at(static_cast<std::size_t>(rig.feedback)));
+    if (given("velocity_feedforward") || given("acceleration_feedforward"))
+      layout.reference = layout.add(kFilteredReference);
+    if (given("acceleration_feedforward")) layout.rate = layout.add(kFilteredRate);
     if (given("sample_time")) layout.held = layout.add(kHeldOutput);
   }
   layout.terms.stribeck = given("stribeck_friction");
-  layout.terms.friction =
-      layout.terms.stribeck || given("coulomb_friction") || given("joint_friction");
+  layout.terms.seal_friction = given("seal_friction");
+  layout.terms.shaped_friction = layout.terms.seal_friction || layout.bristles >= 0;
+  layout.terms.friction = layout.terms.shaped_friction || layout.terms.stribeck ||
+                          given("coulomb_friction") || given("joint_friction");
   layout.terms.orifice_leak = acts("leakage_coefficient");
+  layout.terms.leak_line = given("leakage_resistance");
   layout.terms.laminar_leak = acts("laminar_leakage");
   layout.terms.null_leak = acts("valve_null_leakage");
   layout.terms.external_force = force_recorded || acts("external_force");
@@ -196,10 +231,15 @@ inline Layout layout_of(const Rig& rig, const ParameterValues& values, std::span
   layout.terms.valve_offset = acts("valve_offset");
   layout.terms.spool_shape = layout.terms.valve_offset || acts("valve_dead_band");
   layout.terms.external_leak = acts("external_leakage_a") || acts("external_leakage_b");
+  layout.terms.overlaps = acts("overlap_supply_to_a") || acts("overlap_a_to_tank") ||
+                          acts("overlap_supply_to_b") || acts("overlap_b_to_tank");
   layout.terms.null_opening = given("valve_null_opening");
   layout.terms.line_loss = given("valve_line_opening");
   layout.terms.air = given("air_fraction");
-  layout.terms.power_opening = given("pilot_exponent");
+  layout.terms.power_opening = given("pilot_exponent") || given("valve_exponent");
+  layout.terms.table_opening =
+      given("opening_20") || given("opening_40") || given("opening_60") || given("opening_80");
+  layout.terms.compensator = given("compensator_pressure");
   layout.terms.return_band = given("return_dead_band");
   layout.terms.return_power = given("return_exponent");
   layout.terms.return_line = given("return_line_opening");
@@ -207,10 +247,18 @@ inline Layout layout_of(const Rig& rig, const ParameterValues& values, std::span
   layout.terms.bypass = given("bypass_opening");
   layout.terms.pump_flow = given("pump_flow");
   layout.terms.make_up = acts("make_up_conductance");
+  layout.terms.relief = given("relief_pressure");
+  layout.terms.load_sensing = given("load_sensing_margin");
+  layout.terms.accumulator = given("accumulator_volume");
+  layout.terms.shaped_valve = layout.terms.pilot || layout.terms.power_opening ||
+                              layout.terms.table_opening || layout.terms.compensator ||
+                              layout.terms.return_power || layout.terms.return_line ||
+                              layout.terms.return_loss;
   layout.terms.pump = layout.pump;
   layout.terms.supply = layout.supply;
   layout.terms.hoses = layout.hoses;
   layout.terms.payload = layout.payload;
+  layout.terms.bristles = layout.bristles;
   layout.terms.valve_rate_limit = given("valve_rate_limit");
   layout.terms.retracted_position = given("retracted_position");
   layout.terms.initial_load_pressure = given("initial_load_pressure");

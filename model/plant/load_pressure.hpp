@@ -89,12 +89,15 @@ struct LoadPressurePlant {
   /// Internal leakage across the piston [m3/s]: orifice (eq. 11) and laminar path.
   template <typename X, typename C>
   static X leakage_flow(const X& P_L, const Coefficients<C>& p, const PresentTerms& terms) {
-    if (!terms.laminar_leak)
+    if (!terms.laminar_leak && !terms.leak_line)
       return terms.orifice_leak ? orifice_leakage(P_L, p.leak_conductance, p.leakage_smoothing_pa)
                                 : X(0.0);
-    const X laminar = P_L * p.laminar_leakage_m3_per_s_pa;
-    if (!terms.orifice_leak) return laminar;
-    return laminar + orifice_leakage(P_L, p.leak_conductance, p.leakage_smoothing_pa);
+    return internal_leak(P_L, p, terms);
+  }
+
+  template <typename X, std::size_t M>
+  static X pressure_across(const std::array<X, M>& x) {
+    return x[load_pressure];
   }
 
   /// Time derivative of the state [m/s, m/s2, Pa/s].
@@ -107,7 +110,7 @@ struct LoadPressurePlant {
     const X& P_L = x[load_pressure];
     const C& A = p.piston_area_m2;
     X force = P_L * A - v * p.damping_n_s_per_m - x[position] * p.stiffness_n_per_m;
-    if (terms.friction) force = force - friction(v, p, terms);
+    if (terms.friction) force = force - friction_of<LoadPressurePlant>(x, p, terms);
     if (terms.external_force || terms.varying_load)
       force = force - external_load(x[position], in, p, terms);
     if constexpr (M > kStates + 1) {
@@ -134,7 +137,7 @@ struct LoadPressurePlant {
       case Output::pressure_b:
         return 0.5 * (in.supply_pressure_pa - P_L);
       case Output::force:
-        return P_L * p.piston_area_m2 - friction(x[velocity], p, terms);
+        return P_L * p.piston_area_m2 - friction_of<LoadPressurePlant>(x, p, terms);
       case Output::spool:
         return spool(in, p, terms);
       case Output::servo_flow:

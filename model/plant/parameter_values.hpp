@@ -44,6 +44,9 @@ struct CommonParameters {
   T stribeck_friction_n{};
   T stribeck_velocity_m_per_s{};
   T friction_smoothing_m_per_s{};
+  T seal_friction_m2{};
+  T bristle_stiffness_n_per_m{};
+  T bristle_damping_n_s_per_m{};
   T external_force_n{};
   T load_gradient_n_per_m{};
   T load_curvature_n_per_m2{};
@@ -51,6 +54,7 @@ struct CommonParameters {
   T payload_frequency_rad_per_s{};
   T payload_damping_ratio{};
   T laminar_leakage_m3_per_s_pa{};
+  T leakage_resistance_pa_s_per_m3{};
   T transport_delay_s{};
   T position_gain{};
   T load_pressure_gain{};
@@ -96,6 +100,8 @@ struct CommonParameters {
   T acceleration_ki_v_s_per_m{};
   T acceleration_kd_v_s3_per_m{};
   T pressure_feedback_v_per_pa{};
+  T velocity_feedforward_v_s_per_m{};
+  T acceleration_feedforward_v_s2_per_m{};
   T derivative_filter_rad_per_s{};
   T output_limit_v{};
   T sample_time_s{};
@@ -191,6 +197,9 @@ constexpr auto load_rows() {
       F{&P::stribeck_friction_n, {"stribeck_friction", "stribeck_friction_n", "F_st", "N", "friction at breakaway above Coulomb's", "docs/model.md", K::term, 0, 1e8, 0.0}},
       F{&P::stribeck_velocity_m_per_s, {"stribeck_velocity", "stribeck_velocity_m_per_s", "v_st", "m/s", "velocity at which the breakaway friction fades", "docs/model.md", K::term, 1e-6, 100, 0.01}},
       F{&P::friction_smoothing_m_per_s, {"friction_smoothing", "friction_smoothing_m_per_s", "v_0", "m/s", "velocity below which dry friction is straightened", "docs/model.md", K::term, 1e-6, 10, 1e-3, false}},
+      F{&P::seal_friction_m2, {"seal_friction", "seal_friction_m2", "k_p", "m2", "what dry friction grows by per pressure across the piston (N/Pa)", "docs/model.md", K::term, 0, 10, 0.0}},
+      F{&P::bristle_stiffness_n_per_m, {"bristle_stiffness", "bristle_stiffness_n_per_m", "sigma_0", "N/m", "stiffness of seals and contacts before they slide: dry friction with pre-sliding", "docs/model.md", K::term, 1e2, 1e12, 0.0}},
+      F{&P::bristle_damping_n_s_per_m, {"bristle_damping", "bristle_damping_n_s_per_m", "sigma_1", "N s/m", "damping of that micro-motion", "docs/model.md", K::term, 0, 1e9, 0.0}},
       F{&P::external_force_n, {"external_force", "external_force_n", "F_ext", "N", "constant load against positive travel", "docs/model.md", K::term, -1e8, 1e8, 0.0}},
       F{&P::load_gradient_n_per_m, {"load_gradient", "load_gradient_n_per_m", "k_F", "N/m", "what the load grows by per travel; negative where it falls", "docs/model.md", K::term, -1e12, 1e12, 0.0}},
       F{&P::load_curvature_n_per_m2, {"load_curvature", "load_curvature_n_per_m2", "c_F", "N/m2", "what the load grows by per square of travel", "docs/model.md", K::term, -1e12, 1e12, 0.0}},
@@ -198,6 +207,7 @@ constexpr auto load_rows() {
       F{&P::payload_frequency_rad_per_s, {"payload_frequency", "payload_frequency_rad_per_s", "omega_2", "rad/s", "natural frequency of the second mass where the first is fixed", "docs/model.md", K::term, 1e-2, 1e6, 0.0}},
       F{&P::payload_damping_ratio, {"payload_damping_ratio", "payload_damping_ratio", "zeta_2", "1", "damping ratio of the second mass where the first is fixed", "docs/model.md", K::term, 0, 100, 0.0}},
       F{&P::laminar_leakage_m3_per_s_pa, {"laminar_leakage", "laminar_leakage_m3_per_s_pa", "G_leak", "m3/(s Pa)", "laminar internal leak", "docs/model.md", K::term, 0, 1, 0.0}},
+      F{&P::leakage_resistance_pa_s_per_m3, {"leakage_resistance", "leakage_resistance_pa_s_per_m3", "R_leak", "Pa s/m3", "laminar loss in series with the orifice of the internal leak: one law from laminar to turbulent", "docs/model.md", K::term, 0, 1e18, 0.0}},
       // clang-format on
   };
 }
@@ -276,6 +286,8 @@ constexpr auto controller_rows() {
       F{&P::acceleration_ki_v_s_per_m, {"acceleration_ki", "acceleration_ki_v_s_per_m", "K_ia", "V s/m", "integral gain of a loop on acceleration", "docs/model.md", K::controller, 0, 1e9, 0.0}},
       F{&P::acceleration_kd_v_s3_per_m, {"acceleration_kd", "acceleration_kd_v_s3_per_m", "K_da", "V s3/m", "derivative gain of a loop on acceleration", "docs/model.md", K::controller, 0, 1e9, 0.0}},
       F{&P::pressure_feedback_v_per_pa, {"pressure_feedback", "pressure_feedback_v_per_pa", "K_dp", "V/Pa", "gain of the inner feedback of the load pressure", "docs/model.md", K::controller, 0, 1e6, 0.0}},
+      F{&P::velocity_feedforward_v_s_per_m, {"velocity_feedforward", "velocity_feedforward_v_s_per_m", "K_vf", "V s/m", "gain of the rate of a position loop's reference, filtered as the derivative is", "docs/model.md", K::controller, -1e9, 1e9, 0.0}},
+      F{&P::acceleration_feedforward_v_s2_per_m, {"acceleration_feedforward", "acceleration_feedforward_v_s2_per_m", "K_af", "V s2/m", "gain of the rate of that rate, filtered once more", "docs/model.md", K::controller, -1e9, 1e9, 0.0}},
       F{&P::derivative_filter_rad_per_s, {"derivative_filter", "derivative_filter_rad_per_s", "N", "rad/s", "corner of the derivative's filter", "docs/model.md", K::controller, 1e-3, 1e6, 0.0}},
       F{&P::output_limit_v, {"output_limit", "output_limit_v", "u_max", "V", "limit of the controller's output, both signs", "docs/model.md", K::controller, 1e-6, kInf, kInf}},
       F{&P::sample_time_s, {"sample_time", "sample_time_s", "T_s", "s", "period of a sampled controller; continuous if not given", "docs/model.md", K::controller, 1e-6, 100, 0.0, false}},

@@ -27,6 +27,68 @@ X friction(const X& v, const CommonParameters<C>& p, const PresentTerms& terms) 
                       p.friction_smoothing_m_per_s);
 }
 
+/// Internal leakage across the piston, A to B [m3/s]: orifice (eq. 11), behind a laminar path where
+/// that was given, and a laminar path beside it.
+///
+/// @param p  with leak_conductance, orifice_conductance() of the leak
+template <typename X, typename P>
+X internal_leak(const X& load_pressure_pa, const P& p, const PresentTerms& terms) {
+  const X laminar = load_pressure_pa * p.laminar_leakage_m3_per_s_pa;
+  if (!terms.orifice_leak) return laminar;
+  if (terms.leak_line)
+    return laminar + flow_before_line(load_pressure_pa, X(p.leak_conductance),
+                                      p.leakage_resistance_pa_s_per_m3, p.leakage_smoothing_pa);
+  return laminar + orifice_leakage(load_pressure_pa, p.leak_conductance, p.leakage_smoothing_pa);
+}
+
+/// Dry friction of steady sliding, without its sign [N]; that of seals grows with the pressure that
+/// presses them on.
+///
+/// @tparam Plant  has the velocity and the pressure across the piston
+template <typename Plant, typename X, std::size_t M, typename C>
+X sliding_friction_of(const std::array<X, M>& x, const CommonParameters<C>& p,
+                      const PresentTerms& terms) {
+  const X& v = x[static_cast<std::size_t>(Plant::velocity)];
+  const X sliding_n = terms.stribeck
+                          ? sliding_friction(v, p.coulomb_friction_n, p.stribeck_friction_n,
+                                             p.stribeck_velocity_m_per_s)
+                          : X(p.coulomb_friction_n);
+  if (!terms.seal_friction) return sliding_n;
+  const X P_L = Plant::pressure_across(x);
+  return sliding_n + (value_of(P_L) < 0.0 ? X(-P_L) : P_L) * p.seal_friction_m2;
+}
+
+/// Rate of the force of the bristles [N/s].
+template <typename Plant, typename X, std::size_t M, typename C>
+X bristle_rate_of(const std::array<X, M>& x, const CommonParameters<C>& p,
+                  const PresentTerms& terms) {
+  return bristle_rate(x[static_cast<std::size_t>(terms.bristles)],
+                      x[static_cast<std::size_t>(Plant::velocity)],
+                      sliding_friction_of<Plant>(x, p, terms), p.bristle_stiffness_n_per_m);
+}
+
+/// Dry friction of seals or with pre-sliding [N]. Not inlined, so that the code of rigs without it
+/// stays short.
+template <typename Plant, typename X, std::size_t M, typename C>
+[[gnu::noinline]] X shaped_friction(const std::array<X, M>& x, const CommonParameters<C>& p,
+                                    const PresentTerms& terms) {
+  if constexpr (M > static_cast<std::size_t>(Plant::kStates)) {
+    if (terms.bristles >= 0)
+      return x[static_cast<std::size_t>(terms.bristles)] +
+             bristle_rate_of<Plant>(x, p, terms) *
+                 (p.bristle_damping_n_s_per_m / p.bristle_stiffness_n_per_m);
+  }
+  return sliding_friction_of<Plant>(x, p, terms) *
+         smooth_sign(x[static_cast<std::size_t>(Plant::velocity)], p.friction_smoothing_m_per_s);
+}
+
+/// Dry friction of piston and rod [N], with any of its terms.
+template <typename Plant, typename X, std::size_t M, typename C>
+X friction_of(const std::array<X, M>& x, const CommonParameters<C>& p, const PresentTerms& terms) {
+  if (terms.shaped_friction) return shaped_friction<Plant>(x, p, terms);
+  return friction(x[static_cast<std::size_t>(Plant::velocity)], p, terms);
+}
+
 /// Load against positive travel [N]: the external force and the part that varies with the travel.
 template <typename X, typename C>
 X external_load(const X& x, const PlantInput<X>& in, const CommonParameters<C>& p,

@@ -111,9 +111,8 @@ class System {
     if (!layout_.sampled()) return lin;
     const auto rates = tick_rates(ByStates{}, lifted(x), t);
     const auto by_parameters = tick_rates(ByParameters{}, held<ByParameters>(x), t);
-    for (const int state : {layout_.integral, layout_.filter, layout_.held}) {
-      if (state < 0) continue;
-      const auto i = static_cast<std::size_t>(state);
+    for (std::size_t i = Plant::kStates; i < N; ++i) {
+      if (!layout_.of_controller(static_cast<int>(i))) continue;
       take_row(rates[i], i, lin);
       if constexpr (P > 0) lin.f_p[i] = by_parameters[i].derivative;
     }
@@ -144,12 +143,12 @@ class System {
       in = plant_input(ByParameters{}, x, command, t);
     }
     for (std::size_t k = 0; k < outputs.size(); ++k) {
+      if (outputs[k] == (layout_.terms.pilot ? Output::pilot_pressure : Output::command)) {
+        result[k] = command;
+        continue;
+      }
       if constexpr (requires { Plant::angle; }) {
-        const Output drive = layout_.terms.pilot ? Output::pilot_pressure : Output::command;
-        result[k] =
-            outputs[k] == drive
-                ? command
-                : Plant::output(outputs[k], x, in, parameters_of(ByParameters{}), layout_.terms);
+        result[k] = Plant::output(outputs[k], x, in, parameters_of(ByParameters{}), layout_.terms);
         continue;
       }
       switch (outputs[k]) {
@@ -158,9 +157,6 @@ class System {
           break;
         case Output::velocity:
           result[k] = x[Plant::velocity];
-          break;
-        case Output::command:
-          result[k] = command;
           break;
         case Output::acceleration:
           result[k] = Plant::derivative(x, in, parameters_of(ByParameters{}),
@@ -203,14 +199,20 @@ class System {
       states[payload] = states[Plant::position];
       states[payload + 1] = states[Plant::velocity];
     }
+    if (layout_.bristles >= 0)  // as if the motion had gone on for long
+      states[static_cast<std::size_t>(layout_.bristles)] =
+          friction(states[Plant::velocity], p, layout_.terms);
     if (given && layout_.integral >= 0)
       states[static_cast<std::size_t>(layout_.integral)] = p.initial_integral_v;
+    if (layout_.reference >= 0)  // its rate begins at zero
+      states[static_cast<std::size_t>(layout_.reference)] = states[Plant::position];
     if (given || before == Before::steady) {
       // The loop was closed before the record began: no kick of the derivative, spool at rest.
       const C drive =
           before == Before::hold ? input_value(ByParameters{}, drive_, t, true) : while_it_waits_;
       const LoopError<C> loop = loop_error(ByParameters{}, states, drive, t);
       if (layout_.filter >= 0) states[static_cast<std::size_t>(layout_.filter)] = loop.error;
+      if (layout_.reference >= 0) states[static_cast<std::size_t>(layout_.reference)] = drive;
       if (layout_.sampled()) {
         states[static_cast<std::size_t>(layout_.held)] =
             controller_output(loop, states, p, layout_).limited;
@@ -360,7 +362,7 @@ class System {
   /// Whether loop_rates() gives the derivative of a state.
   bool is_of_loop(std::size_t i) const {
     const int state = static_cast<int>(i);
-    return state == layout_.integral || state == layout_.filter ||
+    return (layout_.of_controller(state) && state != layout_.held) ||
            (state >= layout_.valve && state < layout_.valve + layout_.valve_order);
   }
 
@@ -425,7 +427,7 @@ class System {
     if constexpr (N > Plant::kStates) {
       if (!layout_.position_alone()) return other_loop_error(by, x, drive, t);
     }
-    return {drive - x[Plant::position], Number<K>(0.0)};
+    return {drive - x[Plant::position], Number<K>(0.0), Number<K>(0.0)};
   }
 
   /// Not inlined, so that the code of position loops stays short.
@@ -436,7 +438,7 @@ class System {
     // Neither force nor load pressure nor acceleration depends on the spool, so the command is not
     // needed.
     const PlantInput<Number<K>> in = plant_input(by, x, Number<K>(0.0), t);
-    LoopError<Number<K>> loop{drive, Number<K>(0.0)};
+    LoopError<Number<K>> loop{drive, Number<K>(0.0), drive};
     switch (layout_.feedback) {
       case Feedback::position:
         loop.error = drive - x[Plant::position];
@@ -539,6 +541,10 @@ class System {
           const auto filter = static_cast<std::size_t>(layout_.filter);
           dx[filter] = (loop.error - x[filter]) * p.derivative_filter_rad_per_s;
         }
+        if (layout_.reference >= 0)
+          dx[static_cast<std::size_t>(layout_.reference)] = reference_rate(loop, x, p, layout_);
+        if (layout_.rate >= 0)
+          dx[static_cast<std::size_t>(layout_.rate)] = reference_acceleration(loop, x, p, layout_);
       }
     }
     if (layout_.valve_order == 1) {
@@ -571,6 +577,11 @@ class System {
         dx[payload + 1] = payload_acceleration(by, x);
       }
     }
+    if constexpr (requires { Plant::pressure_across(x); }) {
+      if (layout_.bristles >= 0)
+        dx[static_cast<std::size_t>(layout_.bristles)] =
+            bristle_rate_of<Plant>(x, p, layout_.terms);
+    }
     if constexpr (requires { Plant::kHoses; }) {
       if (layout_.hoses >= 0) {
         const auto rates = Plant::hose_rates(x, plant_dx, p, layout_.terms);
@@ -580,12 +591,9 @@ class System {
     }
     if constexpr (requires { p.supply_capacity_m3_per_pa; }) {
       if (layout_.supply >= 0) {
-        Number<K> inflow =
-            (source_pressure(by, t) - in.supply_pressure_pa) / p.supply_resistance_pa_s_per_m3;
-        if constexpr (requires { p.pump_flow_m3_per_s; })
-          inflow = Plant::pump_flow(inflow, x, p, layout_.terms);
         dx[static_cast<std::size_t>(layout_.supply)] =
-            (inflow - Plant::supply_flow(x, in, p, layout_.terms)) / p.supply_capacity_m3_per_pa;
+            Plant::supply_rate(source_pressure(by, t), Plant::supply_flow(x, in, p, layout_.terms),
+                               x, in, p, layout_.terms);
       }
     }
     if constexpr (requires { p.pump_flow_m3_per_s; }) {

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 #include "model/arithmetic/smooth.hpp"
 
@@ -46,14 +49,36 @@ X orifice_leakage(const X& load_pressure_pa, const C& conductance, const C& smoo
   return signed_sqrt(load_pressure_pa, smoothing_pa) * conductance;
 }
 
-/// Dry friction: (F_c + F_st exp(-(v / v_st)^2)) sgn(v), the sign straightened within v_0.
+/// Dry friction of steady sliding, without its sign [N]: F_c + F_st exp(-(v / v_st)^2).
+template <typename X, typename C>
+X sliding_friction(const X& velocity_m_per_s, const C& coulomb_n, const C& stribeck_n,
+                   const C& stribeck_velocity_m_per_s) {
+  using std::exp;
+  const X ratio = velocity_m_per_s / stribeck_velocity_m_per_s;
+  return coulomb_n + stribeck_n * exp(-(ratio * ratio));
+}
+
+/// Dry friction: that of steady sliding times sgn(v), the sign straightened within v_0.
 template <typename X, typename C>
 X dry_friction(const X& velocity_m_per_s, const C& coulomb_n, const C& stribeck_n,
                const C& stribeck_velocity_m_per_s, const C& smoothing_m_per_s) {
-  using std::exp;
-  const X ratio = velocity_m_per_s / stribeck_velocity_m_per_s;
-  return (coulomb_n + stribeck_n * exp(-(ratio * ratio))) *
+  return sliding_friction(velocity_m_per_s, coulomb_n, stribeck_n, stribeck_velocity_m_per_s) *
          smooth_sign(velocity_m_per_s, smoothing_m_per_s);
+}
+
+/// Rate of the force of the bristles, F_b' = sigma_0 (v - |v| F_b / g(v)): they bend until they
+/// slide at g(v).
+///
+/// @param sliding_n  g(v), sliding_friction()
+/// @source   C. Canudas de Wit, H. Olsson, K. J. Astrom and P. Lischinsky, A new model for control
+///           of systems with friction, IEEE Trans. Automatic Control 40 (1995) 419-425, with the
+///           force F_b = sigma_0 z as the state
+template <typename X, typename C>
+X bristle_rate(const X& bristle_n, const X& velocity_m_per_s, const X& sliding_n,
+               const C& stiffness_n_per_m) {
+  constexpr double kLeast_n = 1e-6;
+  const X speed = value_of(velocity_m_per_s) < 0.0 ? X(-velocity_m_per_s) : velocity_m_per_s;
+  return (velocity_m_per_s - speed * bristle_n / at_least(sliding_n, kLeast_n)) * stiffness_n_per_m;
 }
 
 /// Acceleration of a second mass on a spring and a damper [m/s2]:
@@ -125,6 +150,30 @@ X power_opening(const X& y, const C& range, const C& exponent) {
   return exp(X(log(X(y / range)) * exponent)) * range;
 }
 
+/// Opening by a table, as of an edge with notches or of a flow curve from a data sheet: straight
+/// between 0, the values at 20, 40, 60 and 80 % of the range, and 1 at all of it; the last piece
+/// goes on beyond.
+///
+/// @param y       signal beyond the dead band, >= 0
+/// @param range   y_r, signal at which it is y_r itself, in the unit of y
+/// @param shares  opening at each fifth of the range over the one at all of it
+template <typename X, typename C>
+X table_opening(const X& y, const C& range, const std::array<C, 4>& shares) {
+  constexpr double kPieces = 5.0;
+  const X place = y * (kPieces / range);
+  const auto piece = static_cast<std::size_t>(std::clamp(value_of(place), 0.0, kPieces - 1.0));
+  const C from = piece == 0 ? C(0.0) : shares[piece - 1];
+  const C to = piece == shares.size() ? C(1.0) : shares[piece];
+  return ((place - static_cast<double>(piece)) * (to - from) + from) * range;
+}
+
+/// Pressure across an edge behind a compensator [Pa]: it throttles what is more than its spring's
+/// pressure, so that the flow no longer depends on the load; below it is open.
+template <typename X, typename C>
+X compensated_head(const X& head_pa, const C& spring_pa) {
+  return value_of(head_pa) > value_of(spring_pa) ? X(spring_pa) : head_pa;
+}
+
 /// Largest flow of a pump that rises from one value to a second [m3/s]:
 /// Q_1 + (Q_2 - Q_1) (1 + tanh((t - T_2) / tau_2)) / 2.
 ///
@@ -156,6 +205,29 @@ template <typename X>
 X absolute_pressure(const X& pressure_pa) {
   constexpr double kLeast_pa = 1e3;
   return at_least(X(pressure_pa + kAtmosphere_pa), kLeast_pa);
+}
+
+/// What an accumulator takes up per pressure [m3/Pa], its gas following p V^n = constant:
+/// V_0 / (n p) (p_0 / p)^(1/n) above the precharge. The bladder fills its shell below; that it
+/// lifts off over some hundredths of the pressure keeps the derivative continuous.
+///
+/// @param pressure_pa   above atmosphere
+/// @param volume_m3     V_0, of the gas at the precharge
+/// @param precharge_pa  p_0, above atmosphere
+/// @source   D. R. Otis and A. Pourmovahed, An algorithm for computing nonflow gas processes in gas
+///           springs and hydropneumatic accumulators, J. Dyn. Sys. Meas. Control 107 (1985) 93-96;
+///           here with one exponent instead of their heat transfer
+template <typename X, typename C>
+X accumulator_capacity(const X& pressure_pa, const C& volume_m3, const C& precharge_pa,
+                       const C& exponent) {
+  using std::exp;
+  using std::log;
+  using std::tanh;
+  constexpr double kLift = 0.02;  // of the precharge
+  const X p = absolute_pressure(pressure_pa);
+  const C first = absolute_pressure(precharge_pa);
+  const X above = (tanh(X((p - first) / (first * kLift))) + 1.0) * 0.5;
+  return above * exp(X(log(X(first / p)) / exponent)) * volume_m3 / (p * exponent);
 }
 
 /// Change of pressure after a turn over which a hose begins to yield [Pa]. The threads of a braid

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "model/plant/chambers.hpp"
 #include "model/plant/plant_input.hpp"
 #include "model/plant/terms.hpp"
 #include "model/plant/two_chamber_parameters.hpp"
@@ -20,29 +21,20 @@ namespace rigcal::model {
 ///   V_A   = V_A0 + A_A (x - x_R),  V_B = V_B0 + A_B (x_R + H - x)
 ///
 /// Q_A flows from the valve into chamber A, Q_B from chamber B into the valve.
-struct TwoChamberPlant {
+struct TwoChamberPlant : Chambers {
   static constexpr std::string_view kName = "two_chamber";  ///< in campaign files
-  static constexpr int kStates = 4;
   static constexpr bool kHoses = true;  ///< its hoses may yield: hose_rates(), hose_memory()
-  enum State { position, velocity, pressure_a, pressure_b };
+  enum Motion { position, velocity };
   template <typename T>
   using Parameters = TwoChamberParameters<T>;
   /// Parameters and quantities that depend only on them.
   template <typename C>
-  struct Coefficients : Parameters<C> {
-    C edge_conductance{};  ///< flow of an edge per volt of opening and root of pressure
-    C leak_conductance{};  ///< orifice leakage per root of pressure
-    C inverse_mass{};      ///< [1/kg]
+  struct Coefficients : ChamberCoefficients<Parameters<C>> {
+    C inverse_mass{};  ///< [1/kg]
 
     Coefficients() = default;
     explicit Coefficients(const Parameters<C>& p)
-        : Parameters<C>(p),
-          edge_conductance(
-              orifice_conductance(p.discharge_coefficient, p.area_gradient_m, p.density_kg_per_m3) *
-              p.valve_gain_m_per_v),
-          leak_conductance(
-              orifice_conductance(p.leakage_coefficient, p.leakage_area_m2, p.density_kg_per_m3)),
-          inverse_mass(1.0 / p.mass_kg) {}
+        : ChamberCoefficients<Parameters<C>>(p), inverse_mass(1.0 / p.mass_kg) {}
   };
   template <typename T>
   static constexpr const auto& fields() {
@@ -53,18 +45,9 @@ struct TwoChamberPlant {
 
   /// The state that an output reads, but for its sensor; none: it takes more.
   static constexpr std::optional<int> state_of(Output output) {
-    switch (output) {
-      case Output::position:
-        return position;
-      case Output::velocity:
-        return velocity;
-      case Output::pressure_a:
-        return pressure_a;
-      case Output::pressure_b:
-        return pressure_b;
-      default:
-        return std::nullopt;
-    }
+    if (output == Output::position) return position;
+    if (output == Output::velocity) return velocity;
+    return pressure_of(output);
   }
 
   /// No output: the chambers differ.
@@ -72,7 +55,8 @@ struct TwoChamberPlant {
 
   /// Spool travel [m], eq. 6, after null shift; the overlap is that of the edges.
   template <typename X, typename C>
-  static X spool(const PlantInput<X>& in, const Coefficients<C>& p) {
+  static X spool(const PlantInput<X>& in, const Coefficients<C>& p, const PresentTerms& terms) {
+    if (terms.shaped_valve) return shaped_spool(in, p, terms);
     return p.valve_gain_m_per_v * (in.spool_command_v + p.valve_offset_v);
   }
 
@@ -93,14 +77,10 @@ struct TwoChamberPlant {
     return orifice + head_pa * p.valve_null_leakage_m3_per_s_pa;
   }
 
-  template <typename X>
-  struct ValveFlows {
-    X supply_to_a{}, a_to_tank{}, supply_to_b{}, b_to_tank{};
-  };
-
   template <typename X, std::size_t M, typename C>
   static ValveFlows<X> valve_flows(const std::array<X, M>& x, const PlantInput<X>& in,
                                    const Coefficients<C>& p, const PresentTerms& terms) {
+    if (terms.shaped_valve) return flows_of_shape(x, in, p, terms);
     const X out = in.spool_command_v + p.valve_offset_v;
     const X back = -out;
     const X &p_A = x[pressure_a], &p_B = x[pressure_b];
@@ -111,6 +91,15 @@ struct TwoChamberPlant {
             edge(out, p.gain_b_to_tank, p.overlap_b_to_tank_v, p_B, P_t, p, terms)};
   }
 
+  /// Not inlined, so that the code of a plain valve stays short.
+  template <typename X, std::size_t M, typename C>
+  [[gnu::noinline]] static ValveFlows<X> flows_of_shape(const std::array<X, M>& x,
+                                                        const PlantInput<X>& in,
+                                                        const Coefficients<C>& p,
+                                                        const PresentTerms& terms) {
+    return shaped_valve_flows(x, in, p, terms);
+  }
+
   /// Flow that the valve takes from the supply [m3/s].
   template <typename X, std::size_t M, typename C>
   static X supply_flow(const std::array<X, M>& x, const PlantInput<X>& in, const Coefficients<C>& p,
@@ -119,20 +108,9 @@ struct TwoChamberPlant {
     return q.supply_to_a + q.supply_to_b;
   }
 
-  /// Internal leakage across the piston, A to B [m3/s]: orifice (eq. 11) and laminar path.
-  template <typename X, std::size_t M, typename C>
-  static X leakage_flow(const std::array<X, M>& x, const Coefficients<C>& p,
-                        const PresentTerms& terms) {
-    const X P_L = x[pressure_a] - x[pressure_b];
-    const X laminar = P_L * p.laminar_leakage_m3_per_s_pa;
-    if (!terms.orifice_leak) return laminar;
-    return laminar + orifice_leakage(P_L, p.leak_conductance, p.leakage_smoothing_pa);
-  }
-
-  template <typename X, typename C>
-  static X bulk_modulus(const X& pressure_pa, const Coefficients<C>& p, const PresentTerms& terms) {
-    if (!terms.air) return X(p.bulk_modulus_pa);
-    return aerated_bulk_modulus(pressure_pa, p.bulk_modulus_pa, p.air_fraction, p.air_exponent);
+  template <typename X, std::size_t M>
+  static X pressure_across(const std::array<X, M>& x) {
+    return x[pressure_a] - x[pressure_b];
   }
 
   /// Force of both stops on the piston, positive outwards [N].
@@ -166,10 +144,9 @@ struct TwoChamberPlant {
   static std::array<X, kStates> derivative(const std::array<X, M>& x, const PlantInput<X>& in,
                                            const Coefficients<C>& p, const PresentTerms& terms) {
     const X& v = x[velocity];
-    X force = x[pressure_a] * p.area_a_m2 - x[pressure_b] * p.area_b_m2 - v * p.damping_n_s_per_m -
-              x[position] * p.stiffness_n_per_m + stops_force(x[position], v, p, terms) -
-              p.mass_kg * p.gravity_m_per_s2;
-    if (terms.friction) force = force - friction(v, p, terms);
+    X force = piston_force(x, p) - v * p.damping_n_s_per_m - x[position] * p.stiffness_n_per_m +
+              stops_force(x[position], v, p, terms) - p.mass_kg * p.gravity_m_per_s2;
+    if (terms.friction) force = force - friction_of<TwoChamberPlant>(x, p, terms);
     if (terms.external_force || terms.varying_load)
       force = force - external_load(x[position], in, p, terms);
     if constexpr (M > kStates + 1) {
@@ -177,20 +154,13 @@ struct TwoChamberPlant {
         force = force - (payload_acceleration(x, position, terms, p) + p.gravity_m_per_s2) *
                             p.payload_mass_kg;
     }
-    const ValveFlows<X> q = valve_flows(x, in, p, terms);
-    const X leak = leakage_flow(x, p, terms);
+    const auto flow = chamber_flows(x, v, valve_flows(x, in, p, terms), in, p, terms);
     const auto volume = volumes(x[position], p, terms);
-    X flow_a = q.supply_to_a - q.a_to_tank - leak - v * p.area_a_m2;
-    X flow_b = q.supply_to_b - q.b_to_tank + leak + v * p.area_b_m2;
-    if (terms.external_leak) {
-      flow_a = flow_a - (x[pressure_a] - in.tank_pressure_pa) * p.external_leakage_a_m3_per_s_pa;
-      flow_b = flow_b - (x[pressure_b] - in.tank_pressure_pa) * p.external_leakage_b_m3_per_s_pa;
-    }
     const X take_a = volume[0] / bulk_modulus(x[pressure_a], p, terms);
     const X take_b = volume[1] / bulk_modulus(x[pressure_b], p, terms);
-    const auto yields = hose_shares(x, flow_a, flow_b, terms);
-    return {v, force * p.inverse_mass, flow_a / (take_a + yields[0] * p.hose_capacity_a_m3_per_pa),
-            flow_b / (take_b + yields[1] * p.hose_capacity_b_m3_per_pa)};
+    const auto yields = hose_shares(x, flow[0], flow[1], terms);
+    return {v, force * p.inverse_mass, flow[0] / (take_a + yields[0] * p.hose_capacity_a_m3_per_pa),
+            flow[1] / (take_b + yields[1] * p.hose_capacity_b_m3_per_pa)};
   }
 
   /// Fraction of each hose that yields; a pressure changes in the direction of the flow into its
@@ -241,14 +211,12 @@ struct TwoChamberPlant {
       case Output::pressure_b:
         return x[pressure_b];
       case Output::force:
-        return x[pressure_a] * p.area_a_m2 - x[pressure_b] * p.area_b_m2 -
-               friction(x[velocity], p, terms) + stops_force(x[position], x[velocity], p, terms);
+        return piston_force(x, p) - friction_of<TwoChamberPlant>(x, p, terms) +
+               stops_force(x[position], x[velocity], p, terms);
       case Output::spool:
-        return spool(in, p);
-      case Output::servo_flow: {
-        const ValveFlows<X> q = valve_flows(x, in, p, terms);
-        return 0.5 * (q.supply_to_a - q.a_to_tank + q.b_to_tank - q.supply_to_b);
-      }
+        return spool(in, p, terms);
+      case Output::servo_flow:
+        return servo_flow(valve_flows(x, in, p, terms));
       case Output::leakage_flow:
         return leakage_flow(x, p, terms);
       case Output::work_flow:

@@ -1,5 +1,11 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <stdexcept>
+#include <string_view>
+
 #include "model/plant/parameter_values.hpp"
 
 namespace rigcal::model {
@@ -37,6 +43,36 @@ struct TwoChamberParameters : CommonParameters<T> {
   T hose_yield_ratio{};
   T supply_resistance_pa_s_per_m3{};
   T supply_capacity_m3_per_pa{};
+  T pilot_gain_m_per_pa{};
+  T pilot_dead_band_pa{};
+  T pilot_range_pa{};
+  T pilot_exponent{};
+  T return_dead_band_pa{};
+  T return_exponent{};
+  T return_line_opening_m{};
+  T return_line_resistance_pa_s_per_m3{};
+  T bypass_opening_m{};
+  T bypass_range_pa{};
+  T pump_flow_m3_per_s{};
+  T pump_second_flow_m3_per_s{};
+  T pump_first_rate_m3_per_s2{};
+  T pump_delay_s{};
+  T pump_rise_s{};
+  T make_up_conductance_m3_per_s_pa{};
+  T valve_range_v{};
+  T valve_exponent{};
+  T opening_20{};
+  T opening_40{};
+  T opening_60{};
+  T opening_80{};
+  T compensator_pressure_pa{};
+  T valve_bypass_range_v{};
+  T load_sensing_margin_pa{};
+  T accumulator_volume_m3{};
+  T accumulator_precharge_pa{};
+  T accumulator_exponent{};
+  T relief_pressure_pa{};
+  T relief_conductance_m3_per_s_pa{};
   T initial_pressure_a_pa{};
   T initial_pressure_b_pa{};
 };
@@ -95,6 +131,61 @@ constexpr auto chamber_term_rows() {
   };
 }
 
+/// The gain of an electric valve, which a pilot-operated one lacks.
+template <template <typename> class Parameters, typename T>
+constexpr auto electric_gain_rows() {
+  using P = Parameters<T>;
+  using F = ParameterField<P, T>;
+  return std::array{
+      // clang-format off
+      F{&P::valve_gain_m_per_v, {"valve_gain", "valve_gain_m_per_v", "k_sv", "m/V", "spool travel per volt of an electric valve", "eq. 6", ParameterKind::term, 1e-12, 1, 0.0}},
+      // clang-format on
+  };
+}
+
+/// Optional terms of a valve that is driven by a pilot pressure, meters in and out differently or
+/// opens by a law of its own, and of pump, accumulator and check valves.
+template <template <typename> class Parameters, typename T>
+constexpr auto metering_rows() {
+  using P = Parameters<T>;
+  using K = ParameterKind;
+  using F = ParameterField<P, T>;
+  return std::array{
+      // clang-format off
+      F{&P::pilot_gain_m_per_pa, {"pilot_gain", "pilot_gain_m_per_pa", "k_p", "m/Pa", "spool travel per pilot pressure beyond the dead band; the drive is the channel pilot_pressure", "docs/model.md", K::term, 1e-15, 1e-3, 0.0}},
+      F{&P::pilot_dead_band_pa, {"pilot_dead_band", "pilot_dead_band_pa", "p_db", "Pa", "pilot pressure at which the spool begins to open: preload of its spring, and overlap", "docs/model.md", K::term, 0, 1e8, 0.0}},
+      F{&P::pilot_range_pa, {"pilot_range", "pilot_range_pa", "p_r", "Pa", "pressure beyond the dead band at which the power law passes what pilot_gain says", "docs/model.md", K::term, 1e3, 1e8, 1e6, false}},
+      F{&P::pilot_exponent, {"pilot_exponent", "pilot_exponent", "n_p", "1", "power of the opening beyond the dead band, as of notches in the spool", "docs/model.md", K::term, 1, 6, 1.0}},
+      F{&P::return_dead_band_pa, {"return_dead_band", "return_dead_band_pa", "p_dt", "Pa", "pilot pressure at which the edges to the tank begin to open; that of the others unless given", "docs/model.md", K::term, 0, 1e8, 0.0}},
+      F{&P::return_exponent, {"return_exponent", "return_exponent", "n_t", "1", "power of the opening of the edges to the tank; that of the others unless given", "docs/model.md", K::term, 1, 6, 1.0}},
+      F{&P::return_line_opening_m, {"return_line_opening", "return_line_opening_m", "l_t", "m", "spool travel at which an edge to the tank and the line after it lose alike", "docs/model.md", K::term, 1e-7, 10, 0.0}},
+      F{&P::return_line_resistance_pa_s_per_m3, {"return_line_resistance", "return_line_resistance_pa_s_per_m3", "R_t", "Pa s/m3", "laminar loss of the line to the tank, as of filter and cooler", "docs/model.md", K::term, 0, 1e13, 0.0}},
+      F{&P::bypass_opening_m, {"bypass_opening", "bypass_opening_m", "l_0", "m", "spool travel that opens an edge as far as the closed valve opens the way from pump to tank (open centre)", "docs/model.md", K::term, 1e-9, 10, 0.0}},
+      F{&P::bypass_range_pa, {"bypass_range", "bypass_range_pa", "p_0", "Pa", "pilot pressure beyond the dead band at which this way is closed", "docs/model.md", K::term, 1e3, 1e8, 1e6, false}},
+      F{&P::pump_flow_m3_per_s, {"pump_flow", "pump_flow_m3_per_s", "Q_1", "m3/s", "largest flow of the pump, whose pressure supply_pressure limits", "docs/model.md", K::term, 1e-9, 10, 0.0}},
+      F{&P::pump_second_flow_m3_per_s, {"pump_second_flow", "pump_second_flow_m3_per_s", "Q_2", "m3/s", "largest flow of the pump after the valve has been open for pump_delay", "docs/model.md", K::term, 1e-9, 10, 0.0}},
+      F{&P::pump_first_rate_m3_per_s2, {"pump_first_rate", "pump_first_rate_m3_per_s2", "Q_1'", "m3/s2", "what the first flow grows by per time of demand", "docs/model.md", K::term, 0, 10, 0.0}},
+      F{&P::pump_delay_s, {"pump_delay", "pump_delay_s", "T_2", "s", "time from the opening of the valve to the middle between both flows", "docs/model.md", K::term, 1e-3, 100, 0.0}},
+      F{&P::pump_rise_s, {"pump_rise", "pump_rise_s", "tau_2", "s", "half of the time that this change takes", "docs/model.md", K::term, 1e-3, 100, 0.1}},
+      F{&P::make_up_conductance_m3_per_s_pa, {"make_up_conductance", "make_up_conductance_m3_per_s_pa", "G_m", "m3/(s Pa)", "flow per pressure of the check valve through which the tank fills each chamber", "docs/model.md", K::term, 0, 1, 0.0}},
+      F{&P::valve_range_v, {"valve_range", "valve_range_v", "u_r", "V", "voltage beyond the dead band at which valve_exponent or table passes what valve_gain says", "docs/model.md", K::term, 1e-3, 1e3, 10.0, false}},
+      F{&P::valve_exponent, {"valve_exponent", "valve_exponent", "n_v", "1", "power of the opening of an electric valve beyond the dead band, as of notches in the spool", "docs/model.md", K::term, 1, 6, 1.0}},
+      F{&P::opening_20, {"opening_20", "opening_20", "o_20", "1", "opening at 20 % of the range beyond the dead band, over that at all of it: a table instead of a power", "docs/model.md", K::term, 0, 1, 0.2}},
+      F{&P::opening_40, {"opening_40", "opening_40", "o_40", "1", "the same at 40 %", "docs/model.md", K::term, 0, 1, 0.4}},
+      F{&P::opening_60, {"opening_60", "opening_60", "o_60", "1", "the same at 60 %", "docs/model.md", K::term, 0, 1, 0.6}},
+      F{&P::opening_80, {"opening_80", "opening_80", "o_80", "1", "the same at 80 %", "docs/model.md", K::term, 0, 1, 0.8}},
+      F{&P::compensator_pressure_pa, {"compensator_pressure", "compensator_pressure_pa", "p_c", "Pa", "pressure that a compensator leaves across the edges from the supply: their flow does not depend on the load above it", "docs/model.md", K::term, 1e4, 1e8, 0.0}},
+      F{&P::valve_bypass_range_v, {"valve_bypass_range", "valve_bypass_range_v", "u_b", "V", "voltage beyond the dead band at which the way of bypass_opening is closed", "docs/model.md", K::term, 1e-3, 1e3, 10.0, false}},
+      F{&P::load_sensing_margin_pa, {"load_sensing_margin", "load_sensing_margin_pa", "p_LS", "Pa", "pressure that the pump keeps above that of the driven chamber, supply_pressure at most", "docs/model.md", K::term, 0, 1e8, 0.0}},
+      F{&P::accumulator_volume_m3, {"accumulator_volume", "accumulator_volume_m3", "V_0", "m3", "gas of an accumulator at the valve, at its precharge", "docs/model.md", K::term, 1e-9, 10, 0.0}},
+      F{&P::accumulator_precharge_pa, {"accumulator_precharge", "accumulator_precharge_pa", "p_0", "Pa", "pressure of that gas while there is no oil", "docs/model.md", K::term, 1e3, 1e8, 0.0}},
+      F{&P::accumulator_exponent, {"accumulator_exponent", "accumulator_exponent", "n_g", "1", "polytropic exponent of that gas", "docs/model.md", K::term, 1, 2, 1.4}},
+      F{&P::relief_pressure_pa, {"relief_pressure", "relief_pressure_pa", "p_r", "Pa", "pressure at which the relief valve of each chamber begins to open to the tank", "docs/model.md", K::term, 1e4, 1e9, 0.0}},
+      F{&P::relief_conductance_m3_per_s_pa, {"relief_conductance", "relief_conductance_m3_per_s_pa", "G_r", "m3/(s Pa)", "flow of that valve per pressure beyond", "docs/model.md", K::term, 0, 1, 0.0}},
+      // clang-format on
+  };
+}
+
 /// Pressures of both chambers at the first sample.
 template <template <typename> class Parameters, typename T>
 constexpr auto chamber_initial_rows() {
@@ -109,12 +200,31 @@ constexpr auto chamber_initial_rows() {
   };
 }
 
+/// Rows but those with certain keys.
+template <typename F, std::size_t N, std::size_t M>
+constexpr auto rows_without(const std::array<F, N>& rows,
+                            const std::array<std::string_view, M>& keys) {
+  std::array<F, N - M> kept{};
+  std::size_t next = 0;
+  for (const F& row : rows) {
+    if (std::find(keys.begin(), keys.end(), row.spec.key) != keys.end()) continue;
+    if (next == kept.size()) throw std::logic_error("a key without a row");
+    kept[next++] = row;
+  }
+  return kept;
+}
+
+inline constexpr std::array kElectricGain{std::string_view("valve_gain")};
+
 /// The two-chamber plant, in the order of `rigcal params`.
 template <typename T>
 constexpr auto two_chamber_fields() {
   return joined(
       motion_rows<TwoChamberParameters, T>(), chamber_rows<TwoChamberParameters, T>(),
-      shared_rows<TwoChamberParameters, T>(), chamber_term_rows<TwoChamberParameters, T>(),
+      rows_without(oil_rows<TwoChamberParameters, T>(), kElectricGain),
+      electric_gain_rows<TwoChamberParameters, T>(), valve_rows<TwoChamberParameters, T>(),
+      load_rows<TwoChamberParameters, T>(), sensor_rows<TwoChamberParameters, T>(),
+      chamber_term_rows<TwoChamberParameters, T>(), metering_rows<TwoChamberParameters, T>(),
       chamber_initial_rows<TwoChamberParameters, T>(), controller_rows<TwoChamberParameters, T>());
 }
 

@@ -75,8 +75,7 @@ void add_inputs(const ExportedRig& rig, std::vector<FmuVariable>& variables) {
 
 /// Returns true if the tick of the sampled controller sets this state.
 bool of_sampled_loop(const Layout& layout, std::size_t state) {
-  const int i = static_cast<int>(state);
-  return layout.sampled() && (i == layout.held || i == layout.integral || i == layout.filter);
+  return layout.sampled() && layout.of_controller(static_cast<int>(state));
 }
 
 void add_states(const ExportedRig& rig, const Layout& layout, std::vector<FmuVariable>& variables) {

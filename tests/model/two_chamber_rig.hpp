@@ -32,4 +32,38 @@ inline Experiment single_rod_rig() {
   return e;
 }
 
+/// A cylinder of a mobile machine that slides: a pilot-operated valve, a pump without a limit.
+inline Experiment pilot_rig() {
+  Experiment e;
+  e.rig.plant = PlantKind::two_chamber;
+  e.rig.controller = ControllerKind::none;
+  e.rig.pilot = true;
+  e.values = ParameterValues::defaults(PlantKind::two_chamber);
+  e.set("mass", 2000.0).set("damping", 4e4).set("stiffness", 0.0).set("stroke", 1.0);
+  e.set("area_a", 4e-3).set("area_b", 2.4e-3).set("dead_volume_a", 1e-3).set("dead_volume_b", 1e-3);
+  e.set("tank_pressure", 2e5).set("supply_pressure", 2e7).set("density", 870.0);
+  e.set("bulk_modulus", 8e8).set("discharge_coefficient", 0.65).set("area_gradient", 0.02);
+  e.set("leakage_coefficient", 0.0).set("leakage_area", 1e-6);
+  e.set("pilot_gain", 1e-11).set("pilot_dead_band", 1e6);
+  e.inputs.drive = Signal::constant(2e6);
+  e.times_s = {0.0, 2.0};
+  e.options.tolerance = 1e-9;
+  e.outputs = {Output::position, Output::velocity, Output::pressure_a, Output::pressure_b};
+  return e;
+}
+
+/// The same behind an electric valve.
+inline Experiment proportional_rig() {
+  Experiment e = pilot_rig();
+  e.rig.pilot = false;
+  for (const char* key : {"pilot_gain", "pilot_dead_band"}) {
+    const auto index = static_cast<std::size_t>(parameter_index(PlantKind::two_chamber, key));
+    e.values.value[index] = 0.0;
+    e.values.given[index] = false;
+  }
+  e.set("valve_gain", 2e-6).set("valve_dead_band", 0.5);
+  e.inputs.drive = Signal::constant(5.5);
+  return e;
+}
+
 }  // namespace rigcal::model

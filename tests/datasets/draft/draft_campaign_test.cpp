@@ -50,6 +50,8 @@ std::string filled(std::string text, model::PlantKind plant = model::PlantKind::
                           : fmt::format("{} = \"{:e}{}\"", spec.key, value, unit));
   }
   fill("kp = \"FILL IN V/m\"", "kp = \"100 V/m\"");
+  fill("valve_gain = \"FILL IN m/V\"", "valve_gain = \"0.1 mm/V\"");
+  fill("pilot_gain = \"FILL IN m/Pa\"", "pilot_gain = \"0.1 mm/bar\"");
   return text;
 }
 
@@ -101,7 +103,6 @@ TEST_CASE("draft_campaign: an angle makes a linkage, and its pilot pressures one
   CHECK_THAT(draft, Contains("# pilot_dead_band = ") && Contains("# bypass_opening = "));
   CHECK_THAT(draft, Contains("initial = \"record\""));
   draft = filled(draft, model::PlantKind::linkage);
-  draft = replaced(draft, "pilot_gain = \"FILL IN m/Pa\"", "pilot_gain = \"0.1 mm/bar\"");
   for (const auto& [key, value] :
        {std::pair("lower_stop", "-3"), std::pair("upper_stop", "-0.5")}) {
     const auto at = draft.find(fmt::format("\n{} = ", key)) + 1;
@@ -111,6 +112,34 @@ TEST_CASE("draft_campaign: an angle makes a linkage, and its pilot pressures one
   CHECK(campaign.rig.pilot);
   const Record record = load_record(campaign, campaign.conditions.at(0));
   CHECK(record.channels.at(Channel::pilot_pressure).mean.back() == Approx((0.2 - 18.0) * 1e5));
+}
+
+TEST_CASE("draft_campaign: a pilot pressure drives a cylinder of two chambers, unless a loop does",
+          "[datasets]") {
+  const TemporaryFolder folder;
+  std::string text = "t_s,pilot_out_bar,pilot_in_bar,u_V,x_mm\n";
+  std::string loop = "t_s,pilot_out_bar,ref_mm,x_mm,p_A_bar\n";
+  for (int i = 0; i < 200; ++i) {
+    text +=
+        fmt::format("{},{},0.2,{},{}\n", 0.01 * i, i > 50 ? 18.0 : 0.1, i > 50 ? 4 : 0, 0.1 * i);
+    loop += fmt::format("{},{},{},{},80\n", 0.01 * i, i > 50 ? 18.0 : 0.1, 0.1 * i, 0.1 * i);
+  }
+  std::string draft = draft_campaign({folder.write("boom.csv", text)}, folder.path()).text;
+  CHECK_THAT(draft, Contains("model = \"two_chamber\""));
+  CHECK_THAT(draft, Contains("pilot_pressure = { column = \"pilot_out_bar\", minus = "
+                             "\"pilot_in_bar\", unit = \"bar\" }"));
+  CHECK_THAT(draft, Contains("# 'u_V' also looks like a drive"));
+  CHECK_THAT(draft, Contains("# load_sensing_margin = ") && Contains("# return_exponent = "));
+  CHECK_THAT(draft, !Contains("valve_dead_band"));  // it is in volts
+  draft = filled(draft, model::PlantKind::two_chamber);
+  const Campaign campaign = load_campaign(folder.write("draft.toml", draft));
+  CHECK(campaign.rig.pilot);
+  CHECK(drive_channel(campaign) == Channel::pilot_pressure);
+
+  draft = draft_campaign({folder.write("loop.csv", loop)}, folder.path()).text;
+  CHECK_THAT(draft, Contains("# 'pilot_out_bar' looks like a pilot pressure, which drives no rig "
+                             "with a controller"));
+  CHECK_THAT(draft, Contains("\nvalve_gain = ") && !Contains("pilot_gain"));
 }
 
 TEST_CASE("draft_campaign: a joint without a pilot has an electric valve", "[datasets]") {

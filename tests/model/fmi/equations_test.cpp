@@ -125,8 +125,52 @@ TEST_CASE("equations: an arm moves as it is simulated, and its kinks have indica
   const std::vector<double> indicators = equations->indicators(x);
   REQUIRE(indicators.size() == 9);
   CHECK(indicators[0] == Approx(x[6] - 1e6));
-  CHECK(indicators[2] == Approx(1e6 + 2.5e6 - x[6]));
-  CHECK(indicators[5] == Approx(1.0 - x[0]));
+  CHECK(indicators[4] == Approx(1e6 + 2.5e6 - x[6]));
+  CHECK(indicators[3] == Approx(1.0 - x[0]));
+}
+
+TEST_CASE("equations: a cylinder with a load-sensing pump and friction with pre-sliding",
+          "[model]") {
+  Experiment e = pilot_rig();
+  e.set("pilot_gain", 1e-10).set("compensator_pressure", 8e5).set("load_sensing_margin", 2e6);
+  e.set("supply_resistance", 1e9).set("supply_capacity", 1e-11).set("accumulator_volume", 1e-4);
+  e.set("accumulator_precharge", 1e6).set("relief_pressure", 1.5e7);
+  e.set("relief_conductance", 1e-10).set("coulomb_friction", 2e3).set("bristle_stiffness", 1e7);
+  e.set("external_force", 0.0).inputs.external_force_n = Signal::constant(1e4);
+  e.times_s = {0.0, 0.5};
+  const Simulation run = e();
+  INFO(run.reason);
+  REQUIRE(run.ok());
+  ExportedRig rig;
+  rig.rig = e.rig;
+  rig.values = e.values;
+  CHECK(names(rig) == std::vector<std::string>{"position", "velocity", "pressure_a", "pressure_b",
+                                               "valve_supply_pressure", "bristle_force"});
+  const auto equations = make_equations(rig);
+  CHECK(describe_states(rig, equations->layout()).back().unit == "N");
+  RigInputs inputs;
+  inputs.drive.value = 2e6;
+  inputs.external_force_n.value = 1e4;
+  inputs.supply_pressure_pa.value = 2e7;
+  inputs.tank_pressure_pa.value = 2e5;
+  equations->set(rig.values, inputs, 1.0);
+  std::vector<double> x = equations->initial();
+  StepMemory memory;
+  equations->advance(x, memory, 0.0, 0.5, 1e-9);
+  REQUIRE(run.outputs(1, 0) > 1e-3);
+  CHECK(x[0] == Approx(run.outputs(1, 0)).epsilon(1e-6));
+  CHECK(x[2] == Approx(run.outputs(1, 2)).epsilon(1e-5));
+  CHECK(equations->output(Output::pilot_pressure, x) == 2e6);
+  CHECK(equations->output(Output::command, x) == 0.0);
+  // Four edges, both stops, compensators of both sides, both relief valves, the limit of the pump's
+  // pressure, and the turn of the bristles.
+  const std::vector<double> indicators = equations->indicators(x);
+  REQUIRE(indicators.size() == 12);
+  CHECK(indicators[0] == Approx(1e6));
+  CHECK(indicators[6] == Approx(x[4] - x[2] - 8e5));
+  CHECK(indicators[8] == Approx(1.5e7 - x[2]));
+  CHECK(indicators[10] == Approx(2e5 + 2e6 + (x[2] - 2e5) - 2e7));
+  CHECK(indicators[11] == Approx(x[1]));
 }
 
 TEST_CASE("equations: states that leave the numbers are an error", "[model]") {

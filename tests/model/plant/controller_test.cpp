@@ -20,6 +20,8 @@ struct Gains {
   double output_limit_v = 10.0;
   double sample_time_s = 0.01;
   double pressure_feedback_v_per_pa = 0.0;
+  double velocity_feedforward_v_s_per_m = 0.0;
+  double acceleration_feedforward_v_s2_per_m = 0.0;
 };
 
 Layout layout_with(int integral, int filter, int held) {

@@ -48,6 +48,7 @@ std::vector<std::pair<Scenario, Experiment>> two_chamber_scenarios() {
                           {"stiffness", 5e3},
                           {"external_force", 50.0},
                           {"leakage_coefficient", 0.02},
+                          {"leakage_resistance", 5e11},
                           {"valve_time_constant", 3e-3},
                           {"air_fraction", 0.01},
                           {"air_exponent", 1.3}};
@@ -55,11 +56,47 @@ std::vector<std::pair<Scenario, Experiment>> two_chamber_scenarios() {
                           {"hose_capacity_b", 2e-13},
                           {"hose_yield", 2e5},
                           {"hose_yield_ratio", 0.2}};
+  const NamedValues piloted{{"pilot_gain", 5e-10},
+                            {"pilot_exponent", 1.6},
+                            {"pilot_range", 1.5e6},
+                            {"gain_b_to_tank", 0.7},
+                            {"return_dead_band", 0.8e6},
+                            {"return_exponent", 1.3},
+                            {"return_line_opening", 3e-4},
+                            {"return_line_resistance", 2e9},
+                            {"bypass_opening", 5e-5},
+                            {"bypass_range", 1.2e6},
+                            {"supply_resistance", 2e9},
+                            {"supply_capacity", 5e-12},
+                            {"pump_flow", 5e-4},
+                            {"pump_second_flow", 8e-4},
+                            {"pump_delay", 0.05},
+                            {"pump_rise", 0.02},
+                            {"pump_first_rate", 3e-3},
+                            {"accumulator_volume", 2e-5},
+                            {"accumulator_precharge", 8e6},
+                            {"accumulator_exponent", 1.3},
+                            {"coulomb_friction", 2e3},
+                            {"stribeck_friction", 800.0},
+                            {"stribeck_velocity", 0.02},
+                            {"seal_friction", 1e-4},
+                            {"bristle_stiffness", 2e7},
+                            {"bristle_damping", 2e4}};
+  const NamedValues by_table{
+      {"valve_range", 8.0},       {"opening_20", 0.1},        {"opening_40", 0.25},
+      {"opening_60", 0.5},        {"opening_80", 0.75},       {"valve_gain", 3e-5},
+      {"supply_resistance", 1e9}, {"supply_capacity", 2e-12}, {"load_sensing_margin", 3e6}};
+  const NamedValues pushed{{"valve_exponent", 1.5},       {"compensator_pressure", 8e5},
+                           {"valve_gain", 2e-5},          {"valve_range", 8.0},
+                           {"relief_pressure", 8e6},      {"relief_conductance", 3e-10},
+                           {"make_up_conductance", 1e-9}, {"external_force", 8e4}};
   const NamedValues loop{{"kp", 900.0},
                          {"ki", 3000.0},
                          {"kd", 2.0},
                          {"derivative_filter", 300.0},
                          {"output_limit", 3.0},
+                         {"velocity_feedforward", 5.0},
+                         {"acceleration_feedforward", 0.1},
                          {"valve_frequency", 700.0},
                          {"valve_damping_ratio", 0.9},
                          {"supply_resistance", 2e10},
@@ -103,6 +140,13 @@ std::vector<std::pair<Scenario, Experiment>> two_chamber_scenarios() {
   loop_on(Feedback::force, Signal::sine(150.0, 9.0), 1e-3, 2e-2, 4e-7);
   loop_on(Feedback::load_pressure, Signal::sine(6e5, 9.0), 2e-7, 4e-6, 8e-11);
   loop_on(Feedback::acceleration, Signal::sine(10.0, 9.0), 2e-3, 4e-2, 8e-6);
+  rows.push_back({{"pilot, pump of two flows, accumulator, friction with pre-sliding",
+                   Signal::sine(3e6, 8.0), piloted, none},
+                  pilot_rig()});
+  rows.push_back(
+      {{"table, load sensing", Signal::sine(9.0, 8.0), by_table, none}, proportional_rig()});
+  rows.push_back(
+      {{"pushed in against its valves", Signal::sine(4.0, 8.0), pushed, none}, proportional_rig()});
   // Into the other stop, its position half a stroke out.
   rows.push_back({{"short stroke",
                    Signal::square(3.0, 4.0),
@@ -124,7 +168,10 @@ TEST_CASE("two_chamber: sensitivities are exact against differences, every param
       e.inputs.supply_pressure_pa = Signal::ripple(4.4e6, 2e5, 20.0, 0.4);
       e.inputs.tank_pressure_pa = Signal::linear({0.0, 0.05, 0.1}, {1e5, 2e5, 1.5e5});
     }
-    check_sensitivities(e, seen, {{Output::load_pressure, 4.4e6}, {Output::force, 2.0e-4 * 4.4e6}});
+    const double supply_pa = e.values["supply_pressure"];
+    check_sensitivities(
+        e, seen,
+        {{Output::load_pressure, supply_pa}, {Output::force, e.values["area_a"] * supply_pa}});
   }
   check_all_seen(PlantKind::two_chamber, seen);
 }

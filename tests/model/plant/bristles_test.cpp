@@ -1,0 +1,194 @@
+// Friction with pre-sliding: against closed forms, and against an integrator and a right-hand side
+// of this file (docs/model.md, section 2).
+
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "model/plant/layout.hpp"
+#include "model/plant/terms.hpp"
+#include "tests/model/sensitivity.hpp"
+#include "tests/model/two_chamber_rig.hpp"
+
+using namespace rigcal::model;
+using Catch::WithinAbs;
+using Catch::WithinRel;
+
+namespace {
+
+/// A piston that a recorded load pushes while its chambers are joined by a wide laminar path, so
+/// that spring and friction alone hold it.
+Experiment pushed_piston(const Signal& load, std::vector<double> times_s) {
+  Experiment e;
+  e.rig.controller = ControllerKind::none;
+  e.inputs.drive = Signal::constant(0.0);
+  e.inputs.external_force_n = load;
+  e.set("leakage_coefficient", 0.0).set("laminar_leakage", 1e-5).set("stiffness", 2e4);
+  e.set("damping", 2e3).set("coulomb_friction", 200.0).set("stribeck_friction", 80.0);
+  e.set("stribeck_velocity", 0.02).set("bristle_stiffness", 1e6).set("bristle_damping", 500.0);
+  e.times_s = std::move(times_s);
+  e.outputs = {Output::position, Output::velocity, Output::force};
+  e.options.tolerance = 1e-10;
+  return e;
+}
+
+constexpr double kBreakaway_n = 280.0;  // g at rest
+
+/// Force of bristles that were bent by a travel from `from_n`: dF/dx = sigma_0 (1 -+ F / g).
+double bent(double travel_m, double from_n) {
+  const double limit = travel_m < 0.0 ? -kBreakaway_n : kBreakaway_n;
+  return limit + (from_n - limit) * std::exp(-1e6 * std::abs(travel_m) / kBreakaway_n);
+}
+
+}  // namespace
+
+TEST_CASE("bristles: a slow push bends them before they slide, and they stay bent", "[model]") {
+  // Out by 150 N within 50 s, then back to nothing: so slow that v hardly lowers g.
+  const Signal load =
+      Signal::linear({0.0, 50.0, 51.0, 101.0, 102.0}, {0.0, -150.0, -150.0, 0.0, 0.0});
+  const Simulation run = pushed_piston(load, {0.0, 50.9, 102.0})();
+  INFO(run.reason);
+  REQUIRE(run.ok());
+  const double out_m = run.outputs(1, 0);
+  CHECK_THAT(2e4 * out_m + bent(out_m, 0.0), WithinRel(150.0, 1e-3));
+  CHECK(out_m > 150.0 / (1e6 + 2e4));  // more than a spring would
+  const double back_m = run.outputs(2, 0);
+  REQUIRE(back_m > 0.05 * out_m);
+  CHECK_THAT(2e4 * back_m + bent(back_m - out_m, bent(out_m, 0.0)), WithinAbs(0.0, 0.1));
+}
+
+TEST_CASE("bristles: where they slide they are dry friction", "[model]") {
+  for (const double v : {-0.05, -2e-3, 2e-3, 0.05}) {
+    const double sliding = sliding_friction(v, 200.0, 80.0, 0.02);
+    CHECK_THAT(sliding, WithinRel(200.0 + 80.0 * std::exp(-std::pow(v / 0.02, 2)), 1e-14));
+    CHECK_THAT(bristle_rate(std::copysign(sliding, v), v, sliding, 1e6), WithinAbs(0.0, 1e-9));
+    CHECK_THAT(bristle_rate(0.0, v, sliding, 1e6), WithinRel(1e6 * v, 1e-14));
+    CHECK_THAT(bristle_rate(-std::copysign(sliding, v), v, sliding, 1e6),
+               WithinRel(2e6 * v, 1e-14));
+  }
+  Experiment e = pushed_piston(Signal::constant(0.0), {0.0, 8.0});
+  e.inputs.external_force_n.reset();
+  e.inputs.drive = Signal::constant(0.5);
+  e.set("laminar_leakage", 0.0).set("stiffness", 0.0);
+  e.outputs = {Output::velocity, Output::load_pressure, Output::force};
+  const Simulation run = e();
+  REQUIRE(run.ok());
+  const double v = run.outputs(1, 0);
+  REQUIRE(v > 0.01);
+  const double friction_n = 200.0 + 80.0 * std::exp(-std::pow(v / 0.02, 2));
+  CHECK_THAT(1.62e-3 * run.outputs(1, 1), WithinRel(2e3 * v + friction_n, 1e-6));
+  CHECK_THAT(run.outputs(1, 2), WithinRel(2e3 * v, 1e-6));  // the cell is beyond the seals
+}
+
+TEST_CASE("bristles: stick and slip follow an integrator of another kind", "[model]") {
+  Experiment e = pushed_piston(Signal::ripple(0.0, 900.0, 2.0, 0.0), grid(0.0, 1.0, 21));
+  const Simulation run = e();
+  INFO(run.reason);
+  REQUIRE(run.ok());
+  using PistonState = std::array<double, 4>;  // position, velocity, load pressure, bristles
+  const double mass = e.values["mass"];
+  const double area = e.values["piston_area"];
+  const double stiff = 4.0 * e.values["bulk_modulus"] / e.values["total_volume"];
+  const auto sliding = [](double v) { return 200.0 + 80.0 * std::exp(-v * v / (0.02 * 0.02)); };
+  const auto bristles = [&](const PistonState& x) {
+    return 1e6 * (x[1] - std::abs(x[1]) * x[3] / sliding(x[1]));
+  };
+  const auto friction_n = [&](const PistonState& x) { return x[3] + 500.0 / 1e6 * bristles(x); };
+  // The laminar path is so wide that the pressure follows the speed at once: it is not stepped.
+  const auto pressure = [&](const PistonState& x) { return -area * x[1] / 1e-5; };
+  REQUIRE(stiff * 1e-5 > 1e6);  // 1/s
+  const auto rates = [&](const PistonState& x, double t) -> PistonState {
+    const double load = 900.0 * std::sin(4.0 * kPi * t);
+    const double force = area * pressure(x) - 2e3 * x[1] - 2e4 * x[0] - friction_n(x) - load;
+    return {x[1], force / mass, 0.0, bristles(x)};
+  };
+  PistonState x{};
+  constexpr int kSteps = 20000;
+  const double h = 0.05 / kSteps;
+  const auto moved = [](const PistonState& from, const PistonState& rate, double by) {
+    PistonState to = from;
+    for (std::size_t i = 0; i < to.size(); ++i) to[i] += by * rate[i];
+    return to;
+  };
+  Eigen::MatrixXd other(21, 3);
+  for (int sample = 0; sample <= 20; ++sample) {
+    other(sample, 0) = x[0];
+    other(sample, 1) = x[1];
+    other(sample, 2) = area * pressure(x) - friction_n(x);
+    for (int step = 0; step < kSteps && sample < 20; ++step) {
+      const double t = 0.05 * sample + h * step;
+      const PistonState k1 = rates(x, t);
+      const PistonState k2 = rates(moved(x, k1, 0.5 * h), t + 0.5 * h);
+      const PistonState k3 = rates(moved(x, k2, 0.5 * h), t + 0.5 * h);
+      const PistonState k4 = rates(moved(x, k3, h), t + h);
+      for (std::size_t i = 0; i < x.size(); ++i)
+        x[i] += h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]);
+    }
+  }
+  REQUIRE(peak(other.col(0)) > 0.01);
+  CHECK(difference(run.outputs, other) < 1e-4);
+  e.options.method = Method::dopri5;
+  e.set("laminar_leakage", 1e-9);
+  const Simulation explicit_run = e();
+  e.options.method = Method::rosenbrock;
+  const Simulation implicit_run = e();
+  REQUIRE(explicit_run.ok());
+  REQUIRE(implicit_run.ok());
+  CHECK(difference(implicit_run.outputs, explicit_run.outputs) < 1e-5);
+}
+
+TEST_CASE("bristles: sensitivities are exact against differences", "[model]") {
+  Experiment e = pushed_piston(Signal::constant(0.0), {0.0});
+  std::set<int> seen;
+  const NamedValues values{{"leakage_coefficient", 0.3}, {"laminar_leakage", 2e-11},
+                           {"stiffness", 2e4},           {"bristle_damping", 500.0},
+                           {"bristle_stiffness", 1e6},   {"valve_time_constant", 3e-3}};
+  e.inputs.external_force_n.reset();
+  Scenario scenario{"stick and slip", Signal::sine(1.0, 9.0), values, ControllerKind::none};
+  check_sensitivities(experiment(scenario, e), seen, {{Output::force, 1e4}});
+  for (const char* key : {"bristle_stiffness", "bristle_damping", "coulomb_friction",
+                          "stribeck_friction", "stribeck_velocity"})
+    CHECK(seen.count(parameter_index(PlantKind::load_pressure, key)) == 1);
+}
+
+TEST_CASE("friction: seals rub more where pressure presses them on", "[model]") {
+  for (const double direction : {1.0, -1.0}) {
+    for (const bool pre_sliding : {false, true}) {
+      Experiment e = pushed_piston(Signal::constant(0.0), {0.0, 8.0});
+      e.inputs.external_force_n.reset();
+      e.inputs.drive = Signal::constant(0.5 * direction);
+      e.set("laminar_leakage", 0.0).set("stiffness", 0.0).set("seal_friction", 3e-4);
+      e.set("external_force", 500.0 * direction);
+      if (!pre_sliding) {
+        const auto index =
+            static_cast<std::size_t>(parameter_index(e.rig.plant, "bristle_stiffness"));
+        e.values.given[index] = false;
+      }
+      e.outputs = {Output::velocity, Output::load_pressure, Output::force};
+      const Simulation run = e();
+      REQUIRE(run.ok());
+      const double v = run.outputs(1, 0);
+      const double P_L = run.outputs(1, 1);
+      REQUIRE(direction * v > 0.01);
+      const double friction_n =
+          200.0 + 80.0 * std::exp(-std::pow(v / 0.02, 2)) + 3e-4 * std::abs(P_L);
+      CHECK_THAT(1.62e-3 * P_L, WithinRel(2e3 * v + direction * (500.0 + friction_n), 1e-5));
+      CHECK_THAT(run.outputs(1, 2), WithinRel(2e3 * v + direction * 500.0, 1e-5));
+    }
+  }
+}
+
+TEST_CASE("bristles: a record that begins in motion begins with bent bristles", "[model]") {
+  Experiment e = single_rod_rig();
+  e.rig.initial = InitialState::given;
+  e.set("coulomb_friction", 60.0).set("bristle_stiffness", 1e6).set("bristle_damping", 100.0);
+  for (const double v : {0.05, -0.05}) {
+    e.set("initial_velocity", v);
+    e.times_s = {0.0};
+    const Simulation run = e();
+    REQUIRE(run.ok());
+    const int state = layout_of(e.rig, e.values, {}, 4).bristles;
+    REQUIRE(state == 4);
+    CHECK_THAT(run.end_state(state), WithinRel(std::copysign(60.0, v), 1e-12));
+  }
+}
