@@ -33,7 +33,7 @@ Accuracy accuracy_of(const std::vector<Judged>& judged) {
   return result;
 }
 
-std::pair<double, double> wilson_interval(double proportion, double trials) {
+Range wilson_interval(double proportion, double trials) {
   const double z = metrics::normal_quantile(0.975);
   const double z2 = z * z;
   const double centre = proportion + z2 / (2.0 * trials);

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/range.hpp"
 #include "datasets/campaign/diagnosis_settings.hpp"
 
 namespace rigcal::diagnosis {
@@ -30,7 +31,7 @@ struct Accuracy {
   double accuracy = 0.0;  ///< right / records
   /// Wilson's 95 % interval for as many independent trials as there are conditions: repeats of one
   /// condition have common errors.
-  std::pair<double, double> ci95{0.0, 1.0};
+  Range ci95{0.0, 1.0};
 };
 
 /// @param judged  may be empty; then everything is zero and the interval means nothing
@@ -40,6 +41,6 @@ Accuracy accuracy_of(const std::vector<Judged>& judged);
 ///
 /// @param proportion  in [0, 1]
 /// @param trials      > 0
-std::pair<double, double> wilson_interval(double proportion, double trials);
+Range wilson_interval(double proportion, double trials);
 
 }  // namespace rigcal::diagnosis

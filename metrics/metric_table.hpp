@@ -41,6 +41,11 @@ inline constexpr std::array kMetrics{
                &maximum_error, false},
 };
 
+template <typename Self, typename Visit>
+void Agreement::describe(Self& self, const Visit& visit) {
+  for (const MetricSpec& metric : kMetrics) visit(metric.name.data(), self.*metric.value);
+}
+
 /// The value of a metric where simulation and measurement are the same.
 constexpr double ideal(const MetricSpec& metric) {
   if (!metric.higher_is_better) return 0.0;

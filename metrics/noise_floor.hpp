@@ -2,6 +2,8 @@
 
 #include <span>
 
+#include "common/describe.hpp"
+
 namespace rigcal::metrics {
 
 /// Scores of a model that equals the true signal, against a measured one.
@@ -9,6 +11,7 @@ struct NoiseFloor {
   double rho2 = 0.0;
   double ccc = 0.0;
   double absolute_error_percent = 0.0;
+  RIGCAL_DESCRIBE(rho2, ccc, absolute_error_percent)
 };
 
 /// The agreement that the noise of a record leaves to any model. The record is y = t + n: the truth

@@ -8,19 +8,20 @@
 
 #include "calib/design/design_limits.hpp"
 #include "calib/design/drive_shape.hpp"
-#include "calib/result/fit_result.hpp"
+#include "calib/trust/information.hpp"
+#include "common/describe.hpp"
 #include "datasets/campaign/campaign.hpp"
 
 namespace rigcal::calib {
 
 /// One unknown of the designed test. Standard deviations are those of Cramer and Rao, SI; nothing
 /// where the test does not determine it.
-struct DesignedParameter {
-  FittedParameter parameter;  ///< value and bounds, no errors
-  bool named = false;
+struct DesignedParameter : TestedParameter {
+  bool named = false;  ///< the drive was designed for it
   std::optional<double> sd;
   /// From the campaign's own signals in the same time, noise and number of repeats.
-  std::optional<double> sd_own;
+  std::optional<double> sd_own_signals;
+  RIGCAL_DESCRIBE(name, unit, scope, level, named, value, sd, sd_own_signals)
 };
 
 /// What a family of drives came to.
@@ -30,6 +31,7 @@ struct FamilyTrial {
   bool found = false;  ///< one of them keeps the limits
   /// Standard deviation of each unknown by the best of them, at the accuracy of the search.
   std::vector<std::optional<double>> sd;
+  RIGCAL_DESCRIBE(family, evaluations, found, sd)
 };
 
 /// A test that keeps the limits of [design], checked by a fine simulation.

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "common/describe.hpp"
 #include "datasets/campaign/design/design_settings.hpp"
 
 namespace rigcal::calib {
@@ -26,6 +27,7 @@ struct DrivePart {
   std::string name;  ///< "frequency 1", "bit time"
   std::string unit;  ///< SI
   double value = 0.0;
+  RIGCAL_DESCRIBE(name, unit, value)
 };
 
 /// A drive as a share of its largest allowed distance from where it begins.

@@ -9,6 +9,7 @@
 #include "calib/published/leak_table.hpp"
 #include "calib/result/fit_result.hpp"
 #include "calib/search/fit_options.hpp"
+#include "common/range.hpp"
 
 namespace rigcal::calib {
 
@@ -20,7 +21,7 @@ struct FittedAssumption {
   double lower = 0.0;
   double upper = 0.0;
   std::optional<double> standard_error;  ///< absent where the tables do not determine it
-  std::optional<std::pair<double, double>> ci95;
+  std::optional<Range> ci95;
   std::optional<double> degrees_of_freedom;  ///< for the standard error
   bool at_bound = false;
   Identifiability identifiability = Identifiability::not_identifiable;

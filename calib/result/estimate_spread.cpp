@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 
 namespace rigcal::calib {
 
@@ -18,7 +19,9 @@ double EffectSpread::size(std::string_view key) const {
 EffectSpread effect_spread(const Considered& considered,
                            const std::vector<const Budget95*>& budgets) {
   EffectSpread result;
-  const Eigen::Index count = considered.correlation.rows();
+  const Eigen::MatrixXd& correlation = considered.correlation;
+  const Eigen::Index count = std::min({correlation.rows(), correlation.cols(),
+                                       static_cast<Eigen::Index>(considered.effects.size())});
   if (count == 0) return result;
   Eigen::VectorXd mean(count);
   Eigen::VectorXd error(count);
@@ -35,7 +38,8 @@ EffectSpread effect_spread(const Considered& considered,
   Eigen::MatrixXd moments = scaled * scaled.transpose();
   for (Eigen::Index k = 0; k < count; ++k) {
     for (Eigen::Index l = 0; l < count; ++l)
-      if (error(k) > 0.0 && error(l) > 0.0) moments(k, l) += considered.correlation(k, l);
+      if (error(k) > 0.0 && error(l) > 0.0)
+        moments(k, l) += std::isfinite(correlation(k, l)) ? correlation(k, l) : k == l ? 1.0 : 0.0;
   }
   result.root = scale.cwiseInverse().asDiagonal() * square_root(moments);
   result.moves = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(budgets.size()), count);
@@ -44,7 +48,8 @@ EffectSpread effect_spread(const Considered& considered,
     for (const BudgetLine& line : budgets[j]->lines) {
       const auto found = std::find(result.keys.begin(), result.keys.end(), line.source);
       if (line.kind == "effect" && found != result.keys.end())
-        result.moves(static_cast<Eigen::Index>(j), found - result.keys.begin()) = line.sensitivity;
+        result.moves(static_cast<Eigen::Index>(j), found - result.keys.begin()) =
+            line.sensitivity.value_or(0.0);
     }
   }
   return result;

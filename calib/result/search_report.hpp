@@ -2,9 +2,9 @@
 
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
+#include "common/describe.hpp"
 #include "model/simulate.hpp"
 
 // Course of the search.
@@ -56,16 +56,18 @@ struct Basin {
   double cost = 0.0;           ///< least of its starts
   std::vector<int> starts;     ///< numbers, by cost
   std::vector<double> values;  ///< SI, of its best start
+  RIGCAL_DESCRIBE(cost, starts, values)
 };
 
 /// A simulation that failed during the fit (first few of each kind are kept, all are counted).
 struct SimulationFailure {
   std::string condition;
-  std::vector<std::pair<std::string, double>> parameters;  ///< names and SI values of the unknowns
+  Keyed<double> parameters;  ///< names and SI values of the unknowns
   double time_s = 0.0;
   std::string reason;
   model::SimulationStatus status = model::SimulationStatus::ok;
   int start = 1;
+  RIGCAL_DESCRIBE(condition, start, time_s, reason, parameters)
 };
 
 }  // namespace rigcal::calib

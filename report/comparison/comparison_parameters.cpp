@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "calib/result/estimate_spread.hpp"
 #include "metrics/significance.hpp"
 #include "report/comparison/comparison_parts.hpp"
 
@@ -46,7 +47,7 @@ double variance_by_effects(const StoredFit& first, const StoredFit& other,
     const auto found = std::find_if(fit.parameters.begin(), fit.parameters.end(),
                                     [&](const auto& each) { return same_parameter(each, wanted); });
     if (!fit.considered || found == fit.parameters.end() || !found->budget) return std::nullopt;
-    return effect_spread_of(*fit.considered, {&*found->budget});
+    return calib::effect_spread(*fit.considered, {&*found->budget});
   };
   const auto a = spread_of(first);
   const auto b = spread_of(other);

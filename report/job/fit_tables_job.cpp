@@ -19,7 +19,7 @@ std::string reason(const calib::FittedAssumption& p) {
   if (p.identifiability == calib::Identifiability::identified) return "";
   if (p.identifiability == calib::Identifiability::bounded)
     return "not significantly different from zero";
-  const double half_width = 0.5 * (p.ci95->second - p.ci95->first);
+  const double half_width = 0.5 * (p.ci95->high - p.ci95->low);
   return calib::half_width_words(half_width / std::abs(p.value));
 }
 
@@ -38,7 +38,7 @@ StoredParameter stored(const datasets::Campaign& campaign, FitStatus status,
   parameter.fitted = true;
   parameter.standard_error = p.standard_error;
   if (p.ci95) {
-    parameter.ci95 = {p.ci95->first, p.ci95->second};
+    parameter.ci95 = *p.ci95;
     parameter.ci95_if_exact = parameter.ci95;
     parameter.ci95_from = std::optional(calib::IntervalSource::standard_error);
     parameter.degrees_of_freedom = p.degrees_of_freedom;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cmath>
 #include <concepts>
@@ -14,64 +15,29 @@
 #include <utility>
 #include <vector>
 
+#include "common/describe.hpp"
 #include "report/json/json_node.hpp"
 
-// Each struct of a result file is described once; writer, reader and schema follow from that. The
-// names of the members are the keys, in this order. A name that is reserved in C++ has "_" at its
-// end.
-//
-//   struct Leak {
-//     std::string level;
-//     double share_percent = 0.0;
-//     std::optional<std::string> reason;
-//     RIGCAL_DESCRIBE(level, share_percent, reason)
-//   };
-
-// NOLINTBEGIN(cppcoreguidelines-macro-usage): only a macro knows the name of a member
-#define RIGCAL_VISIT_MEMBER(member) \
-  rigcal::report::described::visit_member(visit, #member, self.member);
-#define RIGCAL_DESCRIBE(...)                                                    \
-  template <typename Self, typename Visit>                                      \
-  static void describe(Self& self, const Visit& visit) {                        \
-    NLOHMANN_JSON_EXPAND(NLOHMANN_JSON_PASTE(RIGCAL_VISIT_MEMBER, __VA_ARGS__)) \
-  }
-// NOLINTEND(cppcoreguidelines-macro-usage)
+// JSON of a struct that is described: writer, reader and schema.
 
 namespace rigcal::report {
 
-/// A value whose key is omitted if there is none: rigs differ in what they have.
-template <typename T>
-struct Omittable : std::optional<T> {
-  using std::optional<T>::optional;
-};
-
-/// A member that results of earlier versions lack: the default of T then.
-template <typename T>
-struct Later : T {
-  using T::T;
-  using T::operator=;
-  Later() = default;
-  Later(T value) : T(std::move(value)) {}  // NOLINT(google-explicit-constructor): it is one
-};
-
-/// A struct whose keys are among those of the struct that contains it.
-template <typename T>
-struct Inlined : T {
-  Inlined() = default;
-  Inlined(T value) : T(std::move(value)) {}  // NOLINT(google-explicit-constructor): it is one
-};
-
-/// Keys and values in their order.
-template <typename T>
-using Keyed = std::vector<std::pair<std::string, T>>;
-
 /// The value of a key; null where there is none.
-template <typename T>
-const T* find(const Keyed<T>& keyed, std::string_view key) {
+template <typename T, typename Key>
+const T* find(const Keyed<T, Key>& keyed, const std::type_identity_t<Key>& key) {
   for (const auto& [name, value] : keyed)
     if (name == key) return &value;
   return nullptr;
 }
+
+/// An enumeration of which results have the keys of a table: a specialisation has text(value), and
+/// from_text(text), which is empty for an unknown one.
+template <typename T>
+struct KeysOf;
+template <typename T>
+concept HasKeys = requires(T value) {
+  KeysOf<T>::text(value);
+};
 
 /// All values of an enumeration that results name by to_string(). A specialisation lists them.
 template <typename Enum>
@@ -98,6 +64,24 @@ template <typename T>
 inline constexpr bool is_keyed = false;
 template <typename T>
 inline constexpr bool is_keyed<Keyed<T>> = true;
+template <typename T, HasKeys Key>
+inline constexpr bool is_keyed<Keyed<T, Key>> = true;
+
+/// A key in JSON, and back.
+inline const std::string& key_text(const std::string& key) { return key; }
+template <HasKeys Key>
+std::string key_text(Key key) {
+  return std::string(KeysOf<Key>::text(key));
+}
+inline void read_key(const JsonNode& /*node*/, const std::string& text, std::string& key) {
+  key = text;
+}
+template <HasKeys Key>
+void read_key(const JsonNode& node, const std::string& text, Key& key) {
+  const std::optional<Key> known = KeysOf<Key>::from_text(text);
+  if (!known) node.fail(fmt::format("another key than \"{}\"", text));
+  key = *known;
+}
 
 /// Largest number of things that a result counts: sums of some hundred of them are whole numbers.
 inline constexpr long kMostCounted = 1'000'000'000;
@@ -106,15 +90,6 @@ struct Anything {
   template <typename T>
   void operator()(const char* /*name*/, const T& /*member*/) const {}
 };
-
-template <typename Visit, typename Member>
-void visit_member(const Visit& visit, const char* name, Member& member) {
-  if constexpr (is_a<std::remove_const_t<Member>, Inlined>) {
-    Member::describe(member, visit);
-  } else {
-    visit(name, member);
-  }
-}
 
 template <typename T>
 concept Struct = requires(T& value) {
@@ -138,11 +113,6 @@ inline std::optional<double> finite(const std::optional<double>& value) {
   return value ? finite(*value) : std::nullopt;
 }
 
-/// A text; nothing where it is empty.
-inline std::optional<std::string> unless_empty(const std::string& text) {
-  return text.empty() ? std::nullopt : std::optional(text);
-}
-
 /// A value as JSON. Numbers that are not finite become null: JSON knows neither NaN nor infinity.
 template <typename T>
 Json json_of(const T& value) {
@@ -153,15 +123,22 @@ Json json_of(const T& value) {
     return value;
   } else if constexpr (std::floating_point<T>) {
     return std::isfinite(value) ? Json(value) : Json(nullptr);
+  } else if constexpr (HasKeys<T>) {
+    return key_text(value);
   } else if constexpr (std::is_enum_v<T>) {
     return std::string(to_string(value));
   } else if constexpr (std::same_as<T, Range>) {
     return Json::array({json_of(value.low), json_of(value.high)});
+  } else if constexpr (std::same_as<T, Eigen::MatrixXd>) {
+    Json json = Json::array();
+    for (const auto& row : value.rowwise())
+      json.push_back(json_of(std::vector<double>(row.begin(), row.end())));
+    return json;
   } else if constexpr (is_a<T, std::optional> || is_a<T, Omittable>) {
     return value ? json_of(*value) : Json(nullptr);
   } else if constexpr (is_keyed<T>) {
     Json json = Json::object();
-    for (const auto& [key, member] : value) json[key] = json_of(member);
+    for (const auto& [key, member] : value) json[key_text(key)] = json_of(member);
     return json;
   } else if constexpr (is_a<T, std::vector> || is_array<T>) {
     Json json = Json::array();
@@ -203,6 +180,8 @@ void read_into(const JsonNode& node, T& value) {
     value = node.is_null() ? std::numeric_limits<T>::quiet_NaN() : node.real();
   } else if constexpr (std::same_as<T, std::string>) {
     value = node.string();
+  } else if constexpr (HasKeys<T>) {
+    read_key(node, node.string(), value);
   } else if constexpr (std::is_enum_v<T>) {
     value = one_of(node, every<T>());
   } else if constexpr (std::same_as<T, Range>) {
@@ -210,6 +189,16 @@ void read_into(const JsonNode& node, T& value) {
     if (ends.size() != 2) node.fail("two numbers");
     read_into(ends[0], value.low);
     read_into(ends[1], value.high);
+  } else if constexpr (std::same_as<T, Eigen::MatrixXd>) {
+    const auto rows = node.items();
+    const auto columns = rows.empty() ? 0 : rows.front().items().size();
+    value.resize(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(columns));
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const std::vector<double> row = rows[i].reals();
+      if (row.size() != columns) rows[i].fail(fmt::format("a list of {}", columns));
+      for (std::size_t j = 0; j < columns; ++j)
+        value(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = row[j];
+    }
   } else if constexpr (is_a<T, std::optional> || is_a<T, Omittable>) {
     value.reset();
     if constexpr (is_a<T, Omittable>) {
@@ -219,8 +208,11 @@ void read_into(const JsonNode& node, T& value) {
     if (!node.is_null()) read_into(node, value.emplace());
   } else if constexpr (is_keyed<T>) {
     value.clear();
-    for (const auto& [key, member] : node.members())
-      read_into(member, value.emplace_back(key, typename T::value_type::second_type{}).second);
+    for (const auto& [key, member] : node.members()) {
+      auto& [own, read] = value.emplace_back();
+      read_key(node, key, own);
+      read_into(member, read);
+    }
   } else if constexpr (std::same_as<T, std::vector<double>>) {
     value = node.reals();
   } else if constexpr (is_a<T, std::vector>) {
@@ -261,7 +253,7 @@ Json schema_of() {
     return {{"type", "integer"}, {"minimum", 0}};
   } else if constexpr (std::floating_point<T>) {
     return {{"type", {"number", "null"}}};
-  } else if constexpr (std::same_as<T, std::string>) {
+  } else if constexpr (std::same_as<T, std::string> || HasKeys<T>) {
     return {{"type", "string"}};
   } else if constexpr (std::is_enum_v<T>) {
     Json names = Json::array();
@@ -269,6 +261,8 @@ Json schema_of() {
     return {{"enum", std::move(names)}};
   } else if constexpr (std::same_as<T, Range>) {
     return {{"type", "array"}, {"items", schema_of<double>()}, {"minItems", 2}, {"maxItems", 2}};
+  } else if constexpr (std::same_as<T, Eigen::MatrixXd>) {
+    return schema_of<std::vector<std::vector<double>>>();
   } else if constexpr (is_a<T, Omittable>) {
     return schema_of<typename T::value_type>();
   } else if constexpr (is_a<T, std::optional>) {

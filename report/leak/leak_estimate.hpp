@@ -12,7 +12,7 @@ inline constexpr double kLitresPerMinute = 60e3;  ///< per m3/s
 inline constexpr double kInPercent = 100.0;
 
 /// Both ends times `scale`.
-Range scaled_ends(const std::pair<double, double>& range, double scale = 1.0);
+Range scaled_ends(const Range& range, double scale = 1.0);
 
 /// Coefficient, share, flow and class of a leak, for a record or a state; empty without an estimate
 /// (`ok` false).

@@ -115,7 +115,7 @@ doc::Table prediction_table(const StoredDesign& design) {
                    {"This test", Kind::number},
                    {"Own signals, same time", Kind::number},
                    {"Own over this", Kind::number}};
-  for (const StoredDesignedParameter& parameter : design.parameters) {
+  for (const calib::DesignedParameter& parameter : design.parameters) {
     const RowUnit unit = row_unit(parameter.value, parameter.unit);
     const auto own = half_width_percent(parameter.sd_own_signals, parameter.value);
     const auto now = half_width_percent(parameter.sd, parameter.value);
@@ -149,9 +149,9 @@ doc::Table family_table(const StoredDesign& design) {
   doc::Table table{"Families of drives"};
   table.caption = {"The best drive of each family: half width of each named parameter, in %"};
   table.columns = {{"Family"}, {"Drives tried", Kind::number}};
-  for (const StoredDesignedParameter& parameter : design.parameters)
+  for (const calib::DesignedParameter& parameter : design.parameters)
     if (parameter.named) table.columns.push_back({parameter.label(), Kind::number});
-  for (const StoredFamilyTrial& trial : design.families) {
+  for (const calib::FamilyTrial& trial : design.families) {
     doc::Row row{{words_of(trial.family), fmt::format("{}", trial.evaluations)}};
     for (std::size_t j = 0; j < design.parameters.size(); ++j) {
       if (!design.parameters[j].named) continue;
@@ -167,7 +167,7 @@ doc::Table family_table(const StoredDesign& design) {
 doc::Table drive_table(const StoredDesign& design) {
   doc::Table table{"Numbers of the drive"};
   table.columns = {{"Number"}, {"Value", Kind::number}, {"Unit", Kind::unit}};
-  for (const StoredDrivePart& part : design.drive)
+  for (const calib::DrivePart& part : design.drive)
     table.rows.push_back(
         {{part.name, fmt::format("{:.5g}", part.value), part.unit == "1" ? "" : part.unit}});
   return table;
@@ -250,7 +250,7 @@ std::vector<Figure> design_figures(const PlanFiles& files) {
 doc::Verdict design_headline(const StoredDesign& design) {
   bool told = true;
   std::string words;
-  for (const StoredDesignedParameter& parameter : design.parameters) {
+  for (const calib::DesignedParameter& parameter : design.parameters) {
     if (!parameter.named) continue;
     const auto half = half_width_percent(parameter.sd, parameter.value);
     told = told && half.has_value();
@@ -266,7 +266,7 @@ doc::Verdict design_headline(const StoredDesign& design) {
                    design.repeats == 1 ? "" : "s", words)}};
   if (design.stopped())
     add_reason(verdict, "stopped by a signal: the best drive until then", "design");
-  for (const StoredDesignedParameter& parameter : design.parameters) {
+  for (const calib::DesignedParameter& parameter : design.parameters) {
     if (parameter.named && !parameter.sd)
       add_reason(verdict, fmt::format("{} is not determined by this test", parameter.label()),
                  "design");
@@ -281,7 +281,7 @@ doc::Section design_section(const PlanFiles& files) {
   for (Figure& figure : design_figures(files))
     gallery.figures.push_back(figure_of(std::move(figure.plot)));
   std::vector<std::string> named;
-  for (const StoredDesignedParameter& parameter : design.parameters)
+  for (const calib::DesignedParameter& parameter : design.parameters)
     if (parameter.named) named.push_back(parameter.label());
   const std::string criterion = design.criterion == datasets::DesignCriterion::determinant
                                     ? "the smallest confidence ellipsoid (D-optimal)"

@@ -1,10 +1,9 @@
 #pragma once
 
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "model/plant/parameter.hpp"
+#include "calib/result/considered.hpp"
 
 namespace rigcal::report {
 
@@ -14,12 +13,9 @@ struct MissingTerm {
   std::string line;            ///< "valve_time_constant = { start = ..., fit = true }"
 };
 
-/// Lines of campaign files that estimate the terms that residuals ask for, from their sizes. What
-/// no parameter describes has none.
-///
-/// @param sizes  by the key of the effect, SI
-std::vector<MissingTerm> missing_terms(model::PlantKind plant,
-                                       const std::vector<std::pair<std::string, double>>& sizes);
+/// Lines of campaign files that estimate the terms that the residuals of a fit ask for, from their
+/// sizes. What no parameter describes has none.
+std::vector<MissingTerm> missing_terms(model::PlantKind plant, const calib::Considered& considered);
 
 /// The text of a campaign file with these lines at the head of their tables.
 std::string with_terms(std::string campaign, const std::vector<MissingTerm>& terms);

@@ -27,13 +27,8 @@ using calib::FitStatus;
 /// The terms that the residuals ask for, as a next campaign may have them, in comments.
 std::string terms_in_comments(const Result& result) {
   if (!result.fit.considered) return {};
-  std::vector<std::pair<std::string, double>> sizes;
-  for (const std::size_t position : result.fit.considered->missing) {
-    const calib::ConsideredEffect& effect = result.fit.considered->effects[position];
-    if (effect.alone) sizes.emplace_back(effect.key, *effect.alone);
-  }
   std::string text;
-  for (const MissingTerm& each : missing_terms(result.campaign.rig.plant, sizes)) {
+  for (const MissingTerm& each : missing_terms(result.campaign.rig.plant, *result.fit.considered)) {
     text += fmt::format("#   [rig.{}] {}\n", each.of_controller ? "controller" : "parameters",
                         each.line);
   }

@@ -4,37 +4,16 @@
 
 namespace rigcal::report {
 
-std::string StoredPlannedParameter::label() const {
-  return level ? fmt::format("{} ({})", name, *level) : name;
-}
-
-std::string StoredDesignedParameter::label() const {
-  return level ? fmt::format("{} ({})", name, *level) : name;
-}
-
 StoredPlan stored(const datasets::Campaign& campaign, const calib::Plan& plan,
                   const Provenance& provenance) {
-  const auto table = model::parameter_table(campaign.rig.plant);
   StoredPlan file;
+  static_cast<calib::Plan&>(file) = plan;
   file.campaign = campaign.name;
-  for (std::size_t j = 0; j < plan.parameters.size(); ++j) {
-    const calib::FittedParameter& p = plan.parameters[j];
-    const model::ParameterSpec& spec = table[static_cast<std::size_t>(p.index)];
-    file.parameters.push_back({std::string(spec.name), std::string(spec.unit), p.scope,
-                               unless_empty(p.level), p.nuisance, p.value, plan.recorded[j],
-                               plan.all[j], unless_empty(plan.remedies[j])});
-  }
-  for (const calib::PlannedRecord& record : plan.records) {
-    file.records.push_back({record.condition, record.recorded, unless_empty(record.problem),
-                            record.alone, record.without});
-  }
-  file.messages = plan.messages;
   file.provenance = stored(provenance);
   return file;
 }
 
 StoredDesign stored(const datasets::Campaign& campaign, const calib::Design& design) {
-  const auto table = model::parameter_table(campaign.rig.plant);
   const datasets::DesignSettings& settings = *campaign.design;
   const datasets::ChannelInfo& channel = datasets::info(datasets::drive_channel(campaign));
   StoredDesign file;
@@ -51,19 +30,12 @@ StoredDesign stored(const datasets::Campaign& campaign, const calib::Design& des
   if (settings.like) file.leak_level = campaign.find(*settings.like)->leak_level;
   for (const auto& [measured, sd] : design.noise_sd)
     file.noise_sd.emplace_back(datasets::info(measured).name, sd);
-  for (const calib::DesignedParameter& each : design.parameters) {
-    const calib::FittedParameter& p = each.parameter;
-    const model::ParameterSpec& spec = table[static_cast<std::size_t>(p.index)];
-    file.parameters.push_back({std::string(spec.name), std::string(spec.unit), p.scope,
-                               unless_empty(p.level), each.named, p.value, each.sd, each.sd_own});
-  }
+  file.parameters = design.parameters;
   for (const calib::LimitUse& use : design.limits)
     file.limits.push_back(
         {use.key, use.words, use.unit, use.limit, use.reached, 100.0 * use.share});
-  for (const calib::DrivePart& part : design.parts)
-    file.drive.push_back({part.name, part.unit, part.value});
-  for (const calib::FamilyTrial& trial : design.trials)
-    file.families.push_back({trial.family, trial.evaluations, trial.found, trial.sd});
+  file.drive = design.parts;
+  file.families = design.trials;
   file.own_signals = design.own_conditions;
   file.own_signals_duration_s = design.own_duration_s;
   file.messages = design.messages;

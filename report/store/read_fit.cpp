@@ -40,11 +40,9 @@ Validity validity_of(const StoredValidity& stored) {
 /// Error of a parameter that the fit could not determine, from its whole interval, or from its
 /// bounds; otherwise its uncertainty would be left out.
 double undetermined_error(const StoredParameter& p, const JsonNode& node) {
-  std::optional<std::pair<double, double>> ci95;
-  if (p.ci95) ci95.emplace(p.ci95->low, p.ci95->high);
   if (!p.lower) node["lower"].fail("a number");
   if (!p.upper) node["upper"].fail("a number");
-  return calib::undetermined_sd(ci95, *p.lower, *p.upper);
+  return calib::undetermined_sd(p.ci95, *p.lower, *p.upper);
 }
 
 /// The estimates of a fit, nuisance parameters aside, with their covariance.
@@ -53,7 +51,7 @@ struct Estimates {
   Eigen::MatrixXd covariance;  ///< SI, by the larger of standard and robust error
   /// Those of conditions whose correlations are not stored, with their errors.
   std::map<std::string, std::vector<std::pair<calib::EstimateSpread::Estimate, double>>> own;
-  std::vector<const StoredBudget*> budgets;  ///< of `list`; null: none
+  std::vector<const calib::Budget95*> budgets;  ///< of `list`; null: none
   double widened = 1.0;  ///< the most by which an interval is wider than by its error
 };
 
@@ -172,7 +170,7 @@ void read_covariance(const StoredFit& stored, const JsonNode& root, model::Plant
                                      estimates.widened * calib::square_root(estimates.covariance)};
   fit.spread->dates = dates_of_fit(stored);
   if (stored.considered)
-    fit.spread->effects = effect_spread_of(*stored.considered, estimates.budgets);
+    fit.spread->effects = calib::effect_spread(*stored.considered, estimates.budgets);
   const Eigen::MatrixXd& shared = fit.spread->root;
   for (const auto& [condition, values] : estimates.own) {
     calib::EstimateSpread::Own& own = fit.spread->own.emplace_back();
@@ -187,24 +185,13 @@ void read_covariance(const StoredFit& stored, const JsonNode& root, model::Plant
   }
 }
 
-calib::Aspect aspect_of(const StoredAspect& stored) {
-  calib::Aspect aspect;
-  aspect.state = stored.state;
-  for (const StoredReason& reason : stored.reasons)
-    aspect.reasons.push_back(
-        {reason.state, reason.code, reason.subject.value_or(""), reason.numbers, reason.words});
-  return aspect;
-}
-
 /// @param member  of the assessment, which a fit of before there were any does not have
-calib::Aspect judged(const StoredFit& stored, StoredAspect StoredAssessment::*member) {
-  if (stored.assessment) return aspect_of((*stored.assessment).*member);
+calib::Aspect judged(const StoredFit& stored, calib::Aspect calib::Assessment::*member) {
+  if (stored.assessment) return (*stored.assessment).*member;
   calib::Aspect aspect;
-  aspect.reasons.push_back({calib::AspectState::not_assessed,
-                            "no_assessment",
-                            "",
-                            {},
-                            "the fit.json of the values holds no assessment of its parameters"});
+  aspect.reasons.push_back(
+      calib::reason(calib::AspectState::not_assessed, "no_assessment",
+                    "the fit.json of the values holds no assessment of its parameters"));
   return aspect;
 }
 
@@ -267,8 +254,8 @@ EarlierFit earlier_fit(const Json& json, const std::string& name, model::PlantKi
     result.conditions.emplace_back(condition.id, condition.use);
   for (const InputFile& input : stored.provenance.inputs)
     result.input_hashes.push_back(input.sha256);
-  result.adequacy = judged(stored, &StoredAssessment::adequacy);
-  result.parameters = judged(stored, &StoredAssessment::parameters);
+  result.adequacy = judged(stored, &calib::Assessment::adequacy);
+  result.parameters = judged(stored, &calib::Assessment::parameters);
   return result;
 }
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "calib/fit.hpp"
+#include "common/range.hpp"
 #include "datasets/campaign/campaign.hpp"
 #include "datasets/record.hpp"
-#include "report/json/range.hpp"
 
 namespace rigcal::report {
 

@@ -12,8 +12,8 @@ using datasets::Channel;
 TEST_CASE("cross-validation: what is predicted worse than fitted, and what moves", "[calib]") {
   HeldOut held;
   held.condition = "sine";
-  held.rms = {{Channel::position, 2e-3}};
-  held.fitted_rms = {{Channel::position, 1e-3}};
+  held.rmse = {{Channel::position, 2e-3}};
+  held.fitted_rmse = {{Channel::position, 1e-3}};
   held.largest_shift = -4.0;
   held.shifted = "mass_kg";
   HeldOut even = held;

@@ -106,7 +106,7 @@ TEST_CASE("fit: intervals cover the truth as often as they say", "[calib]") {
     REQUIRE(found.status == FitStatus::converged);
     for (const auto& [key, truth] : {std::pair{"mass", 85.0}, std::pair{"valve_gain", 0.0406e-3}}) {
       const auto interval = parameter(found, key).ci95_if_exact.value();
-      covered += interval.first <= truth && truth <= interval.second ? 1 : 0;
+      covered += interval.low <= truth && truth <= interval.high ? 1 : 0;
     }
   }
   // Binomial(40, 0.95): fewer than 33 about once in a thousand.

@@ -13,16 +13,16 @@
 
 namespace rigcal::report {
 
-std::string evidence_of(const StoredFit& fit, const StoredReason& reason, const char* section) {
+std::string evidence_of(const StoredFit& fit, const calib::Reason& reason, const char* section) {
   return reason.subject && fit.find(*reason.subject) != nullptr ? anchor(*reason.subject) : section;
 }
 
-bool names_reason(const StoredFit& fit, StoredAspect StoredAssessment::*aspect,
+bool names_reason(const StoredFit& fit, calib::Aspect calib::Assessment::*aspect,
                   std::string_view code) {
   if (!fit.assessment) return false;
   const auto& reasons = ((*fit.assessment).*aspect).reasons;
   return std::any_of(reasons.begin(), reasons.end(),
-                     [&](const StoredReason& reason) { return reason.code == code; });
+                     [&](const calib::Reason& reason) { return reason.code == code; });
 }
 
 std::string open_aspects(const StoredFit& fit) {
@@ -87,10 +87,10 @@ doc::Section assessment_section(const StoredFit& fit) {
                      {"Against", doc::Column::Kind::words},
                      {"For", doc::Column::Kind::words}};
     for (const AspectName& aspect : kAspects) {
-      const StoredAspect& found = (*fit.assessment).*aspect.aspect;
+      const calib::Aspect& found = (*fit.assessment).*aspect.aspect;
       doc::Cell against, in_favour;
       std::size_t more = 0;
-      for (const StoredReason& reason : found.reasons) {
+      for (const calib::Reason& reason : found.reasons) {
         const doc::Line line{doc::Link{"#" + evidence_of(fit, reason, aspect.link), reason.words}};
         if (reason.state == calib::AspectState::note) {
           in_favour.paragraphs.push_back({doc::Soft{"Note: " + reason.words}});

@@ -13,24 +13,24 @@
 namespace rigcal::report {
 
 struct AspectName {
-  StoredAspect StoredAssessment::*aspect;
+  calib::Aspect calib::Assessment::*aspect;
   const char* name;
   const char* short_name;
   const char* link;  ///< id of the section with the evidence
 };
 inline constexpr std::array kAspects{
-    AspectName{&StoredAssessment::agreement, "Agreement with the limits", "Agreement", "matrix"},
-    AspectName{&StoredAssessment::validation, "Independent validation", "Validation", "matrix"},
-    AspectName{&StoredAssessment::adequacy, "Adequacy of the model", "Adequacy", "conditions"},
-    AspectName{&StoredAssessment::parameters, "Parameters", "Parameters", "parameters"}};
+    AspectName{&calib::Assessment::agreement, "Agreement with the limits", "Agreement", "matrix"},
+    AspectName{&calib::Assessment::validation, "Independent validation", "Validation", "matrix"},
+    AspectName{&calib::Assessment::adequacy, "Adequacy of the model", "Adequacy", "conditions"},
+    AspectName{&calib::Assessment::parameters, "Parameters", "Parameters", "parameters"}};
 
 /// Id of the section with the evidence for a reason.
 ///
 /// @param section  section of the reason's aspect
-std::string evidence_of(const StoredFit& fit, const StoredReason& reason, const char* section);
+std::string evidence_of(const StoredFit& fit, const calib::Reason& reason, const char* section);
 
 /// Whether an aspect has a reason of this code.
-bool names_reason(const StoredFit& fit, StoredAspect StoredAssessment::*aspect,
+bool names_reason(const StoredFit& fit, calib::Aspect calib::Assessment::*aspect,
                   std::string_view code);
 
 /// Lists the aspects that did not pass: "independent validation: not assessed".

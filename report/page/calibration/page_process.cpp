@@ -32,7 +32,7 @@ doc::Table start_table(const StoredFit& fit) {
 /// Text about further starts for a fit with one start.
 std::string further_starts_of(const StoredFit& fit) {
   if (fit.assessment) {
-    for (const StoredReason& reason : fit.assessment->parameters.reasons) {
+    for (const calib::Reason& reason : fit.assessment->parameters.reasons) {
       if (reason.code == "further_starts") return reason.words + ".";
     }
   }
@@ -90,7 +90,7 @@ doc::Section starts_section(const StoredFit& fit) {
   doc::Table basins{"Where converged starts ended"};
   basins.caption = {basins.label};
   basins.columns = {{"Cost", Kind::number}, {"Starts", Kind::number}};
-  for (const StoredBasin& basin : fit.basins)
+  for (const calib::Basin& basin : fit.basins)
     basins.rows.push_back(
         {{doc::in_unit(basin.cost, 1.0, 8), fmt::format("{}", basin.starts.size())}});
   blocks.emplace_back(std::move(basins));
@@ -127,7 +127,7 @@ doc::Section warnings_section(const StoredFit& fit) {
                    {"At", Kind::number},
                    {"Why", Kind::words},
                    {"Values", Kind::words}};
-  for (const StoredFailure& failure : fit.failures) {
+  for (const calib::SimulationFailure& failure : fit.failures) {
     std::string values;
     for (const auto& [name, value] : failure.parameters) {
       values += fmt::format("{}{} = {}", values.empty() ? "" : ", ", name,

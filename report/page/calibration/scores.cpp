@@ -159,14 +159,14 @@ doc::Table means_table(const StoredFit& fit) {
                    {"Mean error %", Kind::number},
                    {"Worst rho2", Kind::number},
                    {"Worst error %", Kind::number}};
-  for (const StoredGroup& group : fit.groups) {
+  for (const calib::Group& group : fit.groups) {
     for (const auto& [channel, scores] : group.metrics) {
-      table.rows.push_back(
-          {{spaced(group.by), group.label, channel, fmt::format("{}", scores.conditions),
-            doc::agreement(scores.mean.rho2), doc::agreement(scores.mean.ccc),
-            doc::in_unit(scores.mean.absolute_error_percent, 1.0, 3),
-            doc::agreement(scores.worst.rho2),
-            doc::in_unit(scores.worst.absolute_error_percent, 1.0, 3)}});
+      table.rows.push_back({{spaced(group.by), group.label, std::string(info(channel).key),
+                             fmt::format("{}", scores.conditions), doc::agreement(scores.mean.rho2),
+                             doc::agreement(scores.mean.ccc),
+                             doc::in_unit(scores.mean.absolute_error_percent, 1.0, 3),
+                             doc::agreement(scores.worst.rho2),
+                             doc::in_unit(scores.worst.absolute_error_percent, 1.0, 3)}});
     }
   }
   return table;

@@ -23,10 +23,8 @@ StoredRecord stored(const datasets::Condition& condition, const datasets::Record
   told.repeats = record.repeats;
   for (const FileState& file : record.files) told.files.push_back(file.path);
   for (const datasets::Repeatability& r : datasets::repeatability(record)) {
-    StoredRepeatability channel{
-        std::string(info(r.channel).unit), r.repeats, r.pooled_sd, r.sd_of_mean, {}};
-    if (const auto& floor = r.noise_floor)
-      channel.noise_floor = {floor->rho2, floor->ccc, floor->absolute_error_percent};
+    StoredRepeatability channel{std::string(info(r.channel).unit), r.repeats, r.pooled_sd,
+                                r.sd_of_mean, r.noise_floor};
     told.channels.emplace_back(info(r.channel).key, std::move(channel));
   }
   told.offset_range_s = datasets::offset_range_s(record);

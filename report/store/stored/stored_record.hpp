@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "datasets/record.hpp"
+#include "metrics/noise_floor.hpp"
 #include "report/json/described.hpp"
 #include "report/store/described_campaign.hpp"
 #include "report/store/stored/stored_provenance.hpp"
@@ -15,17 +16,12 @@ namespace rigcal::report {
 
 inline constexpr const char* kAverageSchema = "rigcal.average/1";
 
-struct StoredNoiseFloor {
-  double rho2 = 0.0, ccc = 0.0, absolute_error_percent = 0.0;
-  RIGCAL_DESCRIBE(rho2, ccc, absolute_error_percent)
-};
-
 /// Agreement of the repeats in one channel, in its unit.
 struct StoredRepeatability {
   std::string unit;
   int repeats = 1;  ///< number of repeats with the channel
   std::optional<double> pooled_sd, sd_of_mean;
-  std::optional<StoredNoiseFloor> noise_floor;
+  std::optional<metrics::NoiseFloor> noise_floor;
   RIGCAL_DESCRIBE(unit, repeats, pooled_sd, sd_of_mean, noise_floor)
 };
 

@@ -43,11 +43,11 @@ struct StoredTest {
   RIGCAL_DESCRIBE(verdict, passed, outcome, reason)
 };
 /// A test with numbers of its own, which come first.
-#define RIGCAL_DESCRIBE_TEST(...)                                               \
-  template <typename Self, typename Visit>                                      \
-  static void describe(Self& self, const Visit& visit) {                        \
-    NLOHMANN_JSON_EXPAND(NLOHMANN_JSON_PASTE(RIGCAL_VISIT_MEMBER, __VA_ARGS__)) \
-    StoredTest::describe(self, visit);                                          \
+#define RIGCAL_DESCRIBE_TEST(...)                        \
+  template <typename Self, typename Visit>               \
+  static void describe(Self& self, const Visit& visit) { \
+    RIGCAL_AGAIN(RIGCAL_VISIT_MEMBERS(__VA_ARGS__))      \
+    StoredTest::describe(self, visit);                   \
   }
 
 struct StoredAutocorrelation : StoredTest {

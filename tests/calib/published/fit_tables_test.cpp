@@ -112,8 +112,8 @@ TEST_CASE("fit_tables: a twin's values come back from a far start, a gain from z
     // The flows are good to 1e-3, which leaves some percent of what acts weakly.
     CHECK_THAT(p.value, WithinRel(rig.settings.assumption(p.index)->value, 0.05));
     REQUIRE(p.ci95);
-    CHECK(p.ci95->first < p.value);
-    CHECK(p.value < p.ci95->second);
+    CHECK(p.ci95->low < p.value);
+    CHECK(p.value < p.ci95->high);
     CHECK(fit.settings.assumption(p.index)->value == p.value);
   }
   CHECK(fit.correlation.rows() == 4);

@@ -57,14 +57,14 @@ TEST_CASE("identifiability: an interval ends where the parameter does", "[calib]
   CHECK_THAT(inside.first, WithinRel(100.0 - 19.6, 1e-3));
   CHECK_THAT(inside.second, WithinRel(100.0 + 19.6, 1e-3));
   const Graded wide(1000.0);
-  CHECK(wide.graded().ci95->first == wide.problem->spec(0).lower);
+  CHECK(wide.graded().ci95->low == wide.problem->spec(0).lower);
 }
 
 TEST_CASE("identifiability: the robust error, unless it is small and hardly known", "[calib]") {
   Graded rig(10.0);
   rig.found.robust_standard_error = {5.0};
   CHECK(rig.graded().interval == IntervalSource::robust_standard_error);
-  CHECK_THAT(rig.graded().ci95->second, WithinRel(110.0, 1e-12));
+  CHECK_THAT(rig.graded().ci95->high, WithinRel(110.0, 1e-12));
   rig.found.robust_freedom = {2.0};
   CHECK(rig.graded().interval == IntervalSource::standard_error);
   rig.found.robust_standard_error = {15.0};

@@ -305,7 +305,7 @@ TEST_CASE("known values: intervals hold the truth with a sensor off as its certi
     const auto holds = [&] {
       const FittedParameter gain = parameter(fit(twin.campaign, records, {}), "valve_gain");
       const auto& interval = gain.ci95_if_exact;
-      return interval && interval->first <= truth && truth <= interval->second ? 1 : 0;
+      return interval && interval->low <= truth && truth <= interval->high ? 1 : 0;
     };
     held_without += holds();
     twin.campaign.channels.at(datasets::Channel::position).gain_sd = kGainSd;
