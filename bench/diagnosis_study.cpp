@@ -195,7 +195,7 @@ struct Total {
     records += each.records;
     right += each.right;
     undecided += each.undecided;
-    off_by_two += each.off_by_two;
+    off_by_two += each.off_by_two_or_more;
   }
 };
 

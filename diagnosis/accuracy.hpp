@@ -3,10 +3,9 @@
 #include <array>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "common/range.hpp"
+#include "common/describe.hpp"
 #include "datasets/campaign/diagnosis_settings.hpp"
 
 namespace rigcal::diagnosis {
@@ -18,23 +17,34 @@ struct Judged {
   std::optional<datasets::LeakClass> found;  ///< empty: undecided
 };
 
-/// Accuracy of a method.
-struct Accuracy {
-  /// Counts: row of the truth, column of the class found, the last one undecided.
-  std::array<std::array<int, datasets::kLeakClasses.size() + 1>, datasets::kLeakClasses.size()>
-      confusion{};
-  int records = 0;
-  int right = 0;
-  int off_by_two = 0;  ///< wrong by two classes or more
-  int undecided = 0;   ///< counted as wrong
-  int conditions = 0;
-  double accuracy = 0.0;  ///< right / records
-  /// Wilson's 95 % interval for as many independent trials as there are conditions: repeats of one
-  /// condition have common errors.
-  Range ci95{0.0, 1.0};
+/// Numbers of records: rows by true class, columns by assigned class.
+struct Confusion {
+  static constexpr std::size_t kClasses = datasets::kLeakClasses.size();
+  std::array<std::string, kClasses> truth;      ///< names of the rows
+  std::array<std::string, kClasses + 1> found;  ///< of the columns; the last one undecided
+  std::array<std::array<int, kClasses + 1>, kClasses> counts{};
+  RIGCAL_DESCRIBE(truth, found, counts)
+
+  Confusion();
 };
 
-/// @param judged  may be empty; then everything is zero and the interval means nothing
+/// Accuracy of a method.
+struct Accuracy {
+  int records = 0;
+  int conditions = 0;
+  int right = 0;
+  int undecided = 0;               ///< counted as wrong
+  int off_by_two_or_more = 0;      ///< wrong by so many classes
+  std::optional<double> accuracy;  ///< right / records
+  /// Wilson's 95 % interval for as many independent trials as there are conditions: repeats of one
+  /// condition have common errors.
+  std::optional<Range> accuracy_ci95;
+  Confusion confusion;
+  RIGCAL_DESCRIBE(records, conditions, right, undecided, off_by_two_or_more, accuracy,
+                  accuracy_ci95, confusion)
+};
+
+/// @param judged  may be empty; then there is no accuracy
 Accuracy accuracy_of(const std::vector<Judged>& judged);
 
 /// Wilson's score interval of a proportion at 95 %. E. B. Wilson, J. Am. Stat. Assoc. 22 (1927).

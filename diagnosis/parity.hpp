@@ -22,9 +22,7 @@ struct ParityOptions {
 };
 
 /// Thresholds for features of the source paper (Table 4), from healthy records.
-struct FeatureThresholds {
-  std::optional<double> mean, rms, std;  ///< [m]
-};
+using FeatureThresholds = metrics::ByFeature<std::optional<double>>;
 
 /// The parity residual of one record: position minus that of the healthy model under the same
 /// reference (eq. 14), minus the mean of that residual over healthy records of the signal, which is
@@ -68,17 +66,22 @@ struct ParitySignal {
   int healthy_records = 0;  ///< number of records behind the thresholds
   std::optional<double> threshold_m;  ///< threshold for peak_m, of a record of the same day
   /// The same of a record of a day that the healthy records do not have.
-  std::optional<double> threshold_of_another_day_m;
-  int common_causes = 0;  ///< by which the healthy records differ beyond noise
-  FeatureThresholds features;
-  std::string reason;  ///< why there is no threshold, in words
+  Omittable<double> threshold_of_another_day_m;
+  FeatureThresholds feature_thresholds;
+  std::optional<std::string> reason;   ///< why there is no threshold, in words
+  Omittable<int> common_causes = {0};  ///< by which the healthy records differ beyond noise
+  RIGCAL_DESCRIBE(signal, window_s, healthy_records, threshold_m, feature_thresholds, reason,
+                  threshold_of_another_day_m, common_causes)
 };
 
 /// Healthy records on which no threshold rests: do they raise as many alarms as stated?
 struct FalseAlarmCheck {
   int records = 0;
   int alarms = 0;
-  double p = 1.0;  ///< probability of so many alarms or more at the stated rate (binomial)
+  double expected = 0.0;  ///< alarms at the stated rate
+  /// Probability of so many alarms or more at that rate (binomial); absent without records.
+  std::optional<double> p_value;
+  RIGCAL_DESCRIBE(records, alarms, expected, p_value)
 };
 
 struct Parity {

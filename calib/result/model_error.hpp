@@ -17,13 +17,17 @@ namespace rigcal::calib {
 struct LackOfFit : metrics::Judged {
   std::string condition;
   datasets::Channel channel = datasets::Channel::position;
-  double ratio = 0.0;         ///< variance of the residual over that of the pure error
-  double freedom = 0.0;       ///< effective degrees of freedom of the residual
-  double pure_freedom = 0.0;  ///< and of the pure error; infinite where `sd` states it
-  bool by_repeats = false;    ///< pure error from repeats; else from `sd`
+  std::string against = "sd";       ///< what tells the pure error: "repeats" or "sd"
+  double ratio = 0.0;               ///< variance of the residual over that of the pure error
+  double freedom = 0.0;             ///< effective degrees of freedom of the residual
+  double pure_error_freedom = 0.0;  ///< and of the pure error; infinite where `sd` states it
   /// Probability of such a ratio, or a larger one, of noise alone. The outcome is that of all tests
   /// together.
   double p = 1.0;
+  RIGCAL_DESCRIBE(condition, channel, against, ratio, freedom, pure_error_freedom, p, outcome,
+                  reason)
+
+  bool by_repeats() const { return against == "repeats"; }
 };
 
 /// Differences between the repeats of the fitted conditions (between_repeats.hpp).

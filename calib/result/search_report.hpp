@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,11 +36,15 @@ struct StartReport {
   int number = 1;
   std::vector<double> start_values;  ///< SI, order of the unknowns
   std::vector<double> end_values;
-  double initial_cost = 0.0;
-  double final_cost = 0.0;
+  double initial_cost = kNone;  ///< NaN where it cannot be simulated
+  double final_cost = kNone;    ///< likewise
   int iterations = 0;
   FitStatus status = FitStatus::failed;
   std::string message;
+  RIGCAL_DESCRIBE(number, status, message, start_values, end_values, initial_cost, final_cost,
+                  iterations)
+
+  static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Further starts that a fit with one start evaluated with coarse simulations.

@@ -94,7 +94,8 @@ std::string interval_advice(const Problem& problem, const OptimumCheck& check,
       return test.outcome == metrics::TestOutcome::not_judged;
     });
     return text + fmt::format("; lack of fit cannot be judged (condition \"{}\", {}: {})",
-                              open->condition, datasets::info(open->channel).key, open->reason);
+                              open->condition, datasets::info(open->channel).key,
+                              open->reason.value_or(""));
   }
   if (!flagged) {
     return text +
@@ -102,7 +103,7 @@ std::string interval_advice(const Problem& problem, const OptimumCheck& check,
            "cannot be told apart";
   }
   const LackOfFit& test = *least_likely(tests);
-  const std::string against = test.by_repeats ? "the scatter of the repeats" : "the stated `sd`";
+  const std::string against = test.by_repeats() ? "the scatter of the repeats" : "the stated `sd`";
   if (*flagged) {
     return text + fmt::format(
                       "; significant lack of fit (condition \"{}\", {}: residual variance {:.3g} "

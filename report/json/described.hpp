@@ -190,15 +190,18 @@ void read_into(const JsonNode& node, T& value) {
     read_into(ends[0], value.low);
     read_into(ends[1], value.high);
   } else if constexpr (std::same_as<T, Eigen::MatrixXd>) {
-    const auto rows = node.items();
-    const auto columns = rows.empty() ? 0 : rows.front().items().size();
-    value.resize(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(columns));
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      const std::vector<double> row = rows[i].reals();
-      if (row.size() != columns) rows[i].fail(fmt::format("a list of {}", columns));
-      for (std::size_t j = 0; j < columns; ++j)
-        value(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = row[j];
+    const auto items = node.items();
+    std::vector<std::vector<double>> rows;
+    for (const JsonNode& item : items) {
+      rows.push_back(item.reals());
+      const std::size_t columns = rows.front().size();
+      if (rows.back().size() != columns) item.fail(fmt::format("a list of {}", columns));
     }
+    const std::size_t columns = rows.empty() ? 0 : rows.front().size();
+    value.resize(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(columns));
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      value.row(static_cast<Eigen::Index>(i)) =
+          Eigen::Map<const Eigen::RowVectorXd>(rows[i].data(), static_cast<Eigen::Index>(columns));
   } else if constexpr (is_a<T, std::optional> || is_a<T, Omittable>) {
     value.reset();
     if constexpr (is_a<T, Omittable>) {

@@ -14,7 +14,9 @@ namespace {
 
 std::string hertz(double value) { return fmt::format("{:.3g} Hz", value); }
 
-std::string not_judged(const metrics::Judged& test) { return "cannot be judged: " + test.reason; }
+std::string not_judged(const metrics::Judged& test) {
+  return "cannot be judged: " + test.reason.value_or("");
+}
 
 }  // namespace
 
@@ -35,15 +37,14 @@ std::string autocorrelation_words(const ResidualTests& tests) {
 }
 
 std::string cross_correlation_words(const metrics::CrossCorrelation& test) {
-  const std::string peak = fmt::format("largest correlation {:.2g}, 95 % bound {:.2g}",
-                                       std::abs(test.peak), test.band_of_peak);
+  const std::string peak =
+      fmt::format("largest correlation {:.2g}, 95 % bound {:.2g}", std::abs(test.peak), test.limit);
   if (test.passed()) return fmt::format("not significantly correlated with the input: {}", peak);
   if (!test.failed()) return not_judged(test);
   return fmt::format(
       "{:.0f} % of the residual variance is linearly explained by the input (correlation {:.2g} at "
       "a lag of {}, 95 % bound {:.2g}): unmodelled dynamics, or a wrong parameter",
-      100.0 * test.peak * test.peak, test.peak, readable(test.peak_lag_s, "s", 2),
-      test.band_of_peak);
+      100.0 * test.peak * test.peak, test.peak, readable(test.peak_lag_s, "s", 2), test.limit);
 }
 
 std::string periodogram_words(const metrics::Periodogram& test) {

@@ -18,12 +18,12 @@ doc::Table start_table(const StoredFit& fit) {
   table.columns = {{"Start", Kind::number},         {"Status"},
                    {"Cost at start", Kind::number}, {"Cost at end", Kind::number},
                    {"Iterations", Kind::number},    {"Why it ended", Kind::words}};
-  for (const StoredStart& start : fit.starts) {
+  for (const calib::StartReport& start : fit.starts) {
     const bool best = start.number == fit.best_start;
     table.rows.push_back(
         {{fmt::format("{}{}", start.number, best ? " ★ best" : ""),
-          std::string(to_string(start.status)), doc::in_unit(start.initial_cost, 1.0, 6),
-          doc::in_unit(start.final_cost, 1.0, 6), fmt::format("{}", start.iterations),
+          std::string(to_string(start.status)), doc::in_unit(finite(start.initial_cost), 1.0, 6),
+          doc::in_unit(finite(start.final_cost), 1.0, 6), fmt::format("{}", start.iterations),
           start.message}});
   }
   return table;
@@ -68,9 +68,9 @@ doc::Section starts_section(const StoredFit& fit) {
     return section;
   }
   std::vector<double> costs;
-  for (const StoredStart& start : fit.starts) {
-    if (start.final_cost && start.status != calib::FitStatus::failed)
-      costs.push_back(*start.final_cost);
+  for (const calib::StartReport& start : fit.starts) {
+    if (std::isfinite(start.final_cost) && start.status != calib::FitStatus::failed)
+      costs.push_back(start.final_cost);
   }
   std::sort(costs.begin(), costs.end());
   blocks.emplace_back(doc::reading(start_reading(fit, costs)));

@@ -85,16 +85,17 @@ doc::Table lack_of_fit_table(const StoredFit& fit) {
                    {"Outcome, all together"}};
   table.file = is_fit_schema(fit.schema) ? "fit.json" : "validation.json";
   table.most = 100;
-  std::vector<StoredLackOfFitTest> tests = lack.tests;
+  std::vector<calib::LackOfFit> tests = lack.tests;
   if (tests.size() > table.most)
     std::stable_sort(tests.begin(), tests.end(), [](const auto& a, const auto& b) {
       return !std::isnan(a.p) && (std::isnan(b.p) || a.p < b.p);
     });
-  for (const StoredLackOfFitTest& test : tests) {
+  for (const calib::LackOfFit& test : tests) {
     const bool judged = test.outcome != metrics::TestOutcome::not_judged;
     table.rows.push_back(
-        {{test.condition, test.channel, test.against, doc::in_unit(test.ratio, 1.0, 4),
-          doc::in_unit(test.freedom, 1.0, 6).text, std::isnan(test.p) ? "–" : p_value_text(test.p),
+        {{test.condition, std::string(info(test.channel).key), test.against,
+          doc::in_unit(test.ratio, 1.0, 4), doc::in_unit(test.freedom, 1.0, 6).text,
+          std::isnan(test.p) ? "–" : p_value_text(test.p),
           judged ? std::string(to_string(test.outcome))
                  : "cannot be judged: " + test.reason.value_or("")}});
   }

@@ -30,10 +30,11 @@ std::pair<double, std::string> signal_of(const StoredCondition& condition) {
 std::string level_of(const StoredCondition& condition) { return condition.leak_level.value_or(""); }
 
 /// "rho2 0.99 (warning at 0.995), ccc 0.99"; empty if the channel has no limits.
-std::string limits_text(const std::vector<StoredLimit>& limits, const std::string& channel) {
+std::string limits_text(const std::vector<datasets::AcceptanceLimit>& limits,
+                        const std::string& channel) {
   std::string text;
-  for (const StoredLimit& limit : limits) {
-    if (limit.channel != channel) continue;
+  for (const datasets::AcceptanceLimit& limit : limits) {
+    if (info(limit.channel).key != channel) continue;
     text += fmt::format("{}{} {}", text.empty() ? "" : ", ", limit.metric,
                         doc::in_unit(limit.limit, 1.0, 6).text);
     if (limit.warn) text += fmt::format(" (warning at {})", doc::in_unit(limit.warn, 1.0, 6).text);

@@ -67,15 +67,6 @@ StoredParameter stored(const calib::FittedParameter& p, const model::ParameterSp
   return result;
 }
 
-StoredLackOfFit lack_of_fit(const calib::Fit& fit) {
-  StoredLackOfFit result{fit.misfit, {}};
-  for (const calib::LackOfFit& test : fit.lack_of_fit)
-    result.tests.push_back({test.condition, key_of(test.channel),
-                            test.by_repeats ? "repeats" : "sd", test.ratio, test.freedom,
-                            test.pure_freedom, test.p, test.outcome, unless_empty(test.reason)});
-  return result;
-}
-
 const datasets::Record* record_of(const Result& result, const std::string& condition) {
   const auto found = std::find_if(result.records.begin(), result.records.end(),
                                   [&](const auto& each) { return each.condition == condition; });
@@ -120,13 +111,6 @@ StoredValidity validity(const Result& result, const std::vector<datasets::Use>& 
   return stored;
 }
 
-std::vector<StoredLimit> stored(const std::vector<datasets::AcceptanceLimit>& limits) {
-  std::vector<StoredLimit> list;
-  for (const datasets::AcceptanceLimit& limit : limits)
-    list.push_back({key_of(limit.channel), limit.metric, finite(limit.limit), finite(limit.warn)});
-  return list;
-}
-
 StoredScore stored(const calib::ChannelScore& score) {
   StoredScore result;
   for (const metrics::MetricSpec& metric : metrics::kMetrics)
@@ -155,7 +139,7 @@ void add_stated(const Result& result, const calib::ConditionScore& score, Stored
   stated.leak_level = condition->leak_level;
   if (condition->temperature_k) stated.temperature_k = *condition->temperature_k;
   if (condition->date) stated.date = *condition->date;
-  if (condition->acceptance) stated.acceptance = stored(*condition->acceptance);
+  if (condition->acceptance) stated.acceptance = *condition->acceptance;
   if (!condition->not_judged.empty()) stated.not_judged = keys_of(condition->not_judged);
 }
 
@@ -207,18 +191,6 @@ StoredCondition stored(const Result& result, const calib::ConditionScore& score)
   return condition;
 }
 
-StoredStart stored(const calib::StartReport& start) {
-  const bool simulated = !start.end_values.empty();
-  return {start.number,
-          start.status,
-          start.message,
-          start.start_values,
-          start.end_values,
-          simulated ? finite(start.initial_cost) : std::nullopt,
-          simulated ? finite(start.final_cost) : std::nullopt,
-          start.iterations};
-}
-
 void add_trust(const calib::Fit& fit, StoredFit& result) {
   result.considered = fit.considered;
   const bool solved = fit.rank > 0;
@@ -236,7 +208,7 @@ void add_trust(const calib::Fit& fit, StoredFit& result) {
       fit.independent_residuals > 0.0 ? finite(fit.independent_residuals) : std::nullopt;
   result.interval_advice = fit.interval_advice;
   result.combinations = fit.combinations;
-  result.lack_of_fit = std::optional(lack_of_fit(fit));
+  result.lack_of_fit = std::optional(StoredLackOfFit{fit.misfit, fit.lack_of_fit});
   result.between_repeats = fit.between_repeats;
   result.basins = fit.basins;
   result.agreement = fit.agreement;
@@ -247,7 +219,7 @@ void add_trust(const calib::Fit& fit, StoredFit& result) {
 }
 
 void add_search(const calib::Fit& fit, StoredFit& result) {
-  for (const calib::StartReport& start : fit.starts) result.starts.push_back(stored(start));
+  result.starts = fit.starts;
   result.best_start = fit.best_start;
   result.failure_count = fit.failure_count;
   result.failures = fit.failures;
@@ -363,7 +335,7 @@ StoredFit stored(const Result& result) {
                                      [](const auto& score) { return score.use == Use::validate; });
   if (validated) json.validated = validity(result, {Use::validate});
   json.decision = result.campaign.acceptance_bounds.decision;
-  json.acceptance = stored(result.campaign.acceptance);
+  json.acceptance = result.campaign.acceptance;
   const auto& not_judged = result.campaign.acceptance_bounds.not_judged;
   if (!not_judged.empty()) json.not_judged = keys_of(not_judged);
   for (const calib::ConditionScore& score : fit.conditions)

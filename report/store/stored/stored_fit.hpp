@@ -109,19 +109,9 @@ struct StoredCorrelation {
   RIGCAL_DESCRIBE(names, matrix)
 };
 
-struct StoredLackOfFitTest {
-  std::string condition, channel;
-  std::string against;  ///< "repeats" or "sd"
-  double ratio = 0.0, freedom = 0.0, pure_error_freedom = 0.0, p = 0.0;
-  metrics::TestOutcome outcome = metrics::TestOutcome::not_judged;
-  std::optional<std::string> reason;
-  RIGCAL_DESCRIBE(condition, channel, against, ratio, freedom, pure_error_freedom, p, outcome,
-                  reason)
-};
-
 struct StoredLackOfFit {
   std::optional<bool> misfit;
-  std::vector<StoredLackOfFitTest> tests;
+  std::vector<calib::LackOfFit> tests;
   RIGCAL_DESCRIBE(misfit, tests)
 };
 
@@ -146,12 +136,6 @@ struct StoredValidity {
   Omittable<Range> amplitude_n, amplitude_pa, amplitude_m_per_s2;  ///< in other loops
   RIGCAL_DESCRIBE(frequency_hz, amplitude_m, amplitude_v, supply_pressure_pa, leakage_coefficient,
                   leak_levels, amplitude_n, amplitude_pa, amplitude_m_per_s2)
-};
-
-struct StoredLimit {
-  std::string channel, metric;
-  std::optional<double> limit, warn;
-  RIGCAL_DESCRIBE(channel, metric, limit, warn)
 };
 
 /// Scores of one channel of a condition, NaN where one does not exist, and the response at its
@@ -183,7 +167,8 @@ struct StoredCondition {
   Later<std::vector<std::string>> record_sha256;  ///< files that the record is made from
   Omittable<std::vector<Range>> windows_s;        ///< empty: the whole record
   Omittable<std::vector<std::string>> notes;
-  Omittable<std::vector<StoredLimit>> acceptance;  ///< its own, in place of the campaign's
+  Omittable<std::vector<datasets::AcceptanceLimit>>
+      acceptance;                                  ///< its own, in place of the campaign's
   Omittable<std::vector<std::string>> not_judged;  ///< in addition to those of the campaign
   Later<std::vector<std::string>> warnings;
   Later<std::optional<std::string>> not_scored;
@@ -206,17 +191,6 @@ struct StoredCondition {
 
   /// Verdict on a channel; nothing without a limit.
   std::optional<calib::Verdict> verdict_of(const std::string& channel) const;
-};
-
-struct StoredStart {
-  int number = 1;
-  calib::FitStatus status = calib::FitStatus::failed;
-  std::string message;
-  std::vector<double> start_values, end_values;
-  std::optional<double> initial_cost, final_cost;
-  int iterations = 0;
-  RIGCAL_DESCRIBE(number, status, message, start_values, end_values, initial_cost, final_cost,
-                  iterations)
 };
 
 struct StoredFit {
@@ -255,11 +229,11 @@ struct StoredFit {
   StoredValidity validity;
   Omittable<StoredValidity> validated;  ///< ranges of the conditions that were not fitted
   Omittable<datasets::DecisionRule> decision;
-  std::vector<StoredLimit> acceptance;
+  std::vector<datasets::AcceptanceLimit> acceptance;
   Omittable<std::vector<std::string>> not_judged;  ///< channels that need no limit
   std::vector<StoredCondition> conditions;
   std::vector<calib::Group> groups;
-  std::vector<StoredStart> starts;
+  std::vector<calib::StartReport> starts;
   int best_start = 0;
   long failure_count = 0;
   std::vector<calib::SimulationFailure> failures;

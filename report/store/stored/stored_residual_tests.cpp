@@ -5,15 +5,13 @@
 namespace rigcal::report {
 namespace {
 
-template <typename Stored>
-void set_outcome(const metrics::Judged& test, std::string words, Stored& result) {
+template <typename Test>
+Worded<Test> worded(const Test& test, std::string words) {
+  Worded<Test> result;
+  static_cast<Test&>(result) = test;
   result.verdict = std::move(words);
-  result.outcome = test.outcome;
-  if (test.outcome == metrics::TestOutcome::not_judged) {
-    result.reason = test.reason;
-  } else {
-    result.passed = test.passed();
-  }
+  if (test.outcome != metrics::TestOutcome::not_judged) result.has_passed = test.passed();
+  return result;
 }
 
 /// Every k-th value, so that at most about 200 are left, that of lag zero among them.
@@ -40,7 +38,7 @@ StoredResidualCurves curves_of(const metrics::ResidualTests& tests) {
   if (const auto& cross = tests.cross_correlation) {
     curves.cross_correlation =
         thinned(cross->values, cross->values.size() / 2, cross->band, tests.sample_interval_s);
-    curves.cross_correlation->band_of_peak = cross->band_of_peak;
+    curves.cross_correlation->band_of_peak = cross->limit;
   }
   curves.periodogram = {tests.periodogram.frequency_hz, tests.periodogram.density};
   curves.normality = {tests.normality.normal_quantile, tests.normality.residual_quantile};
@@ -55,28 +53,12 @@ StoredResidualTests stored(const metrics::ResidualTests& tests, std::string_view
   result.sample_interval_s = tests.sample_interval_s;
   result.std = tests.std;
   result.effective_samples = tests.effective_samples;
-  const auto& rho = tests.autocorrelation;
-  result.autocorrelation = {{},          rho.ljung_box,     rho.tested_lags,
-                            rho.p_value, rho.durbin_watson, rho.correlation_time_s};
-  set_outcome(rho, autocorrelation_words(tests), result.autocorrelation);
-  if (const auto& cross = tests.cross_correlation) {
-    result.cross_correlation = {{}, cross->peak, cross->peak_lag_s, cross->band_of_peak};
-    set_outcome(*cross, cross_correlation_words(*cross), *result.cross_correlation);
-  }
-  const auto& spectrum = tests.periodogram;
-  result.periodogram = {{},
-                        spectrum.distance,
-                        spectrum.limit,
-                        spectrum.median_frequency_hz,
-                        spectrum.peak_frequency_hz,
-                        spectrum.peak_share};
-  set_outcome(spectrum, periodogram_words(spectrum), result.periodogram);
-  const auto& shape = tests.normality;
-  result.normality = {{}, shape.skewness, shape.excess_kurtosis, shape.jarque_bera, shape.p_value};
-  set_outcome(shape, normality_words(shape), result.normality);
-  const auto& drift = tests.drift;
-  result.drift = {{}, drift.mean, drift.mean_p_value, drift.slope_per_s, drift.slope_p_value};
-  set_outcome(drift, drift_words(tests, unit), result.drift);
+  result.autocorrelation = worded(tests.autocorrelation, autocorrelation_words(tests));
+  if (const auto& cross = tests.cross_correlation)
+    result.cross_correlation = worded(*cross, cross_correlation_words(*cross));
+  result.periodogram = worded(tests.periodogram, periodogram_words(tests.periodogram));
+  result.normality = worded(tests.normality, normality_words(tests.normality));
+  result.drift = worded(tests.drift, drift_words(tests, unit));
   return result;
 }
 

@@ -9,6 +9,7 @@
 #include "model/plant/parameter.hpp"
 
 using namespace rigcal::report;
+using rigcal::Range;
 
 namespace {
 
