@@ -13,11 +13,6 @@ namespace rigcal::report {
 
 // Parts of a comparison, and functions that they share.
 
-inline constexpr double kSignificantLevel = 0.05;
-
-/// Reason of a difference between values that neither result estimates.
-inline constexpr const char* kKnownInBoth = "known in both";
-
 /// Converged or stopped: its numbers may be shown.
 inline bool is_usable(const StoredFit& fit) { return fit.status != calib::FitStatus::failed; }
 
@@ -61,16 +56,12 @@ std::vector<StoredComparedMetric> compared_metrics(
     const std::vector<StoredComparedCondition>& conditions, const std::vector<Compared>& results);
 /// Files and the results that used them.
 std::vector<StoredComparedRecord> compared_records(const std::vector<Compared>& results);
-/// The error of an estimate with that by what differs between days.
-metrics::EstimateError with_days(const metrics::EstimateError& own,
-                                 const std::optional<double>& between_days_error);
-
 /// Estimates of the parameter of a key along dates and temperatures.
 std::vector<StoredSeries> trends(const std::vector<Compared>& results, std::string_view key);
 
 /// A difference from the first result in percent; where that value is zero or not significantly
 /// different from it, in the unit. Empty where one has no value.
-std::string change_text(const StoredDifference& difference, const RowUnit& unit);
+std::string change_text(const calib::EstimateDifference& difference, const RowUnit& unit);
 /// Whether a parameter is worth a row: a result estimates it, or known values differ.
 bool worth_a_row(const StoredComparedParameter& parameter);
 /// The unit in which the largest estimate of a parameter has few digits.

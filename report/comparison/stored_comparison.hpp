@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/score/comparison.hpp"
 #include "report/store/stored/stored_fit.hpp"
 
 // comparison.json, as docs/command-line.md describes it. Of lists with an entry per result, the
@@ -33,42 +34,12 @@ struct StoredComparedResult {
                   temperature_k, version, revision, command)
 };
 
-struct StoredEstimate {
-  std::optional<double> value;
-  bool fitted = false;
-  std::optional<double> standard_error;
-  Later<std::optional<double>> degrees_of_freedom;  ///< for the standard error
-  std::optional<Range> ci95;
-  std::optional<calib::Identifiability> identifiability;
-  bool at_bound = false;
-  Omittable<double> between_days_error;  ///< standard error by what differs between days
-  RIGCAL_DESCRIBE(value, fitted, standard_error, degrees_of_freedom, ci95, identifiability,
-                  at_bound, between_days_error)
-};
-
-/// An estimate minus that of the first result.
-struct StoredDifference {
-  std::optional<double> difference;
-  std::optional<double> percent;  ///< null where the first value may be zero
-  std::optional<double> standard_error;
-  Later<std::optional<double>> degrees_of_freedom;  ///< for this error (Welch and Satterthwaite)
-  std::optional<double> p_value;                    ///< for this parameter alone
-  std::optional<double> p_value_of_all;             ///< adjusted for all parameters (Holm)
-  std::optional<bool> significant;
-  std::optional<std::string> reason;  ///< why it is not tested
-  Omittable<bool> of_other_dates;     ///< the error includes what differs between days
-  /// Part of the error due to small effects that both models leave out.
-  Omittable<double> by_effects;
-  RIGCAL_DESCRIBE(difference, percent, standard_error, degrees_of_freedom, p_value, p_value_of_all,
-                  significant, reason, of_other_dates, by_effects)
-};
-
 struct StoredComparedParameter {
   std::string name, key, symbol, unit;
   datasets::Scope scope = datasets::Scope::rig;
   std::optional<std::string> level;
-  std::vector<std::optional<StoredEstimate>> estimates;      ///< shape (results)
-  std::vector<std::optional<StoredDifference>> differences;  ///< shape (results)
+  std::vector<std::optional<calib::ComparedEstimate>> estimates;      ///< shape (results)
+  std::vector<std::optional<calib::EstimateDifference>> differences;  ///< shape (results)
   RIGCAL_DESCRIBE(name, key, symbol, unit, scope, level, estimates, differences)
 };
 
@@ -100,20 +71,9 @@ struct StoredComparedCondition {
   RIGCAL_DESCRIBE(id, channel, waveform, frequency_hz, leak_level, scores)
 };
 
-/// Means over the conditions that both have, and in how many of them the other is the better.
-struct StoredMetricAgainst {
-  int conditions = 0;
-  double mean_of_first = 0.0, mean = 0.0;
-  int better = 0, worse = 0;
-  std::optional<double> p_value;
-  std::optional<bool> significant;
-  std::optional<std::string> reason;
-  RIGCAL_DESCRIBE(conditions, mean_of_first, mean, better, worse, p_value, significant, reason)
-};
-
 struct StoredComparedMetric {
   std::string channel, metric;
-  std::vector<std::optional<StoredMetricAgainst>> against_first;  ///< shape (results)
+  std::vector<std::optional<calib::ScoreDifference>> against_first;  ///< shape (results)
   RIGCAL_DESCRIBE(channel, metric, against_first)
 };
 
@@ -149,43 +109,31 @@ struct StoredTrendPoint {
                   ci95, between_days_error)
 };
 
-/// A line through the points, weighted by their errors.
-struct StoredTrend {
-  long points = 0;  ///< with an error and a position
-  std::optional<double> slope, intercept, standard_error;
-  Later<std::optional<double>> degrees_of_freedom;  ///< for the slope's error
-  Later<std::optional<double>> widened;  ///< factor on that error by scatter about the line
-  std::optional<Range> ci95;
-  std::optional<double> p_value, reduced_chi_square;
-  std::optional<bool> significant;
-  std::optional<std::string> reason;  ///< why there is no line
-
- protected:
-  template <typename Self, typename Visit>
-  static void describe_with(Self& self, const Visit& visit, const char* slope_name) {
-    visit("points", self.points);
-    visit(slope_name, self.slope);
-    visit("intercept", self.intercept);
-    visit("standard_error", self.standard_error);
-    visit("degrees_of_freedom", self.degrees_of_freedom);
-    visit("widened", self.widened);
-    visit("ci95", self.ci95);
-    visit("p_value", self.p_value);
-    visit("reduced_chi_square", self.reduced_chi_square);
-    visit("significant", self.significant);
-    visit("reason", self.reason);
-  }
-};
-struct StoredTrendPerDay : StoredTrend {
+/// A line through the points, whose slope is called by its unit.
+template <typename Self, typename Visit>
+void describe_trend(Self& self, const Visit& visit, const char* slope_name) {
+  visit("points", self.points);
+  visit(slope_name, self.slope);
+  visit("intercept", self.intercept);
+  visit("standard_error", self.standard_error);
+  visit("degrees_of_freedom", self.degrees_of_freedom);
+  visit("widened", self.widened);
+  visit("ci95", self.ci95);
+  visit("p_value", self.p_value);
+  visit("reduced_chi_square", self.reduced_chi_square);
+  visit("significant", self.significant);
+  visit("reason", self.reason);
+}
+struct StoredTrendPerDay : calib::EstimateTrend {
   template <typename Self, typename Visit>
   static void describe(Self& self, const Visit& visit) {
-    describe_with(self, visit, "slope_per_day");
+    describe_trend(self, visit, "slope_per_day");
   }
 };
-struct StoredTrendPerKelvin : StoredTrend {
+struct StoredTrendPerKelvin : calib::EstimateTrend {
   template <typename Self, typename Visit>
   static void describe(Self& self, const Visit& visit) {
-    describe_with(self, visit, "slope_per_k");
+    describe_trend(self, visit, "slope_per_k");
   }
 };
 

@@ -24,7 +24,7 @@ using datasets::Campaign;
 using datasets::Condition;
 
 /// Warns of records outside the range of the fit, which is checked with the leak that was found.
-void warn_of_validity(const Campaign& campaign, const Validity& covered,
+void warn_of_validity(const Campaign& campaign, const calib::Validity& covered,
                       diagnosis::Diagnosis& found) {
   const int leak = model::parameter_index(campaign.rig.plant, "leakage_coefficient");
   for (diagnosis::RecordDiagnosis& record : found.records) {
@@ -38,7 +38,7 @@ void warn_of_validity(const Campaign& campaign, const Validity& covered,
     own.level = record.condition;
     own.value = std::max(0.0, record.estimate.coefficient);
     own.fitted = true;
-    Validity asked = coverage(alone, {}, values, {alone.conditions.front().use});
+    calib::Validity asked = calib::coverage(alone, {}, values, {alone.conditions.front().use});
     // The leak is the unknown here, and a fit to healthy records covers none.
     asked.leakage_coefficient.reset();
     for (const std::string& text : outside(asked, covered)) record.warnings.push_back(text);

@@ -22,21 +22,6 @@ using datasets::Scope;
 
 constexpr const char* kTruthSchema = "rigcal.truth/1";
 
-Validity validity_of(const StoredValidity& stored) {
-  Validity validity;
-  validity.frequency_hz = stored.frequency_hz;
-  for (const std::optional<Range>& amplitude :
-       {stored.amplitude_m, stored.amplitude_v, std::optional<Range>(stored.amplitude_n),
-        std::optional<Range>(stored.amplitude_pa),
-        std::optional<Range>(stored.amplitude_m_per_s2)}) {
-    if (amplitude) validity.amplitude = amplitude;
-  }
-  validity.supply_pressure_pa = stored.supply_pressure_pa;
-  validity.leakage_coefficient = stored.leakage_coefficient;
-  validity.leak_levels = stored.leak_levels;
-  return validity;
-}
-
 /// Error of a parameter that the fit could not determine, from its whole interval, or from its
 /// bounds; otherwise its uncertainty would be left out.
 double undetermined_error(const StoredParameter& p, const JsonNode& node) {
@@ -247,8 +232,8 @@ EarlierFit earlier_fit(const Json& json, const std::string& name, model::PlantKi
   result.verdict = stored.verdict;
   result.message = stored.message;
   read_values(stored, root, plant, result);
-  result.validity = validity_of(stored.validity);
-  if (stored.validated) result.validated = validity_of(*stored.validated);
+  result.validity = stored.validity;
+  if (stored.validated) result.validated = *stored.validated;
   read_covariance(stored, root, plant, result);
   for (const StoredCondition& condition : stored.conditions)
     result.conditions.emplace_back(condition.id, condition.use);

@@ -579,7 +579,7 @@ void add_scope(const StoredFit& fit, doc::Blocks& blocks) {
   }
   if (fit.status == FitStatus::failed) return;
   std::vector<std::string> ranges;
-  const auto add = [&](std::optional<Range> StoredValidity::*range, const char* name,
+  const auto add = [&](std::optional<Range> calib::Validity::*range, const char* name,
                        std::string_view unit) {
     const std::optional<Range>& fitted = fit.validity.*range;
     // The ranges of a pure validation are in `validity` already.
@@ -588,12 +588,12 @@ void add_scope(const StoredFit& fit, doc::Blocks& blocks) {
     if (fitted || validated)
       ranges.push_back(fmt::format("{} {}", name, coverage_text(fitted, validated, unit)));
   };
-  add(&StoredValidity::frequency_hz, "frequency", "Hz");
+  add(&calib::Validity::frequency_hz, "frequency", "Hz");
   if (ranges.empty()) ranges.emplace_back("frequency not stated: the signals are recorded ones");
-  add(&StoredValidity::amplitude_m, "amplitude (half of peak to peak)", "m");
-  add(&StoredValidity::amplitude_v, "amplitude (half of peak to peak)", "V");
-  add(&StoredValidity::supply_pressure_pa, "supply pressure", "Pa");
-  add(&StoredValidity::leakage_coefficient, "leakage coefficient", "1");
+  add(&calib::Validity::amplitude_m, "amplitude (half of peak to peak)", "m");
+  add(&calib::Validity::amplitude_v, "amplitude (half of peak to peak)", "V");
+  add(&calib::Validity::supply_pressure_pa, "supply pressure", "Pa");
+  add(&calib::Validity::leakage_coefficient, "leakage coefficient", "1");
   if (!fit.validity.leak_levels.empty())
     ranges.push_back(fmt::format("leak levels {}", fmt::join(fit.validity.leak_levels, ", ")));
   const bool valid = is_fit_schema(fit.schema) && fit.assessment &&

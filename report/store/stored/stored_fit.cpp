@@ -7,11 +7,9 @@
 #include <set>
 
 #include "calib/problem/known_sd.hpp"
-#include "metrics/distributions.hpp"
 #include "report/store/identity.hpp"
 #include "report/store/stored/stored_residual_tests.hpp"
 #include "report/store/stored/stored_tables_fit.hpp"
-#include "report/store/validity.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -89,28 +87,6 @@ std::vector<StoredWeight> weights(const Result& result) {
   return list;
 }
 
-/// Stores an amplitude in the member of its unit: `amplitude_m`, `amplitude_v`, ...
-template <typename Stored, typename Value>
-void put_amplitude(std::string_view unit, const std::optional<Value>& amplitude, Stored& stored) {
-  if (unit == "m") stored.amplitude_m = amplitude;
-  if (unit == "V") stored.amplitude_v = amplitude;
-  if (!amplitude) return;
-  if (unit == "N") stored.amplitude_n = *amplitude;
-  if (unit == "Pa") stored.amplitude_pa = *amplitude;
-  if (unit == "m/s2") stored.amplitude_m_per_s2 = *amplitude;
-}
-
-StoredValidity validity(const Result& result, const std::vector<datasets::Use>& uses) {
-  const Validity covered = coverage(result.campaign, result.records, result.fit, uses);
-  StoredValidity stored;
-  stored.frequency_hz = covered.frequency_hz;
-  put_amplitude(covered.amplitude_unit, covered.amplitude, stored);
-  stored.supply_pressure_pa = covered.supply_pressure_pa;
-  stored.leakage_coefficient = covered.leakage_coefficient;
-  stored.leak_levels = covered.leak_levels;
-  return stored;
-}
-
 StoredScore stored(const calib::ChannelScore& score) {
   StoredScore result;
   for (const metrics::MetricSpec& metric : metrics::kMetrics)
@@ -135,7 +111,7 @@ void add_stated(const Result& result, const calib::ConditionScore& score, Stored
   if (condition == nullptr) return;
   stated.waveform = std::optional(condition->waveform);
   stated.frequency_hz = condition->frequency_hz;
-  put_amplitude(info(drive_channel(result.campaign)).unit, condition->amplitude, stated);
+  calib::put_amplitude(info(drive_channel(result.campaign)).unit, condition->amplitude, stated);
   stated.leak_level = condition->leak_level;
   if (condition->temperature_k) stated.temperature_k = *condition->temperature_k;
   if (condition->date) stated.date = *condition->date;
@@ -232,15 +208,7 @@ double freedom_of_interval(const StoredParameter& parameter, double error) {
   if (!interval || !parameter.value) return metrics::kManyDegrees;
   const double quantile =
       std::max(interval->high - *parameter.value, *parameter.value - interval->low) / error;
-  if (!(quantile > metrics::student_t_quantile(0.975, metrics::kManyDegrees)))
-    return metrics::kManyDegrees;
-  double low = 1.0;
-  double high = metrics::kManyDegrees;
-  for (int i = 0; i < 60; ++i) {
-    const double middle = std::sqrt(low * high);
-    (metrics::student_t_quantile(0.975, middle) > quantile ? low : high) = middle;
-  }
-  return low;
+  return metrics::freedom_of_quantile(quantile);
 }
 
 }  // namespace
@@ -328,12 +296,14 @@ StoredFit stored(const Result& result) {
   if (!fit.stability.empty()) json.stability = fit.stability;
   if (result.kind == ResultKind::fit) json.weights = weights(result);
   using datasets::Use;
+  const auto covered = [&](const std::vector<Use>& uses) {
+    return calib::coverage(result.campaign, result.records, fit, uses);
+  };
   json.validity =
-      validity(result, result.kind == ResultKind::fit ? std::vector<Use>{Use::fit}
-                                                      : std::vector<Use>{Use::fit, Use::validate});
+      result.kind == ResultKind::fit ? covered({Use::fit}) : covered({Use::fit, Use::validate});
   const bool validated = std::any_of(fit.conditions.begin(), fit.conditions.end(),
                                      [](const auto& score) { return score.use == Use::validate; });
-  if (validated) json.validated = validity(result, {Use::validate});
+  if (validated) json.validated = covered({Use::validate});
   json.decision = result.campaign.acceptance_bounds.decision;
   json.acceptance = result.campaign.acceptance;
   const auto& not_judged = result.campaign.acceptance_bounds.not_judged;

@@ -7,6 +7,7 @@
 
 #include "calib/fit.hpp"
 #include "calib/score/groups.hpp"
+#include "calib/score/validity.hpp"
 #include "metrics/metric_table.hpp"
 #include "metrics/significance.hpp"
 #include "report/json/described.hpp"
@@ -129,15 +130,6 @@ struct StoredWeight {
   RIGCAL_DESCRIBE(condition, channel, samples, sd, rms)
 };
 
-struct StoredValidity {
-  std::optional<Range> frequency_hz, amplitude_m, amplitude_v, supply_pressure_pa,
-      leakage_coefficient;
-  std::vector<std::string> leak_levels;
-  Omittable<Range> amplitude_n, amplitude_pa, amplitude_m_per_s2;  ///< in other loops
-  RIGCAL_DESCRIBE(frequency_hz, amplitude_m, amplitude_v, supply_pressure_pa, leakage_coefficient,
-                  leak_levels, amplitude_n, amplitude_pa, amplitude_m_per_s2)
-};
-
 /// Scores of one channel of a condition, NaN where one does not exist, and the response at its
 /// fundamental.
 struct StoredScore : metrics::Agreement {
@@ -226,8 +218,8 @@ struct StoredFit {
   Omittable<std::vector<calib::HeldOut>> cross_validation;
   Later<std::optional<double>> aic, bic;
   Omittable<std::vector<StoredWeight>> weights;
-  StoredValidity validity;
-  Omittable<StoredValidity> validated;  ///< ranges of the conditions that were not fitted
+  calib::Validity validity;
+  Omittable<calib::Validity> validated;  ///< ranges of the conditions that were not fitted
   Omittable<datasets::DecisionRule> decision;
   std::vector<datasets::AcceptanceLimit> acceptance;
   Omittable<std::vector<std::string>> not_judged;  ///< channels that need no limit
