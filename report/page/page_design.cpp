@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 
 #include "datasets/record.hpp"
 #include "metrics/distributions.hpp"
-#include "metrics/shared_transform.hpp"
+#include "metrics/frequency_response.hpp"
 #include "report/figure/decimate.hpp"
 #include "report/figure/time_plots.hpp"
 #include "report/text/readable.hpp"
@@ -65,44 +64,6 @@ Plot plot_over_time(const std::string& title, const std::string& what, const Rea
   plot.width = 720.0;
   plot.height = 190.0;
   return plot;
-}
-
-/// The root mean square of a signal in each bin of its spectrum, over the frequency in hertz.
-Trace spectrum_of(const std::vector<double>& values, double rate_hz, double si,
-                  const std::string& style, const std::string& name) {
-  Trace trace = empty_trace(Trace::Kind::line, style, name);
-  std::vector<double> centred(values);
-  double mean = 0.0;
-  for (const double value : values) mean += value;
-  mean /= static_cast<double>(values.size());
-  for (double& value : centred) value -= mean;
-  std::vector<std::complex<double>> lines;
-  metrics::shared_transform().fwd(lines, centred);
-  const auto n = static_cast<double>(values.size());
-  int bin = -1;
-  double power = 0.0;
-  double sum_hz = 0.0;
-  int count = 0;
-  const auto close = [&] {
-    if (count > 0) {
-      trace.x.push_back(sum_hz / count);
-      trace.y.push_back(std::sqrt(power) / si);
-    }
-    power = sum_hz = 0.0;
-    count = 0;
-  };
-  for (std::size_t k = 1; 2 * k < values.size(); ++k) {
-    const double frequency_hz = static_cast<double>(k) * rate_hz / n;
-    const int at =
-        static_cast<int>(std::floor(kBinsPerDecade * std::log10(frequency_hz * n / rate_hz)));
-    if (at != bin) close();
-    bin = at;
-    power += 2.0 * std::norm(lines[k]) / (n * n);
-    sum_hz += frequency_hz;
-    ++count;
-  }
-  close();
-  return trace;
 }
 
 doc::Table prediction_table(const StoredDesign& design) {
@@ -234,7 +195,11 @@ std::vector<Figure> design_figures(const PlanFiles& files) {
   spectrum.log_x = true;
   spectrum.log_y = true;
   const auto add = [&](const std::vector<double>& values, const char* style, const char* name) {
-    Trace trace = spectrum_of(values, design.sample_rate_hz, 1.0, style, name);
+    Trace trace = empty_trace(Trace::Kind::line, style, name);
+    metrics::BandLevels levels =
+        metrics::band_levels(values, design.sample_rate_hz, kBinsPerDecade);
+    trace.x = std::move(levels.frequency_hz);
+    trace.y = std::move(levels.rms);
     const double top = largest(trace.y);
     constexpr double kFloor = 1e-4;
     if (!(top > 0.0)) return;
