@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <optional>
 #include <string>
 #include <utility>
@@ -29,9 +28,10 @@ struct FittedAssumption {
 
 /// One published number against the computed one, at the end of the fit.
 struct TableResidual {
-  std::string what;        ///< "share, sine_0.1Hz, 10 %", "mean, Slight"
+  std::string of;          ///< "share, sine_0.1Hz, 10 %", "mean, Slight"
   double weight = 1.0;     ///< weight of its square root in the cost
   double log_ratio = 0.0;  ///< ln(computed / published)
+  RIGCAL_DESCRIBE(of, weight, log_ratio)
 };
 
 /// Values that make the published tables come out, estimated by least squares.
@@ -44,7 +44,7 @@ struct TablesFit {
   double wall_seconds = 0.0;
   double rms = 0.0;  ///< root mean square of the weighted residuals
   std::vector<FittedAssumption> parameters;
-  Eigen::MatrixXd correlation;  ///< shape (parameters)^2
+  Correlation correlation;  ///< of the parameters
   std::vector<TableResidual> residuals;
   std::vector<std::string> left_out;     ///< published numbers that do not count, and why
   datasets::LeakTableSettings settings;  ///< with the estimated values filled in

@@ -62,14 +62,10 @@ StoredTablesFit stored(const datasets::Campaign& campaign, const calib::TablesFi
   json.evaluations = fit.evaluations;
   json.iterations = fit.iterations;
   json.wall_seconds = fit.wall_seconds;
-  for (const calib::FittedAssumption& p : fit.parameters) {
+  for (const calib::FittedAssumption& p : fit.parameters)
     json.parameters.push_back(stored(campaign, fit.status, p));
-    json.correlation.names.push_back(json.parameters.back().name);
-  }
-  for (const auto& row : fit.correlation.rowwise())
-    json.correlation.matrix.emplace_back(row.begin(), row.end());
-  for (const calib::TableResidual& residual : fit.residuals)
-    json.residuals.push_back({residual.what, residual.weight, residual.log_ratio});
+  json.correlation = fit.correlation;
+  json.residuals = fit.residuals;
   json.left_out = fit.left_out;
   json.provenance = report::stored(provenance);
   return json;

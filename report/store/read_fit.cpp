@@ -48,17 +48,11 @@ double half_in_errors(const StoredParameter& p, double error) {
 }
 
 /// Refuses a matrix that is no correlation matrix.
-void require_correlations(const StoredCorrelation& stored, const JsonNode& matrix) {
+void require_correlations(const calib::Correlation& stored, const JsonNode& matrix) {
   constexpr double kRounding = 1e-6;
   const auto size = static_cast<Eigen::Index>(stored.names.size());
-  Eigen::MatrixXd all(size, size);
-  if (stored.matrix.size() != stored.names.size()) matrix.fail("one row per name");
-  for (std::size_t i = 0; i < stored.matrix.size(); ++i) {
-    const std::vector<double>& row = stored.matrix[i];
-    if (row.size() != stored.names.size()) matrix.items()[i].fail("one number per name");
-    for (std::size_t j = 0; j < row.size(); ++j)
-      all(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = row[j];
-  }
+  const Eigen::MatrixXd& all = stored.matrix;
+  if (all.rows() != size || all.cols() != size) matrix.fail("one row and one column per name");
   // Parameters without correlations are left out of the check.
   std::vector<Eigen::Index> known;
   for (Eigen::Index i = 0; i < size; ++i)
@@ -81,7 +75,7 @@ void require_correlations(const StoredCorrelation& stored, const JsonNode& matri
 
 Estimates estimates_of(const StoredFit& stored, const JsonNode& root, model::PlantKind plant) {
   const std::vector<std::string>& names = stored.correlation.names;
-  const auto& rows = stored.correlation.matrix;
+  const Eigen::MatrixXd& correlations = stored.correlation.matrix;
   const std::vector<JsonNode> nodes = root["parameters"].items();
   Estimates result;
   require_correlations(stored.correlation, root["correlation"]["matrix"]);
@@ -116,11 +110,10 @@ Estimates estimates_of(const StoredFit& stored, const JsonNode& root, model::Pla
     result.covariance(at, at) = errors[i] * errors[i];
     if (!places[i]) continue;
     const JsonNode matrix = root["correlation"]["matrix"];
-    if (*places[i] >= rows.size()) matrix.fail("one row per name");
-    const std::vector<double>& row = rows[*places[i]];
     for (std::size_t j = 0; j < places.size(); ++j) {
       if (!places[j]) continue;
-      const double correlation = *places[j] < row.size() ? row[*places[j]] : std::nan("");
+      const double correlation = correlations(static_cast<Eigen::Index>(*places[i]),
+                                              static_cast<Eigen::Index>(*places[j]));
       if (std::isnan(correlation)) matrix.items()[*places[i]].fail("one number per name");
       result.covariance(at, static_cast<Eigen::Index>(j)) = correlation * errors[i] * errors[j];
     }

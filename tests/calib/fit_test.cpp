@@ -65,7 +65,7 @@ TEST_CASE("fit: recovers the truth from noisy positions", "[calib]") {
   CHECK(errors_off(found, "leakage_coefficient", 0.1, "small") < 3.5);
   CHECK(errors_off(found, "leakage_coefficient", 0.6, "large") < 3.5);
   CHECK(found.rank == 4);
-  CHECK(found.correlation.rows() == 4);
+  CHECK(found.correlation.matrix.rows() == 4);
   // 9000 residuals: chi-square scatters by 1.5 %; five times that.
   CHECK_THAT(found.reduced_chi_square, WithinAbs(1.0, 0.075));
   CHECK(found.conditions.size() == 6);
@@ -151,8 +151,8 @@ TEST_CASE("fit: leakage at zero has a one-sided interval", "[calib]") {
   const Fit found = fit(twin.campaign, twin.records(250, 500.0, 3), {});
   REQUIRE(found.status == FitStatus::converged);
   const FittedParameter& leakage = parameter(found, "leakage_coefficient", "none");
-  CHECK(leakage.ci95.value().first == 0.0);
-  CHECK(leakage.ci95.value().second > 0.0);
+  CHECK(leakage.ci95.value().low == 0.0);
+  CHECK(leakage.ci95.value().high > 0.0);
   CHECK(leakage.identifiability == Identifiability::bounded);
   CHECK_THAT(leakage.reason, Contains("not significantly different from zero"));
 }
@@ -234,7 +234,7 @@ TEST_CASE("fit: the exact scaling symmetry is found as a rank deficiency", "[cal
     CHECK_FALSE(parameter(found, key).standard_error.has_value());
     CHECK_THAT(parameter(found, key).reason, Contains("combination"));
   }
-  CHECK(found.correlation.size() == 0);
+  CHECK(found.correlation.matrix.size() == 0);
 }
 
 TEST_CASE("fit: limits and signals stop it with the best so far", "[calib]") {

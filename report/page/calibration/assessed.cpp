@@ -51,11 +51,15 @@ std::string rule_words(datasets::DecisionRule rule) {
   throw std::logic_error("rule_words: no words for a decision rule");
 }
 
-std::string correlation_words(const StoredCorrelation& correlation) {
-  const auto at = [&](std::size_t i, std::size_t j) {
-    const auto& matrix = correlation.matrix;
-    return i < matrix.size() && j < matrix[i].size() ? matrix[i][j] : std::nan("");
-  };
+double correlation_at(const calib::Correlation& correlation, std::size_t i, std::size_t j) {
+  const auto row = static_cast<Eigen::Index>(i);
+  const auto column = static_cast<Eigen::Index>(j);
+  const Eigen::MatrixXd& matrix = correlation.matrix;
+  return row < matrix.rows() && column < matrix.cols() ? matrix(row, column) : std::nan("");
+}
+
+std::string correlation_words(const calib::Correlation& correlation) {
+  const auto at = [&](std::size_t i, std::size_t j) { return correlation_at(correlation, i, j); };
   std::vector<std::string> names;
   std::vector<std::size_t> known;
   for (std::size_t i = 0; i < correlation.names.size(); ++i) {

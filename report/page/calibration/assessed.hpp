@@ -39,8 +39,11 @@ std::string open_aspects(const StoredFit& fit);
 /// Explains a decision rule to the reader of the verdict (ISO/IEC 17025, 7.8.6).
 std::string rule_words(datasets::DecisionRule rule);
 
+/// Correlation of two estimates; NaN where it is not known.
+double correlation_at(const calib::Correlation& correlation, std::size_t i, std::size_t j);
+
 /// Describes how strongly estimates are correlated; estimates without a number are omitted.
-std::string correlation_words(const StoredCorrelation& correlation);
+std::string correlation_words(const calib::Correlation& correlation);
 
 /// Section with the reasons of every aspect and the end of the search.
 doc::Section assessment_section(const StoredFit& fit);

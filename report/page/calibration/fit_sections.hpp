@@ -19,7 +19,7 @@ std::optional<doc::Section> overview_section(const Calibration& stored);
 doc::Section scores_section(const StoredFit& fit, bool unfinished);
 /// @param judged  whether a search converged, so that estimates have grades
 doc::Section parameters_section(const std::vector<StoredParameter>& parameters,
-                                const StoredCorrelation& correlation, bool judged);
+                                const calib::Correlation& correlation, bool judged);
 /// What contributes to the uncertainty of each estimate; nothing where no effects were considered.
 void add_budget(const std::vector<StoredParameter>& parameters, doc::Blocks& blocks);
 /// One article for each condition: what it is, its scores, its plots and residual tests.

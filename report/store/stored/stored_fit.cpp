@@ -172,9 +172,7 @@ void add_trust(const calib::Fit& fit, StoredFit& result) {
   const bool solved = fit.rank > 0;
   result.rank = fit.rank;
   result.singular_values = fit.singular_values;
-  result.correlation.names = fit.correlation_names;
-  for (const auto& row : fit.correlation.rowwise())
-    result.correlation.matrix.emplace_back(row.begin(), row.end());
+  result.correlation = fit.correlation;
   if (solved) {
     result.reduced_chi_square = finite(fit.reduced_chi_square);
     result.aic = finite(fit.aic);

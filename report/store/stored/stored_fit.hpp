@@ -104,12 +104,6 @@ inline std::string parameter_label(const StoredParameter& p) {
   return parameter_label(p.key, p.scope, p.level);
 }
 
-struct StoredCorrelation {
-  std::vector<std::string> names;
-  std::vector<std::vector<double>> matrix;  ///< shape (names)^2
-  RIGCAL_DESCRIBE(names, matrix)
-};
-
 struct StoredLackOfFit {
   std::optional<bool> misfit;
   std::vector<calib::LackOfFit> tests;
@@ -200,7 +194,7 @@ struct StoredFit {
   long evaluations = 0;
   std::optional<double> wall_seconds, simulation_tolerance;
   std::vector<StoredParameter> parameters;
-  StoredCorrelation correlation;
+  calib::Correlation correlation;
   int rank = 0;
   std::vector<double> singular_values;
   std::optional<double> reduced_chi_square;

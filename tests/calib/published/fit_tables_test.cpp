@@ -116,7 +116,7 @@ TEST_CASE("fit_tables: a twin's values come back from a far start, a gain from z
     CHECK(p.value < p.ci95->high);
     CHECK(fit.settings.assumption(p.index)->value == p.value);
   }
-  CHECK(fit.correlation.rows() == 4);
+  CHECK(fit.correlation.matrix.rows() == 4);
   CHECK(fit.residuals.size() == 4 + 3 * 5);
 }
 
