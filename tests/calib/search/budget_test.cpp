@@ -93,7 +93,7 @@ TEST_CASE("budget: a stop beside the fit keeps the fit, its scores, and what was
     CHECK_THAT(stopped.parameters[j].reason, Contains("stopped by the limit of evaluations"));
   }
   for (const HeldOut& held : stopped.cross_validation)
-    CHECK_THAT(held.problem, Contains("stopped by the limit of evaluations"));
+    CHECK_THAT(held.problem.value(), Contains("stopped by the limit of evaluations"));
   options.threads = 3;
   const Fit again = job.run(options);
   CHECK(again.bootstrap_replicates == stopped.bootstrap_replicates);

@@ -54,8 +54,8 @@ TEST_CASE("identifiability: a fifth of the value is weak, all of it nothing", "[
 
 TEST_CASE("identifiability: an interval ends where the parameter does", "[calib]") {
   const auto inside = Graded(10.0).graded().ci95.value();
-  CHECK_THAT(inside.first, WithinRel(100.0 - 19.6, 1e-3));
-  CHECK_THAT(inside.second, WithinRel(100.0 + 19.6, 1e-3));
+  CHECK_THAT(inside.low, WithinRel(100.0 - 19.6, 1e-3));
+  CHECK_THAT(inside.high, WithinRel(100.0 + 19.6, 1e-3));
   const Graded wide(1000.0);
   CHECK(wide.graded().ci95->low == wide.problem->spec(0).lower);
 }

@@ -261,7 +261,7 @@ TEST_CASE("cross-validation: of one condition there is none", "[calib]") {
   options.cross_validate = true;
   const Fit found = fit(twin.campaign, twin.records(250, 500.0, 3), options);
   REQUIRE(found.cross_validation.size() == 1);
-  CHECK_THAT(found.cross_validation[0].problem, Contains("only condition"));
+  CHECK_THAT(found.cross_validation[0].problem.value(), Contains("only condition"));
 }
 
 TEST_CASE("cross-validation: each condition is predicted from the others", "[calib]") {
@@ -284,7 +284,7 @@ TEST_CASE("cross-validation: each condition is predicted from the others", "[cal
     CHECK_THAT(held.rmse[0].second, WithinRel(held.fitted_rmse[0].second, 0.1));
     CHECK(std::abs(held.largest_shift.value()) < 5.0);
   }
-  CHECK_THAT(found.cross_validation[2].problem, Contains("leak"));
+  CHECK_THAT(found.cross_validation[2].problem.value(), Contains("leak"));
   CHECK_THAT(found.interval_advice, Contains("2 of 3 conditions predicted from the others"));
 }
 
