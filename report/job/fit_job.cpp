@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
+#include "common/error.hpp"
+#include "common/file.hpp"
 #include "common/memory.hpp"
 #include "datasets/prepare/load_record.hpp"
 #include "report/job/checkpoint_file.hpp"
@@ -10,7 +13,7 @@
 #include "report/run/validation.hpp"
 #include "report/store/checkpoint.hpp"
 #include "report/store/kept_tasks.hpp"
-#include "report/store/whole_fit.hpp"
+#include "report/store/stored.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -103,6 +106,40 @@ void search(FitRun& run, Unfinished& kept, bool resume, const JobTerms& terms,
   datasets::drop_deviations(run.records);
   give_freed_memory_back();
   give_large_blocks_back();
+}
+
+/// Whether both were made from the same; paths may differ, as where the folder was moved.
+bool same_making(const StoredProvenance& a, const StoredProvenance& b) {
+  return a.version == b.version && a.revision == b.revision && a.seed == b.seed &&
+         a.options == b.options &&
+         std::equal(a.inputs.begin(), a.inputs.end(), b.inputs.begin(), b.inputs.end(),
+                    [](const auto& x, const auto& y) { return x.sha256 == y.sha256; });
+}
+
+bool files_stand(const std::filesystem::path& folder, const StoredProvenance& provenance) {
+  return provenance.files &&
+         std::all_of(provenance.files->begin(), provenance.files->end(), [&](const auto& file) {
+           return sha256_of_file(folder / file.path) == file.sha256;
+         });
+}
+
+/// The fit in a folder, if it is complete and would be the same again: by the same version, from
+/// inputs of the same content, with the same seed and options, not stopped, and with each listed
+/// file present and unchanged.
+std::optional<StoredFit> whole_fit(const std::filesystem::path& folder,
+                                   const Provenance& provenance) {
+  const std::filesystem::path file = folder / "fit.json";
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  try {
+    const auto fit = load<StoredFit>(files_in(folder), folder.string(), "fit.json");
+    const bool ended = fit.status != calib::FitStatus::stopped;
+    if (ended && same_making(fit.provenance, stored(provenance)) &&
+        files_stand(folder, fit.provenance))
+      return fit;
+  } catch (const InputError&) {
+    // Unreadable results are made again.
+  }
+  return std::nullopt;
 }
 
 }  // namespace
