@@ -21,7 +21,7 @@ struct Judged {
 struct Confusion {
   static constexpr std::size_t kClasses = datasets::kLeakClasses.size();
   std::array<std::string, kClasses> truth;      ///< names of the rows
-  std::array<std::string, kClasses + 1> found;  ///< of the columns; the last one undecided
+  std::array<std::string, kClasses + 1> found;  ///< names of the columns; the last one undecided
   std::array<std::array<int, kClasses + 1>, kClasses> counts{};
   RIGCAL_DESCRIBE(truth, found, counts)
 

@@ -64,7 +64,7 @@ std::vector<ResponsePoint> broadband_response(double sample_interval_s,
                                               std::span<const double> output);
 
 /// Root mean squares of a signal less its mean, in bins of equal width in log frequency; shape
-/// (bins that hold a line of the spectrum).
+/// (bins with a line of the spectrum).
 struct BandLevels {
   std::vector<double> frequency_hz;  ///< mean of the lines
   std::vector<double> rms;           ///< in the unit of the signal

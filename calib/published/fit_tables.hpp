@@ -44,7 +44,7 @@ struct TablesFit {
   double wall_seconds = 0.0;
   double rms = 0.0;  ///< root mean square of the weighted residuals
   std::vector<FittedAssumption> parameters;
-  Correlation correlation;  ///< of the parameters
+  Correlation correlation;  ///< correlation of all parameters
   std::vector<TableResidual> residuals;
   std::vector<std::string> left_out;     ///< published numbers that do not count, and why
   datasets::LeakTableSettings settings;  ///< with the estimated values filled in

@@ -81,8 +81,8 @@ struct Considered {
   /// Keys of the effects that the residuals ask for, the best explanation first.
   std::vector<std::string> missing;
   Later<std::vector<RefittedModel>> refitted;  ///< empty: the residuals ask for nothing
-  /// Correlations of the effects' sizes by prior and records, shape (considered ones)^2: the first
-  /// of `effects`.
+  /// Correlations of the effects' sizes by prior and records, shape (considered ones)^2; these are
+  /// the first in `effects`.
   Later<Eigen::MatrixXd> correlation;
   RIGCAL_DESCRIBE(effects, left_out, missing, refitted, correlation)
 
@@ -92,7 +92,7 @@ struct Considered {
 
 /// An estimate made once more from the validation records alone. SI.
 struct StabilityCheck {
-  std::string key;  ///< of the parameter
+  std::string key;  ///< key of the parameter
   std::string unit;
   datasets::Scope scope = datasets::Scope::rig;
   std::optional<std::string> level;  ///< leak level or condition; absent: the rig

@@ -45,7 +45,7 @@ struct Fit {
   std::vector<StabilityCheck> stability;          ///< against the validation records
   std::string interval_advice;                    ///< which interval to believe, and why
   std::vector<std::string> combinations;          ///< determined combinations of parameters
-  Correlation correlation;                        ///< of the unknowns that have a standard error
+  Correlation correlation;                        ///< unknowns that have a standard error
   int rank = 0;                                   ///< rank of the scaled Jacobian at the optimum
   std::vector<double> singular_values;
   std::vector<StartReport> starts;

@@ -17,7 +17,7 @@ namespace rigcal::calib {
 struct LackOfFit : metrics::Judged {
   std::string condition;
   datasets::Channel channel = datasets::Channel::position;
-  std::string against = "sd";       ///< what tells the pure error: "repeats" or "sd"
+  std::string against = "sd";       ///< source of the pure error: "repeats" or "sd"
   double ratio = 0.0;               ///< variance of the residual over that of the pure error
   double freedom = 0.0;             ///< effective degrees of freedom of the residual
   double pure_error_freedom = 0.0;  ///< and of the pure error; infinite where `sd` states it
