@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -49,25 +48,10 @@ double half_in_errors(const StoredParameter& p, double error) {
 
 /// Refuses a matrix that is no correlation matrix.
 void require_correlations(const calib::Correlation& stored, const JsonNode& matrix) {
-  constexpr double kRounding = 1e-6;
   const auto size = static_cast<Eigen::Index>(stored.names.size());
-  const Eigen::MatrixXd& all = stored.matrix;
-  if (all.rows() != size || all.cols() != size) matrix.fail("one row and one column per name");
-  // Parameters without correlations are left out of the check.
-  std::vector<Eigen::Index> known;
-  for (Eigen::Index i = 0; i < size; ++i)
-    if (std::isfinite(all(i, i))) known.push_back(i);
-  if (known.empty()) return;
-  const Eigen::MatrixXd part = all(known, known);
-  if (!part.allFinite()) return;  // missing correlations are reported where they are needed
-  const bool valid = (part - part.transpose()).cwiseAbs().maxCoeff() <= kRounding &&
-                     (part.diagonal().array() - 1.0).abs().maxCoeff() <= kRounding &&
-                     part.cwiseAbs().maxCoeff() <= 1.0 + kRounding;
-  // Cholesky succeeds if no eigenvalue is below minus the shift. Computing all eigenvalues would
-  // take minutes for the parameters of thousands of conditions.
-  Eigen::MatrixXd shifted = part;
-  shifted.diagonal().array() += kRounding * static_cast<double>(part.rows());
-  if (valid && Eigen::LLT<Eigen::MatrixXd>(shifted).info() == Eigen::Success) return;
+  if (stored.matrix.rows() != size || stored.matrix.cols() != size)
+    matrix.fail("one row and one column per name");
+  if (calib::are_correlations(stored.matrix)) return;
   matrix.fail(
       "correlations: numbers from -1 to 1, the same on both sides of a diagonal of ones, by which "
       "no combination of the parameters has a negative variance");
@@ -75,11 +59,11 @@ void require_correlations(const calib::Correlation& stored, const JsonNode& matr
 
 Estimates estimates_of(const StoredFit& stored, const JsonNode& root, model::PlantKind plant) {
   const std::vector<std::string>& names = stored.correlation.names;
-  const Eigen::MatrixXd& correlations = stored.correlation.matrix;
+  const JsonNode matrix = root["correlation"]["matrix"];
   const std::vector<JsonNode> nodes = root["parameters"].items();
   Estimates result;
-  require_correlations(stored.correlation, root["correlation"]["matrix"]);
-  std::vector<std::optional<std::size_t>> places;  // in the matrix
+  require_correlations(stored.correlation, matrix);
+  std::vector<std::optional<Eigen::Index>> places;  // in the matrix
   std::vector<double> errors;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const StoredParameter& p = stored.parameters[i];
@@ -97,26 +81,16 @@ Estimates estimates_of(const StoredFit& stored, const JsonNode& root, model::Pla
     result.list.push_back(estimate);
     result.budgets.push_back(p.budget ? &*p.budget : nullptr);
     const bool determined = error && place != names.end();
-    places.push_back(determined ? std::optional(static_cast<std::size_t>(place - names.begin()))
+    places.push_back(determined ? std::optional<Eigen::Index>(place - names.begin())
                                 : std::nullopt);
     errors.push_back(determined ? *error : undetermined_error(p, nodes[i]));
     if (determined && *error > 0.0)
       result.widened = std::max(result.widened, half_in_errors(p, *error) / metrics::kNormal95);
   }
-  const auto n = static_cast<Eigen::Index>(places.size());
-  result.covariance = Eigen::MatrixXd::Zero(n, n);
+  result.covariance = calib::covariance_of(errors, places, stored.correlation.matrix);
   for (std::size_t i = 0; i < places.size(); ++i) {
-    const auto at = static_cast<Eigen::Index>(i);
-    result.covariance(at, at) = errors[i] * errors[i];
-    if (!places[i]) continue;
-    const JsonNode matrix = root["correlation"]["matrix"];
-    for (std::size_t j = 0; j < places.size(); ++j) {
-      if (!places[j]) continue;
-      const double correlation = correlations(static_cast<Eigen::Index>(*places[i]),
-                                              static_cast<Eigen::Index>(*places[j]));
-      if (std::isnan(correlation)) matrix.items()[*places[i]].fail("one number per name");
-      result.covariance(at, static_cast<Eigen::Index>(j)) = correlation * errors[i] * errors[j];
-    }
+    if (places[i] && result.covariance.row(static_cast<Eigen::Index>(i)).hasNaN())
+      matrix.items()[static_cast<std::size_t>(*places[i])].fail("one number per name");
   }
   return result;
 }
@@ -149,17 +123,14 @@ void read_covariance(const StoredFit& stored, const JsonNode& root, model::Plant
   fit.spread->dates = dates_of_fit(stored);
   if (stored.considered)
     fit.spread->effects = calib::effect_spread(*stored.considered, estimates.budgets);
-  const Eigen::MatrixXd& shared = fit.spread->root;
   for (const auto& [condition, values] : estimates.own) {
-    calib::EstimateSpread::Own& own = fit.spread->own.emplace_back();
-    const auto count = static_cast<Eigen::Index>(values.size());
-    own.root = Eigen::MatrixXd::Zero(count + shared.rows(), count + shared.cols());
-    own.root.bottomRightCorner(shared.rows(), shared.cols()) = shared;
-    for (Eigen::Index k = 0; k < count; ++k) {
-      const auto& [estimate, error] = values[static_cast<std::size_t>(k)];
-      own.estimates.push_back(estimate);
-      own.root(k, k) = estimates.widened * error;
+    std::vector<calib::EstimateSpread::Estimate> own;
+    std::vector<double> errors;
+    for (const auto& [estimate, error] : values) {
+      own.push_back(estimate);
+      errors.push_back(estimates.widened * error);
     }
+    calib::add_own(std::move(own), errors, *fit.spread);
   }
 }
 
