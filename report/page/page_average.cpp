@@ -134,9 +134,9 @@ Plot offset_plot(const StoredRecord& record) {
   plot.whole_x = true;
   plot.levels = {0.0};
   Trace points = empty_trace(Trace::Kind::points, "residual");
-  for (const StoredRepeat& repeat : record.repeat_reports) {
+  for (const datasets::RepeatReport& repeat : record.repeat_reports) {
     points.x.push_back(static_cast<double>(points.x.size() + 1));
-    points.y.push_back(repeat.offset_s ? 1e3 * *repeat.offset_s : std::nan(""));
+    points.y.push_back(1e3 * repeat.offset_s);
   }
   if (points.x.size() > 1) plot.traces = {std::move(points)};
   return plot;

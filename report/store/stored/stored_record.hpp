@@ -25,14 +25,6 @@ struct StoredRepeatability {
   RIGCAL_DESCRIBE(unit, repeats, pooled_sd, sd_of_mean, noise_floor)
 };
 
-/// Result of averaging for one repeat.
-struct StoredRepeat {
-  std::string source;
-  std::optional<double> offset_s, deviation;
-  bool outlier = false;
-  RIGCAL_DESCRIBE(source, offset_s, deviation, outlier)
-};
-
 struct StoredRecord {
   std::string condition;
   datasets::Use use = datasets::Use::fit;
@@ -42,7 +34,7 @@ struct StoredRecord {
   std::vector<std::string> files;
   Keyed<StoredRepeatability> channels;
   std::optional<double> offset_range_s;
-  std::vector<StoredRepeat> repeat_reports;
+  std::vector<datasets::RepeatReport> repeat_reports;
   std::vector<Range> windows_s;  ///< parts that count; empty: the whole record
   std::vector<std::string> notes, warnings;
   RIGCAL_DESCRIBE(condition, use, samples, sample_rate_hz, duration_s, repeats, files, channels,
