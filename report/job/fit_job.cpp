@@ -1,22 +1,83 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
+#include <filesystem>
 #include <optional>
 #include <utility>
 
+#include "calib/search/checkpoint.hpp"
 #include "common/error.hpp"
 #include "common/file.hpp"
 #include "common/memory.hpp"
 #include "datasets/prepare/load_record.hpp"
-#include "report/job/checkpoint_file.hpp"
 #include "report/job/job.hpp"
 #include "report/run/validation.hpp"
 #include "report/store/checkpoint.hpp"
+#include "report/store/folder.hpp"
 #include "report/store/kept_tasks.hpp"
 #include "report/store/stored.hpp"
 
 namespace rigcal::report {
 namespace {
+
+/// File in the result folder from which a fit can continue after a kill.
+class CheckpointFile {
+ public:
+  /// @param provenance  of the fit; borrowed
+  CheckpointFile(const std::filesystem::path& out, const Provenance& provenance);
+
+  /// The checkpoint of an earlier run of the same fit; empty where there is none.
+  ///
+  /// @throws InputError  it is one of another fit, or none at all
+  std::optional<calib::Checkpoint> read() const;
+
+  /// Writes a checkpoint unless that would take more than a twentieth of the time.
+  void keep(const calib::Checkpoint& checkpoint);
+
+  /// Writes the withheld state if the fit was stopped; else removes the file.
+  void finish(calib::FitStatus status);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void write();
+
+  std::filesystem::path file_;
+  const Provenance& provenance_;
+  std::optional<calib::Checkpoint> unwritten_;
+  Clock::time_point not_before_{};
+};
+
+CheckpointFile::CheckpointFile(const std::filesystem::path& out, const Provenance& provenance)
+    : file_(out / kCheckpointFile), provenance_(provenance) {}
+
+std::optional<calib::Checkpoint> CheckpointFile::read() const {
+  if (!std::filesystem::exists(file_)) return std::nullopt;
+  return read_checkpoint(file_, provenance_);
+}
+
+void CheckpointFile::keep(const calib::Checkpoint& checkpoint) {
+  unwritten_ = checkpoint;
+  if (Clock::now() >= not_before_) write();
+}
+
+void CheckpointFile::finish(calib::FitStatus status) {
+  if (status != calib::FitStatus::stopped) {
+    remove_stale(file_);
+  } else if (unwritten_) {
+    write();
+  }
+}
+
+void CheckpointFile::write() {
+  constexpr int kShare = 20;  // one part of writing to so many of fitting
+  const auto began = Clock::now();
+  write_file_atomically(file_, checkpoint_text(*unwritten_, provenance_));
+  const auto ended = Clock::now();
+  not_before_ = ended + kShare * (ended - began);
+  unwritten_.reset();
+}
 
 using calib::FitStatus;
 using datasets::Use;
