@@ -371,7 +371,7 @@ StudyOutcome outcome_of(const ForeignRig& rig, const calib::Fit& fit) {
     const auto exact = found->ci95_if_exact.value();
     const double truth = rig.*each.truth;
     result.holds.push_back(low <= truth && truth <= high);
-    result.exact.push_back(exact.first <= truth && truth <= exact.second);
+    result.exact.push_back(exact.low <= truth && truth <= exact.high);
     const double half = (high - low) / 2.0;
     result.half_width.push_back(half / truth);
     result.error.push_back((found->value - truth) / truth);
@@ -380,7 +380,7 @@ StudyOutcome outcome_of(const ForeignRig& rig, const calib::Fit& fit) {
   }
   result.verdict = fit.verdict.value();
   if (fit.considered && !fit.considered->missing.empty())
-    result.named = fit.considered->effects[fit.considered->missing.front()].key;
+    result.named = fit.considered->missing.front();
   return result;
 }
 

@@ -207,10 +207,10 @@ Outcome outcome_of(const calib::Fit& fit, const std::vector<double>& truth) {
   for (std::size_t j = 0; j < kFree.size(); ++j) {
     const calib::FittedParameter& found = parameter(fit, kFree[j]);
     const auto interval = found.ci95.value();
-    result.holds.push_back(interval.first <= truth[j] && truth[j] <= interval.second);
+    result.holds.push_back(interval.low <= truth[j] && truth[j] <= interval.high);
     result.plain.push_back(std::abs(found.value - truth[j]) <=
                            quantile * found.standard_error.value());
-    const double half = (interval.second - interval.first) / 2.0;
+    const double half = (interval.high - interval.low) / 2.0;
     result.half_width.push_back(truth[j] == 0.0 ? std::nan("") : half / truth[j]);
   }
   result.warned =

@@ -240,7 +240,7 @@ void count_leaks(const diagnosis::Diagnosis& found, const std::vector<double>& l
     const double truth = leaks[next++ % leaks.size()];
     ++counts.leaks;
     counts.found += record.estimate.leak_detected ? 1 : 0;
-    counts.held += record.estimate.ci95.first <= truth && truth <= record.estimate.ci95.second;
+    counts.held += record.estimate.ci95.low <= truth && truth <= record.estimate.ci95.high;
   }
 }
 

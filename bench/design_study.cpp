@@ -89,8 +89,7 @@ double half_width_percent(double sd, double value) {
   return 100.0 * metrics::kNormal95 * sd / std::abs(value);
 }
 
-void print_design(const calib::Design& design, const datasets::Campaign& campaign) {
-  const auto table = model::parameter_table(campaign.rig.plant);
+void print_design(const calib::Design& design) {
   std::cout << fmt::format("family: {}\n", datasets::to_string(design.family));
   for (const calib::DrivePart& part : design.parts)
     std::cout << fmt::format("  {} {:.5g} {}\n", part.name, part.value, part.unit);
@@ -99,20 +98,17 @@ void print_design(const calib::Design& design, const datasets::Campaign& campaig
                              use.unit);
   std::cout << "| parameter | this test, % | six signals, % | ratio |\n| --- | --- | --- | --- |\n";
   for (const calib::DesignedParameter& each : design.parameters) {
-    const double value = each.parameter.value;
-    const double own = half_width_percent(each.sd_own.value_or(NAN), value);
-    const double now = half_width_percent(each.sd.value_or(NAN), value);
-    std::cout << fmt::format("| {}{} | {:.3g} | {:.3g} | {:.2f} |\n",
-                             table[static_cast<std::size_t>(each.parameter.index)].name,
+    const double own = half_width_percent(each.sd_own_signals.value_or(NAN), each.value);
+    const double now = half_width_percent(each.sd.value_or(NAN), each.value);
+    std::cout << fmt::format("| {}{} | {:.3g} | {:.3g} | {:.2f} |\n", each.name,
                              each.named ? " (designed for)" : "", now, own, own / now);
   }
   std::cout << "| family | bulk modulus, % |\n| --- | --- |\n";
   for (const calib::FamilyTrial& trial : design.trials) {
     for (std::size_t j = 0; j < trial.sd.size(); ++j)
       if (design.parameters[j].named && trial.sd[j])
-        std::cout << fmt::format(
-            "| {} | {:.3g} |\n", datasets::to_string(trial.family),
-            half_width_percent(*trial.sd[j], design.parameters[j].parameter.value));
+        std::cout << fmt::format("| {} | {:.3g} |\n", datasets::to_string(trial.family),
+                                 half_width_percent(*trial.sd[j], design.parameters[j].value));
   }
   std::cout << std::flush;
 }
@@ -152,7 +148,7 @@ void print_spread(const calib::Design& design, datasets::Campaign campaign, int 
     const calib::Fit fit = calib::fit(campaign, {record}, options);
     if (fit.status != calib::FitStatus::converged) return;
     for (std::size_t j = 0; j < design.parameters.size(); ++j)
-      errors[i].push_back(fit.parameters[j].value - design.parameters[j].parameter.value);
+      errors[i].push_back(fit.parameters[j].value - design.parameters[j].value);
   });
   const auto failed =
       std::count_if(errors.begin(), errors.end(), [](const auto& each) { return each.empty(); });
@@ -161,7 +157,6 @@ void print_spread(const calib::Design& design, datasets::Campaign campaign, int 
       "mean "
       "error over sd |\n| --- | --- | --- | --- | --- |\n",
       fits, failed);
-  const auto table = model::parameter_table(campaign.rig.plant);
   for (std::size_t j = 0; j < design.parameters.size(); ++j) {
     double sum = 0.0;
     double squares = 0.0;
@@ -174,10 +169,9 @@ void print_spread(const calib::Design& design, datasets::Campaign campaign, int 
     }
     const double spread = std::sqrt((squares - sum * sum / n) / (n - 1.0));
     const double predicted = design.parameters[j].sd.value_or(NAN);
-    std::cout << fmt::format(
-        "| {} | {:.4g} | {:.4g} | {:.3f} | {:.2f} |\n",
-        table[static_cast<std::size_t>(design.parameters[j].parameter.index)].name, predicted,
-        spread, spread / predicted, sum / n / spread);
+    std::cout << fmt::format("| {} | {:.4g} | {:.4g} | {:.3f} | {:.2f} |\n",
+                             design.parameters[j].name, predicted, spread, spread / predicted,
+                             sum / n / spread);
   }
 }
 
@@ -201,7 +195,7 @@ int main(int argc, char** argv) {
   campaign.design->evaluations = evaluations;
   const calib::Design design =
       calib::design(campaign, {}, {"bulk_modulus"}, nullptr, {threads, nullptr, {}});
-  bench::print_design(design, campaign);
+  bench::print_design(design);
   bench::print_spread(design, campaign, fits, threads);
   return 0;
 }

@@ -161,7 +161,7 @@ diagnosis::RigFit healthy_fit(Campaign& campaign, const std::vector<RepeatRecord
   datasets::ParameterSetting& supply = setting_of(campaign, "supply_pressure");
   supply.lower = supply.upper = std::numeric_limits<double>::quiet_NaN();
   datasets::differ_between_repeats(datasets::spec_of(campaign.rig.plant, supply.index),
-                                   repeats->cause_sd * supply.value, supply);
+                                   *repeats->cause_sd * supply.value, supply);
   const calib::Fit again = usable_fit(campaign, records);
   return diagnosis::rig_fit_of(again);
 }
@@ -195,7 +195,7 @@ struct Total {
     records += each.records;
     right += each.right;
     undecided += each.undecided;
-    off_by_two += each.off_by_two;
+    off_by_two += each.off_by_two_or_more;
   }
 };
 
@@ -463,14 +463,14 @@ void tally_interval(const diagnosis::RecordDiagnosis& record, double coefficient
   const double share = *record.true_share;
   ++coverage.records;
   if (!record.fit.ok()) return;
-  coverage.coefficient += coefficient >= e.ci95.first && coefficient <= e.ci95.second ? 1 : 0;
+  coverage.coefficient += coefficient >= e.ci95.low && coefficient <= e.ci95.high ? 1 : 0;
   if (e.share_upper_limit) {
     ++coverage.limits;
     coverage.limits_hold += share <= *e.share_upper_limit ? 1 : 0;
   }
-  coverage.share += share >= e.share_ci95.first && share <= e.share_ci95.second ? 1 : 0;
-  coverage.share_below += share < e.share_ci95.first ? 1 : 0;
-  coverage.share_above += share > e.share_ci95.second ? 1 : 0;
+  coverage.share += share >= e.share_ci95.low && share <= e.share_ci95.high ? 1 : 0;
+  coverage.share_below += share < e.share_ci95.low ? 1 : 0;
+  coverage.share_above += share > e.share_ci95.high ? 1 : 0;
 }
 
 void tally_class(const diagnosis::RecordDiagnosis& record, CoverageTally& tally) {

@@ -15,7 +15,7 @@ namespace rigcal::calib {
 
 template <typename Archive>
 void serialize(Archive& archive, HeldOut& held) {
-  archive(held.condition, held.problem, held.rms, held.fitted_rms, held.largest_shift,
+  archive(held.condition, held.problem, held.rmse, held.fitted_rmse, held.largest_shift,
           held.shifted);
 }
 
@@ -52,8 +52,8 @@ const ConditionScore* score_of(const Fit& fit, const std::string& id) {
   return found == fit.conditions.end() ? nullptr : &*found;
 }
 
-std::vector<std::pair<datasets::Channel, double>> rms_of(const ConditionScore& score) {
-  std::vector<std::pair<datasets::Channel, double>> result;
+Keyed<double, datasets::Channel> rmse_of(const ConditionScore& score) {
+  Keyed<double, datasets::Channel> result;
   for (const ChannelScore& channel : score.channels) {
     if (channel.agreement) result.emplace_back(channel.channel, channel.agreement->rmse);
   }
@@ -62,6 +62,7 @@ std::vector<std::pair<datasets::Channel, double>> rms_of(const ConditionScore& s
 
 void add_shift(const Fit& whole, const Fit& part, const Campaign& campaign, HeldOut& held) {
   const auto table = model::parameter_table(campaign.rig.plant);
+  double largest = 0.0;
   for (const FittedParameter& a : whole.parameters) {
     if (!a.fitted || a.nuisance || !a.standard_error) continue;
     const double error = a.robust_standard_error.value_or(*a.standard_error);
@@ -69,12 +70,13 @@ void add_shift(const Fit& whole, const Fit& part, const Campaign& campaign, Held
     for (const FittedParameter& b : part.parameters) {
       if (!b.fitted || a.index != b.index || a.level != b.level) continue;
       const double shift = (b.value - a.value) / error;
-      if (std::abs(shift) <= std::abs(held.largest_shift)) continue;
-      held.largest_shift = shift;
+      if (std::abs(shift) <= std::abs(largest)) continue;
+      largest = shift;
       const auto name = table[static_cast<std::size_t>(a.index)].name;
       held.shifted = a.level.empty() ? std::string(name) : fmt::format("{} ({})", name, a.level);
     }
   }
+  held.largest_shift = largest;
 }
 
 HeldOut leave_out(const Campaign& campaign, const std::vector<datasets::Record>& records,
@@ -82,7 +84,7 @@ HeldOut leave_out(const Campaign& campaign, const std::vector<datasets::Record>&
                   long& evaluations) {
   HeldOut held;
   held.condition = id;
-  if (const ConditionScore* fitted = score_of(whole, id)) held.fitted_rms = rms_of(*fitted);
+  if (const ConditionScore* fitted = score_of(whole, id)) held.fitted_rmse = rmse_of(*fitted);
   try {
     const Campaign others = without(campaign, id, whole);
     const Fit part = fit(others, records, options);
@@ -93,7 +95,7 @@ HeldOut leave_out(const Campaign& campaign, const std::vector<datasets::Record>&
     } else if (predicted == nullptr || !predicted->failure.empty()) {
       held.problem = predicted == nullptr ? "not predicted" : predicted->failure;
     } else {
-      held.rms = rms_of(*predicted);
+      held.rmse = rmse_of(*predicted);
       add_shift(whole, part, campaign, held);
     }
   } catch (const InputError& error) {  // no other record determines one of its unknowns
@@ -171,9 +173,9 @@ std::string cross_validation_summary(const std::vector<HeldOut>& held_out) {
   double worst = 0.0;
   std::string where;
   for (const HeldOut& held : held_out) {
-    if (held.problem.empty()) ++predicted;
-    for (const auto& [channel, rms] : held.rms) {
-      for (const auto& [fitted_channel, fitted] : held.fitted_rms) {
+    if (!held.problem) ++predicted;
+    for (const auto& [channel, rms] : held.rmse) {
+      for (const auto& [fitted_channel, fitted] : held.fitted_rmse) {
         if (fitted_channel != channel || !(fitted > 0.0) || rms / fitted <= worst) continue;
         worst = rms / fitted;
         where = fmt::format("{} of \"{}\"", datasets::info(channel).key, held.condition);
@@ -192,24 +194,24 @@ std::string cross_validation_summary(const std::vector<HeldOut>& held_out) {
 std::vector<std::string> cross_validation_words(const std::vector<HeldOut>& held_out) {
   std::vector<std::string> words;
   for (const HeldOut& held : held_out) {
-    if (!held.problem.empty()) {
+    if (held.problem) {
       words.push_back(fmt::format("condition \"{}\" left out: no prediction ({})", held.condition,
-                                  held.problem));
+                                  *held.problem));
       continue;
     }
-    for (const auto& [channel, rms] : held.rms) {
-      for (const auto& [fitted_channel, fitted] : held.fitted_rms) {
+    for (const auto& [channel, rms] : held.rmse) {
+      for (const auto& [fitted_channel, fitted] : held.fitted_rmse) {
         if (fitted_channel != channel || !(rms > kMuchWorse * fitted)) continue;
         words.push_back(fmt::format(
             "condition \"{}\" left out: {} is predicted {:.3g} times worse than it is fitted",
             held.condition, datasets::info(channel).key, rms / fitted));
       }
     }
-    if (std::abs(held.largest_shift) > kFarShift) {
+    if (held.shifted && std::abs(held.largest_shift.value_or(0.0)) > kFarShift) {
       words.push_back(fmt::format(
           "condition \"{}\" left out: {} moves by {:.2g} of its errors, so this condition decides "
           "it or contradicts the others",
-          held.condition, held.shifted, held.largest_shift));
+          held.condition, *held.shifted, *held.largest_shift));
     }
   }
   return words;

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "common/describe.hpp"
 #include "common/file.hpp"
 #include "model/signal/signal.hpp"
 
@@ -96,6 +97,7 @@ struct RepeatReport {
   double deviation = 0.0;
   bool outlier = false;
   double shifted_s = 0.0;  ///< offset_s if it was subtracted to align the repeat, else 0
+  RIGCAL_DESCRIBE(source, offset_s, deviation, outlier)
 };
 
 struct TimeWindow {

@@ -3,9 +3,9 @@
 #include <array>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "common/describe.hpp"
 #include "datasets/campaign/diagnosis_settings.hpp"
 
 namespace rigcal::diagnosis {
@@ -17,29 +17,40 @@ struct Judged {
   std::optional<datasets::LeakClass> found;  ///< empty: undecided
 };
 
-/// Accuracy of a classification method.
-struct Accuracy {
-  /// Counts. The row is the true class, the column the class found; the last column is undecided.
-  std::array<std::array<int, datasets::kLeakClasses.size() + 1>, datasets::kLeakClasses.size()>
-      confusion{};
-  int records = 0;
-  int right = 0;
-  int off_by_two = 0;  ///< wrong by two classes or more
-  int undecided = 0;   ///< counted as wrong
-  int conditions = 0;
-  double accuracy = 0.0;  ///< right / records
-  /// Wilson's 95 % interval, with as many independent trials as there are conditions, because
-  /// repeats of one condition have errors in common.
-  std::pair<double, double> ci95{0.0, 1.0};
+/// Numbers of records: rows by true class, columns by assigned class.
+struct Confusion {
+  static constexpr std::size_t kClasses = datasets::kLeakClasses.size();
+  std::array<std::string, kClasses> truth;      ///< names of the rows
+  std::array<std::string, kClasses + 1> found;  ///< names of the columns; the last one undecided
+  std::array<std::array<int, kClasses + 1>, kClasses> counts{};
+  RIGCAL_DESCRIBE(truth, found, counts)
+
+  Confusion();
 };
 
-/// @param judged  may be empty; everything is then zero and the interval is meaningless
+/// Accuracy of a method.
+struct Accuracy {
+  int records = 0;
+  int conditions = 0;
+  int right = 0;
+  int undecided = 0;               ///< counted as wrong
+  int off_by_two_or_more = 0;      ///< wrong by so many classes
+  std::optional<double> accuracy;  ///< right / records
+  /// Wilson's 95 % interval for as many independent trials as there are conditions: repeats of one
+  /// condition have common errors.
+  std::optional<Range> accuracy_ci95;
+  Confusion confusion;
+  RIGCAL_DESCRIBE(records, conditions, right, undecided, off_by_two_or_more, accuracy,
+                  accuracy_ci95, confusion)
+};
+
+/// @param judged  may be empty; then there is no accuracy
 Accuracy accuracy_of(const std::vector<Judged>& judged);
 
 /// Wilson's 95 % score interval for a proportion. E. B. Wilson, J. Am. Stat. Assoc. 22 (1927).
 ///
 /// @param proportion  in [0, 1]
 /// @param trials      > 0
-std::pair<double, double> wilson_interval(double proportion, double trials);
+Range wilson_interval(double proportion, double trials);
 
 }  // namespace rigcal::diagnosis

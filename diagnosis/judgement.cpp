@@ -44,7 +44,7 @@ void warn(RecordDiagnosis& record, const SignalErrors& errors, double healthy_m)
         "zero "
         "by more than its error: the machine is faster than its healthy model, so supply or valve "
         "are not as they were in the fit",
-        fit.coefficient, estimate.ci95.first, estimate.ci95.second));
+        fit.coefficient, estimate.ci95.low, estimate.ci95.high));
   }
   if (!estimate.has_share()) {
     record.warnings.push_back(

@@ -78,8 +78,8 @@ void foresee(const MachineState& last, const datasets::DiagnosisSettings& settin
       datasets::kLeakClasses[static_cast<std::size_t>(next - settings.limits.begin()) + 1];
   trend.next_limit = *next;
   trend.reached_day = day(trend.share_per_day);
-  trend.earliest_day = day(trend.share_per_day_ci95.second);
-  if (trend.share_per_day_ci95.first > 0.0) trend.latest_day = day(trend.share_per_day_ci95.first);
+  trend.earliest_day = day(trend.share_per_day_ci95.high);
+  if (trend.share_per_day_ci95.low > 0.0) trend.latest_day = day(trend.share_per_day_ci95.low);
 }
 
 LeakTrend trend_of(const DatedMachine& machine, const Eigen::MatrixXd& rig_covariance,

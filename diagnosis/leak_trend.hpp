@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/range.hpp"
 #include "diagnosis/machine_state.hpp"
 
 namespace rigcal::diagnosis {
@@ -18,7 +19,7 @@ struct LeakTrend {
   int dates = 0;
   double coefficient_per_day = 0.0;
   double share_per_day = 0.0;  ///< at the duty, close to the last date
-  std::pair<double, double> share_per_day_ci95{};
+  Range share_per_day_ci95{};
   double p = 1.0;            ///< p-value, two-sided, for no change
   bool significant = false;  ///< at 5 %
   double chi_squared = 0.0;  ///< variation of the states around the line

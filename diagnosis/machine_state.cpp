@@ -117,7 +117,7 @@ LimitDistance nearest_limit(const LeakEstimate& estimate,
   nearest.limit = settings.limits[best];
   nearest.distance = share - nearest.limit;
   const bool within =
-      estimate.share_ci95.first <= nearest.limit && nearest.limit <= estimate.share_ci95.second;
+      estimate.share_ci95.low <= nearest.limit && nearest.limit <= estimate.share_ci95.high;
   nearest.on_limit = within || std::abs(nearest.distance) <= kOnLimit * nearest.limit;
   return nearest;
 }

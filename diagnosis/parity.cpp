@@ -206,8 +206,11 @@ class Work {
         check.alarms += record.alarm ? 1 : 0;
       }
     }
+    check.expected = options_.false_alarm * check.records;
+    if (check.records > 0) check.p_value = 1.0;
     if (check.alarms > 0)
-      check.p = 1.0 - metrics::binomial_cdf(check.alarms - 1, check.records, options_.false_alarm);
+      check.p_value =
+          1.0 - metrics::binomial_cdf(check.alarms - 1, check.records, options_.false_alarm);
   }
 
  private:
@@ -276,7 +279,7 @@ class Work {
     scatter_ = scatter_of(references, signal.window_s);
     signal.common_causes = static_cast<int>(scatter_.causes.size());
     signal.threshold_m = threshold(kPeak, 0.0);
-    signal.features = feature_thresholds(0.0);
+    signal.feature_thresholds = feature_thresholds(0.0);
     const auto days =
         day_weights(result_.between_days, campaign_, *conditions_.front(), conditions_);
     if (signal.threshold_m)

@@ -22,9 +22,7 @@ struct ParityOptions {
 };
 
 /// Thresholds for the features in the source paper (Table 4), from healthy records.
-struct FeatureThresholds {
-  std::optional<double> mean, rms, std;  ///< [m]
-};
+using FeatureThresholds = metrics::ByFeature<std::optional<double>>;
 
 /// Parity residual of one record: position minus that of the healthy model under the same reference
 /// (eq. 14), minus the mean of this residual over healthy records of the signal, which shows what
@@ -68,17 +66,23 @@ struct ParitySignal {
   int healthy_records = 0;            ///< number of records on which the thresholds are based
   std::optional<double> threshold_m;  ///< for peak_m of a record from the same day
   /// Threshold for peak_m of a record from a day without healthy records.
-  std::optional<double> threshold_of_another_day_m;
-  int common_causes = 0;  ///< number of causes by which healthy records differ beyond noise
-  FeatureThresholds features;
-  std::string reason;  ///< why there is no threshold, in words
+  Omittable<double> threshold_of_another_day_m;
+  FeatureThresholds feature_thresholds;
+  std::optional<std::string> reason;  ///< why there is no threshold, in words
+  Omittable<int> common_causes = {
+      0};  ///< number of causes by which healthy records differ beyond noise
+  RIGCAL_DESCRIBE(signal, window_s, healthy_records, threshold_m, feature_thresholds, reason,
+                  threshold_of_another_day_m, common_causes)
 };
 
 /// Checks whether healthy records that set no threshold raise as many alarms as stated.
 struct FalseAlarmCheck {
   int records = 0;
   int alarms = 0;
-  double p = 1.0;  ///< probability of at least so many alarms at the stated rate (binomial)
+  double expected = 0.0;  ///< alarms at the stated rate
+  /// Probability of at least so many alarms at that rate (binomial); absent without records.
+  std::optional<double> p_value;
+  RIGCAL_DESCRIBE(records, alarms, expected, p_value)
 };
 
 struct Parity {

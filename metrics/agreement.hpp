@@ -51,6 +51,10 @@ struct Agreement {
   double rmse = 0.0;
   double nrmse_fit_percent = 0.0;
   double maximum_error = 0.0;
+
+  /// Every metric by its name (metrics/metric_table.hpp).
+  template <typename Self, typename Visit>
+  static void describe(Self& self, const Visit& visit);
 };
 
 /// Computes all metrics at the cost of one, each with the same bits as if computed separately.

@@ -13,6 +13,7 @@
 
 #include "metrics/distributions.hpp"
 #include "metrics/moments.hpp"
+#include "metrics/shared_transform.hpp"
 
 namespace rigcal::metrics {
 namespace {
@@ -301,6 +302,42 @@ std::vector<ResponsePoint> broadband_response(double sample_interval_s,
       points.push_back(point_of(bin.frequency / bin.sums.input, bin.sums, bin.sums.pairs / shared));
   }
   return points;
+}
+
+BandLevels band_levels(std::span<const double> signal, double rate_hz, double bins_per_decade) {
+  BandLevels levels;
+  std::vector<double> centred(signal.begin(), signal.end());
+  double mean = 0.0;
+  for (const double value : centred) mean += value;
+  mean /= static_cast<double>(centred.size());
+  for (double& value : centred) value -= mean;
+  std::vector<Amplitude> lines;
+  shared_transform().fwd(lines, centred);
+  const auto n = static_cast<double>(centred.size());
+  int bin = -1;
+  double power = 0.0;
+  double sum_hz = 0.0;
+  int count = 0;
+  const auto close = [&] {
+    if (count > 0) {
+      levels.frequency_hz.push_back(sum_hz / count);
+      levels.rms.push_back(std::sqrt(power));
+    }
+    power = sum_hz = 0.0;
+    count = 0;
+  };
+  for (std::size_t k = 1; 2 * k < centred.size(); ++k) {
+    const double frequency_hz = static_cast<double>(k) * rate_hz / n;
+    const int at =
+        static_cast<int>(std::floor(bins_per_decade * std::log10(frequency_hz * n / rate_hz)));
+    if (at != bin) close();
+    bin = at;
+    power += 2.0 * std::norm(lines[k]) / (n * n);
+    sum_hz += frequency_hz;
+    ++count;
+  }
+  close();
+  return levels;
 }
 
 }  // namespace rigcal::metrics

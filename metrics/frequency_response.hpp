@@ -65,4 +65,16 @@ std::vector<ResponsePoint> broadband_response(double sample_interval_s,
                                               std::span<const double> input,
                                               std::span<const double> output);
 
+/// Root mean squares of a signal less its mean, in bins of equal width in log frequency; shape
+/// (bins with a line of the spectrum).
+struct BandLevels {
+  std::vector<double> frequency_hz;  ///< mean of the lines
+  std::vector<double> rms;           ///< in the unit of the signal
+};
+
+/// @param signal           shape (n), equidistant
+/// @param rate_hz          > 0, samples per second
+/// @param bins_per_decade  > 0
+BandLevels band_levels(std::span<const double> signal, double rate_hz, double bins_per_decade);
+
 }  // namespace rigcal::metrics

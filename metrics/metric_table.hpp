@@ -41,6 +41,11 @@ inline constexpr std::array kMetrics{
                &maximum_error, false},
 };
 
+template <typename Self, typename Visit>
+void Agreement::describe(Self& self, const Visit& visit) {
+  for (const MetricSpec& metric : kMetrics) visit(metric.name.data(), self.*metric.value);
+}
+
 /// Value of a metric if simulation and measurement are identical.
 constexpr double ideal(const MetricSpec& metric) {
   if (!metric.higher_is_better) return 0.0;

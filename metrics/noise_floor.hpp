@@ -2,6 +2,8 @@
 
 #include <span>
 
+#include "common/describe.hpp"
+
 namespace rigcal::metrics {
 
 /// Scores that a model equal to the true signal reaches against a measured one.
@@ -9,6 +11,7 @@ struct NoiseFloor {
   double rho2 = 0.0;
   double ccc = 0.0;
   double absolute_error_percent = 0.0;
+  RIGCAL_DESCRIBE(rho2, ccc, absolute_error_percent)
 };
 
 /// Computes how well a model can agree with a record, given the noise in the record. The record is

@@ -118,10 +118,10 @@ std::optional<CrossCorrelation> test_cross_correlation(const std::vector<double>
     }
   }
   const double tests = std::min(static_cast<double>(result.values.size()), effective);
-  result.band_of_peak = normal_quantile(1.0 - 0.5 * kWarningLevel / tests) / std::sqrt(effective);
-  conclude(result, judge(std::abs(result.peak) > result.band_of_peak,
-                         {effective, result.band_of_peak, kLargestUsefulBound,
-                          "a correlation with the input"}));
+  result.limit = normal_quantile(1.0 - 0.5 * kWarningLevel / tests) / std::sqrt(effective);
+  conclude(result,
+           judge(std::abs(result.peak) > result.limit,
+                 {effective, result.limit, kLargestUsefulBound, "a correlation with the input"}));
   return result;
 }
 

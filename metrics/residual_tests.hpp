@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "common/describe.hpp"
 #include "metrics/test_outcome.hpp"
 
 namespace rigcal::metrics {
@@ -23,15 +24,17 @@ struct Autocorrelation : Judged {
   double p_value = 0.0;
   double durbin_watson = 0.0;       ///< 2 for white noise, 0 for a residual that varies only slowly
   double correlation_time_s = 0.0;  ///< time until the autocorrelation first falls within the band
+  RIGCAL_DESCRIBE(ljung_box, tested_lags, p_value, durbin_watson, correlation_time_s)
 };
 
 /// Correlation of the residual with the input of the rig.
 struct CrossCorrelation : Judged {
   std::vector<double> values;  ///< shape (2 lags + 1), from -lags: corr(e(t), u(t - lag))
   double band = 0.0;           ///< 95 % for one lag, using the effective sample size
-  double band_of_peak = 0.0;   ///< 95 % for the largest of all lags (Bonferroni)
+  double limit = 0.0;          ///< 95 % for the largest of all lags (Bonferroni)
   double peak = 0.0;           ///< value with the largest magnitude
   double peak_lag_s = 0.0;     ///< > 0: the residual follows the input
+  RIGCAL_DESCRIBE(peak, peak_lag_s, limit)
 };
 
 /// Distribution of the residual's power over frequency.
@@ -43,6 +46,7 @@ struct Periodogram : Judged {
   double peak_share = 0.0;           ///< fraction of the power in that line and its two neighbours
   double distance = 0.0;  ///< from the cumulative periodogram to a straight line (Bartlett)
   double limit = 0.0;     ///< 5 % critical distance for white noise
+  RIGCAL_DESCRIBE(distance, limit, median_frequency_hz, peak_frequency_hz, peak_share)
 };
 
 /// Distribution of the residual.
@@ -53,6 +57,7 @@ struct Normality : Judged {
   double excess_kurtosis = 0.0;
   double jarque_bera = 0.0;  ///< Jarque and Bera, Economics Letters 6, 1980
   double p_value = 0.0;
+  RIGCAL_DESCRIBE(skewness, excess_kurtosis, jarque_bera, p_value)
 };
 
 /// Whether the residual has a mean or a trend that differs from zero.
@@ -61,6 +66,7 @@ struct Drift : Judged {
   double mean_p_value = 0.0;
   double slope_per_s = 0.0;  ///< least squares, unit of e per second
   double slope_p_value = 0.0;
+  RIGCAL_DESCRIBE(mean, mean_p_value, slope_per_s, slope_p_value)
 };
 
 struct ResidualTests {

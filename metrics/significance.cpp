@@ -23,6 +23,17 @@ double effective_freedom(std::span<const ErrorPart> parts) {
   return weighted > 0.0 ? std::clamp(sum * sum / weighted, 1.0, kManyDegrees) : kManyDegrees;
 }
 
+double freedom_of_quantile(double quantile) {
+  if (!(quantile > student_t_quantile(0.975, kManyDegrees))) return kManyDegrees;
+  double low = 1.0;
+  double high = kManyDegrees;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = std::sqrt(low * high);
+    (student_t_quantile(0.975, middle) > quantile ? low : high) = middle;
+  }
+  return low;
+}
+
 EstimateError error_of_difference(const EstimateError& a, const EstimateError& b) {
   const double variance_a = a.standard_error * a.standard_error;
   const double variance_b = b.standard_error * b.standard_error;

@@ -24,6 +24,9 @@ struct ErrorPart {
 /// Welch, Biometrika 34, 1947), at least 1 and at most kManyDegrees.
 double effective_freedom(std::span<const ErrorPart> parts);
 
+/// Degrees of freedom for which Student's t has this quantile of 97.5 %: from 1 to kManyDegrees.
+double freedom_of_quantile(double quantile);
+
 /// Error of the difference between two independent estimates.
 EstimateError error_of_difference(const EstimateError& a, const EstimateError& b);
 

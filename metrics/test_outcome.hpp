@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -14,7 +15,7 @@ std::string_view to_string(TestOutcome outcome);
 
 struct Judged {
   TestOutcome outcome = TestOutcome::not_judged;
-  std::string reason;  ///< why it cannot be judged; empty if it can
+  std::optional<std::string> reason;  ///< why it cannot be judged
 
   bool passed() const { return outcome == TestOutcome::passed; }
   bool failed() const { return outcome == TestOutcome::failed; }

@@ -21,7 +21,9 @@ void bind_assessment(py::module_& module) {
           "What it speaks for: \"pass\", \"reservation\", \"fail\" or \"not_assessed\"; or\n"
           "\"note\", which changes nothing.")
       .def_readonly("code", &Reason::code, "\"limit_broken\", \"lack_of_fit\"...: docs/report.md")
-      .def_readonly("subject", &Reason::subject, "Condition or parameter; empty: the whole result.")
+      .def_property_readonly(
+          "subject", [](const Reason& self) { return self.subject.value_or(""); },
+          "Condition or parameter; empty: the whole result.")
       .def_property_readonly(
           "numbers",
           [](const Reason& self) {

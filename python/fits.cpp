@@ -311,10 +311,11 @@ Raises:
       .def_property_readonly(
           "simulation_tolerance", of_fit(&calib::Fit::tolerance),
           "Local error per step of the simulations, over the peak of each state.")
-      .def_property_readonly("correlation_names", of_fit(&calib::Fit::correlation_names),
-                             "Of the rows and columns of `correlation`.")
       .def_property_readonly(
-          "correlation", [](const Self& self) { return array_of(self.fit.correlation); },
+          "correlation_names", [](const Self& self) { return self.fit.correlation.names; },
+          "Of the rows and columns of `correlation`.")
+      .def_property_readonly(
+          "correlation", [](const Self& self) { return array_of(self.fit.correlation.matrix); },
           "Of the estimates that have a standard error, shape (names, names).")
       .def_property_readonly("rank", of_fit(&calib::Fit::rank),
                              "Of the scaled Jacobian at the optimum.")

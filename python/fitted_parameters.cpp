@@ -6,8 +6,19 @@
 #include <string>
 #include <utility>
 
+#include "common/range.hpp"
 #include "python/arrays.hpp"
 #include "python/fit_result.hpp"
+
+/// The ends of an interval are a tuple in Python.
+template <>
+struct pybind11::detail::type_caster<rigcal::Range> {
+  using Ends = make_caster<std::pair<double, double>>;
+  PYBIND11_TYPE_CASTER(rigcal::Range, Ends::name);
+  static handle cast(const rigcal::Range& range, return_value_policy policy, handle parent) {
+    return Ends::cast(std::pair(range.low, range.high), policy, parent);
+  }
+};
 
 namespace rigcal::python {
 namespace {
@@ -23,7 +34,9 @@ void bind_bootstrap(py::module_& module) {
       .def_readonly("bias", &BootstrapSpread::bias, "Mean of the replicates minus the estimate.")
       .def_readonly("freedom", &BootstrapSpread::freedom,
                     "Degrees of freedom with which the spread is known.")
-      .def_readonly("ci95", &BootstrapSpread::ci95, "Percentiles, widened for the freedom.");
+      .def_property_readonly(
+          "ci95", [](const BootstrapSpread& self) { return self.ci95.value(); },
+          "Percentiles, widened for the freedom.");
 }
 
 void bind_posterior(py::module_& module) {
@@ -32,7 +45,9 @@ void bind_posterior(py::module_& module) {
                               "A parameter over the draws of the posterior, in its unit.")
       .def_readonly("median", &PosteriorSpread::median, "Of the draws.")
       .def_readonly("sd", &PosteriorSpread::sd, "Standard deviation of the draws.")
-      .def_readonly("ci95", &PosteriorSpread::ci95, "Quantiles of 2.5 and 97.5 %.")
+      .def_property_readonly(
+          "ci95", [](const PosteriorSpread& self) { return self.ci95.value(); },
+          "Quantiles of 2.5 and 97.5 %.")
       .def_readonly("r_hat", &PosteriorSpread::r_hat,
                     "Rank-normalised split R-hat; above 1.01 the chains disagree.")
       .def_readonly("bulk_draws", &PosteriorSpread::bulk_draws,
@@ -48,8 +63,8 @@ void bind_profile(py::module_& module) {
       .def_readonly("value", &ProfileEnd::value,
                     "End of the 95 % interval; None: the cost stays below up to `reached`.")
       .def_readonly("reached", &ProfileEnd::reached, "Value up to which it was followed.")
-      .def_readonly("lost", &ProfileEnd::lost,
-                    "Whether it was abandoned: an inner fit failed or was cancelled.");
+      .def_property_readonly("lost", &ProfileEnd::is_lost,
+                             "Whether it was abandoned: an inner fit failed or was cancelled.");
   py::class_<Profile, std::shared_ptr<Profile>>(
       module, "Profile", "Least cost of all other parameters at fixed values of this one.")
       .def_readonly("low", &Profile::low, "Its lower end.")

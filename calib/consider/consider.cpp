@@ -443,9 +443,9 @@ struct RefittedFit {
 std::vector<RefittedFit> refit_best(const Problem& problem, std::span<const double> z,
                                     const Uncertainty& found, const Seen& seen,
                                     const ScoreCovariance& scores, int threads,
-                                    const std::atomic<bool>* cancel, Considered& considered) {
-  std::vector<ConsideredEffect>& about = considered.effects;
-  std::vector<std::size_t>& missing = considered.missing;
+                                    const std::atomic<bool>* cancel,
+                                    const std::vector<ConsideredEffect>& about,
+                                    std::vector<std::size_t>& missing) {
   std::vector<RefittedFit> models;
   if (missing.empty() || z.size() > kMostRefitted) return models;
   const Refitter refitter(problem, z, found.scores, threads, cancel);
@@ -522,19 +522,20 @@ std::vector<RefittedFit> refit_best(const Problem& problem, std::span<const doub
 /// Into the result goes what was refitted: sizes and errors of the missing effects, and the models
 /// with their weights.
 void describe_refits(const Seen& seen, const ScoreCovariance& scores,
-                     const std::vector<RefittedFit>& models, Considered& considered) {
+                     const std::vector<RefittedFit>& models,
+                     const std::vector<std::size_t>& missing, Considered& considered) {
   if (models.empty()) return;
   const RefittedFit& plain = models.back();
-  const double scale = score_inflation(seen, scores, considered.missing.front());
+  const double scale = score_inflation(seen, scores, missing.front());
   double least = HUGE_VAL;
   for (const RefittedFit& each : models) {
     RefittedModel& model = considered.refitted.emplace_back();
-    model.effects = each.effects;
     for (std::size_t i = 0; i < each.effects.size(); ++i) {
       ConsideredEffect& about = considered.effects[each.effects[i]];
       const auto k = static_cast<Index>(i);
+      model.effects.push_back(about.key);
       model.sizes.push_back(about.size * each.refit.sizes(k));
-      const bool is_best = each.effects == considered.missing;
+      const bool is_best = each.effects == missing;
       if (each.effects.size() > 1 && !is_best) continue;
       const Index row = static_cast<Index>(each.refit.z.size()) + k;
       const double spread = std::sqrt(score_inflation(seen, scores, each.effects[i]) *
@@ -612,11 +613,11 @@ Budget95 budget_of(const Uncertainty& found, std::size_t unknown, const FittedPa
     const double part =
         std::abs(slope * found.known.response(static_cast<Index>(unknown), static_cast<Index>(p)));
     known += part * part;
-    stated.push_back({found.known.names[p], "known_value", part, 0.0});
+    stated.push_back({found.known.names[p], "known_value", part});
   }
   const double noise = std::sqrt(std::max(0.0, exact * exact - known));
   budget.lines.push_back(
-      {robust && found.from_repeats[unknown] ? "repeats" : "noise", "records", noise, 0.0});
+      {robust && found.from_repeats[unknown] ? "repeats" : "noise", "records", noise});
   budget.lines.insert(budget.lines.end(), stated.begin(), stated.end());
   const VectorXd parts = variances_by_effect(moves, sizes.covariance);
   for (Index k = 0; k < parts.size(); ++k) {
@@ -719,6 +720,7 @@ void consider_effects(const Problem& problem, std::span<const double> z, const U
   Sizes sizes;
   VectorXd moved;
   std::vector<RefittedFit> models;
+  std::vector<std::size_t> missing;  // positions
   double scale = 1.0;
   if (!effects.empty()) {
     seen = look_at(std::move(effects), columns, found);
@@ -735,18 +737,19 @@ void consider_effects(const Problem& problem, std::span<const double> z, const U
     moved = -seen->taken * sizes.mean;
     for (const Effect& each : seen->effects) considered.effects.push_back(each.about);
     test_alone(*seen, scores, considered.effects);
-    considered.missing = missing_effects(*seen, scores, considered.effects);
-    if (!considered.missing.empty() && follow_curvature(problem, z, found, scores.directions,
-                                                        threads, cancel, *seen, sizes, moved)) {
+    missing = missing_effects(*seen, scores, considered.effects);
+    if (!missing.empty() && follow_curvature(problem, z, found, scores.directions, threads, cancel,
+                                             *seen, sizes, moved)) {
       for (std::size_t e = 0; e < considered.effects.size(); ++e)
         considered.effects[e] = seen->effects[e].about;
       test_alone(*seen, scores, considered.effects);
-      considered.missing = missing_effects(*seen, scores, considered.effects);
+      missing = missing_effects(*seen, scores, considered.effects);
     }
-    models = refit_best(problem, z, found, *seen, scores, threads, cancel, considered);
+    models =
+        refit_best(problem, z, found, *seen, scores, threads, cancel, considered.effects, missing);
     if (cancel != nullptr && cancel->load()) return;
-    describe_refits(*seen, scores, models, considered);
-    if (!models.empty()) scale = score_inflation(*seen, scores, considered.missing.front());
+    describe_refits(*seen, scores, models, missing, considered);
+    if (!models.empty()) scale = score_inflation(*seen, scores, missing.front());
     considered.correlation = correlation_of(sizes.covariance);
     for (std::size_t e = 0; e < considered.effects.size(); ++e) {
       const auto k = static_cast<Index>(e);
@@ -786,18 +789,19 @@ void consider_effects(const Problem& problem, std::span<const double> z, const U
     parameter.moved_by_unexplained = slope * unexplained(static_cast<Index>(j));
     if (!models.empty()) {
       const auto best = std::find_if(models.begin(), models.end(), [&](const RefittedFit& each) {
-        return each.effects == considered.missing;
+        return each.effects == missing;
       });
       parameter.moved_by_missing = std::abs(
           problem.map.to_physical(static_cast<int>(j), best->refit.z[j]) - parameter.value);
       continue;
     }
-    for (const std::size_t e : considered.missing) {
+    for (const std::size_t e : missing) {
       const double by_it = moves(static_cast<Index>(e)) / considered.effects[e].size *
                            considered.effects[e].alone.value_or(0.0);
       parameter.moved_by_missing = std::max(parameter.moved_by_missing, std::abs(by_it));
     }
   }
+  for (const std::size_t e : missing) considered.missing.push_back(considered.effects[e].key);
   considered.effects.insert(considered.effects.end(), dropped.begin(), dropped.end());
   fit.considered = std::move(considered);
 }

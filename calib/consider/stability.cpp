@@ -97,9 +97,10 @@ void repeat_on_validation(Problem validation, const std::vector<FittedParameter>
                                        metrics::effective_freedom(parts)};
     if (!(error.standard_error > 0.0)) continue;
     StabilityCheck& check = fit.stability.emplace_back();
-    check.index = unknowns[j].index;
+    check.key = validation.spec(j).key;
+    check.unit = validation.spec(j).unit;
     check.scope = unknowns[j].scope;
-    check.level = unknowns[j].level;
+    check.level = unless_empty(unknowns[j].level);
     check.value = value;
     check.difference = check.value - fitted[j]->value;
     check.expanded = student_t(error.freedom) * error.standard_error;

@@ -261,9 +261,9 @@ void add_own_signals(const Campaign& campaign, const std::vector<Record>& record
   const auto sd = cramer_rao(problem, z, weighted_jacobian(problem, at, weights));
   for (DesignedParameter& designed : design.parameters) {
     for (std::size_t j = 0; j < sd.size(); ++j) {
-      const Unknown& unknown = problem.map.unknowns()[j];
-      if (unknown.index == designed.parameter.index && unknown.level == designed.parameter.level)
-        designed.sd_own = sd[j];
+      const TestedParameter same = parameter_at(problem, z, j);
+      if (same.name == designed.name && same.level == designed.level)
+        designed.sd_own_signals = sd[j];
     }
   }
 }

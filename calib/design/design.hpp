@@ -8,20 +8,20 @@
 
 #include "calib/design/design_limits.hpp"
 #include "calib/design/drive_shape.hpp"
-#include "calib/result/fit_result.hpp"
+#include "calib/trust/information.hpp"
+#include "common/describe.hpp"
 #include "datasets/campaign/campaign.hpp"
 
 namespace rigcal::calib {
 
-/// One unknown of the designed test. Standard deviations are Cramer-Rao bounds, SI; absent if the
-/// test does not determine the unknown.
-struct DesignedParameter {
-  FittedParameter parameter;  ///< value and bounds, without errors
-  bool named = false;
+/// One unknown of the designed test. Standard deviations are those of Cramer and Rao, SI; nothing
+/// where the test does not determine it.
+struct DesignedParameter : TestedParameter {
+  bool named = false;  ///< the drive was designed for it
   std::optional<double> sd;
-  /// Standard deviation from the campaign's own signals with the same duration, noise and number of
-  /// repeats.
-  std::optional<double> sd_own;
+  /// From the campaign's own signals in the same time, noise and number of repeats.
+  std::optional<double> sd_own_signals;
+  RIGCAL_DESCRIBE(name, unit, scope, level, named, value, sd, sd_own_signals)
 };
 
 /// Result of the search in one family of drives.
@@ -31,6 +31,7 @@ struct FamilyTrial {
   bool found = false;  ///< true if one of the drives keeps the limits
   /// Standard deviation of each unknown with the best drive, at the accuracy of the search.
   std::vector<std::optional<double>> sd;
+  RIGCAL_DESCRIBE(family, evaluations, found, sd)
 };
 
 /// A test that keeps the limits in [design], checked with a fine simulation.

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "common/describe.hpp"
 #include "datasets/campaign/design/design_settings.hpp"
 
 namespace rigcal::calib {
@@ -27,6 +28,7 @@ struct DrivePart {
   std::string name;  ///< "frequency 1", "bit time"
   std::string unit;  ///< in SI
   double value = 0.0;
+  RIGCAL_DESCRIBE(name, unit, value)
 };
 
 /// A drive relative to its largest allowed distance from its first value.

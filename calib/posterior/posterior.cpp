@@ -128,13 +128,31 @@ PosteriorSpread spread_of(const Chains& chains) {
   return spread;
 }
 
+/// Draws of the estimates that are shown in pairs: at most kMostPairDraws of kMostPaired of them.
+Pairs pairs_of(const Posterior& found, const std::vector<FittedParameter>& parameters) {
+  constexpr std::size_t kMostPaired = 6;
+  constexpr std::size_t kMostPairDraws = 400;
+  Pairs pairs;
+  if (found.values.empty()) return pairs;
+  const std::size_t count = found.values.front().size();
+  const std::size_t every = (count + kMostPairDraws - 1) / kMostPairDraws;
+  pairs.every = static_cast<int>(every);
+  for (std::size_t j = 0; j < found.values.size() && pairs.names.size() < kMostPaired; ++j) {
+    if (parameters[j].nuisance) continue;
+    pairs.names.push_back(found.names[j]);
+    std::vector<double>& values = pairs.values.emplace_back();
+    for (std::size_t k = 0; k < count; k += every) values.push_back(found.values[j][k]);
+  }
+  return pairs;
+}
+
 /// Describes the problems with the chains, in words; empty if there are none.
 std::string complaints(const Posterior& found) {
   std::vector<std::string> words;
   if (!found.mixed()) {
     words.push_back(fmt::format(
         "the chains disagree (R-hat {} of {}, at most 1.01 would do): more draws are needed",
-        significant(found.r_hat, 4), found.worst));
+        significant(found.r_hat, 4), found.worst.value_or("")));
   }
   if (found.diverged > 0) {
     words.push_back(fmt::format(
@@ -294,6 +312,7 @@ void sample_posterior(const Problem& problem, const Evaluation& optimum, const U
     std::vector<double>& values = result.values.emplace_back();
     for (const auto& chain : of_unknown) values.insert(values.end(), chain.begin(), chain.end());
   }
+  result.pairs = pairs_of(result, fit.parameters);
   std::vector<std::vector<double>> points;
   const auto count =
       static_cast<std::size_t>(result.chains) * static_cast<std::size_t>(result.draws);

@@ -107,7 +107,6 @@ class ArrowRoot {
   const Eigen::MatrixXd& shared() const { return shared_; }
   Eigen::Index own_unknowns(std::size_t condition) const;
   Eigen::Index own_directions(std::size_t condition) const;
-  bool has_own() const { return !own_.empty(); }
   /// Condition that has the unknown for itself; negative for a shared one.
   int condition_of(Eigen::Index unknown) const { return place(unknown).condition; }
   /// Among the unknowns of its condition, or among the shared ones.

@@ -94,7 +94,7 @@ void add_uncertainty(const TableResiduals::Evaluation& optimum, model::PlantKind
   // Fraction of each unknown in the directions that the tables do not determine.
   const Eigen::VectorXd open = svd.V().rightCols(n - svd.rank()).rowwise().squaredNorm();
   const double t = metrics::student_t_quantile(0.975, freedom);
-  fit.correlation.setIdentity(n, n);
+  fit.correlation.matrix.setIdentity(n, n);
   for (Eigen::Index j = 0; j < n; ++j) {
     FittedAssumption& parameter = fit.parameters[static_cast<std::size_t>(j)];
     if (open(j) > kRankThreshold || !(covariance(j, j) > 0.0)) continue;
@@ -107,7 +107,8 @@ void add_uncertainty(const TableResiduals::Evaluation& optimum, model::PlantKind
                  t * *parameter.standard_error, parameter.lower < 0.0 && parameter.upper > 0.0);
     for (Eigen::Index k = 0; k < n; ++k) {
       if (covariance(k, k) > 0.0) {
-        fit.correlation(j, k) = covariance(j, k) / std::sqrt(covariance(j, j) * covariance(k, k));
+        fit.correlation.matrix(j, k) =
+            covariance(j, k) / std::sqrt(covariance(j, j) * covariance(k, k));
       }
     }
   }
@@ -146,6 +147,8 @@ TablesFit fit_tables(const datasets::Campaign& campaign,
     parameter.lower = assumption.lower;
     parameter.upper = assumption.upper;
     fit.parameters.push_back(parameter);
+    fit.correlation.names.emplace_back(
+        datasets::assumption_spec(campaign.rig.plant, parameter.index).name);
   }
   if (free.empty()) {
     throw InputError({campaign.file.string()},

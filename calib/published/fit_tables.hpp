@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <optional>
 #include <string>
 #include <utility>
@@ -9,6 +8,7 @@
 #include "calib/published/leak_table.hpp"
 #include "calib/result/fit_result.hpp"
 #include "calib/search/fit_options.hpp"
+#include "common/range.hpp"
 
 namespace rigcal::calib {
 
@@ -20,7 +20,7 @@ struct FittedAssumption {
   double lower = 0.0;
   double upper = 0.0;
   std::optional<double> standard_error;  ///< absent if the tables do not determine the value
-  std::optional<std::pair<double, double>> ci95;
+  std::optional<Range> ci95;
   std::optional<double> degrees_of_freedom;  ///< degrees of freedom of the standard error
   bool at_bound = false;
   Identifiability identifiability = Identifiability::not_identifiable;
@@ -28,9 +28,10 @@ struct FittedAssumption {
 
 /// One published number compared with the computed one at the end of the fit.
 struct TableResidual {
-  std::string what;        ///< "share, sine_0.1Hz, 10 %", "mean, Slight"
+  std::string of;          ///< "share, sine_0.1Hz, 10 %", "mean, Slight"
   double weight = 1.0;     ///< factor on `log_ratio` in the residual
   double log_ratio = 0.0;  ///< ln(computed / published)
+  RIGCAL_DESCRIBE(of, weight, log_ratio)
 };
 
 /// Least-squares estimates of the values that reproduce the published tables.
@@ -43,7 +44,7 @@ struct TablesFit {
   double wall_seconds = 0.0;
   double rms = 0.0;  ///< root mean square of the weighted residuals
   std::vector<FittedAssumption> parameters;
-  Eigen::MatrixXd correlation;  ///< shape (parameters, parameters)
+  Correlation correlation;  ///< correlation of all parameters, parameters
   std::vector<TableResidual> residuals;
   std::vector<std::string> left_out;     ///< published numbers that were left out, and why
   datasets::LeakTableSettings settings;  ///< with the estimated values filled in

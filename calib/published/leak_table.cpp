@@ -194,8 +194,8 @@ LeakSummary summary_of(const std::vector<LeakEntry>& entries) {
   for (const LeakEntry& entry : entries) {
     if (!entry.comparison) continue;
     ++summary.published;
-    summary.within_10 += entry.grade == LeakGrade::within_10 ? 1 : 0;
-    summary.within_16 += entry.grade != LeakGrade::outlier ? 1 : 0;
+    summary.within_10_percent += entry.grade == LeakGrade::within_10 ? 1 : 0;
+    summary.within_16_percent += entry.grade != LeakGrade::outlier ? 1 : 0;
     const double off = std::log(entry.comparison->share_percent / entry.target_percent);
     squares += off * off;
   }

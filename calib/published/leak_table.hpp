@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calib/published/periodic_flow.hpp"
+#include "common/describe.hpp"
 #include "datasets/campaign/leak_table_settings.hpp"
 #include "metrics/residual_features.hpp"
 
@@ -70,18 +71,20 @@ inline constexpr std::array kFeatureOutputs{model::Output::position, model::Outp
 
 /// A combination of values that the tables determine although they do not determine each value.
 struct FixedCombination {
-  std::string_view name;     ///< "loop_gain_per_s"
-  std::string_view formula;  ///< "kp k_sv C_d w sqrt(P_s / rho) / A"
-  std::string_view unit;
+  std::string name;     ///< "loop_gain_per_s"
+  std::string formula;  ///< "kp k_sv C_d w sqrt(P_s / rho) / A"
+  std::string unit;
   double value = 0.0;
+  RIGCAL_DESCRIBE(name, formula, value, unit)
 };
 
 /// Agreement with the published numbers, over all entries that have one.
 struct LeakSummary {
   int published = 0;
-  int within_10 = 0;
-  int within_16 = 0;                        ///< includes those within 10 %
+  int within_10_percent = 0;
+  int within_16_percent = 0;                ///< includes those within 10 %
   std::optional<double> share_rms_percent;  ///< rms of ln(share / target), in percent
+  RIGCAL_DESCRIBE(published, within_10_percent, within_16_percent, share_rms_percent)
 };
 
 struct LeakTable {

@@ -42,9 +42,9 @@ std::string_view to_string(AspectState state) {
 
 bool is_against(AspectState state) { return rank(state) > rank(AspectState::pass); }
 
-Reason reason(AspectState state, std::string code, std::string words, std::string subject,
-              std::vector<std::pair<std::string, double>> numbers) {
-  return {state, std::move(code), std::move(subject), std::move(numbers), std::move(words)};
+Reason reason(AspectState state, std::string code, std::string words, const std::string& subject,
+              Keyed<double> numbers) {
+  return {std::move(code), state, unless_empty(subject), std::move(numbers), std::move(words)};
 }
 
 Aspect aspect_of(std::vector<Reason> reasons) {

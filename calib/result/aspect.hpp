@@ -1,9 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include "common/describe.hpp"
 
 namespace rigcal::calib {
 
@@ -22,20 +25,23 @@ bool is_against(AspectState state);
 
 /// One reason: a code for scripts, the numbers behind it, and the same in words for people.
 struct Reason {
-  AspectState state = AspectState::pass;  ///< state that the reason supports
   std::string code;                       ///< "limit_broken", "lack_of_fit", ...; docs/report.md
-  std::string subject;                    ///< condition or parameter; empty: the whole result
-  std::vector<std::pair<std::string, double>> numbers;
+  AspectState state = AspectState::pass;  ///< state that the reason supports
+  std::optional<std::string> subject;     ///< condition or parameter; absent: the whole result
+  Keyed<double> numbers;
   std::string words;
+  RIGCAL_DESCRIBE(code, state, subject, numbers, words)
 };
 
-Reason reason(AspectState state, std::string code, std::string words, std::string subject = {},
-              std::vector<std::pair<std::string, double>> numbers = {});
+/// @param subject  empty: the whole result
+Reason reason(AspectState state, std::string code, std::string words,
+              const std::string& subject = {}, Keyed<double> numbers = {});
 
 /// One aspect with everything that speaks for and against it.
 struct Aspect {
   AspectState state = AspectState::not_assessed;
   std::vector<Reason> reasons;  ///< the gravest first
+  RIGCAL_DESCRIBE(state, reasons)
 };
 
 /// The gravest reason that is not a note decides the state. Reasons of one state keep their order.
@@ -47,6 +53,7 @@ struct Assessment {
   Aspect validation;  ///< the conditions that no estimate rests on, against the same limits
   Aspect adequacy;    ///< model error against the noise of the records
   Aspect parameters;  ///< whether the records determine the estimates
+  RIGCAL_DESCRIBE(agreement, validation, adequacy, parameters)
 };
 
 }  // namespace rigcal::calib

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "calib/result/model_error.hpp"
+#include "common/describe.hpp"
 #include "datasets/campaign/campaign.hpp"
 #include "datasets/record.hpp"
 #include "metrics/agreement.hpp"
@@ -47,11 +48,14 @@ struct LimitCheck {
   std::string metric;
   std::optional<double> value;  ///< absent: it does not exist, see `words`
   std::optional<double> limit, warn;
-  std::optional<double> expanded_uncertainty;  ///< uncertainty of the value; absent if unknown
+  /// Distance of the value from the ideal over that of the limit; absent without a value.
+  std::optional<double> tolerance_used;
+  Omittable<double> expanded_uncertainty;  ///< uncertainty of the value; absent if unknown
   Verdict verdict = Verdict::pass;
   bool in_guard_band = false;  ///< WARN because the limit is not kept by more than that
-  double used = 0.0;           ///< distance of the value from the ideal over that of the limit
   std::string words;           ///< why WARN or FAIL; empty for PASS
+  RIGCAL_DESCRIBE(channel, metric, value, limit, warn, tolerance_used, expanded_uncertainty,
+                  verdict)
 };
 
 /// Score of one condition, and the series it was computed from.

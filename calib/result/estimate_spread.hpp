@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -55,6 +56,25 @@ struct EstimateSpread {
   /// Dates of the fitted records; empty if one of them has none.
   std::vector<std::string> dates = {};
 };
+
+/// Whether numbers are correlations: from -1 to 1, the same on both sides of a diagonal of ones, by
+/// which no combination of estimates has a negative variance. Rows whose diagonal is NaN do not
+/// count, and where another number is missing nothing is said.
+bool are_correlations(const Eigen::MatrixXd& matrix);
+
+/// Covariance of estimates; NaN where a correlation is missing.
+///
+/// @param errors  standard errors
+/// @param rows    rows of `correlations`; absent: correlated with nothing
+Eigen::MatrixXd covariance_of(const std::vector<double>& errors,
+                              const std::vector<std::optional<Eigen::Index>>& rows,
+                              const Eigen::MatrixXd& correlations);
+
+/// Adds estimates that a condition has for itself, correlated with nothing.
+///
+/// @param errors  standard errors, shape (estimates)
+void add_own(std::vector<EstimateSpread::Estimate> estimates, const std::vector<double>& errors,
+             EstimateSpread& spread);
 
 /// R with R R^T = M, of a positive semidefinite matrix that rounding may have left without.
 Eigen::MatrixXd square_root(const Eigen::MatrixXd& m);

@@ -12,8 +12,16 @@
 #include "calib/result/model_error.hpp"
 #include "calib/result/posterior.hpp"
 #include "calib/result/search_report.hpp"
+#include "common/describe.hpp"
 
 namespace rigcal::calib {
+
+/// Correlation of estimates; NaN where it is not known.
+struct Correlation {
+  std::vector<std::string> names;
+  Eigen::MatrixXd matrix;  ///< shape (names)^2
+  RIGCAL_DESCRIBE(names, matrix)
+};
 
 /// Everything that a fit found.
 struct Fit {
@@ -36,10 +44,9 @@ struct Fit {
   std::optional<Considered> considered;           ///< small effects; absent: not looked at
   std::vector<StabilityCheck> stability;          ///< against the validation records
   std::string interval_advice;                    ///< which interval to believe, and why
-  std::vector<std::string> correlation_names;
-  std::vector<std::string> combinations;  ///< determined combinations of parameters
-  Eigen::MatrixXd correlation;            ///< shape (unknowns that have a standard error)^2
-  int rank = 0;                           ///< rank of the scaled Jacobian at the optimum
+  std::vector<std::string> combinations;          ///< determined combinations of parameters
+  Correlation correlation;                        ///< unknowns that have a standard error
+  int rank = 0;                                   ///< rank of the scaled Jacobian at the optimum
   std::vector<double> singular_values;
   std::vector<StartReport> starts;
   int best_start = 0;

@@ -30,9 +30,8 @@ std::string_view to_string(IntervalSource source) {
   return "";
 }
 
-double undetermined_sd(const std::optional<std::pair<double, double>>& ci95, double lower,
-                       double upper) {
-  const auto [low, high] = ci95.value_or(std::pair(lower, upper));
+double undetermined_sd(const std::optional<Range>& ci95, double lower, double upper) {
+  const auto [low, high] = ci95.value_or(Range{lower, upper});
   return (high - low) / std::sqrt(12.0);
 }
 

@@ -3,7 +3,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "calib/result/considered.hpp"
@@ -34,7 +33,11 @@ std::string_view to_string(IntervalSource source);
 struct ProfileEnd {
   std::optional<double> value;  ///< absent: the cost stays below up to `reached`
   double reached = 0.0;         ///< value up to which the profile was followed
-  bool lost = false;  ///< abandoned: the inner fit failed or was cancelled; otherwise unbounded
+  /// Abandoned: the inner fit failed or was cancelled; otherwise unbounded. Absent: not known.
+  Later<std::optional<bool>> lost = std::optional(false);
+  RIGCAL_DESCRIBE(value, reached, lost)
+
+  bool is_lost() const { return lost.value_or(false); }
 };
 
 /// Profile likelihood of one unknown: least cost of all others at fixed values of this one.
@@ -42,21 +45,24 @@ struct Profile {
   ProfileEnd low, high;
   std::vector<double> values;  ///< SI, ascending
   std::vector<double> rises;   ///< rises of 2 cost, in units of the threshold: 1 ends the interval
-  bool lower_cost_found = false;  ///< the fit was not at the minimum
+  bool lower_cost_found = false;  ///< the fit was not at the minimum; not in results
+  RIGCAL_DESCRIBE(low, high, values, rises)
 };
 
 /// One parameter over bootstrap replicates.
 struct BootstrapSpread {
   double standard_error = 0.0;
-  double bias = 0.0;                 ///< mean of the replicates minus the estimate
-  double freedom = 0.0;              ///< degrees of freedom of the standard error
-  std::pair<double, double> ci95{};  ///< percentiles, widened for the degrees of freedom
+  double bias = 0.0;          ///< mean of the replicates minus the estimate
+  double freedom = 0.0;       ///< degrees of freedom of the standard error
+  std::optional<Range> ci95;  ///< percentiles, widened for the degrees of freedom
+  RIGCAL_DESCRIBE(standard_error, bias, freedom, ci95)
 };
 
 /// An estimate over several models, each with its weight.
 struct AveragedEstimate {
   double value = 0.0;           ///< SI
   double standard_error = 0.0;  ///< error within each model, and scatter between them, SI
+  RIGCAL_DESCRIBE(value, standard_error)
 };
 
 /// One parameter in the result: fitted or known.
@@ -75,9 +81,9 @@ struct FittedParameter {
   /// From the residuals themselves: larger if they are correlated in time.
   std::optional<double> robust_standard_error;
   /// Interval of the rig: includes what the model leaves out, where that was considered.
-  std::optional<std::pair<double, double>> ci95;
+  std::optional<Range> ci95;
   /// What it would be if the model were exact.
-  std::optional<std::pair<double, double>> ci95_if_exact;
+  std::optional<Range> ci95_if_exact;
   IntervalSource interval = IntervalSource::none;  ///< basis of ci95_if_exact
   /// With which the error that ci95_if_exact rests on is known; at most metrics::kManyDegrees.
   std::optional<double> degrees_of_freedom;
@@ -101,7 +107,6 @@ struct FittedParameter {
 
 /// Standard deviation of a parameter without an error, for later steps: that of a uniform
 /// distribution over its interval, or over its bounds if there is none.
-double undetermined_sd(const std::optional<std::pair<double, double>>& ci95, double lower,
-                       double upper);
+double undetermined_sd(const std::optional<Range>& ci95, double lower, double upper);
 
 }  // namespace rigcal::calib

@@ -2,9 +2,9 @@
 
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "common/describe.hpp"
 #include "datasets/record.hpp"
 #include "metrics/residual_tests.hpp"
 
@@ -17,13 +17,17 @@ namespace rigcal::calib {
 struct LackOfFit : metrics::Judged {
   std::string condition;
   datasets::Channel channel = datasets::Channel::position;
-  double ratio = 0.0;         ///< variance of the residual over that of the pure error
-  double freedom = 0.0;       ///< effective degrees of freedom of the residual
-  double pure_freedom = 0.0;  ///< and of the pure error; infinite where `sd` states it
-  bool by_repeats = false;    ///< pure error from repeats; else from `sd`
+  std::string against = "sd";       ///< source of the pure error: "repeats" or "sd"
+  double ratio = 0.0;               ///< variance of the residual over that of the pure error
+  double freedom = 0.0;             ///< effective degrees of freedom of the residual
+  double pure_error_freedom = 0.0;  ///< and of the pure error; infinite where `sd` states it
   /// Probability of such a ratio, or a larger one, of noise alone. The outcome is that of all tests
   /// together.
   double p = 1.0;
+  RIGCAL_DESCRIBE(condition, channel, against, ratio, freedom, pure_error_freedom, p, outcome,
+                  reason)
+
+  bool by_repeats() const { return against == "repeats"; }
 };
 
 /// Differences between the repeats of the fitted conditions (between_repeats.hpp).
@@ -32,19 +36,24 @@ struct BetweenRepeats {
   double p = 1.0;       ///< for the most significant parameter, times the number of parameters
   double ratio = 0.0;   ///< largest of error by the repeats over error by the residuals
   std::vector<std::string> parameters;  ///< parameters whose interval is based on the repeats
-  std::string cause;      ///< that would explain it: key of a parameter, or "start"; empty: none
-  double cause_sd = 0.0;  ///< standard deviation of the cause: relative; in s for the start
-  double cause_explains = 0.0;  ///< share of how the repeats differ, 0 to 1
+  /// What would explain it: key of a parameter, or "start". Absent: nothing would, as the two
+  /// below.
+  std::optional<std::string> cause;
+  std::optional<double> cause_sd;        ///< standard deviation of it: relative; in s for the start
+  std::optional<double> cause_explains;  ///< fraction of the differences that it explains
+  RIGCAL_DESCRIBE(differ, p, ratio, parameters, cause, cause_sd, cause_explains)
 };
 
 /// A condition that was left out of the fit and predicted by it.
 struct HeldOut {
   std::string condition;
-  std::string problem;  ///< why there is no prediction, in words; empty if there is one
-  std::vector<std::pair<datasets::Channel, double>> rms;         ///< error of the prediction, SI
-  std::vector<std::pair<datasets::Channel, double>> fitted_rms;  ///< in its own fit, SI
-  double largest_shift = 0.0;  ///< largest change of a parameter, in its error; 0 if none has one
-  std::string shifted;         ///< the parameter that changes most
+  std::optional<std::string> problem;            ///< why there is no prediction, in words
+  Keyed<double, datasets::Channel> rmse;         ///< error of the prediction, SI
+  Keyed<double, datasets::Channel> fitted_rmse;  ///< in its own fit, SI
+  /// Largest change of a parameter, in its error; 0 if none has one, absent without a prediction.
+  std::optional<double> largest_shift;
+  std::optional<std::string> shifted;  ///< the parameter that changes most
+  RIGCAL_DESCRIBE(condition, problem, rmse, fitted_rmse, largest_shift, shifted)
 };
 
 }  // namespace rigcal::calib

@@ -1,10 +1,11 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
+#include "common/describe.hpp"
 #include "model/simulate.hpp"
 
 // Course of the search.
@@ -35,11 +36,15 @@ struct StartReport {
   int number = 1;
   std::vector<double> start_values;  ///< SI, order of the unknowns
   std::vector<double> end_values;
-  double initial_cost = 0.0;
-  double final_cost = 0.0;
+  double initial_cost = kNone;  ///< NaN where it cannot be simulated
+  double final_cost = kNone;    ///< likewise
   int iterations = 0;
   FitStatus status = FitStatus::failed;
   std::string message;
+  RIGCAL_DESCRIBE(number, status, message, start_values, end_values, initial_cost, final_cost,
+                  iterations)
+
+  static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Further starts that a fit with one start evaluated with coarse simulations.
@@ -56,16 +61,18 @@ struct Basin {
   double cost = 0.0;           ///< least of its starts
   std::vector<int> starts;     ///< numbers, by cost
   std::vector<double> values;  ///< SI, of its best start
+  RIGCAL_DESCRIBE(cost, starts, values)
 };
 
 /// A simulation that failed during the fit (first few of each kind are kept, all are counted).
 struct SimulationFailure {
   std::string condition;
-  std::vector<std::pair<std::string, double>> parameters;  ///< names and SI values of the unknowns
+  Keyed<double> parameters;  ///< names and SI values of the unknowns
   double time_s = 0.0;
   std::string reason;
   model::SimulationStatus status = model::SimulationStatus::ok;
   int start = 1;
+  RIGCAL_DESCRIBE(condition, start, time_s, reason, parameters)
 };
 
 }  // namespace rigcal::calib

@@ -65,6 +65,7 @@ LimitCheck check(const datasets::AcceptanceLimit& limit, datasets::DecisionRule 
   const metrics::MetricSpec& spec = metric(limit.metric);
   const double value = (*channel.agreement).*spec.value;
   result.value = value;
+  result.tolerance_used = 0.0;
   if (channel.expanded_uncertainty)
     result.expanded_uncertainty = (*channel.expanded_uncertainty).*spec.value;
   const auto keeps = [&](double score, double bound) {
@@ -102,7 +103,7 @@ LimitCheck check(const datasets::AcceptanceLimit& limit, datasets::DecisionRule 
     }
   }
   if (const auto bound = limit.limit ? limit.limit : limit.warn)
-    result.used = used_of(spec, value, *bound);
+    result.tolerance_used = used_of(spec, value, *bound);
   return result;
 }
 

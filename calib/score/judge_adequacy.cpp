@@ -58,7 +58,7 @@ void judge_lack_of_fit(const Campaign& campaign, const Fit& fit, std::vector<Rea
   for (const LackOfFit& test : tests) {
     if (test.failed() && model_error(test) > bound) beyond.push_back(&test);
     if (!test.passed() && !test.failed()) powerless.push_back(&test);
-    if (test.ratio < kOverstated && !test.by_repeats) overstated.push_back(&test);
+    if (test.ratio < kOverstated && !test.by_repeats()) overstated.push_back(&test);
     largest = std::max(largest, model_error(test));
     if (test.failed()) significant_error = std::max(significant_error, model_error(test));
   }
@@ -90,11 +90,12 @@ void judge_lack_of_fit(const Campaign& campaign, const Fit& fit, std::vector<Rea
   }
   if (!powerless.empty()) {
     const LackOfFit& first = *powerless.front();
-    reasons.push_back(reason(
-        AspectState::reservation, "lack_of_fit_not_judged",
-        fmt::format("lack of fit of {} of {} signals cannot be judged; {}: {}", powerless.size(),
-                    tests.size(), signal_of(first.condition, first.channel), first.reason),
-        first.condition, {{"signals", static_cast<double>(powerless.size())}}));
+    reasons.push_back(
+        reason(AspectState::reservation, "lack_of_fit_not_judged",
+               fmt::format("lack of fit of {} of {} signals cannot be judged; {}: {}",
+                           powerless.size(), tests.size(),
+                           signal_of(first.condition, first.channel), first.reason.value_or("")),
+               first.condition, {{"signals", static_cast<double>(powerless.size())}}));
   }
   if (beyond.empty() && overstated.empty() && powerless.empty()) {
     reasons.push_back(reason(

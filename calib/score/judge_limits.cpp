@@ -12,7 +12,8 @@ namespace {
 
 double largest_use(const ConditionScore& score) {
   double used = 0.0;
-  for (const LimitCheck& check : score.checks) used = std::max(used, check.used);
+  for (const LimitCheck& check : score.checks)
+    used = std::max(used, check.tolerance_used.value_or(0.0));
   return used;
 }
 

@@ -33,9 +33,8 @@ double elsewhere(const Fit& fit, const FittedParameter& parameter) {
 
 /// Largest possible size (95 %) of a parameter that is not distinguishable from zero.
 double upper_limit(const FittedParameter& parameter) {
-  return parameter.ci95
-             ? std::max(std::abs(parameter.ci95->first), std::abs(parameter.ci95->second))
-             : HUGE_VAL;
+  return parameter.ci95 ? std::max(std::abs(parameter.ci95->low), std::abs(parameter.ci95->high))
+                        : HUGE_VAL;
 }
 
 Reason judge_bounded(const Campaign& campaign, const Fit& fit, const FittedParameter& parameter,
@@ -125,7 +124,7 @@ std::string readable_size(double value, const std::string& unit) {
 
 double half_width_if_exact(const FittedParameter& parameter) {
   if (!parameter.ci95_if_exact) return HUGE_VAL;
-  return 0.5 * (parameter.ci95_if_exact->second - parameter.ci95_if_exact->first);
+  return 0.5 * (parameter.ci95_if_exact->high - parameter.ci95_if_exact->low);
 }
 
 /// Other effects that would explain nearly as much as the missing one, with their weights:
@@ -138,7 +137,7 @@ std::string alternatives_text(const Considered& considered) {
         each.weight < kNegligibleWeight)
       continue;
     std::vector<std::string> names;
-    for (const std::size_t e : each.effects) names.push_back(considered.effects[e].meaning);
+    for (const std::string& key : each.effects) names.push_back(considered.find(key)->meaning);
     words.push_back(
         fmt::format("{} (weight {})", fmt::join(names, " with "), significant(each.weight, 2)));
   }
@@ -156,8 +155,8 @@ void judge_missing(const Campaign& campaign, const Fit& fit, std::vector<Reason>
       moved.push_back(
           parameter_name(table[static_cast<std::size_t>(each.index)], each.scope, each.level));
   }
-  for (const std::size_t position : fit.considered->missing) {
-    const ConsideredEffect& effect = fit.considered->effects[position];
+  for (const std::string& key : fit.considered->missing) {
+    const ConsideredEffect& effect = *fit.considered->find(key);
     const double alone = effect.alone.value_or(0.0);
     const double half = effect.alone_half_width.value_or(0.0);
     reasons.push_back(reason(
@@ -170,8 +169,8 @@ void judge_missing(const Campaign& campaign, const Fit& fit, std::vector<Reason>
                           : fmt::format("; it would move {} by more than half of the "
                                         "interval for an exact model",
                                         fmt::join(moved, ", ")),
-            position == fit.considered->missing.front() ? alternatives_text(*fit.considered)
-                                                        : std::string()),
+            key == fit.considered->missing.front() ? alternatives_text(*fit.considered)
+                                                   : std::string()),
         effect.key,
         {{"size", alone},
          {"low", alone - half},
@@ -186,10 +185,11 @@ void judge_stability(const Campaign& campaign, const Fit& fit, std::vector<Reaso
   std::vector<std::string> words;
   for (const StabilityCheck& each : fit.stability) {
     if (!each.differs) continue;
-    const auto& spec = table[static_cast<std::size_t>(each.index)];
+    const int row = model::parameter_index(campaign.rig.plant, each.key);
+    const auto& spec = table[static_cast<std::size_t>(row)];
     words.push_back(fmt::format("{} {:.4g} {} ({:+.2g}, {:.2g} allowed)",
-                                parameter_name(spec, each.scope, each.level), each.value, spec.unit,
-                                each.difference, each.expanded));
+                                parameter_name(spec, each.scope, each.level.value_or("")),
+                                each.value, spec.unit, each.difference, each.expanded));
   }
   if (fit.stability.empty()) return;
   const std::vector<std::pair<std::string, double>> numbers{
@@ -216,7 +216,7 @@ void judge_considered(const Campaign& campaign, const Fit& fit, std::vector<Reas
   const auto table = model::parameter_table(campaign.rig.plant);
   for (const FittedParameter& each : fit.parameters) {
     if (!each.fitted || each.nuisance || !each.ci95) continue;
-    const double half = 0.5 * (each.ci95->second - each.ci95->first);
+    const double half = 0.5 * (each.ci95->high - each.ci95->low);
     if (!(each.moved_by_unexplained > half)) continue;
     const std::string name =
         parameter_name(table[static_cast<std::size_t>(each.index)], each.scope, each.level);
@@ -246,8 +246,8 @@ void judge_posterior(const Fit& fit, std::vector<Reason>& reasons) {
     reasons.push_back(reason(
         AspectState::reservation, "posterior_not_mixed",
         fmt::format("the chains of the posterior disagree: R-hat {} of {}, at most {} would do",
-                    significant(found.r_hat, 4), found.worst, Posterior::kMostRHat),
-        found.worst, {{"r_hat", found.r_hat}, {"allowed", Posterior::kMostRHat}}));
+                    significant(found.r_hat, 4), found.worst.value_or(""), Posterior::kMostRHat),
+        found.worst.value_or(""), {{"r_hat", found.r_hat}, {"allowed", Posterior::kMostRHat}}));
   }
   if (found.diverged > 0) {
     reasons.push_back(reason(

@@ -21,7 +21,7 @@ bool same_point(const std::vector<double>& a, const std::vector<double>& b,
   for (std::size_t j = 0; j < a.size() && j < parameters.size(); ++j) {
     const auto& interval = parameters[j].ci95;
     if (!interval) continue;
-    if (std::abs(a[j] - b[j]) > kSamePoint * (interval->second - interval->first)) return false;
+    if (std::abs(a[j] - b[j]) > kSamePoint * (interval->high - interval->low)) return false;
   }
   return true;
 }

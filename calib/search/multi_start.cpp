@@ -89,7 +89,7 @@ StartReport make_start(const Problem& problem, Evaluator& evaluator, const FitOp
   report.number = number;
   report.start_values = problem.to_physical(from);
   const Evaluation& first = evaluator.evaluate(from);
-  report.initial_cost = first.ok ? first.cost : 0.0;
+  report.initial_cost = first.ok ? first.cost : StartReport::kNone;
   solved = Search(problem, evaluator, options, number).run(from);
   report_end(problem, solved, evaluator.best(), report);
   return report;
@@ -246,7 +246,7 @@ void look_around(const Problem& problem, Evaluator& evaluator, const FitOptions&
     report.start_values = problem.to_physical(points[each.start]);
     evaluator.set_fidelity(problem.of_starts());
     const Evaluation& first = evaluator.evaluate(points[each.start]);
-    report.initial_cost = first.ok ? first.cost : 0.0;
+    report.initial_cost = first.ok ? first.cost : StartReport::kNone;
     evaluator.begin_start(number);
     evaluator.set_fidelity(Fidelity::full);
     SolveResult solved = Search(problem, evaluator, options, number).polish(each.end);

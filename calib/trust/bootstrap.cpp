@@ -145,7 +145,8 @@ BootstrapSpread replicate_spread(std::vector<double> values, double estimate, do
     return std::clamp(estimate + widened * (quantile(values, share) - estimate), spec.lower,
                       spec.upper);
   };
-  return {std::sqrt(squares / (count - 1.0)), mean - estimate, freedom, {end(0.025), end(0.975)}};
+  return {std::sqrt(squares / (count - 1.0)), mean - estimate, freedom,
+          Range{end(0.025), end(0.975)}};
 }
 
 /// Returns Satterthwaite's degrees of freedom for an unknown, from the contributions of the

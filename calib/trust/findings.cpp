@@ -26,12 +26,14 @@ void add_correlation(const Problem& problem, const Uncertainty& found, Fit& fit)
     const auto row = static_cast<Eigen::Index>(j);
     if (!found.standard_error[j] || !fit.parameters[j].correlated) continue;
     rows.push_back(row);
-    fit.correlation_names.push_back(problem.name(j));
+    fit.correlation.names.push_back(problem.name(j));
   }
   const auto size = static_cast<Eigen::Index>(rows.size());
-  fit.correlation = Eigen::MatrixXd::NullaryExpr(size, size, [&](Eigen::Index i, Eigen::Index k) {
-    return found.correlation(rows[static_cast<std::size_t>(i)], rows[static_cast<std::size_t>(k)]);
-  });
+  fit.correlation.matrix =
+      Eigen::MatrixXd::NullaryExpr(size, size, [&](Eigen::Index i, Eigen::Index k) {
+        return found.correlation(rows[static_cast<std::size_t>(i)],
+                                 rows[static_cast<std::size_t>(k)]);
+      });
 }
 
 void warn_of_noise(const Problem& problem, const Uncertainty& found, Fit& fit) {

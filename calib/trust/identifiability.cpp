@@ -116,18 +116,14 @@ void grade(const Problem& problem, const Uncertainty& found, std::size_t unknown
 /// Names the largest contribution to an interval that is wider than it would be if the model were
 /// exact.
 std::string widened_words(const Budget95& budget) {
-  const BudgetLine* largest = nullptr;
-  for (const BudgetLine& line : budget.lines) {
-    if (line.kind == "effect" && (largest == nullptr || line.uncertainty > largest->uncertainty))
-      largest = &line;
-  }
+  const BudgetLine* largest = budget.largest_effect();
   if (largest == nullptr) return "with what the model leaves out";
   return fmt::format("with what the model leaves out, most of it {}", largest->source);
 }
 
 /// Returns the length of the longer side of an interval.
-double longer_side(double value, const std::pair<double, double>& interval) {
-  return std::max(interval.second - value, value - interval.first);
+double longer_side(double value, const Range& interval) {
+  return std::max(interval.high - value, value - interval.low);
 }
 
 /// Clamps degrees of freedom to the range of student_t(). Known variances have infinitely many.

@@ -169,18 +169,16 @@ std::vector<double> point_at(const Problem& problem,
   return z;
 }
 
-FittedParameter parameter_at(const Problem& problem, std::span<const double> z,
+std::string TestedParameter::label() const {
+  return level ? fmt::format("{} ({})", name, *level) : name;
+}
+
+TestedParameter parameter_at(const Problem& problem, std::span<const double> z,
                              std::size_t unknown) {
   const Unknown& from = problem.map.unknowns()[unknown];
-  FittedParameter parameter;
-  parameter.index = from.index;
-  parameter.scope = from.scope;
-  parameter.level = from.level;
-  parameter.value = problem.map.to_physical(static_cast<int>(unknown), z[unknown]);
-  parameter.lower = from.lower;
-  parameter.upper = from.upper;
-  parameter.nuisance = from.nuisance;
-  return parameter;
+  const model::ParameterSpec& spec = problem.spec(unknown);
+  return {std::string(spec.name), std::string(spec.unit), from.scope, unless_empty(from.level),
+          problem.map.to_physical(static_cast<int>(unknown), z[unknown])};
 }
 
 Eigen::MatrixXd weighted_jacobian(const Problem& problem, const Evaluation& at,

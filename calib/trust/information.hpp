@@ -9,6 +9,7 @@
 #include "calib/problem/evaluation.hpp"
 #include "calib/problem/problem.hpp"
 #include "calib/result/fitted_parameter.hpp"
+#include "common/describe.hpp"
 
 namespace rigcal::calib {
 
@@ -26,8 +27,17 @@ std::vector<std::optional<double>> cramer_rao(const Problem& problem, std::span<
 std::vector<double> point_at(const Problem& problem,
                              const std::vector<datasets::FittedValue>* values);
 
-/// Returns the value and bounds of an unknown, without errors.
-FittedParameter parameter_at(const Problem& problem, std::span<const double> z,
+/// One unknown of a test that is planned.
+struct TestedParameter {
+  std::string name;  ///< that of results: "mass_kg"
+  std::string unit;
+  datasets::Scope scope = datasets::Scope::rig;
+  std::optional<std::string> level;  ///< leak level or condition; absent: the rig
+  double value = 0.0;
+
+  std::string label() const;  ///< "leakage_coefficient (33 %)"
+};
+TestedParameter parameter_at(const Problem& problem, std::span<const double> z,
                              std::size_t unknown);
 
 /// Returns the Jacobian of all priors and conditions, with the information of each condition

@@ -19,22 +19,22 @@ constexpr double kCorrelated = 0.5;
 /// equal. A bootstrap with 1000 replicates knows its length to 5 %.
 constexpr double kAgrees = 1.25;
 
-double width(const std::pair<double, double>& interval) { return interval.second - interval.first; }
+double width(const Range& interval) { return interval.high - interval.low; }
 
 /// Returns the ratio of the longer half of an interval to the shorter one.
-double skewness(double value, const std::pair<double, double>& interval) {
-  const double below = value - interval.first;
-  const double above = interval.second - value;
+double skewness(double value, const Range& interval) {
+  const double below = value - interval.low;
+  const double above = interval.high - value;
   if (!(below > 0.0) || !(above > 0.0)) return 1.0;
   return std::max(below / above, above / below);
 }
 
 /// Formats both ends with enough digits to distinguish them.
-std::string ends_text(const std::pair<double, double>& interval, std::string_view unit) {
-  const double size = std::max(std::abs(interval.first), std::abs(interval.second));
+std::string ends_text(const Range& interval, std::string_view unit) {
+  const double size = std::max(std::abs(interval.low), std::abs(interval.high));
   const double share = width(interval) > 0.0 ? size / width(interval) : 1.0;
   const int digits = std::clamp(3 + static_cast<int>(std::ceil(std::log10(share))), 4, 12);
-  return fmt::format("{:.{}g} to {:.{}g}{}{}", interval.first, digits, interval.second, digits,
+  return fmt::format("{:.{}g} to {:.{}g}{}{}", interval.low, digits, interval.high, digits,
                      unit == "1" ? "" : " ", unit == "1" ? "" : unit);
 }
 
@@ -42,14 +42,14 @@ std::string ends_text(const std::pair<double, double>& interval, std::string_vie
 /// if they differ.
 std::string other_interval(const FittedParameter& parameter, std::string_view unit, bool misfit) {
   if (parameter.profile && parameter.profile->low.value && parameter.profile->high.value) {
-    const std::pair ends{*parameter.profile->low.value, *parameter.profile->high.value};
+    const Range ends{*parameter.profile->low.value, *parameter.profile->high.value};
     if (skewness(parameter.value, ends) > kAgrees) {
       return fmt::format("use the interval of the profile, {}: the cost is not quadratic there",
                          ends_text(ends, unit));
     }
   }
   if (!parameter.bootstrap) return {};
-  const std::pair<double, double>& drawn = parameter.bootstrap->ci95;
+  const Range& drawn = *parameter.bootstrap->ci95;
   const double ratio = width(drawn) / width(*parameter.ci95_if_exact);
   if (ratio > kAgrees) {
     return fmt::format("use the interval of the bootstrap, {}: it is {} times as wide",
@@ -97,7 +97,8 @@ std::string interval_advice(const Problem& problem, const OptimumCheck& check,
       return test.outcome == metrics::TestOutcome::not_judged;
     });
     return text + fmt::format("; lack of fit cannot be judged (condition \"{}\", {}: {})",
-                              open->condition, datasets::info(open->channel).key, open->reason);
+                              open->condition, datasets::info(open->channel).key,
+                              open->reason.value_or(""));
   }
   if (!flagged) {
     return text +
@@ -105,7 +106,8 @@ std::string interval_advice(const Problem& problem, const OptimumCheck& check,
            "cannot be separated";
   }
   const LackOfFit& test = *least_likely(tests);
-  const std::string against = test.by_repeats ? "the variation between repeats" : "the stated `sd`";
+  const std::string against =
+      test.by_repeats() ? "the variation between repeats" : "the stated `sd`";
   if (*flagged) {
     return text + fmt::format(
                       "; significant lack of fit (condition \"{}\", {}: residual variance {:.3g} "
@@ -130,9 +132,11 @@ std::optional<BetweenRepeats> between_repeats(const Problem& problem, const Unce
   result.differ = found.repeats_differ() || found.difference;
   if (found.difference) {
     if (!found.repeats_differ()) result.p = found.difference->p;
-    result.cause = found.difference->cause;
-    result.cause_sd = found.difference->sd;
-    result.cause_explains = found.difference->explained;
+    result.cause = unless_empty(found.difference->cause);
+    if (result.cause) {
+      result.cause_sd = found.difference->sd;
+      result.cause_explains = found.difference->explained;
+    }
   }
   return result;
 }
@@ -145,23 +149,23 @@ std::string between_repeats_warning(const BetweenRepeats& repeats) {
       repeats.p, repeats.ratio);
   if (!repeats.parameters.empty())
     text += fmt::format(", and the intervals of {} use them", fmt::join(repeats.parameters, ", "));
-  if (repeats.cause.empty()) return text;
+  if (!repeats.cause) return text;
   if (repeats.cause == "start") {
     return text + fmt::format(
                       "; they differ as if each had begun at another time (standard deviation "
                       "{:.2g} ms), so how late their mean began is not known either: record what "
                       "drives the rig, or use a common trigger",
-                      1e3 * repeats.cause_sd);
+                      1e3 * *repeats.cause_sd);
   }
-  text += fmt::format("; they differ as if {} varied by {} % from repeat to repeat", repeats.cause,
-                      significant(100.0 * repeats.cause_sd, 2));
+  text += fmt::format("; they differ as if {} varied by {} % from repeat to repeat", *repeats.cause,
+                      significant(100.0 * *repeats.cause_sd, 2));
   text += ": ";
   if (repeats.cause == "supply_pressure")
     text += "a recorded supply pressure (channel `supply_pressure`) would account for it, or ";
   return text + fmt::format(
                     "`between_repeats` of {} in [rig.parameters], with this standard "
                     "deviation, estimates it for every condition",
-                    repeats.cause);
+                    *repeats.cause);
 }
 
 std::string noiseless_warning(const Problem& problem, const Uncertainty& found) {
@@ -191,7 +195,8 @@ std::string compare_intervals(const Problem& problem,
     }
     if (!each.ci95_if_exact || !(width(*each.ci95_if_exact) > 0.0)) continue;
     drawn = drawn || each.bootstrap;
-    followed = followed || (each.profile && !each.profile->low.lost && !each.profile->high.lost);
+    followed =
+        followed || (each.profile && !each.profile->low.is_lost() && !each.profile->high.is_lost());
     if (!carried.empty()) continue;
     const std::string advice = other_interval(each, problem.spec(j).unit, misfit);
     if (!advice.empty()) words.push_back(problem.name(j) + ": " + advice);

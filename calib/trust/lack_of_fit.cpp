@@ -30,9 +30,9 @@ double square_inflation(const metrics::Autoregression& noise, double samples) {
 /// Returns the probability that noise alone gives this ratio or a larger one.
 double exceedance(double ratio, const LackOfFit& test) {
   if (!(ratio > 0.0)) return 1.0;
-  if (std::isinf(test.pure_freedom))
+  if (std::isinf(test.pure_error_freedom))
     return metrics::chi_squared_exceedance(ratio * test.freedom, test.freedom);
-  return metrics::fisher_f_exceedance(ratio, test.freedom, test.pure_freedom);
+  return metrics::fisher_f_exceedance(ratio, test.freedom, test.pure_error_freedom);
 }
 
 /// Judges a test at a significance level. The level of F is also valid for few degrees of freedom,
@@ -54,11 +54,11 @@ LackOfFit make_test(const ProblemCondition& condition, const ProblemChannel& cha
   LackOfFit test;
   test.condition = condition.condition->id;
   test.channel = channel.channel;
-  test.by_repeats = series.repeats > 1 && !series.sd.empty();
+  test.against = series.repeats > 1 && !series.sd.empty() ? "repeats" : "sd";
   test.ratio = metrics::autocovariance(noise, 0).front();
   test.freedom = std::max(1.0, samples / square_inflation(noise, samples));
-  test.pure_freedom = test.by_repeats ? (series.repeats - 1) * test.freedom
-                                      : std::numeric_limits<double>::infinity();
+  test.pure_error_freedom = test.by_repeats() ? (series.repeats - 1) * test.freedom
+                                              : std::numeric_limits<double>::infinity();
   test.p = exceedance(test.ratio, test);
   return test;
 }

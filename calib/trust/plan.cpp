@@ -21,24 +21,22 @@ using datasets::Record;
 /// Removes the standard deviations of an unknown that a scaling symmetry leaves undetermined. They
 /// come only from the smoothing of the orifice roots, which has no physical meaning.
 void leave_open(std::size_t unknown, Plan& plan) {
-  plan.recorded[unknown].reset();
-  plan.all[unknown].reset();
+  plan.parameters[unknown].sd_recorded.reset();
+  plan.parameters[unknown].sd_all.reset();
   for (PlannedRecord& record : plan.records) {
-    if (!record.alone.empty()) record.alone[unknown].reset();
-    if (!record.without.empty()) record.without[unknown].reset();
+    if (!record.sd_alone.empty()) record.sd_alone[unknown].reset();
+    if (!record.sd_without.empty()) record.sd_without[unknown].reset();
   }
 }
 
 std::string words_of(const Problem& problem, const Plan& plan, std::size_t unknown) {
-  const FittedParameter& parameter = plan.parameters[unknown];
-  const auto half = relative_half_width(plan.all[unknown], parameter.value);
+  const PlannedParameter& parameter = plan.parameters[unknown];
+  const auto half = relative_half_width(parameter.sd_all, parameter.value);
   if (half && *half <= kWeak) return {};
   const std::string state =
       half ? fmt::format("known to {:.0f} % only", 100.0 * *half) : "not determined";
-  const std::string& remedy = plan.remedies[unknown];
-  return fmt::format("{}: {} by these records; {}", problem.name(unknown), state,
-                     remedy.empty() ? "nothing simple would make it identifiable"
-                                    : remedy + " would make it identifiable");
+  return fmt::format("{}: {} by these records; {} would make it identifiable",
+                     problem.name(unknown), state, parameter.remedy.value_or("nothing simple"));
 }
 
 }  // namespace
@@ -71,20 +69,20 @@ Plan plan(const Campaign& campaign, const std::vector<Record>& records,
   const Evaluation at = evaluate_at(problem, z, threads);
 
   Plan result;
-  for (std::size_t j = 0; j < z.size(); ++j) {
-    result.parameters.push_back(parameter_at(problem, z, j));
-  }
   const std::vector<double> everything(conditions.size(), 1.0);
   const std::vector<double> existing(recorded.begin(), recorded.end());
   const Eigen::MatrixXd all = weighted_jacobian(problem, at, everything);
-  result.recorded = cramer_rao(problem, z, weighted_jacobian(problem, at, existing));
-  result.all = cramer_rao(problem, z, all);
+  const auto sd_recorded = cramer_rao(problem, z, weighted_jacobian(problem, at, existing));
+  const auto sd_all = cramer_rao(problem, z, all);
+  for (std::size_t j = 0; j < z.size(); ++j)
+    result.parameters.push_back({parameter_at(problem, z, j), problem.map.unknowns()[j].nuisance,
+                                 sd_recorded[j], sd_all[j], std::nullopt});
   for (std::size_t i = 0; i < conditions.size(); ++i) {
     PlannedRecord& record = result.records.emplace_back();
     record.condition = conditions[i]->id;
     record.recorded = recorded[i];
-    record.alone.resize(z.size());
-    record.without.resize(z.size());
+    record.sd_alone.resize(z.size());
+    record.sd_without.resize(z.size());
     if (!at.conditions[i].ok()) {
       record.problem = fmt::format("cannot be simulated at {:g} s: {}",
                                    at.conditions[i].failed_at_s, at.conditions[i].reason);
@@ -94,8 +92,8 @@ Plan plan(const Campaign& campaign, const std::vector<Record>& records,
     alone[i] = 1.0;
     std::vector<double> without = everything;
     without[i] = 0.0;
-    record.alone = cramer_rao(problem, z, weighted_jacobian(problem, at, alone));
-    record.without = cramer_rao(problem, z, weighted_jacobian(problem, at, without));
+    record.sd_alone = cramer_rao(problem, z, weighted_jacobian(problem, at, alone));
+    record.sd_without = cramer_rao(problem, z, weighted_jacobian(problem, at, without));
   }
   if (values == nullptr) {
     result.messages.push_back(
@@ -117,12 +115,13 @@ Plan plan(const Campaign& campaign, const std::vector<Record>& records,
         "the uncertainty of {} is not in these figures: a fit adds what it does to them", name));
   }
   for (std::size_t j = 0; j < z.size(); ++j) {
-    const auto half = relative_half_width(result.all[j], result.parameters[j].value);
-    const bool wanting = !problem.map.unknowns()[j].nuisance && (!half || *half > kWeak);
-    result.remedies.push_back(
-        open[j]   ? symmetry_remedy(problem, *symmetry)
-        : wanting ? fmt::format("{}", fmt::join(remedies(problem, z, all, j), ", or "))
-                  : "");
+    PlannedParameter& parameter = result.parameters[j];
+    const auto half = relative_half_width(parameter.sd_all, parameter.value);
+    const bool wanting = !parameter.nuisance && (!half || *half > kWeak);
+    parameter.remedy =
+        unless_empty(open[j]   ? symmetry_remedy(problem, *symmetry)
+                     : wanting ? fmt::format("{}", fmt::join(remedies(problem, z, all, j), ", or "))
+                               : "");
     if (!wanting) continue;
     const std::string text = words_of(problem, result, j);
     if (!text.empty()) result.messages.push_back(text);

@@ -4,29 +4,37 @@
 #include <string>
 #include <vector>
 
-#include "calib/result/fit_result.hpp"
-#include "calib/search/fit_options.hpp"
+#include "calib/trust/information.hpp"
+#include "common/describe.hpp"
 
 namespace rigcal::calib {
 
 /// Information in one existing or planned record.
 struct PlannedRecord {
   std::string condition;
-  bool recorded = false;                       ///< false: planned, only simulated
-  std::string problem;                         ///< why nothing is known; otherwise empty
-  std::vector<std::optional<double>> alone;    ///< sd of each unknown from this record only, SI;
-                                               ///< shape (unknowns), even if nothing is known
-  std::vector<std::optional<double>> without;  ///< sd from all records except this one; same shape
+  bool recorded = false;               ///< false: planned, simulated only
+  std::optional<std::string> problem;  ///< why nothing is known of it
+  /// Standard deviation of each unknown from this record alone, SI; shape (unknowns), also if
+  /// nothing is known.
+  std::vector<std::optional<double>> sd_alone;
+  std::vector<std::optional<double>> sd_without;  ///< likewise, from all other records
+  RIGCAL_DESCRIBE(condition, recorded, problem, sd_alone, sd_without)
+};
+
+/// One unknown, with its standard deviations, SI; absent where it is not determined.
+struct PlannedParameter : TestedParameter {
+  bool nuisance = false;
+  std::optional<double> sd_recorded;  ///< from all records that exist
+  std::optional<double> sd_all;       ///< and with the planned ones
+  std::optional<std::string> remedy;  ///< what would determine it
+  RIGCAL_DESCRIBE(name, unit, scope, level, nuisance, value, sd_recorded, sd_all, remedy)
 };
 
 /// Cramer-Rao standard deviations at given values, for white noise, a correct model and all
 /// unknowns free. A real fit is less precise.
 struct Plan {
-  std::vector<FittedParameter> parameters;      ///< value and bounds of each unknown, no errors
-  std::vector<std::optional<double>> recorded;  ///< sd from all existing records
-  std::vector<std::optional<double>> all;       ///< sd with the planned records included
+  std::vector<PlannedParameter> parameters;
   std::vector<PlannedRecord> records;
-  std::vector<std::string> remedies;  ///< for each unknown, what would determine it; may be empty
   std::vector<std::string> messages;  ///< determined combinations, symmetries, suggested additions
 };
 

@@ -167,7 +167,7 @@ ProfileEnd follow(Follower& follower, const Problem& problem, std::size_t unknow
       outside_rise = follower.rise(outside);
     }
     if (!outside_rise) {
-      end.lost = true;
+      end.lost = std::optional(true);
       return end;
     }
     end.reached = value(outside);
@@ -209,8 +209,8 @@ double threshold_of(const FittedParameter& parameter, double reduced_chi_square)
   if (!parameter.ci95_if_exact || !parameter.standard_error)
     return metrics::kNormal95 * metrics::kNormal95 * variance;
   // The longer half is used because the other may be truncated at a limit.
-  const double half = std::max(parameter.ci95_if_exact->second - parameter.value,
-                               parameter.value - parameter.ci95_if_exact->first);
+  const double half = std::max(parameter.ci95_if_exact->high - parameter.value,
+                               parameter.value - parameter.ci95_if_exact->low);
   const double errors = half / *parameter.standard_error;
   return errors * errors * variance;
 }
@@ -305,19 +305,21 @@ void profiles(const Problem& problem, const std::vector<datasets::Record>& recor
     };
     if (profile.lower_cost_found)
       say("its profile finds a lower cost: the fit is not at the minimum, make more starts");
-    if (profile.low.lost || profile.high.lost) {
+    if (profile.low.is_lost() || profile.high.is_lost()) {
       say(fmt::format("its profile was not made {}: {}",
-                      profile.low.lost && profile.high.lost ? "on either side"
-                      : profile.low.lost                    ? "below"
-                                                            : "above",
+                      profile.low.is_lost() && profile.high.is_lost() ? "on either side"
+                      : profile.low.is_lost()                         ? "below"
+                                                                      : "above",
                       left.spent() ? left.reason() : "no fit there converged"));
     }
     if (profile.low.value && profile.high.value) continue;
     const model::ParameterSpec& spec = model::parameter_table(
         problem.campaign->rig.plant)[static_cast<std::size_t>(unknowns[j].index)];
     // A profile that reaches a limit of the parameter itself, such as zero leakage, is complete.
-    const bool below = !profile.low.value && !profile.low.lost && unknowns[j].lower > spec.lower;
-    const bool above = !profile.high.value && !profile.high.lost && unknowns[j].upper < spec.upper;
+    const bool below =
+        !profile.low.value && !profile.low.is_lost() && unknowns[j].lower > spec.lower;
+    const bool above =
+        !profile.high.value && !profile.high.is_lost() && unknowns[j].upper < spec.upper;
     if (!below && !above) continue;
     const std::string unit = spec.unit == "1" ? "" : fmt::format(" {}", spec.unit);
     say(fmt::format("its profile is open {}: followed from {:.4g}{} to {:.4g}{}",
@@ -327,8 +329,8 @@ void profiles(const Problem& problem, const std::vector<datasets::Record>& recor
     // A bound within `ci95` restricts the parameter more than the records do; a bound outside
     // `ci95` restricts it less.
     const double half_width = parameter.ci95_if_exact
-                                  ? std::max(parameter.ci95_if_exact->second - parameter.value,
-                                             parameter.value - parameter.ci95_if_exact->first)
+                                  ? std::max(parameter.ci95_if_exact->high - parameter.value,
+                                             parameter.value - parameter.ci95_if_exact->low)
                                   : 0.0;
     if ((below && parameter.value - unknowns[j].lower >= half_width) ||
         (above && unknowns[j].upper - parameter.value >= half_width))

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/describe.hpp"
 #include "common/error.hpp"
 #include "common/file.hpp"
 #include "common/quantity.hpp"
@@ -104,6 +105,7 @@ struct AcceptanceLimit {
   std::string metric;  ///< name as in the results
   std::optional<double> limit;
   std::optional<double> warn;
+  RIGCAL_DESCRIBE(channel, metric, limit, warn)
 };
 
 /// How the uncertainty of a score enters the comparison with a limit (ISO/IEC 17025:2017, 7.8.6).

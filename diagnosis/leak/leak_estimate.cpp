@@ -134,7 +134,7 @@ void set_interval(double half_width, LeakEstimate& estimate) {
   const double coefficient = estimate.coefficient;
   if (estimate.leak_detected || estimate.incompatible || !(estimate.standard_error > 0.0)) {
     estimate.ci95 = {coefficient - half_width, coefficient + half_width};
-    if (!estimate.incompatible) estimate.ci95.first = std::max(0.0, estimate.ci95.first);
+    if (!estimate.incompatible) estimate.ci95.low = std::max(0.0, estimate.ci95.low);
     return;
   }
   const double above_zero = metrics::student_t_cdf(estimate.leak_score, estimate.freedom);

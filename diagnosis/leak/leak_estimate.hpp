@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "common/range.hpp"
 #include "datasets/campaign/diagnosis_settings.hpp"
 #include "diagnosis/leak/leak_curve.hpp"
 #include "diagnosis/leak/leak_fit.hpp"
@@ -22,14 +23,14 @@ struct LeakEstimate {
   /// 95 % interval of the coefficient, with a lower end of at least 0. If no leak is detected, it
   /// goes from 0 to the upper limit, given that a leak is not negative. It is not cut off at 0 if
   /// the record is incompatible.
-  std::pair<double, double> ci95{0.0, 0.0};
+  Range ci95{0.0, 0.0};
   /// Whether the coefficient is negative by more than its error, at the false-alarm rate of the
   /// settings. No leak explains such a record, so no leak is reported.
   bool incompatible = false;
   double share = 0.0;  ///< fraction of the servo flow, >= 0; impossible above 1
   /// 95 % interval of the share, within 0 and 1, given that a leak is not negative. If no leak is
   /// detected, it goes from 0 to the upper limit.
-  std::pair<double, double> share_ci95{0.0, 0.0};
+  Range share_ci95{0.0, 0.0};
   /// One-sided 95 % limit, if no leak is detected.
   std::optional<double> share_upper_limit;
   double share_slope = 0.0;  ///< d share / d coefficient

@@ -360,7 +360,7 @@ RigFit rig_fit_of(const calib::Fit& fit) {
     if (!p.nuisance) rig.values.push_back({p.index, p.scope, p.level, p.value});
     const bool of_rig = !p.nuisance && p.scope == datasets::Scope::rig;
     if (p.standard_error && !p.correlated) continue;  // belongs to one condition and has no row
-    if (!p.standard_error || row >= fit.correlation.rows()) {
+    if (!p.standard_error || row >= fit.correlation.matrix.rows()) {
       if (!of_rig) continue;
       without_error.push_back(p.index);
       undetermined.push_back(calib::undetermined_sd(p.ci95, p.lower, p.upper));
@@ -378,7 +378,7 @@ RigFit rig_fit_of(const calib::Fit& fit) {
   const auto scale = Eigen::Map<const Eigen::VectorXd>(errors.data(), known);
   rig.covariance = Eigen::MatrixXd::Zero(all, all);
   rig.covariance.topLeftCorner(known, known) =
-      scale.asDiagonal() * Eigen::MatrixXd(fit.correlation(rows, rows)) * scale.asDiagonal();
+      scale.asDiagonal() * Eigen::MatrixXd(fit.correlation.matrix(rows, rows)) * scale.asDiagonal();
   rig.covariance.diagonal().tail(all - known) =
       Eigen::Map<const Eigen::VectorXd>(undetermined.data(), all - known).cwiseAbs2();
   rig.indices.insert(rig.indices.end(), without_error.begin(), without_error.end());

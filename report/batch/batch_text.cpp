@@ -64,7 +64,7 @@ bool is_significant(const StoredRigTrend& trend) {
 }
 
 std::string trend_sentence(const StoredRigTrend& trend) {
-  const StoredTrend& along = trend.series.along_date;
+  const calib::EstimateTrend& along = trend.series.along_date;
   if (!along.slope || !along.ci95)
     return fmt::format("{}: {}.", trend_name(trend), along.reason.value_or(""));
   const std::string unit = trend.unit == "1" ? "" : typographic(trend.unit) + " ";

@@ -51,8 +51,8 @@ std::vector<StoredRigScore> worst_scores(const StoredFit& fit) {
 std::vector<std::string> reasons_of(const StoredFit& fit) {
   std::vector<std::string> reasons;
   if (!fit.assessment) return reasons;
-  StoredAssessment::describe(*fit.assessment, [&](const char* name, const StoredAspect& aspect) {
-    for (const StoredReason& reason : aspect.reasons) {
+  calib::Assessment::describe(*fit.assessment, [&](const char* name, const calib::Aspect& aspect) {
+    for (const calib::Reason& reason : aspect.reasons) {
       if (calib::is_against(reason.state))
         reasons.push_back(fmt::format("{}: {}", name, reason.words));
     }

@@ -47,7 +47,7 @@ StoredComparedResult stored(const Compared& compared) {
   return result;
 }
 
-std::string repeats_warning(const std::string& name, const StoredBetweenRepeats& repeats) {
+std::string repeats_warning(const std::string& name, const calib::BetweenRepeats& repeats) {
   const std::string cause =
       repeats.cause ? fmt::format(", as {} would make them", *repeats.cause) : std::string();
   return fmt::format(

@@ -13,12 +13,7 @@ namespace rigcal::report {
 
 // The parts of a comparison, and the functions that they have in common.
 
-inline constexpr double kSignificantLevel = 0.05;
-
-/// The reason given when a parameter is known, not estimated, in both results.
-inline constexpr const char* kKnownInBoth = "known in both";
-
-/// Returns true if the fit converged or was stopped, so that its values may be shown.
+/// Converged or stopped: its numbers may be shown.
 inline bool is_usable(const StoredFit& fit) { return fit.status != calib::FitStatus::failed; }
 
 /// Returns the input files of a result by hash, without the campaign file and any earlier fit.
@@ -64,18 +59,13 @@ std::vector<StoredComparedMetric> compared_metrics(
     const std::vector<StoredComparedCondition>& conditions, const std::vector<Compared>& results);
 /// Lists the input files and the results that used them.
 std::vector<StoredComparedRecord> compared_records(const std::vector<Compared>& results);
-/// Adds the day-to-day standard error to the error of an estimate.
-metrics::EstimateError with_days(const metrics::EstimateError& own,
-                                 const std::optional<double>& between_days_error);
-
-/// Follows the parameter `key` over dates and temperatures.
+/// Estimates of the parameter of a key along dates and temperatures.
 std::vector<StoredSeries> trends(const std::vector<Compared>& results, std::string_view key);
 
-/// Formats a difference from the first result in percent, or in the unit if the first value is zero
-/// or not significantly different from zero. Returns an empty string if a value is missing.
-std::string change_text(const StoredDifference& difference, const RowUnit& unit);
-/// Returns true if a parameter deserves a row: at least one result estimates it, or its known
-/// values differ.
+/// A difference from the first result in percent; where that value is zero or not significantly
+/// different from it, in the unit. Empty where one has no value.
+std::string change_text(const calib::EstimateDifference& difference, const RowUnit& unit);
+/// Whether a parameter is worth a row: a result estimates it, or known values differ.
 bool worth_a_row(const StoredComparedParameter& parameter);
 /// Chooses the unit in which the largest estimate of a parameter needs few digits.
 RowUnit unit_of_estimates(const StoredComparedParameter& parameter);

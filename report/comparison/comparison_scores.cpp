@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "metrics/significance.hpp"
 #include "report/comparison/comparison_parts.hpp"
 
 namespace rigcal::report {
@@ -39,40 +38,19 @@ std::optional<StoredComparedScore> score_of(const StoredFit& fit, const std::str
   return score;
 }
 
-/// Tests whether one result scores better than the other more often than chance would explain.
-void sign_test(bool shared, StoredMetricAgainst& result) {
-  const int untied = result.better + result.worse;
-  if (shared) {
-    result.reason = "not tested: the results share records, so their scores are not independent";
-  } else if (untied < metrics::kLeastSignPairs) {
-    result.reason = fmt::format("not tested: {} condition{}, and a sign test needs {}", untied,
-                                untied == 1 ? "" : "s", metrics::kLeastSignPairs);
-  } else {
-    result.p_value = metrics::sign_test_p_value(result.better, result.worse);
-    result.significant = *result.p_value < kSignificantLevel;
-  }
-}
-
-std::optional<StoredMetricAgainst> metric_against(
+std::optional<calib::ScoreDifference> metric_against(
     const std::vector<StoredComparedCondition>& conditions, const std::string& channel,
     const ComparedMetric& metric, std::size_t other, bool shared) {
-  StoredMetricAgainst result;
+  std::vector<std::pair<double, double>> pairs;
   for (const StoredComparedCondition& condition : conditions) {
     const auto& scores = condition.scores;
     if (condition.channel != channel || !scores[0] || !scores[other]) continue;
     const auto& a = (*scores[0]).*metric.value;
     const auto& b = (*scores[other]).*metric.value;
-    if (!a || !b) continue;
-    ++result.conditions;
-    result.mean_of_first += *a;
-    result.mean += *b;
-    if (*a != *b) ++((*b > *a) == metric.higher_is_better ? result.better : result.worse);
+    if (a && b) pairs.emplace_back(*a, *b);
   }
-  if (result.conditions == 0) return std::nullopt;
-  result.mean_of_first /= result.conditions;
-  result.mean /= result.conditions;
-  sign_test(shared, result);
-  return result;
+  if (pairs.empty()) return std::nullopt;
+  return calib::score_difference(pairs, metric.higher_is_better, shared);
 }
 
 }  // namespace

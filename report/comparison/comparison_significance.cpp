@@ -45,7 +45,7 @@ std::vector<std::optional<StoredSignificance>> tested_parameters(
     std::vector<Untested> open;
     for (const StoredComparedParameter& parameter : parameters) {
       const auto& difference = parameter.differences[i];
-      if (!difference || difference->reason == kKnownInBoth) continue;
+      if (!difference || difference->reason == calib::kKnownInBoth) continue;
       ++count.compared;
       if (!difference->significant) {
         add_untested(open, difference->reason.value_or(""), parameter_label(parameter));
@@ -69,7 +69,7 @@ std::vector<Change> changes_of(const StoredComparison& comparison) {
     };
     for (std::size_t i = 1; i < parameter.differences.size(); ++i) {
       const auto& difference = parameter.differences[i];
-      if (!difference || difference->reason == kKnownInBoth) continue;
+      if (!difference || difference->reason == calib::kKnownInBoth) continue;
       const double size = difference->difference.value_or(0.0);
       if (size == 0.0 || difference->significant == false) continue;
       changes.emplace_back(std::abs(size) / std::hypot(error_of_estimate(0), error_of_estimate(i)),

@@ -1,8 +1,6 @@
 #include <algorithm>
-#include <stdexcept>
 
 #include "common/calendar.hpp"
-#include "metrics/trend.hpp"
 #include "report/comparison/comparison_parts.hpp"
 
 namespace rigcal::report {
@@ -37,49 +35,18 @@ std::string series_of(const StoredFit& fit, const StoredParameter& parameter) {
   return condition == nullptr ? "rig" : condition->leak_level.value_or("rig");
 }
 
-/// Fits a line to the points of a series.
-///
-/// @param place   member that gives the abscissa of a point
-///
-/// @param shared  whether results in the series have common records
-void find_trend(const std::vector<StoredTrendPoint>& points,
-                std::optional<double> StoredTrendPoint::*place, bool shared, StoredTrend& result) {
-  std::vector<double> x, y;
-  std::vector<metrics::EstimateError> errors;
+/// The line through the points that have an error and a place.
+calib::EstimateTrend trend_along(const std::vector<StoredTrendPoint>& points,
+                                 std::optional<double> StoredTrendPoint::*place, bool shared) {
+  std::vector<calib::PlacedEstimate> placed;
   for (const StoredTrendPoint& point : points) {
     if (!(point.*place) || !point.value || !(point.standard_error.value_or(0.0) > 0.0)) continue;
-    x.push_back(*(point.*place));
-    y.push_back(*point.value);
-    errors.push_back(
-        {*point.standard_error, point.degrees_of_freedom.value_or(metrics::kManyDegrees)});
+    placed.push_back(
+        {*(point.*place),
+         *point.value,
+         {*point.standard_error, point.degrees_of_freedom.value_or(metrics::kManyDegrees)}});
   }
-  result.points = static_cast<long>(x.size());
-  const auto [low, high] = std::minmax_element(x.begin(), x.end());
-  const bool few = x.size() < metrics::kLeastTrendPoints;
-  if (few || *low == *high || shared) {
-    result.reason = x.empty() ? "no estimate has it"
-                    : few     ? "fewer than three estimates with an error"
-                    : *low == *high
-                        ? "all estimates are at the same place"
-                        : "not tested: the results share records, so they are not independent";
-    return;
-  }
-  metrics::Trend trend;
-  try {
-    trend = metrics::weighted_trend(x, y, errors);
-  } catch (const std::domain_error&) {  // only possible in files that were edited by hand
-    result.reason = "the errors of the estimates are too far apart for a line";
-    return;
-  }
-  result.slope = trend.slope;
-  result.intercept = trend.intercept;
-  result.standard_error = trend.slope_standard_error;
-  result.degrees_of_freedom = std::optional(trend.freedom);
-  result.widened = std::optional(trend.widened);
-  result.ci95 = {trend.ci95_low, trend.ci95_high};
-  result.p_value = trend.p_value;
-  result.reduced_chi_square = trend.reduced_chi_square;
-  result.significant = trend.p_value < kSignificantLevel;
+  return calib::trend_of(placed, shared);
 }
 
 bool any_share_records(const std::vector<const Compared*>& results) {
@@ -107,7 +74,7 @@ StoredTrendPoint point_of(const Compared& compared, const StoredParameter& param
   if (const auto error = interval_error(parameter)) {
     const bool dated = point.day.has_value();  // results of other dates have other day effects
     const metrics::EstimateError all =
-        dated ? with_days(*error, parameter.between_days_error) : *error;
+        dated ? calib::with_days(*error, parameter.between_days_error) : *error;
     if (dated && parameter.between_days_error)
       point.between_days_error = parameter.between_days_error;
     point.standard_error = all.standard_error;
@@ -140,8 +107,9 @@ std::vector<StoredSeries> trends(const std::vector<Compared>& results, std::stri
   }
   for (std::size_t i = 0; i < list.size(); ++i) {
     const bool shared = any_share_records(sources[i]);
-    find_trend(list[i].points, &StoredTrendPoint::day, shared, list[i].along_date);
-    find_trend(list[i].points, &StoredTrendPoint::temperature_k, shared, list[i].along_temperature);
+    list[i].along_date = {trend_along(list[i].points, &StoredTrendPoint::day, shared)};
+    list[i].along_temperature = {
+        trend_along(list[i].points, &StoredTrendPoint::temperature_k, shared)};
   }
   return list;
 }

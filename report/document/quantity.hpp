@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "common/range.hpp"
 #include "report/document/document.hpp"
-#include "report/json/range.hpp"
 #include "report/text/estimate_text.hpp"
 
 // All number formatting for pages and terminals. A missing number or NaN is shown as a dash.

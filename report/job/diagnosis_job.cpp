@@ -25,7 +25,7 @@ using datasets::Condition;
 
 /// Warns about records outside the range covered by the fit. The check uses the leak that was
 /// found.
-void warn_of_validity(const Campaign& campaign, const Validity& covered,
+void warn_of_validity(const Campaign& campaign, const calib::Validity& covered,
                       diagnosis::Diagnosis& found) {
   const int leak = model::parameter_index(campaign.rig.plant, "leakage_coefficient");
   for (diagnosis::RecordDiagnosis& record : found.records) {
@@ -39,7 +39,7 @@ void warn_of_validity(const Campaign& campaign, const Validity& covered,
     own.level = record.condition;
     own.value = std::max(0.0, record.estimate.coefficient);
     own.fitted = true;
-    Validity asked = coverage(alone, {}, values, {alone.conditions.front().use});
+    calib::Validity asked = calib::coverage(alone, {}, values, {alone.conditions.front().use});
     // The leak is the unknown here, and a fit to healthy records does not cover any leak.
     asked.leakage_coefficient.reset();
     for (const std::string& text : outside(asked, covered)) record.warnings.push_back(text);

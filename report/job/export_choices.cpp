@@ -225,14 +225,15 @@ std::string name_and_hash(const InputFile& file) {
                      file.sha256);
 }
 
-void tell_validity(const Validity& validity,
+void tell_validity(const calib::Validity& validity,
                    std::vector<std::pair<std::string, std::string>>& origin) {
   const auto add = [&origin](const char* label, const std::optional<Range>& range,
                              std::string_view unit) {
     if (range) origin.emplace_back(label, in_words(*range, unit));
   };
   add("fitted at frequencies of", validity.frequency_hz, "Hz");
-  add("fitted at amplitudes of", validity.amplitude, validity.amplitude_unit);
+  const auto [amplitude, unit] = validity.amplitude();
+  add("fitted at amplitudes of", amplitude, unit);
   add("fitted at supply pressures of", validity.supply_pressure_pa, "Pa");
   add("fitted at leakage coefficients of", validity.leakage_coefficient, "1");
   if (!validity.leak_levels.empty())

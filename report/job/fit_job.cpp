@@ -1,19 +1,83 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
 #include <optional>
 #include <utility>
 
+#include "calib/search/checkpoint.hpp"
+#include "common/error.hpp"
+#include "common/file.hpp"
 #include "common/memory.hpp"
 #include "datasets/prepare/load_record.hpp"
-#include "report/job/checkpoint_file.hpp"
 #include "report/job/job.hpp"
 #include "report/run/validation.hpp"
 #include "report/store/checkpoint.hpp"
+#include "report/store/folder.hpp"
 #include "report/store/kept_tasks.hpp"
-#include "report/store/whole_fit.hpp"
+#include "report/store/stored.hpp"
 
 namespace rigcal::report {
 namespace {
+
+/// File in the result folder from which a fit can continue after a kill.
+class CheckpointFile {
+ public:
+  /// @param provenance  of the fit; borrowed
+  CheckpointFile(const std::filesystem::path& out, const Provenance& provenance);
+
+  /// The checkpoint of an earlier run of the same fit; empty where there is none.
+  ///
+  /// @throws InputError  it is one of another fit, or none at all
+  std::optional<calib::Checkpoint> read() const;
+
+  /// Writes a checkpoint unless that would take more than a twentieth of the time.
+  void keep(const calib::Checkpoint& checkpoint);
+
+  /// Writes the withheld state if the fit was stopped; else removes the file.
+  void finish(calib::FitStatus status);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void write();
+
+  std::filesystem::path file_;
+  const Provenance& provenance_;
+  std::optional<calib::Checkpoint> unwritten_;
+  Clock::time_point not_before_{};
+};
+
+CheckpointFile::CheckpointFile(const std::filesystem::path& out, const Provenance& provenance)
+    : file_(out / kCheckpointFile), provenance_(provenance) {}
+
+std::optional<calib::Checkpoint> CheckpointFile::read() const {
+  if (!std::filesystem::exists(file_)) return std::nullopt;
+  return read_checkpoint(file_, provenance_);
+}
+
+void CheckpointFile::keep(const calib::Checkpoint& checkpoint) {
+  unwritten_ = checkpoint;
+  if (Clock::now() >= not_before_) write();
+}
+
+void CheckpointFile::finish(calib::FitStatus status) {
+  if (status != calib::FitStatus::stopped) {
+    remove_stale(file_);
+  } else if (unwritten_) {
+    write();
+  }
+}
+
+void CheckpointFile::write() {
+  constexpr int kShare = 20;  // one part of writing to so many of fitting
+  const auto began = Clock::now();
+  write_file_atomically(file_, checkpoint_text(*unwritten_, provenance_));
+  const auto ended = Clock::now();
+  not_before_ = ended + kShare * (ended - began);
+  unwritten_.reset();
+}
 
 using calib::FitStatus;
 using datasets::Use;
@@ -105,6 +169,40 @@ void search(FitRun& run, Unfinished& kept, bool resume, const JobTerms& terms,
   datasets::drop_deviations(run.records);
   give_freed_memory_back();
   give_large_blocks_back();
+}
+
+/// Whether both were made from the same; paths may differ, as where the folder was moved.
+bool same_making(const StoredProvenance& a, const StoredProvenance& b) {
+  return a.version == b.version && a.revision == b.revision && a.seed == b.seed &&
+         a.options == b.options &&
+         std::equal(a.inputs.begin(), a.inputs.end(), b.inputs.begin(), b.inputs.end(),
+                    [](const auto& x, const auto& y) { return x.sha256 == y.sha256; });
+}
+
+bool files_stand(const std::filesystem::path& folder, const StoredProvenance& provenance) {
+  return provenance.files &&
+         std::all_of(provenance.files->begin(), provenance.files->end(), [&](const auto& file) {
+           return sha256_of_file(folder / file.path) == file.sha256;
+         });
+}
+
+/// The fit in a folder, if it is complete and would be the same again: by the same version, from
+/// inputs of the same content, with the same seed and options, not stopped, and with each listed
+/// file present and unchanged.
+std::optional<StoredFit> whole_fit(const std::filesystem::path& folder,
+                                   const Provenance& provenance) {
+  const std::filesystem::path file = folder / "fit.json";
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  try {
+    const auto fit = load<StoredFit>(files_in(folder), folder.string(), "fit.json");
+    const bool ended = fit.status != calib::FitStatus::stopped;
+    if (ended && same_making(fit.provenance, stored(provenance)) &&
+        files_stand(folder, fit.provenance))
+      return fit;
+  } catch (const InputError&) {
+    // Unreadable results are made again.
+  }
+  return std::nullopt;
 }
 
 }  // namespace

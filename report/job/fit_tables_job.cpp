@@ -19,7 +19,7 @@ std::string reason(const calib::FittedAssumption& p) {
   if (p.identifiability == calib::Identifiability::identified) return "";
   if (p.identifiability == calib::Identifiability::bounded)
     return "not significantly different from zero";
-  const double half_width = 0.5 * (p.ci95->second - p.ci95->first);
+  const double half_width = 0.5 * (p.ci95->high - p.ci95->low);
   return calib::half_width_words(half_width / std::abs(p.value));
 }
 
@@ -38,7 +38,7 @@ StoredParameter stored(const datasets::Campaign& campaign, FitStatus status,
   parameter.fitted = true;
   parameter.standard_error = p.standard_error;
   if (p.ci95) {
-    parameter.ci95 = {p.ci95->first, p.ci95->second};
+    parameter.ci95 = *p.ci95;
     parameter.ci95_if_exact = parameter.ci95;
     parameter.ci95_from = std::optional(calib::IntervalSource::standard_error);
     parameter.degrees_of_freedom = p.degrees_of_freedom;
@@ -62,14 +62,10 @@ StoredTablesFit stored(const datasets::Campaign& campaign, const calib::TablesFi
   json.evaluations = fit.evaluations;
   json.iterations = fit.iterations;
   json.wall_seconds = fit.wall_seconds;
-  for (const calib::FittedAssumption& p : fit.parameters) {
+  for (const calib::FittedAssumption& p : fit.parameters)
     json.parameters.push_back(stored(campaign, fit.status, p));
-    json.correlation.names.push_back(json.parameters.back().name);
-  }
-  for (const auto& row : fit.correlation.rowwise())
-    json.correlation.matrix.emplace_back(row.begin(), row.end());
-  for (const calib::TableResidual& residual : fit.residuals)
-    json.residuals.push_back({residual.what, residual.weight, residual.log_ratio});
+  json.correlation = fit.correlation;
+  json.residuals = fit.residuals;
   json.left_out = fit.left_out;
   json.provenance = report::stored(provenance);
   return json;

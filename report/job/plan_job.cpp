@@ -14,11 +14,69 @@
 #include "report/job/job.hpp"
 #include "report/page/page_plan.hpp"
 #include "report/store/csv.hpp"
-#include "report/store/plan.hpp"
 #include "report/store/result_files.hpp"
+#include "report/store/stored/stored_plan.hpp"
+#include "report/store/table.hpp"
 
 namespace rigcal::report {
 namespace {
+
+StoredPlan plan_file(const datasets::Campaign& campaign, const calib::Plan& plan,
+                     const Provenance& provenance) {
+  StoredPlan file;
+  static_cast<calib::Plan&>(file) = plan;
+  file.campaign = campaign.name;
+  file.provenance = stored(provenance);
+  return file;
+}
+
+StoredDesign design_file(const datasets::Campaign& campaign, const calib::Design& design) {
+  const datasets::DesignSettings& settings = *campaign.design;
+  const datasets::ChannelInfo& channel = datasets::info(datasets::drive_channel(campaign));
+  StoredDesign file;
+  file.status = design.stopped ? "stopped" : "done";
+  file.family = design.family;
+  file.criterion = settings.criterion;
+  file.channel = channel.key;
+  file.unit = channel.unit;
+  file.amplitude = design.amplitude;
+  file.duration_s = settings.duration_s;
+  file.sample_rate_hz = settings.sample_rate_hz;
+  file.repeats = settings.repeats;
+  file.seed = settings.seed;
+  if (settings.like) file.leak_level = campaign.find(*settings.like)->leak_level;
+  for (const auto& [measured, sd] : design.noise_sd)
+    file.noise_sd.emplace_back(datasets::info(measured).name, sd);
+  file.parameters = design.parameters;
+  for (const calib::LimitUse& use : design.limits)
+    file.limits.push_back(
+        {use.key, use.words, use.unit, use.limit, use.reached, 100.0 * use.share});
+  file.drive = design.parts;
+  file.families = design.trials;
+  file.own_signals = design.own_conditions;
+  file.own_signals_duration_s = design.own_duration_s;
+  file.messages = design.messages;
+  return file;
+}
+
+/// The predicted response to a designed drive, a row for each of its samples, SI.
+Table response_of(const datasets::Campaign& campaign, const calib::Design& design) {
+  Table table;
+  const auto add = [&](std::string_view name, std::vector<double> values) {
+    table.names.emplace_back(name);
+    table.columns.push_back(std::move(values));
+  };
+  add("time_s", design.time_s);
+  add(datasets::info(datasets::drive_channel(campaign)).name, design.drive);
+  const auto outputs = calib::limited_outputs();
+  const bool commanded = datasets::drive_channel(campaign) == datasets::Channel::command;
+  for (std::size_t k = 0; k < outputs.size(); ++k) {
+    if (commanded && outputs[k] == model::Output::command) continue;  // it is the drive
+    const auto column = design.response.col(static_cast<Eigen::Index>(k));
+    add(model::output_name(outputs[k]), {column.begin(), column.end()});
+  }
+  return table;
+}
 
 std::vector<datasets::Record> records_of(const datasets::Campaign& campaign) {
   std::vector<datasets::Record> records;
@@ -38,8 +96,8 @@ StoredPlan plan_of_records(const datasets::Campaign& campaign,
                            const Provenance& provenance, int threads) {
   const bool any =
       std::any_of(campaign.conditions.begin(), campaign.conditions.end(), calib::is_planned_with);
-  if (!any && has_design) return report::stored(campaign, {}, provenance);
-  return report::stored(campaign, calib::plan(campaign, records, values, threads), provenance);
+  if (!any && has_design) return plan_file(campaign, {}, provenance);
+  return plan_file(campaign, calib::plan(campaign, records, values, threads), provenance);
 }
 
 /// Designs a test and adds it to the result and its files.
@@ -52,7 +110,7 @@ Table add_design(const datasets::Campaign& campaign, const std::vector<datasets:
   };
   const calib::Design design =
       calib::design(campaign, records, names, values, {terms.threads, &terms.cancel, progress});
-  designed.emplace(report::stored(campaign, design));
+  designed.emplace(design_file(campaign, design));
   Table response = response_of(campaign, design);
   files.push_back({kDriveFile, datasets::drive_csv(campaign, design.time_s, design.drive)});
   files.push_back({kResponseFile, csv_of(response)});

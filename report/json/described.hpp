@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cmath>
 #include <concepts>
@@ -14,67 +15,31 @@
 #include <utility>
 #include <vector>
 
+#include "common/describe.hpp"
 #include "report/json/json_node.hpp"
 
-// Each struct in a result file is described once; writer, reader and schema are derived from the
-// description. The names of the members are the keys, in this order. A member whose key is a
-// reserved word in C++ has a trailing "_".
-//
-//   struct Leak {
-//     std::string level;
-//     double share_percent = 0.0;
-//     std::optional<std::string> reason;
-//     RIGCAL_DESCRIBE(level, share_percent, reason)
-//   };
-
-// NOLINTBEGIN(cppcoreguidelines-macro-usage): only a macro can turn a member into its name
-#define RIGCAL_VISIT_MEMBER(member) \
-  rigcal::report::described::visit_member(visit, #member, self.member);
-#define RIGCAL_DESCRIBE(...)                                                    \
-  template <typename Self, typename Visit>                                      \
-  static void describe(Self& self, const Visit& visit) {                        \
-    NLOHMANN_JSON_EXPAND(NLOHMANN_JSON_PASTE(RIGCAL_VISIT_MEMBER, __VA_ARGS__)) \
-  }
-// NOLINTEND(cppcoreguidelines-macro-usage)
+// JSON of a struct that is described: writer, reader and schema.
 
 namespace rigcal::report {
 
-/// A value whose key is omitted if the value is absent. Not every rig has every value.
-template <typename T>
-struct Omittable : std::optional<T> {
-  using std::optional<T>::optional;
-};
-
-/// A member that results from earlier versions do not have. T then has its default value.
-template <typename T>
-struct Later : T {
-  using T::T;
-  using T::operator=;
-  Later() = default;
-  Later(T value) : T(std::move(value)) {}  // NOLINT(google-explicit-constructor): intended
-};
-
-/// A struct whose keys are merged into those of the struct that contains it.
-template <typename T>
-struct Inlined : T {
-  Inlined() = default;
-  Inlined(T value) : T(std::move(value)) {}  // NOLINT(google-explicit-constructor): intended
-};
-
-/// Keys and values in insertion order.
-template <typename T>
-using Keyed = std::vector<std::pair<std::string, T>>;
-
-/// Returns the value for a key, or null if the key does not exist.
-template <typename T>
-const T* find(const Keyed<T>& keyed, std::string_view key) {
+/// The value of a key; null where there is none.
+template <typename T, typename Key>
+const T* find(const Keyed<T, Key>& keyed, const std::type_identity_t<Key>& key) {
   for (const auto& [name, value] : keyed)
     if (name == key) return &value;
   return nullptr;
 }
 
-/// Returns all values of an enumeration that to_string() names in results. Each enumeration has its
-/// own specialisation.
+/// An enumeration of which results have the keys of a table: a specialisation has text(value), and
+/// from_text(text), which is empty for an unknown one.
+template <typename T>
+struct KeysOf;
+template <typename T>
+concept HasKeys = requires(T value) {
+  KeysOf<T>::text(value);
+};
+
+/// All values of an enumeration that results name by to_string(). A specialisation lists them.
 template <typename Enum>
 std::vector<Enum> every();
 
@@ -99,6 +64,24 @@ template <typename T>
 inline constexpr bool is_keyed = false;
 template <typename T>
 inline constexpr bool is_keyed<Keyed<T>> = true;
+template <typename T, HasKeys Key>
+inline constexpr bool is_keyed<Keyed<T, Key>> = true;
+
+/// A key in JSON, and back.
+inline const std::string& key_text(const std::string& key) { return key; }
+template <HasKeys Key>
+std::string key_text(Key key) {
+  return std::string(KeysOf<Key>::text(key));
+}
+inline void read_key(const JsonNode& /*node*/, const std::string& text, std::string& key) {
+  key = text;
+}
+template <HasKeys Key>
+void read_key(const JsonNode& node, const std::string& text, Key& key) {
+  const std::optional<Key> known = KeysOf<Key>::from_text(text);
+  if (!known) node.fail(fmt::format("another key than \"{}\"", text));
+  key = *known;
+}
 
 /// Largest count in a result. Sums of several hundred such counts are still exact as doubles.
 inline constexpr long kMostCounted = 1'000'000'000;
@@ -107,15 +90,6 @@ struct Anything {
   template <typename T>
   void operator()(const char* /*name*/, const T& /*member*/) const {}
 };
-
-template <typename Visit, typename Member>
-void visit_member(const Visit& visit, const char* name, Member& member) {
-  if constexpr (is_a<std::remove_const_t<Member>, Inlined>) {
-    Member::describe(member, visit);
-  } else {
-    visit(name, member);
-  }
-}
 
 template <typename T>
 concept Struct = requires(T& value) {
@@ -139,13 +113,7 @@ inline std::optional<double> finite(const std::optional<double>& value) {
   return value ? finite(*value) : std::nullopt;
 }
 
-/// Returns a text, or std::nullopt if it is empty.
-inline std::optional<std::string> unless_empty(const std::string& text) {
-  return text.empty() ? std::nullopt : std::optional(text);
-}
-
-/// Converts a value to JSON. Numbers that are not finite become null, because JSON has neither NaN
-/// nor infinity.
+/// A value as JSON. Numbers that are not finite become null: JSON knows neither NaN nor infinity.
 template <typename T>
 Json json_of(const T& value) {
   using namespace described;
@@ -155,15 +123,22 @@ Json json_of(const T& value) {
     return value;
   } else if constexpr (std::floating_point<T>) {
     return std::isfinite(value) ? Json(value) : Json(nullptr);
+  } else if constexpr (HasKeys<T>) {
+    return key_text(value);
   } else if constexpr (std::is_enum_v<T>) {
     return std::string(to_string(value));
   } else if constexpr (std::same_as<T, Range>) {
     return Json::array({json_of(value.low), json_of(value.high)});
+  } else if constexpr (std::same_as<T, Eigen::MatrixXd>) {
+    Json json = Json::array();
+    for (const auto& row : value.rowwise())
+      json.push_back(json_of(std::vector<double>(row.begin(), row.end())));
+    return json;
   } else if constexpr (is_a<T, std::optional> || is_a<T, Omittable>) {
     return value ? json_of(*value) : Json(nullptr);
   } else if constexpr (is_keyed<T>) {
     Json json = Json::object();
-    for (const auto& [key, member] : value) json[key] = json_of(member);
+    for (const auto& [key, member] : value) json[key_text(key)] = json_of(member);
     return json;
   } else if constexpr (is_a<T, std::vector> || is_array<T>) {
     Json json = Json::array();
@@ -206,6 +181,8 @@ void read_into(const JsonNode& node, T& value) {
     value = node.is_null() ? std::numeric_limits<T>::quiet_NaN() : node.real();
   } else if constexpr (std::same_as<T, std::string>) {
     value = node.string();
+  } else if constexpr (HasKeys<T>) {
+    read_key(node, node.string(), value);
   } else if constexpr (std::is_enum_v<T>) {
     value = one_of(node, every<T>());
   } else if constexpr (std::same_as<T, Range>) {
@@ -213,6 +190,19 @@ void read_into(const JsonNode& node, T& value) {
     if (ends.size() != 2) node.fail("two numbers");
     read_into(ends[0], value.low);
     read_into(ends[1], value.high);
+  } else if constexpr (std::same_as<T, Eigen::MatrixXd>) {
+    const auto items = node.items();
+    std::vector<std::vector<double>> rows;
+    for (const JsonNode& item : items) {
+      rows.push_back(item.reals());
+      const std::size_t columns = rows.front().size();
+      if (rows.back().size() != columns) item.fail(fmt::format("a list of {}", columns));
+    }
+    const std::size_t columns = rows.empty() ? 0 : rows.front().size();
+    value.resize(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(columns));
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      value.row(static_cast<Eigen::Index>(i)) =
+          Eigen::Map<const Eigen::RowVectorXd>(rows[i].data(), static_cast<Eigen::Index>(columns));
   } else if constexpr (is_a<T, std::optional> || is_a<T, Omittable>) {
     value.reset();
     if constexpr (is_a<T, Omittable>) {
@@ -222,8 +212,11 @@ void read_into(const JsonNode& node, T& value) {
     if (!node.is_null()) read_into(node, value.emplace());
   } else if constexpr (is_keyed<T>) {
     value.clear();
-    for (const auto& [key, member] : node.members())
-      read_into(member, value.emplace_back(key, typename T::value_type::second_type{}).second);
+    for (const auto& [key, member] : node.members()) {
+      auto& [own, read] = value.emplace_back();
+      read_key(node, key, own);
+      read_into(member, read);
+    }
   } else if constexpr (std::same_as<T, std::vector<double>>) {
     value = node.reals();
   } else if constexpr (is_a<T, std::vector>) {
@@ -264,7 +257,7 @@ Json schema_of() {
     return {{"type", "integer"}, {"minimum", 0}};
   } else if constexpr (std::floating_point<T>) {
     return {{"type", {"number", "null"}}};
-  } else if constexpr (std::same_as<T, std::string>) {
+  } else if constexpr (std::same_as<T, std::string> || HasKeys<T>) {
     return {{"type", "string"}};
   } else if constexpr (std::is_enum_v<T>) {
     Json names = Json::array();
@@ -272,6 +265,8 @@ Json schema_of() {
     return {{"enum", std::move(names)}};
   } else if constexpr (std::same_as<T, Range>) {
     return {{"type", "array"}, {"items", schema_of<double>()}, {"minItems", 2}, {"maxItems", 2}};
+  } else if constexpr (std::same_as<T, Eigen::MatrixXd>) {
+    return schema_of<std::vector<std::vector<double>>>();
   } else if constexpr (is_a<T, Omittable>) {
     return schema_of<typename T::value_type>();
   } else if constexpr (is_a<T, std::optional>) {

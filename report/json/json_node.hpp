@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "common/error.hpp"
+#include "common/range.hpp"
 #include "model/plant/parameter.hpp"
-#include "report/json/range.hpp"
 
 namespace rigcal::report {
 

@@ -43,11 +43,11 @@ std::string record_row(const RecordDiagnosis& record) {
                                   record.repeat ? fmt::format("{}", *record.repeat) : std::string(),
                                   csv_text(record.signal),
                                   number_field(has_leak, std::max(0.0, e.coefficient)),
-                                  number_field(has_interval, e.ci95.first),
-                                  number_field(has_interval, e.ci95.second),
+                                  number_field(has_interval, e.ci95.low),
+                                  number_field(has_interval, e.ci95.high),
                                   number_field(has_share, kInPercent * e.share),
-                                  number_field(has_share, kInPercent * e.share_ci95.first),
-                                  number_field(has_share, kInPercent * e.share_ci95.second),
+                                  number_field(has_share, kInPercent * e.share_ci95.low),
+                                  number_field(has_share, kInPercent * e.share_ci95.high),
                                   number_field(has_leak, kLitresPerMinute * e.leak_flow_m3_per_s),
                                   ok ? found_class(record) : class_name({}, "undecided")};
   for (const double probability : e.probability)

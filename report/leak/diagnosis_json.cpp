@@ -42,25 +42,6 @@ StoredDiagnosedRecord stored(const diagnosis::RecordDiagnosis& record) {
   return told;
 }
 
-StoredAccuracy stored(const diagnosis::Accuracy& accuracy) {
-  StoredAccuracy told;
-  told.records = accuracy.records;
-  told.conditions = accuracy.conditions;
-  told.right = accuracy.right;
-  told.undecided = accuracy.undecided;
-  told.off_by_two_or_more = accuracy.off_by_two;
-  if (accuracy.records > 0) {
-    told.accuracy = accuracy.accuracy;
-    told.accuracy_ci95 = scaled_ends(accuracy.ci95);
-  }
-  StoredConfusion& confusion = told.confusion;
-  for (std::size_t i = 0; i < StoredConfusion::kClasses; ++i)
-    confusion.truth[i] = confusion.found[i] = to_string(datasets::kLeakClasses[i]);
-  confusion.found.back() = "undecided";
-  confusion.counts = accuracy.confusion;
-  return told;
-}
-
 StoredSmallestLeak stored(const diagnosis::SignalDiagnosis& signal) {
   const auto flow = [](const std::optional<diagnosis::DetectionLimit>& limit) {
     return limit ? std::optional(kLitresPerMinute * limit->leak_flow_m3_per_s) : std::nullopt;
@@ -130,12 +111,10 @@ StoredDiagnosis stored(const DiagnosisResult& result) {
   for (const auto& state : found.states) file.states.push_back(stored(state));
   for (const auto& trend : found.trends) file.trends.push_back(stored(trend));
   for (const auto& record : found.records) file.records.push_back(stored(record));
-  file.methods = {stored(found.single), stored(found.averaged), stored(found.features),
-                  stored(found.features_of_other_signals)};
-  const StoredAccuracy& single = file.methods.fitted_leak_single;
-  file.confusion = single.confusion;
-  file.accuracy = single.accuracy;
-  file.accuracy_ci95 = single.accuracy_ci95;
+  file.methods = {found.single, found.averaged, found.features, found.features_of_other_signals};
+  file.confusion = found.single.confusion;
+  file.accuracy = found.single.accuracy;
+  file.accuracy_ci95 = found.single.accuracy_ci95;
   for (const auto& signal : found.signals) file.smallest_leak_l_per_min.push_back(stored(signal));
   if (found.usable()) file.between_days = stored(found.between_days, found.other_days);
   file.warnings = found.warnings;

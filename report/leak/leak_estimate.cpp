@@ -5,8 +5,8 @@
 
 namespace rigcal::report {
 
-Range scaled_ends(const std::pair<double, double>& range, double scale) {
-  return {scale * range.first, scale * range.second};
+Range scaled_ends(const Range& range, double scale) {
+  return {scale * range.low, scale * range.high};
 }
 
 StoredLeak stored(const diagnosis::LeakEstimate& estimate,

@@ -12,7 +12,7 @@ inline constexpr double kLitresPerMinute = 60e3;  ///< L/min per m3/s
 inline constexpr double kInPercent = 100.0;
 
 /// Multiplies both ends of a range by `scale`.
-Range scaled_ends(const std::pair<double, double>& range, double scale = 1.0);
+Range scaled_ends(const Range& range, double scale = 1.0);
 
 /// Collects coefficient, share, flow and class of the leak in a record or a state. All are absent
 /// if there is no estimate (`ok` is false).

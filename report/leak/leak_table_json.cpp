@@ -97,15 +97,10 @@ StoredLeakTable stored(const LeakTableResult& result) {
   file.notes = result.notes;
   file.warnings = result.warnings;
   file.assumptions = assumptions_of(result);
-  for (const calib::FixedCombination& each : result.table.fixed_combinations) {
-    file.fixed_combinations.push_back(
-        {std::string(each.name), std::string(each.formula), each.value, std::string(each.unit)});
-  }
+  file.fixed_combinations = result.table.fixed_combinations;
   for (const calib::LeakEntry& entry : result.table.entries)
     file.entries.push_back(stored(result, entry));
-  const calib::LeakSummary& summary = result.table.summary;
-  file.summary = {summary.published, summary.within_10, summary.within_16,
-                  summary.share_rms_percent};
+  file.summary = result.table.summary;
   for (const calib::NormalEntry& each : result.table.normals) {
     auto& normal = file.normal.emplace_back(with_drive<StoredNormal>(result, each.signal));
     normal.published_coefficient = each.coefficient;

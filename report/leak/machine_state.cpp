@@ -65,7 +65,7 @@ std::string state_sentence(const MachineState& state) {
         "{:.3g}), below zero by more than its error, so supply or valve are not as they were in "
         "the "
         "fit.{}",
-        name, e.coefficient, e.ci95.first, e.ci95.second, agreement_of(state));
+        name, e.coefficient, e.ci95.low, e.ci95.high, agreement_of(state));
   }
   if (!e.has_share()) {
     return fmt::format(
@@ -74,20 +74,20 @@ std::string state_sentence(const MachineState& state) {
         name, e.coefficient, state.duty, agreement_of(state));
   }
   // At most two decimals, because more would be meaningless for percentages that an operator reads.
-  const double error = std::max(0.1, kInPercent * (e.share_ci95.second - e.share_ci95.first) / 4.0);
+  const double error = std::max(0.1, kInPercent * (e.share_ci95.high - e.share_ci95.low) / 4.0);
   const auto percent = [&](double fraction) {
     return to_uncertainty(kInPercent * fraction, error);
   };
   std::string text;
   if (e.leak_detected) {
-    const std::string low = percent(e.share_ci95.first);
-    const std::string high = percent(e.share_ci95.second);
+    const std::string low = percent(e.share_ci95.low);
+    const std::string high = percent(e.share_ci95.high);
     text = fmt::format("{}: {} % of the servo flow leaks ({}) at {}", name, percent(e.share),
                        low == high ? "sure to 0.01 %" : fmt::format("{} to {} %", low, high),
                        state.duty);
   } else {
     text = fmt::format("{}: no leak is detected, less than {:.2g} % of the servo flow leaks at {}",
-                       name, std::max(0.01, kInPercent * e.share_ci95.second), state.duty);
+                       name, std::max(0.01, kInPercent * e.share_ci95.high), state.duty);
   }
   const double probability = e.probability[static_cast<std::size_t>(e.most_probable)];
   text += state.leak_class

@@ -57,24 +57,10 @@ StoredParityRecord stored(const ParityResult& result, const ParityRecord& record
   if (ok && record.threshold_m) told.threshold_m = *record.threshold_m;
   if (ok) {
     const diagnosis::FeatureThresholds& limits = record.feature_thresholds;
-    told.exceeds = {exceeds(limits.mean, record.features.mean),
-                    exceeds(limits.rms, record.features.rms),
-                    exceeds(limits.std, record.features.std)};
+    told.exceeds = {exceeds(limits.mean_m, record.features.mean),
+                    exceeds(limits.rms_m, record.features.rms),
+                    exceeds(limits.std_m, record.features.std)};
   }
-  return told;
-}
-
-StoredParitySignal stored(const ParitySignal& signal) {
-  StoredParitySignal told;
-  told.signal = signal.signal;
-  told.window_s = signal.window_s;
-  told.healthy_records = signal.healthy_records;
-  told.threshold_m = signal.threshold_m;
-  told.feature_thresholds = {signal.features.mean, signal.features.rms, signal.features.std};
-  told.reason = unless_empty(signal.reason);
-  if (signal.threshold_of_another_day_m)
-    told.threshold_of_another_day_m = *signal.threshold_of_another_day_m;
-  told.common_causes = signal.common_causes;
   return told;
 }
 
@@ -117,13 +103,11 @@ StoredParity stored(const ParityResult& result) {
   file.synthetic = result.campaign.synthetic;
   file.report = identity_json(result.campaign);
   file.false_alarm_probability = result.false_alarm;
-  for (const ParitySignal& signal : result.parity.signals) file.signals.push_back(stored(signal));
+  file.signals = result.parity.signals;
   for (const ParityCondition& condition : result.parity.conditions)
     for (const ParityRecord& record : condition.records)
       file.records.push_back(stored(result, record));
-  const diagnosis::FalseAlarmCheck& check = result.parity.check;
-  file.false_alarm_check = {check.records, check.alarms, result.false_alarm * check.records,
-                            check.records > 0 ? std::optional(check.p) : std::nullopt};
+  file.false_alarm_check = result.parity.check;
   file.warnings = result.parity.warnings;
   file.provenance = stored(result.provenance);
   return file;

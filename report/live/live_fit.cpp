@@ -53,7 +53,8 @@ model::ParameterValues values_at_optimum(const datasets::Campaign& campaign,
 /// Returns the fraction of its tolerance that a condition uses, or its error if it has no limits.
 double used(const calib::ConditionScore& score) {
   double most = 0.0;
-  for (const calib::LimitCheck& check : score.checks) most = std::max(most, check.used);
+  for (const calib::LimitCheck& check : score.checks)
+    most = std::max(most, check.tolerance_used.value_or(0.0));
   if (score.checks.empty())
     for (const calib::ChannelScore& channel : score.channels)
       if (channel.agreement) most = std::max(most, channel.agreement->absolute_error_percent);
@@ -207,14 +208,14 @@ Json embedded_rig(const datasets::Campaign& campaign, const std::vector<LiveCase
 Json intervals_of(const calib::Fit& fit) {
   Json intervals = Json::array();
   for (const calib::FittedParameter& p : fit.parameters) {
-    if (!is_estimate(p) || p.nuisance || !p.ci95 || !std::isfinite(p.ci95->first) ||
-        !std::isfinite(p.ci95->second))
+    if (!is_estimate(p) || p.nuisance || !p.ci95 || !std::isfinite(p.ci95->low) ||
+        !std::isfinite(p.ci95->high))
       continue;
     intervals.push_back({{"index", p.index},
                          {"level", p.level},
                          {"scope", to_string(p.scope)},
-                         {"low", p.ci95->first},
-                         {"high", p.ci95->second}});
+                         {"low", p.ci95->low},
+                         {"high", p.ci95->high}});
   }
   return intervals;
 }

@@ -31,16 +31,16 @@ bool is_measured(const std::string& channel) {
 void add_agreement_rows(const StoredRecord& record, doc::Table& table) {
   for (const auto& [channel, found] : record.channels) {
     if (!is_measured(channel)) continue;  // a command has no measurement error
-    const std::optional<StoredNoiseFloor>& noise_floor = found.noise_floor;
-    const auto floor = [&](double StoredNoiseFloor::*value) -> Number {
+    const std::optional<metrics::NoiseFloor>& noise_floor = found.noise_floor;
+    const auto floor = [&](double metrics::NoiseFloor::*value) -> Number {
       return noise_floor ? std::optional((*noise_floor).*value) : std::nullopt;
     };
     table.rows.push_back(
         {{record.condition, channel, fmt::format("{}", record.samples),
           fmt::format("{}", found.repeats), doc::readable(found.pooled_sd, found.unit, 3),
           doc::readable(found.sd_of_mean, found.unit, 3),
-          doc::agreement(floor(&StoredNoiseFloor::rho2)),
-          doc::in_unit(floor(&StoredNoiseFloor::absolute_error_percent), 1.0, 3),
+          doc::agreement(floor(&metrics::NoiseFloor::rho2)),
+          doc::in_unit(floor(&metrics::NoiseFloor::absolute_error_percent), 1.0, 3),
           offsets_text(record), fmt::format("{}", record.outliers())}});
   }
 }
@@ -134,9 +134,9 @@ Plot offset_plot(const StoredRecord& record) {
   plot.whole_x = true;
   plot.levels = {0.0};
   Trace points = empty_trace(Trace::Kind::points, "residual");
-  for (const StoredRepeat& repeat : record.repeat_reports) {
+  for (const datasets::RepeatReport& repeat : record.repeat_reports) {
     points.x.push_back(static_cast<double>(points.x.size() + 1));
-    points.y.push_back(repeat.offset_s ? 1e3 * *repeat.offset_s : std::nan(""));
+    points.y.push_back(1e3 * repeat.offset_s);
   }
   if (points.x.size() > 1) plot.traces = {std::move(points)};
   return plot;

@@ -102,7 +102,7 @@ std::optional<Plot> rig_trend_plot(const StoredRig& rig, const StoredRigTrend& t
   plot.y_label = trend_name(trend) + (unit.name.empty() ? "" : fmt::format(" [{}]", unit.name));
   plot.width = 300.0;
   plot.height = 170.0;
-  const StoredTrend& along = trend.series.along_date;
+  const calib::EstimateTrend& along = trend.series.along_date;
   if (along.slope && along.intercept) {
     Trace line = empty_trace(Trace::Kind::line, "reference");
     for (const double day : {first, last}) {

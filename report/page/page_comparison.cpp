@@ -16,7 +16,7 @@ using doc::Line;
 using Kind = doc::Column::Kind;
 
 /// Returns the change from the first result, or std::nullopt if there is nothing to report.
-std::optional<doc::Line> change_line(const std::optional<StoredDifference>& difference,
+std::optional<doc::Line> change_line(const std::optional<calib::EstimateDifference>& difference,
                                      const RowUnit& unit) {
   if (!difference) return std::nullopt;
   const std::string by = change_text(*difference, unit);
@@ -24,7 +24,7 @@ std::optional<doc::Line> change_line(const std::optional<StoredDifference>& diff
   Line line{doc::Quantity{difference->difference, by}, " "};
   const auto& p = difference->p_value_of_all;
   if (!p) {
-    const bool known = difference->reason == kKnownInBoth;
+    const bool known = difference->reason == calib::kKnownInBoth;
     line.emplace_back(doc::Badge{doc::State::none, known ? "known in both" : "not tested"});
     return line;
   }
@@ -35,7 +35,8 @@ std::optional<doc::Line> change_line(const std::optional<StoredDifference>& diff
   return line;
 }
 
-doc::Cell estimate_cell(const std::optional<StoredEstimate>& estimate, const RowUnit& unit) {
+doc::Cell estimate_cell(const std::optional<calib::ComparedEstimate>& estimate,
+                        const RowUnit& unit) {
   if (!estimate) return doc::Cell("–");
   const doc::Estimate shown = doc::estimate(estimate->value, estimate->ci95, unit.si);
   doc::Cell cell{Line{shown.value}};
@@ -107,7 +108,7 @@ struct TrendAxis {
   std::optional<double> StoredTrendPoint::*place;
   const char* per_unit;
   bool by_day;
-  const StoredTrend& trend_of(const StoredSeries& series) const {
+  const calib::EstimateTrend& trend_of(const StoredSeries& series) const {
     if (by_day) return series.along_date;
     return series.along_temperature;
   }
@@ -140,7 +141,7 @@ Plot trend_plot(const StoredSeries& series, const TrendAxis& axis) {
   plot.y_label = "leakage coefficient, " + series.of;
   plot.width = 460.0;
   plot.height = 220.0;
-  const StoredTrend& trend = axis.trend_of(series);
+  const calib::EstimateTrend& trend = axis.trend_of(series);
   if (trend.slope && trend.intercept) {
     Trace line;
     line.style = "reference";
@@ -167,7 +168,7 @@ bool differ(const StoredSeries& series, const TrendAxis& axis) {
 }
 
 std::string trend_reading(const StoredSeries& series, const TrendAxis& axis) {
-  const StoredTrend& trend = axis.trend_of(series);
+  const calib::EstimateTrend& trend = axis.trend_of(series);
   if (!trend.slope || !trend.ci95 || !trend.p_value) return trend.reason.value_or("");
   return fmt::format("{}: {:+.3g} {} ({:.3g} to {:.3g}), {}: {}.", series.of, *trend.slope,
                      axis.per_unit, trend.ci95->low, trend.ci95->high, p_value_text(*trend.p_value),

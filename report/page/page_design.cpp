@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 
 #include "datasets/record.hpp"
 #include "metrics/distributions.hpp"
-#include "metrics/shared_transform.hpp"
+#include "metrics/frequency_response.hpp"
 #include "report/figure/decimate.hpp"
 #include "report/figure/time_plots.hpp"
 #include "report/text/readable.hpp"
@@ -67,45 +66,6 @@ Plot plot_over_time(const std::string& title, const std::string& what, const Rea
   return plot;
 }
 
-/// Returns the root mean square of a signal in each bin of its spectrum, over the frequency in
-/// hertz.
-Trace spectrum_of(const std::vector<double>& values, double rate_hz, double si,
-                  const std::string& style, const std::string& name) {
-  Trace trace = empty_trace(Trace::Kind::line, style, name);
-  std::vector<double> centred(values);
-  double mean = 0.0;
-  for (const double value : values) mean += value;
-  mean /= static_cast<double>(values.size());
-  for (double& value : centred) value -= mean;
-  std::vector<std::complex<double>> lines;
-  metrics::shared_transform().fwd(lines, centred);
-  const auto n = static_cast<double>(values.size());
-  int bin = -1;
-  double power = 0.0;
-  double sum_hz = 0.0;
-  int count = 0;
-  const auto close = [&] {
-    if (count > 0) {
-      trace.x.push_back(sum_hz / count);
-      trace.y.push_back(std::sqrt(power) / si);
-    }
-    power = sum_hz = 0.0;
-    count = 0;
-  };
-  for (std::size_t k = 1; 2 * k < values.size(); ++k) {
-    const double frequency_hz = static_cast<double>(k) * rate_hz / n;
-    const int at =
-        static_cast<int>(std::floor(kBinsPerDecade * std::log10(frequency_hz * n / rate_hz)));
-    if (at != bin) close();
-    bin = at;
-    power += 2.0 * std::norm(lines[k]) / (n * n);
-    sum_hz += frequency_hz;
-    ++count;
-  }
-  close();
-  return trace;
-}
-
 doc::Table prediction_table(const StoredDesign& design) {
   doc::Table table{"Predicted intervals"};
   table.caption = {"Half width of the 95 % interval of each parameter, in % of its value"};
@@ -116,7 +76,7 @@ doc::Table prediction_table(const StoredDesign& design) {
                    {"This test", Kind::number},
                    {"Own signals, same time", Kind::number},
                    {"Own over this", Kind::number}};
-  for (const StoredDesignedParameter& parameter : design.parameters) {
+  for (const calib::DesignedParameter& parameter : design.parameters) {
     const RowUnit unit = row_unit(parameter.value, parameter.unit);
     const auto own = half_width_percent(parameter.sd_own_signals, parameter.value);
     const auto now = half_width_percent(parameter.sd, parameter.value);
@@ -150,9 +110,9 @@ doc::Table family_table(const StoredDesign& design) {
   doc::Table table{"Families of drives"};
   table.caption = {"The best drive of each family: half width of each named parameter, in %"};
   table.columns = {{"Family"}, {"Drives tried", Kind::number}};
-  for (const StoredDesignedParameter& parameter : design.parameters)
+  for (const calib::DesignedParameter& parameter : design.parameters)
     if (parameter.named) table.columns.push_back({parameter.label(), Kind::number});
-  for (const StoredFamilyTrial& trial : design.families) {
+  for (const calib::FamilyTrial& trial : design.families) {
     doc::Row row{{words_of(trial.family), fmt::format("{}", trial.evaluations)}};
     for (std::size_t j = 0; j < design.parameters.size(); ++j) {
       if (!design.parameters[j].named) continue;
@@ -168,9 +128,9 @@ doc::Table family_table(const StoredDesign& design) {
 doc::Table drive_table(const StoredDesign& design) {
   doc::Table table{"Numbers of the drive"};
   table.columns = {{"Number"}, {"Value", Kind::number}, {"Unit", Kind::unit}};
-  for (const StoredDrivePart& part : design.drive)
-    table.rows.push_back({{part.name, fmt::format("{:.5g}", part.value),
-                           part.unit == "1" ? std::string() : typographic(part.unit)}});
+  for (const calib::DrivePart& part : design.drive)
+    table.rows.push_back(
+        {{part.name, fmt::format("{:.5g}", part.value), part.unit == "1" ? "" : part.unit}});
   return table;
 }
 
@@ -235,7 +195,11 @@ std::vector<Figure> design_figures(const PlanFiles& files) {
   spectrum.log_x = true;
   spectrum.log_y = true;
   const auto add = [&](const std::vector<double>& values, const char* style, const char* name) {
-    Trace trace = spectrum_of(values, design.sample_rate_hz, 1.0, style, name);
+    Trace trace = empty_trace(Trace::Kind::line, style, name);
+    metrics::BandLevels levels =
+        metrics::band_levels(values, design.sample_rate_hz, kBinsPerDecade);
+    trace.x = std::move(levels.frequency_hz);
+    trace.y = std::move(levels.rms);
     const double top = largest(trace.y);
     constexpr double kFloor = 1e-4;
     if (!(top > 0.0)) return;
@@ -251,7 +215,7 @@ std::vector<Figure> design_figures(const PlanFiles& files) {
 doc::Verdict design_headline(const StoredDesign& design) {
   bool told = true;
   std::string words;
-  for (const StoredDesignedParameter& parameter : design.parameters) {
+  for (const calib::DesignedParameter& parameter : design.parameters) {
     if (!parameter.named) continue;
     const auto half = half_width_percent(parameter.sd, parameter.value);
     told = told && half.has_value();
@@ -268,7 +232,7 @@ doc::Verdict design_headline(const StoredDesign& design) {
           design.repeats == 1 ? "" : "s", words)}};
   if (design.stopped())
     add_reason(verdict, "stopped by a signal: the best drive until then", "design");
-  for (const StoredDesignedParameter& parameter : design.parameters) {
+  for (const calib::DesignedParameter& parameter : design.parameters) {
     if (parameter.named && !parameter.sd)
       add_reason(verdict, fmt::format("{} is not determined by this test", parameter.label()),
                  "design");
@@ -283,7 +247,7 @@ doc::Section design_section(const PlanFiles& files) {
   for (Figure& figure : design_figures(files))
     gallery.figures.push_back(figure_of(std::move(figure.plot)));
   std::vector<std::string> named;
-  for (const StoredDesignedParameter& parameter : design.parameters)
+  for (const calib::DesignedParameter& parameter : design.parameters)
     if (parameter.named) named.push_back(parameter.label());
   const std::string criterion = design.criterion == datasets::DesignCriterion::determinant
                                     ? "the smallest confidence ellipsoid (D-optimal)"

@@ -123,7 +123,7 @@ Plot share_plot(const StoredDiagnosis& diagnosis) {
 }
 
 struct MethodName {
-  StoredAccuracy StoredMethods::*accuracy;
+  diagnosis::Accuracy StoredMethods::*accuracy;
   const char* name;
 };
 constexpr std::array kMethods{
@@ -135,7 +135,7 @@ constexpr std::array kMethods{
                "Paper's features, learned without the signal"}};
 
 /// Returns a row with the accuracy of a classification method.
-doc::Row accuracy_row(const StoredAccuracy& method, const char* name) {
+doc::Row accuracy_row(const diagnosis::Accuracy& method, const char* name) {
   const auto percent = [](double value) { return doc::in_unit(100.0 * value, 1.0, 4); };
   doc::Cell accuracy;
   if (method.accuracy) accuracy.line = {percent(*method.accuracy)};
@@ -146,12 +146,12 @@ doc::Row accuracy_row(const StoredAccuracy& method, const char* name) {
 }
 
 /// Returns the confusion matrix of a classification method.
-doc::Table confusion_table(const StoredAccuracy& method, const char* name) {
+doc::Table confusion_table(const diagnosis::Accuracy& method, const char* name) {
   doc::Table table{fmt::format("Confusion: {}", name)};
   table.style = "correlation confusion";
   table.caption = {name};
   table.columns = {{"Known"}};
-  const StoredConfusion& confusion = method.confusion;
+  const diagnosis::Confusion& confusion = method.confusion;
   for (const std::string& found : confusion.found) table.columns.push_back({found, Kind::number});
   for (std::size_t i = 0; i < confusion.counts.size(); ++i) {
     const auto& counts = confusion.counts[i];
@@ -364,7 +364,7 @@ void add_methods(const StoredMethods& methods, doc::Blocks& blocks) {
                         {"Off by two classes or more", Kind::number}};
   doc::Fold confusions{"Which classes each method confuses", {}};
   for (const MethodName& each : kMethods) {
-    const StoredAccuracy& method = methods.*each.accuracy;
+    const diagnosis::Accuracy& method = methods.*each.accuracy;
     if (method.records == 0) continue;
     accuracies.rows.push_back(accuracy_row(method, each.name));
     confusions.blocks.emplace_back(confusion_table(method, each.name));

@@ -289,7 +289,7 @@ std::string level_caption(const std::vector<StoredFeatures>& features, const std
 }
 
 std::string leak_sentence(const StoredLeakTable& table) {
-  const StoredLeakSummary& summary = table.summary;
+  const calib::LeakSummary& summary = table.summary;
   if (summary.published == 0) {
     return fmt::format("{} leakage coefficients; nothing was published to compare them with.",
                        table.entries.size());
@@ -362,7 +362,7 @@ doc::Fold assumptions_fold(const StoredLeakTable& table) {
   doc::Table combinations{"Fixed combinations"};
   combinations.caption = {"Combinations that the shares depend on, and not on the values in them"};
   combinations.columns = {{"Combination"}, {"Value", Kind::number}, {"Unit"}};
-  for (const StoredCombination& each : table.fixed_combinations)
+  for (const calib::FixedCombination& each : table.fixed_combinations)
     combinations.rows.push_back(
         {{each.formula, doc::in_unit(each.value, 1.0, 5), typographic(each.unit)}});
   fold.blocks.emplace_back(std::move(combinations));

@@ -16,8 +16,8 @@ constexpr double kMillimetres = 1e3;
 constexpr std::size_t kPoints = 1200;  ///< number of points on one line of a picture
 constexpr int kLengthDigits = 3;
 
-const StoredParitySignal* signal_of(const StoredParity& parity, const std::string& name) {
-  for (const StoredParitySignal& signal : parity.signals)
+const diagnosis::ParitySignal* signal_of(const StoredParity& parity, const std::string& name) {
+  for (const diagnosis::ParitySignal& signal : parity.signals)
     if (signal.signal == name) return &signal;
   return nullptr;
 }
@@ -25,7 +25,7 @@ const StoredParitySignal* signal_of(const StoredParity& parity, const std::strin
 /// Summary over the repeats of one condition.
 struct Summary {
   std::string condition, level;
-  const StoredParitySignal* signal = nullptr;
+  const diagnosis::ParitySignal* signal = nullptr;
   std::optional<double> threshold_m;  ///< threshold for records from the same day
   bool healthy = false;
   bool reference = false;  ///< its records were used to set the threshold
@@ -130,13 +130,13 @@ std::string sentence_of(const StoredParity& parity, const std::vector<Summary>& 
       alarmed, judged, 100.0 * parity.false_alarm_probability);
 }
 
-std::string check_sentence(const StoredFalseAlarmCheck& check) {
+std::string check_sentence(const diagnosis::FalseAlarmCheck& check) {
   if (check.records == 0)
     return "The rate of false alarms is unverified: all healthy records were used to set the "
            "thresholds.";
   return fmt::format(
       "Of {} healthy records that set no threshold {} raise{} an alarm ({:.3g} expected).",
-      check.records, check.alarms, check.alarms == 1 ? "s" : "", check.expected.value_or(0.0));
+      check.records, check.alarms, check.alarms == 1 ? "s" : "", check.expected);
 }
 
 }  // namespace
@@ -206,7 +206,7 @@ doc::Table alarm_table(const std::vector<Summary>& list) {
   return table;
 }
 
-doc::Table threshold_table(const std::vector<StoredParitySignal>& signals) {
+doc::Table threshold_table(const std::vector<diagnosis::ParitySignal>& signals) {
   doc::Table table{"Thresholds of each signal"};
   table.caption = {"Thresholds of each signal, mm"};
   table.columns = {{"Signal"},
@@ -217,7 +217,7 @@ doc::Table threshold_table(const std::vector<StoredParitySignal>& signals) {
                    {"rms", Kind::number},
                    {"Standard deviation of |r|", Kind::number},
                    {"Note"}};
-  for (const StoredParitySignal& signal : signals)
+  for (const diagnosis::ParitySignal& signal : signals)
     table.rows.push_back({{signal.signal,
                            doc::in_unit(signal.window_s, 1.0, kLengthDigits),
                            fmt::format("{}", signal.healthy_records),

@@ -23,7 +23,7 @@ doc::Row percent_row(const StoredPlan& plan, const std::string& label,
                      const std::vector<std::optional<double>>& sd) {
   doc::Row row{{label}};
   for (std::size_t j = 0; j < plan.parameters.size(); ++j)
-    row.cells.push_back(percent_text(sd[j], plan.parameters[j].value));
+    row.cells.push_back(percent_text(sd[j], finite(plan.parameters[j].value)));
   return row;
 }
 
@@ -31,15 +31,15 @@ doc::Row percent_row(const StoredPlan& plan, const std::string& label,
 doc::Table percent_table(const StoredPlan& plan, const char* label, const char* first) {
   doc::Table table{label};
   table.columns = {{first}};
-  for (const StoredPlannedParameter& parameter : plan.parameters)
+  for (const calib::PlannedParameter& parameter : plan.parameters)
     table.columns.push_back({parameter.label(), doc::Column::Kind::number});
   return table;
 }
 
 std::vector<std::optional<double>> of_all(const StoredPlan& plan,
-                                          std::optional<double> StoredPlannedParameter::*sd) {
+                                          std::optional<double> calib::PlannedParameter::*sd) {
   std::vector<std::optional<double>> list;
-  for (const StoredPlannedParameter& parameter : plan.parameters) list.push_back(parameter.*sd);
+  for (const calib::PlannedParameter& parameter : plan.parameters) list.push_back(parameter.*sd);
   return list;
 }
 
@@ -55,7 +55,7 @@ Trace bar(double at, double height, const std::string& style) {
 std::vector<Figure> share_figures(const StoredPlan& plan) {
   std::vector<Figure> figures;
   for (std::size_t j = 0; j < plan.parameters.size(); ++j) {
-    const StoredPlannedParameter& parameter = plan.parameters[j];
+    const calib::PlannedParameter& parameter = plan.parameters[j];
     const std::optional<double>& all = parameter.sd_all;
     if (!all || !(*all > 0.0)) continue;
     Plot plot;
@@ -89,7 +89,7 @@ doc::Verdict records_headline(const StoredPlan& plan) {
       {whole ? doc::State::good : doc::State::warn, "PLAN"},
       {fmt::format("{} of {} records exist; all together determine {} of {} parameters.", recorded,
                    plan.records.size(), told, plan.parameters.size())}};
-  for (const StoredPlannedParameter& parameter : plan.parameters) {
+  for (const calib::PlannedParameter& parameter : plan.parameters) {
     if (parameter.sd_all) continue;
     add_reason(verdict,
                fmt::format("{} is not determined{}{}", parameter.label(),
@@ -111,10 +111,10 @@ doc::Section records_section(const StoredPlan& plan) {
                     {"sd, recorded", Kind::number},
                     {"sd, planned ones too", Kind::number},
                     {"What would determine it"}};
-  for (const StoredPlannedParameter& parameter : plan.parameters) {
-    const RowUnit unit = row_unit(parameter.value.value_or(0.0), parameter.unit);
+  for (const calib::PlannedParameter& parameter : plan.parameters) {
+    const RowUnit unit = row_unit(finite(parameter.value).value_or(0.0), parameter.unit);
     totals.rows.push_back(
-        {{parameter.label(), doc::in_unit(parameter.value, unit.si, 5),
+        {{parameter.label(), doc::in_unit(finite(parameter.value), unit.si, 5),
           unit.name.empty() ? std::string("1") : unit.name,
           doc::in_unit(parameter.sd_recorded, unit.si, 2),
           doc::in_unit(parameter.sd_all, unit.si, 2), parameter.remedy.value_or("")}});
@@ -125,7 +125,7 @@ doc::Section records_section(const StoredPlan& plan) {
       plan, "Standard deviation in % of the value, from all records but one", "Without");
   std::vector<std::string> problems;
   for (std::size_t i = 0; i < plan.records.size(); ++i) {
-    const StoredPlannedRecord& record = plan.records[i];
+    const calib::PlannedRecord& record = plan.records[i];
     const std::string label =
         fmt::format("{} {}{}", i + 1, record.condition, record.recorded ? "" : " (planned)");
     alone.rows.push_back(percent_row(plan, label, record.sd_alone));
@@ -134,8 +134,8 @@ doc::Section records_section(const StoredPlan& plan) {
       problems.push_back(fmt::format("{}: {}", record.condition, *record.problem));
   }
   alone.rows.push_back(percent_row(plan, "All that are recorded",
-                                   of_all(plan, &StoredPlannedParameter::sd_recorded)));
-  alone.rows.push_back(percent_row(plan, "All", of_all(plan, &StoredPlannedParameter::sd_all)));
+                                   of_all(plan, &calib::PlannedParameter::sd_recorded)));
+  alone.rows.push_back(percent_row(plan, "All", of_all(plan, &calib::PlannedParameter::sd_all)));
   doc::Gallery gallery;
   for (Figure& figure : share_figures(plan))
     gallery.figures.push_back(figure_of(std::move(figure.plot)));

@@ -24,9 +24,12 @@ bool is_stated_gain(std::string_view key) {
 }  // namespace
 
 std::vector<MissingTerm> missing_terms(model::PlantKind plant,
-                                       const std::vector<std::pair<std::string, double>>& sizes) {
+                                       const calib::Considered& considered) {
   std::vector<MissingTerm> terms;
-  for (const auto& [key, size] : sizes) {
+  for (const std::string& key : considered.missing) {
+    const calib::ConsideredEffect* effect = considered.find(key);
+    if (effect == nullptr || !effect->alone) continue;
+    const double size = *effect->alone;
     const int index = model::parameter_index(plant, key);
     if (index < 0) continue;
     const auto& spec = model::parameter_table(plant)[static_cast<std::size_t>(index)];

@@ -1,10 +1,9 @@
 #pragma once
 
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "model/plant/parameter.hpp"
+#include "calib/result/considered.hpp"
 
 namespace rigcal::report {
 
@@ -14,12 +13,9 @@ struct MissingTerm {
   std::string line;            ///< "valve_time_constant = { start = ..., fit = true }"
 };
 
-/// Writes lines for a campaign file that estimate the terms suggested by the residuals, starting at
-/// the suggested sizes. An effect that no parameter describes gets no line.
-///
-/// @param sizes  size of each effect by its key, SI
-std::vector<MissingTerm> missing_terms(model::PlantKind plant,
-                                       const std::vector<std::pair<std::string, double>>& sizes);
+/// Lines of campaign files that estimate the terms that the residuals of a fit ask for, from their
+/// sizes. What no parameter describes has none.
+std::vector<MissingTerm> missing_terms(model::PlantKind plant, const calib::Considered& considered);
 
 /// Inserts the lines for missing terms at the beginning of their tables in the text of a campaign
 /// file.

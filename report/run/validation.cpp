@@ -64,7 +64,7 @@ calib::Fit validate(const Campaign& campaign, const std::vector<datasets::Record
   if (earlier == nullptr) return calib::validate(campaign, records, nullptr, settings);
   const calib::Origin origin = origin_of(*earlier, records, provenance);
   calib::Fit fit = calib::validate(campaign, records, &earlier->values, settings, &origin);
-  const auto validity = coverage(campaign, records, fit, {Use::fit, Use::validate});
+  const auto validity = calib::coverage(campaign, records, fit, {Use::fit, Use::validate});
   for (const auto& warnings :
        {doubts_about(*earlier, campaign),
         outside(validity, earlier->validity, earlier->validated ? &*earlier->validated : nullptr)})

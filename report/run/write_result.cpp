@@ -13,10 +13,11 @@
 #include "report/run/missing_terms.hpp"
 #include "report/run/result_page.hpp"
 #include "report/store/csv.hpp"
-#include "report/store/draws_csv.hpp"
+#include "report/store/csv_fields.hpp"
 #include "report/store/json.hpp"
 #include "report/store/parameters_csv.hpp"
 #include "report/store/result_files.hpp"
+#include "report/store/table.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -24,16 +25,26 @@ namespace {
 namespace fs = std::filesystem;
 using calib::FitStatus;
 
-/// Writes the terms that the residuals suggest as comments, ready to copy into the next campaign.
+constexpr const char* kDrawsFile = "posterior.csv";
+
+/// posterior.csv: a row for each draw, with its chain and its number there, both from 1, and a
+/// column for each unknown in SI, by its name.
+std::string draws_csv(const calib::Posterior& posterior) {
+  const auto draws = static_cast<std::size_t>(posterior.draws);
+  const std::size_t rows = static_cast<std::size_t>(posterior.chains) * draws;
+  Table table;
+  table.add("chain", rows, [&](std::size_t i) { return i / draws + 1; });
+  table.add("draw", rows, [&](std::size_t i) { return i % draws + 1; });
+  for (std::size_t k = 0; k < posterior.names.size(); ++k)
+    table.add(csv_text(posterior.names[k]), posterior.values[k]);
+  return csv_of(table);
+}
+
+/// The terms that the residuals ask for, as a next campaign may have them, in comments.
 std::string terms_in_comments(const Result& result) {
   if (!result.fit.considered) return {};
-  std::vector<std::pair<std::string, double>> sizes;
-  for (const std::size_t position : result.fit.considered->missing) {
-    const calib::ConsideredEffect& effect = result.fit.considered->effects[position];
-    if (effect.alone) sizes.emplace_back(effect.key, *effect.alone);
-  }
   std::string text;
-  for (const MissingTerm& each : missing_terms(result.campaign.rig.plant, sizes)) {
+  for (const MissingTerm& each : missing_terms(result.campaign.rig.plant, *result.fit.considered)) {
     text += fmt::format("#   [rig.{}] {}\n", each.of_controller ? "controller" : "parameters",
                         each.line);
   }

@@ -11,11 +11,13 @@
 #include "common/file.hpp"
 #include "report/json/read_json.hpp"
 #include "report/store/json.hpp"
+#include "report/store/stored/stored_residual_tests.hpp"
 
 namespace rigcal::report {
 namespace {
 
 constexpr const char* kSchema = "rigcal.checkpoint/1";
+constexpr const char* kKind = "checkpoint of rigcal fit";
 
 /// Data that must be equal for a fit to continue.
 Json identity(const Provenance& provenance) {
@@ -48,62 +50,23 @@ Integer whole(const Json& json, const std::string& key, Integer lowest, Integer 
 
 constexpr int kMostCounted = 1'000'000'000;
 
-Json start_json(const calib::StartReport& start) {
-  return {{"number", start.number},
-          {"start_values", start.start_values},
-          {"end_values", start.end_values},
-          {"initial_cost", start.initial_cost},
-          {"final_cost", start.final_cost},
-          {"iterations", start.iterations},
-          {"status", static_cast<int>(start.status)},
-          {"message", start.message}};
-}
-
-calib::StartReport start_from(const Json& json) {
-  calib::StartReport start;
-  start.number = whole(json, "number", 1, kMostCounted);
-  start.start_values = json.at("start_values").get<std::vector<double>>();
-  start.end_values = json.at("end_values").get<std::vector<double>>();
-  start.initial_cost = json.at("initial_cost").get<double>();
-  start.final_cost = json.at("final_cost").get<double>();
-  start.iterations = whole(json, "iterations", 0, kMostCounted);
-  start.status = static_cast<calib::FitStatus>(
-      whole(json, "status", 0, static_cast<int>(calib::FitStatus::failed)));
-  start.message = json.at("message").get<std::string>();
-  return start;
-}
-
 Json counters_json(const calib::EvaluationCounters& counters) {
-  Json failures = Json::array();
-  for (const calib::SimulationFailure& each : counters.failures) {
-    failures.push_back({{"condition", each.condition},
-                        {"parameters", each.parameters},
-                        {"time_s", each.time_s},
-                        {"reason", each.reason},
-                        {"start", each.start}});
-  }
   Json kept = Json::array();
   for (const auto& [key, count] : counters.kept)
     kept.push_back({key.first, static_cast<int>(key.second), count});
   return {{"evaluations", counters.evaluations},
           {"failure_count", counters.failure_count},
-          {"failures", failures},
+          {"failures", json_of(counters.failures)},
           {"kept", kept}};
 }
 
-calib::EvaluationCounters counters_from(const Json& json) {
+/// @param file  for messages
+calib::EvaluationCounters counters_from(const Json& json, const std::string& file) {
   calib::EvaluationCounters counters;
   constexpr long kMostEvaluations = long{1} << 53;
   counters.evaluations = whole(json, "evaluations", 0L, kMostEvaluations);
   counters.failure_count = whole(json, "failure_count", 0L, kMostEvaluations);
-  for (const Json& each : json.at("failures")) {
-    calib::SimulationFailure& failure = counters.failures.emplace_back();
-    failure.condition = each.at("condition").get<std::string>();
-    failure.parameters = each.at("parameters").get<std::vector<std::pair<std::string, double>>>();
-    failure.time_s = each.at("time_s").get<double>();
-    failure.reason = each.at("reason").get<std::string>();
-    failure.start = whole(each, "start", 0, kMostCounted);
-  }
+  read_into(JsonNode(json.at("failures"), file, "ledger.failures", kKind), counters.failures);
   for (const Json& each : json.at("kept")) {
     // [condition, status, count]
     const Json entry{{"condition", each.at(0)}, {"status", each.at(1)}, {"count", each.at(2)}};
@@ -144,9 +107,7 @@ std::string checkpoint_text(const calib::Checkpoint& checkpoint, const Provenanc
   Json json;
   json["schema"] = kSchema;
   json["fit"] = identity(provenance);
-  json["starts"] = Json::array();
-  for (const calib::StartReport& start : checkpoint.starts)
-    json["starts"].push_back(start_json(start));
+  json["starts"] = json_of(checkpoint.starts);
   json["best"] = checkpoint.best;
   json["best_z"] = checkpoint.best_z;
   json["ledger"] = counters_json(checkpoint.counters);
@@ -171,15 +132,15 @@ calib::Checkpoint read_checkpoint(const std::filesystem::path& file, const Prove
     }
     require_same_fit(file.string(), json.at("fit"), identity(provenance));
     calib::Checkpoint checkpoint;
-    for (const Json& start : json.at("starts")) {
-      checkpoint.starts.push_back(start_from(start));
-      // They are kept in the order in which they were made.
-      if (checkpoint.starts.back().number != static_cast<int>(checkpoint.starts.size()))
+    read_into(JsonNode(json.at("starts"), file.string(), "starts", kKind), checkpoint.starts);
+    // They are kept in the order in which they were made.
+    for (std::size_t i = 0; i < checkpoint.starts.size(); ++i) {
+      if (checkpoint.starts[i].number != static_cast<int>(i) + 1)
         throw NoCheckpoint("key 'starts': expected them numbered from 1");
     }
     checkpoint.best = whole(json, "best", 0, static_cast<int>(checkpoint.starts.size()));
     checkpoint.best_z = json.at("best_z").get<std::vector<double>>();
-    checkpoint.counters = counters_from(json.at("ledger"));
+    checkpoint.counters = counters_from(json.at("ledger"), file.string());
     require_own_hash(json);
     return checkpoint;
   } catch (const NoCheckpoint& error) {

@@ -38,8 +38,8 @@ struct EarlierFit {
   /// As the fit judged them; not assessed if its file says nothing.
   calib::Aspect adequacy;
   calib::Aspect parameters;
-  Validity validity;
-  std::optional<Validity> validated;            ///< ranges of the validation
+  calib::Validity validity;
+  std::optional<calib::Validity> validated;     ///< ranges of the validation
   std::optional<calib::EstimateSpread> spread;  ///< for `values`; none if the fit did not converge
   std::vector<int> indices;  ///< table rows of the fitted values of scope rig that have an error
   /// Covariance of these, SI, shape (indices)^2: the larger of standard and robust error, and the

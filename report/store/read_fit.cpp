@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -22,29 +21,12 @@ using datasets::Scope;
 
 constexpr const char* kTruthSchema = "rigcal.truth/1";
 
-Validity validity_of(const StoredValidity& stored) {
-  Validity validity;
-  validity.frequency_hz = stored.frequency_hz;
-  for (const std::optional<Range>& amplitude :
-       {stored.amplitude_m, stored.amplitude_v, std::optional<Range>(stored.amplitude_n),
-        std::optional<Range>(stored.amplitude_pa),
-        std::optional<Range>(stored.amplitude_m_per_s2)}) {
-    if (amplitude) validity.amplitude = amplitude;
-  }
-  validity.supply_pressure_pa = stored.supply_pressure_pa;
-  validity.leakage_coefficient = stored.leakage_coefficient;
-  validity.leak_levels = stored.leak_levels;
-  return validity;
-}
-
 /// Error of a parameter that the fit could not determine, from its whole interval, or from its
 /// bounds; otherwise its uncertainty would be left out.
 double undetermined_error(const StoredParameter& p, const JsonNode& node) {
-  std::optional<std::pair<double, double>> ci95;
-  if (p.ci95) ci95.emplace(p.ci95->low, p.ci95->high);
   if (!p.lower) node["lower"].fail("a number");
   if (!p.upper) node["upper"].fail("a number");
-  return calib::undetermined_sd(ci95, *p.lower, *p.upper);
+  return calib::undetermined_sd(p.ci95, *p.lower, *p.upper);
 }
 
 /// The estimates of a fit, nuisance parameters aside, with their covariance.
@@ -53,7 +35,7 @@ struct Estimates {
   Eigen::MatrixXd covariance;  ///< SI, by the larger of standard and robust error
   /// Those of conditions whose correlations are not stored, with their errors.
   std::map<std::string, std::vector<std::pair<calib::EstimateSpread::Estimate, double>>> own;
-  std::vector<const StoredBudget*> budgets;  ///< parallel to `list`; null: none
+  std::vector<const calib::Budget95*> budgets;  ///< parallel to `list`; null: none
   double widened = 1.0;  ///< the most by which an interval is wider than by its error
 };
 
@@ -65,32 +47,11 @@ double half_in_errors(const StoredParameter& p, double error) {
 }
 
 /// Refuses a matrix that is no correlation matrix.
-void require_correlations(const StoredCorrelation& stored, const JsonNode& matrix) {
-  constexpr double kRounding = 1e-6;
+void require_correlations(const calib::Correlation& stored, const JsonNode& matrix) {
   const auto size = static_cast<Eigen::Index>(stored.names.size());
-  Eigen::MatrixXd all(size, size);
-  if (stored.matrix.size() != stored.names.size()) matrix.fail("one row per name");
-  for (std::size_t i = 0; i < stored.matrix.size(); ++i) {
-    const std::vector<double>& row = stored.matrix[i];
-    if (row.size() != stored.names.size()) matrix.items()[i].fail("one number per name");
-    for (std::size_t j = 0; j < row.size(); ++j)
-      all(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = row[j];
-  }
-  // Parameters without correlations are left out of the check.
-  std::vector<Eigen::Index> known;
-  for (Eigen::Index i = 0; i < size; ++i)
-    if (std::isfinite(all(i, i))) known.push_back(i);
-  if (known.empty()) return;
-  const Eigen::MatrixXd part = all(known, known);
-  if (!part.allFinite()) return;  // missing correlations are reported where they are needed
-  const bool valid = (part - part.transpose()).cwiseAbs().maxCoeff() <= kRounding &&
-                     (part.diagonal().array() - 1.0).abs().maxCoeff() <= kRounding &&
-                     part.cwiseAbs().maxCoeff() <= 1.0 + kRounding;
-  // Cholesky succeeds if no eigenvalue is below minus the shift. Computing all eigenvalues would
-  // take minutes for the parameters of thousands of conditions.
-  Eigen::MatrixXd shifted = part;
-  shifted.diagonal().array() += kRounding * static_cast<double>(part.rows());
-  if (valid && Eigen::LLT<Eigen::MatrixXd>(shifted).info() == Eigen::Success) return;
+  if (stored.matrix.rows() != size || stored.matrix.cols() != size)
+    matrix.fail("one row and one column per name");
+  if (calib::are_correlations(stored.matrix)) return;
   matrix.fail(
       "correlations: numbers from -1 to 1, the same on both sides of a diagonal of ones, by which "
       "no combination of the parameters has a negative variance");
@@ -98,11 +59,11 @@ void require_correlations(const StoredCorrelation& stored, const JsonNode& matri
 
 Estimates estimates_of(const StoredFit& stored, const JsonNode& root, model::PlantKind plant) {
   const std::vector<std::string>& names = stored.correlation.names;
-  const auto& rows = stored.correlation.matrix;
+  const JsonNode matrix = root["correlation"]["matrix"];
   const std::vector<JsonNode> nodes = root["parameters"].items();
   Estimates result;
-  require_correlations(stored.correlation, root["correlation"]["matrix"]);
-  std::vector<std::optional<std::size_t>> places;  // in the matrix
+  require_correlations(stored.correlation, matrix);
+  std::vector<std::optional<Eigen::Index>> places;  // in the matrix
   std::vector<double> errors;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const StoredParameter& p = stored.parameters[i];
@@ -120,27 +81,16 @@ Estimates estimates_of(const StoredFit& stored, const JsonNode& root, model::Pla
     result.list.push_back(estimate);
     result.budgets.push_back(p.budget ? &*p.budget : nullptr);
     const bool determined = error && place != names.end();
-    places.push_back(determined ? std::optional(static_cast<std::size_t>(place - names.begin()))
+    places.push_back(determined ? std::optional<Eigen::Index>(place - names.begin())
                                 : std::nullopt);
     errors.push_back(determined ? *error : undetermined_error(p, nodes[i]));
     if (determined && *error > 0.0)
       result.widened = std::max(result.widened, half_in_errors(p, *error) / metrics::kNormal95);
   }
-  const auto n = static_cast<Eigen::Index>(places.size());
-  result.covariance = Eigen::MatrixXd::Zero(n, n);
+  result.covariance = calib::covariance_of(errors, places, stored.correlation.matrix);
   for (std::size_t i = 0; i < places.size(); ++i) {
-    const auto at = static_cast<Eigen::Index>(i);
-    result.covariance(at, at) = errors[i] * errors[i];
-    if (!places[i]) continue;
-    const JsonNode matrix = root["correlation"]["matrix"];
-    if (*places[i] >= rows.size()) matrix.fail("one row per name");
-    const std::vector<double>& row = rows[*places[i]];
-    for (std::size_t j = 0; j < places.size(); ++j) {
-      if (!places[j]) continue;
-      const double correlation = *places[j] < row.size() ? row[*places[j]] : std::nan("");
-      if (std::isnan(correlation)) matrix.items()[*places[i]].fail("one number per name");
-      result.covariance(at, static_cast<Eigen::Index>(j)) = correlation * errors[i] * errors[j];
-    }
+    if (places[i] && result.covariance.row(static_cast<Eigen::Index>(i)).hasNaN())
+      matrix.items()[static_cast<std::size_t>(*places[i])].fail("one number per name");
   }
   return result;
 }
@@ -172,39 +122,25 @@ void read_covariance(const StoredFit& stored, const JsonNode& root, model::Plant
                                      estimates.widened * calib::square_root(estimates.covariance)};
   fit.spread->dates = dates_of_fit(stored);
   if (stored.considered)
-    fit.spread->effects = effect_spread_of(*stored.considered, estimates.budgets);
-  const Eigen::MatrixXd& shared = fit.spread->root;
+    fit.spread->effects = calib::effect_spread(*stored.considered, estimates.budgets);
   for (const auto& [condition, values] : estimates.own) {
-    calib::EstimateSpread::Own& own = fit.spread->own.emplace_back();
-    const auto count = static_cast<Eigen::Index>(values.size());
-    own.root = Eigen::MatrixXd::Zero(count + shared.rows(), count + shared.cols());
-    own.root.bottomRightCorner(shared.rows(), shared.cols()) = shared;
-    for (Eigen::Index k = 0; k < count; ++k) {
-      const auto& [estimate, error] = values[static_cast<std::size_t>(k)];
-      own.estimates.push_back(estimate);
-      own.root(k, k) = estimates.widened * error;
+    std::vector<calib::EstimateSpread::Estimate> own;
+    std::vector<double> errors;
+    for (const auto& [estimate, error] : values) {
+      own.push_back(estimate);
+      errors.push_back(estimates.widened * error);
     }
+    calib::add_own(std::move(own), errors, *fit.spread);
   }
 }
 
-calib::Aspect aspect_of(const StoredAspect& stored) {
-  calib::Aspect aspect;
-  aspect.state = stored.state;
-  for (const StoredReason& reason : stored.reasons)
-    aspect.reasons.push_back(
-        {reason.state, reason.code, reason.subject.value_or(""), reason.numbers, reason.words});
-  return aspect;
-}
-
 /// @param member  of the assessment, which a fit of before there were any does not have
-calib::Aspect judged(const StoredFit& stored, StoredAspect StoredAssessment::*member) {
-  if (stored.assessment) return aspect_of((*stored.assessment).*member);
+calib::Aspect judged(const StoredFit& stored, calib::Aspect calib::Assessment::*member) {
+  if (stored.assessment) return (*stored.assessment).*member;
   calib::Aspect aspect;
-  aspect.reasons.push_back({calib::AspectState::not_assessed,
-                            "no_assessment",
-                            "",
-                            {},
-                            "the fit.json of the values has no assessment of its parameters"});
+  aspect.reasons.push_back(
+      calib::reason(calib::AspectState::not_assessed, "no_assessment",
+                    "the fit.json of the values has no assessment of its parameters"));
   return aspect;
 }
 
@@ -260,15 +196,15 @@ EarlierFit earlier_fit(const Json& json, const std::string& name, model::PlantKi
   result.verdict = stored.verdict;
   result.message = stored.message;
   read_values(stored, root, plant, result);
-  result.validity = validity_of(stored.validity);
-  if (stored.validated) result.validated = validity_of(*stored.validated);
+  result.validity = stored.validity;
+  if (stored.validated) result.validated = *stored.validated;
   read_covariance(stored, root, plant, result);
   for (const StoredCondition& condition : stored.conditions)
     result.conditions.emplace_back(condition.id, condition.use);
   for (const InputFile& input : stored.provenance.inputs)
     result.input_hashes.push_back(input.sha256);
-  result.adequacy = judged(stored, &StoredAssessment::adequacy);
-  result.parameters = judged(stored, &StoredAssessment::parameters);
+  result.adequacy = judged(stored, &calib::Assessment::adequacy);
+  result.parameters = judged(stored, &calib::Assessment::parameters);
   return result;
 }
 

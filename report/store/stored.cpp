@@ -181,7 +181,7 @@ AverageFiles load_average(const ReadFile& read, const std::string& where) {
 PlanFiles load_plan(const ReadFile& read, const std::string& where) {
   PlanFiles stored{load<StoredPlan>(read, where, "plan.json"), {}};
   StoredPlan& plan = stored.result;
-  for (StoredPlannedRecord& record : plan.records) {
+  for (calib::PlannedRecord& record : plan.records) {
     for (auto* list : {&record.sd_alone, &record.sd_without}) {
       if (list->empty())
         list->resize(plan.parameters.size());  // as 0.1.0 wrote a record that cannot be simulated
@@ -190,7 +190,7 @@ PlanFiles load_plan(const ReadFile& read, const std::string& where) {
     }
   }
   if (!plan.design) return stored;
-  for (const StoredFamilyTrial& family : plan.design->families) {
+  for (const calib::FamilyTrial& family : plan.design->families) {
     if (family.found)
       require_length(family.sd.size(), plan.design->parameters.size(), "sd of a family",
                      path_in(where, "plan.json"));

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "report/json/range.hpp"
+#include "common/range.hpp"
 
 // The one rule for writing estimates on pages, terminals and in tables.
 

@@ -32,7 +32,7 @@ struct AssessmentScene {
       test.condition = id;
       test.ratio = 1.0;
       test.outcome = metrics::TestOutcome::passed;
-      test.by_repeats = true;
+      test.against = "repeats";
       fit.lack_of_fit.push_back(test);
     }
   }

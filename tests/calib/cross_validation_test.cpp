@@ -12,13 +12,13 @@ using datasets::Channel;
 TEST_CASE("cross-validation: what is predicted worse than fitted, and what moves", "[calib]") {
   HeldOut held;
   held.condition = "sine";
-  held.rms = {{Channel::position, 2e-3}};
-  held.fitted_rms = {{Channel::position, 1e-3}};
+  held.rmse = {{Channel::position, 2e-3}};
+  held.fitted_rmse = {{Channel::position, 1e-3}};
   held.largest_shift = -4.0;
   held.shifted = "mass_kg";
   HeldOut even = held;
   even.condition = "square";
-  even.rms = {{Channel::position, 1.4e-3}};
+  even.rmse = {{Channel::position, 1.4e-3}};
   even.largest_shift = 2.9;
   const auto words = cross_validation_words({held, even});
   REQUIRE(words.size() == 2);
@@ -39,8 +39,8 @@ TEST_CASE("cross-validation: a shift goes to where the others lead", "[calib]") 
   options.cross_validate = true;
   const Fit found = fit(twin.campaign, twin.records(250, 500.0, 3), options);
   REQUIRE(found.cross_validation.size() == 2);
-  CHECK(found.cross_validation[0].largest_shift > 1.0);   // without the low one
-  CHECK(found.cross_validation[1].largest_shift < -1.0);  // without the high one
+  CHECK(found.cross_validation[0].largest_shift.value() > 1.0);   // without the low one
+  CHECK(found.cross_validation[1].largest_shift.value() < -1.0);  // without the high one
   CHECK(found.cross_validation[0].shifted == "valve_gain_m_per_v");
 }
 

@@ -68,7 +68,7 @@ void check_same(const Fit& found, const Fit& alone) {
   }
   REQUIRE(found.cross_validation.size() == alone.cross_validation.size());
   for (std::size_t i = 0; i < found.cross_validation.size(); ++i) {
-    CHECK(found.cross_validation[i].rms == alone.cross_validation[i].rms);
+    CHECK(found.cross_validation[i].rmse == alone.cross_validation[i].rmse);
     CHECK(found.cross_validation[i].largest_shift == alone.cross_validation[i].largest_shift);
   }
 }

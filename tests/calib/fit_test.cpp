@@ -65,7 +65,7 @@ TEST_CASE("fit: recovers the truth from noisy positions", "[calib]") {
   CHECK(errors_off(found, "leakage_coefficient", 0.1, "small") < 3.5);
   CHECK(errors_off(found, "leakage_coefficient", 0.6, "large") < 3.5);
   CHECK(found.rank == 4);
-  CHECK(found.correlation.rows() == 4);
+  CHECK(found.correlation.matrix.rows() == 4);
   // With 9000 residuals the standard deviation of chi-square is 1.5 %; the limit is five times
   // that.
   CHECK_THAT(found.reduced_chi_square, WithinAbs(1.0, 0.075));
@@ -107,7 +107,7 @@ TEST_CASE("fit: intervals cover the truth as often as they say", "[calib]") {
     REQUIRE(found.status == FitStatus::converged);
     for (const auto& [key, truth] : {std::pair{"mass", 85.0}, std::pair{"valve_gain", 0.0406e-3}}) {
       const auto interval = parameter(found, key).ci95_if_exact.value();
-      covered += interval.first <= truth && truth <= interval.second ? 1 : 0;
+      covered += interval.low <= truth && truth <= interval.high ? 1 : 0;
     }
   }
   // Binomial(40, 0.95): fewer than 33 occurs about once in a thousand.
@@ -153,8 +153,8 @@ TEST_CASE("fit: leakage at zero has a one-sided interval", "[calib]") {
   const Fit found = fit(twin.campaign, twin.records(250, 500.0, 3), {});
   REQUIRE(found.status == FitStatus::converged);
   const FittedParameter& leakage = parameter(found, "leakage_coefficient", "none");
-  CHECK(leakage.ci95.value().first == 0.0);
-  CHECK(leakage.ci95.value().second > 0.0);
+  CHECK(leakage.ci95.value().low == 0.0);
+  CHECK(leakage.ci95.value().high > 0.0);
   CHECK(leakage.identifiability == Identifiability::bounded);
   CHECK_THAT(leakage.reason, Contains("not significantly different from zero"));
 }
@@ -236,7 +236,7 @@ TEST_CASE("fit: the exact scaling symmetry is found as a rank deficiency", "[cal
     CHECK_FALSE(parameter(found, key).standard_error.has_value());
     CHECK_THAT(parameter(found, key).reason, Contains("combination"));
   }
-  CHECK(found.correlation.size() == 0);
+  CHECK(found.correlation.matrix.size() == 0);
 }
 
 TEST_CASE("fit: limits and signals stop it with the best so far", "[calib]") {

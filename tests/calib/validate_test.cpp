@@ -193,8 +193,8 @@ TEST_CASE("acceptance: how much of a tolerance is used, and the worst of several
   judge({limit("rho2", 0.99, 0.993), limit("absolute_error_percent", 8.0, 6.0)},
         DecisionRule::simple, score);
   REQUIRE(score.checks.size() == 2);
-  CHECK_THAT(score.checks[0].used, WithinRel(0.5, 1e-9));  // 0.005 of 0.01
-  CHECK_THAT(score.checks[1].used, WithinRel(0.25, 1e-9));
+  CHECK_THAT(score.checks[0].tolerance_used.value(), WithinRel(0.5, 1e-9));  // 0.005 of 0.01
+  CHECK_THAT(score.checks[1].tolerance_used.value(), WithinRel(0.25, 1e-9));
   CHECK(score.verdict == Verdict::pass);
   for (const double worse : {1.0, 2.0}) {
     ConditionScore mixed = scored(0.995);

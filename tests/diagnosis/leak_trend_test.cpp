@@ -59,7 +59,7 @@ TEST_CASE("leak_trends: the line through three dates, in their order", "[diagnos
   CHECK_THAT(trend.share_per_day, WithinRel(0.004, 1e-9));
   // The error is 0.03 sqrt(2) / 10 per day. The quantile is the 97.5 % one of t with 8 degrees of
   // freedom.
-  CHECK_THAT(trend.share_per_day_ci95.second - trend.share_per_day,
+  CHECK_THAT(trend.share_per_day_ci95.high - trend.share_per_day,
              WithinRel(0.2 * 0.003 * std::sqrt(2.0) * 2.306004135, 1e-6));
   CHECK(trend.significant);
   CHECK(trend.widened == 1.0);
@@ -117,7 +117,7 @@ TEST_CASE("leak_trends: an error that all dates share is no trend", "[diagnosis]
       only_trend({on("2026-01-01", 0.3, 0.01, 1e6, 0.3), on("2026-01-06", 0.35, 0.01, 1e6, 0.35),
                   on("2026-01-11", 0.4, 0.01, 1e6, 0.4)},
                  rig);
-  const double error = (uneven.share_per_day_ci95.second - uneven.share_per_day) / (0.2 * 1.95996);
+  const double error = (uneven.share_per_day_ci95.high - uneven.share_per_day) / (0.2 * 1.95996);
   CHECK_THAT(error, WithinRel(std::sqrt(2e-4 + 0.0025) / 10.0, 1e-3));
 }
 

@@ -83,7 +83,7 @@ AlarmCounts alarms_of_healthy(double rate, double supply_sd, std::uint64_t first
     const auto found = diagnosis::parity(campaign, records, true_rig(campaign), options);
     counts.alarms += found.check.alarms;
     counts.records += found.check.records;
-    counts.with_cause += found.signals.front().common_causes > 0 ? 1 : 0;
+    counts.with_cause += found.signals.front().common_causes.value() > 0 ? 1 : 0;
   }
   return counts;
 }
@@ -116,7 +116,7 @@ TEST_CASE("parity: a leak raises an alarm within a period, healthy records do no
       CHECK(record.peak_m > *signal.threshold_m);
       CHECK(record.alarm_time_s > 0.0);
       CHECK(record.alarm_time_s < 1.2);
-      CHECK(record.features.rms > *signal.features.rms);
+      CHECK(record.features.rms > *signal.feature_thresholds.rms_m);
     }
   }
   CHECK(found.check.records == 5);
@@ -264,7 +264,7 @@ TEST_CASE("parity: how probable as many false alarms are", "[diagnosis]") {
   const auto found = diagnosis::parity(campaign, made(leaks_later, 1), true_rig(campaign), {});
   CHECK(found.check.alarms == 5);
   // Five alarms out of five, at 1 % each.
-  CHECK(std::abs(found.check.p - 1e-10) < 1e-12);
+  CHECK(std::abs(found.check.p_value.value() - 1e-10) < 1e-12);
 }
 
 TEST_CASE("parity: without enough healthy records nothing is judged, and why", "[diagnosis]") {
@@ -274,7 +274,8 @@ TEST_CASE("parity: without enough healthy records nothing is judged, and why", "
   const Parity found = diagnosis::parity(campaign, records, true_rig(campaign), {});
   CHECK(found.usable());
   CHECK_FALSE(found.signals.front().threshold_m);
-  CHECK_THAT(found.signals.front().reason, Catch::Contains("0 healthy records of this signal"));
+  CHECK_THAT(found.signals.front().reason.value(),
+             Catch::Contains("0 healthy records of this signal"));
   CHECK_FALSE(found.conditions.front().records.front().alarm);
   CHECK(found.conditions.front().records.front().peak_m > 0.0);
   // If it is declared healthy, it is its own reference.

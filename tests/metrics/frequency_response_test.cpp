@@ -297,3 +297,23 @@ TEST_CASE("frequency response: bad input is refused with what was wrong", "[metr
   CHECK_THROWS_AS(broadband_response(1e-3, gap, sine), std::invalid_argument);
   CHECK_THROWS_AS(broadband_response(0.0, sine, sine), std::invalid_argument);
 }
+
+TEST_CASE("band_levels: a sine has its root mean square in its band, and nothing elsewhere",
+          "[metrics]") {
+  const Values t = even_times(1000, 1e-3);
+  const Values sine = values_at(
+      t, [](double s) { return 5.0 + 2.0 * std::sin(2.0 * std::numbers::pi * 40.0 * s); });
+  const BandLevels levels = band_levels(sine, 1000.0, 60.0);
+  REQUIRE(levels.rms.size() == levels.frequency_hz.size());
+  CHECK(std::is_sorted(levels.frequency_hz.begin(), levels.frequency_hz.end()));
+  double squares = 0.0;
+  for (std::size_t i = 0; i < levels.rms.size(); ++i) {
+    squares += levels.rms[i] * levels.rms[i];
+    const bool near = std::abs(levels.frequency_hz[i] - 40.0) < 1.0;
+    if (near)
+      CHECK_THAT(levels.rms[i], WithinRel(std::sqrt(2.0), 1e-9));
+    else
+      CHECK(levels.rms[i] < 1e-9);
+  }
+  CHECK_THAT(squares, WithinRel(2.0, 1e-9));
+}

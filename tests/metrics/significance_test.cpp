@@ -31,6 +31,16 @@ TEST_CASE("significance: Holm's steps, in the order of the input", "[metrics]") 
   CHECK(holm(std::vector<double>{0.9, 0.9}) == std::vector<double>{1.0, 1.0});
 }
 
+TEST_CASE("significance: the degrees of freedom of a quantile", "[metrics]") {
+  // Printed tables of Student's t, 97.5 %.
+  CHECK_THAT(freedom_of_quantile(2.776445), WithinRel(4.0, 1e-5));
+  CHECK_THAT(freedom_of_quantile(2.042272), WithinRel(30.0, 1e-4));
+  CHECK(freedom_of_quantile(1.96) > 5e4);
+  CHECK(freedom_of_quantile(1.9) == kManyDegrees);
+  CHECK(freedom_of_quantile(std::numeric_limits<double>::quiet_NaN()) == kManyDegrees);
+  CHECK(freedom_of_quantile(100.0) == 1.0);
+}
+
 TEST_CASE("significance: sign test counts tails of a fair coin", "[metrics]") {
   // 2 (C(10,0) + C(10,1)) / 2^10
   CHECK_THAT(sign_test_p_value(9, 1), WithinRel(22.0 / 1024.0, 1e-12));

@@ -86,7 +86,7 @@ TEST_CASE("golden: residual tests", "[metrics]") {
   REQUIRE(tests.cross_correlation.has_value());
   check_value(tests.cross_correlation->peak, value("cross_correlation"));
   CHECK_THAT(tests.cross_correlation->peak_lag_s, WithinAbs(value("cross_lag_s"), 1e-12));
-  check_value(tests.cross_correlation->band_of_peak, value("cross_band"));
+  check_value(tests.cross_correlation->limit, value("cross_band"));
   CHECK_THAT(tests.cross_correlation->band,
              WithinRel(1.96 / std::sqrt(value("effective_samples")), 1e-12));
 

@@ -41,13 +41,8 @@ std::vector<report::MissingTerm> terms_of(const std::filesystem::path& file) {
   const report::Json json = report::read_json(file, "the fit.json of an earlier fit");
   const auto fit = report::as<report::StoredFit>(json, "", file.string());
   const std::optional<model::PlantKind> plant = fit.model;
-  std::vector<std::pair<std::string, double>> sizes;
   if (!plant || !fit.considered) return {};
-  for (const std::string& key : fit.considered->missing) {
-    for (const report::StoredEffect& effect : fit.considered->effects)
-      if (effect.key == key && effect.alone) sizes.emplace_back(key, *effect.alone);
-  }
-  return report::missing_terms(*plant, sizes);
+  return report::missing_terms(*plant, *fit.considered);
 }
 
 ExitCode run_init(const InitRequest& options) {

@@ -13,16 +13,16 @@
 
 namespace rigcal::report {
 
-std::string evidence_of(const StoredFit& fit, const StoredReason& reason, const char* section) {
+std::string evidence_of(const StoredFit& fit, const calib::Reason& reason, const char* section) {
   return reason.subject && fit.find(*reason.subject) != nullptr ? anchor(*reason.subject) : section;
 }
 
-bool names_reason(const StoredFit& fit, StoredAspect StoredAssessment::*aspect,
+bool names_reason(const StoredFit& fit, calib::Aspect calib::Assessment::*aspect,
                   std::string_view code) {
   if (!fit.assessment) return false;
   const auto& reasons = ((*fit.assessment).*aspect).reasons;
   return std::any_of(reasons.begin(), reasons.end(),
-                     [&](const StoredReason& reason) { return reason.code == code; });
+                     [&](const calib::Reason& reason) { return reason.code == code; });
 }
 
 std::string open_aspects(const StoredFit& fit) {
@@ -51,11 +51,15 @@ std::string rule_words(datasets::DecisionRule rule) {
   throw std::logic_error("rule_words: no words for a decision rule");
 }
 
-std::string correlation_words(const StoredCorrelation& correlation) {
-  const auto at = [&](std::size_t i, std::size_t j) {
-    const auto& matrix = correlation.matrix;
-    return i < matrix.size() && j < matrix[i].size() ? matrix[i][j] : std::nan("");
-  };
+double correlation_at(const calib::Correlation& correlation, std::size_t i, std::size_t j) {
+  const auto row = static_cast<Eigen::Index>(i);
+  const auto column = static_cast<Eigen::Index>(j);
+  const Eigen::MatrixXd& matrix = correlation.matrix;
+  return row < matrix.rows() && column < matrix.cols() ? matrix(row, column) : std::nan("");
+}
+
+std::string correlation_words(const calib::Correlation& correlation) {
+  const auto at = [&](std::size_t i, std::size_t j) { return correlation_at(correlation, i, j); };
   std::vector<std::string> names;
   std::vector<std::size_t> known;
   for (std::size_t i = 0; i < correlation.names.size(); ++i) {
@@ -88,10 +92,10 @@ doc::Section assessment_section(const StoredFit& fit) {
                      {"Against", doc::Column::Kind::words},
                      {"For", doc::Column::Kind::words}};
     for (const AspectName& aspect : kAspects) {
-      const StoredAspect& found = (*fit.assessment).*aspect.aspect;
+      const calib::Aspect& found = (*fit.assessment).*aspect.aspect;
       doc::Cell against, in_favour;
       std::size_t more = 0;
-      for (const StoredReason& reason : found.reasons) {
+      for (const calib::Reason& reason : found.reasons) {
         const doc::Line line{doc::Link{"#" + evidence_of(fit, reason, aspect.link), reason.words}};
         if (reason.state == calib::AspectState::note) {
           in_favour.paragraphs.push_back({doc::Soft{"Note: " + reason.words}});

@@ -13,24 +13,24 @@
 namespace rigcal::report {
 
 struct AspectName {
-  StoredAspect StoredAssessment::*aspect;
+  calib::Aspect calib::Assessment::*aspect;
   const char* name;
   const char* short_name;
   const char* link;  ///< id of the section with the evidence
 };
 inline constexpr std::array kAspects{
-    AspectName{&StoredAssessment::agreement, "Agreement with the limits", "Agreement", "matrix"},
-    AspectName{&StoredAssessment::validation, "Independent validation", "Validation", "matrix"},
-    AspectName{&StoredAssessment::adequacy, "Adequacy of the model", "Adequacy", "conditions"},
-    AspectName{&StoredAssessment::parameters, "Parameters", "Parameters", "parameters"}};
+    AspectName{&calib::Assessment::agreement, "Agreement with the limits", "Agreement", "matrix"},
+    AspectName{&calib::Assessment::validation, "Independent validation", "Validation", "matrix"},
+    AspectName{&calib::Assessment::adequacy, "Adequacy of the model", "Adequacy", "conditions"},
+    AspectName{&calib::Assessment::parameters, "Parameters", "Parameters", "parameters"}};
 
 /// Returns the id of the section with the evidence for a reason.
 ///
 /// @param section  section that belongs to the aspect
-std::string evidence_of(const StoredFit& fit, const StoredReason& reason, const char* section);
+std::string evidence_of(const StoredFit& fit, const calib::Reason& reason, const char* section);
 
 /// Returns true if an aspect has a reason with this code.
-bool names_reason(const StoredFit& fit, StoredAspect StoredAssessment::*aspect,
+bool names_reason(const StoredFit& fit, calib::Aspect calib::Assessment::*aspect,
                   std::string_view code);
 
 /// Lists the aspects that did not pass: "independent validation: not assessed".
@@ -39,8 +39,11 @@ std::string open_aspects(const StoredFit& fit);
 /// Explains a decision rule to the reader of the verdict (ISO/IEC 17025, 7.8.6).
 std::string rule_words(datasets::DecisionRule rule);
 
+/// Correlation of two estimates; NaN where it is not known.
+double correlation_at(const calib::Correlation& correlation, std::size_t i, std::size_t j);
+
 /// Describes how strongly the estimates are correlated. Leaves out estimates without a correlation.
-std::string correlation_words(const StoredCorrelation& correlation);
+std::string correlation_words(const calib::Correlation& correlation);
 
 /// Returns the section with the reasons for every aspect and the outcome of the search.
 doc::Section assessment_section(const StoredFit& fit);

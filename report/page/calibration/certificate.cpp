@@ -41,7 +41,7 @@ struct Judged {
   const StoredCondition* condition = nullptr;
   std::size_t number = 0;  ///< index of the condition
   std::string channel;
-  const StoredLimitCheck* check = nullptr;  ///< the check that uses most of its tolerance
+  const calib::LimitCheck* check = nullptr;  ///< the check that uses most of its tolerance
 
   double used() const {
     if (check == nullptr || !check->value || !check->tolerance_used) return HUGE_VAL;
@@ -60,11 +60,11 @@ std::vector<Judged> judged_signals(const StoredFit& fit) {
       if (!fit.acceptance.empty()) signals.push_back({&condition, i, {}, nullptr});
       continue;
     }
-    for (const StoredLimitCheck& check : condition.limit_checks) {
+    for (const calib::LimitCheck& check : condition.limit_checks) {
       const auto same = std::find_if(signals.begin(), signals.end(), [&](const Judged& each) {
-        return each.condition == &condition && each.channel == check.channel;
+        return each.condition == &condition && each.channel == info(check.channel).key;
       });
-      const Judged one{&condition, i, check.channel, &check};
+      const Judged one{&condition, i, std::string(info(check.channel).key), &check};
       if (same == signals.end()) {
         signals.push_back(one);
       } else if (std::pair(one.verdict(), one.used()) > std::pair(same->verdict(), same->used())) {
@@ -171,7 +171,7 @@ doc::Verdict failed_verdict(const StoredFit& fit) {
 }
 
 /// Returns a reason with a link to its evidence and the number of similar ones.
-Line doubt_line(const StoredFit& fit, const StoredReason& reason, const char* section,
+Line doubt_line(const StoredFit& fit, const calib::Reason& reason, const char* section,
                 std::size_t others) {
   Line line{doc::Link{"#" + evidence_of(fit, reason, section), reason.words}};
   if (others > 0) line.emplace_back(fmt::format(" (and {} more of this kind)", others));
@@ -185,15 +185,15 @@ doc::Doubts doubts_of(const StoredFit& fit) {
   std::vector<std::pair<AspectState, Line>> found;
   if (fit.assessment) {
     for (const AspectName& aspect : kAspects) {
-      const std::vector<StoredReason>& reasons = ((*fit.assessment).*aspect.aspect).reasons;
+      const std::vector<calib::Reason>& reasons = ((*fit.assessment).*aspect.aspect).reasons;
       for (std::size_t i = 0; i < reasons.size(); ++i) {
-        const StoredReason& reason = reasons[i];
+        const calib::Reason& reason = reasons[i];
         // Two reasons are not doubts: exact values are listed below the table of values, and
         // "further_starts" only reports that further starts were evaluated.
         if (reason.state == AspectState::pass || reason.code == "exact_values" ||
             reason.code == "further_starts")
           continue;
-        const auto same = [&](const StoredReason& other) {
+        const auto same = [&](const calib::Reason& other) {
           return other.code == reason.code && other.state == reason.state;
         };
         const auto here = reasons.begin() + static_cast<std::ptrdiff_t>(i);
@@ -340,7 +340,7 @@ void add_values(const StoredFit& fit, bool judged, doc::Blocks& blocks) {
     notes.emplace_back(", each more certain than these. ");
   }
   if (fit.assessment) {
-    for (const StoredReason& reason : fit.assessment->parameters.reasons)
+    for (const calib::Reason& reason : fit.assessment->parameters.reasons)
       if (reason.code == "exact_values") notes.emplace_back(capitalised(reason.words) + ". ");
   }
   const std::string correlated = correlation_words(fit.correlation);
@@ -415,7 +415,7 @@ std::string signal_words(const StoredCondition& condition) {
 
 /// Adds the score in the deciding check: "rho2 0.9987 ± 0.0002, limit 0.99".
 void add_score(const Judged& signal, doc::Cell& cell) {
-  const StoredLimitCheck& check = *signal.check;
+  const calib::LimitCheck& check = *signal.check;
   cell.line = {check.metric == "absolute_error_percent" ? "error % " : spaced(check.metric) + " ",
                doc::score(check.metric, check.value)};
   Line limit;
@@ -458,8 +458,8 @@ doc::Row signal_row(const Calibration& stored, const Judged& signal) {
   const std::string column = known ? std::string(datasets::info(*known).name) : signal.channel;
   const std::vector<double> residual = counted_samples(*series, "residual_" + column);
   double allowed = 0.0;
-  for (const StoredLimitCheck& check : condition.limit_checks) {
-    if (check.channel == signal.channel && check.metric == "rho2" && check.limit)
+  for (const calib::LimitCheck& check : condition.limit_checks) {
+    if (info(check.channel).key == signal.channel && check.metric == "rho2" && check.limit)
       allowed = metrics::allowed_rms(counted_samples(*series, "measured_" + column), *check.limit);
   }
   if (!residual.empty()) strip.picture = residual_strip(signal, residual, allowed);
@@ -544,14 +544,14 @@ void add_aspects(const StoredFit& fit, doc::Blocks& blocks) {
   blocks.emplace_back(doc::Heading{{"Why this verdict"}, 2});
   doc::Aspects aspects;
   for (const AspectName& aspect : kAspects) {
-    const StoredAspect& found = (*fit.assessment).*aspect.aspect;
+    const calib::Aspect& found = (*fit.assessment).*aspect.aspect;
     doc::Aspects::Aspect one{doc::badge(found.state), aspect.short_name, {}};
     const auto against = static_cast<std::size_t>(
         std::count_if(found.reasons.begin(), found.reasons.end(),
-                      [](const StoredReason& each) { return calib::is_against(each.state); }));
+                      [](const calib::Reason& each) { return calib::is_against(each.state); }));
     const auto in_favour =
         std::find_if(found.reasons.begin(), found.reasons.end(),
-                     [](const StoredReason& each) { return each.state == AspectState::pass; });
+                     [](const calib::Reason& each) { return each.state == AspectState::pass; });
     if (against > 0)
       one.lines.push_back({doc::Link{"#assessment", fmt::format("{}: {} against", one.badge.words,
                                                                 plural(against, "reason"))}});
@@ -585,7 +585,7 @@ void add_scope(const StoredFit& fit, doc::Blocks& blocks) {
   }
   if (fit.status == FitStatus::failed) return;
   std::vector<std::string> ranges;
-  const auto add = [&](std::optional<Range> StoredValidity::*range, const char* name,
+  const auto add = [&](std::optional<Range> calib::Validity::*range, const char* name,
                        std::string_view unit) {
     const std::optional<Range>& fitted = fit.validity.*range;
     // For a validation without a fit, `validity` already contains the ranges.
@@ -594,12 +594,12 @@ void add_scope(const StoredFit& fit, doc::Blocks& blocks) {
     if (fitted || validated)
       ranges.push_back(fmt::format("{} {}", name, coverage_text(fitted, validated, unit)));
   };
-  add(&StoredValidity::frequency_hz, "frequency", "Hz");
+  add(&calib::Validity::frequency_hz, "frequency", "Hz");
   if (ranges.empty()) ranges.emplace_back("frequency not stated: the signals are recorded ones");
-  add(&StoredValidity::amplitude_m, "amplitude (half of peak to peak)", "m");
-  add(&StoredValidity::amplitude_v, "amplitude (half of peak to peak)", "V");
-  add(&StoredValidity::supply_pressure_pa, "supply pressure", "Pa");
-  add(&StoredValidity::leakage_coefficient, "leakage coefficient", "1");
+  add(&calib::Validity::amplitude_m, "amplitude (half of peak to peak)", "m");
+  add(&calib::Validity::amplitude_v, "amplitude (half of peak to peak)", "V");
+  add(&calib::Validity::supply_pressure_pa, "supply pressure", "Pa");
+  add(&calib::Validity::leakage_coefficient, "leakage coefficient", "1");
   if (!fit.validity.leak_levels.empty())
     ranges.push_back(fmt::format("leak levels {}", fmt::join(fit.validity.leak_levels, ", ")));
   const bool valid = is_fit_schema(fit.schema) && fit.assessment &&
@@ -638,7 +638,7 @@ doc::Verdict fit_verdict(const StoredFit& fit) {
     add_numbers(fit, verdict.sentence);
     return verdict;
   }
-  if (names_reason(fit, &StoredAssessment::agreement, "poor_agreement"))
+  if (names_reason(fit, &calib::Assessment::agreement, "poor_agreement"))
     return {{State::bad, "POOR"},
             {"No limits were given, but the model does not describe the records."}};
   return {{State::none, "NOT JUDGED"},

@@ -19,7 +19,7 @@ std::optional<doc::Section> overview_section(const Calibration& stored);
 doc::Section scores_section(const StoredFit& fit, bool unfinished);
 /// @param judged  whether a search converged, so that the estimates have grades
 doc::Section parameters_section(const std::vector<StoredParameter>& parameters,
-                                const StoredCorrelation& correlation, bool judged);
+                                const calib::Correlation& correlation, bool judged);
 /// Adds the contributions to the uncertainty of each estimate. Adds nothing if no effects were
 /// considered.
 void add_budget(const std::vector<StoredParameter>& parameters, doc::Blocks& blocks);

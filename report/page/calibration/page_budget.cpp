@@ -26,11 +26,11 @@ std::string freedom_text(double freedom) {
 
 doc::Row budget_row(const StoredParameter& p) {
   const RowUnit unit = unit_of(p);
-  const StoredBudget& budget = *p.budget;
+  const calib::Budget95& budget = *p.budget;
   const auto number = [&](double value) { return doc::in_unit(value, unit.si, kBudgetDigits); };
-  const StoredBudgetLine* largest = largest_effect(budget);
-  return {{parameter_label(p), unit.name, number(contribution(budget, "records")),
-           number(contribution(budget, "known_value")), number(contribution(budget, "effect")),
+  const calib::BudgetLine* largest = budget.largest_effect();
+  return {{parameter_label(p), unit.name, number(budget.contribution("records")),
+           number(budget.contribution("known_value")), number(budget.contribution("effect")),
            number(budget.combined), freedom_text(budget.degrees_of_freedom),
            doc::decimals(budget.coverage_factor, 2), number(budget.expanded), number(budget.shift),
            largest == nullptr ? std::string("–") : spaced(largest->source)}};
@@ -40,7 +40,7 @@ doc::Row budget_row(const StoredParameter& p) {
 void add_lines(const StoredParameter& p, std::vector<doc::Row>& rows) {
   constexpr double kHardly = 1e-3;  // as a fraction of the variance
   const RowUnit unit = unit_of(p);
-  const StoredBudget& budget = *p.budget;
+  const calib::Budget95& budget = *p.budget;
   const double whole = budget.combined * budget.combined;
   double others = 0.0;
   const auto add = [&](const std::string& source, double squares) {
@@ -48,7 +48,7 @@ void add_lines(const StoredParameter& p, std::vector<doc::Row>& rows) {
         {{parameter_label(p), source, doc::in_unit(std::sqrt(squares), unit.si, kBudgetDigits),
           unit.name, doc::decimals(whole > 0.0 ? 100.0 * squares / whole : 0.0, 1)}});
   };
-  for (const StoredBudgetLine& line : budget.lines) {
+  for (const calib::BudgetLine& line : budget.lines) {
     const double square = line.uncertainty * line.uncertainty;
     if (line.kind == "records" || square >= kHardly * whole) {
       add(spaced(line.source), square);
@@ -70,7 +70,7 @@ Line effect_number(const std::optional<double>& value, const std::optional<doubl
   return line;
 }
 
-doc::Row effect_row(const StoredEffect& effect, bool missing) {
+doc::Row effect_row(const calib::ConsideredEffect& effect, bool missing) {
   const RowUnit unit = row_unit(effect.size, effect.unit);
   doc::Row row{{{Line{effect.key, " ", doc::Soft{effect.meaning}}},
                 doc::in_unit(effect.size, unit.si, kBudgetDigits),
@@ -86,14 +86,12 @@ doc::Row effect_row(const StoredEffect& effect, bool missing) {
 
 /// Lists the effects in a refitted model with their sizes: "valve_time_constant 0.21 ms, ki 5.0
 /// V/(m s)".
-std::string refit_sizes(const StoredConsidered& considered, const StoredRefit& model) {
+std::string refit_sizes(const calib::Considered& considered, const calib::RefittedModel& model) {
   std::vector<std::string> words;
   for (std::size_t i = 0; i < std::min(model.effects.size(), model.sizes.size()); ++i) {
-    const auto effect =
-        std::find_if(considered.effects.begin(), considered.effects.end(),
-                     [&](const StoredEffect& each) { return each.key == model.effects[i]; });
-    const RowUnit unit = effect == considered.effects.end() ? row_unit(model.sizes[i], "1")
-                                                            : row_unit(effect->size, effect->unit);
+    const calib::ConsideredEffect* effect = considered.find(model.effects[i]);
+    const RowUnit unit =
+        effect == nullptr ? row_unit(model.sizes[i], "1") : row_unit(effect->size, effect->unit);
     words.push_back(fmt::format("{} {}{}{}", model.effects[i],
                                 significant(model.sizes[i] / unit.si, kBudgetDigits),
                                 unit.name.empty() ? "" : " ", unit.name));
@@ -103,7 +101,7 @@ std::string refit_sizes(const StoredConsidered& considered, const StoredRefit& m
 
 /// Adds the refitted models and the estimates that each of them gives.
 void add_refits(const StoredFit& fit, doc::Blocks& blocks) {
-  const StoredConsidered& considered = *fit.considered;
+  const calib::Considered& considered = *fit.considered;
   if (considered.refitted.empty()) return;
   doc::Table models{"Refitted models"};
   models.caption = {"The fit made again with the effects that explain most"};
@@ -111,7 +109,7 @@ void add_refits(const StoredFit& fit, doc::Blocks& blocks) {
                     {"Fall of the sum of squares", Kind::number},
                     {"The same, each condition predicted from the others", Kind::number},
                     {"Weight", Kind::number}};
-  for (const StoredRefit& each : considered.refitted) {
+  for (const calib::RefittedModel& each : considered.refitted) {
     models.rows.push_back(
         {{refit_sizes(considered, each), doc::in_unit(each.fall, 1.0, 3),
           doc::in_unit(each.held_out_fall, 1.0, 3), doc::decimals(each.weight, 2)}});
@@ -134,7 +132,7 @@ void add_refits(const StoredFit& fit, doc::Blocks& blocks) {
   if (!averaged.rows.empty()) blocks.emplace_back(std::move(averaged));
 }
 
-doc::Row stability_row(const StoredStability& check) {
+doc::Row stability_row(const calib::StabilityCheck& check) {
   const RowUnit unit = row_unit(check.value, check.unit);
   return {{check.level ? fmt::format("{} ({})", check.key, *check.level) : check.key,
            doc::in_unit(check.value, unit.si),
@@ -184,8 +182,8 @@ void add_budget(const std::vector<StoredParameter>& parameters, doc::Blocks& blo
 void add_considered(const StoredFit& fit, doc::Blocks& blocks) {
   if (!fit.considered) return;
   blocks.emplace_back(doc::Heading{{"Small effects that the model leaves out"}});
-  const StoredConsidered& considered = *fit.considered;
-  const auto is_missing = [&](const StoredEffect& effect) {
+  const calib::Considered& considered = *fit.considered;
+  const auto is_missing = [&](const calib::ConsideredEffect& effect) {
     return std::find(considered.missing.begin(), considered.missing.end(), effect.key) !=
            considered.missing.end();
   };
@@ -203,7 +201,7 @@ void add_considered(const StoredFit& fit, doc::Blocks& blocks) {
                      {"Unit", Kind::unit},
                      {"p of none, all together", Kind::number},
                      {"The size follows from"}};
-    for (const StoredEffect& each : considered.effects)
+    for (const calib::ConsideredEffect& each : considered.effects)
       table.rows.push_back(effect_row(each, is_missing(each)));
     const std::string summary = fmt::format("Effects ({})", table.rows.size());
     blocks.emplace_back(doc::Fold{summary, {std::move(table)}});
@@ -225,7 +223,8 @@ void add_stability(const StoredFit& fit, doc::Blocks& blocks) {
                    {"Of which both uncertainties allow"},
                    {"Unit", Kind::unit},
                    {"Outcome, all together"}};
-  for (const StoredStability& each : *fit.stability) table.rows.push_back(stability_row(each));
+  for (const calib::StabilityCheck& each : *fit.stability)
+    table.rows.push_back(stability_row(each));
   blocks.emplace_back(std::move(table));
 }
 

@@ -20,8 +20,8 @@ namespace {
 using Kind = doc::Column::Kind;
 
 /// Returns the uncertainty of the scores for a channel, or null if it is unknown.
-const StoredAgreement* uncertainty_of(const StoredCondition& condition,
-                                      const std::string& channel) {
+const metrics::Agreement* uncertainty_of(const StoredCondition& condition,
+                                         const std::string& channel) {
   if (!condition.expanded_uncertainty) return nullptr;
   const auto* found = find(*condition.expanded_uncertainty, channel);
   return found != nullptr && found->has_value() ? &**found : nullptr;

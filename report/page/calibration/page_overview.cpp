@@ -78,8 +78,9 @@ std::string whose(const Extreme& worst, const std::string& metric,
   const StoredCondition& condition = *worst.condition;
   std::string text = fmt::format("{} of {}", spaced(worst.channel), condition.id);
   const auto check = std::find_if(
-      condition.limit_checks.begin(), condition.limit_checks.end(),
-      [&](const auto& each) { return each.channel == worst.channel && each.metric == metric; });
+      condition.limit_checks.begin(), condition.limit_checks.end(), [&](const auto& each) {
+        return info(each.channel).key == worst.channel && each.metric == metric;
+      });
   if (check != condition.limit_checks.end() && check->limit)
     text += fmt::format(", limit {:.6g}", *check->limit);
   else

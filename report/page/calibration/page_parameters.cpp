@@ -72,13 +72,7 @@ doc::Row known_row(const StoredParameter& p) {
            doc::in_unit(p.value, unit.si, 6), unit.name, p.reason}};
 }
 
-/// Returns the correlation of two estimates; NaN if it is unknown.
-double at(const StoredCorrelation& correlation, std::size_t i, std::size_t j) {
-  const auto& matrix = correlation.matrix;
-  return i < matrix.size() && j < matrix[i].size() ? matrix[i][j] : std::nan("");
-}
-
-doc::Table correlation_table(const StoredCorrelation& correlation) {
+doc::Table correlation_table(const calib::Correlation& correlation) {
   const std::vector<std::string>& names = correlation.names;
   doc::Table table{"Correlation of the estimates"};
   table.style = "correlation";
@@ -88,7 +82,7 @@ doc::Table correlation_table(const StoredCorrelation& correlation) {
   for (std::size_t i = 0; i < names.size(); ++i) {
     doc::Row row{{fmt::format("{} {}", i + 1, names[i])}};
     for (std::size_t j = 0; j < names.size(); ++j) {
-      const double r = at(correlation, i, j);
+      const double r = correlation_at(correlation, i, j);
       doc::Cell cell{Line{doc::decimals(r, 2)}};
       if (i != j && !std::isnan(r)) cell.shade = r;
       row.cells.push_back(std::move(cell));
@@ -167,7 +161,7 @@ std::string half_width_text(double relative) {
 }
 
 doc::Section parameters_section(const std::vector<StoredParameter>& parameters,
-                                const StoredCorrelation& correlation, bool judged) {
+                                const calib::Correlation& correlation, bool judged) {
   doc::Section section{"parameters", "Parameters"};
   if (!judged)
     section.blocks.emplace_back(doc::Paragraph{

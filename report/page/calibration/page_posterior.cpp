@@ -21,7 +21,7 @@ std::string count_text(const std::optional<double>& count) {
   return count ? fmt::format("{:.0f}", *count) : std::string("–");
 }
 
-doc::Table draws_table(const StoredFit& fit, const StoredPosterior& found) {
+doc::Table draws_table(const StoredFit& fit, const calib::Posterior& found) {
   doc::Table table{"Posterior"};
   table.caption = {capitalised(found.message) + "."};
   table.columns = {{"Parameter"},
@@ -36,18 +36,19 @@ doc::Table draws_table(const StoredFit& fit, const StoredPosterior& found) {
   for (const StoredParameter& p : fit.parameters) {
     if (!p.posterior) continue;
     const RowUnit unit = unit_of(p);
-    const StoredPosteriorSpread& spread = *p.posterior;
+    const calib::PosteriorSpread& spread = *p.posterior;
     table.rows.push_back(
         {{parameter_label(p), doc::in_unit(spread.median, unit.si, 6), unit.name,
           doc::in_unit(spread.sd, unit.si, 3), range_line(spread.ci95, unit),
           range_line(p.ci95_if_exact, unit), range_line(p.ci95, unit),
-          spread.r_hat ? fmt::format("{:.4f}", *spread.r_hat) : std::string("–"),
-          fmt::format("{}, {}", count_text(spread.bulk_draws), count_text(spread.tail_draws))}});
+          std::isfinite(spread.r_hat) ? fmt::format("{:.4f}", spread.r_hat) : std::string("–"),
+          fmt::format("{}, {}", count_text(finite(spread.bulk_draws)),
+                      count_text(finite(spread.tail_draws)))}});
   }
   return table;
 }
 
-doc::Table limits_table(const StoredPosterior& found) {
+doc::Table limits_table(const calib::Posterior& found) {
   doc::Table table{"How probable it is that limits are kept"};
   table.columns = {{"Condition"},
                    {"Channel"},
@@ -55,10 +56,10 @@ doc::Table limits_table(const StoredPosterior& found) {
                    {"Limit", Kind::number},
                    {"Median", Kind::number},
                    {"Probability", Kind::number}};
-  for (const StoredKeptLimit& each : found.limits) {
-    table.rows.push_back(
-        {{each.condition, each.channel, each.metric, doc::in_unit(each.limit, 1.0, 6),
-          doc::in_unit(each.median, 1.0, 6), fmt::format("{:.3g}", each.probability)}});
+  for (const calib::KeptLimit& each : found.limits) {
+    table.rows.push_back({{each.condition, std::string(info(each.channel).key), each.metric,
+                           doc::in_unit(each.limit, 1.0, 6), doc::in_unit(each.median, 1.0, 6),
+                           fmt::format("{:.3g}", each.probability)}});
   }
   return table;
 }
@@ -77,7 +78,7 @@ std::string axis_label(const std::string& name, const RowUnit& unit) {
   return unit.name.empty() ? name : fmt::format("{} [{}]", name, unit.name);
 }
 
-Plot pair_plot(const StoredFit& fit, const StoredPairs& pairs, std::size_t a, std::size_t b) {
+Plot pair_plot(const StoredFit& fit, const calib::Pairs& pairs, std::size_t a, std::size_t b) {
   const StoredParameter* const first = named(fit, pairs.names[a]);
   const StoredParameter* const second = named(fit, pairs.names[b]);
   const RowUnit x = first != nullptr ? unit_of(*first) : RowUnit{};
@@ -104,7 +105,7 @@ Plot pair_plot(const StoredFit& fit, const StoredPairs& pairs, std::size_t a, st
   return plot;
 }
 
-void add_pairs(const StoredFit& fit, const StoredPairs& pairs, doc::Blocks& blocks) {
+void add_pairs(const StoredFit& fit, const calib::Pairs& pairs, doc::Blocks& blocks) {
   doc::Gallery gallery;
   const std::size_t count = std::min(pairs.names.size(), pairs.values.size());
   for (std::size_t a = 0; a < count; ++a) {
@@ -124,7 +125,7 @@ void add_pairs(const StoredFit& fit, const StoredPairs& pairs, doc::Blocks& bloc
 
 void add_posterior(const StoredFit& fit, doc::Blocks& blocks) {
   if (!fit.posterior) return;
-  const StoredPosterior& found = *fit.posterior;
+  const calib::Posterior& found = *fit.posterior;
   blocks.emplace_back(doc::Heading{{"Posterior"}});
   if (found.draws == 0) {
     blocks.emplace_back(doc::reading(capitalised(found.message) + "."));

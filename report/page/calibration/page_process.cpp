@@ -18,12 +18,12 @@ doc::Table start_table(const StoredFit& fit) {
   table.columns = {{"Start", Kind::number},         {"Status"},
                    {"Cost at start", Kind::number}, {"Cost at end", Kind::number},
                    {"Iterations", Kind::number},    {"Why it ended", Kind::words}};
-  for (const StoredStart& start : fit.starts) {
+  for (const calib::StartReport& start : fit.starts) {
     const bool best = start.number == fit.best_start;
     table.rows.push_back(
         {{fmt::format("{}{}", start.number, best ? " ★ best" : ""),
-          std::string(to_string(start.status)), doc::in_unit(start.initial_cost, 1.0, 6),
-          doc::in_unit(start.final_cost, 1.0, 6), fmt::format("{}", start.iterations),
+          std::string(to_string(start.status)), doc::in_unit(finite(start.initial_cost), 1.0, 6),
+          doc::in_unit(finite(start.final_cost), 1.0, 6), fmt::format("{}", start.iterations),
           start.message}});
   }
   return table;
@@ -32,7 +32,7 @@ doc::Table start_table(const StoredFit& fit) {
 /// Explains the further starts of a fit for which one start was requested.
 std::string further_starts_of(const StoredFit& fit) {
   if (fit.assessment) {
-    for (const StoredReason& reason : fit.assessment->parameters.reasons) {
+    for (const calib::Reason& reason : fit.assessment->parameters.reasons) {
       if (reason.code == "further_starts") return reason.words + ".";
     }
   }
@@ -68,9 +68,9 @@ doc::Section starts_section(const StoredFit& fit) {
     return section;
   }
   std::vector<double> costs;
-  for (const StoredStart& start : fit.starts) {
-    if (start.final_cost && start.status != calib::FitStatus::failed)
-      costs.push_back(*start.final_cost);
+  for (const calib::StartReport& start : fit.starts) {
+    if (std::isfinite(start.final_cost) && start.status != calib::FitStatus::failed)
+      costs.push_back(start.final_cost);
   }
   std::sort(costs.begin(), costs.end());
   blocks.emplace_back(doc::reading(start_reading(fit, costs)));
@@ -90,7 +90,7 @@ doc::Section starts_section(const StoredFit& fit) {
   doc::Table basins{"Where converged starts ended"};
   basins.caption = {basins.label};
   basins.columns = {{"Cost", Kind::number}, {"Starts", Kind::number}};
-  for (const StoredBasin& basin : fit.basins)
+  for (const calib::Basin& basin : fit.basins)
     basins.rows.push_back(
         {{doc::in_unit(basin.cost, 1.0, 8), fmt::format("{}", basin.starts.size())}});
   blocks.emplace_back(std::move(basins));
@@ -127,7 +127,7 @@ doc::Section warnings_section(const StoredFit& fit) {
                    {"At", Kind::number},
                    {"Why", Kind::words},
                    {"Values", Kind::words}};
-  for (const StoredFailure& failure : fit.failures) {
+  for (const calib::SimulationFailure& failure : fit.failures) {
     std::string values;
     for (const auto& [name, value] : failure.parameters) {
       values += fmt::format("{}{} = {}", values.empty() ? "" : ", ", name,

@@ -88,7 +88,7 @@ doc::Mark mark_of(metrics::TestOutcome outcome) {
 doc::Facts test_facts(const StoredResidualTests& tests, const std::string& channel) {
   doc::Facts facts{"Residual tests of " + channel};
   facts.caption = {channel};
-  const auto add = [&](const char* name, const StoredTest& test) {
+  const auto add = [&](const char* name, const auto& test) {
     facts.rows.push_back({name, {mark_of(test.outcome), " " + test.verdict}});
   };
   add("Autocorrelation", tests.autocorrelation);

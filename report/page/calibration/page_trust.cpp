@@ -16,22 +16,23 @@ using Kind = doc::Column::Kind;
 
 constexpr double kHighestRise = 4.0;
 
-std::string end_words(const StoredProfileEnd& end, const RowUnit& unit, const char* which) {
+std::string end_words(const calib::ProfileEnd& end, const RowUnit& unit, const char* which) {
   const auto text = [&](double value) {
     return fmt::format("{:.5g}{}{}", value / unit.si, unit.name.empty() ? "" : " ", unit.name);
   };
   if (end.value) return fmt::format("{} end {}", which, text(*end.value));
-  if (end.lost.value_or(false))
+  if (end.is_lost())
     return fmt::format("not followed to its {} end: stopped, or no fit there", which);
   return fmt::format(
       "open at its {} end{}", which,
-      end.reached ? fmt::format(": followed to {} without leaving the interval", text(*end.reached))
-                  : std::string());
+      std::isfinite(end.reached)
+          ? fmt::format(": followed to {} without leaving the interval", text(end.reached))
+          : std::string());
 }
 
 /// Plots the increase in cost when a parameter is fixed at each value. The 95 % interval ends where
 /// the increase is 1.
-Plot profile_plot(const StoredParameter& parameter, const StoredProfile& profile) {
+Plot profile_plot(const StoredParameter& parameter, const calib::Profile& profile) {
   const RowUnit unit = unit_of(parameter);
   Plot plot;
   plot.title = fmt::format("Profile of {}", parameter_label(parameter));
@@ -57,13 +58,13 @@ Plot profile_plot(const StoredParameter& parameter, const StoredProfile& profile
   return plot;
 }
 
-std::string profile_reading(const StoredParameter& parameter, const StoredProfile& profile) {
+std::string profile_reading(const StoredParameter& parameter, const calib::Profile& profile) {
   const RowUnit unit = unit_of(parameter);
   return fmt::format("{}: {}, {}.", parameter_label(parameter),
                      end_words(profile.low, unit, "lower"), end_words(profile.high, unit, "upper"));
 }
 
-doc::Row bootstrap_row(const StoredParameter& parameter, const StoredBootstrap& bootstrap) {
+doc::Row bootstrap_row(const StoredParameter& parameter, const calib::BootstrapSpread& bootstrap) {
   const RowUnit unit = unit_of(parameter);
   const auto& ci95 = bootstrap.ci95;
   return {{parameter_label(parameter), doc::in_unit(parameter.value, unit.si, 6), unit.name,
@@ -85,16 +86,17 @@ doc::Table lack_of_fit_table(const StoredFit& fit) {
                    {"Outcome, all together"}};
   table.file = is_fit_schema(fit.schema) ? "fit.json" : "validation.json";
   table.most = 100;
-  std::vector<StoredLackOfFitTest> tests = lack.tests;
+  std::vector<calib::LackOfFit> tests = lack.tests;
   if (tests.size() > table.most)
     std::stable_sort(tests.begin(), tests.end(), [](const auto& a, const auto& b) {
       return !std::isnan(a.p) && (std::isnan(b.p) || a.p < b.p);
     });
-  for (const StoredLackOfFitTest& test : tests) {
+  for (const calib::LackOfFit& test : tests) {
     const bool judged = test.outcome != metrics::TestOutcome::not_judged;
     table.rows.push_back(
-        {{test.condition, test.channel, test.against, doc::in_unit(test.ratio, 1.0, 4),
-          doc::in_unit(test.freedom, 1.0, 6).text, std::isnan(test.p) ? "–" : p_value_text(test.p),
+        {{test.condition, std::string(info(test.channel).key), test.against,
+          doc::in_unit(test.ratio, 1.0, 4), doc::in_unit(test.freedom, 1.0, 6).text,
+          std::isnan(test.p) ? "–" : p_value_text(test.p),
           judged ? std::string(to_string(test.outcome))
                  : "cannot be judged: " + test.reason.value_or("")}});
   }
@@ -124,13 +126,14 @@ void add_lack_of_fit(const StoredFit& fit, doc::Blocks& blocks) {
 }
 
 /// Returns, for each channel, for example "27.05 um (27.01 um where it was fitted)".
-std::string prediction_words(const StoredHeldOut& held) {
+std::string prediction_words(const calib::HeldOut& held) {
   std::string text;
   for (const auto& [channel, value] : held.rmse) {
     if (std::isnan(value)) continue;
     const double* fitted = find(held.fitted_rmse, channel);
-    const std::string unit(channel_unit(channel));
-    text += fmt::format("{}{} {}", text.empty() ? "" : "; ", channel, readable(value, unit, 4));
+    const std::string unit(info(channel).unit);
+    text += fmt::format("{}{} {}", text.empty() ? "" : "; ", info(channel).key,
+                        readable(value, unit, 4));
     if (fitted != nullptr && !std::isnan(*fitted))
       text += fmt::format(" ({} where it was fitted)", readable(*fitted, unit, 4));
   }
@@ -146,7 +149,7 @@ void add_cross_validation(const StoredFit& fit, doc::Blocks& blocks) {
                    {"RMSE of its prediction"},
                    {"Largest shift of"},
                    {"Shift, standard errors", Kind::number}};
-  for (const StoredHeldOut& held : *fit.cross_validation) {
+  for (const calib::HeldOut& held : *fit.cross_validation) {
     const auto& shift = held.largest_shift;
     table.rows.push_back(
         {{held.condition, held.problem ? *held.problem : prediction_words(held),

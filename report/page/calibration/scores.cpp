@@ -31,10 +31,11 @@ std::string level_of(const StoredCondition& condition) { return condition.leak_l
 
 /// Returns, for example, "rho2 0.99 (warning at 0.995), ccc 0.99"; empty if the channel has no
 /// limits.
-std::string limits_text(const std::vector<StoredLimit>& limits, const std::string& channel) {
+std::string limits_text(const std::vector<datasets::AcceptanceLimit>& limits,
+                        const std::string& channel) {
   std::string text;
-  for (const StoredLimit& limit : limits) {
-    if (limit.channel != channel) continue;
+  for (const datasets::AcceptanceLimit& limit : limits) {
+    if (info(limit.channel).key != channel) continue;
     text += fmt::format("{}{} {}", text.empty() ? "" : ", ", limit.metric,
                         doc::in_unit(limit.limit, 1.0, 6).text);
     if (limit.warn) text += fmt::format(" (warning at {})", doc::in_unit(limit.warn, 1.0, 6).text);
@@ -163,14 +164,14 @@ doc::Table means_table(const StoredFit& fit) {
                    {"Mean error %", Kind::number},
                    {"Worst rho2", Kind::number},
                    {"Worst error %", Kind::number}};
-  for (const StoredGroup& group : fit.groups) {
+  for (const calib::Group& group : fit.groups) {
     for (const auto& [channel, scores] : group.metrics) {
-      table.rows.push_back(
-          {{spaced(group.by), group.label, channel, fmt::format("{}", scores.conditions),
-            doc::agreement(scores.mean.rho2), doc::agreement(scores.mean.ccc),
-            doc::in_unit(scores.mean.absolute_error_percent, 1.0, 3),
-            doc::agreement(scores.worst.rho2),
-            doc::in_unit(scores.worst.absolute_error_percent, 1.0, 3)}});
+      table.rows.push_back({{spaced(group.by), group.label, std::string(info(channel).key),
+                             fmt::format("{}", scores.conditions), doc::agreement(scores.mean.rho2),
+                             doc::agreement(scores.mean.ccc),
+                             doc::in_unit(scores.mean.absolute_error_percent, 1.0, 3),
+                             doc::agreement(scores.worst.rho2),
+                             doc::in_unit(scores.worst.absolute_error_percent, 1.0, 3)}});
     }
   }
   return table;

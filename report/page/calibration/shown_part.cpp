@@ -18,7 +18,7 @@ constexpr double kPeriods = 2.0;
 auto badness(const StoredCondition& condition) {
   const bool unusable = condition.failure.has_value() || condition.not_scored.has_value();
   double used = 0.0;
-  for (const StoredLimitCheck& check : condition.limit_checks)
+  for (const calib::LimitCheck& check : condition.limit_checks)
     used = std::max(used, check.tolerance_used.value_or(0.0));
   double error_percent = 0.0;
   for (const auto& [channel, scores] : condition.metrics)

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "diagnosis/accuracy.hpp"
+#include "metrics/residual_features.hpp"
 #include "report/store/stored/stored_leak.hpp"
 #include "report/store/stored/stored_provenance.hpp"
 
@@ -101,7 +103,7 @@ struct StoredDiagnosedRecord {
   std::optional<double> unbounded_leakage_coefficient;
   bool undecided = false;
   std::optional<bool> explained_by_leak;
-  ByFeature<std::optional<double>> features;
+  metrics::ByFeature<std::optional<double>> features;
   std::optional<double> parity_rms_m, misfit_rms_m, noise_rms_m, log_slope;
   std::optional<datasets::LeakClass> class_by_features, class_by_features_of_other_signals,
       true_class;
@@ -115,28 +117,9 @@ struct StoredDiagnosedRecord {
   bool is_average() const { return !repeat; }
 };
 
-/// Numbers of records: rows by true class, columns by assigned class.
-struct StoredConfusion {
-  static constexpr std::size_t kClasses = datasets::kLeakClasses.size();
-  std::array<std::string, kClasses> truth;
-  std::array<std::string, kClasses + 1> found;  ///< the last one undecided
-  std::array<std::array<int, kClasses + 1>, kClasses> counts{};
-  RIGCAL_DESCRIBE(truth, found, counts)
-};
-
-/// Accuracy of a method.
-struct StoredAccuracy {
-  int records = 0, conditions = 0, right = 0, undecided = 0, off_by_two_or_more = 0;
-  std::optional<double> accuracy;
-  std::optional<Range> accuracy_ci95;
-  StoredConfusion confusion;
-  RIGCAL_DESCRIBE(records, conditions, right, undecided, off_by_two_or_more, accuracy,
-                  accuracy_ci95, confusion)
-};
-
 struct StoredMethods {
-  StoredAccuracy fitted_leak_single, fitted_leak_averaged;
-  StoredAccuracy features_leave_one_repeat_out, features_leave_one_signal_out;
+  diagnosis::Accuracy fitted_leak_single, fitted_leak_averaged;
+  diagnosis::Accuracy features_leave_one_repeat_out, features_leave_one_signal_out;
   RIGCAL_DESCRIBE(fitted_leak_single, fitted_leak_averaged, features_leave_one_repeat_out,
                   features_leave_one_signal_out)
 };
@@ -188,7 +171,7 @@ struct StoredDiagnosis {
   std::vector<StoredState> states;
   std::vector<StoredLeakTrend> trends;
   std::vector<StoredDiagnosedRecord> records;
-  StoredConfusion confusion;  ///< for the fitted leak in single repeats, like the two below
+  diagnosis::Confusion confusion;  ///< for the fitted leak in single repeats, like the two below
   std::optional<double> accuracy;
   std::optional<Range> accuracy_ci95;
   StoredMethods methods;

@@ -7,23 +7,14 @@
 #include <set>
 
 #include "calib/problem/known_sd.hpp"
-#include "metrics/distributions.hpp"
 #include "report/store/identity.hpp"
 #include "report/store/stored/stored_residual_tests.hpp"
 #include "report/store/stored/stored_tables_fit.hpp"
-#include "report/store/validity.hpp"
-#include "report/text/groups.hpp"
 
 namespace rigcal::report {
 namespace {
 
 using datasets::Scope;
-
-Range range_of(const std::pair<double, double>& ends) { return {ends.first, ends.second}; }
-
-std::optional<Range> range_of(const std::optional<std::pair<double, double>>& ends) {
-  return ends ? std::optional(range_of(*ends)) : std::nullopt;
-}
 
 std::string key_of(datasets::Channel channel) { return std::string(info(channel).key); }
 
@@ -33,77 +24,10 @@ std::vector<std::string> keys_of(const std::vector<datasets::Channel>& channels)
   return keys;
 }
 
-StoredAspect stored(const calib::Aspect& aspect) {
-  StoredAspect result{aspect.state, {}};
-  for (const calib::Reason& reason : aspect.reasons)
-    result.reasons.push_back(
-        {reason.code, reason.state, unless_empty(reason.subject), reason.numbers, reason.words});
-  return result;
-}
-
 std::string reason_of(const calib::FittedParameter& p) {
   if (std::isfinite(p.value)) return p.reason;
   return p.reason + (p.reason.empty() ? "" : "; ") +
          (std::isinf(p.value) && !p.fitted ? "no limit" : "the value is not a finite number");
-}
-
-StoredProfileEnd stored(const calib::ProfileEnd& end) {
-  return {finite(end.value), finite(end.reached), std::optional(end.lost)};
-}
-
-StoredBudget stored(const calib::Budget95& budget) {
-  StoredBudget result;
-  for (const calib::BudgetLine& line : budget.lines)
-    result.lines.push_back(
-        {line.source, line.kind, line.uncertainty,
-         line.kind == "effect" ? Omittable<double>(line.sensitivity) : Omittable<double>()});
-  result.combined = budget.combined;
-  result.degrees_of_freedom = budget.degrees_of_freedom;
-  result.coverage_factor = budget.coverage_factor;
-  result.expanded = budget.expanded;
-  result.shift = budget.shift;
-  return result;
-}
-
-StoredConsidered stored(const calib::Considered& considered) {
-  StoredConsidered result;
-  result.left_out = considered.left_out;
-  for (const calib::ConsideredEffect& e : considered.effects)
-    result.effects.push_back({e.key, e.meaning, e.unit, e.size_from, e.size, e.one_sided,
-                              unless_empty(e.problem), e.estimate, e.standard_error, e.alone,
-                              e.alone_half_width, e.p_value, e.p_of_all, e.explains});
-  for (const std::size_t position : considered.missing)
-    result.missing.push_back(considered.effects[position].key);
-  for (const calib::RefittedModel& model : considered.refitted) {
-    StoredRefit& each = result.refitted.emplace_back();
-    for (const std::size_t position : model.effects)
-      each.effects.push_back(considered.effects[position].key);
-    each.sizes = model.sizes;
-    each.fall = model.fall;
-    each.held_out_fall = finite(model.held_out_fall);
-    each.weight = model.weight;
-  }
-  for (const auto& row : considered.correlation.rowwise())
-    result.correlation.emplace_back(row.begin(), row.end());
-  return result;
-}
-
-std::vector<StoredStability> stored(const std::vector<calib::StabilityCheck>& checks,
-                                    std::span<const model::ParameterSpec> table) {
-  std::vector<StoredStability> result;
-  for (const calib::StabilityCheck& each : checks) {
-    StoredStability& check = result.emplace_back();
-    const model::ParameterSpec& spec = table[static_cast<std::size_t>(each.index)];
-    check.key = spec.key;
-    check.unit = spec.unit;
-    check.scope = each.scope;
-    if (each.scope != Scope::rig) check.level = each.level;
-    check.value = each.value;
-    check.difference = each.difference;
-    check.expanded = each.expanded;
-    check.differs = each.differs;
-  }
-  return result;
 }
 
 StoredParameter stored(const calib::FittedParameter& p, const model::ParameterSpec& spec) {
@@ -125,107 +49,19 @@ StoredParameter stored(const calib::FittedParameter& p, const model::ParameterSp
   result.nuisance = p.nuisance;
   result.standard_error = finite(p.standard_error);
   result.robust_standard_error = finite(p.robust_standard_error);
-  result.ci95 = range_of(p.ci95);
-  result.ci95_if_exact = range_of(p.ci95_if_exact);
-  if (p.budget) result.budget = stored(*p.budget);
-  if (p.averaged) result.averaged = StoredAveraged{p.averaged->value, p.averaged->standard_error};
+  result.ci95 = p.ci95;
+  result.ci95_if_exact = p.ci95_if_exact;
+  result.budget = p.budget;
+  result.averaged = p.averaged;
   if (p.between_days_error && std::isfinite(*p.between_days_error))
     result.between_days_error = *p.between_days_error;
   if (p.ci95) result.ci95_from = std::optional(p.interval);
   result.degrees_of_freedom = finite(p.degrees_of_freedom);
-  if (p.bootstrap)
-    result.bootstrap = StoredBootstrap{p.bootstrap->standard_error, p.bootstrap->bias,
-                                       p.bootstrap->freedom, range_of(p.bootstrap->ci95)};
-  if (p.profile)
-    result.profile = StoredProfile{stored(p.profile->low), stored(p.profile->high),
-                                   p.profile->values, p.profile->rises};
-  if (p.posterior)
-    result.posterior = StoredPosteriorSpread{p.posterior->median,
-                                             p.posterior->sd,
-                                             range_of(p.posterior->ci95),
-                                             finite(p.posterior->r_hat),
-                                             finite(p.posterior->bulk_draws),
-                                             finite(p.posterior->tail_draws)};
+  result.bootstrap = p.bootstrap;
+  result.profile = p.profile;
+  result.posterior = p.posterior;
   result.at_bound = p.at_bound;
   result.reason = reason_of(p);
-  return result;
-}
-
-/// Draws of the estimates that are shown in pairs: at most kMostPairDraws of kMostPaired of them.
-StoredPairs pairs_of(const calib::Posterior& found, const calib::Fit& fit) {
-  constexpr std::size_t kMostPaired = 6;
-  constexpr std::size_t kMostPairDraws = 400;
-  StoredPairs pairs;
-  if (found.values.empty()) return pairs;
-  const std::size_t count = found.values.front().size();
-  const std::size_t every = (count + kMostPairDraws - 1) / kMostPairDraws;
-  pairs.every = static_cast<int>(every);
-  for (std::size_t j = 0; j < found.values.size() && pairs.names.size() < kMostPaired; ++j) {
-    if (fit.parameters[j].nuisance) continue;
-    pairs.names.push_back(found.names[j]);
-    std::vector<double>& values = pairs.values.emplace_back();
-    for (std::size_t k = 0; k < count; k += every) values.push_back(found.values[j][k]);
-  }
-  return pairs;
-}
-
-StoredPosterior stored(const calib::Posterior& found, const calib::Fit& fit) {
-  StoredPosterior result;
-  result.chains = found.chains;
-  result.warm_up = found.warm_up;
-  result.draws = found.draws;
-  result.asked = found.asked;
-  result.evaluations = found.evaluations;
-  result.diverged = found.diverged;
-  result.longest = found.longest;
-  result.noise_variance = found.noise_variance;
-  result.message = found.message;
-  if (found.draws == 0) return result;
-  result.energy_fraction = finite(found.energy_fraction);
-  result.r_hat = finite(found.r_hat);
-  result.least_draws = finite(found.least_draws);
-  result.worst = found.worst;
-  result.simulated = found.simulated;
-  for (const calib::KeptLimit& each : found.limits)
-    result.limits.push_back({each.condition, key_of(each.channel), each.metric, each.limit,
-                             each.probability, finite(each.median)});
-  result.pairs = pairs_of(found, fit);
-  return result;
-}
-
-StoredLackOfFit lack_of_fit(const calib::Fit& fit) {
-  StoredLackOfFit result{fit.misfit, {}};
-  for (const calib::LackOfFit& test : fit.lack_of_fit)
-    result.tests.push_back({test.condition, key_of(test.channel),
-                            test.by_repeats ? "repeats" : "sd", test.ratio, test.freedom,
-                            test.pure_freedom, test.p, test.outcome, unless_empty(test.reason)});
-  return result;
-}
-
-std::optional<StoredBetweenRepeats> stored(const std::optional<calib::BetweenRepeats>& repeats) {
-  if (!repeats) return std::nullopt;
-  StoredBetweenRepeats result{
-      repeats->differ, repeats->p, repeats->ratio, repeats->parameters, {}, {}, {}};
-  if (repeats->cause.empty()) return result;
-  result.cause = repeats->cause;
-  result.cause_sd = repeats->cause_sd;
-  result.cause_explains = repeats->cause_explains;
-  return result;
-}
-
-Keyed<double> by_channel(const std::vector<std::pair<datasets::Channel, double>>& values) {
-  Keyed<double> result;
-  for (const auto& [channel, value] : values) result.emplace_back(key_of(channel), value);
-  return result;
-}
-
-std::vector<StoredHeldOut> stored(const std::vector<calib::HeldOut>& all) {
-  std::vector<StoredHeldOut> result;
-  for (const calib::HeldOut& held : all)
-    result.push_back({held.condition, unless_empty(held.problem), by_channel(held.rms),
-                      by_channel(held.fitted_rms),
-                      held.problem.empty() ? finite(held.largest_shift) : std::nullopt,
-                      unless_empty(held.shifted)});
   return result;
 }
 
@@ -251,44 +87,10 @@ std::vector<StoredWeight> weights(const Result& result) {
   return list;
 }
 
-/// Stores an amplitude in the member of its unit: `amplitude_m`, `amplitude_v`, ...
-template <typename Stored, typename Value>
-void put_amplitude(std::string_view unit, const std::optional<Value>& amplitude, Stored& stored) {
-  if (unit == "m") stored.amplitude_m = amplitude;
-  if (unit == "V") stored.amplitude_v = amplitude;
-  if (!amplitude) return;
-  if (unit == "N") stored.amplitude_n = *amplitude;
-  if (unit == "Pa") stored.amplitude_pa = *amplitude;
-  if (unit == "m/s2") stored.amplitude_m_per_s2 = *amplitude;
-}
-
-StoredValidity validity(const Result& result, const std::vector<datasets::Use>& uses) {
-  const Validity covered = coverage(result.campaign, result.records, result.fit, uses);
-  StoredValidity stored;
-  stored.frequency_hz = covered.frequency_hz;
-  put_amplitude(covered.amplitude_unit, covered.amplitude, stored);
-  stored.supply_pressure_pa = covered.supply_pressure_pa;
-  stored.leakage_coefficient = covered.leakage_coefficient;
-  stored.leak_levels = covered.leak_levels;
-  return stored;
-}
-
-std::vector<StoredLimit> stored(const std::vector<datasets::AcceptanceLimit>& limits) {
-  std::vector<StoredLimit> list;
-  for (const datasets::AcceptanceLimit& limit : limits)
-    list.push_back({key_of(limit.channel), limit.metric, finite(limit.limit), finite(limit.warn)});
-  return list;
-}
-
-StoredAgreement stored(const std::optional<metrics::Agreement>& agreement) {
-  StoredAgreement result;
-  for (const metrics::MetricSpec& metric : metrics::kMetrics)
-    result.*metric.value = agreement ? (*agreement).*metric.value : std::nan("");
-  return result;
-}
-
 StoredScore stored(const calib::ChannelScore& score) {
-  StoredScore result{stored(score.agreement), {}, {}, {}, {}};
+  StoredScore result;
+  for (const metrics::MetricSpec& metric : metrics::kMetrics)
+    result.*metric.value = score.agreement ? (*score.agreement).*metric.value : std::nan("");
   result.gain_ratio = score.gain_ratio;
   result.phase_deg = score.phase_deg;
   result.delay_s = score.delay_s;
@@ -297,14 +99,7 @@ StoredScore stored(const calib::ChannelScore& score) {
 }
 
 void add_checks(const calib::ConditionScore& score, StoredCondition& condition) {
-  for (const calib::LimitCheck& check : score.checks) {
-    condition.limit_checks.push_back(
-        {key_of(check.channel), check.metric, finite(check.value), finite(check.limit),
-         finite(check.warn), check.value ? finite(check.used) : std::nullopt,
-         check.expanded_uncertainty ? Omittable<double>(*check.expanded_uncertainty)
-                                    : Omittable<double>(),
-         check.verdict});
-  }
+  condition.limit_checks = score.checks;
   std::set<datasets::Channel> judged;
   for (const calib::LimitCheck& check : score.checks) judged.insert(check.channel);
   for (const datasets::Channel channel : judged)
@@ -316,11 +111,11 @@ void add_stated(const Result& result, const calib::ConditionScore& score, Stored
   if (condition == nullptr) return;
   stated.waveform = std::optional(condition->waveform);
   stated.frequency_hz = condition->frequency_hz;
-  put_amplitude(info(drive_channel(result.campaign)).unit, condition->amplitude, stated);
+  calib::put_amplitude(info(drive_channel(result.campaign)).unit, condition->amplitude, stated);
   stated.leak_level = condition->leak_level;
   if (condition->temperature_k) stated.temperature_k = *condition->temperature_k;
   if (condition->date) stated.date = *condition->date;
-  if (condition->acceptance) stated.acceptance = stored(*condition->acceptance);
+  if (condition->acceptance) stated.acceptance = *condition->acceptance;
   if (!condition->not_judged.empty()) stated.not_judged = keys_of(condition->not_judged);
 }
 
@@ -358,16 +153,9 @@ StoredCondition stored(const Result& result, const calib::ConditionScore& score)
   for (const calib::ChannelScore& channel : score.channels) {
     const std::string key = key_of(channel.channel);
     condition.metrics.emplace_back(key, stored(channel));
-    std::optional<StoredNoiseFloor> floor;
-    if (const auto& found = channel.noise_floor)
-      floor = {found->rho2, found->ccc, found->absolute_error_percent};
-    condition.noise_floor.emplace_back(key, floor);
-    condition.expanded_uncertainty->emplace_back(
-        key, channel.expanded_uncertainty ? std::optional(stored(channel.expanded_uncertainty))
-                                          : std::nullopt);
-    condition.two_sided_uncertainty->emplace_back(
-        key, channel.two_sided_uncertainty ? std::optional(stored(channel.two_sided_uncertainty))
-                                           : std::nullopt);
+    condition.noise_floor.emplace_back(key, channel.noise_floor);
+    condition.expanded_uncertainty->emplace_back(key, channel.expanded_uncertainty);
+    condition.two_sided_uncertainty->emplace_back(key, channel.two_sided_uncertainty);
     std::optional<StoredResidualTests> tests;
     if (channel.residual_tests)
       tests = report::stored(*channel.residual_tests, info(channel.channel).unit);
@@ -379,37 +167,12 @@ StoredCondition stored(const Result& result, const calib::ConditionScore& score)
   return condition;
 }
 
-std::vector<StoredGroup> gathered(const Result& result) {
-  std::vector<StoredGroup> list;
-  for (const Group& group : groups(result.campaign, result.fit)) {
-    StoredGroup& each = list.emplace_back(StoredGroup{group.by, group.label, group.conditions, {}});
-    for (const auto& [channel, score] : group.channels)
-      each.metrics.emplace_back(key_of(channel),
-                                StoredGroupScore{score.conditions, {score.mean}, {score.worst}});
-  }
-  return list;
-}
-
-StoredStart stored(const calib::StartReport& start) {
-  const bool simulated = !start.end_values.empty();
-  return {start.number,
-          start.status,
-          start.message,
-          start.start_values,
-          start.end_values,
-          simulated ? finite(start.initial_cost) : std::nullopt,
-          simulated ? finite(start.final_cost) : std::nullopt,
-          start.iterations};
-}
-
 void add_trust(const calib::Fit& fit, StoredFit& result) {
-  if (fit.considered) result.considered = stored(*fit.considered);
+  result.considered = fit.considered;
   const bool solved = fit.rank > 0;
   result.rank = fit.rank;
   result.singular_values = fit.singular_values;
-  result.correlation.names = fit.correlation_names;
-  for (const auto& row : fit.correlation.rowwise())
-    result.correlation.matrix.emplace_back(row.begin(), row.end());
+  result.correlation = fit.correlation;
   if (solved) {
     result.reduced_chi_square = finite(fit.reduced_chi_square);
     result.aic = finite(fit.aic);
@@ -419,24 +182,21 @@ void add_trust(const calib::Fit& fit, StoredFit& result) {
       fit.independent_residuals > 0.0 ? finite(fit.independent_residuals) : std::nullopt;
   result.interval_advice = fit.interval_advice;
   result.combinations = fit.combinations;
-  result.lack_of_fit = std::optional(lack_of_fit(fit));
-  result.between_repeats = stored(fit.between_repeats);
-  for (const calib::Basin& basin : fit.basins)
-    result.basins.push_back({basin.cost, basin.starts, basin.values});
+  result.lack_of_fit = std::optional(StoredLackOfFit{fit.misfit, fit.lack_of_fit});
+  result.between_repeats = fit.between_repeats;
+  result.basins = fit.basins;
   result.agreement = fit.agreement;
   if (!fit.bootstrap_message.empty())
     result.bootstrap = StoredBootstrapRun{fit.bootstrap_replicates, fit.bootstrap_message};
-  if (fit.posterior) result.posterior = stored(*fit.posterior, fit);
-  if (!fit.cross_validation.empty()) result.cross_validation = stored(fit.cross_validation);
+  result.posterior = fit.posterior;
+  if (!fit.cross_validation.empty()) result.cross_validation = fit.cross_validation;
 }
 
 void add_search(const calib::Fit& fit, StoredFit& result) {
-  for (const calib::StartReport& start : fit.starts) result.starts.push_back(stored(start));
+  result.starts = fit.starts;
   result.best_start = fit.best_start;
   result.failure_count = fit.failure_count;
-  for (const calib::SimulationFailure& failure : fit.failures)
-    result.failures.push_back(
-        {failure.condition, failure.start, failure.time_s, failure.reason, failure.parameters});
+  result.failures = fit.failures;
 }
 
 /// Degrees of freedom for which Student's t gives the half width of ci95 at this error. A bound may
@@ -446,15 +206,7 @@ double freedom_of_interval(const StoredParameter& parameter, double error) {
   if (!interval || !parameter.value) return metrics::kManyDegrees;
   const double quantile =
       std::max(interval->high - *parameter.value, *parameter.value - interval->low) / error;
-  if (!(quantile > metrics::student_t_quantile(0.975, metrics::kManyDegrees)))
-    return metrics::kManyDegrees;
-  double low = 1.0;
-  double high = metrics::kManyDegrees;
-  for (int i = 0; i < 60; ++i) {
-    const double middle = std::sqrt(low * high);
-    (metrics::student_t_quantile(0.975, middle) > quantile ? low : high) = middle;
-  }
-  return low;
+  return metrics::freedom_of_quantile(quantile);
 }
 
 }  // namespace
@@ -463,52 +215,6 @@ std::optional<calib::Verdict> StoredCondition::verdict_of(const std::string& cha
   if (failure) return verdict;
   const calib::Verdict* found = find(channel_verdicts, channel);
   return found == nullptr ? std::nullopt : std::optional(*found);
-}
-
-calib::EffectSpread effect_spread_of(const StoredConsidered& considered,
-                                     const std::vector<const StoredBudget*>& budgets) {
-  calib::Considered result;
-  const std::size_t count = std::min(considered.correlation.size(), considered.effects.size());
-  const auto size = static_cast<Eigen::Index>(count);
-  result.correlation = Eigen::MatrixXd::Identity(size, size);
-  for (std::size_t k = 0; k < count; ++k) {
-    const StoredEffect& effect = considered.effects[k];
-    calib::ConsideredEffect& own = result.effects.emplace_back();
-    own.key = effect.key;
-    own.estimate = effect.estimate;
-    own.standard_error = effect.standard_error;
-    const std::vector<double>& row = considered.correlation[k];
-    for (std::size_t l = 0; l < std::min(count, row.size()); ++l) {
-      if (std::isfinite(row[l]))
-        result.correlation(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(l)) = row[l];
-    }
-  }
-  std::vector<calib::Budget95> own(budgets.size());
-  std::vector<const calib::Budget95*> places;
-  for (std::size_t j = 0; j < budgets.size(); ++j) {
-    places.push_back(budgets[j] == nullptr ? nullptr : &own[j]);
-    if (budgets[j] == nullptr) continue;
-    for (const StoredBudgetLine& line : budgets[j]->lines)
-      own[j].lines.push_back(
-          {line.source, line.kind, line.uncertainty, line.sensitivity.value_or(0.0)});
-  }
-  return calib::effect_spread(result, places);
-}
-
-double contribution(const StoredBudget& budget, std::string_view kind) {
-  double squares = 0.0;
-  for (const StoredBudgetLine& line : budget.lines)
-    if (line.kind == kind) squares += line.uncertainty * line.uncertainty;
-  return std::sqrt(squares);
-}
-
-const StoredBudgetLine* largest_effect(const StoredBudget& budget) {
-  const StoredBudgetLine* largest = nullptr;
-  for (const StoredBudgetLine& line : budget.lines) {
-    const bool counts = line.kind == "effect" && line.uncertainty > 0.0;
-    if (counts && (largest == nullptr || line.uncertainty > largest->uncertainty)) largest = &line;
-  }
-  return largest;
 }
 
 void as_of_now(std::string_view schema, std::vector<StoredParameter>& parameters) {
@@ -569,9 +275,7 @@ StoredFit stored(const Result& result) {
   if (fit.stopped_in != calib::StoppedIn::nothing) json.stopped_in = std::optional(fit.stopped_in);
   json.schema = result.kind == ResultKind::fit ? kFitSchema : kValidationSchema;
   json.verdict = fit.verdict;
-  json.assessment = std::optional(
-      StoredAssessment{stored(fit.assessment.agreement), stored(fit.assessment.validation),
-                       stored(fit.assessment.adequacy), stored(fit.assessment.parameters)});
+  json.assessment = std::optional(fit.assessment);
   json.message = fit.message;
   json.campaign = result.campaign.name;
   json.synthetic = result.campaign.synthetic;
@@ -587,22 +291,24 @@ StoredFit stored(const Result& result) {
   for (const calib::FittedParameter& p : fit.parameters)
     json.parameters.push_back(stored(p, table[static_cast<std::size_t>(p.index)]));
   add_trust(fit, json);
-  if (!fit.stability.empty()) json.stability = stored(fit.stability, table);
+  if (!fit.stability.empty()) json.stability = fit.stability;
   if (result.kind == ResultKind::fit) json.weights = weights(result);
   using datasets::Use;
+  const auto covered = [&](const std::vector<Use>& uses) {
+    return calib::coverage(result.campaign, result.records, fit, uses);
+  };
   json.validity =
-      validity(result, result.kind == ResultKind::fit ? std::vector<Use>{Use::fit}
-                                                      : std::vector<Use>{Use::fit, Use::validate});
+      result.kind == ResultKind::fit ? covered({Use::fit}) : covered({Use::fit, Use::validate});
   const bool validated = std::any_of(fit.conditions.begin(), fit.conditions.end(),
                                      [](const auto& score) { return score.use == Use::validate; });
-  if (validated) json.validated = validity(result, {Use::validate});
+  if (validated) json.validated = covered({Use::validate});
   json.decision = result.campaign.acceptance_bounds.decision;
-  json.acceptance = stored(result.campaign.acceptance);
+  json.acceptance = result.campaign.acceptance;
   const auto& not_judged = result.campaign.acceptance_bounds.not_judged;
   if (!not_judged.empty()) json.not_judged = keys_of(not_judged);
   for (const calib::ConditionScore& score : fit.conditions)
     json.conditions.push_back(stored(result, score));
-  json.groups = gathered(result);
+  json.groups = calib::groups(result.campaign, fit);
   add_search(fit, json);
   json.warnings = fit.warnings;
   json.provenance = stored(result.provenance);

@@ -32,13 +32,6 @@ inline std::vector<LeakStatus> every() {
   return {LeakStatus::done, LeakStatus::declined, LeakStatus::failed};
 }
 
-/// Something for each feature of the source paper (Table 4), of a position residual.
-template <typename T>
-struct ByFeature {
-  T mean_m{}, rms_m{}, std_m{};
-  RIGCAL_DESCRIBE(mean_m, rms_m, std_m)
-};
-
 /// A leak and its class; empty if it could not be estimated.
 struct StoredLeak {
   std::optional<double> leakage_coefficient;

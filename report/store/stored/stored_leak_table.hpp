@@ -36,14 +36,6 @@ struct StoredAssumption {
   RIGCAL_DESCRIBE(name, key, value, unit, source)
 };
 
-struct StoredCombination {
-  std::string name;
-  std::string formula;
-  double value = 0.0;
-  std::string unit;
-  RIGCAL_DESCRIBE(name, formula, value, unit)
-};
-
 /// A cell of the table: a signal and a target share.
 struct StoredLeakEntry {
   datasets::Waveform waveform = datasets::Waveform::sine;
@@ -66,14 +58,6 @@ struct StoredLeakEntry {
                   coefficients_ci95, log_slopes, log_slope, determined, published_coefficient,
                   relative_error_percent, share_at_published_percent, share_by_rounding_percent,
                   grade, note)
-};
-
-struct StoredLeakSummary {
-  int published = 0;
-  int within_10_percent = 0;
-  int within_16_percent = 0;
-  std::optional<double> share_rms_percent;
-  RIGCAL_DESCRIBE(published, within_10_percent, within_16_percent, share_rms_percent)
 };
 
 /// The published coefficient of the rig without a fault.
@@ -123,9 +107,9 @@ struct StoredLeakTable {
   Omittable<std::vector<std::string>> notes;
   Omittable<std::vector<std::string>> warnings;
   std::vector<StoredAssumption> assumptions;
-  std::vector<StoredCombination> fixed_combinations;
+  std::vector<calib::FixedCombination> fixed_combinations;
   std::vector<StoredLeakEntry> entries;
-  StoredLeakSummary summary;
+  calib::LeakSummary summary;
   std::vector<StoredNormal> normal;
   std::vector<StoredFeatures> features;
   StoredProvenance provenance;

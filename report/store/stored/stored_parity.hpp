@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "diagnosis/parity.hpp"
 #include "report/store/stored/stored_leak.hpp"
 #include "report/store/stored/stored_provenance.hpp"
 
@@ -12,21 +13,6 @@
 namespace rigcal::report {
 
 inline constexpr const char* kParitySchema = "rigcal.parity/1";
-
-/// Thresholds from the healthy records of one signal.
-struct StoredParitySignal {
-  std::string signal;
-  std::optional<double> window_s;
-  int healthy_records = 0;
-  std::optional<double> threshold_m;
-  ByFeature<std::optional<double>> feature_thresholds;
-  std::optional<std::string> reason;  ///< why there is no threshold
-  /// The record is of a day that the healthy records do not have.
-  Omittable<double> threshold_of_another_day_m;
-  Omittable<int> common_causes;  ///< by which the healthy records differ beyond noise
-  RIGCAL_DESCRIBE(signal, window_s, healthy_records, threshold_m, feature_thresholds, reason,
-                  threshold_of_another_day_m, common_causes)
-};
 
 struct StoredParityRecord {
   std::string condition;
@@ -40,17 +26,11 @@ struct StoredParityRecord {
   std::optional<double> peak_m;
   std::optional<bool> alarm;  ///< nothing: not judged
   std::optional<double> time_to_alarm_s;
-  ByFeature<std::optional<double>> features;
-  ByFeature<std::optional<bool>> exceeds;  ///< nothing: no threshold
-  Omittable<double> threshold_m;           ///< threshold for records of its day
+  metrics::ByFeature<std::optional<double>> features;
+  metrics::ByFeature<std::optional<bool>> exceeds;  ///< nothing: no threshold
+  Omittable<double> threshold_m;                    ///< threshold for records of its day
   RIGCAL_DESCRIBE(condition, repeat, signal, leak_level, healthy, sets_threshold, reference_records,
                   failure, peak_m, alarm, time_to_alarm_s, features, exceeds, threshold_m)
-};
-
-struct StoredFalseAlarmCheck {
-  int records = 0, alarms = 0;
-  std::optional<double> expected, p_value;
-  RIGCAL_DESCRIBE(records, alarms, expected, p_value)
 };
 
 struct StoredParity {
@@ -61,9 +41,9 @@ struct StoredParity {
   bool synthetic = false;
   Json report;  ///< identity_json()
   double false_alarm_probability = 0.0;
-  std::vector<StoredParitySignal> signals;
+  std::vector<diagnosis::ParitySignal> signals;
   std::vector<StoredParityRecord> records;
-  StoredFalseAlarmCheck false_alarm_check;
+  diagnosis::FalseAlarmCheck false_alarm_check;
   std::vector<std::string> warnings;
   StoredProvenance provenance;
   RIGCAL_DESCRIBE(status, schema, reasons, campaign, synthetic, report, false_alarm_probability,

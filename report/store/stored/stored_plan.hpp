@@ -4,45 +4,61 @@
 #include <string>
 #include <vector>
 
+#include "calib/design/design.hpp"
+#include "calib/trust/plan.hpp"
 #include "report/json/described.hpp"
 #include "report/store/described_campaign.hpp"
-#include "report/store/stored/stored_design.hpp"
 #include "report/store/stored/stored_provenance.hpp"
 
-// plan.json (docs/command-line.md).
+// plan.json (docs/command-line.md), with its `design` (docs/plan-design.md).
 
 namespace rigcal::report {
 
 inline constexpr const char* kPlanSchema = "rigcal.plan/1";
 
-struct StoredPlannedParameter {
-  std::string name, unit;
-  datasets::Scope scope = datasets::Scope::rig;
-  std::optional<std::string> level;
-  bool nuisance = false;
-  std::optional<double> value;
-  std::optional<double> sd_recorded, sd_all;  ///< nothing: not determined
-  std::optional<std::string> remedy;
-  RIGCAL_DESCRIBE(name, unit, scope, level, nuisance, value, sd_recorded, sd_all, remedy)
+// Files of a design beside plan.json.
+inline constexpr const char* kDriveFile = "design.csv";
+inline constexpr const char* kResponseFile = "design_response.csv";
+inline constexpr const char* kDesignedCampaignFile = "design.toml";
 
-  std::string label() const;  ///< "leakage_coefficient (33 %)"
+struct StoredDesignLimit {
+  std::string key, words, unit;
+  double limit = 0.0;
+  double reached = 0.0;
+  double share_percent = 0.0;  ///< used part; at most 100
+  RIGCAL_DESCRIBE(key, words, unit, limit, reached, share_percent)
 };
 
-struct StoredPlannedRecord {
-  std::string condition;
-  bool recorded = false;
-  std::optional<std::string> problem;
-  std::vector<std::optional<double>> sd_alone;    ///< for each parameter, if anything is known
-  std::vector<std::optional<double>> sd_without;  ///< likewise, from all other records
-  RIGCAL_DESCRIBE(condition, recorded, problem, sd_alone, sd_without)
+struct StoredDesign {
+  std::string status;  ///< "done", or "stopped": the best drive until a signal
+  datasets::DriveFamily family = datasets::DriveFamily::multisine;
+  datasets::DesignCriterion criterion = datasets::DesignCriterion::determinant;
+  std::string channel;  ///< channel of the drive, as in the campaign file
+  std::string unit;     ///< SI unit of the drive
+  double amplitude = 0.0;
+  double duration_s = 0.0;
+  double sample_rate_hz = 0.0;
+  int repeats = 0;
+  std::uint64_t seed = 0;
+  std::optional<std::string> leak_level;
+  Keyed<double> noise_sd;  ///< per sample of one repeat, by channel with its SI unit
+  std::vector<calib::DesignedParameter> parameters;
+  std::vector<StoredDesignLimit> limits;
+  std::vector<calib::DrivePart> drive;
+  std::vector<calib::FamilyTrial> families;
+  std::vector<std::string> own_signals;  ///< conditions that are compared with
+  double own_signals_duration_s = 0.0;   ///< all of them together
+  std::vector<std::string> messages;
+  RIGCAL_DESCRIBE(status, family, criterion, channel, unit, amplitude, duration_s, sample_rate_hz,
+                  repeats, seed, leak_level, noise_sd, parameters, limits, drive, families,
+                  own_signals, own_signals_duration_s, messages)
+
+  bool stopped() const { return status == "stopped"; }
 };
 
-struct StoredPlan {
+struct StoredPlan : calib::Plan {
   std::string schema = kPlanSchema;
   std::string campaign;
-  std::vector<StoredPlannedParameter> parameters;
-  std::vector<StoredPlannedRecord> records;
-  std::vector<std::string> messages;
   Omittable<StoredDesign> design;  ///< result of `plan --design`
   StoredProvenance provenance;
   RIGCAL_DESCRIBE(schema, campaign, parameters, records, messages, design, provenance)

@@ -8,7 +8,7 @@ namespace rigcal::report {
 
 long StoredRecord::outliers() const {
   return std::count_if(repeat_reports.begin(), repeat_reports.end(),
-                       [](const StoredRepeat& repeat) { return repeat.outlier; });
+                       [](const datasets::RepeatReport& repeat) { return repeat.outlier; });
 }
 
 StoredRecord stored(const datasets::Condition& condition, const datasets::Record& record) {
@@ -23,16 +23,12 @@ StoredRecord stored(const datasets::Condition& condition, const datasets::Record
   told.repeats = record.repeats;
   for (const FileState& file : record.files) told.files.push_back(file.path);
   for (const datasets::Repeatability& r : datasets::repeatability(record)) {
-    StoredRepeatability channel{
-        std::string(info(r.channel).unit), r.repeats, r.pooled_sd, r.sd_of_mean, {}};
-    if (const auto& floor = r.noise_floor)
-      channel.noise_floor = {floor->rho2, floor->ccc, floor->absolute_error_percent};
+    StoredRepeatability channel{std::string(info(r.channel).unit), r.repeats, r.pooled_sd,
+                                r.sd_of_mean, r.noise_floor};
     told.channels.emplace_back(info(r.channel).key, std::move(channel));
   }
   told.offset_range_s = datasets::offset_range_s(record);
-  for (const datasets::RepeatReport& repeat : record.repeat_reports)
-    told.repeat_reports.push_back(
-        {repeat.source, repeat.offset_s, repeat.deviation, repeat.outlier});
+  told.repeat_reports = record.repeat_reports;
   for (const datasets::TimeWindow& window : record.windows)
     told.windows_s.push_back({window.start_s, window.end_s});
   told.notes = record.notes;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "datasets/record.hpp"
+#include "metrics/noise_floor.hpp"
 #include "report/json/described.hpp"
 #include "report/store/described_campaign.hpp"
 #include "report/store/stored/stored_provenance.hpp"
@@ -15,26 +16,13 @@ namespace rigcal::report {
 
 inline constexpr const char* kAverageSchema = "rigcal.average/1";
 
-struct StoredNoiseFloor {
-  double rho2 = 0.0, ccc = 0.0, absolute_error_percent = 0.0;
-  RIGCAL_DESCRIBE(rho2, ccc, absolute_error_percent)
-};
-
 /// Agreement of the repeats in one channel, in its unit.
 struct StoredRepeatability {
   std::string unit;
   int repeats = 1;  ///< number of repeats with the channel
   std::optional<double> pooled_sd, sd_of_mean;
-  std::optional<StoredNoiseFloor> noise_floor;
+  std::optional<metrics::NoiseFloor> noise_floor;
   RIGCAL_DESCRIBE(unit, repeats, pooled_sd, sd_of_mean, noise_floor)
-};
-
-/// Result of averaging for one repeat.
-struct StoredRepeat {
-  std::string source;
-  std::optional<double> offset_s, deviation;
-  bool outlier = false;
-  RIGCAL_DESCRIBE(source, offset_s, deviation, outlier)
 };
 
 struct StoredRecord {
@@ -46,7 +34,7 @@ struct StoredRecord {
   std::vector<std::string> files;
   Keyed<StoredRepeatability> channels;
   std::optional<double> offset_range_s;
-  std::vector<StoredRepeat> repeat_reports;
+  std::vector<datasets::RepeatReport> repeat_reports;
   std::vector<Range> windows_s;  ///< parts that count; empty: the whole record
   std::vector<std::string> notes, warnings;
   RIGCAL_DESCRIBE(condition, use, samples, sample_rate_hz, duration_s, repeats, files, channels,

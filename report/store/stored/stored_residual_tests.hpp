@@ -34,60 +34,29 @@ inline std::vector<metrics::TestOutcome> every() {
   return {TestOutcome::passed, TestOutcome::failed, TestOutcome::not_judged};
 }
 
-/// Outcome of a test of residuals, in words too; the last keys of each.
-struct StoredTest {
+/// A test of residuals with its outcome, in words too: the last keys of each.
+template <typename Test>
+struct Worded : Test {
   std::string verdict;
-  std::optional<bool> passed;  ///< null: not judged
-  metrics::TestOutcome outcome = metrics::TestOutcome::not_judged;
-  std::optional<std::string> reason;  ///< why it is not judged
-  RIGCAL_DESCRIBE(verdict, passed, outcome, reason)
-};
-/// A test with numbers of its own, which come first.
-#define RIGCAL_DESCRIBE_TEST(...)                                               \
-  template <typename Self, typename Visit>                                      \
-  static void describe(Self& self, const Visit& visit) {                        \
-    NLOHMANN_JSON_EXPAND(NLOHMANN_JSON_PASTE(RIGCAL_VISIT_MEMBER, __VA_ARGS__)) \
-    StoredTest::describe(self, visit);                                          \
+  std::optional<bool> has_passed;  ///< absent: not judged
+  template <typename Self, typename Visit>
+  static void describe(Self& self, const Visit& visit) {
+    Test::describe(self, visit);
+    visit("verdict", self.verdict);
+    visit("passed", self.has_passed);
+    visit("outcome", self.outcome);
+    visit("reason", self.reason);
   }
-
-struct StoredAutocorrelation : StoredTest {
-  double ljung_box = 0.0;
-  int tested_lags = 0;
-  double p_value = 0.0, durbin_watson = 0.0, correlation_time_s = 0.0;
-  RIGCAL_DESCRIBE_TEST(ljung_box, tested_lags, p_value, durbin_watson, correlation_time_s)
 };
-
-struct StoredCrossCorrelation : StoredTest {
-  double peak = 0.0, peak_lag_s = 0.0, limit = 0.0;
-  RIGCAL_DESCRIBE_TEST(peak, peak_lag_s, limit)
-};
-
-struct StoredPeriodogram : StoredTest {
-  double distance = 0.0, limit = 0.0, median_frequency_hz = 0.0, peak_frequency_hz = 0.0,
-         peak_share = 0.0;
-  RIGCAL_DESCRIBE_TEST(distance, limit, median_frequency_hz, peak_frequency_hz, peak_share)
-};
-
-struct StoredNormality : StoredTest {
-  double skewness = 0.0, excess_kurtosis = 0.0, jarque_bera = 0.0, p_value = 0.0;
-  RIGCAL_DESCRIBE_TEST(skewness, excess_kurtosis, jarque_bera, p_value)
-};
-
-struct StoredDrift : StoredTest {
-  double mean = 0.0, mean_p_value = 0.0, slope_per_s = 0.0, slope_p_value = 0.0;
-  RIGCAL_DESCRIBE_TEST(mean, mean_p_value, slope_per_s, slope_p_value)
-};
-
-#undef RIGCAL_DESCRIBE_TEST
 
 struct StoredResidualTests {
   long samples = 0;
   double sample_interval_s = 0.0, std = 0.0, effective_samples = 0.0;
-  StoredAutocorrelation autocorrelation;
-  std::optional<StoredCrossCorrelation> cross_correlation;
-  StoredPeriodogram periodogram;
-  StoredNormality normality;
-  StoredDrift drift;
+  Worded<metrics::Autocorrelation> autocorrelation;
+  std::optional<Worded<metrics::CrossCorrelation>> cross_correlation;
+  Worded<metrics::Periodogram> periodogram;
+  Worded<metrics::Normality> normality;
+  Worded<metrics::Drift> drift;
   RIGCAL_DESCRIBE(samples, sample_interval_s, std, effective_samples, autocorrelation,
                   cross_correlation, periodogram, normality, drift)
 };

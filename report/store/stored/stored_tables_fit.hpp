@@ -4,19 +4,12 @@
 #include <string>
 #include <vector>
 
+#include "calib/published/fit_tables.hpp"
 #include "report/store/stored/stored_fit.hpp"
 
 // fit.json of a fit to published tables, which has no records.
 
 namespace rigcal::report {
-
-/// A published number against that of the model.
-struct StoredTableResidual {
-  std::string of;
-  double weight = 0.0;
-  double log_ratio = 0.0;
-  RIGCAL_DESCRIBE(of, weight, log_ratio)
-};
 
 inline constexpr const char* kOfTables = "published tables";
 
@@ -33,8 +26,8 @@ struct StoredTablesFit {
   long iterations = 0;
   std::optional<double> wall_seconds;
   std::vector<StoredParameter> parameters;
-  StoredCorrelation correlation;
-  std::vector<StoredTableResidual> residuals;
+  calib::Correlation correlation;
+  std::vector<calib::TableResidual> residuals;
   std::vector<std::string> left_out;
   StoredProvenance provenance;
   RIGCAL_DESCRIBE(status, schema, verdict, message, campaign, of, cost, residual_count, rms,

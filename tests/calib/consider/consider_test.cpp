@@ -77,10 +77,10 @@ TEST_CASE("considered: the interval of the rig includes that of an exact model",
   for (const FittedParameter& each : found.parameters) {
     if (!each.fitted) continue;
     CAPTURE(each.value);
-    CHECK(each.ci95->first <= each.ci95_if_exact->first);
-    CHECK(each.ci95->second >= each.ci95_if_exact->second);
-    wider += each.ci95->second - each.ci95->first >
-                     1.1 * (each.ci95_if_exact->second - each.ci95_if_exact->first)
+    CHECK(each.ci95->low <= each.ci95_if_exact->low);
+    CHECK(each.ci95->high >= each.ci95_if_exact->high);
+    wider += each.ci95->high - each.ci95->low >
+                     1.1 * (each.ci95_if_exact->high - each.ci95_if_exact->low)
                  ? 1
                  : 0;
   }
@@ -97,7 +97,7 @@ TEST_CASE("considered: the budget adds up by hand", "[calib]") {
     CHECK_THAT(std::sqrt(sum), WithinRel(budget.combined, 1e-9));
     CHECK_THAT(budget.expanded, WithinRel(budget.coverage_factor * budget.combined, 1e-12));
     CHECK(budget.coverage_factor > 1.95);
-    CHECK(each.ci95->second >= each.value + budget.shift + budget.expanded - 1e-9 * each.value);
+    CHECK(each.ci95->high >= each.value + budget.shift + budget.expanded - 1e-9 * each.value);
   }
 }
 
@@ -106,7 +106,7 @@ TEST_CASE("considered: a valve lag that the model lacks is named with its size",
   rig.truth.parameters.push_back(known(Twin::index("valve_time_constant"), 0.5e-3));
   const Fit found = rig.fitted();
   REQUIRE_FALSE(found.considered->missing.empty());
-  const ConsideredEffect& first = found.considered->effects[found.considered->missing.front()];
+  const ConsideredEffect& first = *found.considered->find(found.considered->missing.front());
   CHECK((first.key == "valve_time_constant" || first.key == "transport_delay"));
   const ConsideredEffect* lag = effect(found, "valve_time_constant");
   REQUIRE(lag != nullptr);
@@ -116,9 +116,9 @@ TEST_CASE("considered: a valve lag that the model lacks is named with its size",
   for (const auto& [key, value] : truth) {
     for (const FittedParameter& each : found.parameters) {
       if (each.index != Twin::index(key)) continue;
-      CAPTURE(key, each.ci95->first, each.ci95->second);
-      CHECK(each.ci95->first <= value);
-      CHECK(value <= each.ci95->second);
+      CAPTURE(key, each.ci95->low, each.ci95->high);
+      CHECK(each.ci95->low <= value);
+      CHECK(value <= each.ci95->high);
     }
   }
 }
@@ -136,8 +136,8 @@ TEST_CASE("considered: sizes and what is left out are the campaign's", "[calib]"
   CHECK(exact.considered->effects.empty());
   for (const FittedParameter& each : exact.parameters)
     if (each.fitted)
-      CHECK_THAT(each.ci95->second - each.ci95->first,
-                 WithinRel(each.ci95_if_exact->second - each.ci95_if_exact->first, 0.02));
+      CHECK_THAT(each.ci95->high - each.ci95->low,
+                 WithinRel(each.ci95_if_exact->high - each.ci95_if_exact->low, 0.02));
 }
 
 TEST_CASE("considered: what is free or given is no effect beside it", "[calib]") {
@@ -271,8 +271,8 @@ TEST_CASE("considered: what a linkage leaves out widens its intervals, or is a r
   CHECK(found.considered->missing.empty());
   for (const FittedParameter& each : found.parameters) {
     if (!each.fitted) continue;
-    CHECK(each.ci95->first < each.ci95_if_exact->first);
-    CHECK(each.ci95->second > each.ci95_if_exact->second);
+    CHECK(each.ci95->low < each.ci95_if_exact->low);
+    CHECK(each.ci95->high > each.ci95_if_exact->high);
   }
   campaign.considered.left_out = {"joint_friction", "angle_bow"};
   CHECK(fit(campaign, records, {}).considered->left_out ==
@@ -287,7 +287,7 @@ TEST_CASE("considered: the missing effect is refitted, and the estimates with it
   const Considered& considered = found.considered.value();
   REQUIRE_FALSE(considered.missing.empty());
   REQUIRE_FALSE(considered.refitted.empty());
-  const ConsideredEffect& first = considered.effects[considered.missing.front()];
+  const ConsideredEffect& first = *considered.find(considered.missing.front());
   CHECK(first.key == "laminar_leakage");
   CHECK_THAT(first.alone.value(), WithinAbs(2e-11, 1.5 * first.alone_half_width.value()));
   double weights = 0.0;
@@ -313,8 +313,8 @@ TEST_CASE("considered: the missing effect is refitted, and the estimates with it
       if (each.index != Twin::index(key)) continue;
       CAPTURE(key, each.value, each.averaged->value, each.averaged->standard_error);
       CHECK(std::abs(each.averaged->value - value) < 3.5 * each.averaged->standard_error);
-      CHECK(each.ci95->first <= value);
-      CHECK(value <= each.ci95->second);
+      CHECK(each.ci95->low <= value);
+      CHECK(value <= each.ci95->high);
       const Budget95& budget = each.budget.value();
       const auto line = std::find_if(budget.lines.begin(), budget.lines.end(),
                                      [](const auto& one) { return one.source == "nonlinearity"; });
@@ -368,7 +368,7 @@ TEST_CASE("effect_spread: second moments of the sizes, and moves by the lines of
   considered.correlation = Eigen::Matrix2d::Identity();
   considered.correlation(0, 1) = considered.correlation(1, 0) = -0.5;
   Budget95 budget;
-  budget.lines = {{"noise", "records", 1.0, 0.0}, {"laminar_leakage", "effect", 2.0, 7e12}};
+  budget.lines = {{"noise", "records", 1.0}, {"laminar_leakage", "effect", 2.0, 7e12}};
   const EffectSpread spread = effect_spread(considered, {&budget, nullptr});
   CHECK_THAT(spread.size("ki"), WithinRel(5.0, 1e-12));
   CHECK_THAT(spread.size("laminar_leakage"), WithinRel(1e-12, 1e-12));

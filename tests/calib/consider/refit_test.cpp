@@ -67,12 +67,11 @@ struct ForeignFit {
       records.push_back(datasets::average_of(campaign, campaign.conditions[c], repeats, true));
     }
     fit = calib::fit(campaign, records, {});
-    if (fit.considered && !fit.considered->missing.empty())
-      named = fit.considered->effects[fit.considered->missing.front()].key;
+    if (fit.considered && !fit.considered->missing.empty()) named = fit.considered->missing.front();
     for (const auto& [key, value] : kFree) {
       for (const FittedParameter& each : fit.parameters) {
         if (each.index != Twin::index(key) || !each.ci95) continue;
-        held += each.ci95->first <= rig.*value && rig.*value <= each.ci95->second ? 1 : 0;
+        held += each.ci95->low <= rig.*value && rig.*value <= each.ci95->high ? 1 : 0;
       }
     }
   }
@@ -89,7 +88,7 @@ TEST_CASE("refit: of two effects that act alike the true one leaves less", "[cal
   const ForeignFit leak(leaking, 12);
   CHECK(leak.named == "laminar_leakage");
   CHECK(leak.held == 5);
-  const ConsideredEffect& effect = leak.fit.considered->effects.at(leak.fit.considered->missing[0]);
+  const ConsideredEffect& effect = *leak.fit.considered->find(leak.fit.considered->missing.at(0));
   CHECK_THAT(effect.alone.value(), WithinAbs(5e-12, 2.0 * effect.alone_half_width.value()));
 }
 

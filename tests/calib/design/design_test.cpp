@@ -98,7 +98,7 @@ TEST_CASE("design: the same bits for any number of threads, others for another s
   CHECK(one.response == three.response);
   for (std::size_t j = 0; j < one.parameters.size(); ++j) {
     CHECK(one.parameters[j].sd == three.parameters[j].sd);
-    CHECK(one.parameters[j].sd_own == three.parameters[j].sd_own);
+    CHECK(one.parameters[j].sd_own_signals == three.parameters[j].sd_own_signals);
   }
   CHECK(one.trials.size() == 4);
   twin.campaign.design->seed = 2;
@@ -112,23 +112,23 @@ TEST_CASE("design: it tells more than the campaign's own signals", "[calib]") {
   CHECK(made.own_duration_s == Approx(2.0));
   CHECK(made.parameters[0].named);
   CHECK_FALSE(made.parameters[1].named);
-  CHECK(made.parameters[0].sd.value() < 0.8 * made.parameters[0].sd_own.value());
+  CHECK(made.parameters[0].sd.value() < 0.8 * made.parameters[0].sd_own_signals.value());
 }
 
 TEST_CASE("design: own signals count by their time, whatever their length and rate", "[calib]") {
   Twin twin = designed_twin();
   twin.campaign.design->family = DriveFamily::chirp;
   twin.campaign.design->evaluations = 6;
-  const double sd = designed(twin.campaign, {"mass"}).parameters[0].sd_own.value();
+  const double sd = designed(twin.campaign, {"mass"}).parameters[0].sd_own_signals.value();
   datasets::Condition& own = twin.campaign.conditions.back();
   own.duration_s = 20.0;  // ten times as long; a 2 Hz square wave repeats
-  const double longer = designed(twin.campaign, {"mass"}).parameters[0].sd_own.value();
+  const double longer = designed(twin.campaign, {"mass"}).parameters[0].sd_own_signals.value();
   CHECK(longer == Approx(sd).epsilon(0.06));
   own.sample_rate_hz = 1000.0;
-  const double denser = designed(twin.campaign, {"mass"}).parameters[0].sd_own.value();
+  const double denser = designed(twin.campaign, {"mass"}).parameters[0].sd_own_signals.value();
   CHECK(denser == Approx(longer).epsilon(0.03));
   twin.campaign.design->repeats = 4;
-  CHECK(designed(twin.campaign, {"mass"}).parameters[0].sd_own.value() ==
+  CHECK(designed(twin.campaign, {"mass"}).parameters[0].sd_own_signals.value() ==
         Approx(0.5 * denser).epsilon(1e-6));
 }
 
@@ -140,7 +140,7 @@ TEST_CASE("design: the worst interval is smaller where that is what counts", "[c
     twin.campaign.design->criterion = criterion;
     double worst = 0.0;
     for (const DesignedParameter& each : designed(twin.campaign, {"mass", "valve_gain"}).parameters)
-      worst = std::max(worst, each.sd.value() / each.parameter.value);
+      worst = std::max(worst, each.sd.value() / each.value);
     return worst;
   };
   const double by_volume = worst_of(datasets::DesignCriterion::determinant);
@@ -174,7 +174,7 @@ TEST_CASE("design: real fits scatter as predicted", "[calib]") {
   drive.recognise = false;
   campaign.channels[drive.channel] = drive;
   // The design's values are the true ones; each fit starts from different values.
-  const auto truth = [&](std::size_t j) { return made.parameters[j].parameter.value; };
+  const auto truth = [&](std::size_t j) { return made.parameters[j].value; };
   for (auto& setting : campaign.parameters)
     if (setting.fit) setting.value *= 1.1;
   constexpr int kFits = 40;
@@ -271,9 +271,9 @@ TEST_CASE("design: a parameter of each leak level needs to know the level", "[ca
   const Design made = designed(twin.campaign, {"mass"});
   const auto leak =
       std::find_if(made.parameters.begin(), made.parameters.end(),
-                   [](const DesignedParameter& each) { return each.parameter.level == "33 %"; });
+                   [](const DesignedParameter& each) { return each.level == "33 %"; });
   REQUIRE(leak != made.parameters.end());
-  CHECK(leak->sd_own.has_value());
+  CHECK(leak->sd_own_signals.has_value());
 }
 
 }  // namespace rigcal::calib

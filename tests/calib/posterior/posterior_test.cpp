@@ -100,7 +100,7 @@ TEST_CASE("posterior: near the optimum it is what the errors say", "[calib]") {
     const double error = each.robust_standard_error.value();
     CHECK_THAT(each.posterior->sd, WithinRel(error, 0.1));
     CHECK_THAT(each.posterior->median, WithinAbs(each.value, 0.15 * error));
-    CHECK_THAT(each.posterior->ci95.second - each.posterior->ci95.first,
+    CHECK_THAT(each.posterior->ci95->high - each.posterior->ci95->low,
                WithinRel(2.0 * metrics::kNormal95 * error, 0.1));
     CHECK(each.posterior->bulk_draws > 1000.0);
     CHECK(each.posterior->tail_draws > 800.0);
@@ -125,9 +125,9 @@ TEST_CASE("posterior: an unknown at its bound stays within it", "[calib]") {
   REQUIRE(found.posterior);
   const FittedParameter& leak = parameter(found, "leakage_coefficient");
   REQUIRE(leak.posterior);
-  CHECK(leak.posterior->ci95.first >= 0.0);
-  CHECK(leak.posterior->ci95.second < 2.0);
-  CHECK(leak.posterior->ci95.second > leak.posterior->median);
+  CHECK(leak.posterior->ci95->low >= 0.0);
+  CHECK(leak.posterior->ci95->high < 2.0);
+  CHECK(leak.posterior->ci95->high > leak.posterior->median);
   CHECK(found.posterior->r_hat < 1.05);
 }
 

@@ -114,11 +114,11 @@ TEST_CASE("fit_tables: a twin's values come back from a far start, a gain from z
     // percent.
     CHECK_THAT(p.value, WithinRel(rig.settings.assumption(p.index)->value, 0.05));
     REQUIRE(p.ci95);
-    CHECK(p.ci95->first < p.value);
-    CHECK(p.value < p.ci95->second);
+    CHECK(p.ci95->low < p.value);
+    CHECK(p.value < p.ci95->high);
     CHECK(fit.settings.assumption(p.index)->value == p.value);
   }
-  CHECK(fit.correlation.rows() == 4);
+  CHECK(fit.correlation.matrix.rows() == 4);
   CHECK(fit.residuals.size() == 4 + 3 * 5);
 }
 

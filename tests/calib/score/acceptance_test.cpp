@@ -89,7 +89,7 @@ TEST_CASE("acceptance: a limit alone, or a warning limit alone", "[calib]") {
 TEST_CASE("acceptance: the tolerance is that of the limit, of the warning limit where it is alone",
           "[calib]") {
   const auto used = [](const Question& question, double value) {
-    return answer(question, scored(question.metric, value)).used;
+    return answer(question, scored(question.metric, value)).tolerance_used.value();
   };
   CHECK_THAT(used({"rho2", 0.98, 0.99}, 0.99), WithinRel(0.5, 1e-9));
   CHECK_THAT(used({"rho2", 0.98, 0.99}, 0.96), WithinRel(2.0, 1e-9));

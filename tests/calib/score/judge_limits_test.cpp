@@ -26,7 +26,7 @@ ConditionScore checked_score(const std::string& id, const std::vector<Checked>& 
     LimitCheck check;
     check.metric = "rho2";
     check.verdict = each.verdict;
-    check.used = each.used;
+    check.tolerance_used = each.used;
     check.in_guard_band = each.in_guard_band;
     if (each.has_value) check.value = 0.5;
     score.checks.push_back(check);
@@ -47,7 +47,7 @@ std::vector<Reason> judged(const std::vector<ConditionScore>& scores) {
 /// Returns "code of subject" for each reason.
 std::vector<std::string> codes(const std::vector<Reason>& reasons) {
   std::vector<std::string> list;
-  for (const Reason& each : reasons) list.push_back(each.code + " of " + each.subject);
+  for (const Reason& each : reasons) list.push_back(each.code + " of " + each.subject.value_or(""));
   return list;
 }
 

@@ -89,11 +89,11 @@ TEST_CASE("budget: a stop beside the fit keeps the fit, its scores, and what was
   for (std::size_t j = 0; j < whole.parameters.size(); ++j) {
     CHECK(stopped.parameters[j].value == whole.parameters[j].value);
     if (!stopped.parameters[j].profile) continue;  // a nuisance parameter, or a known value
-    CHECK(stopped.parameters[j].profile->low.lost);
+    CHECK(stopped.parameters[j].profile->low.is_lost());
     CHECK_THAT(stopped.parameters[j].reason, Contains("stopped by the limit of evaluations"));
   }
   for (const HeldOut& held : stopped.cross_validation)
-    CHECK_THAT(held.problem, Contains("stopped by the limit of evaluations"));
+    CHECK_THAT(held.problem.value(), Contains("stopped by the limit of evaluations"));
   options.threads = 3;
   const Fit again = job.run(options);
   CHECK(again.bootstrap_replicates == stopped.bootstrap_replicates);

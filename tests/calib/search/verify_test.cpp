@@ -105,8 +105,8 @@ TEST_CASE(
     REQUIRE(found.parameters.size() >= 2);
     for (const FittedParameter& each : {found.parameters[0], found.parameters[1]}) {
       REQUIRE(each.ci95);
-      CHECK(std::isfinite(each.ci95->first));
-      CHECK(std::isfinite(each.ci95->second));
+      CHECK(std::isfinite(each.ci95->low));
+      CHECK(std::isfinite(each.ci95->high));
     }
     ++most;
   }

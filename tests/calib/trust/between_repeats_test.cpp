@@ -245,7 +245,7 @@ TEST_CASE("between repeats: a supply that differs is seen, and named", "[calib]"
   CHECK(found.between_repeats->differ);
   CHECK(found.between_repeats->ratio > 2.0);
   CHECK(found.between_repeats->cause == "supply_pressure");
-  CHECK_THAT(found.between_repeats->cause_sd, WithinAbs(0.02, 0.01));
+  CHECK_THAT(found.between_repeats->cause_sd.value(), WithinAbs(0.02, 0.01));
   CHECK_THAT(fmt::format("{}", fmt::join(found.warnings, "; ")),
              Contains("as if supply_pressure varied by"));
 }
@@ -272,9 +272,9 @@ TEST_CASE("between repeats: a supply that is declared to differ accounts for wha
   CHECK(nuisances == 2);  // one for each condition
   for (const auto& [key, truth] : {std::pair{"valve_gain", 4.06e-5}, std::pair{"mass", 85.0}}) {
     const auto& each = parameter(found, key);
-    CAPTURE(key, each.value, each.ci95->first, each.ci95->second);
-    CHECK(each.ci95->first < truth);
-    CHECK(each.ci95->second > truth);
+    CAPTURE(key, each.value, each.ci95->low, each.ci95->high);
+    CHECK(each.ci95->low < truth);
+    CHECK(each.ci95->high > truth);
   }
   CHECK(found.cost < 0.5 * without.cost);
 }
@@ -323,8 +323,8 @@ TEST_CASE("between repeats: a recorded supply accounts for what differs", "[cali
   REQUIRE(found.between_repeats);
   CHECK_FALSE(found.between_repeats->differ);
   const auto& gain = parameter(found, "valve_gain");
-  CHECK(gain.ci95->first < 4.06e-5);
-  CHECK(gain.ci95->second > 4.06e-5);
+  CHECK(gain.ci95->low < 4.06e-5);
+  CHECK(gain.ci95->high > 4.06e-5);
 
   const DifferingSupply hidden(false);
   const Fit without = fit(hidden.twin.campaign, hidden.records, {});

@@ -77,8 +77,8 @@ TEST_CASE("bootstrap: three repeats that differ by their offset", "[calib]") {
   // Both ends are the extremes of that distribution, multiplied by t for two degrees of freedom
   // over the normal quantile (scipy.stats: 4.302652730 / 1.959963985).
   constexpr double kWidened = 2.195271;
-  CHECK_THAT(spread.ci95.first, WithinRel(-enlarged * kWidened, 1e-3));
-  CHECK_THAT(spread.ci95.second, WithinRel(2.0 * enlarged * kWidened, 1e-3));
+  CHECK_THAT(spread.ci95->low, WithinRel(-enlarged * kWidened, 1e-3));
+  CHECK_THAT(spread.ci95->high, WithinRel(2.0 * enlarged * kWidened, 1e-3));
 }
 
 TEST_CASE("bootstrap: the standard deviation has one degree of freedom less", "[calib]") {

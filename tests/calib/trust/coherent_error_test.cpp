@@ -70,8 +70,8 @@ TEST_CASE("coherent error: the interval of a fit without noise holds the truth",
   REQUIRE(found.status == FitStatus::converged);
   const auto& gain = parameter(found, "valve_gain");
   CHECK(std::abs(gain.value / 4.06e-5 - 1.0) > 1e-7);
-  CHECK(gain.ci95->first < 4.06e-5);
-  CHECK(gain.ci95->second > 4.06e-5);
+  CHECK(gain.ci95->low < 4.06e-5);
+  CHECK(gain.ci95->high > 4.06e-5);
 }
 
 }  // namespace

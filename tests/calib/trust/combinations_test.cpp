@@ -60,8 +60,9 @@ TEST_CASE("combinations: the scaling symmetry is named, with mass and supply pre
   datasets::Campaign recorded = twin.campaign;
   for (auto& condition : recorded.conditions) condition.averaged = condition.id + ".csv";
   const Plan planned = plan(recorded, records, nullptr, 1);
-  for (const auto& sd : planned.all) CHECK_FALSE(sd);
-  CHECK_THAT(planned.remedies.at(0), Contains("a prior on mass or supply pressure"));
+  for (const PlannedParameter& each : planned.parameters) CHECK_FALSE(each.sd_all);
+  CHECK_THAT(planned.parameters.at(0).remedy.value(),
+             Contains("a prior on mass or supply pressure"));
   FitOptions more;
   more.profiles = true;
   more.bootstrap = 20;

@@ -54,17 +54,17 @@ TEST_CASE("identifiability: a fifth of the value is weak, all of it nothing", "[
 
 TEST_CASE("identifiability: an interval ends where the parameter does", "[calib]") {
   const auto inside = Graded(10.0).graded().ci95.value();
-  CHECK_THAT(inside.first, WithinRel(100.0 - 19.6, 1e-3));
-  CHECK_THAT(inside.second, WithinRel(100.0 + 19.6, 1e-3));
+  CHECK_THAT(inside.low, WithinRel(100.0 - 19.6, 1e-3));
+  CHECK_THAT(inside.high, WithinRel(100.0 + 19.6, 1e-3));
   const Graded wide(1000.0);
-  CHECK(wide.graded().ci95->first == wide.problem->spec(0).lower);
+  CHECK(wide.graded().ci95->low == wide.problem->spec(0).lower);
 }
 
 TEST_CASE("identifiability: the robust error, unless it is small and hardly known", "[calib]") {
   Graded rig(10.0);
   rig.found.robust_standard_error = {5.0};
   CHECK(rig.graded().interval == IntervalSource::robust_standard_error);
-  CHECK_THAT(rig.graded().ci95->second, WithinRel(110.0, 1e-12));
+  CHECK_THAT(rig.graded().ci95->high, WithinRel(110.0, 1e-12));
   CHECK(rig.graded().degrees_of_freedom == 50.0);
   rig.found.robust_freedom = {2.0};
   rig.found.freedom = 7.0;

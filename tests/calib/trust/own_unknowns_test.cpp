@@ -147,9 +147,9 @@ TEST_CASE("own unknowns: a fit finds them, and stores correlations of the shared
   const Offsets rig(36);
   const Fit found = fit(rig.twin.campaign, rig.records, {});
   REQUIRE(found.status == FitStatus::converged);
-  CHECK(found.correlation_names == std::vector<std::string>{"mass_kg", "damping_n_s_per_m"});
-  CHECK(found.correlation.rows() == 2);
-  CHECK(found.correlation(0, 1) == found.correlation(1, 0));
+  CHECK(found.correlation.names == std::vector<std::string>{"mass_kg", "damping_n_s_per_m"});
+  CHECK(found.correlation.matrix.rows() == 2);
+  CHECK(found.correlation.matrix(0, 1) == found.correlation.matrix(1, 0));
   int beyond = 0;  // number of 95 % intervals that miss the true value
   for (const FittedParameter& each : found.parameters) {
     if (!each.fitted) continue;
@@ -157,7 +157,7 @@ TEST_CASE("own unknowns: a fit finds them, and stores correlations of the shared
     CHECK(each.correlated == (each.scope == Scope::rig));
     const double truth = each.scope == Scope::condition ? rig.twin.offsets.at(each.level).second
                                                         : rig.twin.truth.setting(each.index)->value;
-    beyond += truth < each.ci95->first || truth > each.ci95->second;
+    beyond += truth < each.ci95->low || truth > each.ci95->high;
     CHECK(each.robust_standard_error.value() > 0.5 * each.standard_error.value());
     CHECK(each.robust_standard_error.value() < 2.0 * each.standard_error.value());
   }

@@ -30,7 +30,7 @@ datasets::SyntheticSettings of_noise(double sd_m, int repeats) {
 }
 
 double planned_error(const datasets::Campaign& campaign) {
-  return plan(campaign, {}, nullptr, 1).all.at(0).value();
+  return plan(campaign, {}, nullptr, 1).parameters.at(0).sd_all.value();
 }
 
 }  // namespace

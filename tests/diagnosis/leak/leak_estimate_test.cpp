@@ -46,8 +46,8 @@ TEST_CASE("estimate_leak: class probabilities follow the interval", "[diagnosis]
   CHECK_THAT(sure.share, WithinRel(0.15, 1e-9));
   // The normal quantile is 1.96 times 0.02, and the error of the share is a tenth of that. 401
   // draws resolve a hundredth.
-  CHECK_THAT(sure.share_ci95.first, WithinAbs(0.15 - 0.00392, 1e-4));
-  CHECK_THAT(sure.ci95.second, WithinAbs(1.5 + 0.0392, 1e-5));
+  CHECK_THAT(sure.share_ci95.low, WithinAbs(0.15 - 0.00392, 1e-4));
+  CHECK_THAT(sure.ci95.high, WithinAbs(1.5 + 0.0392, 1e-5));
 
   const auto torn = estimated(fit_of(1.0, 0.1));
   // Half the distribution is below the limit, and the prior makes this half more probable:
@@ -80,7 +80,7 @@ TEST_CASE("estimate_leak: given that a leak is not negative", "[diagnosis]") {
   // Integrals of exp(-s^2 / (2 0.01^2)) / (0.00125 + s) from 0 to 1 %, and beyond.
   const auto none = estimated(fit_of(0.0, 0.1));
   CHECK_THAT(probability(none, LeakClass::normal), WithinAbs(0.8873, 4e-3));
-  CHECK(none.ci95.first == 0.0);
+  CHECK(none.ci95.low == 0.0);
   CHECK_FALSE(none.leak_detected);
   const auto negative = estimated(fit_of(-0.5, 0.1));
   CHECK(negative.share == 0.0);
@@ -151,8 +151,8 @@ TEST_CASE("estimate_leak: a leak is detected from the level of false alarms on",
 TEST_CASE("estimate_leak: the rig's error blurs the share", "[diagnosis]") {
   const auto found = estimated(fit_of(1.5, 1e-9), {}, 1, 0, 0.01);
   // 1.96 standard errors. The search stops at 1e-15 of the range.
-  CHECK_THAT(found.share_ci95.first, WithinAbs(0.15 - 0.0195996, 1e-6));
-  CHECK_THAT(found.share_ci95.second, WithinAbs(0.15 + 0.0195996, 1e-6));
+  CHECK_THAT(found.share_ci95.low, WithinAbs(0.15 - 0.0195996, 1e-6));
+  CHECK_THAT(found.share_ci95.high, WithinAbs(0.15 + 0.0195996, 1e-6));
 }
 
 TEST_CASE("estimate_leak: an upper limit where no leak is detected", "[diagnosis]") {
@@ -161,31 +161,31 @@ TEST_CASE("estimate_leak: an upper limit where no leak is detected", "[diagnosis
   const auto none = estimated(fit_of(0.0, 0.1));
   REQUIRE(none.share_upper_limit);
   CHECK_THAT(*none.share_upper_limit, WithinAbs(0.0196, 1e-4));
-  CHECK(none.share_ci95.first == 0.0);
-  CHECK(none.share_ci95.second == *none.share_upper_limit);
+  CHECK(none.share_ci95.low == 0.0);
+  CHECK(none.share_ci95.high == *none.share_upper_limit);
   const auto some = estimated(fit_of(0.3, 0.1));
   CHECK_FALSE(some.share_upper_limit);
-  CHECK(some.share_ci95.first > 0.0);
+  CHECK(some.share_ci95.low > 0.0);
 }
 
 TEST_CASE("estimate_leak: no interval ends at zero, however far below it the estimate lies",
           "[diagnosis]") {
   // Without a leak, 95 % of half a normal distribution are below 1.959964 sd.
   const auto none = estimated(fit_of(0.0, 0.1));
-  CHECK(none.ci95.first == 0.0);
-  CHECK_THAT(none.ci95.second, WithinRel(0.1959964, 1e-5));
+  CHECK(none.ci95.low == 0.0);
+  CHECK_THAT(none.ci95.high, WithinRel(0.1959964, 1e-5));
   // At two errors below zero, P(Z > 2) = 0.0227501 is left above zero, and a twentieth of it is
   // beyond 3.05176 errors.
   const auto below = estimated(fit_of(-0.2, 0.1));
   CHECK_FALSE(below.incompatible);
-  CHECK_THAT(below.ci95.second, WithinAbs(0.1 * (3.05176 - 2.0), 1e-5));
+  CHECK_THAT(below.ci95.high, WithinAbs(0.1 * (3.05176 - 2.0), 1e-5));
   // Beyond 2.3263 errors (1 % false alarms), no leak explains the record.
   CHECK_FALSE(estimated(fit_of(-0.232, 0.1)).incompatible);
   const auto beyond = estimated(fit_of(-0.233, 0.1));
   CHECK(beyond.incompatible);
   CHECK_FALSE(beyond.has_class());
-  CHECK_THAT(beyond.ci95.first, WithinAbs(-0.233 - 0.196, 1e-4));
-  CHECK_THAT(beyond.ci95.second, WithinAbs(-0.233 + 0.196, 1e-4));
+  CHECK_THAT(beyond.ci95.low, WithinAbs(-0.233 - 0.196, 1e-4));
+  CHECK_THAT(beyond.ci95.high, WithinAbs(-0.233 + 0.196, 1e-4));
 }
 
 TEST_CASE("estimate_leak: a share is within 0 and 1, or none", "[diagnosis]") {
@@ -193,8 +193,8 @@ TEST_CASE("estimate_leak: a share is within 0 and 1, or none", "[diagnosis]") {
   // 1.
   const auto wide = estimated(fit_of(9.0, 2.0));
   CHECK(wide.has_share());
-  CHECK(wide.share_ci95.second == 1.0);
-  CHECK(wide.share_ci95.first > 0.4);
+  CHECK(wide.share_ci95.high == 1.0);
+  CHECK(wide.share_ci95.low > 0.4);
   CHECK_FALSE(estimated(fit_of(11.0, 2.0)).has_share());
 }
 

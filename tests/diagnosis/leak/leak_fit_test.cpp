@@ -150,8 +150,8 @@ TEST_CASE("rig_fit_of: the larger error of each value, and their correlation", "
   fit.parameters = {fitted(1, 2.0, 3.0), fitted(4, 5.0, 4.0), fitted(2, 7.0, std::nullopt)};
   fit.parameters.push_back(fitted(3, 1.0, 9.0));
   fit.parameters.back().nuisance = true;  // belongs to the condition, not to the rig
-  fit.correlation = Eigen::MatrixXd::Identity(4, 4);
-  fit.correlation(0, 1) = fit.correlation(1, 0) = 0.5;
+  fit.correlation.matrix = Eigen::MatrixXd::Identity(4, 4);
+  fit.correlation.matrix(0, 1) = fit.correlation.matrix(1, 0) = 0.5;
   const diagnosis::RigFit rig = diagnosis::rig_fit_of(fit);
   CHECK(rig.values.size() == 3);
   CHECK(rig.indices == std::vector<int>{1, 4, 2});
@@ -167,8 +167,8 @@ TEST_CASE("rig_fit_of: values of conditions may have no row of correlations", "[
   fit.parameters = {fitted(2, 7.0, 4.0), fitted(1, 2.0, 3.0), fitted(4, 5.0, 4.0)};
   fit.parameters[0].scope = datasets::Scope::condition;
   fit.parameters[0].correlated = false;
-  fit.correlation = Eigen::MatrixXd::Identity(2, 2);
-  fit.correlation(0, 1) = fit.correlation(1, 0) = 0.5;
+  fit.correlation.matrix = Eigen::MatrixXd::Identity(2, 2);
+  fit.correlation.matrix(0, 1) = fit.correlation.matrix(1, 0) = 0.5;
   const diagnosis::RigFit rig = diagnosis::rig_fit_of(fit);
   CHECK(rig.values.size() == 3);
   CHECK(rig.indices == std::vector<int>{1, 4});
@@ -186,7 +186,7 @@ TEST_CASE("rig_fit_of: what has no error counts with its whole range", "[diagnos
     fit.parameters[i].upper = 16.0;
   }
   fit.parameters[2].ci95 = {0.0, 3.0};
-  fit.correlation = Eigen::MatrixXd::Identity(1, 1);
+  fit.correlation.matrix = Eigen::MatrixXd::Identity(1, 1);
   const diagnosis::RigFit rig = diagnosis::rig_fit_of(fit);
   CHECK(rig.indices == std::vector<int>{1, 4, 2});
   // A uniform distribution of width w has a variance of w^2 / 12.

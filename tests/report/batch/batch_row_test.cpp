@@ -64,7 +64,7 @@ StoredRigTrend trend_of(const std::string& of, double slope, bool significant) {
   trend.unit = "1";
   trend.series.of = of;
   trend.series.along_date.slope = slope;
-  trend.series.along_date.ci95 = Range{0.5 * slope, 1.5 * slope};
+  trend.series.along_date.ci95 = rigcal::Range{0.5 * slope, 1.5 * slope};
   trend.series.along_date.significant = significant;
   return trend;
 }
@@ -307,7 +307,7 @@ TEST_CASE("batch: a CSV line for each rig, columns for every estimate of any", "
   StoredRigEstimate mass;
   mass.name = "mass_kg";
   mass.value = 85.0;
-  mass.ci95 = Range{84.0, 86.5};
+  mass.ci95 = rigcal::Range{84.0, 86.5};
   a.parameters = {mass};
   StoredRig b = rig_of("b", std::nullopt, std::nullopt, 2);
   StoredRigEstimate leak;

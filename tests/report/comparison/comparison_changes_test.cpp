@@ -43,7 +43,7 @@ std::vector<Compared> compared_all(const std::vector<ComparedJson>& results) {
   return {results.begin(), results.end()};
 }
 
-StoredDifference difference(const ComparedJson& first, const ComparedJson& other) {
+rigcal::calib::EstimateDifference difference(const ComparedJson& first, const ComparedJson& other) {
   const auto list = compared_parameters(compared_all({first, other}));
   REQUIRE(list.at(0).key == "mass");
   REQUIRE_FALSE(list[0].differences.at(0).has_value());
@@ -57,12 +57,13 @@ std::optional<double> percent_of(double value, double low, double high, double o
   return difference(first, fit_of("other", other)).percent;
 }
 
-StoredComparedParameter parameter(const std::string& key, std::optional<StoredDifference> second,
+StoredComparedParameter parameter(const std::string& key,
+                                  std::optional<rigcal::calib::EstimateDifference> second,
                                   double error = 1.0) {
   StoredComparedParameter result;
   result.name = result.key = key;
   result.unit = "1";
-  StoredEstimate estimate;
+  rigcal::calib::ComparedEstimate estimate;
   estimate.value = 10.0;
   estimate.fitted = true;
   estimate.standard_error = error;
@@ -71,8 +72,8 @@ StoredComparedParameter parameter(const std::string& key, std::optional<StoredDi
   return result;
 }
 
-StoredDifference tested(double size, double p, bool significant) {
-  StoredDifference result;
+rigcal::calib::EstimateDifference tested(double size, double p, bool significant) {
+  rigcal::calib::EstimateDifference result;
   result.difference = size;
   result.percent = 10.0 * size;
   result.p_value = p;
@@ -80,8 +81,8 @@ StoredDifference tested(double size, double p, bool significant) {
   result.significant = significant;
   return result;
 }
-StoredDifference untested(double size, const std::string& reason) {
-  StoredDifference result;
+rigcal::calib::EstimateDifference untested(double size, const std::string& reason) {
+  rigcal::calib::EstimateDifference result;
   result.difference = size;
   result.percent = 10.0 * size;
   result.reason = reason;
@@ -122,7 +123,8 @@ TEST_CASE("comparison: nothing is a percentage of an interval that touches zero"
 
 TEST_CASE("comparison: the difference is the other less the first, with the errors of both",
           "[report]") {
-  const StoredDifference found = difference(fit_of("a", 85.0, 0.3), fit_of("b", 84.0, 0.4));
+  const rigcal::calib::EstimateDifference found =
+      difference(fit_of("a", 85.0, 0.3), fit_of("b", 84.0, 0.4));
   CHECK_THAT(*found.difference, WithinRel(-1.0, 1e-12));
   CHECK_THAT(*found.percent, WithinRel(-100.0 / 85.0, 1e-12));
   CHECK_THAT(*found.standard_error, WithinRel(0.5, 1e-12));
@@ -138,11 +140,11 @@ TEST_CASE("comparison: a difference between two dates contains two days", "[repo
     for (Json& condition : fit.result["conditions"]) condition["date"] = date;
     return fit;
   };
-  const StoredDifference other =
+  const rigcal::calib::EstimateDifference other =
       difference(on("a", 85.0, "2026-03-01"), on("b", 84.0, "2026-03-02"));
   CHECK_THAT(*other.standard_error, WithinRel(std::sqrt(2.0 * (0.09 + 1.44)), 1e-12));
   CHECK(other.of_other_dates == true);
-  const StoredDifference same =
+  const rigcal::calib::EstimateDifference same =
       difference(on("a", 85.0, "2026-03-01"), on("b", 84.0, "2026-03-01"));
   CHECK_THAT(*same.standard_error, WithinRel(0.3 * std::sqrt(2.0), 1e-12));
   CHECK_FALSE(same.of_other_dates.has_value());
@@ -168,7 +170,8 @@ TEST_CASE("comparison: a known value has no error, and is not fitted to anything
   known.result["parameters"][0]["ci95"] = nullptr;
   for (const bool first : {true, false}) {
     const ComparedJson fitted = fit_of("fitted", 85.0, 0.3);
-    const StoredDifference found = first ? difference(known, fitted) : difference(fitted, known);
+    const rigcal::calib::EstimateDifference found =
+        first ? difference(known, fitted) : difference(fitted, known);
     CHECK_THAT(*found.difference, WithinRel(first ? 5.0 : -5.0, 1e-12));
     CHECK_THAT(*found.standard_error, WithinRel(0.3, 1e-12));
     CHECK(found.significant == true);
@@ -179,8 +182,8 @@ TEST_CASE("comparison: a known value has no error, and is not fitted to anything
   CHECK(difference(known, same).significant == true);
   ComparedJson other = known;
   other.result["parameters"][0]["value"] = 81.0;
-  const StoredDifference both = difference(known, other);
-  CHECK(both.reason == std::string(kKnownInBoth));
+  const rigcal::calib::EstimateDifference both = difference(known, other);
+  CHECK(both.reason == std::string(rigcal::calib::kKnownInBoth));
   CHECK_THAT(*both.difference, WithinRel(1.0, 1e-12));
   CHECK_FALSE(both.standard_error.has_value());
 }
@@ -191,7 +194,8 @@ TEST_CASE("comparison: an estimate without an error is not tested, nor one of no
   without.result["parameters"][0]["standard_error"] = nullptr;
   for (const bool first : {true, false}) {
     const ComparedJson other = fit_of("other", 85.0);
-    const StoredDifference found = first ? difference(without, other) : difference(other, without);
+    const rigcal::calib::EstimateDifference found =
+        first ? difference(without, other) : difference(other, without);
     CHECK(found.reason == "an estimate has no standard error");
     CHECK_FALSE(found.significant.has_value());
     CHECK(found.difference.has_value());
@@ -222,7 +226,7 @@ TEST_CASE("comparison: a parameter is the same by name, scope and level", "[repo
 }
 
 TEST_CASE("comparison: a change in percent, else in a unit with few digits", "[report]") {
-  StoredDifference change;
+  rigcal::calib::EstimateDifference change;
   change.difference = 0.00031234;
   CHECK(change_text(change, {"mm", 1e-3}) == "+0.31 mm");
   CHECK(change_text(change, {"", 1.0}) == "+0.00031");
@@ -248,14 +252,14 @@ TEST_CASE("comparison: the unit is that of the largest estimate", "[report]") {
 TEST_CASE("comparison: rows of what some result estimates, or of known values that differ",
           "[report]") {
   CHECK(worth_a_row(parameter("estimated", std::nullopt)));
-  StoredComparedParameter known = parameter("known", untested(0.0, kKnownInBoth));
+  StoredComparedParameter known = parameter("known", untested(0.0, rigcal::calib::kKnownInBoth));
   known.estimates[0]->fitted = false;
   CHECK(worth_a_row(known));
   known.estimates[1]->fitted = false;
   CHECK_FALSE(worth_a_row(known));
-  known.differences[1] = untested(1e-9, kKnownInBoth);
+  known.differences[1] = untested(1e-9, rigcal::calib::kKnownInBoth);
   CHECK(worth_a_row(known));
-  known.differences[1] = untested(-1e-9, kKnownInBoth);
+  known.differences[1] = untested(-1e-9, rigcal::calib::kKnownInBoth);
   CHECK(worth_a_row(known));
 }
 
@@ -266,7 +270,7 @@ TEST_CASE("comparison: changes, the surest first, then what was not tested by it
       parameter("sure", tested(2.0, 0.01, true)),
       parameter("no_change", tested(0.0, 1.0, true)),
       parameter("insignificant", tested(9.0, 0.2, false)),
-      parameter("known", untested(5.0, kKnownInBoth)),
+      parameter("known", untested(5.0, rigcal::calib::kKnownInBoth)),
       parameter("untested_large", untested(-3.0, "why")),
       parameter("untested_none", untested(0.0, "why")),
       parameter("surest", tested(-1.0, 0.001, true)),
@@ -300,11 +304,11 @@ TEST_CASE("comparison: what was tested is counted, and what not is named with it
     REQUIRE_FALSE(list[0].has_value());
     return *list[1];
   };
-  const StoredSignificance found =
-      counted({parameter("a", tested(1.0, 0.01, true)), parameter("b", tested(1.0, 0.2, false)),
-               parameter("c", untested(1.0, "one")), parameter("d", untested(1.0, "two")),
-               parameter("e", untested(1.0, "one")), parameter("f", untested(1.0, kKnownInBoth)),
-               parameter("g", std::nullopt)});
+  const StoredSignificance found = counted(
+      {parameter("a", tested(1.0, 0.01, true)), parameter("b", tested(1.0, 0.2, false)),
+       parameter("c", untested(1.0, "one")), parameter("d", untested(1.0, "two")),
+       parameter("e", untested(1.0, "one")),
+       parameter("f", untested(1.0, rigcal::calib::kKnownInBoth)), parameter("g", std::nullopt)});
   CHECK(found.compared == 5);
   CHECK(found.tested == 2);
   CHECK(found.significant == 1);

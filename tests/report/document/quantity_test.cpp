@@ -7,7 +7,7 @@ namespace doc = rigcal::report::doc;
 
 namespace {
 const std::optional<double> kMissing;
-const std::optional<rigcal::report::Range> kNoInterval;
+const std::optional<rigcal::Range> kNoInterval;
 }  // namespace
 
 TEST_CASE("quantity: what is missing is a dash without a value", "[report]") {
@@ -33,7 +33,7 @@ TEST_CASE("quantity: the digits are those that the number deserves", "[report]")
 }
 
 TEST_CASE("quantity: an estimate is shown in the digits of its interval", "[report]") {
-  const doc::Estimate mass = doc::estimate(85.0114, rigcal::report::Range{84.96, 85.06}, 1.0);
+  const doc::Estimate mass = doc::estimate(85.0114, rigcal::Range{84.96, 85.06}, 1.0);
   CHECK(mass.value.text == "85.011");
   CHECK(mass.has_interval);
   CHECK(mass.interval().size() == 3);

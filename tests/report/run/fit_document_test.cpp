@@ -20,7 +20,7 @@ struct Scene {
 
   Scene() { fit.status = calib::FitStatus::converged; }
 
-  calib::FittedParameter& add_mass(double value, const std::pair<double, double>& ci95) {
+  calib::FittedParameter& add_mass(double value, const Range& ci95) {
     calib::FittedParameter& mass = fit.parameters.emplace_back();
     mass.index = model::parameter_index(campaign.rig.plant, "mass");
     mass.value = value;
@@ -94,7 +94,7 @@ TEST_CASE("fit on a terminal: at most 60 lines, however many conditions and warn
     check.metric = "rho2";
     check.value = 0.999;
     check.limit = 0.9;
-    check.used = 0.01;
+    check.tolerance_used = 0.01;
     check.verdict = calib::Verdict::pass;
     scene.fit.warnings.push_back("warning " + std::to_string(i));
   }

@@ -6,14 +6,23 @@ namespace rigcal::report {
 namespace {
 
 TEST_CASE("missing_terms: a line for each term that a campaign may estimate", "[report]") {
-  const auto terms = missing_terms(model::PlantKind::load_pressure, {{"valve_time_constant", 2e-4},
-                                                                     {"position_gain", -0.004},
-                                                                     {"ki", 5.0},
-                                                                     {"kp", 0.3},
-                                                                     {"sample_time", 1e-3},
-                                                                     {"total_volume", 1e-6},
-                                                                     {"position_wave", 1e-4}});
-  REQUIRE(terms.size() == 4);
+  calib::Considered considered;
+  for (const auto& [key, size] : std::vector<std::pair<std::string, std::optional<double>>>{
+           {"valve_time_constant", 2e-4},
+           {"position_gain", -0.004},
+           {"ki", 5.0},
+           {"kp", 0.3},
+           {"total_volume", 1e-6},
+           {"position_wave", 1e-4},
+           {"coulomb_friction", std::nullopt}}) {
+    calib::ConsideredEffect& effect = considered.effects.emplace_back();
+    effect.key = key;
+    effect.alone = size;
+    considered.missing.push_back(key);
+  }
+  considered.missing.emplace_back("kd");  // that no effect has
+  const auto terms = missing_terms(model::PlantKind::load_pressure, considered);
+  REQUIRE(terms.size() == 3);
   CHECK(terms[0].line ==
         "valve_time_constant = { start = \"0.0002 s\", lower = \"1e-06 s\", upper = \"0.0022 s\", "
         "fit = true }");

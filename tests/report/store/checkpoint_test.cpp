@@ -24,7 +24,7 @@ Checkpoint two_starts() {
     start.number = number;
     start.start_values = {2000.0, 2e-5};
     start.end_values = {1000.0 + number, 3e-5};
-    start.final_cost = 0.1 * number;
+    if (number == 2) start.final_cost = 0.1 * number;  // the other could not be simulated
     start.iterations = 7;
     start.status = rigcal::calib::FitStatus::converged;
     checkpoint.starts.push_back(start);
@@ -53,10 +53,11 @@ TEST_CASE("checkpoint: forged numbers are refused", "[report]") {
   };
   for (const Case& each : std::vector<Case>{
            {"\"number\": 2", "\"number\": 1", "numbered from 1"},
-           {"\"number\": 2", "\"number\": -5", "'number': found -5"},
-           {"\"number\": 2", "\"number\": 2.5", "'number': found 2.5"},
-           {"\"iterations\": 7", "\"iterations\": 1e300", "'iterations'"},
-           {"\"status\": 0", "\"status\": 99", "'status': found 99"},
+           {"\"number\": 2", "\"number\": -5", "key 'starts[1].number': found -5"},
+           {"\"number\": 2", "\"number\": 2.5", "key 'starts[1].number': found 2.5"},
+           {"\"iterations\": 7", "\"iterations\": 1e300",
+            "key 'starts[0].iterations': found 1e+300"},
+           {"\"status\": \"converged\"", "\"status\": \"odd\"", "status': found \"odd\""},
            {"\"best\": 1", "\"best\": 3", "'best': found 3, expected a whole number from 0 to 2"},
            {"\"evaluations\": 20", "\"evaluations\": null", "'evaluations': found no number"},
            {"\"iterations\": 7", "\"iterations\": 8", "was changed since it was written"},

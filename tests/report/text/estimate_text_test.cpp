@@ -6,6 +6,7 @@
 #include <random>
 
 using namespace rigcal::report;
+using rigcal::Range;
 
 namespace {
 

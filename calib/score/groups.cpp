@@ -1,4 +1,4 @@
-#include "report/text/groups.hpp"
+#include "calib/score/groups.hpp"
 
 #include <fmt/format.h>
 
@@ -6,13 +6,20 @@
 #include <functional>
 #include <optional>
 
-#include "metrics/metric_table.hpp"
-
-namespace rigcal::report {
+namespace rigcal::calib {
 namespace {
 
 using datasets::Condition;
 using Label = std::function<std::optional<std::string>(const Condition&)>;
+
+/// The score of a channel; begun where there is none.
+GroupScore& score_in(Group& group, datasets::Channel channel) {
+  auto& all = group.metrics;
+  const auto place =
+      std::find_if(all.begin(), all.end(), [&](const auto& each) { return each.first >= channel; });
+  if (place != all.end() && place->first == channel) return place->second;
+  return all.insert(place, {channel, GroupScore{}})->second;
+}
 
 void add_score(GroupScore& score, const metrics::Agreement& agreement) {
   for (const metrics::MetricSpec& metric : metrics::kMetrics) {
@@ -30,7 +37,7 @@ void add_score(GroupScore& score, const metrics::Agreement& agreement) {
 }
 
 void gather(std::vector<Group>& result, const std::string& by, const Label& label,
-            const std::vector<std::pair<const Condition*, const calib::ConditionScore*>>& scores) {
+            const std::vector<std::pair<const Condition*, const ConditionScore*>>& scores) {
   const std::size_t first = result.size();
   for (const auto& [condition, score] : scores) {
     const std::optional<std::string> text = label(*condition);
@@ -40,17 +47,17 @@ void gather(std::vector<Group>& result, const std::string& by, const Label& labe
         std::find_if(begin, result.end(), [&](const Group& g) { return g.label == *text; });
     if (group == result.end()) group = result.insert(group, Group{by, *text, {}, {}});
     group->conditions.push_back(condition->id);
-    for (const calib::ChannelScore& channel : score->channels) {
-      if (channel.agreement) add_score(group->channels[channel.channel], *channel.agreement);
+    for (const ChannelScore& channel : score->channels) {
+      if (channel.agreement) add_score(score_in(*group, channel.channel), *channel.agreement);
     }
   }
 }
 
 }  // namespace
 
-std::vector<Group> groups(const datasets::Campaign& campaign, const calib::Fit& fit) {
-  std::vector<std::pair<const Condition*, const calib::ConditionScore*>> scores;
-  for (const calib::ConditionScore& score : fit.conditions) {
+std::vector<Group> groups(const datasets::Campaign& campaign, const Fit& fit) {
+  std::vector<std::pair<const Condition*, const ConditionScore*>> scores;
+  for (const ConditionScore& score : fit.conditions) {
     if (const Condition* condition = campaign.find(score.id))
       scores.emplace_back(condition, &score);
   }
@@ -80,4 +87,4 @@ std::vector<Group> groups(const datasets::Campaign& campaign, const calib::Fit& 
   return result;
 }
 
-}  // namespace rigcal::report
+}  // namespace rigcal::calib

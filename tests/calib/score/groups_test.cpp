@@ -1,4 +1,4 @@
-#include "report/text/groups.hpp"
+#include "calib/score/groups.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -29,7 +29,7 @@ calib::ConditionScore score(const char* id, double rho2) {
 
 }  // namespace
 
-TEST_CASE("groups: means and the worst by signal, frequency, waveform and leak level", "[report]") {
+TEST_CASE("groups: means and the worst by signal, frequency, waveform and leak level", "[calib]") {
   using datasets::Waveform;
   datasets::Campaign campaign;
   campaign.conditions = {condition("a", Waveform::sine, 10.0), condition("b", Waveform::sine, 1.0),
@@ -39,27 +39,26 @@ TEST_CASE("groups: means and the worst by signal, frequency, waveform and leak l
   fit.conditions = {score("a", 0.9), score("b", 0.8), score("c", 0.6)};
   fit.conditions[1].channels[0].agreement.reset();  // a constant record has no metrics
 
-  const auto all = report::groups(campaign, fit);
+  const auto all = calib::groups(campaign, fit);
   const auto find = [&](const std::string& by, const std::string& label) {
-    for (const report::Group& group : all) {
+    for (const calib::Group& group : all) {
       if (group.by == by && group.label == label) return group;
     }
     FAIL("no group " + by + " " + label);
-    return report::Group{};
+    return calib::Group{};
   };
-  const auto position = datasets::Channel::position;
   CHECK(find("signal", "sine 10 Hz").conditions == std::vector<std::string>{"a"});
   CHECK(find("frequency", "1 Hz").conditions == std::vector<std::string>{"b", "c"});
-  CHECK(find("frequency", "1 Hz").channels.at(position).conditions == 1);
+  CHECK(find("frequency", "1 Hz").metrics.at(0).second.conditions == 1);
   CHECK(find("leak_level", "66 %").conditions == std::vector<std::string>{"a", "b"});
-  const report::GroupScore use = find("use", "fit").channels.at(position);
+  const calib::GroupScore use = find("use", "fit").metrics.at(0).second;
   CHECK(use.conditions == 2);
   CHECK_THAT(use.mean.rho2, WithinRel(0.75, 1e-14));
   CHECK(use.worst.rho2 == 0.6);
   CHECK_THAT(use.worst.rmse, WithinRel(0.4, 1e-14));
   // Each of the three conditions has a weight of one third: (0.9 + 0.9 + 0.6) / 3.
   fit.conditions[1] = score("b", 0.9);
-  for (const report::Group& group : report::groups(campaign, fit)) {
-    if (group.by == "use") CHECK_THAT(group.channels.at(position).mean.rho2, WithinRel(0.8, 1e-14));
+  for (const calib::Group& group : calib::groups(campaign, fit)) {
+    if (group.by == "use") CHECK_THAT(group.metrics.at(0).second.mean.rho2, WithinRel(0.8, 1e-14));
   }
 }
