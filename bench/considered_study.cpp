@@ -1,5 +1,5 @@
 // How often 95 % intervals hold the truth where the rig has a small effect that the fitted model
-// lacks, and how often a plain PASS stands beside an interval that misses it by more than three
+// lacks, and how often a plain PASS comes with an interval that misses it by more than three
 // half widths (false assurance). The records are those of bench/foreign_rig.hpp, which shares no
 // line with the product. Prints the second table of docs/uncertainty.md.
 #include <fmt/format.h>

@@ -283,7 +283,7 @@ std::optional<ParameterConflict> find_opening_conflict(const model::ParameterVal
   for (const char* key : kTable) {
     for (const char* power : {"valve_exponent", "pilot_exponent"}) {
       if (values.is_given(key) && values.is_given(power))
-        return ParameterConflict{key, fmt::format("{} (an opening by a table) stands together with "
+        return ParameterConflict{key, fmt::format("{} (an opening by a table) is combined with "
                                                   "{} (by a power): expected one of them",
                                                   key, power)};
     }
@@ -297,7 +297,7 @@ std::optional<ParameterConflict> find_opening_conflict(const model::ParameterVal
   return std::nullopt;
 }
 
-/// What stands without that which it belongs to, and how this is called.
+/// A value that needs another one, and the name of the pair in messages.
 struct Companion {
   const char* key;
   const char* needed;

@@ -223,7 +223,7 @@ X accumulator_capacity(const X& pressure_pa, const C& volume_m3, const C& precha
   using std::exp;
   using std::log;
   using std::tanh;
-  constexpr double kLift = 0.02;  // of the precharge
+  constexpr double kLift = 0.02;  // fraction of the precharge
   const X p = absolute_pressure(pressure_pa);
   const C first = absolute_pressure(precharge_pa);
   const X above = (tanh(X((p - first) / (first * kLift))) + 1.0) * 0.5;

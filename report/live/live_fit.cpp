@@ -156,7 +156,7 @@ MeasuredCase measured_case(const calib::ConditionScore& score) {
 }
 
 /// @param every  only every `every`-th sample is included
-Json json_of(const MeasuredCase::Measured& measured, std::size_t every) {
+Json samples_json(const MeasuredCase::Measured& measured, std::size_t every) {
   std::vector<double> taken;
   taken.reserve(measured.mean->size() / every + 1);
   for (std::size_t i = 0; i < measured.mean->size(); i += every)
@@ -185,7 +185,7 @@ void add_measured(const std::vector<MeasuredCase>& measured, Json& cases) {
     row["held_back"] = each.held_back;
     row["measured"] = Json::array();
     for (const MeasuredCase::Measured& channel : each.channels)
-      row["measured"].push_back(json_of(channel, every));
+      row["measured"].push_back(samples_json(channel, every));
   }
 }
 

@@ -129,8 +129,8 @@ doc::Table drive_table(const StoredDesign& design) {
   doc::Table table{"Numbers of the drive"};
   table.columns = {{"Number"}, {"Value", Kind::number}, {"Unit", Kind::unit}};
   for (const calib::DrivePart& part : design.drive)
-    table.rows.push_back(
-        {{part.name, fmt::format("{:.5g}", part.value), part.unit == "1" ? "" : part.unit}});
+    table.rows.push_back({{part.name, fmt::format("{:.5g}", part.value),
+                           part.unit == "1" ? std::string() : typographic(part.unit)}});
   return table;
 }
 

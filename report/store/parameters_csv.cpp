@@ -18,7 +18,7 @@ void add_budget(const StoredParameter& p, std::vector<std::string>& fields) {
     return;
   }
   for (const char* kind : {"records", "known_value", "effect"})
-    fields.push_back(csv_number(contribution(*p.budget, kind)));
+    fields.push_back(csv_number(p.budget->contribution(kind)));
   for (const double number : {p.budget->combined, p.budget->degrees_of_freedom,
                               p.budget->coverage_factor, p.budget->shift})
     fields.push_back(csv_number(number));

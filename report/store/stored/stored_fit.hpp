@@ -73,7 +73,7 @@ struct StoredParameter {
   std::optional<Range> ci95;                              ///< interval of the rig
   Later<std::optional<Range>> ci95_if_exact;              ///< if the model were exact
   Later<std::optional<calib::IntervalSource>> ci95_from;  ///< basis of ci95_if_exact
-  Later<std::optional<double>> degrees_of_freedom;  ///< of the error that ci95_if_exact rests on
+  Later<std::optional<double>> degrees_of_freedom;  ///< those of the error behind ci95_if_exact
   Omittable<calib::Budget95> budget;
   Omittable<calib::AveragedEstimate> averaged;  ///< where the residuals ask for an effect
   Omittable<double> between_days_error;         ///< standard error by what differs between days
@@ -92,8 +92,8 @@ struct StoredParameter {
 /// What the parameters of a result of an earlier schema say today.
 void as_of_now(std::string_view schema, std::vector<StoredParameter>& parameters);
 
-/// The error that ci95_if_exact rests on, and its degrees of freedom. A file of a version that does
-/// not tell these has them by the half width of that interval in errors, else many.
+/// Returns the error behind ci95_if_exact and its degrees of freedom. If a file of an earlier
+/// version lacks these, they follow from the half width of that interval in errors, else many.
 std::optional<metrics::EstimateError> interval_error(const StoredParameter& parameter);
 /// The larger of standard and robust error.
 std::optional<double> error_of(const StoredParameter& parameter);

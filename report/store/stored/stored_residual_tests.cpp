@@ -48,7 +48,7 @@ std::string periodogram_words(const metrics::Periodogram& test) {
   if (test.passed()) return "consistent with a flat spectrum (white noise)";
   if (!test.failed()) return not_judged(test);
   std::string text =
-      fmt::format("not flat: half of the power lies below {}", hertz(test.median_frequency_hz));
+      fmt::format("not flat: half of the power is below {}", hertz(test.median_frequency_hz));
   if (test.peak_share >= 0.1) {
     text += fmt::format(", {:.0f} % at {}", 100.0 * test.peak_share, hertz(test.peak_frequency_hz));
   }

@@ -13,7 +13,7 @@ using Catch::WithinRel;
 
 namespace {
 
-/// Leak of a piston that a load holds against a closed valve, and the pressure
+/// Leak of a piston under load with its valve closed, and the pressure
 /// across it.
 std::pair<double, double> held_leak(Experiment e, double load_n) {
   e.rig.controller = ControllerKind::none;

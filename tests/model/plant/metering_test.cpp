@@ -128,7 +128,7 @@ TEST_CASE("metering: all terms together follow an integrator of another kind", "
   INFO(run.reason);
   REQUIRE(run.ok());
   SlideState x{0.0, 0.0, run.outputs(0, 2), run.outputs(0, 3), 2e7, 0.0};
-  constexpr int kSteps = 16000;  // of Runge and Kutta's method between two samples
+  constexpr int kSteps = 16000;  // Runge and Kutta's method, between two samples
   const double h = 0.1 / kSteps;
   const auto moved = [](const SlideState& from, const SlideState& rate, double by) {
     SlideState to = from;
@@ -301,7 +301,7 @@ TEST_CASE("metering: an accumulator gives oil by the gas law", "[model]") {
   REQUIRE(supply_pa < 1.9e7);
   // What left went into chamber A; its oil is nearly rigid here.
   CHECK_THAT(gas_m3(supply_pa) - gas_m3(2e7), WithinRel(4e-3 * end(0), 2e-3));
-  // Below the precharge it holds no oil.
+  // It contains no oil below the precharge.
   CHECK(accumulator_capacity(6e6, 4e-3, 8e6, 1.25) <
         1e-9 * accumulator_capacity(9e6, 4e-3, 8e6, 1.25));
 }
