@@ -521,7 +521,7 @@ void study_row(const Row& row, const StudyExtent& extent, OutcomeFile& file) {
   for (const StudyOutcome& each : outcomes)
     if (!each.named.empty() && each.named != row.effect) ++others[each.named];
   std::string other;
-  for (const auto& [name, times] : others) other += fmt::format(" {} {}", name, times);
+  for (const auto& [name, times] : others) other += fmt::format(" `{}` {}", name, times);
   std::cout << fmt::format(
                    "| {} | {} | {} | {} | {} | {} | {} | {}{} |\n", row.name,
                    covered(&StudyOutcome::holds), covered(&StudyOutcome::exact),
@@ -555,8 +555,8 @@ int main(int argc, char** argv) {
   extent.first = static_cast<std::size_t>(first);
   rigcal::bench::OutcomeFile file(argc > 6 ? argv[6] : "");
   std::cout << fmt::format(
-      "| {} campaigns each, {} repeats | holds the truth, % (mass, damping, bulk_modulus, "
-      "valve_gain, leakage_coefficient) | `ci95_if_exact`, % | median half width, % | over the rms "
+      "| {} campaigns each, {} repeats | intervals with the truth, % (mass, damping, "
+      "bulk modulus, valve gain, leak) | `ci95_if_exact`, % | median half width, % | over the rms "
       "error | PASS/WARN/FAIL | false assurance, % | named first, %; others |\n"
       "| --- | --- | --- | --- | --- | --- | --- | --- |\n",
       campaigns, extent.repeats);

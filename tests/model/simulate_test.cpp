@@ -323,7 +323,9 @@ TEST_CASE("simulate: an error of the spool acts as a null shift, and as a comman
           "[model]") {
   Experiment by_parameter = paper(Signal::sine(0.02, 2.0));
   by_parameter.set("valve_offset", 0.2);
+  by_parameter.options.tolerance = 1e-8;
   Experiment by_signal = paper(Signal::sine(0.02, 2.0));
+  by_signal.options.tolerance = 1e-8;
   by_signal.inputs.spool_error = Signal::constant(0.2);
   CHECK(difference(ok(by_parameter).outputs, ok(by_signal).outputs) < 1e-5);
   const std::vector<double> times{0.0, 0.3, 1.0};
