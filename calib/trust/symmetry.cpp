@@ -43,14 +43,17 @@ std::vector<std::string> known_and_scaled(const Problem& problem) {
   }
   std::vector<std::string> names;
   for (const std::size_t row : rows) names.emplace_back(table[row].name);
-  // Air in the oil relates pressures to that of the atmosphere, which cannot be scaled.
-  const int air = model::parameter_index(problem.campaign->rig.plant, "air_fraction");
-  const bool holds_air =
-      air >= 0 && std::any_of(problem.conditions.begin(), problem.conditions.end(),
-                              [air](const ProblemCondition& condition) {
-                                return condition.values.value[static_cast<std::size_t>(air)] != 0.0;
-                              });
-  if (holds_air) names.emplace_back("pressure of the atmosphere (air_fraction)");
+  // A gas relates pressures to that of the atmosphere, which cannot be scaled.
+  for (const char* key : {"air_fraction", "accumulator_volume"}) {
+    const int gas = model::parameter_index(problem.campaign->rig.plant, key);
+    const bool holds_gas =
+        gas >= 0 &&
+        std::any_of(problem.conditions.begin(), problem.conditions.end(),
+                    [gas](const ProblemCondition& condition) {
+                      return condition.values.value[static_cast<std::size_t>(gas)] != 0.0;
+                    });
+    if (holds_gas) names.push_back(fmt::format("pressure of the atmosphere ({})", key));
+  }
   return names;
 }
 
@@ -117,12 +120,12 @@ bool takes_part(const Problem& problem, const ScalingSymmetry& symmetry, std::st
 double scaling_exponent(const model::ParameterSpec& spec) {
   using model::ParameterKind;
   // Flows follow the root of pressure over density, and density stays: it is no force.
-  constexpr std::array<std::string_view, 5> kOpenings{"valve_gain", "pilot_gain", "leakage_coefficient",
-                                 "bypass_opening", "return_line_opening"};
+  constexpr std::array<std::string_view, 5> kOpenings{
+      "valve_gain", "pilot_gain", "leakage_coefficient", "bypass_opening", "return_line_opening"};
   if (std::find(kOpenings.begin(), kOpenings.end(), spec.key) != kOpenings.end()) return -0.5;
   // The recorded pilot pressure stays, and what is compared with it.
-  constexpr std::array<std::string_view, 6> kStays{"density",     kSmoothing,         "pilot_dead_band",
-                              "pilot_range", "return_dead_band", "bypass_range"};
+  constexpr std::array<std::string_view, 6> kStays{
+      "density", kSmoothing, "pilot_dead_band", "pilot_range", "return_dead_band", "bypass_range"};
   if (std::find(kStays.begin(), kStays.end(), spec.key) != kStays.end()) return 0.0;
   if (spec.kind == ParameterKind::sensor || spec.kind == ParameterKind::controller) return 0.0;
   return mass_exponent(spec.unit);
