@@ -43,14 +43,17 @@ std::vector<std::string> known_and_scaled(const Problem& problem) {
   }
   std::vector<std::string> names;
   for (const std::size_t row : rows) names.emplace_back(table[row].name);
-  // Air in the oil relates pressures to atmospheric pressure, which cannot be scaled.
-  const int air = model::parameter_index(problem.campaign->rig.plant, "air_fraction");
-  const bool holds_air =
-      air >= 0 && std::any_of(problem.conditions.begin(), problem.conditions.end(),
-                              [air](const ProblemCondition& condition) {
-                                return condition.values.value[static_cast<std::size_t>(air)] != 0.0;
-                              });
-  if (holds_air) names.emplace_back("pressure of the atmosphere (air_fraction)");
+  // A gas relates pressures to atmospheric pressure, which cannot be scaled.
+  for (const char* key : {"air_fraction", "accumulator_volume"}) {
+    const int gas = model::parameter_index(problem.campaign->rig.plant, key);
+    const bool holds_gas =
+        gas >= 0 &&
+        std::any_of(problem.conditions.begin(), problem.conditions.end(),
+                    [gas](const ProblemCondition& condition) {
+                      return condition.values.value[static_cast<std::size_t>(gas)] != 0.0;
+                    });
+    if (holds_gas) names.push_back(fmt::format("pressure of the atmosphere ({})", key));
+  }
   return names;
 }
 

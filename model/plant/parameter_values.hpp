@@ -197,7 +197,7 @@ constexpr auto load_rows() {
       F{&P::stribeck_friction_n, {"stribeck_friction", "stribeck_friction_n", "F_st", "N", "friction at breakaway above Coulomb's", "docs/model.md", K::term, 0, 1e8, 0.0}},
       F{&P::stribeck_velocity_m_per_s, {"stribeck_velocity", "stribeck_velocity_m_per_s", "v_st", "m/s", "velocity at which the breakaway friction fades", "docs/model.md", K::term, 1e-6, 100, 0.01}},
       F{&P::friction_smoothing_m_per_s, {"friction_smoothing", "friction_smoothing_m_per_s", "v_0", "m/s", "velocity below which dry friction is straightened", "docs/model.md", K::term, 1e-6, 10, 1e-3, false}},
-      F{&P::seal_friction_m2, {"seal_friction", "seal_friction_m2", "k_p", "m2", "what dry friction grows by per pressure across the piston (N/Pa)", "docs/model.md", K::term, 0, 10, 0.0}},
+      F{&P::seal_friction_m2, {"seal_friction", "seal_friction_m2", "mu_p", "m2", "what dry friction grows by per pressure across the piston (N/Pa)", "docs/model.md", K::term, 0, 10, 0.0}},
       F{&P::bristle_stiffness_n_per_m, {"bristle_stiffness", "bristle_stiffness_n_per_m", "sigma_0", "N/m", "stiffness of seals and contacts before they slide: dry friction with pre-sliding", "docs/model.md", K::term, 1e2, 1e12, 0.0}},
       F{&P::bristle_damping_n_s_per_m, {"bristle_damping", "bristle_damping_n_s_per_m", "sigma_1", "N s/m", "damping of that micro-motion", "docs/model.md", K::term, 0, 1e9, 0.0}},
       F{&P::external_force_n, {"external_force", "external_force_n", "F_ext", "N", "constant load against positive travel", "docs/model.md", K::term, -1e8, 1e8, 0.0}},

@@ -208,12 +208,12 @@ X absolute_pressure(const X& pressure_pa) {
 }
 
 /// What an accumulator takes up per pressure [m3/Pa], its gas following p V^n = constant:
-/// V_0 / (n p) (p_0 / p)^(1/n) above the precharge. The bladder fills its shell below; that it
+/// V_0 / (n p) (p_g / p)^(1/n) above the precharge. The bladder fills its shell below; that it
 /// lifts off over some hundredths of the pressure keeps the derivative continuous.
 ///
 /// @param pressure_pa   above atmosphere
 /// @param volume_m3     V_0, of the gas at the precharge
-/// @param precharge_pa  p_0, above atmosphere
+/// @param precharge_pa  p_g, above atmosphere
 /// @source   D. R. Otis and A. Pourmovahed, An algorithm for computing nonflow gas processes in gas
 ///           springs and hydropneumatic accumulators, J. Dyn. Sys. Meas. Control 107 (1985) 93-96;
 ///           here with one exponent instead of their heat transfer

@@ -178,9 +178,9 @@ constexpr auto metering_rows() {
       F{&P::valve_bypass_range_v, {"valve_bypass_range", "valve_bypass_range_v", "u_b", "V", "voltage beyond the dead band at which the way of bypass_opening is closed", "docs/model.md", K::term, 1e-3, 1e3, 10.0, false}},
       F{&P::load_sensing_margin_pa, {"load_sensing_margin", "load_sensing_margin_pa", "p_LS", "Pa", "pressure that the pump keeps above that of the driven chamber, supply_pressure at most", "docs/model.md", K::term, 0, 1e8, 0.0}},
       F{&P::accumulator_volume_m3, {"accumulator_volume", "accumulator_volume_m3", "V_0", "m3", "gas of an accumulator at the valve, at its precharge", "docs/model.md", K::term, 1e-9, 10, 0.0}},
-      F{&P::accumulator_precharge_pa, {"accumulator_precharge", "accumulator_precharge_pa", "p_0", "Pa", "pressure of that gas while there is no oil", "docs/model.md", K::term, 1e3, 1e8, 0.0}},
+      F{&P::accumulator_precharge_pa, {"accumulator_precharge", "accumulator_precharge_pa", "p_g", "Pa", "pressure of that gas while there is no oil", "docs/model.md", K::term, 1e3, 1e8, 0.0}},
       F{&P::accumulator_exponent, {"accumulator_exponent", "accumulator_exponent", "n_g", "1", "polytropic exponent of that gas", "docs/model.md", K::term, 1, 2, 1.4}},
-      F{&P::relief_pressure_pa, {"relief_pressure", "relief_pressure_pa", "p_r", "Pa", "pressure at which the relief valve of each chamber begins to open to the tank", "docs/model.md", K::term, 1e4, 1e9, 0.0}},
+      F{&P::relief_pressure_pa, {"relief_pressure", "relief_pressure_pa", "p_rv", "Pa", "pressure at which the relief valve of each chamber begins to open to the tank", "docs/model.md", K::term, 1e4, 1e9, 0.0}},
       F{&P::relief_conductance_m3_per_s_pa, {"relief_conductance", "relief_conductance_m3_per_s_pa", "G_r", "m3/(s Pa)", "flow of that valve per pressure beyond", "docs/model.md", K::term, 0, 1, 0.0}},
       // clang-format on
   };

@@ -178,6 +178,23 @@ TEST_CASE("friction: seals rub more where pressure presses them on", "[model]") 
   }
 }
 
+TEST_CASE("bristles: a loop that had settled holds with them", "[model]") {
+  Experiment e;
+  e.set("kp", 300.0).set("coulomb_friction", 150.0).set("bristle_stiffness", 2e6);
+  e.set("derivative_filter", 300.0).set("velocity_feedforward", 5.0);
+  e.set("acceleration_feedforward", 0.1).set("stiffness", 0.0);
+  e.inputs.drive = Signal::constant(0.013);
+  e.rig.before = Before::steady;
+  e.times_s = grid(0.0, 0.2, 21);
+  e.outputs = {Output::position, Output::velocity, Output::command};
+  const Simulation run = e();
+  INFO(run.reason);
+  REQUIRE(run.ok());
+  CHECK(peak(run.outputs.col(0).array() - 0.013) < 1e-7);
+  CHECK(peak(run.outputs.col(1)) < 1e-7);
+  CHECK(peak(run.outputs.col(2)) < 1e-4);
+}
+
 TEST_CASE("bristles: a record that begins in motion begins with bent bristles", "[model]") {
   Experiment e = single_rod_rig();
   e.rig.initial = InitialState::given;

@@ -1,5 +1,5 @@
 // The cylinder on a lever: against the plant that slides, in steady motion, and term by term
-// against closed forms (docs/model.md, section 9).
+// against closed forms (docs/model.md, sections 9 and 10).
 
 #include "model/plant/linkage.hpp"
 
