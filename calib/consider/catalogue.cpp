@@ -59,7 +59,7 @@ constexpr double kSecantTolerance = 1e-6;
 /// The same for a recorded drive, as a multiple of the measured tolerance, and its limit: of a
 /// difference between two runs that are alike only the difference of their errors counts.
 constexpr double kRecordedShare = 30.0;
-constexpr double kLargestSecantTolerance = 1e-4;
+constexpr double kLargestSecantTolerance = 3e-5;
 
 double lag_of(double intervals, const RigScale& rig) {
   return std::clamp(intervals * rig.sample_s, kLeastLag_s, kMostLag_s);

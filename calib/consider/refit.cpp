@@ -20,6 +20,9 @@ constexpr int kMostStepHalvings = 5;
 /// The search ends with a step that lowers the squares by less, in variances of a weighted
 /// residual.
 constexpr double kSettledFall = 0.02;
+/// Fraction of what it promises that a step must at least fall: beside a kink the derivatives
+/// promise what no step keeps, and steps that hardly fall would go on to the last one.
+constexpr double kLeastFall = 0.01;
 /// Fall that the simulations resolve, in the same unit.
 constexpr double kResolvedFall = 1.0;
 /// As a multiple of the plausible size. A shorter lag is stiff, and counts as none.
@@ -166,6 +169,10 @@ std::optional<Refit> Refitter::fit(const std::vector<Effect>& effects, std::vect
   if (!sum.ok) return std::nullopt;
   double count = 0.0;
   for (const VectorXd& each : base_) count += static_cast<double>(each.size());
+  // Where effects are simulated more coarsely, shorter steps are not worth trying below what is
+  // resolved.
+  const bool recorded = std::any_of(problem_.conditions.begin(), problem_.conditions.end(),
+                                    [](const auto& each) { return each.measured_tolerance > 0.0; });
   bool settled = false;
   for (int step = 0; step < kMostRefitSteps && !settled; ++step) {
     if (cancel_ != nullptr && cancel_->load()) return std::nullopt;
@@ -191,7 +198,7 @@ std::optional<Refit> Refitter::fit(const std::vector<Effect>& effects, std::vect
     double part_of_step = 1.0;
     bool lower = false;
     const bool resolved = promised >= kResolvedFall * sum.squares / count;
-    const int halvings = resolved ? kMostStepHalvings : 1;
+    const int halvings = resolved || !recorded ? kMostStepHalvings : 1;
     for (int halving = 0; halving < halvings && !lower; ++halving, part_of_step *= 0.5) {
       std::vector<double> z = best.z;
       VectorXd next = best.sizes;
@@ -206,7 +213,8 @@ std::optional<Refit> Refitter::fit(const std::vector<Effect>& effects, std::vect
       }
       next = within_signs(effects, next);
       std::vector<Part> own;
-      Part there = evaluate(z, next, sum.squares, own);
+      const double least_fall = kLeastFall * part_of_step * promised;
+      Part there = evaluate(z, next, sum.squares - least_fall, own);
       if (!there.ok) continue;
       best.z = std::move(z);
       best.sizes = std::move(next);

@@ -17,7 +17,7 @@ constexpr double kCoarser = 1e-5;
 constexpr double kFiner = 1e-6;
 /// Norm of the errors of all residuals, each over its standard deviation. At worst the estimates
 /// move by so many standard errors; errors that change their sign move them less.
-constexpr double kHarmless = 0.01;
+constexpr double kHarmless = 0.005;
 /// Factor by which a tolerance must be too coarse before it is changed.
 constexpr double kMuchFiner = 2.0;
 
