@@ -10,7 +10,8 @@ namespace rigcal::calib {
 /// Measures for each condition with a recorded drive at which tolerance the errors of its
 /// simulation are harmless (docs/decisions/0047). The rule of Problem::tolerance_of() takes an
 /// error of the tolerance that is the same throughout. What a recorded drive excites is simulated
-/// anew from sample to sample, and its errors may be a thousandth of that.
+/// anew from sample to sample, and its errors may be a thousandth of that. Where
+/// only nuisance parameters are unknown, too few simulations follow to be worth it.
 ///
 /// @param z  where, in the unit box
 void measure_tolerances(Problem& problem, std::span<const double> z, int threads,

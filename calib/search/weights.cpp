@@ -113,8 +113,9 @@ void estimate_weights(Problem& problem, Evaluator& evaluator, const FitOptions& 
   bool settled = false;
   for (int round = 0; round < kMaxRounds && !settled; ++round) {
     if (found.result.status != FitStatus::converged || evaluator.budget().spent()) break;
-    settled =
-        update(problem, found.optimum, options.threads, evaluator.budget().cancel()) <= kSettled;
+    const double change =
+        update(problem, found.optimum, options.threads, evaluator.budget().cancel());
+    settled = change <= kSettled;
     if (!search_on(problem, evaluator, options, found)) break;
   }
   if (!settled && evaluator.budget().spent() && found.result.status == FitStatus::converged) {

@@ -94,8 +94,9 @@ TEST_CASE("measured tolerance: it becomes finer where it must, and never coarser
   CHECK(problem.tolerance_of(1) == finer);
 }
 
-TEST_CASE("measured tolerance: none where the campaign fixes it, or a simulation fails",
-          "[calib]") {
+TEST_CASE(
+    "measured tolerance: none if the campaign fixes it, a simulation fails, or all is nuisance",
+    "[calib]") {
   RecordedTwin rig;
   rig.twin.campaign.simulation.tolerance = 1e-7;
   Problem fixed = problem_of(rig.twin, rig.records);
@@ -103,6 +104,10 @@ TEST_CASE("measured tolerance: none where the campaign fixes it, or a simulation
   CHECK(fixed.conditions[1].measured_tolerance == 0.0);
   CHECK(fixed.tolerance_of(1) == 1e-7);
   rig.twin.campaign.simulation.tolerance.reset();
+  Problem nuisance = make_problem(rig.twin.campaign, rig.records,
+                                  {&rig.twin.campaign.conditions[1]}, true, nullptr);
+  measure_tolerances(nuisance, nuisance.start(), 1, nullptr);
+  CHECK(nuisance.conditions[0].measured_tolerance == 0.0);
   Problem failing = problem_of(rig.twin, rig.records);
   failing.conditions[1].max_steps = 3;
   measure_tolerances(failing, failing.start(), 1, nullptr);
