@@ -59,9 +59,10 @@ std::vector<double> measured(const Problem& problem, std::span<const double> z, 
   const double harmless = kHarmless / std::sqrt(static_cast<double>(problem.residual_count()));
   std::vector<double> result(problem.conditions.size(), 0.0);
   const auto& unknowns = problem.map.unknowns();
-  if (problem.tolerance_fixed ||
-      std::all_of(unknowns.begin(), unknowns.end(), [](const auto& each) { return each.nuisance; }))
-    return result;
+  const bool nuisance_alone =
+      !unknowns.empty() &&
+      std::all_of(unknowns.begin(), unknowns.end(), [](const auto& each) { return each.nuisance; });
+  if (problem.tolerance_fixed || nuisance_alone) return result;
   parallel_for(result.size(), threads, [&](std::size_t i) {
     if (!has_recorded_drive(problem.conditions[i])) return;
     const double error = error_of(problem, i, z, cancel);
