@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <vector>
 
 #include "calib/problem/arrow.hpp"
@@ -26,7 +27,7 @@ struct ScoreRows {
   void make_narrow();
   /// Rows [first, first + count) of the Jacobian, wherever it is stored.
   Eigen::MatrixXd rows(Eigen::Index first, Eigen::Index count) const;
-  Eigen::MatrixXd all_rows() const { return rows(0, residual.size()); }
+  Eigen::MatrixXd all_rows() const { return rows(0, std::max(narrow.rows(), jacobian.rows())); }
 };
 
 /// Contribution of one condition to the long-run covariance of the score J^T r.

@@ -104,6 +104,12 @@ TEST_CASE(
   CHECK(fixed.conditions[1].measured_tolerance == 0.0);
   CHECK(fixed.tolerance_of(1) == 1e-7);
   rig.twin.campaign.simulation.tolerance.reset();
+  Problem scored = make_problem(rig.twin.campaign, rig.records, {&rig.twin.campaign.conditions[1]},
+                                true, nullptr);
+  REQUIRE(scored.map.unknowns().empty());
+  measure_tolerances(scored, scored.start(), 1, nullptr);
+  CHECK(scored.conditions[0].measured_tolerance > 0.0);
+  rig.twin.free("position_offset", 0.0, -1e-3, 1e-3).nuisance = true;
   Problem nuisance = make_problem(rig.twin.campaign, rig.records,
                                   {&rig.twin.campaign.conditions[1]}, true, nullptr);
   measure_tolerances(nuisance, nuisance.start(), 1, nullptr);
