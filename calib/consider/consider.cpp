@@ -55,22 +55,22 @@ struct Seen {
   MatrixXd left;   ///< M
   VectorXd score;  ///< s
   MatrixXd basis;  ///< T: left = T^-T T^-1 on the directions that the records determine
-  /// Columns Q with Q^T Q = 1 that span what is left, and the residual without its effects.
+  /// EffectColumns Q with Q^T Q = 1 that span what is left, and the residual without its effects.
   std::vector<ScoreRows> rows;
 };
 
 /// What each effect does to the rows of a condition, shape (channels * samples, effects). Those of
 /// all conditions are the most memory that a fit holds, hence seven digits.
-using Columns = Eigen::MatrixXf;
+using EffectColumns = Eigen::MatrixXf;
 
 /// Takes out the effects that cannot be simulated, with the reason.
-void drop_failed(std::vector<Effect>& effects, std::vector<Columns>& columns,
+void drop_failed(std::vector<Effect>& effects, std::vector<EffectColumns>& columns,
                  std::vector<ConsideredEffect>& dropped) {
   std::vector<Index> kept;
   std::vector<Effect> remaining;
   for (std::size_t e = 0; e < effects.size(); ++e) {
     const auto column = static_cast<Index>(e);
-    const bool finite = std::all_of(columns.begin(), columns.end(), [&](const Columns& each) {
+    const bool finite = std::all_of(columns.begin(), columns.end(), [&](const EffectColumns& each) {
       return each.col(column).allFinite();
     });
     if (finite) {
@@ -82,7 +82,7 @@ void drop_failed(std::vector<Effect>& effects, std::vector<Columns>& columns,
     }
   }
   effects = std::move(remaining);
-  for (Columns& each : columns) each = Columns(each(Eigen::all, kept));
+  for (EffectColumns& each : columns) each = EffectColumns(each(Eigen::all, kept));
 }
 
 /// What the fit takes for a change in the directions of a condition.
@@ -91,7 +91,8 @@ MatrixXd taken_in(std::size_t condition, const Uncertainty& found, const Seen& s
 }
 
 /// What fit and residuals see of the effects, whose columns are used up.
-Seen look_at(std::vector<Effect> effects, std::vector<Columns>& columns, const Uncertainty& found) {
+Seen look_at(std::vector<Effect> effects, std::vector<EffectColumns>& columns,
+             const Uncertainty& found) {
   const std::vector<ScoreRows>& scores = found.scores;
   Seen seen;
   const auto count = static_cast<Index>(effects.size());
@@ -250,7 +251,7 @@ MatrixXd correlation_of(const MatrixXd& covariance) {
 ///          memory
 bool take_again(const Problem& problem, std::span<const double> z, const Uncertainty& found,
                 const Sizes& sizes, int threads, const std::atomic<bool>* cancel, Seen& seen,
-                std::vector<Columns>& columns) {
+                std::vector<EffectColumns>& columns) {
   std::vector<Effect> again;
   std::vector<Index> which;
   for (std::size_t e = 0; e < seen.effects.size(); ++e) {
@@ -701,7 +702,7 @@ void consider_effects(const Problem& problem, std::span<const double> z, const U
   Considered considered;
   considered.left_out = left_out_effects(problem, z);
   std::vector<Effect> effects = effects_of(problem, z);
-  std::vector<Columns> columns(problem.conditions.size());
+  std::vector<EffectColumns> columns(problem.conditions.size());
   parallel_for(columns.size(), threads, [&](std::size_t i) {
     columns[i] = effect_rows(problem, i, z, effects, cancel).cast<float>();
   });

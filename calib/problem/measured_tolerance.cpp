@@ -13,8 +13,8 @@ namespace {
 /// Tolerances of the two simulations that are compared. Errors grow about as the tolerance, so the
 /// difference is nearly the error of the coarser one. Beyond that the derivatives would be too
 /// coarse.
-constexpr double kCoarser = 1e-5;
-constexpr double kFiner = 1e-6;
+constexpr double kCoarserRun = 1e-5;
+constexpr double kFinerRun = 1e-6;
 /// Norm of the errors of all residuals, each over its standard deviation. At worst the estimates
 /// move by so many standard errors; errors that change their sign move them less.
 constexpr double kHarmless = 0.005;
@@ -23,17 +23,17 @@ constexpr double kMuchFiner = 2.0;
 
 /// Root mean square of the difference between both simulations over the standard deviation; NaN if
 /// one fails.
-double error_of(const Problem& problem, std::size_t i, std::span<const double> z,
-                const std::atomic<bool>* cancel) {
+double simulation_error(const Problem& problem, std::size_t i, std::span<const double> z,
+                        const std::atomic<bool>* cancel) {
   const ProblemCondition& data = problem.conditions[i];
   const auto run = [&](double tolerance) {
     return model::simulate(data.rig, problem.values_at(i, z), std::vector<int>(), data.inputs,
                            data.fit_times(), data.outputs,
                            simulation_options(problem, i, tolerance, cancel));
   };
-  const model::Simulation coarser = run(kCoarser);
+  const model::Simulation coarser = run(kCoarserRun);
   if (!coarser.ok()) return std::nan("");
-  const model::Simulation finer = run(kFiner);
+  const model::Simulation finer = run(kFinerRun);
   if (!finer.ok()) return std::nan("");
   double squares = 0.0;
   for (std::size_t k = 0; k < data.channels.size(); ++k) {
@@ -54,8 +54,8 @@ bool has_recorded_drive(const ProblemCondition& condition) {
 }
 
 /// The measured tolerance of each condition; 0 where there is none.
-std::vector<double> measured(const Problem& problem, std::span<const double> z, int threads,
-                             const std::atomic<bool>* cancel) {
+std::vector<double> measure_all(const Problem& problem, std::span<const double> z, int threads,
+                                const std::atomic<bool>* cancel) {
   const double harmless = kHarmless / std::sqrt(static_cast<double>(problem.residual_count()));
   std::vector<double> result(problem.conditions.size(), 0.0);
   const auto& unknowns = problem.map.unknowns();
@@ -65,9 +65,9 @@ std::vector<double> measured(const Problem& problem, std::span<const double> z, 
   if (problem.tolerance_fixed || nuisance_alone) return result;
   parallel_for(result.size(), threads, [&](std::size_t i) {
     if (!has_recorded_drive(problem.conditions[i])) return;
-    const double error = error_of(problem, i, z, cancel);
+    const double error = simulation_error(problem, i, z, cancel);
     if (std::isnan(error)) return;
-    result[i] = error > harmless ? kCoarser * harmless / error : kCoarser;
+    result[i] = error > harmless ? kCoarserRun * harmless / error : kCoarserRun;
   });
   return result;
 }
@@ -76,14 +76,14 @@ std::vector<double> measured(const Problem& problem, std::span<const double> z, 
 
 void measure_tolerances(Problem& problem, std::span<const double> z, int threads,
                         const std::atomic<bool>* cancel) {
-  const std::vector<double> found = measured(problem, z, threads, cancel);
+  const std::vector<double> found = measure_all(problem, z, threads, cancel);
   for (std::size_t i = 0; i < found.size(); ++i)
     problem.conditions[i].measured_tolerance = found[i];
 }
 
 bool refine_tolerances(Problem& problem, std::span<const double> z, int threads,
                        const std::atomic<bool>* cancel) {
-  const std::vector<double> found = measured(problem, z, threads, cancel);
+  const std::vector<double> found = measure_all(problem, z, threads, cancel);
   bool changed = false;
   for (std::size_t i = 0; i < found.size(); ++i) {
     double& own = problem.conditions[i].measured_tolerance;
