@@ -201,9 +201,12 @@ std::vector<CampaignKey> parameter_rows(ParameterGroup group, bool fitted) {
     }
   }
   if (!fitted) return rows;
-  for (CampaignKey& row : rows)
-    row.form =
-        either_form({row.form, table_form(setting_keys(row.form).keys())}, "quantity or table");
+  for (CampaignKey& row : rows) {
+    // The table has no limits of numbers, so that parameters of a unit share one.
+    KeyForm value = plain_form(row.form.kind);
+    value.units = row.form.units;
+    row.form = either_form({row.form, table_form(setting_keys(value).keys())}, "quantity or table");
+  }
   return rows;
 }
 

@@ -223,6 +223,7 @@ void read_channels(const TomlNode& table, Campaign& campaign) {
 KeyForm recorded_channels_form() {
   std::vector<KeyRow<ChannelSetting>> time = column_rows();
   time.front().info.needed = true;
+  time[1].info.example = "\"s\"";
   time.back().info.form.units = {"s"};
   std::vector<CampaignKey> keys{{"time", table_form(KeyTable<ChannelSetting>(time).keys()),
                                  "Column of the times of the samples"}};

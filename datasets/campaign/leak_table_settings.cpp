@@ -209,7 +209,11 @@ KeyForm assumptions_form() {
   const model::ParameterSpec& scale = assumption_spec({}, kResidualScale);
   rows.push_back({std::string(scale.key), quantity_form(scale.unit), std::string(scale.meaning)});
   std::erase_if(rows, [](const CampaignKey& row) { return row.key == kVariedKey; });
-  for (CampaignKey& row : rows) row.form = table_form(assumption_keys(row.form).keys());
+  for (CampaignKey& row : rows) {
+    KeyForm value = plain_form(row.form.kind);
+    value.units = row.form.units;
+    row.form = table_form(assumption_keys(value).keys());
+  }
   return table_form(std::move(rows));
 }
 

@@ -458,8 +458,9 @@ TEST_CASE("schema: that of campaign files, and the keys of a table", "[apps]") {
   CHECK(schema["$schema"] == "https://json-schema.org/draft/2020-12/schema");
   CHECK(schema["properties"]["fit"]["properties"]["starts"]["default"] == 1);
   CHECK(folder.run({"schema", "campaign", "--json"}).out == printed.out);
-  CHECK_THAT(folder.run({"schema", "campaign", "--table", "fit"}).out,
-             StartsWith("| key | type |") && Contains("| `starts` | whole number | `1` |"));
+  CHECK_THAT(
+      folder.run({"schema", "campaign", "--table", "fit"}).out,
+      StartsWith("| key | type |") && Contains("| `starts` | whole number, 1 to 100000 | `1` |"));
   CHECK_THAT(folder.run({"schema", "campaign", "--table", ""}).out, Contains("| `rig` | table |"));
   const Outcome none = folder.run({"schema", "campaign", "--table", "fits"});
   CHECK(none.exit_code == 2);

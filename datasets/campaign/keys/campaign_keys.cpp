@@ -4,8 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -152,6 +154,64 @@ class SchemaWriter {
   OrderedJson definitions_ = OrderedJson::object();
 };
 
+bool is_table(const OrderedJson& schema) {
+  return schema.is_object() && schema.contains("properties") && schema["properties"].is_object() &&
+         schema.contains("additionalProperties");
+}
+
+/// Moves the tables that occur several times to the definitions: most parameters and channels of a
+/// unit have the same.
+class SharedTables {
+ public:
+  explicit SharedTables(const OrderedJson& schema) { count(schema); }
+
+  OrderedJson without_copies(const OrderedJson& schema) {
+    if (!schema.is_structured()) return schema;
+    if (is_table(schema)) {
+      const OrderedJson table = bare(schema);
+      const std::string text = table.dump();
+      if (counts_[text] > 1) {
+        const auto [name, is_new] =
+            names_.emplace(text, fmt::format("table_{}", names_.size() + 1));
+        if (is_new) definitions_[name->second] = parts_of(table);
+        OrderedJson result = OrderedJson::object();
+        for (const char* key : kAnnotations)
+          if (schema.contains(key)) result[key] = schema[key];
+        const OrderedJson reference{{"$ref", "#/$defs/" + name->second}};
+        if (result.empty()) return reference;
+        result["anyOf"] = OrderedJson::array({reference});
+        return result;
+      }
+    }
+    return parts_of(schema);
+  }
+
+  const OrderedJson& definitions() const { return definitions_; }
+
+ private:
+  static constexpr std::array kAnnotations{"description", "default", "examples"};
+
+  static OrderedJson bare(OrderedJson schema) {
+    for (const char* key : kAnnotations) schema.erase(key);
+    return schema;
+  }
+
+  void count(const OrderedJson& schema) {
+    if (is_table(schema)) ++counts_[bare(schema).dump()];
+    if (!schema.is_structured()) return;
+    for (const OrderedJson& part : schema) count(part);
+  }
+
+  OrderedJson parts_of(OrderedJson schema) {
+    for (OrderedJson& part : schema) part = without_copies(part);
+    return schema;
+  }
+
+  std::map<std::string, int> counts_;
+  std::map<std::string, std::string> names_;
+  OrderedJson definitions_ = OrderedJson::object();
+};
+
 /// The table of a form, if it has one.
 const std::vector<CampaignKey>* table_in(const KeyForm& form) {
   if (form.kind == FormKind::table) return &form.keys;
@@ -163,9 +223,31 @@ const std::vector<CampaignKey>* table_in(const KeyForm& form) {
   return nullptr;
 }
 
-/// Types of keys whose words are listed with their meaning.
+/// A text as a cell of a table in Markdown.
+std::string escaped(std::string_view text) {
+  std::string cell;
+  for (const char c : text) cell.append(c == '|' ? "\\" : "").push_back(c);
+  return cell;
+}
+
+/// ", 0 to 1"; empty where a number has no limit that anybody meets.
+std::string limits_text(const KeyForm& form) {
+  constexpr double kLarge = 1e6;
+  const bool from = std::isfinite(form.lower);
+  const bool to = std::isfinite(form.upper);
+  if (!from && !to) return {};
+  if (to && form.upper > kLarge) return {};
+  if (!to) return fmt::format(", from {:g}", form.lower);
+  const auto upper = fmt::format("{}{}", form.below_upper ? "below " : "", form.upper);
+  if (!from) return fmt::format(", to {}", upper);
+  return fmt::format(", {}{:g} to {}", form.above_lower ? "above " : "", form.lower, upper);
+}
+
+/// Type of a key; words and limits of numbers are part of it.
 std::string type_text(const KeyForm& form) {
-  if (form.kind != FormKind::word || form.words.size() < 2) return type_name(form);
+  if (form.kind == FormKind::number || form.kind == FormKind::whole)
+    return type_name(form) + limits_text(form);
+  if (form.kind != FormKind::word) return type_name(form);
   std::vector<std::string> quoted;
   for (const std::string& word : form.words)
     quoted.push_back(fmt::format("`\"{}\"`", word == "\t" ? "\\t" : word));
@@ -192,9 +274,12 @@ std::string campaign_schema() {
                      {"description",
                       "For editors. What this refuses rigcal refuses, too; `rigcal check` checks "
                       "ranges, all units, and keys that depend on one another"}};
-  schema.update(writer.table(campaign_keys()));
+  const OrderedJson root = writer.table(campaign_keys());
+  SharedTables shared(root);
+  schema.update(shared.without_copies(root));
   schema["$defs"] = writer.definitions();
-  return schema.dump(2) + "\n";
+  schema["$defs"].update(shared.definitions());
+  return schema.dump(1) + "\n";
 }
 
 std::string markdown_of(const std::vector<CampaignKey>& keys) {
@@ -209,7 +294,8 @@ std::string markdown_of(const std::vector<CampaignKey>& keys) {
     const std::string standard = row.needed             ? "needed"
                                  : row.standard.empty() ? row.otherwise
                                                         : fmt::format("`{}`", row.standard);
-    const std::string rest = fmt::format("{} | {} | {}", type_text(row.form), standard, row.doc);
+    const std::string rest =
+        fmt::format("{} | {} | {}", type_text(row.form), standard, escaped(row.doc));
     // Keys of the same meaning share a line.
     if (rest != last) finish();
     names += fmt::format("{}`{}`", names.empty() ? "" : ", ", row.key);

@@ -453,6 +453,12 @@ TEST_CASE("campaign keys: tables as the documents have them", "[datasets]") {
                                    "`\"soft_l1\"` | `\"squared\"` | "));
   CHECK_THAT(text, Catch::Contains("| `loss_scale` | number | `3` | "));
   CHECK_THAT(text, Catch::Contains("| `max_time` | time | none | "));
+  CHECK_THAT(text, Catch::Contains("| `starts` | whole number, 1 to 100000 | `1` | "));
+  CHECK_THAT(
+      markdown_of(*find_campaign_table("acceptance")),
+      Catch::Contains("| `r` | number, -1 to 1 | ") && Catch::Contains("100 mean \\|e\\| / (max"));
+  CHECK_THAT(markdown_of(*find_campaign_table("diagnosis")),
+             Catch::Contains("| `detection` | number, above 0 to below 1 | `0.95` |"));
   CHECK_THAT(text, Catch::Contains("| `outputs` | list of channels | all outputs | "));
   CHECK(find_campaign_table("fit.loss") == nullptr);
   CHECK(find_campaign_table("fits") == nullptr);
