@@ -444,6 +444,30 @@ TEST_CASE("campaign keys: the parameters of every plant", "[datasets]") {
   CHECK(known.size() == rig->size() + controller->size() - 2);  // `type`, `feedback`
 }
 
+TEST_CASE("campaign schema: what the writer writes is as it says", "[datasets]") {
+  const test::TemporaryFolder folder;
+  const Campaign campaign = load_campaign(folder.write("campaign.toml", test::kExample));
+  const auto index = [&](const char* key) {
+    return model::parameter_index(campaign.rig.plant, key);
+  };
+  const std::string fitted =
+      fitted_campaign_text(campaign,
+                           {{index("mass"), Scope::rig, "", 61.5},
+                            {index("leakage_coefficient"), Scope::leak_level, "none", 0.25},
+                            {index("position_offset"), Scope::condition, "steps", 1e-3}},
+                           {});
+  CHECK_THAT(fitted, Catch::Contains("mass = \"61.5 kg\""));
+  CHECK(rules().violations(as_json(toml::parse(fitted))) == "");
+
+  DesignSettings design;
+  design.duration_s = 10.0;
+  design.sample_rate_hz = 1000.0;
+  const std::string designed =
+      designed_campaign_text(campaign, design, DriveFamily::chirp, {{Channel::position, 5e-5}});
+  CHECK_THAT(designed, Catch::Contains("id = \"design_chirp\""));
+  CHECK(rules().violations(as_json(toml::parse(designed))) == "");
+}
+
 TEST_CASE("campaign keys: tables as the documents have them", "[datasets]") {
   const auto* fit = find_campaign_table("fit");
   REQUIRE(fit != nullptr);
