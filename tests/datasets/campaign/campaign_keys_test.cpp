@@ -365,6 +365,20 @@ TEST_CASE("campaign keys: a letter that is wrong is refused by both, with the ri
   }
 }
 
+TEST_CASE("campaign keys: one that is needed and missing is refused by both", "[datasets]") {
+  int needed = 0;
+  for (const Place& place : key_places()) {
+    if (!place.row->needed) continue;
+    json campaign = with_key(place, place.row->key, value_at(place));
+    table_in(campaign, place.tables).erase(place.row->key);
+    CAPTURE(place.path);
+    CHECK_THAT(refusal_of(campaign), Catch::Contains(place.row->key + "' is missing: expected "));
+    CHECK_FALSE(rules().violations(campaign).empty());
+    ++needed;
+  }
+  CHECK(needed > 20);
+}
+
 TEST_CASE("campaign keys: a unit of another dimension is refused by both", "[datasets]") {
   int quantities = 0;
   for (const Place& place : key_places()) {
