@@ -212,6 +212,22 @@ class SharedTables {
   OrderedJson definitions_ = OrderedJson::object();
 };
 
+/// JSON with what fits on a line on one.
+std::string compact(const OrderedJson& json, const std::string& indent = "") {
+  constexpr std::size_t kLine = 110;
+  const std::string line = json.dump();
+  if (!json.is_structured() || indent.size() + line.size() <= kLine) return line;
+  const std::string deeper = indent + " ";
+  std::string text;
+  for (const auto& [key, value] : json.items()) {
+    text += (text.empty() ? "\n" : ",\n") + deeper;
+    if (json.is_object()) text += OrderedJson(key).dump() + ": ";
+    text += compact(value, deeper);
+  }
+  text += "\n" + indent;
+  return json.is_object() ? "{" + text + "}" : "[" + text + "]";
+}
+
 /// The table of a form, if it has one.
 const std::vector<CampaignKey>* table_in(const KeyForm& form) {
   if (form.kind == FormKind::table) return &form.keys;
@@ -279,7 +295,7 @@ std::string campaign_schema() {
   schema.update(shared.without_copies(root));
   schema["$defs"] = writer.definitions();
   schema["$defs"].update(shared.definitions());
-  return schema.dump(1) + "\n";
+  return compact(schema) + "\n";
 }
 
 std::string markdown_of(const std::vector<CampaignKey>& keys) {
