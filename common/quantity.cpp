@@ -196,17 +196,6 @@ bool has_factor(std::string_view text) {
   return false;
 }
 
-/// Units to suggest if a name is unknown.
-const std::vector<std::string>& common_units() {
-  static const std::vector<std::string> units{
-      "Pa",  "kPa",   "MPa", "GPa", "bar",   "mbar", "psi",   "m",    "mm",    "cm",  "um",
-      "kg",  "g",     "s",   "ms",  "min",   "N",    "kN",    "V",    "mV",    "A",   "mA",
-      "Hz",  "kHz",   "rad", "deg", "rad/s", "rpm",  "degC",  "K",    "m2",    "mm2", "cm2",
-      "m3",  "cm3",   "L",   "mL",  "L/min", "lpm",  "gpm",   "m3/s", "kg/m3", "N/m", "m/s",
-      "V/m", "N s/m", "m/V", "%",   "1",     "lbf",  "pound", "inch", "psi"};
-  return units;
-}
-
 Unit parse_unit(std::string_view text) {
   text = trimmed(text);
   if (text.empty()) return {};
@@ -332,6 +321,21 @@ Split split_number(std::string_view text) {
 }
 
 }  // namespace
+
+const std::vector<std::string>& common_units() {
+  static const std::vector<std::string> units{
+      "Pa",  "kPa",   "MPa", "GPa", "bar",   "mbar", "psi",   "m",    "mm",    "cm",  "um",
+      "kg",  "g",     "s",   "ms",  "min",   "N",    "kN",    "V",    "mV",    "A",   "mA",
+      "Hz",  "kHz",   "rad", "deg", "rad/s", "rpm",  "degC",  "K",    "m2",    "mm2", "cm2",
+      "m3",  "cm3",   "L",   "mL",  "L/min", "lpm",  "gpm",   "m3/s", "kg/m3", "N/m", "m/s",
+      "V/m", "N s/m", "m/V", "%",   "1",     "lbf",  "pound", "inch", "psi"};
+  return units;
+}
+
+std::string_view dimension_name(std::string_view unit) {
+  const Kind* kind = kind_of(parse_unit(unit));
+  return kind == nullptr ? std::string_view() : kind->name;
+}
 
 UnitConversion unit_conversion(std::string_view from, std::string_view to) {
   refuse_control_characters(from);

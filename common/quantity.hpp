@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace rigcal {
 
@@ -33,5 +34,13 @@ UnitConversion unit_conversion(std::string_view from, std::string_view to);
 /// @throws QuantityError  if there is no number, no unit although `unit` has a dimension, or if the
 ///                        dimension is wrong
 double parse_quantity(std::string_view text, std::string_view unit);
+
+/// Names of common units, which messages propose and the campaign's schema knows.
+const std::vector<std::string>& common_units();
+
+/// Name of a unit's dimension: "a pressure" for "Pa"; empty if it has none.
+///
+/// @throws QuantityError  unknown unit
+std::string_view dimension_name(std::string_view unit);
 
 }  // namespace rigcal

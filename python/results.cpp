@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/file.hpp"
+#include "datasets/campaign/keys/campaign_keys.hpp"
 #include "datasets/draft/draft_campaign.hpp"
 #include "datasets/draft/recordings_in.hpp"
 #include "python/campaign.hpp"
@@ -229,9 +230,11 @@ std::pair<fs::path, std::vector<std::string>> init(const std::vector<fs::path>& 
   if (files.empty()) throw py::value_error("files: found none, expected recordings or folders");
   const py::gil_scoped_release released;
   report::HeldFolder held(out, holding("init", force));
-  held.plan({{"campaign.toml"}, {}});
+  held.plan({{"campaign.toml", datasets::kSchemaFile}, {}});
   const datasets::Draft draft = datasets::draft_campaign(datasets::recordings_in(files), out);
-  report::write_results(held, {{"campaign.toml", draft.text}}, {});
+  report::write_results(
+      held, {{"campaign.toml", draft.text}, {datasets::kSchemaFile, datasets::campaign_schema()}},
+      {});
   return {out / "campaign.toml", draft.left_out};
 }
 

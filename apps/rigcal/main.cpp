@@ -69,6 +69,8 @@ constexpr std::array kVerbs{
             rigcal::app::add_compare},
     VerbRow{"report", "Draw the report of a result folder again", rigcal::app::add_report},
     VerbRow{"params", "List every parameter", rigcal::app::add_params},
+    VerbRow{"schema", "Print the JSON schema of campaign files, for editors",
+            rigcal::app::add_schema},
 };
 
 std::vector<std::string> verb_names() {

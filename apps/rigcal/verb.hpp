@@ -41,6 +41,7 @@ Run add_batch(CLI::App& verb);
 Run add_compare(CLI::App& verb);
 Run add_report(CLI::App& verb);
 Run add_params(CLI::App& verb);
+Run add_schema(CLI::App& verb);
 Run add_export(CLI::App& verb);
 Run add_explore(CLI::App& verb);
 

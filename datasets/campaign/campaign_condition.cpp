@@ -61,6 +61,35 @@ std::vector<std::string> read_numbers(const TomlNode& node) {
   return numbers;
 }
 
+/// Keys of an entry of `repeats` that is a table.
+const KeyTable<RepeatPattern>& repeat_keys() {
+  using Row = KeyRow<RepeatPattern>;
+  KeyForm columns = channels_form("table");
+  for (CampaignKey& row : columns.keys) row.form = plain_form(KeyForm::Kind::text);
+  static const KeyTable<RepeatPattern> keys({
+      Row::text("file", &RepeatPattern::file, "a file or pattern",
+                {.doc = "File or pattern, may hold `{n}`",
+                 .example = "\"steps_1V.csv\"",
+                 .needed = "the file of the repeat"}),
+      Row::custom(
+          "n",
+          either_form({plain_form(KeyForm::Kind::text), list_form(plain_form(KeyForm::Kind::text))},
+                      "text or list"),
+          [](const TomlNode& node, RepeatPattern& pattern) {
+            pattern.numbers = read_numbers(node);
+          },
+          {.doc =
+               "What `{n}` stands for: `\"01..10\"` (zeros in front are kept) or a list of texts",
+           .otherwise = "none",
+           .example = "\"01..10\""}),
+      Row::described("columns", columns,
+                     {.doc = "Columns of this repeat, by channel",
+                      .otherwise = "those of the channels",
+                      .example = "{ position = \"x_mm_{n}\" }"}),
+  });
+  return keys;
+}
+
 RepeatPattern read_repeat(const TomlNode& node, const Campaign& campaign) {
   RepeatPattern pattern;
   if (!node.is_table()) {
@@ -68,8 +97,7 @@ RepeatPattern read_repeat(const TomlNode& node, const Campaign& campaign) {
         "a file or pattern such as \"records/run_*.csv\", or a table { file, n, columns }");
     return pattern;
   }
-  node.allow_only({"file", "n", "columns"});
-  pattern.file = node.require("file", "the file of the repeat").name("a file or pattern");
+  repeat_keys().read(node, pattern);
   bool uses_number = contains(pattern.file, kPlaceholder);
   if (const auto columns = node.find("columns")) {
     for (const auto& [key, entry] : columns->entries()) {
@@ -85,7 +113,6 @@ RepeatPattern read_repeat(const TomlNode& node, const Campaign& campaign) {
     }
   }
   const auto numbers = node.find("n");
-  if (numbers) pattern.numbers = read_numbers(*numbers);
   if (numbers && !uses_number) {
     numbers->fail(
         "neither file nor columns hold {n}, so all repeats would be the same one: "
@@ -112,16 +139,10 @@ void read_records(const TomlNode& node, const Campaign& campaign, Condition& con
     }
     if (condition.repeats.empty()) repeats->fail("is empty: expected at least one file");
   }
-  if (averaged) condition.averaged = averaged->name("a file");
-  if (const auto count = node.find("repeats_averaged")) {
-    condition.repeats_averaged = count->integer(1, 1'000'000);
-    if (!averaged) count->fail("has a meaning only together with averaged = \"file\"");
-  }
-  if (const auto count = node.find("planned_repeats")) {
-    condition.planned_repeats = count->integer(1, 1'000'000);
-    if (repeats || averaged)
-      count->fail("is combined with a record: expected it where none exists yet, for plan");
-  }
+  if (const auto count = node.find("repeats_averaged"); count && !averaged)
+    count->fail("has a meaning only together with averaged = \"file\"");
+  if (const auto count = node.find("planned_repeats"); count && (repeats || averaged))
+    count->fail("is combined with a record: expected it where none exists yet, for plan");
 }
 
 TimeWindow read_window(const TomlNode& node) {
@@ -182,56 +203,30 @@ void check_waveform_keys(const TomlNode& node, Waveform waveform) {
   }
 }
 
-void read_waveform(const TomlNode& node, const Campaign& campaign, Condition& condition) {
-  condition.waveform = node.require("waveform", "one of \"sine\" \"square\" \"chirp\" \"recorded\"")
-                           .choice<Waveform>(waveforms());
-  check_waveform_keys(node, condition.waveform);
-  if (const auto sweep = node.find("sweep")) {
-    condition.logarithmic_sweep = sweep->choice<bool>({{"linear", false}, {"logarithmic", true}});
-  }
-  if (const auto frequency = node.find("frequency")) {
-    const bool from_zero = condition.waveform == Waveform::chirp && !condition.logarithmic_sweep;
-    condition.frequency_hz =
-        frequency->quantity("Hz", from_zero ? kFrequenciesFromZero_hz : kFrequencies_hz);
-  }
-  if (const auto end = node.find("end_frequency")) {
-    condition.end_frequency_hz = end->quantity("Hz", kFrequencies_hz);
-  }
-  if (const auto sweep = node.find("sweep_time"))
-    condition.sweep_s = sweep->quantity("s", kDurations_s);
-  if (const auto amplitude = node.find("amplitude")) {
-    const bool pid = campaign.rig.controller == model::ControllerKind::pid;
-    const model::FeedbackRow& loop = model::gain_keys(campaign.rig.feedback);
-    const bool pilot = campaign.rig.pilot;
-    const bool forces = pilot || (pid && (campaign.rig.feedback == model::Feedback::force ||
-                                          campaign.rig.feedback == model::Feedback::load_pressure));
-    const std::string note =
-        pid     ? fmt::format("with a pid controller the waveform is the {} reference, in {}",
-                              loop.name, loop.unit)
-        : pilot ? "pilot_gain makes the waveform a pilot pressure, in Pa"
-                : "without a controller the waveform is the valve command, in V";
-    const std::string_view unit = pid ? loop.unit : pilot ? "Pa" : "V";
-    condition.amplitude =
-        amplitude->noted(note).quantity(unit, forces ? kLoadAmplitudes : kAmplitudes);
-  }
+void read_amplitude(const TomlNode& amplitude, const Campaign& campaign, Condition& condition) {
+  const bool pid = campaign.rig.controller == model::ControllerKind::pid;
+  const model::FeedbackRow& loop = model::gain_keys(campaign.rig.feedback);
+  const bool pilot = campaign.rig.pilot;
+  const bool forces = pilot || (pid && (campaign.rig.feedback == model::Feedback::force ||
+                                        campaign.rig.feedback == model::Feedback::load_pressure));
+  const std::string note =
+      pid ? fmt::format("with a pid controller the waveform is the {} reference, in {}", loop.name,
+                        loop.unit)
+      : pilot ? "pilot_gain makes the waveform a pilot pressure, in Pa"
+              : "without a controller the waveform is the valve command, in V";
+  const std::string_view unit = pid ? loop.unit : pilot ? "Pa" : "V";
+  condition.amplitude =
+      amplitude.noted(note).quantity(unit, forces ? kLoadAmplitudes : kAmplitudes);
 }
 
 void read_time(const TomlNode& node, Condition& condition) {
-  if (const auto duration = node.find("duration")) {
-    condition.duration_s = duration->quantity("s", kDurations_s);
-  }
-  if (const auto rate = node.find("sample_rate")) {
-    condition.sample_rate_hz = rate->quantity("Hz", kSampleRates_hz);
-  }
   if (condition.duration_s && condition.sample_rate_hz &&
       *condition.duration_s * *condition.sample_rate_hz > kMostSamples) {
     node.require("duration", "a time")
         .fail(fmt::format("{} s at {} Hz are more than {:.0f} samples", *condition.duration_s,
                           *condition.sample_rate_hz, kMostSamples));
   }
-  if (const auto window = node.find("window")) condition.windows = read_windows(*window);
   if (const auto windows = node.find("windows")) {
-    condition.moving_windows = windows->choice<bool>({{"moving", true}});
     if (!condition.windows.empty()) {
       windows->fail("cannot be combined with window: expected one of them");
     }
@@ -249,44 +244,118 @@ void append(Overrides& all, const Overrides& more) {
 
 }  // namespace
 
+const KeyTable<Condition>& condition_keys() {
+  using Row = KeyRow<Condition>;
+  const KeyForm text = plain_form(KeyForm::Kind::text);
+  const KeyForm window = list_form(quantity_form("s"), "list", 2, 2);
+  const KeyForm repeat = either_form({text, table_form(repeat_keys().keys())}, "text or table");
+  KeyForm limits = table_form(limit_keys());
+  const std::string_view drives = "Sine, square and chirp need it. ";
+  static const KeyTable<Condition> keys({
+      Row::described("id", text,
+                     {.doc = "Names the condition and its files; no two differ by case only",
+                      .example = "\"sine\"",
+                      .needed = "the name of the condition"}),
+      Row::word<Waveform>("waveform", &Condition::waveform, waveforms(),
+                          {.doc = "Signal of the drive",
+                           .needed = "one of \"sine\" \"square\" \"chirp\" \"recorded\""}),
+      Row::word<bool>("sweep", &Condition::logarithmic_sweep,
+                      {{"linear", false}, {"logarithmic", true}}, {.doc = "Of a chirp"}),
+      Row::custom("frequency", quantity_form("Hz"),
+                  [](const TomlNode& node, Condition& condition) {
+                    const bool from_zero =
+                        condition.waveform == Waveform::chirp && !condition.logarithmic_sweep;
+                    condition.frequency_hz =
+                        node.quantity("Hz", from_zero ? kFrequenciesFromZero_hz : kFrequencies_hz);
+                  },
+                  {.doc = fmt::format("{}Of a chirp: at its start", drives), .otherwise = "none"}),
+      Row::described(
+          "amplitude", quantity_form(std::vector<std::string>{"m", "V", "Pa", "N", "m/s2"}),
+          {.doc = fmt::format("{}Half of peak to peak: a length; a voltage without a controller (a "
+                              "pressure with `pilot_gain`); or the quantity of `feedback`",
+                              drives),
+           .otherwise = "none",
+           .example = "\"5 mm\""}),
+      Row::quantity("end_frequency", &Condition::end_frequency_hz, "Hz", kFrequencies_hz,
+                    {.doc = "A chirp needs it", .otherwise = "none"}),
+      Row::quantity("sweep_time", &Condition::sweep_s, "s", kDurations_s,
+                    {.doc = "Of a chirp", .otherwise = "`duration`, or the record's length"}),
+      Row::text("leak_level", &Condition::leak_level, "a text that names a leak level",
+                {.doc = "Needed where a fitted parameter has the scope `\"leak_level\"`",
+                 .otherwise = "none",
+                 .example = "\"none\"",
+                 .hint = "names the state of the rig, if there are several"}),
+      Row::word<Use>("use", &Condition::use,
+                     {{"fit", Use::fit},
+                      {"validate", Use::validate},
+                      {"diagnose", Use::diagnose},
+                      {"ignore", Use::ignore}},
+                     {.doc = "What the condition is for",
+                      .example = "\"fit\"",
+                      .hint = "or \"validate\": keep some back that the fit does not see"}),
+      Row::described("parameters", known_values_form(ParameterGroup::rig),
+                     {.doc = "Known values of this condition alone", .otherwise = "none"}),
+      Row::described(
+          "controller", known_values_form(ParameterGroup::controller),
+          {.doc = "Known values of the controller in this condition alone", .otherwise = "none"}),
+      Row::described("repeats", list_form(repeat),
+                     {.doc = "One entry per file, pattern or column set (below)",
+                      .otherwise = "none",
+                      .example = "[\"records/sine_*.csv\"]"}),
+      Row::text("averaged", &Condition::averaged, "a file",
+                {.doc = "A file that is averaged already, in place of `repeats`",
+                 .otherwise = "none",
+                 .example = "\"averaged/sine.csv\""}),
+      Row::whole("repeats_averaged", &Condition::repeats_averaged, 1, 1'000'000,
+                 {.doc = "How many repeats `averaged` holds"}),
+      Row::whole("planned_repeats", &Condition::planned_repeats, 1, 1'000'000,
+                 {.doc = "How many repeats `plan` plans of a condition without a record",
+                  .otherwise = "as the campaign's noise is stated",
+                  .example = "5"}),
+      Row::custom(
+          "window", either_form({window, list_form(window)}, "list"),
+          [](const TomlNode& node, Condition& condition) {
+            condition.windows = read_windows(node);
+          },
+          {.doc = "What counts: `[\"0.5 s\", \"12 s\"]`, or several: `[[\"1 s\", \"2 s\"], [\"4 "
+                  "s\", \"6 s\"]]`",
+           .otherwise = "the whole record",
+           .example = "[\"0.5 s\", \"12 s\"]"}),
+      Row::word<bool>(
+          "windows", &Condition::moving_windows, {{"moving", true}},
+          {.doc = "Found from the record (below), in place of `window`", .otherwise = "none"}),
+      Row::quantity("duration", &Condition::duration_s, "s", kDurations_s,
+                    {.doc = "How long, where there is no record; a record that is shorter is told",
+                     .otherwise = "that of `[synthetic]`"}),
+      Row::quantity(
+          "sample_rate", &Condition::sample_rate_hz, "Hz", kSampleRates_hz,
+          {.doc = "How dense, where there is no record", .otherwise = "that of `[synthetic]`"}),
+      Row::quantity("temperature", &Condition::temperature_k, "K", kTemperatures_k,
+                    {.doc = "Kept in the results: `\"38 degC\"`",
+                     .otherwise = "none",
+                     .example = "\"38 degC\""}),
+      Row::date("date", &Condition::date,
+                {.doc = "Kept in the results: `2026-03-01`, without quotes", .otherwise = "none"}),
+      Row::text("specimen", &Condition::specimen, "a text that names the machine",
+                {.doc = "Which machine, where a campaign has several",
+                 .otherwise = "none",
+                 .example = "\"machine 2\""}),
+      Row::described("acceptance", limits,
+                     {.doc = "What this condition is judged by, in place of `[acceptance]`",
+                      .otherwise = "that of the campaign"}),
+  });
+  return keys;
+}
+
 Condition read_condition(const TomlNode& unnamed, const Campaign& campaign) {
   Condition condition;
   condition.id = read_id(unnamed.require("id", "the name of the condition"));
   const TomlNode node = unnamed.renamed(fmt::format("condition \"{}\"", condition.id));
-  node.allow_only({"id",
-                   "waveform",
-                   "frequency",
-                   "end_frequency",
-                   "sweep_time",
-                   "sweep",
-                   "amplitude",
-                   "leak_level",
-                   "use",
-                   "parameters",
-                   "controller",
-                   "repeats",
-                   "averaged",
-                   "repeats_averaged",
-                   "planned_repeats",
-                   "window",
-                   "windows",
-                   "duration",
-                   "sample_rate",
-                   "temperature",
-                   "date",
-                   "specimen",
-                   "acceptance"});
   condition.where = node.where();
-  read_waveform(node, campaign, condition);
-  if (const auto level = node.find("leak_level")) {
-    condition.leak_level = level->name("a text that names a leak level");
-  }
-  if (const auto use = node.find("use")) {
-    condition.use = use->choice<Use>({{"fit", Use::fit},
-                                      {"validate", Use::validate},
-                                      {"diagnose", Use::diagnose},
-                                      {"ignore", Use::ignore}});
-  }
+  condition_keys().read(node, condition);
+  check_waveform_keys(node, condition.waveform);
+  if (const auto amplitude = node.find("amplitude"))
+    read_amplitude(*amplitude, campaign, condition);
   if (const auto values = node.find("parameters")) {
     condition.overrides = read_overrides(*values, campaign.rig.plant, ParameterGroup::rig);
   }
@@ -300,12 +369,6 @@ Condition read_condition(const TomlNode& unnamed, const Campaign& campaign) {
     condition.acceptance = read_limits(*limits, campaign);
     condition.not_judged = read_not_judged(*limits, campaign, *condition.acceptance);
   }
-  if (const auto temperature = node.find("temperature")) {
-    condition.temperature_k = temperature->quantity("K", kTemperatures_k);
-  }
-  if (const auto date = node.find("date")) condition.date = date->date();
-  if (const auto specimen = node.find("specimen"))
-    condition.specimen = specimen->name("a text that names the machine");
   return condition;
 }
 

@@ -13,10 +13,15 @@ std::vector<std::pair<std::string, LeakClass>> class_choices() {
   return choices;
 }
 
-void read_limits(const TomlNode& node, DiagnosisSettings& settings) {
+std::vector<std::string> bounded_classes() {
   std::vector<std::string> bounded;
-  for (std::size_t i = 0; i < settings.limits.size(); ++i)
+  for (std::size_t i = 0; i < DiagnosisSettings().limits.size(); ++i)
     bounded.emplace_back(to_string(kLeakClasses[i]));
+  return bounded;
+}
+
+void read_class_limits(const TomlNode& node, DiagnosisSettings& settings) {
+  const std::vector<std::string> bounded = bounded_classes();
   node.allow_only(bounded);
   double lower = 0.0;
   for (std::size_t i = 0; i < bounded.size(); ++i) {
@@ -34,13 +39,6 @@ void read_limits(const TomlNode& node, DiagnosisSettings& settings) {
     }
     lower = settings.limits[i];
   }
-}
-
-void read_probability(const TomlNode& node, std::string_view key, double& value) {
-  const auto entry = node.find(key);
-  if (!entry) return;
-  value = entry->number();
-  if (!(value > 0.0 && value < 1.0)) entry->fail_type("a probability between 0 and 1");
 }
 
 }  // namespace
@@ -66,19 +64,48 @@ LeakClass class_of(const DiagnosisSettings& settings, double share) {
   return kLeakClasses[static_cast<std::size_t>(above - settings.limits.begin())];
 }
 
+const KeyTable<DiagnosisSettings>& diagnosis_keys() {
+  using Row = KeyRow<DiagnosisSettings>;
+  const NumberLimits probability{{0.0, 1.0}, "a probability between 0 and 1", true, true};
+  KeyForm limits = plain_form(KeyForm::Kind::table);
+  const DiagnosisSettings usual;
+  for (std::size_t i = 0; i < usual.limits.size(); ++i)
+    limits.keys.push_back({bounded_classes()[i], number_form({-kSizes.upper, kSizes.upper}),
+                           "Upper limit of this class, in percent of the servo flow",
+                           fmt::format("{:g}", 100.0 * usual.limits[i])});
+  static const KeyTable<DiagnosisSettings> keys({
+      Row::custom("limits_percent", limits, read_class_limits,
+                  {.doc = "Upper limit of each class as the share of the servo flow that leaks, in "
+                          "percent; what is above the last is supercritical",
+                   .otherwise = "`{ normal = 1, slight = 10, medium = 20, critical = 30 }`",
+                   .example = "{ slight = 12.0 }"}),
+      Row::number("least_probability", &DiagnosisSettings::least_probability, probability,
+                  {.doc = "A record none of whose classes is as probable is undecided"}),
+      Row::number("false_alarms", &DiagnosisSettings::false_alarms, probability,
+                  {.doc = "How often a healthy record may be taken for a leaking one"}),
+      Row::number("detection", &DiagnosisSettings::detection, probability,
+                  {.doc = "Share of leaks of the smallest told size that are found"}),
+      Row::text("duty", &DiagnosisSettings::duty, "the id of a condition",
+                {.doc = "Id of the condition at whose signal the share of a machine's state is "
+                        "stated",
+                 .otherwise = "the slowest generated sine, of these the largest",
+                 .example = "\"sine\""}),
+      Row::custom("level_class", entries_form(word_form(words_of(class_choices()))),
+                  [](const TomlNode& node, DiagnosisSettings& settings) {
+                    for (const auto& [level, entry] : node.entries())
+                      settings.level_class[level] = entry.choice(class_choices());
+                  },
+                  {.doc = "Leak levels whose class is known, `{ \"0 %\" = \"normal\" }`: what the "
+                          "diagnosis is judged by, and which records are healthy",
+                   .otherwise = "`{}`",
+                   .example = "{ \"0 %\" = \"normal\" }"}),
+  });
+  return keys;
+}
+
 DiagnosisSettings read_diagnosis(const TomlNode& node) {
-  node.allow_only(
-      {"limits_percent", "least_probability", "false_alarms", "detection", "duty", "level_class"});
   DiagnosisSettings settings;
-  if (const auto limits = node.find("limits_percent")) read_limits(*limits, settings);
-  read_probability(node, "least_probability", settings.least_probability);
-  read_probability(node, "false_alarms", settings.false_alarms);
-  read_probability(node, "detection", settings.detection);
-  if (const auto duty = node.find("duty")) settings.duty = duty->name("the id of a condition");
-  if (const auto levels = node.find("level_class")) {
-    for (const auto& [level, entry] : levels->entries())
-      settings.level_class[level] = entry.choice(class_choices());
-  }
+  diagnosis_keys().read(node, settings);
   return settings;
 }
 

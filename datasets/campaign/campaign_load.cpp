@@ -5,6 +5,7 @@
 #include "datasets/campaign/campaign.hpp"
 #include "datasets/campaign/campaign_parameters.hpp"
 #include "datasets/campaign/campaign_sections.hpp"
+#include "datasets/campaign/keys/campaign_keys.hpp"
 #include "datasets/campaign/leak_table_settings.hpp"
 #include "datasets/campaign/reading_root.hpp"
 #include "datasets/campaign/toml/toml_reader.hpp"
@@ -20,28 +21,42 @@ void check_schema(const TomlNode& root) {
   if (schema.string(expected) != kSchema) schema.fail_type(expected);
 }
 
-model::PlantKind read_plant(const TomlNode& rig) {
-  std::vector<std::pair<std::string, model::PlantKind>> choices;
-  for (const std::string& name : model::plant_names()) {
-    choices.emplace_back(name, *model::plant_from_name(name));
-  }
-  return rig.require("model", "the plant, such as \"load_pressure\"").choice(choices);
+Words<model::PlantKind> plant_words() {
+  Words<model::PlantKind> words;
+  for (const std::string& name : model::plant_names())
+    words.emplace_back(name, *model::plant_from_name(name));
+  return words;
 }
 
-model::Feedback read_feedback(const TomlNode& node) {
-  std::vector<std::pair<std::string, model::Feedback>> choices;
+Words<model::Feedback> feedback_words() {
+  Words<model::Feedback> words;
   for (std::size_t i = 0; i < model::kFeedbackCount; ++i)
-    choices.emplace_back(model::kFeedbacks[i].name, static_cast<model::Feedback>(i));
-  return node.choice(choices);
+    words.emplace_back(model::kFeedbacks[i].name, static_cast<model::Feedback>(i));
+  return words;
+}
+
+/// Keys of [rig.controller] that are no parameters.
+const KeyTable<model::Rig>& controller_keys() {
+  using Row = KeyRow<model::Rig>;
+  using Kind = model::ControllerKind;
+  static const KeyTable<model::Rig> keys({
+      Row::word<Kind>("type", &model::Rig::controller, {{"pid", Kind::pid}, {"none", Kind::none}},
+                      {.doc = "`\"pid\"`: the reference drives a closed loop; `\"none\"`: the "
+                              "command drives the valve",
+                       .needed = "\"pid\" or \"none\""}),
+      Row::word<model::Feedback>(
+          "feedback", &model::Rig::feedback, feedback_words(),
+          {.doc = "The controlled quantity, which determines the gains and the channel of the "
+                  "reference"}),
+  });
+  return keys;
 }
 
 void read_controller(const TomlNode& node, Campaign& campaign) {
   using Kind = model::ControllerKind;
-  campaign.rig.controller = node.require("type", "\"pid\" or \"none\"")
-                                .choice<Kind>({{"pid", Kind::pid}, {"none", Kind::none}});
-  if (const auto feedback = node.find("feedback")) campaign.rig.feedback = read_feedback(*feedback);
-  const auto settings =
-      read_settings(node, campaign.rig.plant, ParameterGroup::controller, {"type", "feedback"});
+  controller_keys().read_rows(node, campaign.rig);
+  const auto settings = read_settings(node, campaign.rig.plant, ParameterGroup::controller,
+                                      controller_keys().names());
   if (campaign.rig.controller == Kind::none && !settings.empty()) {
     const std::string key(spec_of(campaign.rig.plant, settings.front().index).key);
     node.require(key, "a gain").fail("is given, but type is \"none\": expected type = \"pid\"");
@@ -52,10 +67,32 @@ void read_controller(const TomlNode& node, Campaign& campaign) {
   campaign.parameters.insert(campaign.parameters.end(), settings.begin(), settings.end());
 }
 
+const KeyTable<model::Rig>& rig_keys() {
+  using Row = KeyRow<model::Rig>;
+  std::vector<CampaignKey> controller = controller_keys().keys();
+  const auto gains = parameter_rows(ParameterGroup::controller, true);
+  controller.insert(controller.end(), gains.begin(), gains.end());
+  static const KeyTable<model::Rig> keys({
+      Row::word<model::PlantKind>(
+          "model", &model::Rig::plant, plant_words(),
+          {.doc = "`\"load_pressure\"`; `\"two_chamber\"`: a cylinder with both chamber pressures; "
+                  "`\"linkage\"`: such a cylinder turns an arm, and the quantities are angle and "
+                  "moment",
+           .needed = "the plant, such as \"load_pressure\""}),
+      Row::described(
+          "parameters", table_form(parameter_rows(ParameterGroup::rig, true)),
+          {.doc = "Every parameter but the controller's; `rigcal params` lists them with "
+                  "units and limits",
+           .otherwise = "none"}),
+      Row::described("controller", table_form(std::move(controller)),
+                     {.doc = "`type` and the controller's values", .otherwise = "no controller"}),
+  });
+  return keys;
+}
+
 void read_rig(const TomlNode& node, Campaign& campaign) {
-  node.allow_only({"model", "parameters", "controller"});
-  campaign.rig.plant = read_plant(node);
   campaign.rig.controller = model::ControllerKind::none;
+  rig_keys().read(node, campaign.rig);
   if (const auto parameters = node.find("parameters")) {
     campaign.parameters = read_settings(*parameters, campaign.rig.plant, ParameterGroup::rig);
   }
@@ -64,9 +101,19 @@ void read_rig(const TomlNode& node, Campaign& campaign) {
   if (const auto controller = node.find("controller")) read_controller(*controller, campaign);
 }
 
+/// Keys of a leak level.
+const std::vector<CampaignKey>& level_rows() {
+  static const std::vector<CampaignKey> keys{{"parameters",
+                                              known_values_form(ParameterGroup::rig),
+                                              "Known values of this level, over those of the rig",
+                                              {},
+                                              "none"}};
+  return keys;
+}
+
 void read_leak_levels(const TomlNode& node, Campaign& campaign) {
   for (const auto& [level, entry] : node.entries()) {
-    entry.allow_only({"parameters"});
+    entry.allow_only(names_of(level_rows()));
     if (level.empty()) entry.fail("a leak level needs a name: expected a text that is not empty");
     const auto values = entry.find("parameters");
     campaign.leak_levels[level] =
@@ -124,17 +171,109 @@ void read_synthetic_entry(const TomlNode& node, Campaign& campaign) {
   }
 }
 
-void read_averaging(const TomlNode& node, Campaign& campaign) {
-  node.allow_only({"align", "outliers"});
-  if (const auto align = node.find("align")) {
-    campaign.alignment =
-        align->choice<Alignment>({{"correlate", Alignment::correlate}, {"none", Alignment::none}});
-  }
-  if (const auto outliers = node.find("outliers"))
-    campaign.leave_out_outliers = outliers->choice<bool>({{"keep", false}, {"leave_out", true}});
+const KeyTable<Campaign>& averaging_keys() {
+  using Row = KeyRow<Campaign>;
+  static const KeyTable<Campaign> keys({
+      Row::word<Alignment>(
+          "align", &Campaign::alignment,
+          {{"correlate", Alignment::correlate}, {"none", Alignment::none}},
+          {.doc = "`\"correlate\"` shifts each repeat to fit the others and reports by how much; "
+                  "`\"none\"` takes them as they are",
+           .example = "\"correlate\"",
+           .hint = "or \"none\" if all repeats share one trigger"}),
+      Row::word<bool>(
+          "outliers", &Campaign::leave_out_outliers, {{"keep", false}, {"leave_out", true}},
+          {.doc = "A repeat whose distance from the median of all is three times as large as is "
+                  "typical stays in the mean, with a warning, or is left out of it"}),
+  });
+  return keys;
+}
+
+/// The whole file. The order matters: later sections are checked against earlier ones.
+const KeyTable<Campaign>& root_keys() {
+  using Row = KeyRow<Campaign>;
+  const auto section = [](std::string_view key, KeyForm form, Row::Read read, std::string doc) {
+    return Row::custom(key, std::move(form), std::move(read),
+                       {.doc = std::move(doc), .otherwise = "none"});
+  };
+  KeyForm schema = word_form({std::string(kSchema)});
+  const KeyForm synthetic = either_form(
+      {plain_form(KeyForm::Kind::flag), table_form(synthetic_keys().keys())}, "boolean or table");
+  static const KeyTable<Campaign> keys({
+      Row::described("schema", std::move(schema),
+                     {.doc = "Version of the keys of this file",
+                      .needed = fmt::format("schema = \"{}\"", kSchema)}),
+      Row::text("name", &Campaign::name, "a text in quotes",
+                {.doc = "Title of reports", .otherwise = "name of the file"}),
+      Row::custom("rig", table_form(rig_keys().keys()), read_rig,
+                  {.doc = "The rig: its model, parameters and controller",
+                   .needed = "a table [rig] with model and parameters"}),
+      section("leak_level", entries_form(table_form(level_rows())), read_leak_levels,
+              "Known values by leak level"),
+      section("recording", table_form(recording_keys().keys()), read_recording,
+              "The columns of the recordings, and how they are taken"),
+      section(
+          "averaging", table_form(averaging_keys().keys()),
+          [](const TomlNode& node, Campaign& campaign) { averaging_keys().read(node, campaign); },
+          "How repeats become one record"),
+      section("acceptance", table_form(acceptance_keys()), read_acceptance, "What PASS means"),
+      section(
+          "fit", table_form(fit_keys().keys()),
+          [](const TomlNode& node, Campaign& campaign) { campaign.fit = read_fit(node, campaign); },
+          "How `rigcal fit` estimates"),
+      section(
+          "considered", considered_form(),
+          [](const TomlNode& node, Campaign& campaign) {
+            campaign.considered = read_considered(node, campaign);
+          },
+          "Small effects that the model leaves out: their sizes, or `false`"),
+      section(
+          "between_days", between_days_form(),
+          [](const TomlNode& node, Campaign& campaign) {
+            campaign.between_days = read_between_days(node, campaign);
+          },
+          "By how much the rig differs from one day to another, or `false`"),
+      section(
+          "report", table_form(report_keys()),
+          [](const TomlNode& node, Campaign& campaign) { campaign.report = read_report(node); },
+          "What a test report states beside its results"),
+      section(
+          "simulation", table_form(simulation_keys().keys()),
+          [](const TomlNode& node, Campaign& campaign) {
+            campaign.simulation = read_simulation(node);
+          },
+          "How the model is simulated"),
+      section(
+          "diagnosis", table_form(diagnosis_keys().keys()),
+          [](const TomlNode& node, Campaign& campaign) {
+            campaign.diagnosis = read_diagnosis(node);
+          },
+          "How `rigcal diagnose` classifies"),
+      Row::custom("synthetic", synthetic, read_synthetic_entry,
+                  {.doc = "`true`: the records were made by `rigcal synthesize`. As a table "
+                          "`[synthetic]` it says how to make some",
+                   .otherwise = "`false`"}),
+      section("condition", list_form(table_form(condition_keys().keys()), "tables", 0),
+              read_conditions,
+              "The recordings: one table `[[condition]]` per signal and leak level"),
+      section(
+          "design", table_form(design_keys().keys()),
+          [](const TomlNode& node, Campaign& campaign) {
+            campaign.design = read_design(node, campaign);
+          },
+          "The test that `rigcal plan --design` looks for"),
+      // Only its own verbs use this section, but a check of the campaign must cover it.
+      section(
+          "leak_table", table_form(leak_table_keys()),
+          [](const TomlNode& node, Campaign& campaign) { read_leak_table(node, campaign); },
+          "What `rigcal leak-table` and `rigcal fit-tables` compute and compare with"),
+  });
+  return keys;
 }
 
 }  // namespace
+
+const std::vector<CampaignKey>& campaign_keys() { return root_keys().keys(); }
 
 Campaign load_campaign(const std::filesystem::path& file, const std::filesystem::path& data_dir,
                        const std::filesystem::path& reading_root) {
@@ -144,38 +283,16 @@ Campaign load_campaign(const std::filesystem::path& file, const std::filesystem:
   const toml::table parsed = parse_toml_file(file);
   const TomlNode root(parsed, file.string(), "");
   check_schema(root);
-  root.allow_only({"schema", "name", "synthetic", "rig", "leak_level", "recording", "averaging",
-                   "acceptance", "fit", "considered", "between_days", "simulation", "leak_table",
-                   "diagnosis", "report", "design", "condition"});
   Campaign campaign;
   campaign.file = file;
   campaign.file_state = file_state;
   campaign.data_dir = data_dir.empty() ? file.parent_path() : data_dir;
   campaign.root = reading_root;
   campaign.name = file.stem().string();
-  if (const auto name = root.find("name")) campaign.name = name->name();
-  read_rig(root.require("rig", "a table [rig] with model and parameters"), campaign);
-  // The order matters: the later sections are checked against the earlier ones.
-  if (const auto node = root.find("leak_level")) read_leak_levels(*node, campaign);
-  if (const auto node = root.find("recording")) read_recording(*node, campaign);
-  if (const auto node = root.find("averaging")) read_averaging(*node, campaign);
-  if (const auto node = root.find("acceptance")) read_acceptance(*node, campaign);
-  if (const auto node = root.find("fit")) campaign.fit = read_fit(*node, campaign);
-  if (const auto node = root.find("considered"))
-    campaign.considered = read_considered(*node, campaign);
-  if (const auto node = root.find("between_days"))
-    campaign.between_days = read_between_days(*node, campaign);
-  if (const auto node = root.find("report")) campaign.report = read_report(*node);
+  root_keys().read(root, campaign);
   apply_sensors(root, campaign);
-  if (const auto node = root.find("simulation")) campaign.simulation = read_simulation(*node);
-  if (const auto node = root.find("diagnosis")) campaign.diagnosis = read_diagnosis(*node);
-  if (const auto node = root.find("synthetic")) read_synthetic_entry(*node, campaign);
-  if (const auto node = root.find("condition")) read_conditions(*node, campaign);
   if (const auto node = root.find("diagnosis")) check_duty(*node, campaign);
-  if (const auto node = root.find("design")) campaign.design = read_design(*node, campaign);
   fill_times(campaign);
-  // Only its own verbs use this section, but a check of the campaign must cover it.
-  if (const auto node = root.find("leak_table")) read_leak_table(*node, campaign);
   check_campaign(campaign, {file.string(), 1, 0});
   return campaign;
 }

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <limits>
 
+#include "datasets/campaign/keys/key_table.hpp"
+
 namespace rigcal::datasets {
 namespace {
 
@@ -62,11 +64,58 @@ void read_between_repeats(const TomlNode& node, const model::ParameterSpec& spec
   differ_between_repeats(spec, node.difference(spec.unit, kParameterDeviations), setting);
 }
 
+/// @param value  form of the parameter's values
+KeyTable<ParameterSetting> setting_keys(const KeyForm& value) {
+  using Row = KeyRow<ParameterSetting>;
+  KeyForm quantity = value;
+  quantity.name = "quantity";
+  KeyForm difference = plain_form(value.kind, "quantity");
+  difference.units = value.units;
+  if (difference.kind == KeyForm::Kind::number) {
+    difference.lower = kParameterDeviations.lower;
+    difference.upper = kParameterDeviations.upper;
+  }
+  return KeyTable<ParameterSetting>({
+      Row::described("start", quantity,
+                     {.doc = "Where a fit starts; the value of everything that does not fit it",
+                      .needed = "the value from which a fit starts"}),
+      Row::described("lower", quantity,
+                     {.doc = "Lower bound of the fit; `start` is not below it",
+                      .otherwise = "a tenth of `start` (below)"}),
+      Row::described("upper", quantity,
+                     {.doc = "Upper bound of the fit; `start` is not above it",
+                      .otherwise = "ten times `start` (below)"}),
+      Row::flag("fit", &ParameterSetting::fit,
+                {.doc = "Whether `rigcal fit` estimates it (`--free` names others)"}),
+      Row::word<Scope>(
+          "scope", &ParameterSetting::scope,
+          {{"rig", Scope::rig}, {"leak_level", Scope::leak_level}, {"condition", Scope::condition}},
+          {.doc = "One value for the rig, one per leak level, or one per condition"}),
+      Row::described(
+          "prior", quantity,
+          {.doc = "Mean of what is known beforehand. Needs `prior_sd`", .otherwise = "none"}),
+      Row::described("prior_sd", difference,
+                     {.doc = "Standard deviation of `prior`. Where the value is not fitted: how "
+                             "sure it is, which all errors carry",
+                      .otherwise = "none"}),
+      Row::flag("nuisance", &ParameterSetting::nuisance,
+                {.doc = "Estimated again in validation, and named there"}),
+      Row::described(
+          "between_repeats", difference,
+          {.doc = "The value differs at random from one repeat to the next about `start`, with "
+                  "this standard deviation: it is estimated for every condition, as a nuisance "
+                  "parameter whose prior has this standard deviation over the root of the number "
+                  "of repeats. Stands without `fit`, `scope`, `prior` and `nuisance`; bounds are "
+                  "eight standard deviations unless given",
+           .otherwise = "none"}),
+  });
+}
+
 /// { start = ..., lower = ..., ... }
 void read_setting_table(const TomlNode& node, const model::ParameterSpec& spec,
                         ParameterSetting& setting) {
-  node.allow_only({"start", "lower", "upper", "fit", "scope", "prior", "prior_sd", "nuisance",
-                   "between_repeats"});
+  static const KeyTable<ParameterSetting> keys = setting_keys(plain_form(KeyForm::Kind::quantity));
+  node.allow_only(keys.names());
   const TomlNode start =
       node.require("start", fmt::format("the value from which a fit starts, in {}", spec.unit));
   setting.value = read_value(start, spec);
@@ -83,19 +132,13 @@ void read_setting_table(const TomlNode& node, const model::ParameterSpec& spec,
                            lower ? with_unit(spec, setting.lower) : "(not given)",
                            upper ? with_unit(spec, setting.upper) : "(not given)"));
   }
-  if (const auto fit = node.find("fit")) {
-    setting.fit = fit->boolean();
-    if (const auto problem = cannot_be_fitted(spec); setting.fit && problem) fit->fail(*problem);
-  }
-  if (const auto scope = node.find("scope")) {
-    setting.scope = scope->choice<Scope>(
-        {{"rig", Scope::rig}, {"leak_level", Scope::leak_level}, {"condition", Scope::condition}});
-    if (setting.scope == Scope::leak_level && spec.kind == model::ParameterKind::controller) {
-      scope->fail("a leak level has no controller of its own: expected \"rig\" or \"condition\"");
-    }
-  }
+  keys.read_rows(node, setting);
+  if (const auto problem = cannot_be_fitted(spec); setting.fit && problem)
+    node.require("fit", "true or false").fail(*problem);
+  if (setting.scope == Scope::leak_level && spec.kind == model::ParameterKind::controller)
+    node.require("scope", "a scope")
+        .fail("a leak level has no controller of its own: expected \"rig\" or \"condition\"");
   setting.prior = read_prior(node, spec);
-  if (const auto nuisance = node.find("nuisance")) setting.nuisance = nuisance->boolean();
   if (const auto between = node.find("between_repeats")) {
     for (const char* key : {"fit", "scope", "prior", "prior_sd", "nuisance"}) {
       if (const auto other = node.find(key))
@@ -133,6 +176,37 @@ std::vector<std::string> parameter_keys(model::PlantKind plant, ParameterGroup g
     if (belongs_to(spec, group)) keys.emplace_back(spec.key);
   }
   return keys;
+}
+
+std::vector<CampaignKey> parameter_rows(ParameterGroup group, bool fitted) {
+  std::vector<CampaignKey> rows;
+  for (const std::string& plant : model::plant_names()) {
+    for (const model::ParameterSpec& spec :
+         model::parameter_table(model::plant_from_name(plant).value())) {
+      if (!belongs_to(spec, group)) continue;
+      if (find_key(rows, spec.key) == nullptr)
+        rows.push_back(
+            {std::string(spec.key), quantity_form(spec.unit), std::string(spec.meaning)});
+      // A parameter of several plants may differ in unit and limits.
+      KeyForm& form = std::find_if(rows.begin(), rows.end(), [&](const CampaignKey& row) {
+                        return row.key == spec.key;
+                      })->form;
+      if (form.kind == KeyForm::Kind::number) {
+        form.lower = std::isfinite(form.lower) ? std::min(form.lower, spec.lower) : spec.lower;
+        form.upper = std::isfinite(form.upper) ? std::max(form.upper, spec.upper) : spec.upper;
+      } else if (std::find(form.units.begin(), form.units.end(), spec.unit) == form.units.end()) {
+        form.units.emplace_back(spec.unit);
+      }
+    }
+  }
+  if (!fitted) return rows;
+  for (CampaignKey& row : rows) {
+    // The table has no limits of numbers, so that parameters of a unit share one.
+    KeyForm value = plain_form(row.form.kind);
+    value.units = row.form.units;
+    row.form = either_form({row.form, table_form(setting_keys(value).keys())}, "quantity or table");
+  }
+  return rows;
 }
 
 std::optional<std::string> outside_limits(const model::ParameterSpec& spec, double value) {

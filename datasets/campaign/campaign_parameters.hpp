@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "datasets/campaign/campaign.hpp"
+#include "datasets/campaign/keys/key_form.hpp"
 #include "datasets/campaign/toml/toml_reader.hpp"
 
 namespace rigcal::datasets {
@@ -25,6 +26,18 @@ const model::ParameterSpec& spec_of(model::PlantKind plant, int index);
 
 /// Keys of a group in the order of the parameter table.
 std::vector<std::string> parameter_keys(model::PlantKind plant, ParameterGroup group);
+
+/// Rows of the parameters of all plants: what one of them has is a key.
+///
+/// @param fitted  an entry may be a table with start, bounds and prior; else it is a known value
+std::vector<CampaignKey> parameter_rows(ParameterGroup group, bool fitted);
+
+/// A table of known values, as `parameters` of a condition.
+inline KeyForm known_values_form(ParameterGroup group) {
+  KeyForm form = table_form(parameter_rows(group, false));
+  form.name = "table of known values";
+  return form;
+}
 
 /// Explains why a value is outside the limits of the parameter table; empty if it is inside.
 std::optional<std::string> outside_limits(const model::ParameterSpec& spec, double value);

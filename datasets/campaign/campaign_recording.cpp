@@ -9,8 +9,6 @@
 namespace rigcal::datasets {
 namespace {
 
-constexpr double kDefaultWindowS = 0.1;
-
 constexpr std::string_view kCounts = "counts";
 
 bool is_in_counts(const TomlNode& node) {
@@ -90,9 +88,93 @@ void check_role(const TomlNode& node, Channel channel, ChannelRole role, Channel
   }
 }
 
+/// Keys that `time` has, too.
+std::vector<KeyRow<ChannelSetting>> column_rows() {
+  using Row = KeyRow<ChannelSetting>;
+  const auto text = plain_form(KeyForm::Kind::text);
+  return {
+      Row::described("column", text,
+                     {.doc = "Name in the header, without its unit; in other files what stands "
+                             "below. Channels without one are read only where `columns` of a "
+                             "repeat names it; `time` needs one",
+                      .otherwise = "none",
+                      .example = "\"x_mm\""}),
+      Row::described("unit", text,
+                     {.doc = "Unit of the column; compared with the one in the file (below)",
+                      .example = "\"mm\"",
+                      .needed = "the unit of the column"}),
+      Row::described("ignore_unit", text,
+                     {.doc = "Unit that the file states for the column, but that is wrong",
+                      .otherwise = "none",
+                      .example = "\"psi\""}),
+      Row::described("gain", number_form({-kSizes.upper, kSizes.upper}),
+                     {.doc = "Physical value = gain * number in the file + offset",
+                      .otherwise = "`1`",
+                      .example = "-1.0"}),
+      Row::described("offset", plain_form(KeyForm::Kind::quantity),
+                     {.doc = "Added after the gain", .otherwise = "0"}),
+  };
+}
+
+/// @param unit  of the channel, SI; empty: any
+KeyTable<ChannelSetting> channel_keys(std::string_view unit) {
+  using Row = KeyRow<ChannelSetting>;
+  const KeyForm quantity = unit.empty() ? plain_form(KeyForm::Kind::quantity) : quantity_form(unit);
+  std::vector<Row> rows = column_rows();
+  rows.back().info.form = quantity;
+  rows.insert(rows.begin() + 1,
+              Row::described("minus", plain_form(KeyForm::Kind::text),
+                             {.doc = "Second column that is taken off `column`, number by number: "
+                                     "`load_pressure = { column = \"p_a\", minus = \"p_b\", unit = "
+                                     "\"bar\" }`",
+                              .otherwise = "none",
+                              .example = "\"x_2\""}));
+  const std::vector more{
+      Row::number(
+          "gain_sd", &ChannelSetting::gain_sd,
+          NumberLimits{
+              {0.0, 1.0}, "a relative standard uncertainty, at least 0 and below 1", false, true},
+          {.doc = "Standard uncertainty of the sensor's gain, relative (0.002: 0.2 %), from "
+                  "its certificate; widens the uncertainty of scores, and the intervals of "
+                  "the estimates as a prior of `position_gain` would. With a "
+                  "`position_gain` that is estimated or has a prior: an error"}),
+      Row::custom("offset_sd", quantity,
+                  [](const TomlNode& node, ChannelSetting& setting) {
+                    setting.offset_sd = node.difference(info(setting.channel).unit, kDisturbances);
+                  },
+                  {.doc = "The same for its offset (`position_offset`)", .otherwise = "0"}),
+      Row::custom(
+          "sd", quantity,
+          [](const TomlNode& node, ChannelSetting& setting) {
+            setting.sd = node.difference(info(setting.channel).unit, kStandardDeviations);
+          },
+          {.doc = "Standard deviation of a sample in the file, as physical value after the gain "
+                  "(the offset does not matter); needed only without repeats. Without both, `fit` "
+                  "estimates the noise from the residual of the channel over all such conditions",
+           .otherwise = "from the repeats"}),
+      Row::word<ChannelRole>("role", &ChannelSetting::role,
+                             {{"input", ChannelRole::input},
+                              {"output", ChannelRole::output},
+                              {"ignore", ChannelRole::ignore}},
+                             {.doc = "Input of the model, or output (compared with the model)",
+                              .otherwise = "by channel (below)"}),
+      Row::flag(
+          "recognise", &ChannelSetting::recognise,
+          {.doc = "For `reference` or `command`: a recorded drive that equals a generated one "
+                  "is simulated as generated (*Drives that are recognised*)"}),
+      Row::word<Interpolation>("interpolation", &ChannelSetting::interpolation,
+                               {{"hold", Interpolation::hold}, {"linear", Interpolation::linear}},
+                               {.doc = "Of an input between samples"}),
+  };
+  rows.insert(rows.end(), more.begin(), more.end());
+  for (Row& row : rows)
+    if (row.info.form.kind == KeyForm::Kind::quantity) row.info.form.name = "quantity";
+  return KeyTable<ChannelSetting>(std::move(rows));
+}
+
 ChannelSetting read_channel(const TomlNode& node, Channel channel, Channel drive) {
-  node.allow_only({"column", "minus", "unit", "ignore_unit", "gain", "offset", "sd", "gain_sd",
-                   "offset_sd", "role", "interpolation", "recognise"});
+  static const KeyTable<ChannelSetting> keys = channel_keys("");
+  node.allow_only(keys.names());
   ChannelSetting setting;
   setting.channel = channel;
   if (const auto column = node.find("column")) setting.column = column->name("a column name");
@@ -104,41 +186,22 @@ ChannelSetting read_channel(const TomlNode& node, Channel channel, Channel drive
   setting.in_counts = is_in_counts(node);
   setting.to_si = setting.in_counts ? read_counts(node)
                                     : read_conversion(node, info(channel).unit, setting.stated);
-  if (const auto sd = node.find("sd")) {
-    setting.sd = sd->difference(info(channel).unit, kStandardDeviations);
-  }
-  if (const auto sd = node.find("gain_sd")) {
-    setting.gain_sd = sd->number();
-    setting.gain_sd_where = sd->where();
-    if (!(setting.gain_sd >= 0.0 && setting.gain_sd < 1.0))
-      sd->fail_type("a relative standard uncertainty, at least 0 and below 1");
-  }
-  if (const auto sd = node.find("offset_sd"))
-    setting.offset_sd = sd->difference(info(channel).unit, kDisturbances);
   setting.role = default_role(channel, drive);
-  if (const auto role = node.find("role")) {
-    setting.role = role->choice<ChannelRole>({{"input", ChannelRole::input},
-                                              {"output", ChannelRole::output},
-                                              {"ignore", ChannelRole::ignore}});
-    check_role(*role, channel, setting.role, drive);
-  }
-  if (const auto interpolation = node.find("interpolation")) {
-    setting.interpolation = interpolation->choice<Interpolation>(
-        {{"hold", Interpolation::hold}, {"linear", Interpolation::linear}});
-  }
-  if (const auto recognise = node.find("recognise")) {
-    setting.recognise = recognise->boolean();
-    if (channel != Channel::reference && channel != Channel::command &&
-        channel != Channel::pilot_pressure)
-      recognise->fail("has a meaning only for a drive: expected it of reference or command");
-  }
+  keys.read_rows(node, setting);
+  if (const auto sd = node.find("gain_sd")) setting.gain_sd_where = sd->where();
+  if (const auto role = node.find("role")) check_role(*role, channel, setting.role, drive);
+  if (const auto recognise = node.find("recognise"); recognise && channel != Channel::reference &&
+                                                     channel != Channel::command &&
+                                                     channel != Channel::pilot_pressure)
+    recognise->fail("has a meaning only for a drive: expected it of reference or command");
   return setting;
 }
 
 void read_channels(const TomlNode& table, Campaign& campaign) {
+  static const KeyTable<ChannelSetting> time_keys(column_rows());
   for (const auto& [key, node] : table.entries()) {
     if (key == "time") {
-      node.allow_only({"column", "unit", "ignore_unit", "gain", "offset"});
+      node.allow_only(time_keys.names());
       campaign.time_column =
           node.require("column", "the name of the time column").name("a column name");
       campaign.time_in_counts = is_in_counts(node);
@@ -147,18 +210,31 @@ void read_channels(const TomlNode& table, Campaign& campaign) {
                                : read_conversion(node, "s", campaign.stated_time);
       continue;
     }
-    const Channel channel = read_channel_key(table, key);
+    if (!channel_from_key(key)) {
+      std::vector<std::string> known{"time"};
+      for (const ChannelInfo& row : channel_table()) known.emplace_back(row.key);
+      table.fail_unknown(key, "channel", known);
+    }
+    const Channel channel = *channel_from_key(key);
     campaign.channels.emplace(channel, read_channel(node, channel, drive_channel(campaign)));
   }
 }
 
-/// Reads `before`. In a settled loop the reference fixes the initial position, so "steady" excludes
-/// `initial`.
-void read_before(const TomlNode& node, Campaign& campaign) {
-  campaign.before_stated = true;
-  campaign.rig.before = node.choice<model::Before>({{"hold", model::Before::hold},
-                                                    {"rest", model::Before::rest},
-                                                    {"steady", model::Before::steady}});
+KeyForm recorded_channels_form() {
+  std::vector<KeyRow<ChannelSetting>> time = column_rows();
+  time.front().info.needed = true;
+  time[1].info.example = "\"s\"";
+  time.back().info.form.units = {"s"};
+  std::vector<CampaignKey> keys{{"time", table_form(KeyTable<ChannelSetting>(time).keys()),
+                                 "Column of the times of the samples"}};
+  for (const ChannelInfo& channel : channel_table())
+    keys.push_back({std::string(channel.key), table_form(channel_keys(channel.unit).keys()),
+                    fmt::format("Column of this channel, {}", channel.unit)});
+  return table_form(std::move(keys));
+}
+
+/// In a settled loop the reference fixes the initial position, so "steady" excludes `initial`.
+void check_before(const TomlNode& node, const Campaign& campaign) {
   if (campaign.rig.before == model::Before::steady && campaign.initial != InitialMode::rest &&
       campaign.rig.controller == model::ControllerKind::pid)
     node.fail(
@@ -166,9 +242,15 @@ void read_before(const TomlNode& node, Campaign& campaign) {
         "`initial`, or before = \"rest\" or \"hold\" with it");
 }
 
+/// Choices of `holes`: whether they are bridged.
+const Words<bool>& hole_words() {
+  static const Words<bool> words{{"refuse", false}, {"bridge", true}};
+  return words;
+}
+
 void read_holes(const TomlNode& node, Campaign& campaign) {
   const auto holes = node.find("holes");
-  const bool bridge = holes && holes->choice<bool>({{"refuse", false}, {"bridge", true}});
+  const bool bridge = holes && holes->choice(hole_words());
   if (bridge) {
     campaign.longest_bridge_s =
         node.require("longest_hole", "holes = \"bridge\" goes no further, such as \"50 ms\"")
@@ -180,36 +262,85 @@ void read_holes(const TomlNode& node, Campaign& campaign) {
 
 }  // namespace
 
+const KeyTable<Campaign>& recording_keys() {
+  using Row = KeyRow<Campaign>;
+  const auto before = [](Campaign& campaign) -> model::Before& { return campaign.rig.before; };
+  static const KeyTable<Campaign> keys({
+      Row::word<InitialMode>(
+          "initial", &Campaign::initial,
+          {{"rest", InitialMode::rest}, {"record", InitialMode::record}, {"fit", InitialMode::fit}},
+          {.doc = "State at the first sample. `\"rest\"`: all states zero (two chambers: the "
+                  "pressures hold the load, at half the supply); `\"record\"`: mean over "
+                  "`initial_window`, within which the piston has to rest (a warning says where it "
+                  "moves); `\"fit\"`: estimated per condition"}),
+      Row::word<model::Before>(
+          "before", before,
+          {{"hold", model::Before::hold},
+           {"rest", model::Before::rest},
+           {"steady", model::Before::steady}},
+          {.doc = "The drive before its first sample (below)",
+           .example = "\"rest\"",
+           .hint = "the drive was neutral until the first sample: a record that begins at its "
+                   "step"}),
+      Row::quantity("initial_window", &Campaign::initial_window_s, "s", kDurations_s,
+                    {.doc = "Only with `initial = \"record\"` or `\"fit\"`"}),
+      Row::word<char>("separator", &Campaign::separator,
+                      {{",", ','}, {";", ';'}, {"\t", '\t'}, {" ", ' '}},
+                      {.doc = "Between the columns of a CSV file; a blank stands for any number "
+                              "of them",
+                       .otherwise = "detected"}),
+      Row::quantity("decimate_to", &Campaign::decimate_to_hz, "Hz", kSampleRates_hz,
+                    {.doc = "Denser records are filtered and thinned out to this rate (below)",
+                     .otherwise = "none",
+                     .example = "\"1 kHz\"",
+                     .hint = "if the records are denser than the model needs"}),
+      Row::word<SpikeTreatment>(
+          "spikes", &Campaign::spikes,
+          {{"report", SpikeTreatment::report}, {"exclude", SpikeTreatment::exclude}},
+          {.doc = "With `\"exclude\"` a line between its neighbours takes the place of each spike "
+                  "(below)"}),
+      Row::described("holes", word_form(words_of(hole_words())),
+                     {.doc = "With `\"bridge\"` missing samples are ignored, and the samples on "
+                             "either side are used (*Times*)",
+                      .otherwise = "`\"refuse\"`"}),
+      Row::described("longest_hole", quantity_form("s"),
+                     {.doc = "A longer hole is still refused",
+                      .otherwise = "needed with `holes = \"bridge\"`",
+                      .example = "\"50 ms\""}),
+      Row::described("channels", recorded_channels_form(),
+                     {.doc = "The columns of the files, by channel", .otherwise = "none"}),
+  });
+  return keys;
+}
+
 void read_recording(const TomlNode& node, Campaign& campaign) {
-  node.allow_only({"initial", "initial_window", "before", "separator", "decimate_to", "spikes",
-                   "holes", "longest_hole", "channels"});
-  if (const auto initial = node.find("initial")) {
-    campaign.initial = initial->choice<InitialMode>(
-        {{"rest", InitialMode::rest}, {"record", InitialMode::record}, {"fit", InitialMode::fit}});
-  }
+  recording_keys().read(node, campaign);
   campaign.rig.initial = campaign.initial == InitialMode::rest ? model::InitialState::rest
                                                                : model::InitialState::given;
-  if (const auto before = node.find("before")) read_before(*before, campaign);
-  campaign.initial_window_s = kDefaultWindowS;
-  if (const auto window = node.find("initial_window")) {
-    campaign.initial_window_s = window->quantity("s", kDurations_s);
-    if (campaign.initial == InitialMode::rest) {
-      window->fail("has no meaning where all states start at zero: expected initial = \"record\"");
-    }
+  if (const auto before = node.find("before")) {
+    campaign.before_stated = true;
+    check_before(*before, campaign);
   }
-  if (const auto separator = node.find("separator")) {
-    campaign.separator =
-        separator->choice<char>({{",", ','}, {";", ';'}, {"\t", '\t'}, {" ", ' '}});
-  }
-  if (const auto rate = node.find("decimate_to")) {
-    campaign.decimate_to_hz = rate->quantity("Hz", kSampleRates_hz);
-  }
-  if (const auto spikes = node.find("spikes")) {
-    campaign.spikes = spikes->choice<SpikeTreatment>(
-        {{"report", SpikeTreatment::report}, {"exclude", SpikeTreatment::exclude}});
-  }
+  if (const auto window = node.find("initial_window");
+      window && campaign.initial == InitialMode::rest)
+    window->fail("has no meaning where all states start at zero: expected initial = \"record\"");
   read_holes(node, campaign);
   if (const auto channels = node.find("channels")) read_channels(*channels, campaign);
+}
+
+std::vector<std::string> output_channel_names() {
+  std::vector<std::string> names;
+  for (const ChannelInfo& channel : channel_table())
+    if (channel.is_output) names.emplace_back(channel.key);
+  names.emplace_back(info(Channel::command).key);  // the output of a controller
+  return names;
+}
+
+KeyForm channels_form(std::string name) {
+  KeyForm form = plain_form(KeyForm::Kind::table, std::move(name));
+  for (const ChannelInfo& channel : channel_table())
+    form.keys.push_back({std::string(channel.key), quantity_form(channel.unit), ""});
+  return form;
 }
 
 Channel read_channel_key(const TomlNode& table, const std::string& key) {

@@ -12,25 +12,35 @@
 namespace rigcal::datasets {
 namespace {
 
-bool is_date(std::string_view key) {
-  return key == "issued" || key == "calibrated" || key == "due";
-}
-
 template <std::size_t count>
 ReportSettings::Fields read_fields(const TomlNode& node,
                                    const std::array<ReportField, count>& known) {
   ReportSettings::Fields fields;
   for (const ReportField& field : known) {
     if (const auto value = node.find(field.key))
-      fields.emplace_back(field.key, is_date(field.key) ? value->date() : value->name());
+      fields.emplace_back(field.key, field.is_date ? value->date() : value->name());
   }
   return fields;
 }
 
 template <std::size_t count>
-std::vector<std::string> keys_of(const std::array<ReportField, count>& known) {
-  std::vector<std::string> keys;
-  for (const ReportField& field : known) keys.emplace_back(field.key);
+std::vector<CampaignKey> keys_of(const std::array<ReportField, count>& known) {
+  std::vector<CampaignKey> keys;
+  for (const ReportField& field : known)
+    keys.push_back({std::string(field.key),
+                    plain_form(field.is_date ? KeyForm::Kind::date : KeyForm::Kind::text),
+                    std::string(field.doc),
+                    {},
+                    "none"});
+  return keys;
+}
+
+const std::vector<CampaignKey>& sensor_keys() {
+  static const std::vector<CampaignKey> keys = [] {
+    std::vector<CampaignKey> rows = keys_of(kSensorFields);
+    rows.front().needed = true;  // `channel`
+    return rows;
+  }();
   return keys;
 }
 
@@ -103,17 +113,28 @@ void apply_sensors(const TomlNode& root, Campaign& campaign) {
   }
 }
 
+const std::vector<CampaignKey>& report_keys() {
+  static const std::vector<CampaignKey> keys = [] {
+    std::vector<CampaignKey> rows = keys_of(kReportFields);
+    rows.push_back({"sensor",
+                    list_form(table_form(sensor_keys()), "tables", 0),
+                    "The sensors of the test, each a table `[[report.sensor]]`",
+                    {},
+                    "none"});
+    return rows;
+  }();
+  return keys;
+}
+
 ReportSettings read_report(const TomlNode& node) {
-  std::vector<std::string> keys = keys_of(kReportFields);
-  keys.emplace_back("sensor");
-  node.allow_only(keys);
+  node.allow_only(names_of(report_keys()));
   ReportSettings settings;
   settings.fields = read_fields(node, kReportFields);
   const auto sensors = node.find("sensor");
   if (!sensors) return settings;
   if (!sensors->is_array()) sensors->fail_type("[[report.sensor]], in double brackets");
   for (const TomlNode& sensor : sensors->items()) {
-    sensor.allow_only(keys_of(kSensorFields));
+    sensor.allow_only(names_of(sensor_keys()));
     sensor.require("channel", "the channel that the sensor is of, such as \"position\"");
     settings.sensors.push_back(read_fields(sensor, kSensorFields));
   }

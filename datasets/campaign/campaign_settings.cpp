@@ -12,8 +12,6 @@ namespace rigcal::datasets {
 namespace {
 
 constexpr std::string_view kWarnPrefix = "warn_";
-constexpr const char* kDecision = "decision";
-constexpr const char* kModelError = "model_error_to_noise";
 constexpr const char* kNegligible = "negligible";
 constexpr const char* kNotJudged = "not_judged";
 /// Records that begin a second apart from their drive are no day-to-day variation.
@@ -35,6 +33,45 @@ std::vector<std::string> known_limits() {
     names.push_back(std::string(kWarnPrefix) + std::string(row.name));
   }
   return names;
+}
+
+/// SI units of the channels that may be outputs.
+std::vector<std::string> output_units() {
+  std::vector<std::string> units;
+  for (const std::string& key : output_channel_names()) {
+    const std::string unit(info(*channel_from_key(key)).unit);
+    if (std::find(units.begin(), units.end(), unit) == units.end()) units.push_back(unit);
+  }
+  return units;
+}
+
+/// @param units  of the channels that the limits may be of, SI
+std::vector<CampaignKey> limit_keys(const std::vector<std::string>& units) {
+  std::vector<CampaignKey> keys;
+  std::vector<CampaignKey> warnings;
+  for (const MetricSpec& metric : kMetrics) {
+    KeyForm form = metric.unit == "channel" ? quantity_form(units)
+                                            : number_form({metric.lowest, metric.highest});
+    if (metric.unit == "channel") form.name = "quantity of the channel";
+    const std::string name(metric.name);
+    keys.push_back({name,
+                    form,
+                    fmt::format("Limit of {}; {} is better", metric.formula,
+                                metric.higher_is_better ? "higher" : "lower"),
+                    {},
+                    "no limit"});
+    warnings.push_back({std::string(kWarnPrefix) + name,
+                        form,
+                        "Between this and its limit there is a reservation",
+                        {},
+                        "none"});
+  }
+  keys.insert(keys.end(), warnings.begin(), warnings.end());
+  return keys;
+}
+
+KeyForm not_judged_form() {
+  return list_form(word_form(output_channel_names()), "list of channels", 0);
 }
 
 double read_limit(const TomlNode& node, const MetricSpec& metric, Channel channel) {
@@ -80,13 +117,6 @@ std::vector<std::pair<Channel, double>> read_channel_values(const TomlNode& tabl
   return values;
 }
 
-std::map<Channel, double> channel_values(const TomlNode& node, std::string_view key) {
-  const auto table = node.find(key);
-  if (!table) return {};
-  const auto values = read_channel_values(*table);
-  return {values.begin(), values.end()};
-}
-
 std::map<int, double> read_variation(const TomlNode& table, model::PlantKind plant) {
   std::map<int, double> variation;
   for (const auto& [key, node] : table.entries()) {
@@ -113,7 +143,7 @@ std::map<std::string, Overrides> read_true_levels(const TomlNode& table, model::
 
 /// Limits of an `acceptance`, whose keys in `others` are none.
 Limits limits_but(const TomlNode& node, const Campaign& campaign,
-                  const std::vector<std::string_view>& others) {
+                  const std::vector<std::string>& others) {
   std::vector<Channel> outputs = output_channels(campaign);
   const bool has_position = outputs.empty() || std::find(outputs.begin(), outputs.end(),
                                                          motion_channel(campaign)) != outputs.end();
@@ -130,11 +160,13 @@ Limits limits_but(const TomlNode& node, const Campaign& campaign,
   }
   for (const auto& [key, entry] : node.entries()) {
     if (is_limit(key) || std::find(others.begin(), others.end(), key) != others.end()) continue;
-    if (!entry.is_table()) {
+    if (!entry.is_table() || !channel_from_key(key)) {
       names.insert(names.end(), others.begin(), others.end());
-      node.fail_unknown(key, "metric", names);
+      const auto channels = output_channel_names();
+      if (entry.is_table()) names.insert(names.begin(), channels.begin(), channels.end());
+      node.fail_unknown(key, entry.is_table() ? "channel" : "metric", names);
     }
-    const Channel channel = read_channel_key(node, key);
+    const Channel channel = *channel_from_key(key);
     if (std::find(outputs.begin(), outputs.end(), channel) == outputs.end()) {
       entry.fail("is no output channel: expected one of those in [recording.channels]");
     }
@@ -155,7 +187,61 @@ Limits limits_but(const TomlNode& node, const Campaign& campaign,
   return limits;
 }
 
+/// Keys of [acceptance] that are no limits.
+const KeyTable<AcceptanceBounds>& bound_keys() {
+  using Row = KeyRow<AcceptanceBounds>;
+  static const KeyTable<AcceptanceBounds> keys({
+      Row::word<DecisionRule>(
+          "decision", &AcceptanceBounds::decision,
+          {{"simple", DecisionRule::simple}, {"guard_band", DecisionRule::guard_band}},
+          {.doc =
+               "How the uncertainty of a score counts. With `guard_band` a limit is kept without "
+               "reservation only by more than the score is uncertain",
+           .example = "\"guard_band\"",
+           .hint = "PASS where a limit is kept by more than the score is uncertain"}),
+      Row::number("model_error_to_noise", &AcceptanceBounds::model_error_to_noise, kSizes,
+                  {.doc = "Lack of fit that is accepted without reservation: standard deviation of "
+                          "the model's error over that of the noise of a record's mean"}),
+      Row::described(kNegligible, known_values_form(ParameterGroup::any),
+                     {.doc = "Up to which size a parameter does not matter that cannot be told "
+                             "from zero, `leakage_coefficient = 0.01`",
+                      .otherwise = "a fifth of what the same parameter is at another leak level or "
+                                   "condition"}),
+      Row::described(
+          kNotJudged, not_judged_form(),
+          {.doc = "Channels that need no limit", .otherwise = "none", .example = "[\"position\"]"}),
+  });
+  return keys;
+}
+
 }  // namespace
+
+std::vector<CampaignKey> limit_keys() {
+  std::vector<CampaignKey> keys = limit_keys(output_units());
+  for (const std::string& key : output_channel_names()) {
+    const std::string unit(info(*channel_from_key(key)).unit);
+    keys.push_back({key,
+                    table_form(limit_keys({unit})),
+                    "Limits of this channel, in place of the general ones",
+                    {},
+                    "none"});
+  }
+  keys.push_back({kNotJudged,
+                  not_judged_form(),
+                  "Channels that need no limit",
+                  {},
+                  "none",
+                  false,
+                  "[\"position\"]"});
+  return keys;
+}
+
+std::vector<CampaignKey> acceptance_keys() {
+  std::vector<CampaignKey> keys = limit_keys();
+  keys.pop_back();  // `not_judged` is among those below
+  keys.insert(keys.end(), bound_keys().keys().begin(), bound_keys().keys().end());
+  return keys;
+}
 
 std::vector<AcceptanceLimit> read_limits(const TomlNode& node, const Campaign& campaign) {
   return limits_but(node, campaign, {kNotJudged});
@@ -186,52 +272,60 @@ std::vector<Channel> read_not_judged(const TomlNode& node, const Campaign& campa
 }
 
 void read_acceptance(const TomlNode& node, Campaign& campaign) {
-  campaign.acceptance =
-      limits_but(node, campaign, {kDecision, kModelError, kNegligible, kNotJudged});
-  campaign.acceptance_bounds.not_judged = read_not_judged(node, campaign, campaign.acceptance);
-  if (const auto decision = node.find(kDecision)) {
-    campaign.acceptance_bounds.decision = decision->choice<DecisionRule>(
-        {{"simple", DecisionRule::simple}, {"guard_band", DecisionRule::guard_band}});
-  }
-  if (const auto ratio = node.find(kModelError)) {
-    campaign.acceptance_bounds.model_error_to_noise = ratio->number(kSizes);
-  }
+  campaign.acceptance = limits_but(node, campaign, bound_keys().names());
+  AcceptanceBounds& bounds = campaign.acceptance_bounds;
+  bounds.not_judged = read_not_judged(node, campaign, campaign.acceptance);
+  bound_keys().read_rows(node, bounds);
   if (const auto table = node.find(kNegligible)) {
     for (const auto& [index, value] :
          read_overrides(*table, campaign.rig.plant, ParameterGroup::any))
-      campaign.acceptance_bounds.negligible.emplace(index, std::abs(value));
+      bounds.negligible.emplace(index, std::abs(value));
   }
 }
 
+const KeyTable<FitSettings>& fit_keys() {
+  using Row = KeyRow<FitSettings>;
+  static const KeyTable<FitSettings> keys({
+      Row::word<Loss>("loss", &FitSettings::loss,
+                      {{"squared", Loss::squared},
+                       {"huber", Loss::huber},
+                       {"cauchy", Loss::cauchy},
+                       {"soft_l1", Loss::soft_l1}},
+                      {.doc = "How a residual counts: squared, or less where it is large"}),
+      Row::number("loss_scale", &FitSettings::loss_scale, kSizes,
+                  {.doc = "Where the loss bends, in standard deviations of a residual"}),
+      Row::whole("max_iterations", &FitSettings::max_iterations, 1, 1'000'000,
+                 {.doc = "Most iterations of a descent"}),
+      Row::whole("starts", &FitSettings::starts, 1, 100'000,
+                 {.doc = "Starts of the search; the first one is that of the campaign"}),
+      Row::whole("posterior", &FitSettings::posterior, kLeastPosteriorDraws, kMostPosteriorDraws,
+                 {.doc = "Draws of each of four chains of the posterior; `--posterior N` over it",
+                  .otherwise = "none"}),
+      Row::quantity("max_time", &FitSettings::max_seconds, "s", kDurations_s,
+                    {.doc = "Limit of the whole job, bootstrap, profiles, posterior and "
+                            "cross-validation with it",
+                     .otherwise = "none",
+                     .example = "\"60 s\""}),
+      Row::described("outputs", list_form(word_form(output_channel_names()), "list of channels"),
+                     {.doc = "What is compared with the model",
+                      .otherwise = "all outputs",
+                      .example = "[\"position\"]"}),
+      Row::quantity("shooting_interval", &FitSettings::shooting_interval_s, "s", kDurations_s,
+                    {.doc = "Every start goes through multiple shooting with pieces of this length",
+                     .otherwise = "none",
+                     .example = "\"0.2 s\""}),
+  });
+  return keys;
+}
+
 FitSettings read_fit(const TomlNode& node, const Campaign& campaign) {
-  node.allow_only({"loss", "loss_scale", "max_iterations", "starts", "max_time", "outputs",
-                   "posterior", "shooting_interval"});
   FitSettings fit;
-  if (const auto loss = node.find("loss")) {
-    fit.loss = loss->choice<Loss>({{"squared", Loss::squared},
-                                   {"huber", Loss::huber},
-                                   {"cauchy", Loss::cauchy},
-                                   {"soft_l1", Loss::soft_l1}});
-  }
-  if (const auto scale = node.find("loss_scale")) {
-    fit.loss_scale = scale->number(kSizes);
-  }
-  if (const auto count = node.find("max_iterations")) {
-    fit.max_iterations = count->integer(1, 1'000'000);
-  }
-  if (const auto count = node.find("starts")) fit.starts = count->integer(1, 100'000);
-  if (const auto draws = node.find("posterior"))
-    fit.posterior = draws->integer(kLeastPosteriorDraws, kMostPosteriorDraws);
-  if (const auto time = node.find("max_time")) fit.max_seconds = time->quantity("s", kDurations_s);
-  if (const auto interval = node.find("shooting_interval")) {
-    fit.shooting_interval_s = interval->quantity("s", kDurations_s);
-  }
+  fit_keys().read(node, fit);
   const auto outputs = node.find("outputs");
   if (!outputs) return fit;
-  std::vector<std::string> known;
-  for (const Channel channel : output_channels(campaign)) known.emplace_back(info(channel).key);
-  std::vector<std::pair<std::string, Channel>> choices;
-  for (const std::string& key : known) choices.emplace_back(key, *channel_from_key(key));
+  Words<Channel> choices;
+  for (const Channel channel : output_channels(campaign))
+    choices.emplace_back(info(channel).key, channel);
   for (const TomlNode& item : outputs->items()) fit.outputs.push_back(item.choice(choices));
   if (fit.outputs.empty()) outputs->fail("is empty: expected at least one output channel");
   return fit;
@@ -278,6 +372,35 @@ ConsideredSettings read_considered(const TomlNode& node, const Campaign& campaig
   return considered;
 }
 
+KeyForm considered_form() {
+  KeyForm left_out = plain_form(KeyForm::Kind::flag);
+  KeyForm table = plain_form(KeyForm::Kind::table);
+  for (const std::string& plant : model::plant_names()) {
+    const model::PlantKind kind = model::plant_from_name(plant).value();
+    for (const EffectName& effect : effect_names(kind)) {
+      if (find_key(table.keys, effect.key) != nullptr) continue;
+      const int index = model::parameter_index(kind, effect.key);
+      table.keys.push_back({effect.key, either_form({quantity_form(effect.unit), left_out}, ""),
+                            index < 0 ? std::string("Plausible size of this effect")
+                                      : std::string(spec_of(kind, index).meaning)});
+    }
+  }
+  return either_form({left_out, std::move(table)}, "table");
+}
+
+KeyForm between_days_form() {
+  KeyForm left_out = plain_form(KeyForm::Kind::flag);
+  KeyForm table = plain_form(KeyForm::Kind::table);
+  for (const std::string& plant : model::plant_names()) {
+    for (const DayQuantityName& day : day_quantity_names(model::plant_from_name(plant).value())) {
+      if (find_key(table.keys, day.key) == nullptr)
+        table.keys.push_back({day.key, either_form({quantity_form(day.unit), left_out}, ""),
+                              "Standard deviation from one day to another"});
+    }
+  }
+  return either_form({left_out, std::move(table)}, "table");
+}
+
 BetweenDaysSettings read_between_days(const TomlNode& node, const Campaign& campaign) {
   BetweenDaysSettings days;
   if (node.is_boolean()) {
@@ -319,65 +442,105 @@ BetweenDaysSettings read_between_days(const TomlNode& node, const Campaign& camp
   return days;
 }
 
+const KeyTable<SimulationSettings>& simulation_keys() {
+  using Row = KeyRow<SimulationSettings>;
+  static const KeyTable<SimulationSettings> keys({
+      Row::word<model::Method>(
+          "method", &SimulationSettings::method,
+          {{"rosenbrock", model::Method::rosenbrock}, {"dopri5", model::Method::dopri5}},
+          {.doc = "Implicit, or explicit (`dopri5`), which may need a lower `tolerance`"}),
+      Row::number(
+          "tolerance", &SimulationSettings::tolerance,
+          NumberLimits{{1e-13, 0.1}, "a relative tolerance from 1e-13 to 0.1"},
+          {.doc = "Relative error of a step",
+           .otherwise =
+               "from the noise of each record (for a recorded drive measured, at most 1e-5); "
+               "results state the smallest",
+           .example = "1e-6"}),
+      Row::number("max_seconds", &SimulationSettings::max_seconds, kDurations_s,
+                  {.doc = "Wall time of one simulation, in seconds"}),
+  });
+  return keys;
+}
+
 SimulationSettings read_simulation(const TomlNode& node) {
-  node.allow_only({"method", "tolerance", "max_seconds"});
   SimulationSettings simulation;
-  if (const auto method = node.find("method")) {
-    simulation.method = method->choice<model::Method>(
-        {{"rosenbrock", model::Method::rosenbrock}, {"dopri5", model::Method::dopri5}});
-  }
-  if (const auto tolerance = node.find("tolerance")) {
-    simulation.tolerance = tolerance->number();
-    if (!(*simulation.tolerance >= 1e-13 && *simulation.tolerance <= 0.1)) {
-      tolerance->fail_type("a relative tolerance from 1e-13 to 0.1");
-    }
-  }
-  if (const auto seconds = node.find("max_seconds")) {
-    simulation.max_seconds = seconds->number(kDurations_s);
-  }
+  simulation_keys().read(node, simulation);
   return simulation;
 }
 
+const KeyTable<SyntheticSettings>& synthetic_keys() {
+  using Row = KeyRow<SyntheticSettings>;
+  using Values = std::map<Channel, double> SyntheticSettings::*;
+  const auto by_channel = [](std::string_view key, Values member, const KeyAbout& about) {
+    return Row::custom(
+        key, channels_form("quantity by channel"),
+        [member](const TomlNode& node, SyntheticSettings& synthetic) {
+          const auto values = read_channel_values(node);
+          synthetic.*member = {values.begin(), values.end()};
+        },
+        about);
+  };
+  KeyForm variation = table_form(parameter_rows(ParameterGroup::any, false));
+  for (CampaignKey& row : variation.keys) {
+    row.form = number_form({0.0, 1.0});
+    row.form.below_upper = true;
+  }
+  variation.name = "number by parameter";
+  const KeyForm levels =
+      entries_form(table_form({{"parameters", known_values_form(ParameterGroup::rig),
+                                "The truth of this leak level, over that of the rig"}}));
+  static const KeyTable<SyntheticSettings> keys({
+      Row::described("parameters", known_values_form(ParameterGroup::any),
+                     {.doc = "The truth, over the campaign's values; the controller's too",
+                      .otherwise = "`{}`"}),
+      Row::described(
+          "leak_level", levels,
+          {.doc = "`parameters` by leak level: the truth of that level", .otherwise = "none"}),
+      Row::whole("repeats", &SyntheticSettings::repeats, 1, 10'000, {.doc = "Per condition"}),
+      Row::quantity(
+          "duration", &SyntheticSettings::duration_s, "s", kDurations_s,
+          {.doc = "Where a condition has none", .otherwise = "none", .example = "\"10 s\""}),
+      Row::quantity(
+          "sample_rate", &SyntheticSettings::sample_rate_hz, "Hz", kSampleRates_hz,
+          {.doc = "Where a condition has none", .otherwise = "none", .example = "\"1 kHz\""}),
+      by_channel("noise", &SyntheticSettings::noise_sd,
+                 {.doc = "Standard deviation of white noise: `{ position = \"0.05 mm\" }`",
+                  .otherwise = "`{}`",
+                  .example = "{ position = \"0.05 mm\" }"}),
+      by_channel("ar1_noise", &SyntheticSettings::ar1_sd,
+                 {.doc = "Standard deviation of coloured noise", .otherwise = "`{}`"}),
+      Row::number(
+          "ar1_coefficient", &SyntheticSettings::ar1_coefficient,
+          NumberLimits{{0.0, 1.0}, "a coefficient per sample, at least 0 and below 1", false, true},
+          {.doc = "Correlation of the coloured noise from sample to sample"}),
+      by_channel("quantisation", &SyntheticSettings::quantisation,
+                 {.doc = "Step of the converter", .otherwise = "`{}`"}),
+      by_channel("drift", &SyntheticSettings::drift,
+                 {.doc = "Linear over the record, of random sign", .otherwise = "`{}`"}),
+      Row::quantity("trigger_jitter", &SyntheticSettings::trigger_jitter_s, "s", kJitters_s,
+                    {.doc = "Standard deviation of the start of each repeat"}),
+      Row::quantity("supply_ripple", &SyntheticSettings::supply_ripple_pa, "Pa", kDisturbances,
+                    {.doc = "Amplitude of a ripple of the supply pressure"}),
+      Row::quantity("supply_ripple_frequency", &SyntheticSettings::supply_ripple_hz, "Hz",
+                    kFrequencies_hz, {.doc = "Frequency of that ripple"}),
+      Row::described("variation", variation,
+                     {.doc = "Relative standard deviation between repeats: `{ mass = 0.01 }`",
+                      .otherwise = "`{}`",
+                      .example = "{ mass = 0.01 }"}),
+  });
+  return keys;
+}
+
 SyntheticSettings read_synthetic(const TomlNode& node, model::PlantKind plant) {
-  node.allow_only({"parameters", "leak_level", "repeats", "duration", "sample_rate", "noise",
-                   "ar1_noise", "ar1_coefficient", "quantisation", "drift", "trigger_jitter",
-                   "supply_ripple", "supply_ripple_frequency", "variation"});
   SyntheticSettings synthetic;
-  if (const auto values = node.find("parameters")) {
+  synthetic_keys().read(node, synthetic);
+  if (const auto values = node.find("parameters"))
     synthetic.parameters = read_overrides(*values, plant, ParameterGroup::any);
-  }
-  if (const auto levels = node.find("leak_level")) {
+  if (const auto levels = node.find("leak_level"))
     synthetic.level_parameters = read_true_levels(*levels, plant);
-  }
-  if (const auto count = node.find("repeats")) synthetic.repeats = count->integer(1, 10'000);
-  if (const auto value = node.find("duration")) {
-    synthetic.duration_s = value->quantity("s", kDurations_s);
-  }
-  if (const auto value = node.find("sample_rate")) {
-    synthetic.sample_rate_hz = value->quantity("Hz", kSampleRates_hz);
-  }
-  synthetic.noise_sd = channel_values(node, "noise");
-  synthetic.ar1_sd = channel_values(node, "ar1_noise");
-  if (const auto value = node.find("ar1_coefficient")) {
-    synthetic.ar1_coefficient = value->number();
-    if (!(synthetic.ar1_coefficient >= 0.0 && synthetic.ar1_coefficient < 1.0)) {
-      value->fail_type("a coefficient per sample, at least 0 and below 1");
-    }
-  }
-  synthetic.quantisation = channel_values(node, "quantisation");
-  synthetic.drift = channel_values(node, "drift");
-  if (const auto value = node.find("trigger_jitter")) {
-    synthetic.trigger_jitter_s = value->quantity("s", kJitters_s);
-  }
-  if (const auto value = node.find("supply_ripple")) {
-    synthetic.supply_ripple_pa = value->quantity("Pa", kDisturbances);
-  }
-  if (const auto value = node.find("supply_ripple_frequency")) {
-    synthetic.supply_ripple_hz = value->quantity("Hz", kFrequencies_hz);
-  }
-  if (const auto table = node.find("variation")) {
+  if (const auto table = node.find("variation"))
     synthetic.variation = read_variation(*table, plant);
-  }
   return synthetic;
 }
 

@@ -10,12 +10,15 @@
 #include "common/quantity.hpp"
 #include "common/suggest.hpp"
 #include "datasets/campaign/campaign_parameters.hpp"
+#include "datasets/campaign/keys/key_table.hpp"
 
 namespace rigcal::datasets {
 namespace {
 
 constexpr std::string_view kResidualScaleKey = "residual_scale";
 constexpr double kMostPercent = 1000.0;
+/// The parameter that a leak table varies.
+constexpr std::string_view kVariedKey = "leakage_coefficient";
 
 struct FeatureName {
   Feature feature;
@@ -25,6 +28,10 @@ constexpr std::array kFeatures{FeatureName{Feature::servo_flow, "servo_flow"},
                                FeatureName{Feature::leak_flow, "leak_flow"},
                                FeatureName{Feature::mean, "mean"}, FeatureName{Feature::rms, "rms"},
                                FeatureName{Feature::std, "std"}};
+
+bool is_flow(Feature feature) {
+  return feature == Feature::servo_flow || feature == Feature::leak_flow;
+}
 
 std::string_view amplitude_unit(const Campaign& campaign) {
   return info(drive_channel(campaign)).unit;
@@ -79,9 +86,140 @@ void read_drive(const TomlNode& node, const Campaign& campaign, LeakSignal& sign
                          .quantity(amplitude_unit(campaign), kAmplitudes);
 }
 
+/// Keys of a periodic drive.
+std::vector<CampaignKey> drive_keys() {
+  using Row = KeyRow<LeakSignal>;
+  const std::vector<Row> rows{
+      Row::described("waveform", word_form(words_of(periodic_waveforms())),
+                     {.doc = "Signal of the drive", .needed = "\"sine\" or \"square\""}),
+      Row::described("frequency", quantity_form("Hz"),
+                     {.doc = "Frequency of the drive", .needed = "such as \"0.1 Hz\""}),
+      Row::described(
+          "amplitude", quantity_form(std::vector<std::string>{"m", "V"}),
+          {.doc = "Half of peak to peak", .example = "\"5 mm\"", .needed = "half of peak to peak"}),
+  };
+  return KeyTable<LeakSignal>(rows).keys();
+}
+
+const std::vector<CampaignKey>& signal_keys() {
+  static const std::vector<CampaignKey> keys = [] {
+    std::vector<CampaignKey> rows = drive_keys();
+    const KeyForm text = plain_form(KeyForm::Kind::text);
+    rows.push_back({"printed",
+                    list_form(text, "list of texts"),
+                    "A published coefficient per target, in quotes with the digits that were "
+                    "printed: `\"0.50\"` was rounded finer than `\"0.5\"`",
+                    {},
+                    "none",
+                    false,
+                    "[\"0.25\"]"});
+    rows.push_back({"normal",
+                    text,
+                    "The published coefficient of the rig without a fault",
+                    {},
+                    "none",
+                    false,
+                    "\"0.002\""});
+    rows.push_back({"notes",
+                    entries_form(text),
+                    "What is known about an entry, by its target: `{ \"50\" = \"a misprint\" }`",
+                    {},
+                    "none",
+                    false,
+                    "{ \"50\" = \"a misprint\" }"});
+    return rows;
+  }();
+  return keys;
+}
+
+/// Keys of a row of [leak_table.features].
+const KeyTable<PrintedFeatures>& level_keys() {
+  using Row = KeyRow<PrintedFeatures>;
+  static const KeyTable<PrintedFeatures> keys = [] {
+    std::vector<std::string> names;
+    for (const FeatureName& name : kFeatures) names.emplace_back(name.key);
+    std::vector<Row> rows{
+        Row::text(
+            "level", &PrintedFeatures::level, "a text in quotes",
+            {.doc = "Name of the level", .example = "\"10 %\"", .needed = "the name of the level"}),
+        Row::number("coefficient", &PrintedFeatures::coefficient, kSizes,
+                    {.doc = "Leakage coefficient at which the row was published",
+                     .needed = "the leakage coefficient of the level"}),
+        Row::flag("leaking", &PrintedFeatures::leaking,
+                  {.doc = "`false`: the rig without a fault; the coefficient that gives its leak "
+                          "flow is sought too"}),
+    };
+    for (const FeatureName& name : kFeatures) {
+      const bool flow = is_flow(name.feature);
+      rows.push_back(Row::custom(name.key, flow ? quantity_form("m3/s") : number_form(kSizes),
+                                 [name, flow](const TomlNode& node, PrintedFeatures& row) {
+                                   row.printed[name.feature] =
+                                       flow ? node.quantity("m3/s", kFlows_m3_per_s)
+                                            : node.number(kSizes);
+                                 },
+                                 {.doc = flow ? "Mean of the absolute value"
+                                              : "Of the residual's absolute value, as printed",
+                                  .otherwise = "none"}));
+    }
+    rows.push_back(Row::described(
+        "left_out", list_form(word_form(names), "list of these names", 0),
+        {.doc = "What does not count in `fit-tables`; needs a `reason`", .otherwise = "none"}));
+    rows.push_back(Row::described("reason", plain_form(KeyForm::Kind::text),
+                                  {.doc = "Why it is left out", .otherwise = "none"}));
+    return KeyTable<PrintedFeatures>(std::move(rows));
+  }();
+  return keys;
+}
+
+std::vector<CampaignKey> feature_keys() {
+  std::vector<CampaignKey> keys = drive_keys();
+  keys.push_back({"row",
+                  list_form(table_form(level_keys().keys()), "tables", 0),
+                  "A published row, each a table `[[leak_table.features.row]]`",
+                  {},
+                  {},
+                  true});
+  return keys;
+}
+
+/// @param value  form of the assumed value
+KeyTable<Assumption> assumption_keys(const KeyForm& value) {
+  using Row = KeyRow<Assumption>;
+  KeyForm quantity = value;
+  quantity.name = "quantity";
+  const std::string with_fit = "needed with `fit = true`";
+  return KeyTable<Assumption>({
+      Row::described("value", quantity, {.doc = "The assumed value", .needed = "a value"}),
+      Row::text("source", &Assumption::source, "a text in quotes",
+                {.doc = "Where it comes from; stands in the results",
+                 .needed = "where the value comes from"}),
+      Row::flag("fit", &Assumption::fit, {.doc = "Whether `fit-tables` estimates it"}),
+      Row::described("start", quantity,
+                     {.doc = "Where `fit-tables` starts", .otherwise = with_fit}),
+      Row::described("lower", quantity,
+                     {.doc = "Lower bound. Above zero, the logarithm of the value is estimated, "
+                             "else the value itself",
+                      .otherwise = with_fit}),
+      Row::described("upper", quantity, {.doc = "Upper bound", .otherwise = with_fit}),
+  });
+}
+
+KeyForm assumptions_form() {
+  std::vector<CampaignKey> rows = parameter_rows(ParameterGroup::any, false);
+  const model::ParameterSpec& scale = assumption_spec({}, kResidualScale);
+  rows.push_back({std::string(scale.key), quantity_form(scale.unit), std::string(scale.meaning)});
+  std::erase_if(rows, [](const CampaignKey& row) { return row.key == kVariedKey; });
+  for (CampaignKey& row : rows) {
+    KeyForm value = plain_form(row.form.kind);
+    value.units = row.form.units;
+    row.form = table_form(assumption_keys(value).keys());
+  }
+  return table_form(std::move(rows));
+}
+
 LeakSignal read_signal(const TomlNode& node, const Campaign& campaign,
                        const std::vector<double>& targets) {
-  node.allow_only({"waveform", "frequency", "amplitude", "printed", "normal", "notes"});
+  node.allow_only(names_of(signal_keys()));
   LeakSignal signal;
   read_drive(node, campaign, signal);
   if (const auto printed = node.find("printed")) {
@@ -112,22 +250,10 @@ LeakSignal read_signal(const TomlNode& node, const Campaign& campaign,
 }
 
 PrintedFeatures read_level(const TomlNode& node) {
-  node.allow_only({"level", "coefficient", "leaking", "servo_flow", "leak_flow", "mean", "rms",
-                   "std", "left_out", "reason"});
   PrintedFeatures row;
-  row.level = node.require("level", "the name of the level").name();
-  const TomlNode coefficient = node.require("coefficient", "the leakage coefficient of the level");
-  row.coefficient = coefficient.number(kSizes);
-  if (const auto leaking = node.find("leaking")) row.leaking = leaking->boolean();
-  std::vector<std::pair<std::string, Feature>> names;
-  for (const FeatureName& name : kFeatures) {
-    names.emplace_back(name.key, name.feature);
-    const auto entry = node.find(name.key);
-    if (!entry) continue;
-    const bool flow = name.feature == Feature::servo_flow || name.feature == Feature::leak_flow;
-    row.printed[name.feature] =
-        flow ? entry->quantity("m3/s", kFlows_m3_per_s) : entry->number(kSizes);
-  }
+  level_keys().read(node, row);
+  Words<Feature> names;
+  for (const FeatureName& name : kFeatures) names.emplace_back(name.key, name.feature);
   if (const auto left_out = node.find("left_out")) {
     for (const TomlNode& item : left_out->items()) row.left_out.push_back(item.choice(names));
     row.reason = node.require("reason", "why these are left out of a fit").name();
@@ -138,7 +264,7 @@ PrintedFeatures read_level(const TomlNode& node) {
 }
 
 void read_features(const TomlNode& node, const Campaign& campaign, LeakTableSettings& settings) {
-  node.allow_only({"waveform", "frequency", "amplitude", "row"});
+  node.allow_only(names_of(feature_keys()));
   settings.feature_signal.emplace();
   read_drive(node, campaign, *settings.feature_signal);
   for (const TomlNode& item :
@@ -154,14 +280,14 @@ double read_assumed(const TomlNode& node, const model::ParameterSpec& spec) {
 }
 
 Assumption read_assumption(const TomlNode& node, const Campaign& campaign, int index) {
-  node.allow_only({"value", "source", "fit", "start", "lower", "upper"});
+  static const KeyTable<Assumption> keys = assumption_keys(plain_form(KeyForm::Kind::quantity));
+  node.allow_only(keys.names());
   const model::ParameterSpec& spec = assumption_spec(campaign.rig.plant, index);
   Assumption assumption;
   assumption.index = index;
   assumption.value =
       read_assumed(node.require("value", fmt::format("a value in {}", spec.unit)), spec);
-  assumption.source = node.require("source", "where the value comes from").name();
-  if (const auto fit = node.find("fit")) assumption.fit = fit->boolean();
+  keys.read_rows(node, assumption);
   if (!assumption.fit) {
     for (const char* key : {"start", "lower", "upper"}) {
       if (const auto entry = node.find(key)) {
@@ -189,7 +315,7 @@ void read_assumptions(const TomlNode& node, const Campaign& campaign, LeakTableS
     const bool scale = key == kResidualScaleKey;
     const int index = scale ? kResidualScale : model::parameter_index(campaign.rig.plant, key);
     if (index < 0 && !scale) node.fail_unknown(key, "parameter", known);
-    if (key == "leakage_coefficient") {
+    if (key == kVariedKey) {
       entry.fail("is what the table varies: expected any other parameter");
     }
     settings.assumptions.push_back(read_assumption(entry, campaign, index));
@@ -258,8 +384,33 @@ const Assumption* LeakTableSettings::assumption(int index) const {
   return found == assumptions.end() ? nullptr : &*found;
 }
 
+const std::vector<CampaignKey>& leak_table_keys() {
+  static const std::vector<CampaignKey> keys{
+      {"targets", list_form(number_form({0.0, kMostPercent}), "list of numbers"),
+       "Shares of the servo flow in percent, increasing", "[10, 20, 30, 50]"},
+      {"coefficients", list_form(number_form({0.0, 1000.0}), "two numbers", 2, 2),
+       "Between which roots are searched", "[0.001, 100]"},
+      {"assumptions",
+       assumptions_form(),
+       "Values over those of the rig, each with its source (below)",
+       {},
+       "none"},
+      {"signal",
+       list_form(table_form(signal_keys()), "tables", 0),
+       "The columns of the table, each a table `[[leak_table.signal]]`",
+       {},
+       "from the conditions"},
+      {"features",
+       table_form(feature_keys()),
+       "Published flows and features of the residual at one signal",
+       {},
+       "none"},
+  };
+  return keys;
+}
+
 LeakTableSettings read_leak_table(const TomlNode& node, const Campaign& campaign) {
-  node.allow_only({"targets", "coefficients", "assumptions", "signal", "features"});
+  node.allow_only(names_of(leak_table_keys()));
   if (campaign.rig.feedback != model::Feedback::position)
     node.fail(
         fmt::format("has no meaning for a loop on {}: expected feedback = \"position\" in "

@@ -78,6 +78,11 @@ struct LeakTableSettings {
   const Assumption* assumption(int index) const;
 };
 
+struct CampaignKey;
+
+/// Keys of [leak_table].
+const std::vector<CampaignKey>& leak_table_keys();
+
 /// Reads the section.
 ///
 /// @throws InputError  file:line:column with the key, what was found and what was expected

@@ -9,36 +9,42 @@
 
 namespace rigcal::datasets {
 
-/// A key of [report] with its label on the page.
+/// A key of [report]: an optional text or date.
 struct ReportField {
-  std::string_view key, label;
+  std::string_view key;
+  std::string_view label;  ///< on the page
+  std::string_view doc;    ///< for schema and documents
+  bool is_date = false;
 };
 
 /// Statements of a test report in addition to its results (ISO/IEC 17025:2017, 7.8.2), in the order
 /// of the page.
 inline constexpr std::array kReportFields{
-    ReportField{"number", "Report number"},
-    ReportField{"issued", "Date of issue"},
-    ReportField{"laboratory", "Laboratory"},
-    ReportField{"customer", "Customer"},
-    ReportField{"rig", "Rig"},
-    ReportField{"specimen", "Specimen"},
-    ReportField{"serial_number", "Serial number"},
-    ReportField{"method", "Method"},
-    ReportField{"operator", "Operator"},
-    ReportField{"approver", "Approved by"},
-    ReportField{"remarks", "Remarks"},
+    ReportField{"number", "Report number", "Number of the report"},
+    ReportField{"issued", "Date of issue", "Date on which the report is issued", true},
+    ReportField{"laboratory", "Laboratory", "Who made the test"},
+    ReportField{"customer", "Customer", "For whom it was made"},
+    ReportField{"rig", "Rig", "The rig that was tested"},
+    ReportField{"specimen", "Specimen", "What was tested on it"},
+    ReportField{"serial_number", "Serial number", "Serial number of the specimen"},
+    ReportField{"method", "Method", "The procedure of the test"},
+    ReportField{"operator", "Operator", "Who made the measurements"},
+    ReportField{"approver", "Approved by", "Who approves the report"},
+    ReportField{"remarks", "Remarks", "Anything else that a reader has to know"},
 };
 
 /// One [[report.sensor]].
 inline constexpr std::array kSensorFields{
-    ReportField{"channel", "Channel"},
-    ReportField{"instrument", "Instrument"},
-    ReportField{"serial_number", "Serial number"},
-    ReportField{"calibrated", "Calibrated"},
-    ReportField{"due", "Due"},
-    ReportField{"certificate", "Certificate"},
-    ReportField{"uncertainty", "Uncertainty"},
+    ReportField{"channel", "Channel",
+                "The channel of `[recording.channels]` that the sensor measures"},
+    ReportField{"instrument", "Instrument", "Kind and range of the sensor"},
+    ReportField{"serial_number", "Serial number", "Serial number of the sensor"},
+    ReportField{"calibrated", "Calibrated", "Date of its calibration", true},
+    ReportField{"due", "Due", "Date on which its calibration ends", true},
+    ReportField{"certificate", "Certificate", "Number of its certificate"},
+    ReportField{"uncertainty", "Uncertainty",
+                "`\"NUMBER UNIT (k = N)\"` of its offset, or `\"NUMBER % (k = N)\"` of its gain; "
+                "any other text has no effect, and is a reservation"},
 };
 
 /// [report]: texts as the campaign gives them, dates as ISO 8601.

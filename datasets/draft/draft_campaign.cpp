@@ -15,6 +15,7 @@
 
 #include "common/error.hpp"
 #include "common/quantity.hpp"
+#include "datasets/campaign/keys/campaign_keys.hpp"
 #include "datasets/campaign/toml/toml_reader.hpp"
 #include "datasets/draft/column_guess.hpp"
 #include "datasets/draft/start_motion.hpp"
@@ -810,10 +811,11 @@ Draft draft_campaign(const std::vector<fs::path>& files, const fs::path& folder)
     return find(own, Channel::pressure_a) != nullptr || find(own, Channel::pressure_b) != nullptr;
   });
   std::string text = fmt::format(
+      "#:schema ./{}\n"
       "# Draft by rigcal init. Replace every \"{}\", delete what does not apply, then run\n"
       "# rigcal check on this file. docs/campaign-file.md explains every key.\n"
       "schema = \"rigcal.campaign/1\"\nname = \"New rig\"\n\n",
-      kBlank);
+      kSchemaFile, kBlank);
   for (const std::string& file : left_out) text += fmt::format("# left out: {}\n", file);
   if (!left_out.empty()) text += "\n";
   auto plant = chambers || has_pilot(columns) ? model::PlantKind::two_chamber
@@ -824,25 +826,17 @@ Draft draft_campaign(const std::vector<fs::path>& files, const fs::path& folder)
       plant != model::PlantKind::linkage && find(columns, Channel::acceleration) != nullptr,
       has_pilot(columns));
   text += "\n[recording]\n" + initial_text(groups);
-  text +=
-      "# before = \"rest\"  # the drive was neutral until the first sample: a record that begins "
-      "at "
-      "its step\n";
-  text += "# decimate_to = \"1 kHz\"  # if the records are denser than the model needs\n";
+  text += "# " + draft_line("recording", "before");
+  text += "# " + draft_line("recording", "decimate_to");
   text += channels_text(first, columns) + rows_text(first, columns);
-  text +=
-      "\n[averaging]\n"
-      "align = \"correlate\"  # or \"none\" if all repeats share one trigger\n"
-      "\n# [acceptance]  # what PASS means\n# rho2 = 0.99\n# absolute_error_percent = 1.0\n"
-      "# decision = \"guard_band\"  # PASS where a limit is kept by more than the score is "
-      "uncertain\n" +
-      limits_of_others(columns);
+  text += "\n[averaging]\n" + draft_line("averaging", "align") +
+          "\n# [acceptance]  # what PASS means\n# rho2 = 0.99\n# absolute_error_percent = 1.0\n# " +
+          draft_line("acceptance", "decision") + limits_of_others(columns);
   for (const FileGroup& group : groups) {
     const FileColumns& own = group.files.front().columns;
     text += fmt::format("\n[[condition]]\nid = {}\n", toml_quoted(group.id));
     text += waveform_text(group.files.front().file, own);
-    text += "use = \"fit\"  # or \"validate\": keep some back that the fit does not see\n";
-    text += "# leak_level = \"none\"  # names the state of the rig, if there are several\n";
+    text += draft_line("condition", "use") + "# " + draft_line("condition", "leak_level");
     text += repeats_text(group.files, own, folder);
   }
   return {text, left_out};

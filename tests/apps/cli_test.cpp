@@ -427,8 +427,9 @@ TEST_CASE("rigcal: help and version", "[apps]") {
   CHECK_THAT(version.out, StartsWith("rigcal 0."));
   const Outcome help = folder.run({"--help"});
   CHECK(help.exit_code == 0);
-  for (const char* verb : {"check", "average", "simulate", "fit", "validate", "leak-table",
-                           "fit-tables", "explore", "export", "synthesize", "init", "params"}) {
+  for (const char* verb :
+       {"check", "average", "simulate", "fit", "validate", "leak-table", "fit-tables", "explore",
+        "export", "synthesize", "init", "params", "schema"}) {
     CHECK_THAT(help.out, Contains(verb));
     const Outcome of_verb = folder.run({verb, "--help"});
     CHECK(of_verb.exit_code == 0);
@@ -450,6 +451,25 @@ TEST_CASE("params: every parameter with unit and limits", "[apps]") {
   CHECK(table[0]["name"] == "mass_kg");
   CHECK(table[0]["default"].is_null());
   CHECK(folder.run({"params", "--quiet"}).out.empty());
+}
+
+TEST_CASE("schema: that of campaign files, and the keys of a table", "[apps]") {
+  const CommandFolder folder;
+  const Outcome printed = folder.run({"schema", "campaign"});
+  CHECK(printed.exit_code == 0);
+  const json schema = json::parse(printed.out);
+  CHECK(schema["$schema"] == "https://json-schema.org/draft/2020-12/schema");
+  CHECK(schema["properties"]["fit"]["properties"]["starts"]["default"] == 1);
+  CHECK(folder.run({"schema", "campaign", "--json"}).out == printed.out);
+  CHECK_THAT(
+      folder.run({"schema", "campaign", "--table", "fit"}).out,
+      StartsWith("| key | type |") && Contains("| `starts` | whole number, 1 to 100000 | `1` |"));
+  CHECK_THAT(folder.run({"schema", "campaign", "--table", ""}).out, Contains("| `rig` | table |"));
+  const Outcome none = folder.run({"schema", "campaign", "--table", "fits"});
+  CHECK(none.exit_code == 2);
+  CHECK_THAT(none.err, Contains("--table fits: no such table"));
+  CHECK(folder.run({"schema"}).exit_code == 2);
+  CHECK(folder.run({"schema", "result"}).exit_code == 2);
 }
 
 TEST_CASE("check: one line per record, and nothing written", "[apps]") {

@@ -9,6 +9,7 @@
 
 using namespace rigcal::test;
 using Catch::Contains;
+using Catch::StartsWith;
 
 namespace {
 
@@ -63,6 +64,8 @@ TEST_CASE("init: a draft that check accepts once its blanks are filled", "[apps]
   REQUIRE(made.exit_code == 0);
   CHECK_THAT(made.out, Contains("new/campaign.toml") && Contains("blanks marked \"FILL IN\""));
   const std::string draft = folder.read("new/campaign.toml");
+  CHECK_THAT(draft, StartsWith("#:schema ./campaign.schema.json\n"));
+  CHECK(folder.read("new/campaign.schema.json") == folder.run({"schema", "campaign"}).out);
   CHECK_THAT(draft, Contains("frequency = \"2 Hz\"") && Contains("amplitude = \"5 mm\"") &&
                         Contains("id = \"square\"") && Contains("\"../records/sine_2.csv\""));
 

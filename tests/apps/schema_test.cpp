@@ -4,14 +4,10 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <valijson/adapters/nlohmann_json_adapter.hpp>
-#include <valijson/schema.hpp>
-#include <valijson/schema_parser.hpp>
 #include <valijson/utils/nlohmann_json_utils.hpp>
-#include <valijson/validation_results.hpp>
-#include <valijson/validator.hpp>
 
 #include "tests/apps/cli_fixture.hpp"
+#include "tests/support/violations.hpp"
 
 using nlohmann::json;
 using rigcal::test::CommandFolder;
@@ -22,18 +18,7 @@ std::string rigcal::test::violations(const json& document, const std::string& na
   json rules;
   const std::string file = std::string(RIGCAL_SOURCE_DIR) + "/docs/schema/" + name + ".schema.json";
   REQUIRE(valijson::utils::loadDocument(file, rules));
-  valijson::Schema schema;
-  valijson::SchemaParser().populateSchema(valijson::adapters::NlohmannJsonAdapter(rules), schema);
-  valijson::ValidationResults results;
-  valijson::Validator().validate(schema, valijson::adapters::NlohmannJsonAdapter(document),
-                                 &results);
-  std::string text;
-  valijson::ValidationResults::Error error;
-  while (results.popError(error)) {
-    for (const std::string& part : error.context) text += part;
-    text += ": " + error.description + "\n";
-  }
-  return text;
+  return Rules(rules).violations(document);
 }
 
 TEST_CASE("schema: results of fits and validations, good and failed", "[apps]") {

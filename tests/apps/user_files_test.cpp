@@ -138,7 +138,7 @@ TEST_CASE("user files: no verb replaces what it has not written, but for --force
     // it.
     std::filesystem::remove(folder.work() / kManifest);
     if (verb.arguments[0] == "init") {
-      check_kept(folder, verb, "campaign.toml: not written by rigcal");
+      check_kept(folder, verb, "campaign.toml, campaign.schema.json: not written by rigcal");
     } else {
       CHECK(run(folder, verb).exit_code == forced.exit_code);
     }

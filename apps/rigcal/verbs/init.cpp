@@ -9,6 +9,7 @@
 
 #include "apps/rigcal/options.hpp"
 #include "apps/rigcal/verb.hpp"
+#include "datasets/campaign/keys/campaign_keys.hpp"
 #include "datasets/draft/draft_campaign.hpp"
 #include "datasets/draft/recordings_in.hpp"
 #include "datasets/read/record_reader.hpp"
@@ -48,12 +49,15 @@ std::vector<report::MissingTerm> terms_of(const std::filesystem::path& file) {
 ExitCode run_init(const InitRequest& options) {
   const auto path = options.out / "campaign.toml";
   report::HeldFolder held(options.out, holding("init", options.force, options.print));
-  held.plan({{"campaign.toml"}, {}});
+  held.plan({{"campaign.toml", datasets::kSchemaFile}, {}});
   const datasets::Draft draft =
       datasets::draft_campaign(datasets::recordings_in(options.files), options.out);
   const auto terms =
       options.fit.empty() ? std::vector<report::MissingTerm>() : terms_of(options.fit);
-  report::write_results(held, {{"campaign.toml", report::with_terms(draft.text, terms)}}, {});
+  report::write_results(held,
+                        {{"campaign.toml", report::with_terms(draft.text, terms)},
+                         {datasets::kSchemaFile, datasets::campaign_schema()}},
+                        {});
   // The first blank is in the header, which explains what blanks are.
   const std::size_t blanks = count_of(draft.text, datasets::kBlank) - 1;
   report::Json json;

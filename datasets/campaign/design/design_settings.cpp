@@ -24,8 +24,8 @@ constexpr QuantityRange kCommands_v{1e-6, 1e3};
 constexpr QuantityRange kDriveAmplitudes{1e-9, 1e9};
 
 template <typename Value, std::size_t N>
-std::vector<std::pair<std::string, Value>> choices_of(const std::array<Value, N>& values) {
-  std::vector<std::pair<std::string, Value>> choices;
+Words<Value> choices_of(const std::array<Value, N>& values) {
+  Words<Value> choices;
   for (const Value value : values) choices.emplace_back(to_string(value), value);
   return choices;
 }
@@ -50,28 +50,32 @@ void read_band(const TomlNode& node, DesignSettings& settings) {
   settings.band_hz = {low.quantity("Hz", kFrequencies_hz), high.quantity("Hz", kFrequencies_hz)};
   if (!(settings.band_hz->second > settings.band_hz->first))
     node.fail("its end is not above its beginning: expected the lower frequency first");
+  // The row of the sample rate comes before that of the band.
   if (settings.band_hz->second > 0.5 * settings.sample_rate_hz)
     node.fail(fmt::format("{:g} Hz is above half the sample rate of {:g} Hz",
                           settings.band_hz->second, settings.sample_rate_hz));
 }
 
-std::optional<StatedLimit> read_stated_limit(const TomlNode& design, std::string_view key,
-                                             std::string_view unit, QuantityRange range) {
-  const auto node = design.find(key);
-  if (!node) return std::nullopt;
-  return StatedLimit{node->quantity(unit, range), node->where()};
+/// A row of a limit, which keeps its place in the file.
+KeyRow<DesignSettings> limit_row(std::string_view key,
+                                 std::optional<StatedLimit> DesignSettings::*limit,
+                                 std::string_view unit, QuantityRange range,
+                                 const KeyAbout& about) {
+  return KeyRow<DesignSettings>::custom(
+      key, quantity_form(unit),
+      [limit, unit, range](const TomlNode& node, DesignSettings& settings) {
+        settings.*limit = StatedLimit{node.quantity(unit, range), node.where()};
+      },
+      about);
 }
 
-void read_sampling(const TomlNode& node, DesignSettings& settings) {
-  const TomlNode duration = node.require("duration", "how long the test is, such as \"20 s\"");
-  settings.duration_s = duration.quantity("s", kDurations_s);
-  settings.sample_rate_hz = node.require("sample_rate", "that of the drive, such as \"1 kHz\"")
-                                .quantity("Hz", kSampleRates_hz);
+void check_sampling(const TomlNode& node, const DesignSettings& settings) {
   const double samples = settings.duration_s * settings.sample_rate_hz;
-  if (samples < kFewestDriveSamples || samples > kMostDriveSamples)
-    duration.fail(fmt::format("{:g} s at {:g} Hz are {:.0f} samples: expected {} to {}",
-                              settings.duration_s, settings.sample_rate_hz, samples,
-                              kFewestDriveSamples, kMostDriveSamples));
+  if (samples >= kFewestDriveSamples && samples <= kMostDriveSamples) return;
+  node.require("duration", "a time")
+      .fail(fmt::format("{:g} s at {:g} Hz are {:.0f} samples: expected {} to {}",
+                        settings.duration_s, settings.sample_rate_hz, samples, kFewestDriveSamples,
+                        kMostDriveSamples));
 }
 
 void read_noise(const TomlNode& table, const Campaign& campaign, DesignSettings& settings) {
@@ -116,39 +120,87 @@ std::size_t DesignSettings::samples() const {
   return static_cast<std::size_t>(std::floor(duration_s * sample_rate_hz * (1.0 + kSlack))) + 1;
 }
 
+const KeyTable<DesignSettings>& design_keys() {
+  using Row = KeyRow<DesignSettings>;
+  KeyForm stroke = list_form(quantity_form("m"), "two lengths", 2, 2);
+  KeyForm band = list_form(quantity_form("Hz"), "two frequencies", 2, 2);
+  static const KeyTable<DesignSettings> keys({
+      Row::custom("stroke", stroke, read_stroke,
+                  {.doc = "Where the piston may be: `[\"-50 mm\", \"50 mm\"]`; it contains the "
+                          "place of rest. A position reference stays within it, too",
+                   .example = "[\"-50 mm\", \"50 mm\"]",
+                   .needed = "where the piston may be, such as [\"-50 mm\", \"50 mm\"]"}),
+      Row::quantity("duration", &DesignSettings::duration_s, "s", kDurations_s,
+                    {.doc = "Length of the test; `duration` and rate give 100 to 500 000 samples",
+                     .example = "\"20 s\"",
+                     .needed = "how long the test is, such as \"20 s\""}),
+      Row::quantity("sample_rate", &DesignSettings::sample_rate_hz, "Hz", kSampleRates_hz,
+                    {.doc = "Of the drive",
+                     .example = "\"1 kHz\"",
+                     .needed = "that of the drive, such as \"1 kHz\""}),
+      limit_row("speed", &DesignSettings::speed_m_per_s, "m/s", kSpeeds_m_per_s,
+                {.doc = "Largest speed of the piston", .otherwise = "no limit"}),
+      limit_row("acceleration", &DesignSettings::acceleration_m_per_s2, "m/s2",
+                kAccelerations_m_per_s2,
+                {.doc = "Largest acceleration of the piston", .otherwise = "no limit"}),
+      limit_row("command", &DesignSettings::command_v, "V", kCommands_v,
+                {.doc = "Largest valve command, after the controller's own limit",
+                 .otherwise = "no limit"}),
+      limit_row("flow", &DesignSettings::flow_m3_per_s, "m3/s", kFlows_m3_per_s,
+                {.doc = "Largest flow of the servo valve", .otherwise = "no limit"}),
+      Row::described("amplitude",
+                     quantity_form(std::vector<std::string>{"m", "V", "Pa", "N", "m/s2"}),
+                     {.doc = "Largest distance of the drive from where it begins, in the unit of "
+                             "its channel; needed where the loop controls something other than "
+                             "position",
+                      .otherwise = "end of the stroke, or `command` without a controller",
+                      .example = "\"5 mm\""}),
+      Row::custom("band", band, read_band,
+                  {.doc = "What the drive contains: `[\"0.2 Hz\", \"50 Hz\"]`",
+                   .otherwise = "two periods in the test to ten samples per period",
+                   .example = "[\"0.2 Hz\", \"50 Hz\"]"}),
+      Row::word<DesignCriterion>(
+          "criterion", &DesignSettings::criterion,
+          choices_of(std::array{DesignCriterion::determinant, DesignCriterion::worst}),
+          {.doc = "What is made small: the volume of the confidence ellipsoid (D-optimal), or the "
+                  "widest relative interval"}),
+      Row::word<DriveFamily>("family", &DesignSettings::family, choices_of(kDriveFamilies),
+                             {.doc = "Kind of the drive", .otherwise = "the best of all"}),
+      Row::whole("repeats", &DesignSettings::repeats, 1, kMostDesignRepeats,
+                 {.doc = "Planned ones"}),
+      Row::described("noise", channels_form("table of channels"),
+                     {.doc = "Standard deviation of a sample of one repeat",
+                      .otherwise = "the channel's `sd`, that of `[synthetic]`, or that of the "
+                                   "records",
+                      .example = "{ position = \"0.05 mm\" }"}),
+      Row::described("like", plain_form(KeyForm::Kind::text),
+                     {.doc = "Id of a condition whose leak level, known values and machine the "
+                             "test has; needed where a fitted parameter has scope `leak_level`",
+                      .otherwise = "the values of the rig",
+                      .example = "\"sine\""}),
+      Row::whole("evaluations", &DesignSettings::evaluations, 1, kMostTrials,
+                 {.doc = "Drives that are tried in each family"}),
+      Row::whole("seed", &DesignSettings::seed, 0, std::numeric_limits<int>::max(),
+                 {.doc = "Of the search"}),
+  });
+  return keys;
+}
+
 DesignSettings read_design(const TomlNode& node, const Campaign& campaign) {
-  node.allow_only({"stroke", "speed", "acceleration", "command", "flow", "amplitude", "duration",
-                   "sample_rate", "band", "criterion", "family", "repeats", "evaluations", "seed",
-                   "noise", "like"});
   DesignSettings settings;
   settings.where = node.where();
-  read_stroke(node.require("stroke", "where the piston may be, such as [\"-50 mm\", \"50 mm\"]"),
-              settings);
-  read_sampling(node, settings);
-  settings.speed_m_per_s = read_stated_limit(node, "speed", "m/s", kSpeeds_m_per_s);
-  settings.acceleration_m_per_s2 =
-      read_stated_limit(node, "acceleration", "m/s2", kAccelerations_m_per_s2);
-  settings.command_v = read_stated_limit(node, "command", "V", kCommands_v);
-  settings.flow_m3_per_s = read_stated_limit(node, "flow", "m3/s", kFlows_m3_per_s);
-  settings.amplitude =
-      read_stated_limit(node, "amplitude", info(drive_channel(campaign)).unit, kDriveAmplitudes);
-  if (const auto band = node.find("band")) read_band(*band, settings);
-  if (const auto criterion = node.find("criterion"))
-    settings.criterion = criterion->choice(
-        choices_of(std::array{DesignCriterion::determinant, DesignCriterion::worst}));
-  if (const auto family = node.find("family"))
-    settings.family = family->choice(choices_of(kDriveFamilies));
-  if (const auto repeats = node.find("repeats"))
-    settings.repeats = repeats->integer(1, kMostDesignRepeats);
-  if (const auto evaluations = node.find("evaluations"))
-    settings.evaluations = evaluations->integer(1, kMostTrials);
-  if (const auto seed = node.find("seed"))
-    settings.seed = static_cast<std::uint64_t>(seed->integer(0, std::numeric_limits<int>::max()));
+  design_keys().read(node, settings);
+  check_sampling(node, settings);
+  if (const auto amplitude = node.find("amplitude")) {
+    settings.amplitude =
+        StatedLimit{amplitude->quantity(info(drive_channel(campaign)).unit, kDriveAmplitudes),
+                    amplitude->where()};
+  }
   if (const auto noise = node.find("noise")) read_noise(*noise, campaign, settings);
   if (const auto like = node.find("like")) {
     settings.like = like->string("the id of a condition");
     if (campaign.find(*settings.like) == nullptr) {
-      std::vector<std::pair<std::string, bool>> ids;
+      Words<bool> ids;
       for (const Condition& condition : campaign.conditions) ids.emplace_back(condition.id, true);
       like->choice(ids);
     }

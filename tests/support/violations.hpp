@@ -1,0 +1,39 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <valijson/adapters/nlohmann_json_adapter.hpp>
+#include <valijson/schema.hpp>
+#include <valijson/schema_parser.hpp>
+#include <valijson/validation_results.hpp>
+#include <valijson/validator.hpp>
+
+namespace rigcal::test {
+
+/// A JSON schema, read once for many documents.
+class Rules {
+ public:
+  explicit Rules(const nlohmann::json& rules) {
+    valijson::SchemaParser().populateSchema(valijson::adapters::NlohmannJsonAdapter(rules),
+                                            schema_);
+  }
+
+  /// What a document lacks, in words; empty if it is as the schema says.
+  std::string violations(const nlohmann::json& document) const {
+    valijson::ValidationResults results;
+    valijson::Validator().validate(schema_, valijson::adapters::NlohmannJsonAdapter(document),
+                                   &results);
+    std::string text;
+    valijson::ValidationResults::Error error;
+    while (results.popError(error)) {
+      for (const std::string& part : error.context) text += part;
+      text += ": " + error.description + "\n";
+    }
+    return text;
+  }
+
+ private:
+  valijson::Schema schema_;
+};
+
+}  // namespace rigcal::test
