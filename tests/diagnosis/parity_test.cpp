@@ -273,7 +273,8 @@ TEST_CASE("parity: without enough healthy records nothing is judged, and why", "
   const Parity found = diagnosis::parity(campaign, records, true_rig(campaign), {});
   CHECK(found.usable());
   CHECK_FALSE(found.signals.front().threshold_m);
-  CHECK_THAT(found.signals.front().reason.value(), Catch::Contains("0 healthy records of this signal"));
+  CHECK_THAT(found.signals.front().reason.value(),
+             Catch::Contains("0 healthy records of this signal"));
   CHECK_FALSE(found.conditions.front().records.front().alarm);
   CHECK(found.conditions.front().records.front().peak_m > 0.0);
   // Said to be healthy, it is its own reference.
