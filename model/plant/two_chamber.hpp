@@ -68,7 +68,7 @@ struct TwoChamberPlant : Chambers {
   static X edge(const X& signal_v, const C& gain, const C& overlap_v, const X& up_pa,
                 const X& down_pa, const Coefficients<C>& p, const PresentTerms& terms) {
     const X travel_v = signal_v - p.valve_dead_band_v - overlap_v;
-    if (!terms.null_opening && !(value_of(travel_v) > 0.0))  // two of the four edges always are
+    if (!terms.null_opening && !(value_of(travel_v) > 0.0))  // covered, as two of four always are
       return terms.null_leak ? (up_pa - down_pa) * p.valve_null_leakage_m3_per_s_pa : X(0.0);
     X opening_v = terms.null_opening ? leaking_opening(travel_v, p.valve_null_opening_v) : travel_v;
     if (terms.line_loss) opening_v = series_opening(opening_v, p.valve_line_opening_v);

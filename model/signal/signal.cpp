@@ -109,13 +109,11 @@ Signal Signal::linear(std::vector<double> time_s, std::vector<double> value) {
   return s;
 }
 
-// Segments of each kind: square: segment k is half period k, and segment 0 also covers t < 0;
-//
-// shaped: the same, with pieces instead of half periods;
-//
-// chirp: the sweep, then the constant end frequency;
-//
-// hold, linear: segment 0 before the first sample, then k + 1 from sample k.
+// Segments of each kind:
+//   square        segment k is half period k; segment 0 also covers t < 0
+//   shaped        as square, with pieces instead of half periods
+//   chirp         the sweep, then the constant end frequency
+//   held, linear  segment 0 before the first sample, then k + 1 from sample k
 std::size_t Signal::segment_at(double t) const {
   switch (kind_) {
     case Kind::constant:
