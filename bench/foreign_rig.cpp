@@ -99,8 +99,7 @@ ForeignState slope(const ForeignRig& rig, const ForeignState& s, const Memory& m
   double supply = source;
   if (rig.sag > 0.0) {
     const double full = valve_flow(rig, rig.limit_v, 0.0, source);
-    for (int i = 0; i < 3;
-         ++i)  // iterates, because flow and pressure drop of the line depend on each other
+    for (int i = 0; i < 3; ++i)  // flow and pressure drop depend on each other
       supply = source * (1.0 - rig.sag * std::abs(flow_through(rig, volts, load, supply)) / full);
   }
   const double leak = rig.leak_coefficient * rig.leak_area_m2 *
