@@ -16,14 +16,17 @@ struct InitialPlan {
   std::vector<Unknown> unknowns;  ///< initial_* values to estimate, which are nuisance parameters
 };
 
-/// Applies the campaign's `initial` to one condition: rest    all states are zero; record
-///   position, and load pressure if pressures are recorded, are their means over the
-///   `initial_window`; the velocity is zero, and an unrecorded load pressure is in equilibrium with
-///   the load; fit     position, velocity and load pressure are estimated, with bounds from the
-///   record: one peak-to-peak about the mean of the window, the fastest change between two samples,
-///   and the supply pressure (or one peak-to-peak of the recorded load pressure). Values that the
-///   campaign gives or fits itself stay unchanged. A load pressure that is computed from both
-///   chamber pressures is corrected for their sensor offsets in `values`.
+/// Applies the campaign's `initial` to one condition:
+///   rest    All states are zero.
+///   record  Position, and load pressure if pressures are recorded, are their means over the
+///           `initial_window`. The velocity is zero. An unrecorded load pressure is in equilibrium
+///           with the load.
+///   fit     Position, velocity and load pressure are estimated, with bounds from the record: one
+///           peak-to-peak value about the mean of the window, the fastest change between two
+///           samples, and the supply pressure (or one peak-to-peak value of the recorded load
+///           pressure).
+/// Values that the campaign gives or fits itself stay unchanged. A load pressure that is computed
+/// from both chamber pressures is corrected for their sensor offsets in `values`.
 ///
 /// @param values  values in the condition: known, fitted before, or start values
 /// @throws InputError  if `initial` is record or fit, and no position was recorded

@@ -62,8 +62,8 @@ class ParameterMap {
   /// @param extra          unknowns in addition to those of the campaign (initial states of
   ///                       conditions)
   /// @param repeats        number of repeats averaged in the record of each condition; empty: 1
-  /// @throws InputError    if a start is outside its bounds, bounds are infinite or empty, or a
-  ///     condition lacks the leak level that a scope needs
+  /// @throws InputError    if a start is outside its bounds, bounds are not finite or empty, or a
+  ///                       condition lacks the leak level that a scope needs
   ParameterMap(const datasets::Campaign& campaign,
                const std::vector<const datasets::Condition*>& conditions, bool nuisance_only,
                const std::vector<Unknown>& extra = {}, const std::vector<int>& repeats = {});

@@ -133,7 +133,8 @@ double tolerance_from_noise(const std::vector<ProblemCondition>& conditions, boo
 /// @param nuisance_only  true: only nuisance parameters are unknown
 /// @param fitted         values of an earlier fit that replace those of the rig; may be null
 /// @throws InputError    if a record is missing or has no output channel, no sample counts, a
-///     channel with unknown noise is constant everywhere, or a fitted level is missing
+///                       channel with unknown noise is constant everywhere, or a fitted level is
+///                       missing
 Problem make_problem(const datasets::Campaign& campaign,
                      const std::vector<datasets::Record>& records,
                      const std::vector<const datasets::Condition*>& conditions, bool nuisance_only,

@@ -9,8 +9,8 @@
 
 namespace rigcal::model {
 
-/// Signed root of a pressure, linear near zero: P / (P^2 + eps^2)^(1/4). It approaches sgn(P)
-/// sqrt(|P|) for |P| >> eps, and P / sqrt(eps) at zero.
+/// Signed root of a pressure, linear near zero: P / (P^2 + eps^2)^(1/4). It approaches
+/// sgn(P) sqrt(|P|) for |P| >> eps, and P / sqrt(eps) at zero.
 ///
 /// @param pressure_pa   any sign [Pa]
 /// @param smoothing_pa  eps > 0 [Pa]; with eps = 100 Pa the paper's leak shares change by < 0.1

@@ -171,7 +171,7 @@ std::array<double, N> state_floors(const Layout& layout) {
   return floor;
 }
 
-/// @param free  table indices of the parameters whose sensitivities are wanted
+/// @param free  table indices of the parameters whose sensitivities are requested
 inline Layout layout_of(const Rig& rig, const ParameterValues& values, std::span<const int> free,
                         int plant_states, bool force_recorded = false) {
   Layout layout;

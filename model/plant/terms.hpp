@@ -17,14 +17,15 @@ C valve_conductance(const C& discharge_coefficient, const C& area_gradient_m,
   return discharge_coefficient * area_gradient_m / sqrt(density_kg_per_m3);
 }
 
-/// Flow of a matched symmetric servo valve to the load, eqs. 4, 6, 7 with the sign corrected: Q =
-/// C_d w x_v sqrt((P_s - sgn(x_v) P_L) / rho).
+/// Flow of a matched symmetric servo valve to the load, eqs. 4, 6, 7 with the sign corrected:
+/// Q = C_d w x_v sqrt((P_s - sgn(x_v) P_L) / rho).
 ///
 /// @param spool_m      x_v [m]
 /// @param conductance  valve_conductance()
 /// @return             [m3/s], positive into chamber A
 /// @deviation          the paper has P_s - P_L for both signs. Here the root is signed, and
-///     smoothed within `smoothing_pa`, so that the flow reverses when P_L exceeds P_s
+///                     smoothed within `smoothing_pa`, so that the flow reverses when P_L exceeds
+///                     P_s
 template <typename X, typename C, typename S>
 X servo_flow(const X& spool_m, const X& load_pressure_pa, const S& supply_pressure_pa,
              const C& conductance, const C& smoothing_pa) {
@@ -101,7 +102,7 @@ X varying_load(const X& x, const C& gradient_n_per_m, const C& curvature_n_per_m
 /// it is covered, so that the leak decays as the overlap increases. Value and slope are continuous.
 ///
 /// @param y  spool travel from the point at which the land's edge meets the port's, positive when
-///     open
+///           open
 /// @param c  opening at y = 0, > 0, in the unit of y
 /// @source   B. Eryilmaz and B. H. Wilson, Unified modeling and analysis of a proportional valve,
 ///           J. Franklin Institute 343 (2006) 48-68, with k = 1
@@ -111,8 +112,8 @@ X leaking_opening(const X& y, const C& c) {
   return c * c / (c - y);
 }
 
-/// Opening of the single orifice that is equivalent to an edge in series with a fixed orifice: 1 /
-/// o^2 = 1 / y^2 + 1 / l^2.
+/// Opening of the single orifice that is equivalent to an edge in series with a fixed orifice:
+/// 1 / o^2 = 1 / y^2 + 1 / l^2.
 ///
 /// @param y  opening of the edge, >= 0
 /// @param l  opening that represents bores and lines, > 0, in the unit of y
@@ -157,7 +158,7 @@ X power_opening(const X& y, const C& range, const C& exponent) {
 /// @param y       signal beyond the dead band, >= 0
 /// @param range   y_r, signal at which the opening is y_r, in the unit of y
 /// @param shares  openings at 20, 40, 60 and 80 % of the range, relative to the opening at the full
-///     range
+///                range
 template <typename X, typename C>
 X table_opening(const X& y, const C& range, const std::array<C, 4>& shares) {
   constexpr double kPieces = 5.0;
@@ -176,8 +177,8 @@ X compensated_head(const X& head_pa, const C& spring_pa) {
   return value_of(head_pa) > value_of(spring_pa) ? X(spring_pa) : head_pa;
 }
 
-/// Largest flow of a pump, which rises from a first value to a second [m3/s]: Q_1 + (Q_2 - Q_1) (1
-/// + tanh((t - T_2) / tau_2)) / 2.
+/// Largest flow of a pump, which rises from a first value to a second [m3/s]:
+/// Q_1 + (Q_2 - Q_1) (1 + tanh((t - T_2) / tau_2)) / 2.
 ///
 /// @param demand_s  t, time for which the pump has been asked for flow
 template <typename X, typename C>
@@ -210,9 +211,9 @@ X absolute_pressure(const X& pressure_pa) {
   return at_least(X(pressure_pa + kAtmosphere_pa), kLeast_pa);
 }
 
-/// Oil that an accumulator takes up per pressure [m3/Pa]. Above the precharge its gas follows p V^n
-/// = constant: V_0 / (n p) (p_0 / p)^(1/n). Below the precharge the bladder fills its shell. It
-/// lifts off over a few hundredths of the pressure, which keeps the derivative continuous.
+/// Oil that an accumulator takes up per pressure [m3/Pa]. Above the precharge its gas follows
+/// p V^n = constant: V_0 / (n p) (p_0 / p)^(1/n). Below the precharge the bladder fills its shell.
+/// It lifts off over a few hundredths of the pressure, which keeps the derivative continuous.
 ///
 /// @param pressure_pa   above atmosphere
 /// @param volume_m3     V_0, volume of the gas at the precharge

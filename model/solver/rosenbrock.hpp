@@ -54,9 +54,10 @@ struct Rodas4P {
 /// that depend on time; it works on heap-allocated uBLAS matrices, has no sensitivities, and needs
 /// three times as many steps at a tolerance of 1e-6 with a stiff valve (docs/decisions/0002).
 ///
-/// The sensitivities S follow the states: the method integrates their own equations S' = J(t) S +
-///   f_p(t) with the same matrix. J and f_p are evaluated along the dense output of the states, so
-///   that no second derivatives are needed (docs/decisions/0009).
+/// The sensitivities S follow the states: the method integrates their own equations
+///   S' = J(t) S + f_p(t)
+/// with the same matrix. J and f_p are evaluated along the dense output of the states, so that no
+/// second derivatives are needed (docs/decisions/0009).
 template <int N, int P>
 class Rosenbrock {
  public:

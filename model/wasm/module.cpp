@@ -95,7 +95,7 @@ RIGCAL_EXPORT(output_count) int output_count() { return static_cast<int>(kAllOut
 ///                 drive's first sample [s]
 /// @param values   shape (2, parameters): SI values, and 1 for each that is given
 /// @param drive    an input in the format of kInputNumbers. `force`, `supply` and `tank` have the
-///     same format; null if absent.
+///                 same format; null if absent.
 /// @param outputs  shape (samples, outputs), column by column, SI; written only if the result is ok
 /// @return         SimulationStatus; 0 is ok
 RIGCAL_EXPORT(simulate)

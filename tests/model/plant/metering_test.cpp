@@ -223,7 +223,7 @@ TEST_CASE("metering: the spool opens by a power or a table of the command, both 
   by_power.set("valve_exponent", 2.5).set("valve_range", 8.0);
   Experiment by_table = proportional_rig();
   by_table.set("valve_range", 10.0).set("opening_20", 0.05).set("opening_40", 0.2);
-  by_table.set("opening_80", 0.7);  // 0.6 at 60 %, as nothing else is given
+  by_table.set("opening_80", 0.7);  // 0.6 at 60 % by default
   by_power.outputs = by_table.outputs = {Output::spool};
   for (const double sign : {1.0, -1.0}) {
     for (const double beyond_v : {1.0, 4.0, 8.0, 9.0}) {
