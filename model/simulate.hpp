@@ -177,8 +177,7 @@ StateCount count_states(const Rig& rig, const ParameterValues& parameters);
 /// Simulates the rig from the first to the last of `times_s`.
 ///
 /// @param parameters  SI values, and which of them were given: this decides on the optional terms
-/// @param free        table indices of the parameters whose sensitivities are requested; may be
-/// empty
+/// @param free        table indices of the parameters with sensitivities; may be empty
 /// @param times_s     shape (samples), increasing, at least one
 /// @param outputs     what to return, in this order
 /// @return            a run that cannot be simulated is reported in `status`, not thrown

@@ -97,7 +97,7 @@ const char* FMI2(fmi2GetVersion)() { return "2.0"; }
 
 fmi2Status FMI2(fmi2SetDebugLogging)(fmi2Component c, fmi2Boolean /*on*/, std::size_t /*count*/,
                                      const fmi2String /*categories*/[]) {
-  // Only errors are logged, and always.
+  // Only errors are logged, and they are always logged.
   return call(c, "fmi2SetDebugLogging", [](FmuInstance&) {});
 }
 

@@ -35,13 +35,13 @@ struct PresentTerms {
   int hoses = -1;               ///< index of the first state of yielding hoses; -1: rigid hoses
   int payload = -1;             ///< index of the first state of the second mass; -1: no second mass
   bool pilot = false;           ///< the drive of the spool is a pilot pressure
-  bool power_opening = false;   ///< the spool opens by a power law
+  bool power_opening = false;   ///< the spool opens according to a power law
   bool return_band = false;     ///< the edges to the tank have their own dead band
   bool return_power = false;    ///< the edges to the tank have their own power law
   bool return_line = false;     ///< the line to the tank throttles the flow, too
   bool return_loss = false;  ///< the line to the tank has a pressure loss proportional to its flow
   bool bypass = false;       ///< a closed valve passes the flow of the pump to the tank
-  bool table_opening = false;  ///< the spool opens by a table
+  bool table_opening = false;  ///< the spool opens according to a table
   bool compensator = false;    ///< edges from the supply are pressure-compensated
   bool load_sensing = false;   ///< the pump follows the pressure of the driven chamber
   bool accumulator = false;    ///< an accumulator adds to the capacity of the supply

@@ -610,7 +610,7 @@ class System {
 
   Layout layout_;
   Coefficients<double> passive_{};
-  Coefficients<C> active_{};  ///< with derivatives by the free parameters
+  Coefficients<C> active_{};  ///< with derivatives with respect to the free parameters
   std::array<Coefficients<Dual<kBlock>>, kBlocks>
       active_blocks_{};  ///< the same coefficients, in blocks of free parameters
   InputTrack drive_;

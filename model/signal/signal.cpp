@@ -113,7 +113,7 @@ Signal Signal::linear(std::vector<double> time_s, std::vector<double> value) {
 //   square        segment k is half period k; segment 0 also covers t < 0
 //   shaped        as square, with pieces instead of half periods
 //   chirp         the sweep, then the constant end frequency
-//   held, linear  segment 0 before the first sample, then k + 1 from sample k
+//   hold, linear  segment 0 before the first sample, then k + 1 from sample k
 std::size_t Signal::segment_at(double t) const {
   switch (kind_) {
     case Kind::constant:
