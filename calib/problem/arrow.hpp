@@ -72,7 +72,7 @@ struct Linearisation {
     Eigen::VectorXd residual;   ///< shape (own)
   };
 
-  Eigen::MatrixXd jacobian;  ///< shape (any, shared): the rows that depend only on shared unknowns
+  Eigen::MatrixXd jacobian;  ///< shape (any, shared): the remaining rows, with shared unknowns only
   Eigen::VectorXd residual;  ///< shape (any)
   std::vector<int> shared = {};  ///< unknowns of its columns; ignored if `own` is empty
   std::vector<Own> own = {};     ///< per condition; empty: all unknowns are shared, in their order

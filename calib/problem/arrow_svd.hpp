@@ -26,9 +26,8 @@ class ArrowSvd {
   Eigen::VectorXd step() const;
   /// R such that R R^T is the inverse of J^T J on the determined directions.
   ArrowRoot root() const;
-  /// S with S S^T = factor^2 (J^T J)^-1 over all directions. Singular values are at least `least`,
-  /// which undetermined directions have. Those come last among the own and among the shared
-  /// directions.
+  /// S with S S^T = factor^2 (J^T J)^-1 over all directions. Singular values below `least` are
+  /// raised to it. Undetermined directions come last among the own and among the shared ones.
   ArrowRoot spread(double factor, double least) const;
   /// 1 / length of the column of each unknown; 0 for a column of zeros.
   const Eigen::VectorXd& inverse_lengths() const { return inverse_lengths_; }

@@ -10,8 +10,8 @@
 
 namespace rigcal::model {
 
-/// Response of a sensor: y' = (x - y) / lag with y = x at the first sample; the reading is gain y +
-/// offset, limited to `maximum`. Indices refer to rows of the parameter table.
+/// Response of a sensor: y' = (x - y) / lag, with y = x at the first sample. The reading is
+/// gain y + offset, limited to `maximum`. Indices refer to rows of the parameter table.
 struct Sensor {
   int gain = -1;
   int offset = -1;

@@ -60,8 +60,8 @@ class Run {
   }
 
   /// Writes the outputs at every sample, and the state at the last one, into `result`, whose
-  /// matrices already have their sizes. Sensitivities go into columns [first_column, first_column +
-  /// columns).
+  /// matrices already have their sizes. Sensitivities go into `columns` columns from
+  /// `first_column` on.
   /// @param start  state at the first sample
   void operator()(const X& start, Simulation& result, int first_column, int columns) {
     result_ = &result;
@@ -259,8 +259,8 @@ class Run {
   }
 
   /// Switches inputs whose segment ends now to their next one, then lets the controller tick. If
-  /// the time of a jump depends on the transport delay, the sensitivity to it jumps by f(before) -
-  /// f(after).
+  /// the time of a jump depends on the transport delay, the sensitivity to it jumps by
+  /// f(before) - f(after).
   void pass_events() {
     const bool drive_jumped = passed(system_.drive(), t_);
     bool others_jumped = false;
@@ -412,8 +412,7 @@ class Run {
   Linearisation<N, P> lin_;      ///< at the present point, if known
   Linearisation<N, P> lin_end_;  ///< at the end of the step just tried
   bool lin_known_ = false;
-  X slope_{};  ///< derivative at the present point, if the method is explicit and the derivative
-               ///< known
+  X slope_{};  ///< derivative at the present point, for the explicit method and if known
   bool slope_known_ = false;
   Simulation* result_ = nullptr;  ///< owned by the caller; set during one run
   int first_column_ = 0;

@@ -25,8 +25,8 @@ double scale_of(const ParameterSpec& spec, double value) {
   return std::isfinite(range) && range > 0.0 ? 1e-3 * range : 1.0;
 }
 
-/// The state from which a run continues. Its components are the directions of those columns that
-/// are within [first, first + count).
+/// The state from which a run continues. Each component whose sensitivity column is within
+/// [first, first + count) is an independent variable.
 template <int N, int P>
 State<N, P> state_to_go_on_from(const SizedRequest& request, int first, int count) {
   State<N, P> x;
