@@ -277,8 +277,8 @@ std::vector<datasets::Record> records_of(const datasets::Campaign& campaign,
   return records;
 }
 
-constexpr double kFound = 4.7;  // in standard errors: Holm's limit for about fifteen tests, plus 95
-                                // % of a normal distribution
+/// Detectable size in standard errors: Holm's limit for about fifteen tests plus the 95 % quantile.
+constexpr double kFound = 4.7;
 
 /// Size of each effect in the catalogue at which 95 % of the score tests find it in the presence of
 /// the tests for all other effects. Computed from the standard error of the size in records without
@@ -311,7 +311,7 @@ double cost_of(const Bench& bench, int repeats) {
 }
 
 /// Detectable size of an effect that is not in the catalogue: the size at which it leaves equally
-/// much in the residuals. Scaled from the square root of what its given size leaves.
+/// much in the residuals. Scaled from the given size: what an effect leaves grows with its square.
 double detectable_size(const ForeignEffect& effect, int repeats) {
   static const double none = cost_of({}, repeats);
   Bench bench;
