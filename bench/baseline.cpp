@@ -17,19 +17,20 @@ namespace {
 
 using Jet = ceres::Jet<double, kFree>;
 
-/// Position [stroke], velocity [m/s], load pressure [supply]: of order one.
+/// Position [strokes], velocity [m/s], load pressure [supply pressures]: all of order one.
 template <typename T>
 using State = std::array<T, 3>;
 constexpr double kStroke = 0.0508;
 constexpr double kSupply = 6.2e6;
 
-/// The paper's rig under a P controller.
+/// The paper's rig with a P controller.
 template <typename T>
 struct Rig {
   T mass, bulk_modulus, valve_gain, leakage;
   double reference_m = 0.0;
   double amplitude_m = 0.0;
-  double omega = 0.0;  ///< angular frequency of a sine; 0: the reference is constant or a line
+  double omega =
+      0.0;  ///< angular frequency of a sine; 0: the reference is constant or a straight line
   double slope = 0.0;  ///< slope [m/s] of the line that begins at begin_s
   double begin_s = 0.0;
 
@@ -65,12 +66,13 @@ double error_of(const Jet& e, const Jet& x, double tolerance) {
   return worst;
 }
 
-/// What drives the rig, in segments within which it is smooth.
+/// Timing of a drive that is smooth within each segment.
 struct Drive {
   double duration_s = 0.0;
   double segment_s = 0.0;
   double longest_step_s = std::numeric_limits<double>::infinity();
-  double first_step_s = std::numeric_limits<double>::infinity();  ///< upper limit, in each segment
+  double first_step_s =
+      std::numeric_limits<double>::infinity();  ///< upper limit for the first step in each segment
 };
 
 Drive drive_of(const Reference& signal) {
@@ -97,7 +99,7 @@ void begin_segment(const Recorded& recorded, long segment, Rig<T>& rig) {
   if (recorded.linear) rig.slope = (recorded.reference_m[k + 1] - recorded.reference_m[k]) * 1000.0;
 }
 
-/// Dormand-Prince with dense output, started again at each edge of the reference.
+/// Integrates with Dormand-Prince and dense output, restarting at each edge of the reference.
 template <typename T, typename Signal, typename Emit>
 void integrate(const Signal& signal, const std::array<T, kFree>& factors, double tolerance,
                const Emit& emit) {

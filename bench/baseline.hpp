@@ -5,31 +5,32 @@
 
 #include "bench/problems.hpp"
 
-/// What a careful engineer writes in an afternoon with Odeint and Ceres, and what rigcal is
-/// measured against: Dormand-Prince 5(4) on the six signals, derivatives through ceres::Jet, dense
-/// QR on all residuals.
+/// The baseline with which rigcal is compared: what a careful engineer writes in an afternoon with
+/// Odeint and Ceres. It uses Dormand-Prince 5(4) on the six signals, derivatives through
+/// ceres::Jet, and dense QR on all residuals.
 namespace rigcal::bench::baseline {
 
-/// Mass, bulk modulus, valve gain, leakage coefficient.
+/// Number of free parameters: mass, bulk modulus, valve gain, leakage coefficient.
 inline constexpr int kFree = 4;
 using Values = std::array<double, kFree>;
 
 Values truth();
 
 /// Positions at the sample times of one signal [m].
-/// @param factors  of the true values
+/// @param factors  multiples of the true values
 std::vector<double> simulate(const Reference& signal, const Values& factors, double tolerance);
-/// The same with derivatives by the factors: simulated along, all judged by the error control.
+/// Positions with their derivatives with respect to the factors. The derivatives are integrated
+/// together with the states, and error control covers both.
 /// @return  shape (samples, 1 + kFree), row by row
 std::vector<double> simulate_with_sensitivities(const Reference& signal, const Values& factors,
                                                 double tolerance);
 
-/// A reference that was recorded at 1 kHz: constant between samples, or joined by lines.
+/// A reference recorded at 1 kHz: constant between samples, or joined by straight lines.
 struct Recorded {
   std::vector<double> reference_m;
   bool linear = false;
 };
-/// Positions at its samples, and with derivatives, as above.
+/// Positions at the samples of a recorded reference, without and with derivatives, as above.
 std::vector<double> simulate(const Recorded& drive, const Values& factors, double tolerance);
 std::vector<double> simulate_with_sensitivities(const Recorded& drive, const Values& factors,
                                                 double tolerance);
@@ -42,7 +43,7 @@ struct Fit {
   bool converged = false;
 };
 
-/// @param measured  positions of each signal [m]
+/// @param measured  recorded positions for each signal [m]
 Fit fit(const std::vector<std::vector<double>>& measured, double noise_sd_m, double tolerance);
 
 }  // namespace rigcal::bench::baseline

@@ -6,14 +6,14 @@
 
 namespace rigcal::bench {
 
-/// CPU time of this process, all threads [ms].
+/// CPU time of this process over all threads [ms].
 inline double cpu_ms() {
   timespec now;
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
   return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
 }
 
-/// The middle one; of an even number the larger of the two.
+/// Middle value; for an even number of values, the larger of the two in the middle.
 inline double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   return values[values.size() / 2];

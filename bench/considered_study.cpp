@@ -1,7 +1,7 @@
-// How often 95 % intervals hold the truth where the rig has a small effect that the fitted model
-// lacks, and how often a plain PASS comes with an interval that misses it by more than three
-// half widths (false assurance). The records are those of bench/foreign_rig.hpp, which shares no
-// line with the product. Prints the second table of docs/uncertainty.md.
+// Measures how often 95 % intervals cover the truth if the rig has a small effect that the fitted
+// model lacks, and how often a plain PASS comes with an interval that misses the truth by more than
+// three half widths (false assurance). The records come from bench/foreign_rig.hpp, which has no
+// code in common with the product. Prints the second table of docs/uncertainty.md.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -45,12 +45,12 @@ struct Bench {
   Reference validated{"sine", 2.0, 0.05, 1.0};
 };
 
-/// Seed of what is drawn anew: rigs, amplitudes and noise on which no size of the catalogue was
-/// chosen.
+/// Seed for the fresh rows. Their rigs, amplitudes and noise were not used to choose any size in
+/// the catalogue.
 constexpr unsigned kFreshSeed = 7'042'026;
 
-/// Another rig of the same kind, moved by other amplitudes: each value within a quarter, each
-/// amplitude within a third of the usual one.
+/// Draws another rig of the same kind with other amplitudes: each value within a quarter of the
+/// usual one, each amplitude within a third.
 Bench drawn_bench(boost::random::mt19937_64& stream) {
   boost::random::uniform_real_distribution<double> quarter(0.75, 1.25);
   boost::random::uniform_real_distribution<double> third(0.67, 1.33);
@@ -64,7 +64,7 @@ Bench drawn_bench(boost::random::mt19937_64& stream) {
   return bench;
 }
 
-/// An effect with the size that the catalogue gives it on this rig.
+/// An effect of the rig, with the size that the catalogue gives it.
 struct ForeignEffect {
   const char* name;
   double plausible;
@@ -96,7 +96,7 @@ const std::vector<ForeignEffect> kEffects{
     {"sample_time", 1e-3, true,
      [](ForeignRig& r, double s) { r.controller_tick_s = 1e-5 * std::round(1e5 * s); }}};
 
-/// Effects that the catalogue has no row for, with a size from which what can be detected follows.
+/// Effects that are not in the catalogue. A detectable size is computed from the one given here.
 const std::vector<ForeignEffect> kOthers{
     {"a valve of second order, lag of", 0.3e-3, true,
      [](ForeignRig& r, double s) { r.valve_corner_hz = 1.4 / (2.0 * std::numbers::pi * s); }},
@@ -118,18 +118,19 @@ const std::vector<ForeignEffect> kOthers{
 
 struct Row {
   std::string name;
-  std::string effect;  ///< which is to be named; empty: none, several, or one without a row
+  std::string effect;  ///< the effect that should be named; empty for none, several, or one that is
+                       ///< not in the catalogue
   std::function<void(ForeignRig&, boost::random::mt19937_64&)> apply;
-  bool drawn = false;  ///< anew for each campaign
+  bool drawn = false;  ///< drawn anew for each campaign
   bool fresh = false;  ///< rig, amplitudes and seeds are drawn, too
 };
 
-/// A row whose effect has a multiple of the size that is detected; as it is found when the row is
-/// asked for.
+/// A row whose effect has a multiple of its detectable size, which is computed when the row is
+/// first requested.
 struct SizedRow {
   const ForeignEffect* effect;
   double factor;
-  bool known;  ///< has a row in the catalogue
+  bool known;  ///< the effect is in the catalogue
 };
 
 void draw_all(ForeignRig& rig, boost::random::mt19937_64& stream) {
@@ -215,7 +216,7 @@ datasets::Condition condition_of(const Reference& reference, datasets::Use use) 
   return condition;
 }
 
-/// The campaign of its user: exact but for what the rig's effects add.
+/// The campaign as its user would write it: exact except for the effects of the rig.
 datasets::Campaign campaign_of(const Bench& bench) {
   const ForeignRig& rig = bench.rig;
   datasets::Campaign campaign = foreign_campaign(rig);
@@ -256,7 +257,7 @@ datasets::Record record_of(const datasets::Campaign& campaign, const datasets::C
   return datasets::average_of(campaign, condition, all, true);
 }
 
-/// One entry per condition, in the order of the campaign.
+/// Readings for each condition, in the order of the campaign.
 std::vector<std::vector<double>> readings_of_all(const Bench& bench) {
   std::vector<std::vector<double>> all;
   for (const Reference& reference : bench.fitted)
@@ -276,10 +277,12 @@ std::vector<datasets::Record> records_of(const datasets::Campaign& campaign,
   return records;
 }
 
-constexpr double kFound = 4.7;  // errors: Holm's limit for some fifteen tests, and 95 % above it
+/// Detectable size in standard errors: Holm's limit for about fifteen tests plus the 95 % quantile.
+constexpr double kFound = 4.7;
 
-/// Size of each effect of the catalogue at which 95 % of the score tests find it, beside those of
-/// all other effects: by the error that records without any effect give its size.
+/// Size of each effect in the catalogue at which 95 % of the score tests find it in the presence of
+/// the tests for all other effects. Computed from the standard error of the size in records without
+/// effects.
 const std::map<std::string, double>& detectable_sizes(int repeats) {
   static const std::map<std::string, double> found = [repeats] {
     boost::random::mt19937_64 stream(kFreshSeed);
@@ -295,8 +298,8 @@ const std::map<std::string, double>& detectable_sizes(int repeats) {
   return found;
 }
 
-/// Half the sum of the squared residuals of a fit whose model counts as exact, with the same noise
-/// for every rig.
+/// Half the sum of squared residuals of a fit whose model counts as exact. Every rig gets the same
+/// noise.
 double cost_of(const Bench& bench, int repeats) {
   boost::random::mt19937_64 stream(kFreshSeed);
   datasets::Campaign campaign = campaign_of(bench);
@@ -307,8 +310,8 @@ double cost_of(const Bench& bench, int repeats) {
   return calib::fit(campaign, records, {}).cost;
 }
 
-/// Size of an effect without a row at which what it leaves in the residuals is as much: by the
-/// square root of what its given size leaves.
+/// Detectable size of an effect that is not in the catalogue: the size at which it leaves equally
+/// much in the residuals. Scaled from the given size: what an effect leaves grows with its square.
 double detectable_size(const ForeignEffect& effect, int repeats) {
   static const double none = cost_of({}, repeats);
   Bench bench;
@@ -331,7 +334,8 @@ std::vector<SizedRow> sized_rows() {
   return all;
 }
 
-/// Nothing where the effect acts as an estimate does, as a hose does, so that it is never found.
+/// Returns std::nullopt if the effect acts like a change of an estimate, as a hose does, and so can
+/// never be found.
 std::optional<Row> with_size(const SizedRow& row, int repeats) {
   constexpr double kNeverFound = 10.0;
   const ForeignEffect& effect = *row.effect;
@@ -353,10 +357,11 @@ std::optional<Row> with_size(const SizedRow& row, int repeats) {
 struct StudyOutcome {
   bool converged = false;
   std::vector<bool> holds, exact;
-  std::vector<double> half_width, error;  ///< over the truth
-  double worst = 0.0;                     ///< miss over half width
+  std::vector<double> half_width, error;  ///< relative to the truth
+  double worst =
+      0.0;  ///< largest distance of a missed truth from the centre of its interval, in half widths
   calib::Verdict verdict = calib::Verdict::fail;
-  std::string named;  ///< the effect that the residuals ask for first
+  std::string named;  ///< the effect that the residuals indicate first
 };
 
 StudyOutcome outcome_of(const ForeignRig& rig, const calib::Fit& fit) {
@@ -384,7 +389,7 @@ StudyOutcome outcome_of(const ForeignRig& rig, const calib::Fit& fit) {
   return result;
 }
 
-/// What was computed before a study was stopped: a line for each campaign.
+/// Results of a study that was stopped, so that it can continue. One line per campaign.
 class OutcomeFile {
  public:
   explicit OutcomeFile(std::string path) : path_(std::move(path)) {
@@ -416,7 +421,7 @@ class OutcomeFile {
       result.half_width.push_back(half);
       result.error.push_back(error);
     }
-    return in ? std::optional(result) : std::nullopt;  // half a line is none
+    return in ? std::optional(result) : std::nullopt;  // ignores a line that was cut off
   }
 
   void add(const std::string& key, const StudyOutcome& outcome) {
@@ -438,12 +443,12 @@ class OutcomeFile {
   std::mutex mutex_;
 };
 
-/// How much is studied.
+/// Extent of a study.
 struct StudyExtent {
   std::size_t campaigns = 200;
   int threads = 1;
   int repeats = 5;
-  std::size_t first = 0;  ///< campaigns before it, with their seeds, are left out
+  std::size_t first = 0;  ///< campaigns before this one are skipped, with their seeds
 };
 
 std::string percent(std::size_t count, std::size_t of) {

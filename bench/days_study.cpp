@@ -1,9 +1,12 @@
-// What a diagnosis says of records of other days than its reference: alarms of healthy records,
-// leaks of the stated smallest size that are found, intervals that hold the truth, trends. The
-// records are those of bench/foreign_rig.hpp, which shares no line with the product; supply, oil,
-// zero and trigger are drawn for every day. Prints the tables of docs/diagnosis.md.
+// Studies diagnoses of records from other days than their reference: alarms on healthy records, how
+// many leaks of the stated smallest size are found, how often intervals cover the truth, and
+// trends. The records come from bench/foreign_rig.hpp, which has no code in common with the
+// product. Supply, oil, zero and trigger are drawn for each day. Prints the tables of
+// docs/diagnosis.md.
+//
 //   rigcal_days_study [campaigns] [first seed] [threads] [part of a row's name] [file]
-// A file keeps what each campaign gave, so that a study that was stopped goes on from there.
+//
+// The file keeps the result of each campaign, so that a study that was stopped can continue.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -36,7 +39,7 @@ using datasets::Channel;
 constexpr double kDayNoise_m = 0.05e-3;
 constexpr int kRepeats = 5;
 constexpr int kOtherDays = 4;
-/// Coefficient of the seal whose trend is looked for.
+/// Coefficient of the seal whose trend is to be found.
 constexpr double kWornSeal = 0.1;
 constexpr double kStandardErrors = 4.0;  ///< slope of that trend
 const std::vector<Reference> kDaySignals{
@@ -50,7 +53,7 @@ struct DaySizes {
   double trigger_s = 0.0;
 };
 
-/// The usual sizes on this rig (docs/diagnosis.md).
+/// The usual sizes for this rig (docs/diagnosis.md).
 constexpr DaySizes kUsual{5e-3, 0.03, 2e-4 * 0.1524, 0.5e-3};
 
 DaySizes times(double factor, const DaySizes& sizes) {
@@ -74,7 +77,7 @@ ForeignRig rig_of_day(const DaySizes& sizes, DaysStream& stream) {
 struct DaysRow {
   std::string name;
   DaySizes drawn;
-  bool same_day = false;  ///< all records are of the reference's day
+  bool same_day = false;  ///< all records are from the day of the reference
   bool trend = false;
   int healthy_dates = 1;
   std::function<void(datasets::BetweenDaysSettings&)> state = [](auto&) {};
@@ -143,12 +146,12 @@ std::string date_of(int day) {
   return fmt::format("2026-{:02d}-{:02d}", 1 + day / 28, 1 + day % 28);
 }
 
-/// A campaign that grows condition by condition, with the records of each.
+/// A campaign to which conditions are added one by one, and the records of each.
 struct DaysMade {
   datasets::Campaign campaign;
   std::vector<datasets::RepeatRecords> records;
 
-  /// @param singles  how many repeats are diagnosed on their own
+  /// @param singles  number of repeats that are also diagnosed individually
   void add(const ForeignRig& rig, const std::string& level, int day, datasets::Use use,
            std::size_t singles, DaysStream& stream, const std::vector<double>& leaks = {}) {
     for (std::size_t s = 0; s < kDaySignals.size(); ++s) {
@@ -191,14 +194,14 @@ struct DaysMade {
   }
 };
 
-/// Counts of one campaign; their names are the columns of the kept file.
+/// Counts of one campaign, in the order of the columns in the result file.
 struct DaysCounts {
   int averages = 0, average_alarms = 0, incompatible = 0;
   int singles = 0, single_alarms = 0;
   int states = 0, state_alarms = 0;
   int leaks = 0, found = 0, held = 0;
   int trends = 0, significant = 0, slopes = 0, slopes_found = 0;
-  double limit_l_per_min = 0.0;  ///< smallest leak of an average, mean over the signals
+  double limit_l_per_min = 0.0;  ///< smallest detectable leak of an average, mean over the signals
 
   template <typename Take>
   void for_each(Take take) {
@@ -308,7 +311,7 @@ DaysCounts counts_of(const DaysRow& row, std::uint64_t seed) {
   return counts;
 }
 
-/// What campaigns gave so far, in a text file: row, seed and counts.
+/// Results of the campaigns so far, in a text file: row, seed and counts.
 class KeptCounts {
  public:
   explicit KeptCounts(std::string file) : file_(std::move(file)) {
@@ -347,7 +350,7 @@ class KeptCounts {
   std::mutex mutex_;
 };
 
-/// A rate in percent, with its standard error by the scatter between campaigns.
+/// A rate in percent, with its standard error from the variation between campaigns.
 std::string rate_of(const std::vector<DaysCounts>& all, int DaysCounts::*hits,
                     int DaysCounts::*trials) {
   double hit = 0.0;

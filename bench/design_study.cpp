@@ -1,6 +1,6 @@
-// Tests the promise of `plan --design` on the paper's rig: designs a drive for the bulk modulus
-// within what the paper's six signals do to the rig, compares the predicted interval with theirs in
-// equal time, and fits many records of the drive. Prints the tables of docs/plan-design.md.
+// Tests the prediction of `plan --design` for the paper's rig. Designs a drive for the bulk modulus
+// within the limits that the paper's six signals reach, compares the predicted interval with theirs
+// over equal time, and fits many records of the drive. Prints the tables of docs/plan-design.md.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,12 +28,12 @@ constexpr double kNoiseOfOneRepeat = 0.05e-3;  // [m]
 constexpr int kRepeatsOfDesign = 5;
 constexpr double kStartsOff = 1.1;
 
-/// The shipped campaign at its truth: what a plan knows after a first fit.
+/// The shipped campaign at its true values: the knowledge that a plan has after a first fit.
 datasets::Campaign at_truth(const std::string& like) {
   datasets::Campaign campaign = datasets::true_campaign(datasets::load_campaign(
       std::string(RIGCAL_SOURCE_DIR) + "/datasets/rigs/uis_shake_table/campaign.toml"));
   const std::string level = campaign.find(like)->leak_level.value();
-  // The level's true value is the start of its unknown.
+  // The level's true value becomes the start value of its unknown.
   auto& levels = campaign.leak_levels[level];
   for (const auto& [index, value] : levels) {
     for (auto& setting : campaign.parameters)
@@ -45,7 +45,7 @@ datasets::Campaign at_truth(const std::string& like) {
   return campaign;
 }
 
-/// The limits that the campaign's own signals reach.
+/// Limits that the campaign's own signals reach.
 datasets::DesignSettings limits_of_own_signals(const datasets::Campaign& campaign,
                                                double duration_s) {
   datasets::DesignSettings settings;
@@ -113,7 +113,7 @@ void print_design(const calib::Design& design) {
   std::cout << std::flush;
 }
 
-/// Fits records of the drive, as its controller plays it.
+/// Fits records of the drive as its controller plays it.
 void print_spread(const calib::Design& design, datasets::Campaign campaign, int fits, int threads) {
   const std::string like = *campaign.design->like;
   datasets::Condition condition;
@@ -144,7 +144,7 @@ void print_spread(const calib::Design& design, datasets::Campaign campaign, int 
     record.channels[Channel::reference].mean = design.drive;
     calib::FitOptions options;
     options.consider = false;
-    options.further_starts = 3;  // as a plain `rigcal fit` has
+    options.further_starts = 3;  // as in a plain `rigcal fit`
     const calib::Fit fit = calib::fit(campaign, {record}, options);
     if (fit.status != calib::FitStatus::converged) return;
     for (std::size_t j = 0; j < design.parameters.size(); ++j)

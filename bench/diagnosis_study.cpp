@@ -1,12 +1,13 @@
-// Measures how well leaks are found in synthetic campaigns of known truth: the numbers of
-// docs/diagnosis.md.
-//   rigcal_diagnosis_study coverage RECORDS       intervals and classes at random leaks
+// Measures how well leaks are found in synthetic campaigns with known truth, for docs/diagnosis.md.
+//
+//   rigcal_diagnosis_study coverage RECORDS       intervals and classes for random leaks
 //   rigcal_diagnosis_study classes FIRST LAST     classes, seeds FIRST to LAST
-//   rigcal_diagnosis_study smallest FIRST LAST    smallest leak on a 0.1 Hz sine
+//   rigcal_diagnosis_study smallest FIRST LAST    smallest leak with a 0.1 Hz sine
 //   rigcal_diagnosis_study coefficients           coefficients of the campaign's leaks
-// The rig is as the model; with "disturbed" at the end it has friction, a lag of its valve and a
-// supply that varies between repeats, and the fit to its healthy records frees the first two and
-// finds the third.
+//
+// The rig is equal to the model. With "disturbed" as the last argument, it also has friction, a
+// valve lag and a supply that varies between repeats. The fit to its healthy records then frees the
+// first two and detects the third.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -56,7 +57,7 @@ void set_leak(const Campaign& campaign, Condition& condition, double coefficient
   condition.overrides.emplace_back(row, coefficient);
 }
 
-/// What leaks in one condition of the true rig.
+/// The leak in one condition of the true rig.
 class TrueLeak {
  public:
   TrueLeak(const Campaign& campaign, const Condition& condition)
@@ -76,7 +77,7 @@ class TrueLeak {
     values.set("leakage_coefficient", coefficient);
     return diagnosis::steady_leak(*problem_, condition, values, {});
   }
-  /// The least coefficient at which `value` reaches the target, by bisection.
+  /// Smallest coefficient at which `value` reaches the target, by bisection.
   double solve(double diagnosis::SteadyLeak::*value, double target) const {
     if (target == 0.0) return 0.0;
     double low = 0.0;
@@ -102,7 +103,7 @@ double target_share(const Condition& condition) {
   return shares.at(condition.leak_level.value());
 }
 
-/// Sets the leak of every condition so that its level's share of the servo flow leaks.
+/// Sets the leak of every condition to its level's fraction of the servo flow.
 void set_shares(Campaign& campaign) {
   std::vector<double> found(campaign.conditions.size());
   parallel_for(found.size(), threads, [&](std::size_t i) {
@@ -151,8 +152,8 @@ datasets::ParameterSetting& setting_of(Campaign& campaign, const char* key) {
   return setting;
 }
 
-/// The rig by a fit to the healthy records, as a user makes it: where the fit says that its repeats
-/// differ by their supply pressure, the campaign takes over by how much, and the fit is made again.
+/// Fits the rig to the healthy records, as a user would. If the fit finds that the supply pressure
+/// differs between repeats, the campaign takes over by how much, and the fit is repeated.
 diagnosis::RigFit healthy_fit(Campaign& campaign, const std::vector<RepeatRecords>& records) {
   const calib::Fit fit = usable_fit(campaign, records);
   const auto& repeats = fit.between_repeats;
@@ -166,7 +167,8 @@ diagnosis::RigFit healthy_fit(Campaign& campaign, const std::vector<RepeatRecord
   return diagnosis::rig_fit_of(again);
 }
 
-/// Frees terms that a real rig may have and its model lacks, to be estimated from healthy records.
+/// Frees terms that a real rig may have and its model lacks, so that they are estimated from
+/// healthy records.
 void free_friction_and_lag(Campaign& campaign) {
   const std::pair<const char*, double> most[] = {{"coulomb_friction", 1000.0},
                                                  {"valve_time_constant", 0.02}};
@@ -205,7 +207,7 @@ void print_total(const char* variant, const char* method, const Total& total) {
              total.off_by_two);
 }
 
-/// The campaign with what the fitted model does not have.
+/// Adds what the fitted model does not have.
 void disturb(Campaign& campaign) {
   set_true(campaign, "coulomb_friction", 50.0);
   set_true(campaign, "valve_time_constant", 3e-3);
@@ -247,7 +249,7 @@ void study_classes(Campaign campaign, const char* variant, int first, int last) 
   }
 }
 
-/// Estimates of averages on the other day, as leak flow in L/min (signed), and what was alarmed.
+/// Estimates for averages on the other day, as signed leak flow in L/min, and numbers of alarms.
 struct Estimates {
   std::vector<double> none_l_per_min;
   int alarms = 0;
@@ -256,10 +258,10 @@ struct Estimates {
 };
 
 constexpr double kSmallLeak = 0.05;  ///< L/min
-constexpr int kTrials = 5;           ///< averages without and with the leak per seed
+constexpr int kTrials = 5;           ///< averages without and averages with the leak, per seed
 constexpr const char* kSine = "sine_0.1Hz_open_0";
 
-/// The healthy conditions of one day, and averages of a 0.1 Hz sine of another.
+/// The healthy conditions of one day, and averages of a 0.1 Hz sine on another day.
 Campaign two_days(Campaign campaign, double leak) {
   std::erase_if(campaign.conditions,
                 [](const Condition& c) { return c.leak_level.value() != "0 %"; });
@@ -279,7 +281,8 @@ Campaign two_days(Campaign campaign, double leak) {
   return campaign;
 }
 
-/// Only what a diagnosis of the sine needs: its healthy day with repeats, the other day's averages.
+/// Selects the records that a diagnosis of the sine needs: the healthy day with its repeats, and
+/// the averages of the other day.
 std::vector<RepeatRecords> sine_records(const std::vector<RepeatRecords>& records) {
   std::vector<RepeatRecords> result;
   for (const RepeatRecords& each : records) {
@@ -357,16 +360,16 @@ void study_smallest(const Campaign& base, int first, int last) {
   for (const auto& [name, estimates] : rows) print_estimates(name, estimates);
 }
 
-/// Conditions of random leak per signal and campaign, of two repeats each.
+/// Conditions with random leaks per signal and campaign, and repeats of each.
 constexpr int kRandomLeaks = 4;
 constexpr int kRandomRepeats = 2;
 constexpr int kHealthyRepeats = 5;
 constexpr double kLeastShare = 0.001;
 constexpr const char* kSmall = "0.1 to 1 %, all";
 constexpr double kLargestShare = 0.60;
-constexpr double kCounted = 0.01;  ///< shares from here on count as covered or not
+constexpr double kCounted = 0.01;  ///< smallest share for which coverage is counted
 
-/// Healthy conditions of the six signals, sampled no more finely than they need.
+/// Healthy conditions of the six signals, with the lowest sampling rates that they need.
 Campaign six_signals(Campaign campaign) {
   std::erase_if(campaign.conditions,
                 [](const Condition& c) { return c.leak_level.value() != "0 %"; });
@@ -379,13 +382,13 @@ Campaign six_signals(Campaign campaign) {
   return campaign;
 }
 
-/// The coefficients of the least and the largest share, per signal.
+/// Coefficients of the smallest and the largest share, per signal.
 struct LeakRange {
   double low = 0.0;
   double high = 0.0;
 };
 
-/// The next of a sequence that looks random in (0, 1): splitmix64.
+/// Next number of a pseudo-random sequence in (0, 1): splitmix64.
 double uniform(std::uint64_t& state) {
   std::uint64_t z = (state += 0x9e3779b97f4a7c15ULL);
   z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9ULL;
@@ -398,33 +401,34 @@ struct Coverage {
   int records = 0;
   int coefficient = 0;
   int share = 0;
-  int share_below = 0;  ///< truth below the interval
+  int share_below = 0;  ///< number of truths below the interval
   int share_above = 0;
-  int limits = 0;  ///< one-sided
+  int limits = 0;  ///< number of one-sided intervals
   int limits_hold = 0;
 };
 
-/// Records by the probability that was given to the class that was found.
+/// Records grouped by the probability of the class that was found.
 struct Calibration {
   int records = 0;
   int right = 0;
   double probability = 0.0;
 };
 
-/// Leaks of random size for every condition, uniform in ln C between the coefficients of 0.1 and 60
-/// %. Coverage is evaluated over all records.
+/// Coverage for random leaks in every condition, uniform in ln C between the coefficients for 0.1
+/// and 60 %. It is evaluated over all records.
 struct CoverageTally {
-  std::map<std::string, Coverage> by_signal;  ///< for shares that count, and for all smaller ones
-  Coverage all;                               ///< for shares that count
+  std::map<std::string, Coverage>
+      by_signal;  ///< for shares that count, and together for all smaller ones
+  Coverage all;   ///< for shares that count
   Coverage small;
   std::vector<Calibration> calibration = std::vector<Calibration>(5);
   std::map<LeakClass, Total> by_class;
   int healthy_records = 0;
   int alarms = 0;
-  std::vector<double> limits;  ///< upper limits of the share in healthy repeats
+  std::vector<double> limits;  ///< upper limits of the share for healthy repeats
 };
 
-/// Conditions with leaks drawn at random, beside the healthy ones, and the values that make them.
+/// Conditions with random leaks in addition to the healthy ones, and their true values.
 struct RandomLeaks {
   Campaign campaign;
   std::vector<datasets::FittedValue> truth;

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Effective draws per CPU second of emcee's affine-invariant ensemble sampler on the posterior of the six signals.
+"""Measures effective draws per CPU second of emcee's affine-invariant ensemble sampler on the six signals' posterior.
 
-Debian: python3-emcee. The density is that of `fit --posterior`, by the same code, without gradients
-(build/release/bench/rigcal_posterior_study --replay); its CPU time counts, that of Python does not. So the ratio to
-`scripts/posterior-study --speed` says what the sampler is worth, not what the language costs.
+Needs emcee (Debian: python3-emcee). The density is computed by the code of `fit --posterior`, without gradients
+(build/release/bench/rigcal_posterior_study --replay). Only its CPU time counts, not that of Python, so the ratio to
+`scripts/posterior-study --speed` compares the samplers, not the languages.
 
     bench/ensemble.py [STEPS]
 """
@@ -34,7 +34,7 @@ def main():
         numpy.random.seed(1)
         begin = generator.multivariate_normal(centre, covariance, WALKERS)
         sampler = emcee.EnsembleSampler(WALKERS, len(centre), lambda y: ask(" ".join(map(repr, map(float, y))))[0])
-        state = sampler.run_mcmc(begin, steps // 3)  # begun in the posterior: a third is plenty of warm-up
+        state = sampler.run_mcmc(begin, steps // 3)  # starts within the posterior, so a third suffices as warm-up
         sampler.reset()
         before = ask("cpu")[0]
         sampler.run_mcmc(state, steps)

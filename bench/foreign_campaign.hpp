@@ -5,8 +5,9 @@
 
 namespace rigcal::bench {
 
-/// What a user knows of the rig: every value but mass, damping, bulk modulus, valve gain and leak,
-/// the position channel, and that the rig is at rest before a record begins. No conditions.
+/// The campaign of a user who knows that the rig is at rest before a record begins, and knows all
+/// values except mass, damping, bulk modulus, valve gain and leak. Has a position channel, but no
+/// conditions.
 datasets::Campaign foreign_campaign(const ForeignRig& rig);
 
 }  // namespace rigcal::bench

@@ -8,16 +8,17 @@
 namespace rigcal::bench {
 namespace {
 
-constexpr double kStep_s = 1e-5;  // a third of what the straightened root of the leak allows
+constexpr double kStep_s =
+    1e-5;  // a third of the stability limit from the smoothed root of the leak
 constexpr int kStepsPerSample = 100;
 
 /// Position, velocity, load pressure, filtered error, integral, spool signal and its rate, lagged
 /// reference.
 using ForeignState = std::array<double, 8>;
 
-/// What changes between steps alone.
+/// State that changes only between steps.
 struct Memory {
-  double played = 0.0;  ///< signal of the spool, behind its play
+  double played = 0.0;  ///< spool signal after its play
   double held = 0.0;    ///< command of a sampled controller
 };
 
@@ -45,10 +46,10 @@ double valve_flow(const ForeignRig& rig, double volts, double load, double suppl
          std::sqrt(rig.density_kg_per_m3) * straightened_root(head, rig.straight_below_pa);
 }
 
-/// Friction that grows with the speed up to its size within a millimetre per second.
+/// Friction that grows with the speed and reaches its full size at about a millimetre per second.
 double rubbing(double size, double velocity) { return size * std::tanh(velocity / 1e-3); }
 
-/// What the controller asks for, before its limit.
+/// Command that the controller requests, before its limit.
 double wanted_command(const ForeignRig& rig, const ForeignState& s, double error) {
   const double kp = rig.kp_v_per_m + rig.kp_error_v_per_m;
   const double kd = rig.kd_v_s_per_m + rig.kd_error_v_s_per_m;
@@ -65,7 +66,7 @@ double with_play(const ForeignRig& rig, double played, double spool) {
              : spool;
 }
 
-/// Signal that the spool follows, by the command that the controller gives.
+/// Signal that the spool follows, given the command of the controller.
 double spool_signal(const ForeignRig& rig, const ForeignState& s, double command) {
   return rig.valve_lag_s > 0.0 || rig.valve_corner_hz > 0.0 ? s[5] : command;
 }
@@ -81,7 +82,7 @@ double flow_through(const ForeignRig& rig, double volts, double load, double sup
   return skew * valve_flow(rig, volts, load, supply);
 }
 
-/// @param share  of the record that has passed
+/// @param share  elapsed fraction of the record
 ForeignState slope(const ForeignRig& rig, const ForeignState& s, const Memory& memory,
                    double reference, double share) {
   const double position = s[0];
@@ -98,7 +99,7 @@ ForeignState slope(const ForeignRig& rig, const ForeignState& s, const Memory& m
   double supply = source;
   if (rig.sag > 0.0) {
     const double full = valve_flow(rig, rig.limit_v, 0.0, source);
-    for (int i = 0; i < 3; ++i)  // the flow through the line is that which its fall allows
+    for (int i = 0; i < 3; ++i)  // flow and pressure drop depend on each other
       supply = source * (1.0 - rig.sag * std::abs(flow_through(rig, volts, load, supply)) / full);
   }
   const double leak = rig.leak_coefficient * rig.leak_area_m2 *
@@ -110,7 +111,7 @@ ForeignState slope(const ForeignRig& rig, const ForeignState& s, const Memory& m
                                       rig.pressure_friction_m2 * std::abs(load),
                                   velocity) +
                           rig.square_damping * velocity * std::abs(velocity);
-  const double end = 2.0 * position * rig.area_m2 / rig.volume_m3;  // 1 at either end
+  const double end = 2.0 * position * rig.area_m2 / rig.volume_m3;  // 1 at either end of the stroke
   const double oil = (rig.volume_m3 + rig.hose_volume_m3) * (1.0 - rig.volume_bow * end * end);
   const double stiffness = 4.0 * rig.bulk_modulus_pa * (1.0 + rig.oil_drift * share) / oil;
   ForeignState d{};
@@ -139,10 +140,11 @@ ForeignState moved(const ForeignState& s, const ForeignState& d, double h) {
   return result;
 }
 
-/// A step within which the reference is that of its middle where it jumps, and exact elsewhere.
+/// Advances by one step. If the reference jumps within the step, the value in its middle is used;
+/// otherwise the reference is exact.
 ForeignState stepped(const ForeignRig& rig, const Reference& reference, double t,
                      const Memory& memory, const ForeignState& s) {
-  // Half a step's thousandth inside, so that both ends lie on one side of an edge.
+  // Stays a thousandth of a step inside, so that both ends are on the same side of an edge.
   const double inside = 1e-3 * kStep_s;
   const double first = reference_at(reference, t - rig.delay_s + inside);
   const double middle = reference_at(reference, t - rig.delay_s + 0.5 * kStep_s);
@@ -158,7 +160,8 @@ ForeignState stepped(const ForeignRig& rig, const Reference& reference, double t
   return next;
 }
 
-/// The sampled controller works: its filter by backward Euler, its integral by forward Euler.
+/// Tick of the sampled controller: the filter advances by backward Euler, the integral by forward
+/// Euler.
 void tick(const ForeignRig& rig, double reference, ForeignState& s, Memory& memory) {
   const double error = reference - s[0];
   const double step = rig.filter_rad_per_s * rig.controller_tick_s;

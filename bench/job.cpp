@@ -1,8 +1,12 @@
-// What the phases of a fit cost, and how fast its files are read:
+// Measures the cost of the phases of a fit, and how fast its files are read:
+//
 //   rigcal_job phases CAMPAIGN ROUNDS
-// CPU time of each replicate of a bootstrap, after one that is not counted:
+//
+// or the CPU time of each replicate of a bootstrap, after a first one that is not counted:
+//
 //   rigcal_job replicates CAMPAIGN DATA COUNT
-// Prints JSON; scripts/performance-job makes tables of it.
+//
+// Prints JSON, which scripts/performance-job converts to tables.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -29,7 +33,7 @@
 namespace rigcal::bench {
 namespace {
 
-/// Every file of the records that a fit reads, with the columns that it wants of each.
+/// All files that a fit reads, with the columns that it needs from each.
 std::map<std::string, std::vector<std::string>> files_of(const datasets::Campaign& campaign) {
   std::map<std::string, std::vector<std::string>> files;
   for (const datasets::Condition& condition : campaign.conditions) {
@@ -87,7 +91,7 @@ void print_phases(const datasets::Campaign& campaign, int rounds) {
     for (const auto& [name, run] : phases) {
       const double before = cpu_ms();
       run();
-      if (round > 0) taken[name].push_back(cpu_ms() - before);  // the first warms caches
+      if (round > 0) taken[name].push_back(cpu_ms() - before);  // the first round warms the caches
     }
   }
   fmt::print("{{\"bytes\": {}, \"files\": {}", bytes, files.size());

@@ -1,9 +1,9 @@
-// Simulation-based calibration of the posterior (Talts et al., arXiv:1804.06788): truths are drawn
-// from the prior, records are made from them, and the rank of each truth among the draws of its
-// posterior must be uniform. Prints the table of docs/uncertainty.md. With --speed it samples the
+// Simulation-based calibration of the posterior (Talts et al., arXiv:1804.06788): draws truths from
+// the prior, generates records from them, and ranks each truth among the draws of its posterior.
+// The ranks must be uniform. Prints the table of docs/uncertainty.md. With --speed it samples the
 // six signals of the speed tests instead, and prints CPU time and effective draws. With --replay it
-// answers lines of unit-box coordinates by the logarithm of the density at them, for samplers in
-// other languages (bench/ensemble.py).
+// reads lines of unit-box coordinates and answers each with the log density, for samplers in other
+// languages (bench/ensemble.py).
 #include <fmt/format.h>
 
 #include <Eigen/Core>
@@ -34,14 +34,14 @@ using datasets::Channel;
 constexpr double kTwinNoise_m = 0.5e-3;
 constexpr double kTwinRateHz = 250.0;
 constexpr int kBins = 20;
-constexpr int kThinned = 100;  ///< draws of a posterior among which the truth is ranked
+constexpr int kThinned = 100;  ///< number of posterior draws among which the truth is ranked
 
 double cpu_seconds() {
   return static_cast<double>(std::clock()) / static_cast<double>(CLOCKS_PER_SEC);
 }
 
-/// The paper's rig, two short records, three unknowns, each with bounds of a half to double its
-/// usual value.
+/// The paper's rig with two short records and three unknowns, each bounded between half and double
+/// its usual value.
 datasets::Campaign make_campaign(int number) {
   const model::ParameterValues usual = six_signal_truth();
   const auto table = model::parameter_table(usual.plant);
@@ -103,7 +103,7 @@ std::vector<datasets::Record> records_of(const datasets::Campaign& campaign, std
   return records;
 }
 
-/// Bins of the ranks of one campaign's truths; empty: the fit did not converge.
+/// Bins of the ranks of one campaign's truths; empty if the fit did not converge.
 struct Ranked {
   std::vector<int> bins;
   std::vector<std::string> names;
@@ -218,8 +218,8 @@ int speed(int draws) {
   return alone.status == calib::FitStatus::converged ? 0 : 1;
 }
 
-/// Answers lines of coordinates of the sampler by the density there; "centre" and "covariance" by
-/// these.
+/// Answers lines of sampler coordinates with the log density, and the words "centre" and
+/// "covariance" with their values.
 int replay() {
   const Problem problem = six_signal_problem();
   calib::FitOptions options;
@@ -252,7 +252,7 @@ int replay() {
       std::istringstream words(line);
       Eigen::VectorXd y(static_cast<Eigen::Index>(z.size()));
       for (double& each : y) words >> each;
-      // An ensemble sampler asks for no gradient, and pays for none.
+      // An ensemble sampler needs no gradient, so none is computed.
       print(std::vector<double>{density.value(y)});
     }
   }

@@ -11,7 +11,7 @@ namespace {
 
 struct FreeParameter {
   const char* key;
-  double start;  ///< times the truth
+  double start;  ///< multiple of the truth
   datasets::Scope scope = datasets::Scope::rig;
 };
 
@@ -57,7 +57,7 @@ void add_condition(const Reference& reference, const std::string& level,
   problem.truth.push_back(truth);
 }
 
-/// What the rigs of both problems have in common.
+/// Values that the rigs of both problems have in common.
 model::ParameterValues shaker_truth() {
   auto values = model::ParameterValues::defaults(model::PlantKind::load_pressure);
   values.set("mass", 85.0);

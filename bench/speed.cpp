@@ -1,4 +1,5 @@
-// Prints every figure of docs/performance.md as a table: CPU time, medians of interleaved rounds.
+// Prints every figure in docs/performance.md as a table: CPU times, as medians over interleaved
+// rounds.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -33,7 +34,7 @@ double wall_ms() {
 
 using Task = std::function<void()>;
 
-/// Median CPU time of each task, the tasks taking turns.
+/// Median CPU time of each task. The tasks take turns.
 std::vector<double> medians(const std::vector<Task>& tasks, int rounds,
                             double (*clock)() = cpu_ms) {
   std::vector<std::vector<double>> times(tasks.size());
@@ -71,8 +72,8 @@ model::Simulation run(const model::ParameterValues& values, const std::vector<in
   return result;
 }
 
-/// What a fit computes before it describes the result: the problem solved from its start. The
-/// simulation that judges the optimum belongs to its intervals.
+/// The part of a fit before the result is described: the problem solved from its start. The
+/// simulation that assesses the optimum belongs to the intervals.
 struct Solved {
   calib::Problem problem;
   calib::MultiStart found;
@@ -97,7 +98,7 @@ void require_converged(const calib::SolveResult& result) {
   std::exit(1);
 }
 
-/// Largest distance of two points in standard errors of the first.
+/// Largest difference between two points in standard errors of the first.
 double distance_in_errors(const calib::Fit& fit, const std::vector<double>& other) {
   double worst = 0.0;
   std::size_t j = 0;
@@ -108,8 +109,8 @@ double distance_in_errors(const calib::Fit& fit, const std::vector<double>& othe
   return worst;
 }
 
-/// Distance of a fit of one draw of the noise from the optimum of simulations at 1e-10, in standard
-/// errors.
+/// Distance between a fit to one draw of the noise and the optimum with simulations at 1e-10, in
+/// standard errors.
 double distance_of_draw(unsigned seed) {
   Problem data = six_signal_problem(seed);
   const Solved found = solve(data, {});
@@ -119,7 +120,7 @@ double distance_of_draw(unsigned seed) {
   return distance_in_errors(exact, found.problem.to_physical(found.found.optimum.z));
 }
 
-/// Tolerance at which rigcal errs by less than the baseline does at 1e-6.
+/// Tolerance at which rigcal's error is smaller than the baseline's at 1e-6.
 constexpr double kAsAccurate = 6e-5;
 
 void six_signals(int rounds) {
@@ -176,7 +177,7 @@ void six_signals(int rounds) {
   std::vector<double> baseline_values;
   for (std::size_t j = 0; j < baseline::kFree; ++j)
     baseline_values.push_back(theirs.factors[j] * baseline::truth()[j]);
-  // The order of the unknowns is that of the parameter table: mass, bulk modulus, gain, leakage.
+  // The unknowns are in the order of the parameter table: mass, bulk modulus, gain, leakage.
 
   fmt::print("### Six signals, 86 006 samples, one thread\n\n");
   fmt::print(
@@ -217,7 +218,7 @@ void six_signals(int rounds) {
       median(distances), *std::max_element(distances.begin(), distances.end()));
 }
 
-/// The six signals as a lab records them: with 0.05 mm of noise on each sample of the reference.
+/// The six signals as a lab records them, with 0.05 mm of noise on each sample of the reference.
 std::vector<baseline::Recorded> recorded_signals(bool linear) {
   boost::random::mt19937 random(1);
   boost::random::normal_distribution<double> noise(0.0, 5e-5);
@@ -282,7 +283,7 @@ void recorded_drives(int rounds) {
                 i, run_recorded(parameters, kSixSignals[i], signals[i], tolerance).outputs.col(0)));
       return worst;
     };
-    // The coarsest tolerance at which rigcal errs by less than the baseline does at 1e-6.
+    // The coarsest tolerance at which rigcal's error is smaller than the baseline's at 1e-6.
     double as_accurate = 1e-3;
     while (as_accurate > 1e-6 && std::max(ours({}, as_accurate), ours(free, as_accurate)) > theirs)
       as_accurate *= 0.5;
@@ -350,7 +351,7 @@ void stiff(int rounds) {
   fmt::print("| 1000 refits on two cores, min | {:.1f} | 3 |\n\n", refit * 1000.0 / 2.0 / 60e3);
 }
 
-/// 20 s at 10 kHz, the recorded command drives the valve.
+/// Times a record of 20 s at 10 kHz whose recorded command drives the valve.
 void long_record(int rounds) {
   const auto truth = six_signal_truth();
   const auto free = free_indices({"mass", "damping", "stiffness", "piston_area", "total_volume",
@@ -389,7 +390,7 @@ struct Point {
   double ms = 0.0;
 };
 
-/// A table with a bar for each figure.
+/// Prints a table with a bar for each figure.
 void draw(const std::string& title, const std::string& head, const std::vector<Point>& points) {
   double longest = 0.0;
   for (const Point& each : points) longest = std::max(longest, each.ms);
@@ -402,7 +403,7 @@ void draw(const std::string& title, const std::string& head, const std::vector<P
   fmt::print("\n");
 }
 
-/// The problem with every condition `copies` times.
+/// The problem with every condition repeated `copies` times.
 Problem repeated(const Problem& data, int copies) {
   Problem more = data;
   for (int c = 1; c < copies; ++c) {

@@ -24,10 +24,11 @@ namespace {
 using datasets::Campaign;
 using datasets::Use;
 
-/// A prediction this many times worse than the fit is worth a word, and a shift of so many errors.
+/// A warning is due if a prediction is this many times worse than the fit, or a parameter shifts by
+/// this many standard errors.
 constexpr double kMuchWorse = 1.5;
 constexpr double kFarShift = 3.0;
-/// A smaller change than this is no deterioration.
+/// A smaller ratio than this does not count as a deterioration.
 constexpr double kNoWorse = 1.005;
 
 Campaign without(const Campaign& campaign, const std::string& id, const Fit& whole) {
@@ -159,7 +160,8 @@ std::vector<HeldOut> cross_validate(const Campaign& campaign,
     result[i] = not_made(i);
     if (!made[i].bytes.empty()) from_bytes(made[i].bytes, taken[i], result[i]);
   }
-  // The number of threads decides which folds were made beyond the one that reached a limit.
+  // Discards the folds after the one that reached the limit, because the number of threads decides
+  // how many of them were computed.
   long sum = 0;
   for (std::size_t i = 0; i < ids.size(); ++i) {
     if (allowed && sum >= *allowed) result[i] = not_made(i);

@@ -8,12 +8,13 @@
 
 namespace rigcal::calib {
 
-/// Leaves out one `fit` condition at a time, fits the others from the values of `whole`, and
-/// predicts the omitted one (its own nuisance parameters are estimated on it). A condition that
-/// alone determines an unknown, such as the only one of its leak level, cannot be predicted.
+/// Leaves out one `fit` condition at a time, fits the others starting from the values of `whole`,
+/// and predicts the omitted one (its own nuisance parameters are estimated on it). A condition
+/// cannot be predicted if it alone determines an unknown, for example as the only one with its leak
+/// level.
 ///
 /// @param whole  the fit of all conditions, with its scores
-/// @param left   rest of the budget of the whole job
+/// @param left   remaining budget of the whole job
 std::vector<HeldOut> cross_validate(const datasets::Campaign& campaign,
                                     const std::vector<datasets::Record>& records, const Fit& whole,
                                     const FitOptions& options, Budget& left);
@@ -21,7 +22,7 @@ std::vector<HeldOut> cross_validate(const datasets::Campaign& campaign,
 /// One sentence with the number of predicted conditions and the worst prediction.
 std::string cross_validation_summary(const std::vector<HeldOut>& held_out);
 
-/// The main findings in words: the condition with the worst prediction relative to its fit, and the
+/// The main findings in words: the condition whose prediction is worst relative to its fit, and the
 /// parameter that changes most.
 std::vector<std::string> cross_validation_words(const std::vector<HeldOut>& held_out);
 

@@ -9,9 +9,9 @@
 
 namespace rigcal::calib {
 
-/// Puts scores in the order of the campaign and judges them together.
+/// Sorts the scores in the order of the campaign and assesses them together.
 ///
-/// @param origin  of the values where they are an earlier fit's
+/// @param origin  origin of the values if they come from an earlier fit, else null
 void finish(const datasets::Campaign& campaign, const std::vector<datasets::Record>& records,
             Budget::Clock::time_point began, const Origin* origin, Fit& fit);
 

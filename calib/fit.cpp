@@ -60,8 +60,8 @@ bool asks_for_more(const FitOptions& options) {
          options.cross_validate;
 }
 
-/// Runs what was requested in addition to the fit: bootstrap, profiles, posterior,
-/// cross-validation. If the budget ends it, the finished parts are kept.
+/// Runs the steps requested in addition to the fit: bootstrap, profiles, posterior,
+/// cross-validation. If the budget runs out, the finished steps are kept.
 void look_again(const Problem& problem, const Campaign& campaign,
                 const std::vector<Record>& records, const Solved& solved, const FitOptions& options,
                 Budget& budget, Fit& fit) {
@@ -80,7 +80,8 @@ void look_again(const Problem& problem, const Campaign& campaign,
     sample_posterior(problem, solved.optimum, solved.spread, options, fit, budget);
     note(StoppedIn::posterior);
   }
-  for (const std::size_t j : solved.open) {  // the smoothing of roots would bound them, no record
+  for (const std::size_t j :
+       solved.open) {  // no record bounds these, only the smoothing of the square roots would
     fit.parameters[j].bootstrap.reset();
     fit.parameters[j].profile.reset();
   }
@@ -102,7 +103,7 @@ void warn_of_start(const Campaign& campaign, const std::vector<const Condition*>
   if (!text.empty()) fit.warnings.push_back(text);
 }
 
-/// The dates of some conditions, each once; none where one has no date.
+/// The different dates of some conditions; empty if any of them has no date.
 std::vector<std::string> dates_of(const std::vector<const Condition*>& conditions) {
   std::vector<std::string> dates;
   for (const Condition* each : conditions) {
@@ -113,7 +114,7 @@ std::vector<std::string> dates_of(const std::vector<const Condition*>& condition
   return dates;
 }
 
-/// The effects that a fit considered, beside its estimates.
+/// The effects that a fit considered in addition to its estimates.
 EffectSpread effects_beside(const Fit& fit, const EstimateSpread& spread) {
   if (!fit.considered) return {};
   std::vector<const Budget95*> budgets;
@@ -129,9 +130,9 @@ EffectSpread effects_beside(const Fit& fit, const EstimateSpread& spread) {
   return effect_spread(*fit.considered, budgets);
 }
 
-/// Scores conditions at known values, with nuisance parameters estimated again.
+/// Scores conditions at known values. Nuisance parameters are estimated again.
 ///
-/// @param spread  covariance of the values, for bands of prediction; null: none
+/// @param spread  covariance of the values, for prediction bands; null: no bands
 Fit score_at(const Campaign& campaign, const std::vector<Record>& records,
              const std::vector<const Condition*>& conditions,
              const std::vector<FittedValue>* values, const FitOptions& options, Budget& budget,
@@ -181,7 +182,7 @@ Fit score_at(const Campaign& campaign, const std::vector<Record>& records,
   return fit;
 }
 
-/// Name of the stage for messages.
+/// Name of a stage in messages.
 std::string_view words(StoppedIn stage) {
   switch (stage) {
     case StoppedIn::nothing:
@@ -202,7 +203,7 @@ std::string_view words(StoppedIn stage) {
   return "";
 }
 
-/// Nuisance parameters and scores of the validate conditions join a fit.
+/// Adds the nuisance parameters and scores of the validate conditions to a fit.
 void add_validation(Fit validation, Fit& fit) {
   for (FittedParameter& each : validation.parameters) {
     if (each.fitted) fit.parameters.push_back(std::move(each));
@@ -233,7 +234,8 @@ Fit fit(const Campaign& campaign, const std::vector<Record>& records, const FitO
                      "nothing is free in the conditions of the fit: expected `fit = true` at a "
                      "parameter, or --free");
   }
-  // A leak level that only the validation has must be reported before the hours of a fit.
+  // Reports a leak level without a fitted value, which only the validation uses, before a fit that
+  // may take hours.
   std::vector<FittedValue> starts;
   for (const Unknown& unknown : problem.map.unknowns()) {
     if (!unknown.nuisance)
@@ -264,7 +266,7 @@ Fit fit(const Campaign& campaign, const std::vector<Record>& records, const FitO
     if (spread) {
       add_prediction_sd(problem, solved.optimum.z, *spread, {}, options.threads, result.conditions);
     }
-    // Scored before steps that may take hours, so that stopping them changes no score.
+    // Scored before steps that may take hours, so that stopping them does not change a score.
     std::optional<Fit> validation;
     if (!validated.empty()) {
       const auto values = values_of(result.parameters);

@@ -10,21 +10,23 @@
 
 namespace rigcal::calib {
 
-/// Calibrates the free parameters on the `fit` conditions by Ceres (analytic Jacobian, unit box)
-/// and scores `fit` and `validate` conditions. Never throws for a fit that fails: see status.
+/// Calibrates the free parameters on the `fit` conditions with Ceres (analytic Jacobian, unit box)
+/// and scores `fit` and `validate` conditions. A fit that fails is reported in `status`, not
+/// thrown.
 ///
-/// @param records  of the fit and validate conditions, found by their `condition`
-/// @throws InputError  nothing is free, no `fit` condition, a channel without any weight...
+/// @param records  records of the fit and validate conditions, identified by their `condition`
+/// @throws InputError  if no parameter is free, there is no `fit` condition, or the input is
+///                     unusable in another way, for example because a channel has no weight
 Fit fit(const datasets::Campaign& campaign, const std::vector<datasets::Record>& records,
         const FitOptions& options);
 
-/// Scores `fit` and `validate` conditions with given values. Estimates only nuisance parameters (by
-/// the same code as fit()).
+/// Scores `fit` and `validate` conditions with given values. Estimates only nuisance parameters,
+/// with the same code as fit().
 ///
-/// @param values  of an earlier fit, or empty: the campaign's own values
-/// @param origin  of `values`; null: they are assumed to be estimated from the campaign's `fit`
-///                conditions
-/// @throws InputError  `values` lacks a value for a leak level or condition
+/// @param values  values of an earlier fit, or null to use the campaign's own values
+/// @param origin  origin of `values`; null: they are assumed to be estimated from the campaign's
+///                `fit` conditions
+/// @throws InputError  if `values` lacks a value for a leak level or condition
 Fit validate(const datasets::Campaign& campaign, const std::vector<datasets::Record>& records,
              const std::vector<datasets::FittedValue>* values, const FitOptions& options,
              const Origin* origin = nullptr);

@@ -14,10 +14,10 @@
 namespace rigcal::calib {
 namespace {
 
-/// Step budget of a later point relative to the start at a coarse tolerance: the later point may
-/// need a simulation to its end where the start soon becomes periodic.
+/// Step budget of later points relative to the start at a coarse tolerance. A later point may have
+/// to be simulated to its end, while the start soon becomes periodic.
 constexpr long kStepsOverStart = 100;
-/// Least budget, for starts of fewer than twenty steps, in which nothing moves.
+/// Minimum budget, for starts at which nothing moves and which take fewer than twenty steps.
 constexpr long kLeastSteps = 20'000;
 
 void budget_steps(Problem& problem, const Evaluation& start) {
@@ -67,7 +67,8 @@ Solved solve_problem(Problem& problem, Evaluator& evaluator, const FitOptions& o
       fit.message = "no start could be simulated; of the first: " + fit.message;
     return {};
   }
-  give_freed_memory_back();  // memory of the simulations; the next steps need other sizes
+  give_freed_memory_back();  // frees the memory of the simulations, because the next steps need
+                             // other sizes
   const bool awaited = found.result.status == FitStatus::stopped && evaluator.budget().cancelled();
   Uncertainty spread = uncertainty(problem, found.optimum, std::move(rows), options.threads,
                                    awaited ? Detail::plain : Detail::full);
@@ -89,7 +90,8 @@ Solved solve_from_starts(Problem& problem, Evaluator& evaluator, const FitOption
   FitOptions more = options;
   more.starts += options.further_starts;
   more.resume = &checkpoint;
-  problem = fresh;  // the weights of a point that is no minimum are not those of the others
+  problem = fresh;  // discards the weights, because those of a point that is not a minimum are
+                    // wrong for the others
   evaluator.forget();
   const std::string why = fit.message;
   fit = {};

@@ -43,8 +43,9 @@ constexpr std::array kOutputNames{
     OutputName{Output::pilot_pressure, "pilot_pressure_pa"},
 };
 
-/// The first parameter in use that is not finite or outside its limits, in words; empty if none.
-/// A second-order valve needs its damping ratio and a derivative its filter: neither has a default.
+/// Describes the first parameter in use that is not finite or outside its limits; empty if there is
+/// none. A second-order valve needs its damping ratio, and a derivative action its filter: neither
+/// has a default.
 std::string bad_parameter(const ParameterValues& values, const Layout& layout) {
   const auto table = parameter_table(values.plant);
   for (std::size_t i = 0; i < table.size(); ++i) {
@@ -67,7 +68,7 @@ void require(bool condition, const char* message) {
   if (!condition) throw std::invalid_argument(std::string("simulate: ") + message);
 }
 
-/// Calls a function object with the type of a plant.
+/// Calls a function object with the type of a plant as template argument.
 template <std::size_t I = 0, typename Function>
 decltype(auto) with_plant(PlantKind plant, const Function& function) {
   if (static_cast<std::size_t>(plant) == I)
@@ -88,8 +89,8 @@ bool reversible(PlantKind plant, const PresentTerms& terms, std::span<const Outp
   });
 }
 
-/// The numbers of states for which solvers of a plant were compiled, in ascending order; those of
-/// CMakeLists.txt.
+/// The numbers of states for which solvers of a plant were compiled (CMakeLists.txt), in ascending
+/// order.
 template <typename Plant, int... States>
 struct Sized {};
 template <typename... PerPlant>
@@ -99,7 +100,7 @@ using BaseSolvers = Solvers<RIGCAL_base_SOLVERS>;
 using Avx2Solvers = Solvers<RIGCAL_avx2_SOLVERS>;
 #endif
 
-/// Finds those of a plant among all; it does not compile for a plant without any.
+/// Finds the sizes compiled for a plant. It does not compile for a plant without any.
 template <typename Plant, int... States>
 std::integer_sequence<int, States...> sizes_of(const Sized<Plant, States...>& solvers);
 
@@ -108,7 +109,8 @@ constexpr int largest(std::integer_sequence<int, States...> /*sizes*/) {
   return std::max({States...});
 }
 
-/// Room of the largest solver of a plant; the same with every instruction set.
+/// Number of states for which the largest solver of a plant has room. It is the same with every
+/// instruction set.
 int largest_room(PlantKind plant) {
   return with_plant(plant, []<typename Plant>() {
     return largest(decltype(sizes_of<Plant>(std::declval<const BaseSolvers&>()))());
@@ -119,7 +121,7 @@ int largest_room(PlantKind plant) {
 template <typename Plant, InstructionSet Set, int N, int... Larger>
 void run(std::integer_sequence<int, N, Larger...>, const SizedRequest& request,
          Simulation& result) {
-  // The smallest solver has only the plant's states and supports position loops alone.
+  // The smallest solver has only the plant's states and supports only position loops.
   const bool takes_all = N > Plant::kStates || request.layout.position_alone();
   if (request.layout.states <= N && takes_all)
     return simulate_sized<Plant, N, Set>(request, result);
@@ -211,8 +213,8 @@ void SimulationOptions::validate() const {
 
 namespace {
 
-/// Like Eigen's allFinite(), but faster: that tests one number at a time. Eigen's sum() is slower,
-/// too, since each addition waits for the one before.
+/// Does what Eigen's allFinite() does, but faster: allFinite() tests one number at a time. Eigen's
+/// sum() is slower, too, because each addition waits for the previous one.
 bool all_finite(const Eigen::MatrixXd& values) {
   constexpr Eigen::Index kSums = 16;
   Eigen::Array<double, kSums, 1> sums = Eigen::Array<double, kSums, 1>::Zero();
@@ -223,11 +225,11 @@ bool all_finite(const Eigen::MatrixXd& values) {
   return sums.sum() + (0.0 * rest).sum() == 0.0;
 }
 
-/// Whether an input changes faster than two instants can be distinguished. No solver could follow
+/// Whether an input changes too fast for two instants to be distinguished. No solver could follow
 /// it.
 bool too_fast(const SimulationInputs& inputs, std::span<const double> times_s) {
   constexpr double kInstants = 4.0;
-  constexpr double kMostEdges = 16.0;  // edges of a waveform in one period
+  constexpr double kMostEdges = 16.0;  // number of edges of a waveform in one period
   const double least_s = kInstants * same_instant_s(times_s);
   const auto fast = [least_s](const std::optional<Signal>& signal) {
     if (!signal) return false;
@@ -238,7 +240,7 @@ bool too_fast(const SimulationInputs& inputs, std::span<const double> times_s) {
          fast(inputs.tank_pressure_pa) || fast(inputs.spool_error);
 }
 
-/// @param state  to go on from; null: the rig's initial one
+/// @param state  start of the run; null: the rig's initial state
 Simulation simulate_either(const Eigen::VectorXd* state, const Rig& rig,
                            const ParameterValues& parameters, std::span<const int> free,
                            const SimulationInputs& inputs, std::span<const double> times_s,
@@ -282,13 +284,14 @@ Simulation simulate_either(const Eigen::VectorXd* state, const Rig& rig,
   const std::optional<SensorTimes> at = sensor_times(outputs, parameters, times_s);
   const std::span<const double> at_s = at ? std::span<const double>(at->times_s) : times_s;
   const auto samples = static_cast<Eigen::Index>(at_s.size());
-  // Not initialised: a successful simulation writes all elements.
+  // left uninitialised: a successful simulation writes all elements
   result.outputs.resize(samples, static_cast<Eigen::Index>(outputs.size()));
   result.sensitivities.resize(outputs.size());
   const Eigen::Index columns =
       static_cast<Eigen::Index>(free.size()) + (state != nullptr ? layout.states : 0);
   for (Eigen::MatrixXd& each : result.sensitivities) each.resize(samples, columns);
-  // Here, not where the solver runs: memory of code for AVX2 must not be freed by that for others.
+  // Allocated here and not in the solver: memory that code for AVX2 allocates must not be freed by
+  // code for other processors.
   result.end_state.resize(layout.states);
   result.state_floor.resize(layout.states);
   result.end_sensitivities.resize(layout.states, columns);
@@ -297,11 +300,12 @@ Simulation simulate_either(const Eigen::VectorXd* state, const Rig& rig,
     const std::optional<double> tick_s =
         layout.sampled() ? std::optional(parameters["sample_time"]) : std::nullopt;
     period = sampled_period(inputs, at_s, reversible(rig.plant, layout.terms, outputs), tick_s);
-    // Extrapolation sums over all remaining periods for each of them, so its cost grows with the
+    // For each remaining period, extrapolation sums over all of them, so its cost grows with the
     // square of their number.
     constexpr std::size_t kMostPeriods = 20'000;
     if (period && at_s.size() / period->samples > kMostPeriods) period.reset();
-    // A rig that still waits for its drive does not change, yet it is not in a periodic state.
+    // While the rig still waits for its drive it does not change, but this is not its periodic
+    // state.
     if (period && rig.before != Before::hold &&
         parameters["transport_delay"] > 0.5 * period->duration_s)
       period.reset();

@@ -15,8 +15,8 @@
 
 namespace rigcal::model {
 
-/// Outputs of a simulation at each sample. Those that are recorded include the offset of their
-/// sensor.
+/// Quantities that a simulation returns at each sample. Those that a sensor records include its
+/// offset.
 enum class Output {
   position,              ///< reading of the position sensor [m]
   velocity,              ///< [m/s]
@@ -24,19 +24,19 @@ enum class Output {
   pressure_a,            ///< [Pa]
   pressure_b,            ///< [Pa]
   force,                 ///< reading of a load cell in the rod [N] (docs/model.md)
-  command,               ///< controller output after the limit, or the recorded command [V]
+  command,               ///< output of the controller after its limit, or the recorded command [V]
   spool,                 ///< valve spool travel [m]
   servo_flow,            ///< Q_L, flow of the servo valve to the load [m3/s]
   leakage_flow,          ///< internal leakage across the piston [m3/s]
-  work_flow,             ///< A x', flow that moves the piston [m3/s]
-  acceleration,          ///< acceleration of the piston and the mass fixed to it [m/s2]
-  payload_acceleration,  ///< acceleration of the second mass [m/s2]; zero without one
-  angle,                 ///< reading of the angle sensor of a joint [rad]; zero without one
-  angular_velocity,      ///< [rad/s]; likewise
+  work_flow,             ///< A x', flow that the moving piston displaces [m3/s]
+  acceleration,          ///< acceleration of the piston and of the mass fixed to it [m/s2]
+  payload_acceleration,  ///< acceleration of the second mass [m/s2]; zero if there is none
+  angle,                 ///< reading of the angle sensor of a joint [rad]; zero without a joint
+  angular_velocity,      ///< angular velocity of the joint [rad/s]; zero without a joint
   pilot_pressure,        ///< pilot pressure that drives the spool [Pa]; zero without a pilot
 };
 
-/// "position_m", "servo_flow_m3_per_s": name with its SI unit.
+/// Name of an output, ending in its SI unit: "position_m", "servo_flow_m3_per_s".
 std::string_view output_name(Output output);
 inline constexpr std::array kAllOutputs{Output::position,
                                         Output::velocity,
@@ -55,7 +55,7 @@ inline constexpr std::array kAllOutputs{Output::position,
                                         Output::angular_velocity,
                                         Output::pilot_pressure};
 
-/// Whether a rig computes an output; those that it does not are zero.
+/// Whether a rig computes an output. Outputs that it does not compute are zero.
 bool has_output(const ParameterValues& values, Output output);
 
 enum class ControllerKind {
@@ -63,10 +63,10 @@ enum class ControllerKind {
   pid,   ///< the drive is the reference of the controlled quantity
 };
 
-/// Quantity that a loop controls; its reference has the same unit.
+/// Quantity that a loop controls. The reference has the same unit.
 enum class Feedback { position, force, load_pressure, acceleration };
 
-/// Gains, in the parameter table, of a loop by its controlled quantity.
+/// Maps a controlled quantity to the parameters with the gains of its loop.
 struct FeedbackRow {
   std::string_view name;  ///< in campaign files
   std::string_view unit;  ///< SI
@@ -96,10 +96,10 @@ enum class InitialState {
 struct SimulationInputs {
   Signal drive = Signal::constant(0.0);      ///< reference of the loop, or command [V]
   std::optional<Signal> external_force_n;    ///< added to the parameter `external_force`
-  std::optional<Signal> supply_pressure_pa;  ///< in place of the parameter `supply_pressure`
-  std::optional<Signal> tank_pressure_pa{};  ///< in place of the parameter `tank_pressure`
+  std::optional<Signal> supply_pressure_pa;  ///< replaces the parameter `supply_pressure`
+  std::optional<Signal> tank_pressure_pa{};  ///< replaces the parameter `tank_pressure`
   double drive_begins_s = 0.0;               ///< time of its first sample; see Rig::before
-  /// Added to the signal of the spool [V, or Pa of a pilot]: the play of a valve.
+  /// Added to the spool signal [V, or Pa for a pilot]; represents the play of a valve.
   std::optional<Signal> spool_error{};
 };
 
@@ -110,40 +110,40 @@ enum class Method {
 
 struct SimulationOptions {
   Method method = Method::rosenbrock;
-  /// Local error per step over the running peak of each state, and of each sensitivity.
+  /// Allowed local error per step, relative to the running peak of each state and sensitivity.
   double tolerance = 1e-6;
-  /// Factor by which the local error of a sensitivity may be larger: a fit needs derivatives to one
-  /// part in a thousand.
+  /// Factor by which the local error of a sensitivity may exceed `tolerance`. A fit needs
+  /// derivatives only to one part in a thousand.
   double sensitivity_looseness = 50.0;
-  /// Whether the rest of a run is read from its last periods once it is in its periodic steady
-  /// state, or comes nearer to it in a way that is known. Else every period is simulated.
+  /// Whether to extrapolate the rest of a run from its last periods, once it has reached its
+  /// periodic steady state or approaches it in a known way. Otherwise every period is simulated.
   bool periodic_steady_state = true;
-  long max_steps = 5'000'000;                 ///< accepted and rejected
+  long max_steps = 5'000'000;                 ///< limit for accepted and rejected steps together
   double max_seconds = 120.0;                 ///< wall time of one simulation
-  const std::atomic<bool>* cancel = nullptr;  ///< ends the simulation when it becomes true
+  const std::atomic<bool>* cancel = nullptr;  ///< the simulation ends when this becomes true
 
-  /// @throws std::invalid_argument  naming the field
+  /// @throws std::invalid_argument  if a field is invalid; the message names the field
   void validate() const;
 };
 
 enum class SimulationStatus {
   ok,
   bad_parameters,  ///< a value is not finite or outside its hard bounds
-  not_finite,      ///< the state left the numbers
+  not_finite,      ///< a state is infinite or NaN
   step_too_small,  ///< error control required a vanishing step
   too_many_steps,
   out_of_time,
   cancelled,
-  no_equilibrium,  ///< Before::steady, but the rig does not settle
+  no_equilibrium,  ///< Before::steady was requested, but the rig does not settle
 };
 std::string_view to_string(SimulationStatus status);
 
-/// A simulated run. Unless `status` is ok the matrices are empty: a failed run has no numbers that
-/// could be taken for good ones.
+/// A simulated run. The matrices are empty unless `status` is ok, so that nobody takes the output
+/// of a failed run for a result.
 struct Simulation {
   SimulationStatus status = SimulationStatus::ok;
-  double failed_at_s = 0.0;  ///< time at which it ended, if it failed
-  std::string reason;        ///< in words, if it failed
+  double failed_at_s = 0.0;  ///< time at which a failed run ended
+  std::string reason;        ///< explains a failure; empty if the run succeeded
   Eigen::MatrixXd outputs;   ///< shape (samples, outputs), SI
   /// d outputs / d parameter: one matrix of shape (samples, free) per output, SI.
   std::vector<Eigen::MatrixXd> sensitivities;
@@ -151,7 +151,7 @@ struct Simulation {
   /// order of Layout.
   Eigen::VectorXd end_state;
   Eigen::MatrixXd end_sensitivities;  ///< shape (states, columns of `sensitivities`)
-  Eigen::VectorXd state_floor;        ///< below it a state counts as zero in the error control
+  Eigen::VectorXd state_floor;        ///< size below which the error control treats a state as zero
   long steps = 0;
   long rejected_steps = 0;
   bool ok() const { return status == SimulationStatus::ok; }
@@ -162,38 +162,38 @@ struct Rig {
   PlantKind plant = PlantKind::load_pressure;
   ControllerKind controller = ControllerKind::pid;
   InitialState initial = InitialState::rest;
-  Feedback feedback = Feedback::position;  ///< controlled quantity, if there is a controller
+  Feedback feedback = Feedback::position;  ///< controlled quantity of a rig with a controller
   Before before = Before::hold;
   bool pilot = false;  ///< the drive is a pilot pressure [Pa], not a command [V]
 };
 
-/// How many states a rig has, and how many the solvers of its plant have room for.
+/// Number of states of a rig, and the largest number that the solvers for its plant support.
 struct StateCount {
   int needed = 0;
   int room = 0;
 };
 StateCount count_states(const Rig& rig, const ParameterValues& parameters);
 
-/// Solves the model from the first of `times_s` to the last.
+/// Simulates the rig from the first to the last of `times_s`.
 ///
-/// @param parameters  SI values and which are given (decides the optional terms)
-/// @param free        table indices of the parameters whose sensitivities are wanted; may be empty
+/// @param parameters  SI values, and which of them were given: this decides on the optional terms
+/// @param free        table indices of the parameters with sensitivities; may be empty
 /// @param times_s     shape (samples), increasing, at least one
 /// @param outputs     what to return, in this order
-/// @return            never throws for a point that cannot be simulated: see `status`
-/// @throws std::invalid_argument  broken contract (sizes, order, options)
+/// @return            a run that cannot be simulated is reported in `status`, not thrown
+/// @throws std::invalid_argument  if sizes, order or options break the contract
 Simulation simulate(const Rig& rig, const ParameterValues& parameters, std::span<const int> free,
                     const SimulationInputs& inputs, std::span<const double> times_s,
                     std::span<const Output> outputs, const SimulationOptions& options = {});
 
-/// The same from a state in the middle of a longer run, in place of the rig's initial one. Started
-/// from the `end_state` of a run that ended at the first of these times, it continues that run.
-/// Lags of sensors start anew.
+/// Simulates from a state in the middle of a longer run instead of the rig's initial state. If
+/// `state` is the `end_state` of a run that ended at the first of `times_s`, the simulation
+/// continues that run. Sensor lags start anew.
 ///
-/// @param state  shape (states), at the first of `times_s`; all sensitivities have a column per
-///               state after those of `free`
-/// @throws std::invalid_argument  also for a controller with `sample_time`, since the phase of its
-///                                ticks is unknown
+/// @param state  shape (states), at the first of `times_s`. All sensitivities have one column per
+///               state after the columns of `free`.
+/// @throws std::invalid_argument  as simulate(), and if the controller has a `sample_time`, because
+///                                the phase of its ticks is unknown
 Simulation simulate_from(const Eigen::VectorXd& state, const Rig& rig,
                          const ParameterValues& parameters, std::span<const int> free,
                          const SimulationInputs& inputs, std::span<const double> times_s,

@@ -14,31 +14,32 @@ namespace {
 using datasets::Channel;
 using model::Output;
 
-/// What is known of a rig's size, SI; NaN where a value is missing.
+/// Characteristic sizes of a rig, SI; NaN where a value is missing.
 struct RigScale {
-  double force_n = 0.0;        ///< piston area times supply
-  double moment_n_m = 0.0;     ///< the same on the lever
+  double force_n = 0.0;        ///< piston area times supply pressure
+  double moment_n_m = 0.0;     ///< that force times the lever
   double command_v = 0.0;      ///< full scale of the command [V], or of the pilot pressure [Pa]
-  double flow_m3_per_s = 0.0;  ///< through the valve at full command and no load
+  double flow_m3_per_s = 0.0;  ///< flow through the valve at full command without load
   double travel_m = 0.0;       ///< stroke, or oil volume over piston area
   double turn_rad = 0.0;       ///< angle between the stops
   double middle_rad = 0.0;     ///< angle midway between the stops
-  double pressure_pa = 0.0;    ///< supply
+  double pressure_pa = 0.0;    ///< supply pressure
   double sample_s = 0.0;       ///< shortest sampling interval
-  double kp = 0.0;             ///< gain of the loop that the rig has, in its units
+  double kp = 0.0;             ///< gain of the rig's loop, in the units of that loop
   double kd = 0.0;
   double mass_kg = 0.0;
-  double leak_per_coefficient = 0.0;  ///< flow of the orifice leak at supply, per coefficient
+  double leak_per_coefficient =
+      0.0;  ///< flow of the orifice leak at supply pressure, per leakage coefficient
 };
 
-/// A size that follows from the rig.
+/// A size derived from the rig.
 struct EffectSize {
   double value = 0.0;  ///< standard deviation, SI
   const char* from = "";
 };
 
-/// One row of the catalogue. To add an effect: a row here and its key in
-/// datasets/considered_settings.cpp. The rows of kp, ki and kd are the gains of whichever
+/// One row of the catalogue. To add an effect, add a row here and its key to
+/// datasets/considered_settings.cpp. The rows kp, ki and kd stand in for the gains of whichever
 /// loop the rig has.
 struct CatalogueRow {
   const char* key;
@@ -48,19 +49,19 @@ struct CatalogueRow {
   EffectSize (*size)(const RigScale& rig);
 };
 
-/// The converter of a laboratory, where the controller has no limit of its own.
+/// Full scale of a typical laboratory converter; used if the controller has no limit of its own.
 constexpr double kUsualCommand_v = 10.0;
-/// Lags and delays are of the order of the sampling interval, and within this.
+/// Lags and delays are of the order of the sampling interval, within these limits.
 constexpr double kLeastLag_s = 0.05e-3;
 constexpr double kMostLag_s = 0.5e-3;
-/// Usual periods of controllers.
+/// Typical range of controller periods.
 constexpr double kShortestPeriod_s = 0.1e-3;
 constexpr double kLongestPeriod_s = 1e-3;
-/// How often the play of a valve is worked out anew from the command that it brings about.
+/// How often the play of a valve is recomputed from the command that it causes.
 constexpr int kPlayRounds = 2;
 
-/// An effect moves an output by a ten-thousandth of its peak or more: this resolves a hundredth of
-/// it.
+/// An effect changes an output by at least a ten-thousandth of its peak. This tolerance resolves a
+/// hundredth of that.
 constexpr double kSecantTolerance = 1e-6;
 /// The same for a recorded drive, as a multiple of the measured tolerance, and its limit: of a
 /// difference between two runs that are alike only the difference of their errors counts.
@@ -267,7 +268,7 @@ double value_of_key(const Problem& problem, const model::ParameterValues& values
   return index < 0 ? std::nan("") : values.value[static_cast<std::size_t>(index)];
 }
 
-/// Whether the model has a pump of limited flow.
+/// Whether the model has a pump with limited flow.
 bool has_pump(const model::ParameterValues& values) {
   return model::parameter_index(values.plant, "pump_flow") >= 0 && values.is_given("pump_flow");
 }
@@ -330,8 +331,8 @@ bool is_curved(std::string_view key) {
          key == "pilot_dead_band" || key == "stribeck_friction" || key.ends_with("_hysteresis");
 }
 
-/// Whether a key belongs to the kind of valve that the rig lacks: driven by a voltage, or by a
-/// pilot.
+/// Whether a key belongs to the kind of valve that the rig does not have: voltage-driven or
+/// pilot-operated.
 bool is_of_other_valve(std::string_view key, bool pilot) {
   if (key.starts_with("pilot_")) return !pilot;
   return pilot && (key == "valve_dead_band" || key == "valve_offset" || key == "valve_hysteresis");
@@ -341,7 +342,7 @@ bool is_volume(std::string_view key) {
   return key == "total_volume" || key.starts_with("dead_volume");
 }
 
-/// Key of a row in the loop that a rig has: "kp" is "force_kp" of a loop on force.
+/// Key of a row for the loop that the rig has. For a force loop, "kp" becomes "force_kp".
 std::string_view key_in_loop(std::string_view key, const model::FeedbackRow& loop) {
   if (key == "kp") return loop.kp;
   if (key == "ki") return loop.ki;
@@ -352,14 +353,14 @@ bool is_of_controller(std::string_view key, const model::FeedbackRow& loop) {
   return key == loop.kp || key == loop.ki || key == loop.kd || key == "sample_time";
 }
 
-/// Whether an effect is an error of a value that the model has: hoses add to a volume, converters
-/// change a gain.
+/// Whether an effect is the error of a value that the model has. Hoses add to a volume, and
+/// converters change a gain.
 bool changes_value(std::string_view key, const model::FeedbackRow& loop) {
   return is_volume(key) || key == loop.kp || key == loop.kd;
 }
 
-/// Whether the model has the effect already, or its size is stated elsewhere: a parameter that is
-/// free or given in any condition, a sensor with a certificate.
+/// Whether the model includes the effect already, or its size is given elsewhere: the parameter is
+/// free or given in any condition, or the sensor has a certificate.
 bool is_in_model(const Problem& problem, std::string_view key, int index) {
   const auto& unknowns = problem.map.unknowns();
   if (std::any_of(unknowns.begin(), unknowns.end(),
@@ -389,7 +390,7 @@ bool is_in_model(const Problem& problem, std::string_view key, int index) {
   return false;
 }
 
-/// Effects of the catalogue that may act in a problem, whatever the campaign says of them.
+/// Effects in the catalogue that may act in a problem, regardless of the campaign's settings.
 std::vector<Effect> possible_effects(const Problem& problem, std::span<const double> z) {
   std::vector<Effect> result;
   if (problem.conditions.empty()) return result;
@@ -427,9 +428,9 @@ std::vector<Effect> possible_effects(const Problem& problem, std::span<const dou
     if (row.kind == EffectKind::supply_sag &&
         std::any_of(problem.conditions.begin(), problem.conditions.end(),
                     [](const auto& each) { return each.inputs.supply_pressure_pa.has_value(); }))
-      continue;  // what was recorded includes its sag
+      continue;  // the recorded pressure includes the sag
     if (row.kind == EffectKind::supply_sag && has_pump(values))
-      continue;  // the pump decides how far its pressure falls
+      continue;  // the pump determines how far its pressure falls
     if (!(effect.range > 0.0) || !std::isfinite(size.value) || !(size.value > 0.0)) continue;
     effect.about.key = key;
     effect.about.meaning = row.meaning;
@@ -442,8 +443,8 @@ std::vector<Effect> possible_effects(const Problem& problem, std::span<const dou
   return result;
 }
 
-/// The supply at which a flow is fed through a line that costs `sag` of it at the flow of the
-/// range.
+/// The supply pressure at the end of a line that loses the fraction `sag` of it when the flow
+/// equals the effect's range.
 model::Signal sagging_supply(const Effect& effect, const model::ParameterValues& values,
                              std::span<const double> time_s, const Eigen::VectorXd& flow,
                              double sag) {
@@ -454,12 +455,12 @@ model::Signal sagging_supply(const Effect& effect, const model::ParameterValues&
   return model::Signal::linear({time_s.begin(), time_s.end()}, std::move(supply));
 }
 
-/// What the valve is driven by.
+/// Output that drives the valve.
 Output valve_drive(const model::ParameterValues& values) {
   return model::has_output(values, Output::command) ? Output::command : Output::pilot_pressure;
 }
 
-/// Position behind a play, of a sensor or a spool: it follows where that has been taken up.
+/// Position of a sensor or spool with play. It moves only after the play has been taken up.
 Eigen::VectorXd with_play(const Eigen::VectorXd& x, double half_width) {
   Eigen::VectorXd y = x;
   for (Eigen::Index i = 1; i < x.size(); ++i)
@@ -467,14 +468,14 @@ Eigen::VectorXd with_play(const Eigen::VectorXd& x, double half_width) {
   return y;
 }
 
-/// What the spool is off by if it follows its signal with a play.
+/// Error of the spool position if the spool follows its signal with play.
 model::Signal spool_error(std::span<const double> time_s, const Eigen::VectorXd& signal,
                           double half_width) {
   const Eigen::VectorXd error = with_play(signal, half_width) - signal;
   return model::Signal::linear({time_s.begin(), time_s.end()}, {error.begin(), error.end()});
 }
 
-/// Options of the simulations of effects.
+/// Simulation options for effects.
 model::SimulationOptions effect_options(const Problem& problem, std::size_t condition,
                                         const std::atomic<bool>* cancel) {
   auto options = problem.simulation_options(cancel);
@@ -490,7 +491,7 @@ model::SimulationOptions effect_options(const Problem& problem, std::size_t cond
 }  // namespace
 
 std::optional<Channel> sensor_channel(std::string_view key) {
-  // "force_kp" is a gain of a loop, "force_gain" that of a sensor.
+  // "force_kp" is the gain of a loop, "force_gain" that of a sensor.
   const std::string_view error = key.substr(std::min(key.rfind('_'), key.size()));
   if (error != "_lag" && error != "_gain" && error != "_offset" && error != "_bow" &&
       error != "_wave" && error != "_hysteresis")
@@ -591,8 +592,9 @@ OutputsWith outputs_with(const Problem& problem, std::size_t condition, std::spa
   };
   model::Simulation simulation = run(values, free);
   if (!simulation.ok()) return {};
-  // Edges between the ticks of another period are seen later by a part of it: no smooth function
-  // of the period, whose effect is therefore taken in proportion to that of the plausible one.
+  // With another sampling period, edges between the ticks are seen later by a fraction of it. The
+  // output is not a smooth function of the period, so its effect is taken as proportional to that
+  // of the plausible period.
   if (sampling < effects.size()) {
     model::ParameterValues ticking = values;
     ticking.set(effects[sampling].index, effects[sampling].about.size);
@@ -661,7 +663,8 @@ std::vector<Eigen::MatrixXd> effect_changes(const Problem& problem, std::size_t 
   };
   const model::Simulation base = run_with(values, data.inputs, outputs);
   if (!base.ok()) return result;
-  // By themselves: a flow makes a simulation take more steps, and its samples longer to read.
+  // Simulated separately: requesting a flow makes a simulation take more steps, and its samples
+  // take longer to read.
   Eigen::VectorXd flow;
   Eigen::VectorXd drive;
   if (std::any_of(effects.begin(), effects.end(), [](const Effect& each) {

@@ -25,40 +25,44 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Directions in which the information of the records is less than this part of the priors' have
-/// none.
+/// The records do not determine a direction in which they carry less than this fraction of the
+/// priors' information.
 constexpr double kLeastInformation = 1e-6;
-/// Level of the tests for missing effects, of all together: on the right model one fit in fifty
-/// proposes one.
+/// Significance level for all tests for missing effects together: with the right model, one fit in
+/// fifty proposes an effect.
 constexpr double kMissingLevel = 0.02;
-/// Level of the tests for what no effect explains, of all records together (Bonferroni).
+/// Significance level of the tests for unexplained error, for all records together (Bonferroni).
 constexpr double kUnexplainedLevel = 0.01;
-/// Sizes of which the logarithms differ by less have the same secant.
+/// Two sizes have the same secant if their logarithms differ by less than this.
 constexpr double kSameSize = 0.5;
-/// Chord iterations, and a step, in standard errors of white noise, after which they have settled.
+/// Limit for chord iterations, and the step, in standard errors of white noise, at which they have
+/// converged.
 constexpr int kMostChords = 12;
 constexpr double kSettledMove = 0.3;
-/// How often secants are taken again.
+/// How often secants are recomputed.
 constexpr int kMostSecants = 2;
-/// More terms than this at once are a guess.
+/// Naming more terms than this at once would be a guess.
 constexpr std::size_t kMostMissing = 3;
-/// How many effects are refitted alone, and what part of the best explanation is worth it.
+/// Number of effects that are refitted individually, and the fraction of the best explanation from
+/// which a refit is worthwhile.
 constexpr std::size_t kMostCandidates = 8;
 constexpr double kWorthRefitting = 0.2;
-/// By how many times a score test may mistake the size of an effect.
+/// Factor by which a score test may misjudge the size of an effect.
 constexpr double kMistakenSize = 3.0;
 /// Size at which the refit of a further effect begins, as a multiple of its plausible size.
 constexpr double kFirstSize = 0.3;
 
-/// Effects and what the fit and the residuals see of them, each in units of its plausible size.
+/// Effects, and how they appear to the fit and in the residuals. Each is in units of its plausible
+/// size.
 struct Seen {
   std::vector<Effect> effects;
-  MatrixXd
-      taken;  ///< C: what the fit takes for a change, shape (all directions of the root, effects)
+  MatrixXd taken;  ///< C: what the fit mistakes for a change of the estimates, shape (all
+                   ///< directions of the root, effects)
   MatrixXd left;   ///< M
   VectorXd score;  ///< s
   MatrixXd basis;  ///< T: left = T^-T T^-1 on the directions that the records determine
-  /// EffectColumns Q with Q^T Q = 1 that span what is left, and the residual without its effects.
+  /// EffectColumns Q with Q^T Q = 1 that span the remaining effects, and the residual without the
+  /// effects.
   std::vector<ScoreRows> rows;
 };
 
@@ -66,7 +70,7 @@ struct Seen {
 /// all conditions are the most memory that a fit holds, hence seven digits.
 using EffectColumns = Eigen::MatrixXf;
 
-/// Takes out the effects that cannot be simulated, with the reason.
+/// Removes effects that cannot be simulated, and records the reason.
 void drop_failed(std::vector<Effect>& effects, std::vector<EffectColumns>& columns,
                  std::vector<ConsideredEffect>& dropped) {
   std::vector<Index> kept;
@@ -88,12 +92,12 @@ void drop_failed(std::vector<Effect>& effects, std::vector<EffectColumns>& colum
   for (EffectColumns& each : columns) each = EffectColumns(each(Eigen::all, kept));
 }
 
-/// What the fit takes for a change in the directions of a condition.
+/// What the fit mistakes for a change of the estimates, in the directions of a condition.
 MatrixXd taken_in(std::size_t condition, const Uncertainty& found, const Seen& seen) {
   return seen.taken(found.root.directions(condition), Eigen::all);
 }
 
-/// What fit and residuals see of the effects, whose columns are used up.
+/// Computes how the effects appear to the fit and in the residuals. Consumes their columns.
 Seen look_at(std::vector<Effect> effects, std::vector<EffectColumns>& columns,
              const Uncertainty& found) {
   const std::vector<ScoreRows>& scores = found.scores;
@@ -120,7 +124,7 @@ Seen look_at(std::vector<Effect> effects, std::vector<EffectColumns>& columns,
   const Index determined = count - first;
   seen.basis = solver.eigenvectors().rightCols(determined) *
                values.tail(determined).cwiseSqrt().cwiseInverse().asDiagonal();
-  // The effects by white noise, so that what is left of the residual is noise.
+  // Estimates the effects under white noise, so that the remaining residual is noise.
   const VectorXd size = seen.basis.transpose() * seen.score;
   const VectorXd first_guess =
       size.array() * values.tail(determined).array() / (1.0 + values.tail(determined).array());
@@ -136,11 +140,11 @@ Seen look_at(std::vector<Effect> effects, std::vector<EffectColumns>& columns,
   return seen;
 }
 
-/// Covariance of the scores of what is left, of the columns Q and of each effect alone.
+/// Covariance of the remaining scores: of the columns Q, and of each effect individually.
 struct ScoreCovariance {
   MatrixXd directions;  ///< W, shape (directions)^2
   VectorXd alone;       ///< variance of the score of each effect
-  VectorXd freedom;     ///< with which that is known
+  VectorXd freedom;     ///< degrees of freedom of each variance
 };
 
 ScoreCovariance covariance_of(const Problem& problem, std::span<const double> z, const Seen& seen,
@@ -176,7 +180,8 @@ ScoreCovariance covariance_of(const Problem& problem, std::span<const double> z,
   return result;
 }
 
-/// Covariance of the scores of the columns Q if the residuals were white noise of their own size.
+/// Covariance of the scores of the columns Q if the residuals were white noise of the observed
+/// size.
 MatrixXd white_covariance(const Seen& seen) {
   double squares = 0.0;
   double count = 0.0;
@@ -188,15 +193,15 @@ MatrixXd white_covariance(const Seen& seen) {
   return squares / std::max(1.0, count) * MatrixXd::Identity(determined, determined);
 }
 
-/// Sizes of the effects by prior and records, over their plausible sizes.
+/// Posterior sizes of the effects, as multiples of their plausible sizes.
 struct Sizes {
   VectorXd mean;
   MatrixXd covariance;
-  VectorXd likeliest;  ///< all together: what is cut off at zero has its mean elsewhere
+  VectorXd likeliest;  ///< joint mode; it differs from the mean if an effect is truncated at zero
 };
 
-/// Minimum of (x - mean)^T precision (x - mean) where some components cannot be negative, by
-/// coordinates.
+/// Minimises (x - mean)^T precision (x - mean) by coordinate descent, where some components must
+/// not be negative.
 VectorXd likeliest_of(const VectorXd& mean, const MatrixXd& precision,
                       const std::vector<Index>& never_negative) {
   constexpr int kMostSweeps = 1000;
@@ -247,11 +252,10 @@ MatrixXd correlation_of(const MatrixXd& covariance) {
   return correlation;
 }
 
-/// Takes the secants of curved effects again, at the size that prior and records leave them.
+/// Recomputes the secants of curved effects at the sizes that prior and records give.
 ///
-/// @return  whether any was; then their columns, and those of all others as they were, are in
-///          `columns`, and what is seen has no rows any more: both at once are half of a fit's
-///          memory
+/// @return  whether any was recomputed. If so, `columns` has the columns of all effects, and `seen`
+///          has lost its rows, because keeping both would take half of a fit's memory.
 bool take_again(const Problem& problem, std::span<const double> z, const Uncertainty& found,
                 const Sizes& sizes, int threads, const std::atomic<bool>* cancel, Seen& seen,
                 std::vector<EffectColumns>& columns) {
@@ -282,13 +286,13 @@ bool take_again(const Problem& problem, std::span<const double> z, const Uncerta
   return true;
 }
 
-/// Sizes of the effects and move of the estimate where the effects exceed the range in which the
-/// linear model is accurate: simulations with all of them, at moved parameters, in place of the
-/// secants, the sensitivities being those of the fit (chord iterations). With the sizes come the
-/// scores and the residuals as they would be if all were linear about the optimum.
+/// Computes the sizes of the effects and the move of the estimate if the effects exceed the range
+/// in which the linear model is accurate. It simulates all effects together at moved parameters
+/// instead of using secants, with the sensitivities of the fit (chord iterations). It also replaces
+/// the scores and residuals by those that a model linear about the optimum would give.
 ///
-/// @param moved  of the estimate, shape (all directions of the root)
-/// @return  whether it settled; else nothing has changed
+/// @param moved  move of the estimate, shape (all directions of the root)
+/// @return  whether the iterations converged; if not, nothing has changed
 bool follow_curvature(const Problem& problem, std::span<const double> z, const Uncertainty& found,
                       const MatrixXd& directions, int threads, const std::atomic<bool>* cancel,
                       Seen& seen, Sizes& sizes, VectorXd& moved) {
@@ -351,7 +355,7 @@ bool follow_curvature(const Problem& problem, std::span<const double> z, const U
   return false;
 }
 
-/// What the residuals say of each effect alone.
+/// Tests each effect individually against the residuals.
 void test_alone(const Seen& seen, const ScoreCovariance& scores,
                 std::vector<ConsideredEffect>& about) {
   std::vector<double> p_values;
@@ -376,7 +380,8 @@ void test_alone(const Seen& seen, const ScoreCovariance& scores,
   for (std::size_t i = 0; i < tested.size(); ++i) about[tested[i]].p_of_all = together[i];
 }
 
-/// The effect that explains most of what those taken leave, where it is significant beside them.
+/// Returns the effect that explains most of what the selected effects leave, if it is significant
+/// in addition to them.
 std::optional<std::size_t> next_missing(const Seen& seen, const ScoreCovariance& scores,
                                         const std::vector<ConsideredEffect>& about,
                                         const std::vector<std::size_t>& taken) {
@@ -391,9 +396,10 @@ std::optional<std::size_t> next_missing(const Seen& seen, const ScoreCovariance&
   for (std::size_t e = 0; e < about.size(); ++e) {
     const auto k = static_cast<Index>(e);
     if (std::find(taken.begin(), taken.end(), e) != taken.end() || !about[e].p_value) continue;
-    // What would be negative alone is no explanation, whatever it does beside others.
+    // An effect that would be negative on its own is no explanation, whatever it does in
+    // combination.
     if (about[e].one_sided && seen.score(k) < 0.0) continue;
-    // Score, information and its variance of this effect beside those taken.
+    // Score, information and score variance of this effect, given the selected ones.
     VectorXd weights = VectorXd::Zero(seen.left.rows());
     weights(k) = 1.0;
     if (!columns.empty()) {
@@ -405,7 +411,8 @@ std::optional<std::size_t> next_missing(const Seen& seen, const ScoreCovariance&
     const double information = weights.dot(seen.left * weights);
     const double spread = weights.dot(variance * weights);
     if (!(information > 0.01 * seen.left(k, k)) || !(spread > 0.0)) continue;
-    // The variance of its own score may be by the repeats, which knows more than `variance`.
+    // The variance of its own score may come from the repeats, which are more informative than
+    // `variance`.
     const double widened = std::max(1.0, scores.alone(k) / variance(k, k));
     const double score = weights.dot(seen.score);
     const double t = score / std::sqrt(spread * widened);
@@ -421,7 +428,7 @@ std::optional<std::size_t> next_missing(const Seen& seen, const ScoreCovariance&
   return tested[static_cast<std::size_t>(best)];
 }
 
-/// Forward selection, as long as some effect is significant beside those that were taken already.
+/// Forward selection: adds effects as long as one is significant in addition to those selected.
 std::vector<std::size_t> missing_effects(const Seen& seen, const ScoreCovariance& scores,
                                          const std::vector<ConsideredEffect>& about) {
   std::vector<std::size_t> taken;
@@ -433,25 +440,26 @@ std::vector<std::size_t> missing_effects(const Seen& seen, const ScoreCovariance
   return taken;
 }
 
-/// How many times the variance of a score is what white noise of variance 1 would give it.
+/// Variance of a score relative to its variance under white noise of variance 1.
 double score_inflation(const Seen& seen, const ScoreCovariance& scores, std::size_t effect) {
   const auto k = static_cast<Index>(effect);
   return std::max(scores.alone(k) / seen.left(k, k), 1e-300);
 }
 
-/// One of the models that were refitted.
+/// One of the refitted models.
 struct RefittedFit {
   std::vector<std::size_t> effects;
   Refit refit;
 
-  /// Minus twice the logarithm of its probability by prior and records, up to a constant: two
-  /// effects that act alike differ in how plausible the sizes are which they would need.
+  /// Minus twice the log posterior, up to a constant. It separates two effects that act alike by
+  /// how plausible the sizes are that they would need.
   double misfit(double scale) const { return refit.squares / scale + refit.sizes.squaredNorm(); }
 };
 
-/// Refits the effects that explain most, alone and then beside each other. Score tests are linear
-/// about the fit, which has mistaken the missing effect for a change of the estimates: two that act
-/// alike may change places there. The one that is likeliest by prior and records is named first.
+/// Refits the effects that explain most, first individually and then in combination. Score tests
+/// are linear about the fit, which has mistaken the missing effect for a change of the estimates,
+/// so they may confuse two effects that act alike. The effect with the highest posterior is named
+/// first.
 std::vector<RefittedFit> refit_best(const Problem& problem, std::span<const double> z,
                                     const Uncertainty& found, const Seen& seen,
                                     const ScoreCovariance& scores, int threads,
@@ -461,7 +469,7 @@ std::vector<RefittedFit> refit_best(const Problem& problem, std::span<const doub
   std::vector<RefittedFit> models;
   if (missing.empty() || z.size() > kMostRefitted) return models;
   const Refitter refitter(problem, z, found.scores, threads, cancel);
-  // From where the linear model leads with these effects.
+  // Starts where the linear model with these effects predicts the minimum.
   const auto refit = [&](const std::vector<std::size_t>& which, const std::vector<double>& from,
                          const VectorXd& sizes) {
     std::vector<Effect> effects;
@@ -471,9 +479,9 @@ std::vector<RefittedFit> refit_best(const Problem& problem, std::span<const doub
   auto plain = refit({}, {z.begin(), z.end()}, VectorXd::Zero(0));
   if (!plain) return models;
   const double scale = score_inflation(seen, scores, missing.front());
-  // Each by itself, not all together: that some effect is there is decided, and where the linear
-  // model is far off the test of the right one may be no clear one. What only a size beyond all
-  // plausible ones would explain, as a hose in place of the oil, would be named by nobody.
+  // Tests each effect individually rather than all together. That some effect is present is already
+  // decided, and if the linear model is far off, the test of the right effect may be weak. Excludes
+  // an effect that would need an implausible size, such as hoses in place of oil compressibility.
   const auto plausible = [&](std::size_t e) {
     const double size = about[e].alone.value_or(0.0) / about[e].size / kMistakenSize;
     return size * size < about[missing.front()].explains / scale;
@@ -516,7 +524,7 @@ std::vector<RefittedFit> refit_best(const Problem& problem, std::span<const doub
     sizes << best.refit.sizes, kFirstSize;
     auto more = refit(which, best.refit.z, sizes);
     if (!more || more->sizes(more->sizes.size() - 1) == 0.0) break;
-    // What the score test claims beside the first may be the curvature of that one.
+    // The score test may mistake the curvature of the first effect for a further effect.
     const auto k = static_cast<Index>(*next);
     const double t = std::sqrt(std::max(0.0, best.refit.squares - more->squares) /
                                score_inflation(seen, scores, *next));
@@ -531,8 +539,8 @@ std::vector<RefittedFit> refit_best(const Problem& problem, std::span<const doub
   return models;
 }
 
-/// Into the result goes what was refitted: sizes and errors of the missing effects, and the models
-/// with their weights.
+/// Writes the refits into the result: sizes and errors of the missing effects, and the models with
+/// their weights.
 void describe_refits(const Seen& seen, const ScoreCovariance& scores,
                      const std::vector<RefittedFit>& models,
                      const std::vector<std::size_t>& missing, Considered& considered) {
@@ -571,7 +579,7 @@ void describe_refits(const Seen& seen, const ScoreCovariance& scores,
   for (RefittedModel& each : considered.refitted) each.weight /= sum;
 }
 
-/// Average of an estimate over the models that were refitted.
+/// Average of an estimate over the refitted models.
 std::optional<AveragedEstimate> averaged_over(const Problem& problem, std::size_t unknown,
                                               const std::vector<RefittedFit>& models,
                                               const Considered& considered, double scale) {
@@ -595,8 +603,8 @@ std::optional<AveragedEstimate> averaged_over(const Problem& problem, std::size_
   return result;
 }
 
-/// Contributions of the effects to the variance of an estimate; those of effects that the records
-/// cannot separate are divided by their part in it, none less than zero.
+/// Contributions of the effects to the variance of an estimate, none below zero. Effects that the
+/// records cannot separate share their joint contribution in proportion to their terms.
 VectorXd variances_by_effect(const VectorXd& moves, const MatrixXd& covariance) {
   const VectorXd along = covariance * moves;
   const double all = std::max(0.0, moves.dot(along));
@@ -605,13 +613,12 @@ VectorXd variances_by_effect(const VectorXd& moves, const MatrixXd& covariance) 
   return sum > 0.0 ? VectorXd(parts * (all / sum)) : VectorXd::Zero(moves.size());
 }
 
-/// Budget of one estimate with the error that it would have if the model were exact.
+/// Uncertainty budget of one estimate, starting from the error that it would have if the model were
+/// exact. If an effect was refitted, the averaged estimate is a correction without a linear model.
+/// Its difference from the linear correction is a contribution with a uniform distribution.
 ///
-/// @param moves  change of the estimate by each effect at its plausible size, SI
-/// Where an effect was refitted, the averaged estimate is corrected without a linear model. What
-/// the linear correction differs by from it is a contribution, evenly distributed within that.
-///
-/// @param shift  by the mean sizes of the effects, SI
+/// @param moves  change of the estimate due to each effect at its plausible size, SI
+/// @param shift  change of the estimate due to the mean sizes of the effects, SI
 Budget95 budget_of(const Uncertainty& found, std::size_t unknown, const FittedParameter& parameter,
                    double slope, const Seen& seen, const VectorXd& moves, const Sizes& sizes,
                    double shift) {
@@ -653,15 +660,15 @@ Budget95 budget_of(const Uncertainty& found, std::size_t unknown, const FittedPa
   return budget;
 }
 
-/// The most that the error of the model which no effect explains could move each estimate, in the
-/// unit box: an error of the size that the residual without the effects shows, where it is
-/// significant, in phase with the sensitivity throughout.
+/// Upper limit of how far model error that no effect explains could move each estimate, in the unit
+/// box. Assumes an error as large as the residual without the effects, if that is significant, and
+/// everywhere in phase with the sensitivity.
 ///
-/// @param rows  whose residuals are without the effects
+/// @param rows  rows whose residuals exclude the effects
 VectorXd unexplained_moves(const Problem& problem, const std::vector<ScoreRows>& scores,
                            const std::vector<ScoreRows>& rows, const ArrowRoot& root) {
   std::vector<LackOfFit> tests;
-  std::vector<VectorXd> moves;  // entries: unknowns that act in the condition
+  std::vector<VectorXd> moves;  // one entry per unknown that acts in the condition
   std::vector<const std::vector<int>*> whose;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const ProblemCondition& condition = problem.conditions[i];
@@ -690,12 +697,12 @@ VectorXd unexplained_moves(const Problem& problem, const std::vector<ScoreRows>&
   return squares.cwiseSqrt();
 }
 
-/// The interval of the rig. Which of the effects are there nobody knows, so that it extends over
-/// the estimate as it is, that shifted by the mean sizes of the effects and that by the likeliest
-/// ones, by the expanded uncertainty to either side; and over that of the averaged estimate, if the
-/// residuals ask for an effect.
+/// Widens the interval of an estimate. Nobody knows which effects are present, so it covers the
+/// estimate, the estimate shifted by the mean sizes of the effects and the estimate shifted by
+/// their likeliest sizes, each plus or minus the expanded uncertainty. If the residuals indicate an
+/// effect, it also covers the interval of the averaged estimate.
 ///
-/// @param likeliest  shift by the likeliest sizes, SI
+/// @param likeliest  shift due to the likeliest sizes, SI
 void widen(const Problem& problem, std::size_t unknown, Budget95 budget, double likeliest,
            FittedParameter& parameter) {
   const model::ParameterSpec& spec = problem.spec(unknown);
@@ -733,11 +740,11 @@ void consider_effects(const Problem& problem, std::span<const double> z, const U
   Sizes sizes;
   VectorXd moved;
   std::vector<RefittedFit> models;
-  std::vector<std::size_t> missing;  // positions
+  std::vector<std::size_t> missing;  // indices of effects
   double scale = 1.0;
   if (!effects.empty()) {
     seen = look_at(std::move(effects), columns, found);
-    // White noise is accurate enough to choose the size of a secant.
+    // White noise is accurate enough for choosing the size of a secant.
     sizes = sizes_of(*seen, white_covariance(*seen));
     for (int i = 0; i < kMostSecants; ++i) {
       if (!take_again(problem, z, found, sizes, threads, cancel, *seen, columns)) break;
@@ -794,7 +801,7 @@ void consider_effects(const Problem& problem, std::span<const double> z, const U
           parameter);
     const std::string exact = fmt::format("{}: {}", problem.name(j), parameter.reason);
     grade_widened(problem, found, j, parameter);
-    // The warning about an estimate says what its interval says now.
+    // Updates the warning about an estimate to its present interval.
     const std::string widened = fmt::format("{}: {}", problem.name(j), parameter.reason);
     const auto warning = std::find(fit.warnings.begin(), fit.warnings.end(), exact);
     if (warning != fit.warnings.end())

@@ -8,25 +8,26 @@
 
 namespace rigcal::calib {
 
-/// Widens the intervals of a fit by the small effects that the model leaves out (consider
-/// covariance: S. F. Schmidt, Advances in Control Systems 3, 1966, with the effects themselves
-/// updated by the records).
+/// Widens the intervals of a fit by the small effects that the model omits (consider covariance: S.
+/// F. Schmidt, Advances in Control Systems 3, 1966). Here the records also update the effects
+/// themselves.
 ///
-/// Each effect e_k at its plausible size adds E_k to the residual r, measured minus simulated. The
-/// fit has mistaken B B^T E e for a change of the estimates, which is C e in coordinates of the
-/// root, C = B^T E; the residuals show the rest. With the prior e ~ N(0, 1) and the rest
-/// M = E^T (I - B B^T) E, its score s, and the covariance V of that score by the scatter of the
-/// residuals or of the repeats, e has the precision 1 + M V^-1 M and the mean (1 + M V^-1 M)^-1
-/// M V^-1 s. Effects that cannot be negative are cut off at zero. An estimate then is uncertain by
-/// its error if the model were exact, and by what C e leaves open; its interval
-/// covers the estimate, and the estimates that the mean and the likeliest sizes of the effects
-/// would give, each with the expanded uncertainty. It always includes that of the exact model.
+/// At its plausible size, each effect e_k adds E_k to the residual r, measured minus simulated. The
+/// fit has mistaken B B^T E e for a change of the estimates. In coordinates of the root, this
+/// change is C e with C = B^T E. The residuals show the rest. Let e have the prior N(0, 1), the
+/// rest the matrix M = E^T (I - B B^T) E and the score s, and that score the covariance V, computed
+/// from the residuals or from the repeats. Then e has the precision 1 + M V^-1 M and the mean
+/// (1 + M V^-1 M)^-1 M V^-1 s. Effects that cannot be negative are truncated at zero. The
+/// uncertainty of an estimate combines its error if the model were exact with the remaining
+/// uncertainty of C e. Its interval covers the estimate, and also the estimates corrected for the
+/// mean and for the likeliest sizes of the effects, each plus or minus the expanded uncertainty. It
+/// always includes the interval of the exact model.
 ///
-/// It also names the effects that the residuals ask for, by score tests of each alone, by the same
-/// V, Holm's correction, and forward selection.
+/// The function also names the effects that the residuals indicate. It uses score tests of each
+/// effect with the same V, Holm's correction, and forward selection.
 ///
 /// @param found  uncertainty at the optimum, with the scores of its residuals
-/// @param fit    its parameters are those of the problem's unknowns, described
+/// @param fit    its parameters are the problem's unknowns, already described
 void consider_effects(const Problem& problem, std::span<const double> z, const Uncertainty& found,
                       int threads, const std::atomic<bool>* cancel, Fit& fit);
 

@@ -11,31 +11,31 @@
 
 namespace rigcal::calib {
 
-/// Those of the effects that a fit considered which may act in a problem, the curved ones with
-/// their secant at the size that prior and records leave them.
+/// Selects the effects considered in a fit that may act in a problem. The secants of curved effects
+/// are taken at the sizes that prior and records give.
 std::vector<Effect> considered_in(const Problem& problem, std::span<const double> z,
                                   const EffectSpread& effects);
 
-/// What the effects that a fit considered do to one condition at any values of the parameters; an
-/// effect that does not act there has zeros.
+/// Changes of the outputs of one condition due to the effects considered in a fit, at any parameter
+/// values. An effect that does not act there has zeros.
 ///
 /// @param acting   from considered_in()
-/// @param further  outputs that follow the channels
+/// @param further  outputs to append after the channels
 EffectChanges changes_by(const Problem& problem, std::size_t condition,
                          const model::ParameterValues& values, const std::vector<Effect>& acting,
                          const EffectSpread& effects, const std::atomic<bool>* cancel,
                          std::span<const model::Output> further = {});
 
-/// The same for each condition of a problem that is predicted. A condition of use `fit` has none.
+/// changes_by() for each condition that is predicted; empty for conditions of use `fit`.
 std::vector<EffectChanges> predicted_changes(const Problem& problem, std::span<const double> z,
                                              const EffectSpread& effects, int threads,
                                              const std::atomic<bool>* cancel);
 
-/// Changes of the readings of one channel by each effect of its sensor, at the size that prior and
-/// records leave it: what the measured side of a score is uncertain by, beside noise.
+/// Changes of the readings of one channel due to each effect of its sensor, at the size that prior
+/// and records give. They are the uncertainty of the measured side of a score in addition to noise.
 ///
 /// @param acting     from considered_in()
-/// @param simulated  of the channel, at `time_s`
+/// @param simulated  simulated values of the channel at `time_s`
 std::vector<std::vector<double>> sensor_changes(datasets::Channel channel,
                                                 const std::vector<Effect>& acting,
                                                 const EffectSpread& effects,

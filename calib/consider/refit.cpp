@@ -17,21 +17,20 @@ using Eigen::VectorXd;
 
 constexpr int kMostRefitSteps = 12;
 constexpr int kMostStepHalvings = 5;
-/// The search ends with a step that lowers the squares by less, in variances of a weighted
-/// residual.
+/// The search ends when a step promises to lower the sum of squares by less than this, in variances
+/// of a weighted residual.
 constexpr double kSettledFall = 0.02;
-/// Fraction of what it promises that a step must at least fall: beside a kink the derivatives
-/// promise what no step keeps, and steps that hardly fall would go on to the last one.
+/// Smallest actual decrease as a fraction of the predicted one. Beside a kink the derivatives
+/// predict what no step achieves, and tiny decreases would go on to the last iteration.
 constexpr double kLeastFall = 0.01;
 /// Fall that the simulations resolve, in the same unit.
 constexpr double kResolvedFall = 1.0;
-/// As a multiple of the plausible size. A shorter lag is stiff, and counts as none.
+/// Smallest size as a multiple of the plausible size. A shorter lag is stiff and counts as zero.
 constexpr double kLeastSize = 0.02;
-/// Added to the scaled J^T J, so that directions that the records do not determine stay where they
-/// are.
+/// Added to the scaled J^T J, so that undetermined directions do not move.
 constexpr double kRidge = 1e-9;
 
-/// (J^T J)^-1 with columns scaled to 1.
+/// (J^T J)^-1, computed with columns scaled to 1.
 MatrixXd scaled_inverse(const MatrixXd& normal) {
   const VectorXd scale =
       normal.diagonal().cwiseSqrt().unaryExpr([](double d) { return d > 0.0 ? 1.0 / d : 1.0; });
@@ -90,7 +89,7 @@ void Refitter::complete(std::size_t condition, const std::vector<Effect>& effect
                         std::span<const double> z, const VectorXd& sizes, Part& part) const {
   const std::vector<int>& acting = problem_.map.acting(condition);
   const Index unknowns = part.jacobian.cols() - sizes.size();
-  // The difference is taken between runs that are alike: derivatives change the error control.
+  // The difference uses two runs without derivatives, because derivatives change the error control.
   const auto plain = [&](const VectorXd& at) {
     return outputs_with(problem_, condition, z, effects, at, Derivatives::none, cancel_);
   };
@@ -176,7 +175,7 @@ std::optional<Refit> Refitter::fit(const std::vector<Effect>& effects, std::vect
   bool settled = false;
   for (int step = 0; step < kMostRefitSteps && !settled; ++step) {
     if (cancel_ != nullptr && cancel_->load()) return std::nullopt;
-    // An effect at zero that the records pull below, and an unknown at a bound, stay there.
+    // An effect that the records push below zero stays at zero, and an unknown at its bound.
     std::vector<Index> moving;
     for (Index j = 0; j < all; ++j) {
       const bool is_unknown = j < unknowns;

@@ -12,36 +12,37 @@
 
 namespace rigcal::calib {
 
-/// With more unknowns nothing is refitted: the matrices are dense.
+/// Largest number of unknowns for a refit, because its matrices are dense.
 inline constexpr std::size_t kMostRefitted = 64;
 
-/// Minimum of a problem with some effects as further unknowns.
+/// Minimum of a problem with some effects as additional unknowns.
 struct Refit {
   std::vector<double> z;
   Eigen::VectorXd sizes;       ///< effects, as multiples of their plausible sizes
-  Eigen::MatrixXd covariance;  ///< (J^T J)^-1, unknowns in the unit box, then effects
+  Eigen::MatrixXd covariance;  ///< (J^T J)^-1; unknowns in the unit box, then effects
   double squares = 0.0;        ///< sum of the squared weighted residuals and priors
-  /// The same sum for each condition, predicted from the others to first order; absent with one
-  /// condition.
+  /// That sum with each condition predicted from the others to first order; absent if there is only
+  /// one condition.
   std::optional<double> held_out;
 };
 
-/// Estimates the unknowns again with some effects beside them, by Gauss-Newton steps whose
+/// Estimates the unknowns again together with some effects, by Gauss-Newton steps. The
 /// sensitivities are those of the model with the effects. An effect that cannot be negative ends at
-/// zero where the records pull it below.
+/// zero if the records push it below.
 class Refitter {
  public:
-  /// @param scores  residuals of the fit, at z
+  /// @param scores  residuals of the fit at z
   Refitter(const Problem& problem, std::span<const double> z, const std::vector<ScoreRows>& scores,
            int threads, const std::atomic<bool>* cancel);
 
-  /// @param start  of unknowns and sizes
-  /// @return       nothing if a simulation fails or no minimum is found
+  /// @param start  start values of the unknowns
+  /// @param sizes  start values of the effects, as multiples of their plausible sizes
+  /// @return       std::nullopt if a simulation fails or no minimum is found
   std::optional<Refit> fit(const std::vector<Effect>& effects, std::vector<double> start,
                            Eigen::VectorXd sizes) const;
 
  private:
-  /// Squares, gradient and J^T J of one condition.
+  /// Sum of squares, gradient and J^T J of one condition.
   struct Part {
     bool ok = false;
     double squares = 0.0;
@@ -62,7 +63,7 @@ class Refitter {
   const std::vector<ScoreRows>& scores_;
   int threads_;
   const std::atomic<bool>* cancel_;
-  std::vector<Eigen::VectorXd> base_;  ///< weighted outputs without effects, at z
+  std::vector<Eigen::VectorXd> base_;  ///< weighted outputs at z without effects
 };
 
 }  // namespace rigcal::calib

@@ -13,9 +13,9 @@
 namespace rigcal::calib {
 namespace {
 
-/// The second step is that of a model which is not quite linear between both estimates.
+/// The second step is needed if the model is not quite linear between the two estimates.
 constexpr int kSteps = 2;
-/// Fraction of the value: a wider interval is not symmetrical, and comparing it is a guess.
+/// Fraction of the value. A wider interval is not symmetrical, and comparing it would be a guess.
 constexpr double kWidestInterval = 0.25;
 
 const FittedParameter* same_unknown(const std::vector<FittedParameter>& parameters,
@@ -28,7 +28,7 @@ const FittedParameter* same_unknown(const std::vector<FittedParameter>& paramete
   return found == parameters.end() ? nullptr : &*found;
 }
 
-/// Without repeats and without `sd` the noise comes from the residual at the fit's values.
+/// Takes the noise from the residuals at the fit's values if there are neither repeats nor an `sd`.
 void weigh_by_residuals(const Evaluation& at, Problem& problem) {
   for (std::size_t i = 0; i < problem.conditions.size(); ++i) {
     auto& channels = problem.conditions[i].channels;
@@ -44,7 +44,7 @@ Evaluation evaluated(const Problem& problem, const std::vector<double>& z, int t
   return evaluate_at(problem, z, threads, {Fidelity::full, cancel, true});
 }
 
-/// z after a Gauss-Newton step within the box.
+/// Returns z after a Gauss-Newton step within the box.
 std::vector<double> after_step(const Problem& problem, const Evaluation& at) {
   const Eigen::VectorXd step =
       ArrowSvd(linearise(problem, at), rank_threshold(problem.tolerance)).step();

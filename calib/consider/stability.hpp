@@ -5,14 +5,14 @@
 
 namespace rigcal::calib {
 
-/// Estimates the parameters of a fit once more, from the validation records alone: Gauss-Newton
-/// steps from the fit's values, and the error of each by the scatter of their residuals. Into
-/// `stability` of the fit goes how far each estimate moves, and whether that is more than both
-/// uncertainties allow (5 %, all parameters together by Holm). What the validation records
-/// determine to no better than 25 % is left out.
+/// Estimates the parameters of a fit again, from the validation records only. It makes Gauss-Newton
+/// steps from the fit's values, and computes the error of each estimate from the residuals.
+/// `stability` of the fit then has how far each estimate moves, and whether that exceeds both
+/// uncertainties (at 5 % for all parameters together, by Holm). Parameters that the validation
+/// records do not determine to within 25 % are omitted.
 ///
 /// @param validation  the problem of the validation records with the unknowns of the fit
-/// @param nuisance    estimated from the validation records already
+/// @param nuisance    values already estimated from the validation records
 /// @param fit         converged, with the budgets of its parameters
 void repeat_on_validation(Problem validation, const std::vector<FittedParameter>& nuisance,
                           int threads, const std::atomic<bool>* cancel, Fit& fit);

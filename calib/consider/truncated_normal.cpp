@@ -6,9 +6,9 @@
 namespace rigcal::calib {
 namespace {
 
-/// Density over upper tail of the standard normal distribution at a.
+/// Density divided by upper tail probability of the standard normal distribution at a.
 double hazard(double a) {
-  // Beyond, the tail underflows; the series is exact to 1e-5 there.
+  // Beyond this the tail underflows; there the series is accurate to 1e-5.
   constexpr double kFarOut = 20.0;
   if (a > kFarOut) return a + 1.0 / a - 2.0 / (a * a * a);
   const double density = std::exp(-0.5 * a * a) / std::sqrt(2.0 * std::numbers::pi);
@@ -20,18 +20,18 @@ struct Moments {
   double variance = 0.0;
 };
 
-/// Moments of N(mean, variance) cut off below zero.
+/// Moments of N(mean, variance) truncated below zero.
 Moments above_zero(const Moments& normal) {
   const double sd = std::sqrt(normal.variance);
   const double a = -normal.mean / sd;
   const double h = hazard(a);
-  // 1 - h (h - a) cancels far out, where it is 1 / a^2.
+  // For large a, 1 - h (h - a) suffers cancellation, and equals 1 / a^2.
   constexpr double kCancels = 20.0;
   const double share = a > kCancels ? 1.0 / (a * a) : 1.0 - h * (h - a);
   return {normal.mean + sd * h, normal.variance * share};
 }
 
-/// Normal factor exp(-precision x^2 / 2 + pull x) of one constraint.
+/// Normal factor exp(-precision x^2 / 2 + pull x) for one constraint.
 struct Factor {
   double precision = 0.0;
   double pull = 0.0;

@@ -5,18 +5,19 @@
 
 namespace rigcal::calib {
 
-/// Moments of a normal distribution, or of one that is cut off.
+/// Moments of a normal distribution, truncated or not.
 struct NormalMoments {
   Eigen::VectorXd mean;
   Eigen::MatrixXd covariance;
 };
 
-/// Mean and covariance where some components cannot be negative, by expectation propagation: each
-/// constraint becomes a normal factor that gives its component the moments of a normal distribution
-/// cut off at zero (T. P. Minka, Expectation propagation for approximate Bayesian inference, UAI
-/// 2001). Exact for one constraint, or for independent ones.
+/// Mean and covariance of a normal distribution some of whose components cannot be negative, by
+/// expectation propagation: each constraint becomes a normal factor that gives its component the
+/// moments of a normal distribution truncated at zero (T. P. Minka, Expectation propagation for
+/// approximate Bayesian inference, UAI 2001). Exact for a single constraint, and for independent
+/// ones.
 ///
-/// @param never_negative  positions in `normal`
+/// @param never_negative  indices of these components in `normal`
 NormalMoments cut_at_zero(NormalMoments normal, const std::vector<Eigen::Index>& never_negative);
 
 }  // namespace rigcal::calib

@@ -8,16 +8,16 @@
 
 namespace rigcal::calib {
 
-/// Which unknowns a condition has for itself (scope `condition`: its offset, its initial state) and
-/// which are shared. No residual depends on the own unknowns of two conditions, so that J^T J has
-/// the shape of an arrow: a block for each condition, the shared unknowns beside and below them
+/// Which unknowns belong to a single condition (scope `condition`: its offset, its initial state)
+/// and which are shared. No residual depends on the own unknowns of two conditions, so J^T J has
+/// the shape of an arrow: one block per condition, and the shared unknowns beside and below them
 /// (docs/decisions/0042-own-unknowns.md).
 struct ArrowLayout {
-  std::vector<int> shared;            ///< positions among the unknowns, ascending
+  std::vector<int> shared;            ///< indices of the unknowns, ascending
   std::vector<std::vector<int>> own;  ///< per condition; empty: all unknowns are shared
 };
 
-/// Symmetric matrix in the shape of an arrow: of unknowns, or of directions.
+/// Symmetric arrow-shaped matrix over unknowns or over directions.
 struct ArrowMatrix {
   Eigen::MatrixXd shared;                 ///< shape (shared)^2
   std::vector<Eigen::MatrixXd> own;       ///< shape (own)^2 of each condition; may be empty
@@ -28,13 +28,13 @@ struct ArrowMatrix {
                               // blocks
   ArrowMatrix(const Eigen::EigenBase<Matrix>& all) : shared(all.derived()) {}
 
-  /// What a condition sees of it: its own rows and columns, then the shared ones.
+  /// Submatrix that concerns a condition: its own rows and columns, then the shared ones.
   Eigen::MatrixXd of(std::size_t condition) const;
-  /// Adds such a part.
+  /// Adds a submatrix to the rows and columns of a condition, in the order of of().
   void add(std::size_t condition, const Eigen::MatrixXd& part);
 };
 
-/// That of unknowns, which it knows by their positions.
+/// Arrow-shaped matrix over unknowns, which are identified by their indices.
 struct ArrowSquare {
   ArrowLayout layout;  ///< without `own` all unknowns are shared, in their order
   ArrowMatrix blocks;
@@ -52,45 +52,46 @@ struct ArrowSquare {
   Eigen::Index size() const;
   Eigen::VectorXd diagonal() const;
   Eigen::VectorXd operator*(const Eigen::VectorXd& x) const;
-  /// (A + B) / 2 of two with one layout.
+  /// (A + B) / 2 for two matrices with the same layout.
   ArrowSquare mean(const ArrowSquare& other) const;
-  /// S (rows and columns of some unknowns) S.
+  /// S A S, with A restricted to the rows and columns of some unknowns.
   ///
-  /// @param kept   ascending
+  /// @param kept   indices of these unknowns, ascending
   /// @param scale  diagonal of S, shape (kept)
   ArrowSquare part(const std::vector<Eigen::Index>& kept, const Eigen::VectorXd& scale) const;
 };
 
-/// Least-squares system |J x + r|^2 of all conditions and priors at one point, as R factors. Half
-/// the squared norm of its residuals is the cost.
+/// Least-squares system |J x + r|^2 of all conditions and priors at one point, as R factors. The
+/// cost is half the squared norm of its residuals.
 struct Linearisation {
-  /// Rows that depend on the unknowns of one condition and on shared ones.
+  /// Rows that depend on the own unknowns of one condition and on shared ones.
   struct Own {
-    std::vector<int> unknowns;  ///< positions among all
+    std::vector<int> unknowns;  ///< indices among all unknowns
     Eigen::MatrixXd jacobian;   ///< shape (own)^2, unit-box coordinates
     Eigen::MatrixXd coupling;   ///< shape (own, shared)
     Eigen::VectorXd residual;   ///< shape (own)
   };
 
-  Eigen::MatrixXd jacobian;      ///< shape (any, shared): what is left once the others are out
-  Eigen::VectorXd residual;      ///< shape (any)
-  std::vector<int> shared = {};  ///< unknowns of its columns; not looked at where `own` is empty
+  Eigen::MatrixXd jacobian;  ///< shape (any, shared): the remaining rows, with shared unknowns only
+  Eigen::VectorXd residual;  ///< shape (any)
+  std::vector<int> shared = {};  ///< unknowns of its columns; ignored if `own` is empty
   std::vector<Own> own = {};     ///< per condition; empty: all unknowns are shared, in their order
 
   Eigen::Index unknowns() const;
   double square() const;             ///< sum over all residuals
   Eigen::VectorXd gradient() const;  ///< J^T r
   ArrowSquare normal() const;        ///< J^T J
-  /// Takes the unknowns that are marked for known.
+  /// Treats the marked unknowns as known.
   void hold(const std::vector<bool>& held);
   int shared_unknown(Eigen::Index column) const {
     return own.empty() ? static_cast<int>(column) : shared[static_cast<std::size_t>(column)];
   }
 };
 
-/// A row for each unknown over directions, of which some belong to one condition. The row of an own
-/// unknown is over the directions of its condition, then the shared ones; that of a shared unknown
-/// over these alone. With R R^T = (J^T J)^-1 it is what standard errors are made of.
+/// A matrix with one row per unknown, over directions of which some belong to one condition. The
+/// row of an own unknown covers the directions of its condition, then the shared ones. The row of a
+/// shared unknown covers only the shared ones. With R R^T = (J^T J)^-1, standard errors are
+/// computed from it.
 class ArrowRoot {
  public:
   ArrowRoot() = default;
@@ -107,29 +108,31 @@ class ArrowRoot {
   const Eigen::MatrixXd& shared() const { return shared_; }
   Eigen::Index own_unknowns(std::size_t condition) const;
   Eigen::Index own_directions(std::size_t condition) const;
-  /// Condition that has the unknown for itself; negative for a shared one.
+  /// Condition to which the unknown belongs; negative for a shared one.
   int condition_of(Eigen::Index unknown) const { return place(unknown).condition; }
-  /// Among the unknowns of its condition, or among the shared ones.
+  /// Row among the unknowns of its condition, or among the shared ones.
   Eigen::Index row_of(Eigen::Index unknown) const { return place(unknown).row; }
 
-  /// Part of a row in the directions of a condition, own and shared.
+  /// Components of a row in the own and shared directions of a condition.
   Eigen::VectorXd row(Eigen::Index unknown, std::size_t condition) const;
-  /// That of some unknowns, and that of all which are its own or shared, in this order.
+  /// Components of the rows of the given unknowns. Without a list: of the condition's own unknowns,
+  /// then the shared ones.
   Eigen::MatrixXd rows(const std::vector<int>& unknowns, std::size_t condition) const;
   Eigen::MatrixXd rows(std::size_t condition) const;
-  /// Count of all directions: those of each condition, one after the other, then the shared ones.
+  /// Number of all directions. Their order is: those of each condition in turn, then the shared
+  /// ones.
   Eigen::Index directions() const;
-  /// Positions in that order of the directions of a condition, own and shared.
+  /// Indices of the own and shared directions of a condition in that order.
   std::vector<Eigen::Index> directions(std::size_t condition) const;
-  /// A row times x, shape (all directions, any): shape (any).
+  /// Product of a row with x, which has the shape (all directions, any): shape (any).
   Eigen::VectorXd times(Eigen::Index unknown, const Eigen::MatrixXd& x) const;
-  /// |a R_i + b R_k|^2 of two rows.
+  /// |a R_i + b R_k|^2 for two rows.
   double square(Eigen::Index i, double a, Eigen::Index k, double b) const;
   /// Entry (i, k) of R R^T.
   double product(Eigen::Index i, Eigen::Index k) const;
-  /// c^T M c of a row.
+  /// c^T M c for a row c.
   double quadratic(Eigen::Index unknown, const ArrowMatrix& matrix) const;
-  /// A matrix of its directions, of zeros.
+  /// A zero matrix over its directions.
   ArrowMatrix zero() const;
 
  private:

@@ -16,7 +16,7 @@ VectorXd inverse_of(const VectorXd& squares) {
       [](double square) { return square > 0.0 ? 1.0 / std::sqrt(square) : 0.0; });
 }
 
-/// Directions in the coordinates of the unknowns, each over its singular value.
+/// Directions in the coordinates of the unknowns, each divided by its singular value.
 MatrixXd over_singular_values(const ScaledSvd& svd, const std::optional<double>& floor,
                               double factor) {
   if (!floor) return factor * svd.root();
@@ -47,7 +47,8 @@ ArrowSvd::ArrowSvd(const Linearisation& system, double threshold)
   VectorXd residual(left);
   jacobian.topRows(system.jacobian.rows()) = system.jacobian;
   residual.head(system.jacobian.rows()) = system.residual;
-  // The residual that a condition's own unknowns cannot follow determines the shared ones.
+  // The shared unknowns are determined by the residual that a condition's own unknowns cannot
+  // remove.
   Index row = system.jacobian.rows();
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     if (!blocks_[i].svd) continue;

@@ -8,59 +8,60 @@
 
 namespace rigcal::calib {
 
-/// ScaledSvd of a system whose own unknowns are eliminated condition by condition: their rows by
-/// one decomposition each, then what is left of the shared unknowns (the Schur complement, as an R
-/// factor). Columns are scaled by their whole length. Without own unknowns it is ScaledSvd.
+/// ScaledSvd of a system whose own unknowns are eliminated condition by condition. Each condition's
+/// rows get one decomposition, and what remains for the shared unknowns another (the Schur
+/// complement, as an R factor). Columns are scaled by their whole length. Without own unknowns this
+/// is equal to ScaledSvd.
 class ArrowSvd {
  public:
-  /// @param threshold  as ScaledSvd's; relative to 1 where all singular values are less
+  /// @param threshold  as in ScaledSvd; relative to 1 if all singular values are smaller
   ArrowSvd(const Linearisation& system, double threshold);
 
   Eigen::Index rank() const;
   /// Singular values of all blocks, descending.
   Eigen::VectorXd singular_values() const;
-  /// Square of what a step can take away of the residual.
+  /// Square of the part of the residual that a step can remove.
   double explained() const;
-  /// x that makes |J x + residual| least, and has no part in undetermined directions.
+  /// x that minimises |J x + residual| and has no component in undetermined directions.
   Eigen::VectorXd step() const;
-  /// R with R R^T the inverse of J^T J on the determined directions.
+  /// R such that R R^T is the inverse of J^T J on the determined directions.
   ArrowRoot root() const;
-  /// Covariance S S^T = factor^2 (J^T J)^-1 over all directions, those that are not determined with
-  /// this for their singular value. They come last among the own directions and the shared ones.
+  /// S with S S^T = factor^2 (J^T J)^-1 over all directions. Singular values below `least` are
+  /// raised to it. Undetermined directions come last among the own and among the shared ones.
   ArrowRoot spread(double factor, double least) const;
-  /// 1 / length of the column of each unknown; 0 of a column of zeros.
+  /// 1 / length of the column of each unknown; 0 for a column of zeros.
   const Eigen::VectorXd& inverse_lengths() const { return inverse_lengths_; }
 
   /// A direction of unit length in scaled coordinates.
   struct Direction {
     std::vector<int> unknowns;
-    Eigen::VectorXd parts;  ///< one per unknown
+    Eigen::VectorXd parts;  ///< one component per unknown
     double singular_value = 0.0;
   };
-  /// Those that the system does not determine.
+  /// Directions that the system does not determine.
   std::vector<Direction> undetermined() const;
-  /// The determined one along which a full step is the longest, in scaled coordinates; empty where
+  /// The determined direction with the longest full step, in scaled coordinates; std::nullopt if
   /// there is none.
   std::optional<Direction> longest_way() const;
 
  private:
   struct Block {
     std::vector<int> unknowns;
-    std::optional<ScaledSvd> svd;  ///< empty without unknowns
-    Eigen::MatrixXd coupling;      ///< U^T of that of the system, shape (rank, shared)
-    Eigen::VectorXd explained;     ///< U^T of its residual, shape (rank)
+    std::optional<ScaledSvd> svd;  ///< absent if there are no unknowns
+    Eigen::MatrixXd coupling;      ///< U^T times the system's coupling, shape (rank, shared)
+    Eigen::VectorXd explained;     ///< U^T times the system's residual, shape (rank)
   };
 
-  /// How the own unknowns of a block follow shared ones, shape (own, shared).
+  /// How the own unknowns of a block respond to shared ones, shape (own, shared).
   Eigen::MatrixXd follow(const Block& block) const;
   Direction shared_direction(Eigen::Index k) const;
   ArrowRoot root_with(const std::optional<double>& floor, double factor) const;
   ArrowLayout layout() const;
 
   std::vector<Block> blocks_;
-  std::vector<int> shared_;  ///< unknowns
+  std::vector<int> shared_;  ///< indices of the shared unknowns
   std::optional<ScaledSvd> svd_;
-  Eigen::VectorXd explained_;  ///< part of the shared residual, shape (rank)
+  Eigen::VectorXd explained_;  ///< U^T times the shared residual, shape (rank)
   Eigen::VectorXd inverse_lengths_;
 };
 

@@ -9,34 +9,35 @@
 
 namespace rigcal::calib {
 
-/// A quantity that differs between days, whatever the repeats of one day say.
+/// A quantity that varies between days, so that the repeats of one day do not show it.
 struct DayQuantity {
   std::string key;      ///< "supply_pressure"
   std::string meaning;  ///< "supply"
   std::string unit;     ///< SI
-  double sd = 0.0;      ///< between days
+  double sd = 0.0;      ///< standard deviation between days
   std::string sd_from;  ///< "0.5 % of the supply", or "[between_days]"
   int index = -1;       ///< row of the parameter table; -1: the start of the record
 };
 
-/// Those of a campaign, with the sizes that it states or the usual ones, which follow from the rig.
+/// The quantities of a campaign. Their sizes are those that the campaign gives, or else the usual
+/// ones, which are derived from the rig.
 ///
-/// @param values    of the rig
+/// @param values    parameter values of the rig
 /// @param sample_s  sampling interval
 std::vector<DayQuantity> day_quantities(const datasets::Campaign& campaign,
                                         const model::ParameterValues& values, double sample_s);
 
-/// Rows of the parameter table that the quantities need and `free` does not have yet.
+/// Rows of the parameter table that the quantities need and that `free` does not include.
 std::vector<int> further_rows(const std::vector<DayQuantity>& quantities,
                               std::span<const int> free);
 
-/// Change of one output for each quantity, per standard deviation between days. A quantity that was
-/// recorded, or whose error a recorded drive shares, changes nothing.
+/// Change of one output for each quantity, per standard deviation between days. Zero for a quantity
+/// that was recorded, or if a recorded drive has the same error.
 ///
-/// @param run    simulated at the times of the record, with the sensitivities of `free`, among
-///               which are further_rows()
+/// @param run    simulated at the times of the record, with the sensitivities to `free`, which
+///               includes further_rows()
 /// @param output column of the output
-/// @return shape (samples, quantities)
+/// @return       shape (samples, quantities)
 Eigen::MatrixXd day_changes(const ProblemCondition& condition, const model::Simulation& run,
                             Eigen::Index output, std::span<const int> free,
                             std::span<const double> time_s,

@@ -17,19 +17,19 @@ using datasets::Condition;
 using datasets::InitialMode;
 using datasets::Record;
 
-/// Smallest half width of bounds for a record that does not move [m, m/s, Pa], or [rad, rad/s].
+/// Smallest half width of bounds for a record without motion [m, m/s, Pa], or [rad, rad/s].
 constexpr double kLeastTravel_m = 1e-6;
 constexpr double kLeastSpeed_m_per_s = 1e-6;
 constexpr double kLeastPressure_pa = 1e3;
 
-/// Recorded mean of a channel; empty if it is not there.
+/// Recorded mean of a channel; empty if it was not recorded.
 std::vector<double> recorded(const Record& record, Channel channel) {
   const auto found = record.channels.find(channel);
   return found == record.channels.end() ? std::vector<double>{} : found->second.mean;
 }
 
-/// Reading of a load pressure sensor, computed from those of both chambers if necessary; empty if
-/// neither was recorded.
+/// Reading of a load pressure sensor, computed from the two chamber pressures if necessary; empty
+/// if neither was recorded.
 std::vector<double> load_pressure(const Record& record, const model::ParameterValues& values) {
   if (auto direct = recorded(record, Channel::load_pressure); !direct.empty()) return direct;
   std::vector<double> a = recorded(record, Channel::pressure_a);
@@ -55,7 +55,7 @@ double initial_mean(const Record& record, const std::vector<double>& signal, dou
 }
 
 /// Value and slope of a line through the finite samples within `half_width_s` of an instant;
-/// nothing if there are none.
+/// std::nullopt if there are none.
 std::optional<std::pair<double, double>> line_at(const Record& record,
                                                  const std::vector<double>& signal, double time_s,
                                                  double half_width_s) {
@@ -93,7 +93,7 @@ double fastest_change(const Record& record, const std::vector<double>& signal) {
   return fastest;
 }
 
-/// Parameters of the motion at the first sample, and of its sensor.
+/// Keys of the initial value and rate of the motion, and of the gain of its sensor.
 struct InitialKeys {
   std::string_view value;
   std::string_view rate;

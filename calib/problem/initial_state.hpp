@@ -13,37 +13,38 @@ namespace rigcal::calib {
 struct InitialPlan {
   model::InitialState state = model::InitialState::rest;
   datasets::Overrides known;      ///< initial_* values read from the record
-  std::vector<Unknown> unknowns;  ///< initial_* values to be estimated; nuisance
+  std::vector<Unknown> unknowns;  ///< initial_* values to estimate, which are nuisance parameters
 };
 
 /// Applies the campaign's `initial` to one condition:
-///   rest    all states are zero;
-///   record  position, and load pressure if pressures are recorded, are their means over the
-///           `initial_window`; the velocity is zero, and an unrecorded load pressure is in
-///           equilibrium with the load;
-///   fit     position, velocity and load pressure are estimated, with bounds from the record: one
-///           peak-to-peak about the mean of the window, the fastest change between two samples, and
-///           the supply pressure (or one peak-to-peak of the recorded load pressure).
-/// Values that the campaign gives or fits itself stay unchanged. A load pressure from both chamber
-/// pressures is corrected by the offsets of their sensors in `values`.
+///   rest    All states are zero.
+///   record  Position, and load pressure if pressures are recorded, are their means over the
+///           `initial_window`. The velocity is zero. An unrecorded load pressure is in equilibrium
+///           with the load.
+///   fit     Position, velocity and load pressure are estimated, with bounds from the record: one
+///           peak-to-peak value about the mean of the window, the fastest change between two
+///           samples, and the supply pressure (or one peak-to-peak value of the recorded load
+///           pressure).
+/// Values that the campaign gives or fits itself stay unchanged. A load pressure that is computed
+/// from both chamber pressures is corrected for their sensor offsets in `values`.
 ///
-/// @param values  of the condition: known, fitted before, or the start of an estimate
-/// @throws InputError  record or fit without a recorded position
+/// @param values  values in the condition: known, fitted before, or start values
+/// @throws InputError  if `initial` is record or fit, and no position was recorded
 InitialPlan plan_initial_state(const datasets::Campaign& campaign,
                                const datasets::Condition& condition, const datasets::Record& record,
                                const model::ParameterValues& values);
 
-/// Explains, in words, why `initial = "record"` is wrong if the piston moves within the window;
-/// empty if it does not move.
+/// Explains why `initial = "record"` is wrong if the piston moves within the window; empty if it
+/// does not move.
 std::string moving_start(const datasets::Campaign& campaign,
                          const std::vector<const datasets::Condition*>& conditions,
                          const std::vector<datasets::Record>& records);
 
 /// Values of the initial_* parameters for a run that begins in the middle of a record. Position and
 /// velocity come from a straight line through the samples within `half_width_s` of that instant,
-/// recorded pressures from their means there. Without a recorded position there are none.
+/// recorded pressures from their means there. Empty if no position was recorded.
 ///
-/// @param values  of the condition, for the sensors of both pressures
+/// @param values  values in the condition, for the sensors of both pressures
 datasets::Overrides recorded_state(const datasets::Campaign& campaign,
                                    const datasets::Record& record,
                                    const model::ParameterValues& values, double time_s,

@@ -6,10 +6,11 @@
 
 namespace rigcal::calib {
 
-/// Values in a condition with those of a fit in place of the rig's. Values that the campaign states
-/// for the condition or its leak level have priority. Nuisance parameters stay unchanged.
+/// Parameter values in a condition, with fitted values replacing those of the rig. Values that the
+/// campaign gives for the condition or its leak level have priority. Nuisance parameters stay
+/// unchanged.
 ///
-/// @throws InputError  a parameter that the campaign fits, or that was fitted per leak level or
+/// @throws InputError  if a parameter that the campaign fits, or that was fitted per leak level or
 ///                     condition, has no value for this one (names it and the levels that exist)
 model::ParameterValues values_with(const datasets::Campaign& campaign,
                                    const datasets::Condition& condition,

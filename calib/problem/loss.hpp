@@ -4,14 +4,14 @@
 
 namespace rigcal::calib {
 
-/// A residual after the loss, and its derivative to the residual before.
+/// A residual after the loss, and its derivative with respect to the residual before the loss.
 struct LossValue {
   double residual = 0.0;
   double slope = 1.0;
 };
 
 /// Turns a loss rho into an ordinary least-squares residual: sign(r) sqrt(rho(r^2)), so that half
-/// its square is the robust cost exactly, and cost, gradient and trust region need no special case.
+/// its square is exactly the robust cost, and cost, gradient and trust region need no special case.
 ///
 ///   squared  rho(s) = s
 ///   huber    s for s <= a^2, else 2 a sqrt(s) - a^2

@@ -9,7 +9,8 @@
 
 namespace rigcal::calib {
 
-/// A value between its bounds as a coordinate z in [0, 1], linear in it or in its logarithm.
+/// Maps a value between its bounds to a coordinate z in [0, 1], which is linear in the value or in
+/// its logarithm.
 struct UnitInterval {
   double lower = 0.0;
   double upper = 1.0;
@@ -21,7 +22,7 @@ struct UnitInterval {
   double slope(double z) const;
 };
 
-/// Number of unknowns up to which all are shared.
+/// Largest number of unknowns with which all are treated as shared.
 inline constexpr std::size_t kMostTogether = 32;
 
 /// One unknown of the fit: a parameter of the rig, of one leak level, or of one condition.
@@ -36,23 +37,24 @@ struct Unknown {
   bool nuisance = false;
 };
 
-/// Whether the condition, or its leak level, has a known value of its own for a parameter. It has
-/// priority over any value of the rig, including a fitted one.
+/// Whether the condition or its leak level has its own known value for a parameter. Such a value
+/// has priority over any value of the rig, including a fitted one.
 bool known_in(const datasets::Campaign& campaign, const datasets::Condition& condition, int index);
 
-/// The level of a value of this scope in a condition; empty for the rig.
+/// The level to which a value of this scope belongs in a condition; empty for the rig.
 ///
-/// @throws InputError  scope leak_level, and the condition has none
+/// @throws InputError  if the scope is leak_level and the condition has none
 std::string level_in(const datasets::Condition& condition, datasets::Scope scope,
                      std::string_view parameter);
 
-/// "mass_kg", "leakage_coefficient (leak level 33 %)": a parameter with whose it is.
+/// Name of a parameter with its level: "mass_kg", "leakage_coefficient (leak level 33 %)".
 std::string parameter_name(const model::ParameterSpec& spec, datasets::Scope scope,
                            const std::string& level);
 
-/// The unknowns of a set of conditions, in a fixed order (table index, then first appearance of the
-/// level), and which of them act in which condition. Optimiser coordinates z are in [0, 1]: linear
-/// in the bounds, or in their logarithms where both are positive and span more than a decade.
+/// The unknowns of a set of conditions in a fixed order (table index, then first appearance of the
+/// level), and which of them act in which condition. Optimiser coordinates z are in [0, 1]. They
+/// are linear in the value, or in its logarithm if both bounds are positive and span more than a
+/// decade.
 class ParameterMap {
  public:
   /// @param conditions     the conditions of the problem
@@ -60,24 +62,24 @@ class ParameterMap {
   /// @param extra          unknowns in addition to those of the campaign (initial states of
   ///                       conditions)
   /// @param repeats        number of repeats averaged in the record of each condition; empty: 1
-  /// @throws InputError    a start outside its bounds, bounds that are not finite or empty, a
-  ///                       condition without the leak level that a scope needs
+  /// @throws InputError    if a start is outside its bounds, bounds are not finite or empty, or a
+  ///                       condition lacks the leak level that a scope needs
   ParameterMap(const datasets::Campaign& campaign,
                const std::vector<const datasets::Condition*>& conditions, bool nuisance_only,
                const std::vector<Unknown>& extra = {}, const std::vector<int>& repeats = {});
 
   const std::vector<Unknown>& unknowns() const { return unknowns_; }
-  /// Positions in unknowns() that act in condition i, in the order of their table index.
+  /// Indices in unknowns() of those that act in a condition, in the order of their table index.
   const std::vector<int>& acting(std::size_t condition) const { return acting_[condition]; }
-  /// Which of them a condition has for itself. With few unknowns all are shared: dense matrices
-  /// cost nothing then.
+  /// Which unknowns belong to a single condition. If there are few unknowns, all are shared,
+  /// because dense matrices are then cheap.
   const ArrowLayout& layout() const { return layout_; }
 
   double to_physical(int unknown, double z) const;
   double to_unit(int unknown, double value) const;
   /// d value / d z
   double slope(int unknown, double z) const;
-  /// Residual of the prior of an unknown, and d residual / d z; zero where it has none.
+  /// Residual of the prior on an unknown, and d residual / d z; zero if it has none.
   double prior_residual(int unknown, double z) const;
   double prior_slope(int unknown, double z) const;
 

@@ -21,20 +21,21 @@ using datasets::Channel;
 using datasets::Condition;
 using datasets::Record;
 
-/// First guess of an unknown standard deviation, as a share of the peak-to-peak.
+/// First guess of an unknown standard deviation, as a fraction of the peak-to-peak value.
 constexpr double kGuessedNoise = 1e-2;
-/// Tolerance of the simulations without known noise, and the largest one: cost and gradient jump by
-/// about the tolerance when the steps of a simulation change, which stalls the optimiser.
+/// Simulation tolerance if the noise is unknown, which is also the upper limit if it is known, and
+/// the lower limit. Cost and gradient jump by about the tolerance when the steps of a simulation
+/// change, which stalls the optimiser.
 constexpr double kDefaultTolerance = 1e-6;
 constexpr double kLeastTolerance = 1e-8;
-/// Largest of a record whose noise lets it be simulated less exactly than others.
+/// Largest tolerance for a record whose noise allows a less exact simulation than for others.
 constexpr double kLargestTolerance = 1e-5;
-/// Tolerance of derivatives that only state an uncertainty.
+/// Tolerance for derivatives that only serve to compute an uncertainty.
 constexpr double kDerivativeTolerance = 1e-5;
-/// Far from an optimum: less buys no fewer steps of the optimiser.
+/// Tolerance far from an optimum. A smaller one would not save the optimiser any steps.
 constexpr double kCoarseTolerance = 1e-4;
-/// Residuals below this share of the peak-to-peak are no noise: a sensor of 20 bits resolves as
-/// much.
+/// A residual below this fraction of the peak-to-peak value is not noise: it is the resolution of a
+/// 20-bit sensor.
 constexpr double kLeastShare = 1e-6;
 
 const Record& record_of(const Condition& condition, const std::vector<Record>& records) {
@@ -49,7 +50,7 @@ const Record& record_of(const Condition& condition, const std::vector<Record>& r
   return *found;
 }
 
-/// Counts would be taken for metres, pascals and seconds.
+/// Rejects counts, which would be taken for metres, pascals and seconds.
 void require_units(const Campaign& campaign, const Condition& condition) {
   const bool counted =
       campaign.time_in_counts ||
@@ -85,8 +86,8 @@ ProblemChannel make_channel(const Campaign& campaign, const ProblemCondition& co
   return result;
 }
 
-/// The unknown noise of a channel starts at a fraction of its largest peak-to-peak over all
-/// conditions. It is one value per channel, as in estimate_weights().
+/// Initialises the unknown noise of a channel with a fraction of its largest peak-to-peak value
+/// over all conditions. There is one value per channel, as in estimate_weights().
 void guess_unknown_sd(std::vector<ProblemCondition>& conditions) {
   std::map<Channel, double> largest;
   for (const ProblemCondition& condition : conditions) {
@@ -112,7 +113,8 @@ void guess_unknown_sd(std::vector<ProblemCondition>& conditions) {
   }
 }
 
-/// Rows up to a period after the first, where the drive is periodic.
+/// Number of rows within one period after the first row, if the drive is periodic; otherwise of all
+/// rows.
 std::size_t count_first_period(const ProblemCondition& condition) {
   const Condition& settings = *condition.condition;
   if (!is_periodic(settings.waveform) || !settings.frequency_hz || !(*settings.frequency_hz > 0.0))
@@ -149,13 +151,13 @@ ProblemCondition make_condition(const Campaign& campaign, const std::vector<Reco
     result.outputs.push_back(datasets::model_output(channel).value());
   }
   result.first_period_rows = count_first_period(result);
-  // The start point is simulated with this budget; later points with one from the steps it took.
+  // The start point is simulated with this budget; later points get one based on the steps it took.
   result.max_steps = 1'000'000 + 50 * static_cast<long>(result.record->time_s.size());
   return result;
 }
 
-/// Least standard deviation over peak-to-peak of the outputs of a condition; 0 if one is not known,
-/// infinite if none moves.
+/// Minimum ratio of standard deviation to peak-to-peak value over the outputs of a condition; 0 if
+/// a standard deviation is unknown, infinite if no output moves.
 double relative_noise(const ProblemCondition& condition) {
   double least = std::numeric_limits<double>::infinity();
   for (const ProblemChannel& channel : condition.channels) {
@@ -240,7 +242,7 @@ bool Problem::has_estimated_sd() const {
 
 double Problem::least_sd(const ProblemChannel& channel) const {
   const double range = channel.peak_to_peak > 0.0 ? channel.peak_to_peak : channel.sd;
-  // Here the errors of the simulations move an estimate by one of its standard errors at most.
+  // At this level, simulation errors move an estimate by at most one of its standard errors.
   const double resolved = tolerance * std::sqrt(static_cast<double>(residual_count()));
   return std::max(kLeastShare, resolved) * range;
 }
@@ -321,8 +323,9 @@ std::vector<std::size_t> samples_that_count(const Condition& condition, const Re
   return rows;
 }
 
-/// An error e of the simulation moves an estimate by up to e sqrt(n) / sd of its standard errors, n
-/// residuals: 0.1 keeps that below a thirtieth or so (the tolerance is an upper bound of e).
+/// A simulation error e moves an estimate by up to e sqrt(n) / sd of its standard errors, with n
+/// residuals. A factor of 0.1 keeps that below about a thirtieth, since the tolerance is an upper
+/// bound for e.
 double tolerance_from_noise(const std::vector<ProblemCondition>& conditions, bool estimated) {
   double least = std::numeric_limits<double>::infinity();
   std::size_t residuals = 0;

@@ -6,13 +6,13 @@
 namespace rigcal::calib {
 namespace {
 
-/// A sum of squares at or below this is zero; its inverse must be finite.
+/// A sum of squares up to this counts as zero, because its inverse must be finite.
 constexpr double kNothing = 1e-300;
 
 }  // namespace
 
-/// Applies a Householder reflection to one row of the R factor and the new rows at a time; all
-/// other elements below the diagonal are already zero.
+/// Applies Householder reflections, each to one row of the R factor and the new rows. All other
+/// elements below the diagonal are already zero.
 void RFactor::add(Eigen::MatrixXd rows) {
   for (Eigen::Index first = 0; first < rows.rows(); first += kBlock) {
     auto block = rows.middleRows(first, std::min(kBlock, rows.rows() - first));

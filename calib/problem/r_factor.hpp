@@ -4,9 +4,9 @@
 
 namespace rigcal::calib {
 
-/// Replaces the many rows of [J r] by an upper triangle R with R^T R = [J r]^T [J r]. Cost,
-/// gradient and Gauss-Newton matrix of least squares stay the same up to rounding, and the
-/// condition number is not squared. Rows are added in blocks, in the given order.
+/// Replaces the many rows of [J r] by an upper triangle R with R^T R = [J r]^T [J r]. This
+/// preserves cost, gradient and Gauss-Newton matrix up to rounding, and does not square the
+/// condition number. Rows are added in blocks, in the given order.
 class RFactor {
  public:
   explicit RFactor(Eigen::Index columns) : factor_(Eigen::MatrixXd::Zero(columns, columns)) {}
@@ -16,7 +16,8 @@ class RFactor {
 
   const Eigen::MatrixXd& get() const { return factor_; }
 
-  static constexpr Eigen::Index kBlock = 512;  ///< rows taken together: they stay in the cache
+  static constexpr Eigen::Index kBlock =
+      512;  ///< number of rows per block, small enough for the cache
 
  private:
   Eigen::MatrixXd factor_;

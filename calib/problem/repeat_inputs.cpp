@@ -31,7 +31,8 @@ std::vector<Channel> differing_inputs(const Problem& problem, const ProblemCondi
   return result;
 }
 
-/// The record with the inputs of one repeat; where it has no sample, those of the mean.
+/// The record with the inputs of one repeat. Where the repeat has no sample, the mean input is
+/// used.
 datasets::Record with_inputs_of(const datasets::Record& record, const std::vector<Channel>& inputs,
                                 std::size_t repeat) {
   datasets::Record result;

@@ -7,14 +7,14 @@
 
 namespace rigcal::calib {
 
-/// Effect of the recorded inputs of single repeats (supply pressure, tank pressure, force, a
+/// Effect of the recorded inputs of individual repeats (supply pressure, tank pressure, force, a
 /// recorded drive) on the outputs. For each repeat it is the simulation with its own inputs minus
-/// that with their mean, divided by the standard deviation of the mean. A difference that an input
-/// explains is no unexplained difference between repeats, and the fit of the mean output at the
-/// mean input has accounted for it.
+/// the simulation with their mean, divided by the standard deviation of the mean. A difference that
+/// an input explains does not count as an unexplained difference between repeats, and the fit of
+/// the mean output with the mean input already includes it.
 ///
-/// @return  shape (channels * samples in windows, repeats); empty if no input is recorded, or all
-///          are equal, or a repeat cannot be simulated
+/// @return  shape (channels * samples in windows, repeats); empty if no input was recorded, all
+///          repeats have equal inputs, or a repeat cannot be simulated
 Eigen::MatrixXd explained_by_inputs(const Problem& problem, std::size_t condition,
                                     std::span<const double> z);
 

@@ -6,8 +6,8 @@
 
 namespace rigcal::model {
 
-/// A value and its derivatives in N directions: the parameters, or the states and time. Why not
-/// ceres::Jet: docs/decisions/0001.
+/// A value and its derivatives in N directions: with respect to the parameters, or to the states
+/// and time. docs/decisions/0001 explains why this is not ceres::Jet.
 template <int N>
 struct Dual {
   double value;
@@ -16,8 +16,8 @@ struct Dual {
   Dual() = default;
   Dual(double v) : value(v), derivative{} {}  // NOLINT(google-explicit-constructor): a constant
   Dual(double v, const Pack<N>& d) : value(v), derivative(d) {}
-  // Part by part: read as a whole, as by default, a value that was just written is waited for
-  // (docs/decisions/0004).
+  // Copies value and derivative separately. The default copy reads both at once, and has to wait
+  // for a value that was just written (docs/decisions/0004).
   Dual(const Dual& b) : value(b.value), derivative(b.derivative) {}
   Dual& operator=(const Dual& b) {
     value = b.value;
@@ -25,7 +25,7 @@ struct Dual {
     return *this;
   }
 
-  /// The independent variable of direction `index`.
+  /// Returns the independent variable of direction `index`.
   static Dual variable(double v, int index) {
     return {v, Pack<N>::unit(static_cast<std::size_t>(index))};
   }
@@ -41,7 +41,7 @@ double value_of(const Dual<N>& x) {
   return x.value;
 }
 
-/// f(x) from f and f' at the value.
+/// Applies the chain rule: f(x), given f and f' at the value of x.
 template <int N>
 inline Dual<N> chain(const Dual<N>& x, double f, double slope) {
   return {f, x.derivative * slope};
@@ -114,7 +114,7 @@ inline Dual<N> sqrt(const Dual<N>& a) {
   const double f = std::sqrt(a.value);
   return chain(a, f, 0.5 / f);
 }
-/// x^(-1/4), x > 0: one division and two roots, whatever the number of derivatives.
+/// x^(-1/4) for x > 0. It costs one division and two roots, whatever the number of derivatives.
 inline double inverse_fourth_root(double x) { return 1.0 / std::sqrt(std::sqrt(x)); }
 template <int N>
 inline Dual<N> inverse_fourth_root(const Dual<N>& a) {

@@ -5,15 +5,15 @@
 
 namespace rigcal::model {
 
-/// Inverse of a small matrix. Beyond four rows Eigen calls routines for large matrices;
-/// Gauss-Jordan elimination with row pivots takes half of their time or less. Not finite if the
-/// matrix is singular.
+/// Inverse of a small matrix; not finite if the matrix is singular. Beyond four rows Eigen calls
+/// routines for large matrices, and Gauss-Jordan elimination with row pivots takes at most half of
+/// their time.
 template <int N>
 Eigen::Matrix<double, N, N> inverse_of(const Eigen::Matrix<double, N, N>& matrix) {
   if constexpr (N <= 4) {
     return matrix.inverse();
   } else {
-    double row[N][2 * N];  // the matrix, and beside it its inverse in the making
+    double row[N][2 * N];  // the matrix, and next to it the inverse under construction
     for (int i = 0; i < N; ++i) {
       for (int k = 0; k < N; ++k) {
         row[i][k] = matrix(i, k);

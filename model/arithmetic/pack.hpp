@@ -7,8 +7,8 @@
 namespace rigcal::model {
 
 /// N numbers that are added and multiplied together: the derivatives of a dual number. They fill
-/// vector registers of the instruction set in use; surplus elements of the last register are
-/// computed but never read. Like a double, a pack is not initialised unless asked for.
+/// vector registers of the instruction set in use. Surplus elements of the last register are
+/// computed but never read. Like a double, a pack is uninitialised by default.
 template <int N>
 struct Pack {
 #ifdef __AVX__
@@ -20,7 +20,8 @@ struct Pack {
   using Register __attribute__((vector_size(kLanes * sizeof(double)))) = double;
   std::array<Register, kParts> part;
 
-  /// One at `index`, else zero; built in registers, where set() would write to memory.
+  /// Returns a pack with one at `index` and zero elsewhere. It is built in registers, because set()
+  /// would write to memory.
   static Pack unit(std::size_t index) {
     Pack r;
     for (std::size_t k = 0; k < kParts; ++k)
@@ -38,7 +39,7 @@ struct Pack {
   }
 };
 
-/// Replaces one block of a pack whose size is a multiple of the block.
+/// Replaces one block of a pack. The size of the pack is a multiple of the block's.
 template <int N, int M>
 void put(const Pack<N>& block, std::size_t index, Pack<M>& whole) {
   static_assert(M % N == 0 && N % Pack<N>::kLanes == 0);
@@ -64,7 +65,7 @@ Pack<N> operator-(const Pack<N>& a, const Pack<N>& b) {
   for (std::size_t k = 0; k < r.kParts; ++k) r.part[k] = a.part[k] - b.part[k];
   return r;
 }
-/// Every element times a scalar.
+/// Multiplies every element by a scalar.
 template <int N>
 Pack<N> operator*(const Pack<N>& a, double s) {
   Pack<N> r;

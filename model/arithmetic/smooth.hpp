@@ -4,30 +4,31 @@
 
 #include "model/arithmetic/dual.hpp"
 
-// Every function of the model with a kink or a singularity lives here, with its derivative in mind:
-// a bare sqrt at zero pressure has an infinite slope and stops any gradient.
+// Every function of the model with a kink or a singularity is here, so that its derivative stays
+// usable. A plain sqrt has an infinite slope at zero pressure, which stops any gradient method.
 
 namespace rigcal::model {
 
-/// Signed root of a pressure, straightened below `smoothing_pa`: P / (P^2 + eps^2)^(1/4), which is
-/// sgn(P) sqrt(|P|) far from zero and P / sqrt(eps) at it.
+/// Signed root of a pressure, linear near zero: P / (P^2 + eps^2)^(1/4). It approaches
+/// sgn(P) sqrt(|P|) for |P| >> eps, and P / sqrt(eps) at zero.
 ///
 /// @param pressure_pa   any sign [Pa]
-/// @param smoothing_pa  eps > 0 [Pa]; at eps = 100 Pa the leak shares of the paper move < 0.1 point
+/// @param smoothing_pa  eps > 0 [Pa]; with eps = 100 Pa the paper's leak shares change by < 0.1
+///                      point
 /// @return              [Pa^(1/2)]
 template <typename X, typename C>
 X signed_sqrt(const X& pressure_pa, const C& smoothing_pa) {
   return pressure_pa * inverse_fourth_root(pressure_pa * pressure_pa + smoothing_pa * smoothing_pa);
 }
 
-/// Sign of a velocity, straightened below `smoothing`: tanh(v / v_0).
+/// Sign of a velocity, smoothed around zero: tanh(v / v_0), where v_0 is `smoothing`.
 template <typename X, typename C>
 X smooth_sign(const X& v, const C& smoothing) {
   using std::tanh;
   return tanh(v / smoothing);
 }
 
-/// x within [-limit, limit]; continuous, its slope jumps at the limit.
+/// Clamps x to [-limit, limit]. Continuous; the slope jumps at the limits.
 template <typename X, typename C>
 X clamp_symmetric(const X& x, const C& limit) {
   if (value_of(x) > value_of(limit)) return X(limit);
@@ -35,7 +36,7 @@ X clamp_symmetric(const X& x, const C& limit) {
   return x;
 }
 
-/// x with the band [-width, width] cut out: opening of an overlapped spool.
+/// Removes the band [-width, width] from x: opening of an overlapped spool.
 template <typename X, typename C>
 X dead_band(const X& x, const C& width) {
   if (value_of(x) > value_of(width)) return x - width;
@@ -43,13 +44,13 @@ X dead_band(const X& x, const C& width) {
   return x * 0.0;
 }
 
-/// x if positive, else zero: travel of a contact or an opened edge.
+/// Returns x if it is positive, else zero: travel into a contact, or opening of an edge.
 template <typename X>
 X positive_part(const X& x) {
   return value_of(x) > 0.0 ? x : X(x * 0.0);
 }
 
-/// x, but `least` where x falls below it.
+/// Returns x, but no less than `least`.
 template <typename X>
 X at_least(const X& x, double least) {
   return value_of(x) > least ? x : X(x * 0.0 + least);

@@ -9,7 +9,7 @@
 
 namespace rigcal::model {
 
-/// A number with the derivatives by P parameters; a plain double for none.
+/// A number with its derivatives with respect to P parameters; a plain double if P is 0.
 template <int P>
 using Active = std::conditional_t<P == 0, double, Dual<P>>;
 
@@ -39,9 +39,9 @@ const std::array<double, N>& values_of(const std::array<double, N>& x) {
 template <int N, int P>
 struct Linearisation {
   Values<N> f;
-  Values<N> f_t;                                                ///< derivatives by time
+  Values<N> f_t;  ///< derivatives with respect to time
   std::array<Values<N>, static_cast<std::size_t>(N)> jacobian;  ///< [i][k] = d f_i / d x_k
-  Tangents<N, P> f_p;                                           ///< derivatives by each parameter
+  Tangents<N, P> f_p;  ///< derivatives with respect to each parameter
 };
 
 /// y += a x.

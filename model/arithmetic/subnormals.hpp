@@ -6,9 +6,9 @@
 
 namespace rigcal::model {
 
-/// Treats numbers below 2.2e-308 as zero in this thread while it lives. A sensitivity that only
-/// decays, such as that to the initial state of a closed loop, becomes so small within seconds, and
-/// processors are a hundred times slower with such numbers.
+/// Makes this thread treat numbers below 2.2e-308 as zero during the lifetime of the object. A
+/// sensitivity that only decays, such as the one to the initial state of a closed loop, gets that
+/// small within seconds, and processors are a hundred times slower with such numbers.
 class SubnormalsAreZero {
  public:
 #ifdef __SSE2__
@@ -22,7 +22,7 @@ class SubnormalsAreZero {
 
 #ifdef __SSE2__
  private:
-  static constexpr unsigned kFlushToZero = 0x8040;  ///< results, and the operands of computations
+  static constexpr unsigned kFlushToZero = 0x8040;  ///< flushes results and operands
   unsigned before_;
 #endif
 };

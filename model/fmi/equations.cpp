@@ -23,7 +23,7 @@ InputTrack track(const Ramp& ramp, double length_s) {
   return {Signal::linear({0.0, length_s}, {ramp.value, end}), 0.0, 0.0};
 }
 
-/// @tparam N  room for the states of the layout; those beyond stay zero
+/// @tparam N  room for the states of the layout; unused ones stay zero
 template <typename Plant, int N>
 class SizedEquations final : public Equations {
  public:
@@ -44,7 +44,7 @@ class SizedEquations final : public Equations {
   }
 
   std::vector<double> initial() const override {
-    // A state in equilibrium depends on the load, which is a parameter.
+    // The equilibrium of a state depends on the load, which is a parameter here.
     ParameterValues values = values_;
     if (parameter_index(values.plant, "external_force") >= 0)
       values.set("external_force", inputs_.external_force_n.value);
@@ -131,10 +131,10 @@ class SizedEquations final : public Equations {
   }
 
  private:
-  /// Limit for one step of the importer, so that each one ends.
+  /// Step limit for one communication step of the importer, so that each one ends.
   static constexpr long kMostSteps = 5'000'000;
 
-  /// Terms whose parameter an importer may change from zero are there from the beginning.
+  /// Includes terms whose parameter an importer may change from zero, even if they are zero now.
   static Layout exported_layout(const ExportedRig& rig) {
     const std::vector<int> parameters = exported_parameters(rig);
     return layout_of(rig.rig, rig.values, parameters, Plant::kStates, true);
@@ -142,7 +142,7 @@ class SizedEquations final : public Equations {
 
   Sys system(ParameterValues values, const RigInputs& inputs, double length_s) const {
     if (parameter_index(values.plant, "external_force") >= 0)
-      values.set("external_force", 0.0);  // all of it is the input
+      values.set("external_force", 0.0);  // the input is the whole force
     return {layout_,
             values,
             {},
@@ -188,7 +188,7 @@ class SizedEquations final : public Equations {
   Sys system_;
 };
 
-/// Uses the first size that has room for all states.
+/// Uses the first compiled size that has room for all states.
 template <typename Plant, int N, int... Larger>
 std::unique_ptr<Equations> sized(const ExportedRig& rig) {
   const Layout layout = layout_of(rig.rig, rig.values, {}, Plant::kStates, true);

@@ -10,13 +10,13 @@
 
 namespace rigcal::model {
 
-/// An input over one step: a straight line from its value at the beginning.
+/// An input during one step: a straight line from its value at the beginning.
 struct Ramp {
   double value = 0.0;
   double slope_per_s = 0.0;
 };
 
-/// External inputs of a rig; the tank pressure counts if its plant has one.
+/// External inputs of a rig. The tank pressure is used only if the plant has a tank.
 struct RigInputs {
   Ramp drive;  ///< reference [m], or command of the valve [V]
   Ramp external_force_n;
@@ -26,51 +26,51 @@ struct RigInputs {
 
 /// Data that co-simulation keeps between steps in addition to the states.
 struct StepMemory {
-  double planned_step_s = 0.0;  ///< 0: none yet
-  std::vector<double> peak;     ///< shape (states): largest size of each so far
+  double planned_step_s = 0.0;  ///< 0: not planned yet
+  std::vector<double> peak;     ///< shape (states): largest size of each state so far
 };
 
-/// The equations of a rig, whatever its plant and number of states. Time counts from the
-/// beginning of a step.
+/// The equations of a rig with any plant and any number of states. Time counts from the beginning
+/// of a step.
 class Equations {
  public:
   virtual ~Equations() = default;
 
   virtual const Layout& layout() const = 0;
 
-  /// Sets parameters and inputs; the slopes of the inputs are valid for `length_s` > 0.
+  /// Sets parameters and inputs. The slopes of the inputs are valid for `length_s` > 0.
   virtual void set(const ParameterValues& values, const RigInputs& inputs, double length_s) = 0;
 
   virtual std::vector<double> initial() const = 0;
   virtual std::vector<double> derivatives(std::span<const double> x) const = 0;
   virtual double output(Output output, std::span<const double> x) const = 0;
 
-  /// Quantities that change sign where a derivative changes its slope: limits, edges of the valve,
+  /// Quantities that change sign where the right-hand side has a kink: limits, edges of the valve,
   /// end stops.
   virtual std::vector<double> indicators(std::span<const double> x) const = 0;
 
-  /// The sampled controller's tick.
+  /// Applies one tick of the sampled controller.
   virtual void tick(std::span<double> x, double time_s) const = 0;
 
-  /// The states from one time of the step to another.
+  /// Advances the states from one time within the step to another.
   ///
-  /// @param tolerance  local error per step over the running peak of each state
-  /// @throws std::runtime_error  the step size vanishes, or a state is no longer finite
+  /// @param tolerance  local error per step, relative to the running peak of each state
+  /// @throws std::runtime_error  if the step size vanishes or a state is no longer finite
   virtual void advance(std::vector<double>& x, StepMemory& memory, double from_s, double to_s,
                        double tolerance) const = 0;
 };
 
 std::unique_ptr<Equations> make_equations(const ExportedRig& rig);
 
-/// A state as the model description presents it.
+/// A state as the model description of the FMU presents it.
 struct StateDescription {
   std::string name;     ///< name of the output with the same value, if there is one
   std::string unit;     ///< SI, as in a ParameterSpec
   std::string meaning;  ///< one line
-  double nominal;       ///< typical size; an importer's absolute tolerance rests on it
+  double nominal;       ///< typical size, from which an importer derives its absolute tolerance
 };
 
-/// The states in the order of a layout.
+/// Describes the states in the order of a layout.
 std::vector<StateDescription> describe_states(const ExportedRig& rig, const Layout& layout);
 
 }  // namespace rigcal::model

@@ -18,14 +18,14 @@ constexpr std::string_view kFirstLine = "rigcal.rig/1";
 constexpr std::array<std::pair<std::string_view, Before>, 3> kBefore{
     {{"hold", Before::hold}, {"rest", Before::rest}, {"steady", Before::steady}}};
 
-/// Shortest digits that read back to the same bits.
+/// Writes the fewest digits from which the same bits can be read back.
 std::string all_digits(double value) {
   std::array<char, 32> text{};
   const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
   return {text.data(), end};
 }
 
-/// One line of the file as it is read: a key, and its words.
+/// Reads one line of the file: a key, then words.
 class Line {
  public:
   Line(const std::filesystem::path& file, int number, const std::string& text)

@@ -13,28 +13,29 @@ struct ExportedRig {
   std::string guid;  ///< GUID of the model description
   Rig rig;
   ParameterValues values = ParameterValues::defaults(PlantKind::load_pressure);
-  double tolerance = 1e-6;  ///< for co-simulation, if the importer states none
+  double tolerance = 1e-6;  ///< for co-simulation, if the importer gives none
 };
 
 /// Table indices of the parameters that an importer may change, in the order of the table: those of
-/// the plant, and the terms and controller gains of the rig. Inputs of the FMU and sensors, which
-/// are not part of the rig, are excluded.
+/// the plant, the terms and the controller gains of the rig. Inputs of the FMU are excluded, and so
+/// are sensors, which are not part of the rig.
 std::vector<int> exported_parameters(const ExportedRig& rig);
 
-/// Whether a parameter may be changed while the rig runs: not initial values, nor the sampling time
-/// of the controller.
+/// Whether a parameter may change while the rig runs. Initial values and the sampling time of the
+/// controller may not.
 bool is_tunable(const ParameterSpec& spec);
 
-/// Whether an input of the FMU takes the place of a parameter.
+/// Whether an input of the FMU replaces a parameter.
 bool is_input(const ParameterSpec& spec);
 
-/// Name of the file in the resources of an FMU.
+/// Name of the rig's file in the resources of an FMU.
 inline constexpr const char* kRigFile = "rig.txt";
 
-/// The lines of that file; read_exported_rig() gives the same bits back.
+/// Returns the contents of that file. read_exported_rig() restores every value bit by bit.
 std::string exported_rig_text(const ExportedRig& rig);
 
-/// @throws std::runtime_error  file, line, what was found and what was expected
+/// @throws std::runtime_error  if the file is invalid; the message has file and line, what was
+///                             found and what was expected
 ExportedRig read_exported_rig(const std::filesystem::path& file);
 
 }  // namespace rigcal::model

@@ -2,11 +2,11 @@
 
 #include <cstddef>
 
-// Types and functions of the Functional Mock-up Interface 2.0 with the names that the standard
-// gives them (fmi-standard.org, sections 2.1, 3.2 and 4.2), as far as an FMU in C++ needs them.
+// Types and functions of the Functional Mock-up Interface 2.0 that an FMU in C++ needs, with the
+// names from the standard (fmi-standard.org, sections 2.1, 3.2 and 4.2).
 
-/// Sources that are linked together, not loaded, begin the name of each function with
-/// FMI2_FUNCTION_PREFIX.
+/// Prepends FMI2_FUNCTION_PREFIX to the name of each function. Sources that are linked statically
+/// rather than loaded need the prefix.
 #ifdef FMI2_FUNCTION_PREFIX
 #define RIGCAL_FMI2_JOINED(prefix, name) prefix##name
 #define RIGCAL_FMI2_EXPANDED(prefix, name) RIGCAL_FMI2_JOINED(prefix, name)

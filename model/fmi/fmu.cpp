@@ -1,5 +1,5 @@
-// The functions of FMI 2.0, each a call of an FmuInstance. Exceptions are logged and become
-// fmi2Error.
+// The functions of FMI 2.0. Each calls a method of an FmuInstance. Exceptions are logged and
+// returned as fmi2Error.
 
 #include <algorithm>
 #include <cmath>
@@ -30,7 +30,7 @@ void log(const fmi2CallbackFunctions& callbacks, const std::string& name,
                      "%s", message.c_str());
 }
 
-/// Runs `action` on the instance; an exception is logged and becomes fmi2Error.
+/// Runs `action` on the instance. An exception is logged and returned as fmi2Error.
 template <typename Action>
 fmi2Status call(fmi2Component c, const char* function, const Action& action) {
   if (c == nullptr) return fmi2Error;
@@ -51,7 +51,7 @@ int hexadecimal(char c) {
   return found == nullptr ? -1 : static_cast<int>(found - kDigits);
 }
 
-/// The folder that a URI of scheme "file" names, "%20" and the like read.
+/// Returns the folder that a "file:" URI names, with "%20" and the like decoded.
 std::string folder_of(const char* uri) {
   if (uri == nullptr) throw std::runtime_error("fmuResourceLocation is missing");
   std::string text(uri);
@@ -70,7 +70,7 @@ std::string folder_of(const char* uri) {
   return path;
 }
 
-/// Answers for the types that no variable of this FMU has: integer, boolean and string.
+/// Answers a request for integer, boolean or string variables, which this FMU does not have.
 fmi2Status none(fmi2Component c, const char* function, std::size_t count) {
   return call(c, function, [&](FmuInstance&) {
     if (count > 0) throw std::runtime_error("every variable of this FMU is real");
@@ -97,7 +97,7 @@ const char* FMI2(fmi2GetVersion)() { return "2.0"; }
 
 fmi2Status FMI2(fmi2SetDebugLogging)(fmi2Component c, fmi2Boolean /*on*/, std::size_t /*count*/,
                                      const fmi2String /*categories*/[]) {
-  // Errors are all that is logged, and they always are.
+  // Only errors are logged, and they are always logged.
   return call(c, "fmi2SetDebugLogging", [](FmuInstance&) {});
 }
 

@@ -12,7 +12,8 @@ namespace rigcal::model {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-/// A tick this close, in periods, is now: times that an importer adds up are rounded.
+/// Largest distance to a tick, in periods, at which it counts as due. The times that an importer
+/// adds up are rounded.
 constexpr double kSamePart = 1e-6;
 
 /// Rounding error of a time.
@@ -38,7 +39,7 @@ const char* words(Phase phase) {
   return "";
 }
 
-/// std::to_string would write a microvolt as zero.
+/// Nine significant digits; std::to_string would write a microvolt as zero.
 std::string digits(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.9g", value);
@@ -132,7 +133,7 @@ double FmuInstance::real(unsigned reference) {
     refresh();
     const std::size_t states = state_.x.size();
     std::vector<double> x = state_.x;
-    // In co-simulation the importer reads the controller's output for the inputs of this instant.
+    // In co-simulation, the importer reads the controller's output for the inputs of this instant.
     if (state_.phase == Phase::stepping && tick_is_due(state_, state_.time_s))
       equations_->tick(x, 0.0);
     const auto is_in = [reference](unsigned first, std::size_t count) {

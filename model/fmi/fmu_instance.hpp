@@ -11,17 +11,17 @@
 
 namespace rigcal::model {
 
-/// State of an instance in the standard, which decides the allowed calls.
+/// State of an instance as the standard defines it. It decides which calls are allowed.
 enum class Phase {
   instantiated,
   initialization,
   event,       ///< in model exchange
-  continuous,  ///< likewise
+  continuous,  ///< in model exchange
   stepping,    ///< in co-simulation
   terminated,
 };
 
-/// Everything that changes during the life of an instance; fmi2GetFMUstate returns a copy.
+/// Everything that changes during the life of an instance. fmi2GetFMUstate returns a copy of it.
 struct InstanceState {
   Phase phase = Phase::instantiated;
   ParameterValues values;
@@ -29,19 +29,21 @@ struct InstanceState {
   double tolerance = 1e-6;
   double start_s = 0.0;
   double time_s = 0.0;
-  long ticks = 0;  ///< ticks of a sampled controller so far
+  long ticks = 0;  ///< number of ticks of a sampled controller so far
   std::vector<double> x;
   StepMemory memory;
 };
 
-/// Refuses an importer's array of another length.
+/// Checks the length of an importer's array.
+///
+/// @throws std::runtime_error  if the array has another length than expected
 void require_size(std::size_t count, std::size_t expected);
 
-/// One instance of an FMU, for either interface. If a method cannot do what the importer requests,
-/// it throws std::runtime_error with the reason and leaves the instance unchanged.
+/// One instance of an FMU, for either interface. A method that cannot do what the importer requests
+/// throws std::runtime_error with the reason and leaves the instance unchanged.
 class FmuInstance {
  public:
-  /// @param guid  that of the importer's model description
+  /// @param guid  GUID of the model description that the importer has read
   FmuInstance(const std::filesystem::path& resources, const std::string& guid, bool exchange);
 
   void set_up(double start_s, const double* tolerance);
@@ -63,12 +65,12 @@ class FmuInstance {
   std::vector<double> indicators();
   std::vector<double> nominals();
 
-  /// Takes the controller's tick, if it is due; whether it was.
+  /// Applies the controller's tick if it is due, and returns whether it was.
   bool new_discrete_states();
-  /// When the next tick is due; infinity if there is none.
+  /// Time at which the next tick is due; infinity if there is none.
   double next_tick_s() const;
 
-  /// Co-simulation over one step.
+  /// Advances a co-simulation by one step.
   void step(double time_s, double step_s);
 
   const InstanceState& state() const { return state_; }
@@ -77,13 +79,14 @@ class FmuInstance {
  private:
   void require_phase(std::initializer_list<Phase> allowed) const;
   Ramp& input(unsigned reference);
-  /// Row in the table of parameters; nothing if no exported parameter has this reference.
+  /// Row in the parameter table; std::nullopt if no exported parameter has this reference.
   std::optional<std::size_t> parameter_row(unsigned reference) const;
   double next_tick_s(const InstanceState& state) const;
   /// Time difference within which a tick counts as due.
   double slack_s(const InstanceState& state, double time_s) const;
   bool tick_is_due(const InstanceState& state, double time_s) const;
-  /// Equations and states after a change of parameters or inputs, before something is computed.
+  /// Updates equations and states after a change of parameters or inputs. Called before anything is
+  /// computed from them.
   void refresh();
 
   ExportedRig rig_;
@@ -91,7 +94,7 @@ class FmuInstance {
   std::unique_ptr<Equations> equations_;
   std::vector<int> parameters_;
   InstanceState state_;
-  bool stale_ = true;  ///< equations_ have not seen the present parameters and inputs
+  bool stale_ = true;  ///< equations_ do not have the present parameters and inputs yet
 };
 
 }  // namespace rigcal::model

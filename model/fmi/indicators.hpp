@@ -14,7 +14,7 @@ namespace rigcal::model {
 // Quantities that change sign where the right-hand side of a rig has a kink.
 
 /// @param spool_v  valve signal after its dynamics
-/// @param dx       derivative at x
+/// @param dx       time derivative at x
 template <std::size_t N>
 void plant_indicators(const LoadPressurePlant::Coefficients<double>& p, const PresentTerms& terms,
                       const std::array<double, N>& /*x*/, const std::array<double, N>& /*dx*/,
@@ -27,7 +27,8 @@ void plant_indicators(const LoadPressurePlant::Coefficients<double>& p, const Pr
   indicators.push_back(spool_v + p.valve_offset_v + p.valve_dead_band_v);
 }
 
-/// Those of chambers, valve and pump. Pressures count from the tank's, whose changes are small.
+/// Appends the indicators of chambers, valve and pump. Pressures are relative to the tank pressure,
+/// which hardly changes.
 template <typename P, std::size_t N>
 void chamber_indicators(const P& p, const PresentTerms& terms, const std::array<double, N>& x,
                         double spool, std::vector<double>& indicators) {
@@ -74,7 +75,7 @@ void plant_indicators(const TwoChamberPlant::Coefficients<double>& p, const Pres
                       double spool_v, std::vector<double>& indicators) {
   using Plant = TwoChamberPlant;
   const double out = spool_v + p.valve_offset_v;
-  if (!terms.null_opening) {  // else edges open smoothly
+  if (!terms.null_opening) {  // with a null opening the edges open smoothly
     indicators.push_back(out - p.dead_band - p.overlap_supply_to_a_v);
     indicators.push_back(-out - p.dead_band - p.overlap_a_to_tank_v);
     indicators.push_back(-out - p.dead_band - p.overlap_supply_to_b_v);
@@ -84,7 +85,7 @@ void plant_indicators(const TwoChamberPlant::Coefficients<double>& p, const Pres
   indicators.push_back(extended_m);
   indicators.push_back(p.stroke_m - extended_m);
   chamber_indicators(p, terms, x, spool_v, indicators);
-  if (terms.hoses < 0) return;  // else each hose yields in the direction of its pressure change
+  if (terms.hoses < 0) return;  // each hose yields in the direction in which its pressure changes
   indicators.push_back(dx[Plant::pressure_a]);
   indicators.push_back(dx[Plant::pressure_b]);
 }
@@ -102,14 +103,14 @@ void plant_indicators(const LinkagePlant::Coefficients<double>& p, const Present
   chamber_indicators(p, terms, x, spool, indicators);
 }
 
-/// The turn of the bristles.
+/// Appends the velocity, at whose zero the bristles reverse.
 template <typename Plant, std::size_t N>
 void friction_indicators(const PresentTerms& terms, const std::array<double, N>& x,
                          std::vector<double>& indicators) {
   if (terms.bristles >= 0) indicators.push_back(x[Plant::velocity]);
 }
 
-/// Limits of the controller's output and of the spool's rate.
+/// Appends the indicators for the limits of controller output and spool rate.
 ///
 /// @param wanted_v   controller output before its limit
 /// @param command_v  command to the valve

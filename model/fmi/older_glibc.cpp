@@ -1,5 +1,5 @@
-// Only the library of the FMU contains this file. It replaces the functions newer than glibc 2.34
-// that the static libstdc++ and libgcc call, so that the library loads with an older glibc.
+// Only the library of the FMU includes this file. It replaces functions from glibc versions after
+// 2.34 that the static libstdc++ and libgcc call, so that the library loads with an older glibc.
 #include <dlfcn.h>
 #include <link.h>
 
@@ -8,7 +8,7 @@
 #include <cstdint>
 
 // glibc 2.35 added _dl_find_object(), which finds the loaded object that contains an address. The
-// unwinder of libgcc calls it; before, it used dl_iterate_phdr().
+// unwinder in libgcc calls it; older versions use dl_iterate_phdr().
 #ifdef DLFO_EH_SEGMENT_TYPE
 
 namespace {
@@ -18,7 +18,7 @@ struct Search {
   dl_find_object* found;
 };
 
-/// Returns 1, which ends the search, for the object that contains the address.
+/// Returns 1, which ends the search, if the object contains the address.
 int look_into(dl_phdr_info* object, std::size_t /*size*/, void* data) {
   Search& search = *static_cast<Search*>(data);
   bool holds = false;
@@ -52,7 +52,8 @@ extern "C" __attribute__((visibility("hidden"))) int _dl_find_object(
 
 #endif
 
-// Since glibc 2.38 strtoul() also accepts "0b1". libstdc++ parses an environment variable with it.
+// Since glibc 2.38, strtoul() accepts "0b1", too, and code compiled with it calls a new symbol.
+// libstdc++ parses an environment variable with it.
 #ifdef __GLIBC_PREREQ
 #if __GLIBC_PREREQ(2, 38)
 

@@ -11,22 +11,22 @@
 
 namespace rigcal::model {
 
-/// Parameters of a cylinder with two chambers, and what depends on them alone.
+/// Parameters of a cylinder with two chambers, and quantities that depend only on them.
 ///
-/// @tparam Parameters  of the plant, with the members of TwoChamberParameters
+/// @tparam Parameters  parameters of the plant, with the members of TwoChamberParameters
 template <typename Parameters>
 struct ChamberCoefficients : Parameters {
   using C = decltype(Parameters::area_a_m2);
-  C gain{};              ///< spool travel per signal, of the valve that there is [m/V or m/Pa]
-  C dead_band{};         ///< [V or Pa]
+  C gain{};       ///< spool travel per signal, for the kind of valve that the rig has [m/V or m/Pa]
+  C dead_band{};  ///< [V or Pa]
   C conductance{};       ///< flow of an edge per spool travel and root of pressure
-  C edge_conductance{};  ///< the same per signal
+  C edge_conductance{};  ///< flow of an edge per signal and root of pressure
   C leak_conductance{};  ///< orifice leakage per root of pressure
 
   ChamberCoefficients() = default;
   explicit ChamberCoefficients(const Parameters& p)
       : Parameters(p),
-        gain(p.valve_gain_m_per_v + p.pilot_gain_m_per_pa),  // one of them is zero
+        gain(p.valve_gain_m_per_v + p.pilot_gain_m_per_pa),  // one of the two is zero
         dead_band(p.valve_dead_band_v + p.pilot_dead_band_pa),
         conductance(
             orifice_conductance(p.discharge_coefficient, p.area_gradient_m, p.density_kg_per_m3)),
@@ -35,13 +35,14 @@ struct ChamberCoefficients : Parameters {
             orifice_conductance(p.leakage_coefficient, p.leakage_area_m2, p.density_kg_per_m3)) {}
 };
 
-/// The oil of a cylinder with two chambers: pump, valve of four metering edges, leaks, chambers.
-/// Plants that differ in what the piston moves derive from it.
+/// The hydraulics of a cylinder with two chambers: pump, valve with four metering edges, leaks and
+/// chambers. Plants that differ in the load of the piston derive from it.
 struct Chambers {
   static constexpr int kStates = 4;  ///< position and velocity of the load, then both pressures
   enum Pressure { pressure_a = 2, pressure_b = 3 };
 
-  /// The state that an output reads, but for its sensor; none: it is no pressure.
+  /// Index of the state that an output reads apart from its sensor; std::nullopt if the output is
+  /// not a pressure.
   static constexpr std::optional<int> pressure_of(Output output) {
     if (output == Output::pressure_a) return pressure_a;
     if (output == Output::pressure_b) return pressure_b;
@@ -53,13 +54,13 @@ struct Chambers {
     X supply_to_a{}, a_to_tank{}, supply_to_b{}, b_to_tank{};
   };
 
-  /// Flow of the laminar leak of an edge's clearance [m3/s].
+  /// Laminar leakage through the clearance of an edge [m3/s].
   template <typename X, typename P>
   static X null_leak(const X& head_pa, const P& p, const PresentTerms& terms) {
     return terms.null_leak ? X(head_pa * p.valve_null_leakage_m3_per_s_pa) : X(0.0);
   }
 
-  /// Opening of an edge in the unit of the signal, from the signal beyond its dead band; both are
+  /// Opening of an edge in the unit of the signal, for a signal `beyond` the dead band. Both are
   /// positive.
   template <typename X, typename P, typename C>
   static X shaped(const X& beyond, const C& exponent, bool by_power, const P& p,
@@ -71,7 +72,7 @@ struct Chambers {
                          std::array<C, 4>{p.opening_20, p.opening_40, p.opening_60, p.opening_80});
   }
 
-  /// Spool travel that opens an edge [m], from a signal that opens it when positive.
+  /// Spool travel that opens an edge [m]. A positive signal opens it.
   template <typename X, typename P, typename C>
   static X opening(bool to_tank, const X& signal, const C& overlap_v, const P& p,
                    const PresentTerms& terms) {
@@ -91,7 +92,7 @@ struct Chambers {
     return series_opening(opening_m, p.return_line_opening_m);
   }
 
-  /// Flow of an edge with any of the terms of a valve [m3/s].
+  /// Flow through an edge of a valve with any of the optional terms [m3/s].
   template <typename X, typename P, typename C>
   static X shaped_edge(bool to_tank, const X& opening_m, const C& area, const X& up_pa,
                        const X& down_pa, const P& p, const PresentTerms& terms) {
@@ -108,7 +109,7 @@ struct Chambers {
     return leak + by_root * signed_sqrt(across_pa, p.leakage_smoothing_pa);
   }
 
-  /// Flows of a valve with any of its terms.
+  /// Flows through a valve with any of the optional terms.
   template <typename X, std::size_t M, typename P>
   static ValveFlows<X> shaped_valve_flows(const std::array<X, M>& x, const PlantInput<X>& in,
                                           const P& p, const PresentTerms& terms) {
@@ -116,7 +117,7 @@ struct Chambers {
     const X back = -out;
     const X out_m = opening(false, out, p.overlap_supply_to_a_v, p, terms);
     const X back_m = opening(false, back, p.overlap_supply_to_b_v, p, terms);
-    // Edges that open alike are computed once.
+    // Edges with the same opening are computed once.
     const bool own = terms.return_band || terms.return_power || terms.return_line || terms.overlaps;
     const X back_return_m = own ? opening(true, back, p.overlap_a_to_tank_v, p, terms) : back_m;
     const X out_return_m = own ? opening(true, out, p.overlap_b_to_tank_v, p, terms) : out_m;
@@ -128,7 +129,7 @@ struct Chambers {
             shaped_edge(true, out_return_m, p.gain_b_to_tank, p_B, P_t, p, terms)};
   }
 
-  /// Spool travel where overlaps and shape of its edges count [m].
+  /// Spool travel, with the overlaps and the shape of the edges taken into account [m].
   template <typename X, typename P>
   static X shaped_spool(const PlantInput<X>& in, const P& p, const PresentTerms& terms) {
     const X out = in.spool_command_v + p.valve_offset_v;
@@ -136,20 +137,20 @@ struct Chambers {
            opening(false, X(-out), p.overlap_supply_to_b_v, p, terms);
   }
 
-  /// Servo flow: the mean of both chambers, Q_L = (Q_A + Q_B) / 2 [m3/s].
+  /// Servo flow: the mean over both chambers, Q_L = (Q_A + Q_B) / 2 [m3/s].
   template <typename X>
   static X servo_flow(const ValveFlows<X>& q) {
     return 0.5 * (q.supply_to_a - q.a_to_tank + q.b_to_tank - q.supply_to_b);
   }
 
-  /// Internal leakage across the piston, A to B [m3/s]: orifice (eq. 11) and laminar path.
+  /// Internal leakage across the piston from A to B [m3/s]: an orifice (eq. 11) and a laminar path.
   template <typename X, std::size_t M, typename P>
   static X leakage_flow(const std::array<X, M>& x, const P& p, const PresentTerms& terms) {
     return internal_leak(X(x[pressure_a] - x[pressure_b]), p, terms);
   }
 
-  /// Flows into both chambers [m3/s]: through valve, leaks and check valves, less what the piston
-  /// takes up.
+  /// Net flow into each chamber [m3/s]: through valve, leaks and check valves, minus the flow that
+  /// the moving piston displaces.
   template <typename X, std::size_t M, typename P>
   static std::array<X, 2> chamber_flows(const std::array<X, M>& x, const X& speed_m_per_s,
                                         const ValveFlows<X>& q, const PlantInput<X>& in, const P& p,
@@ -187,16 +188,14 @@ struct Chambers {
     return x[pressure_a] * p.area_a_m2 - x[pressure_b] * p.area_b_m2;
   }
 
-  // The pump.
-
-  /// Signal of the spool beyond its dead band, of either direction [V or Pa].
+  /// Signal of the spool beyond its dead band, in either direction [V or Pa].
   template <typename X, typename P>
   static X beyond_dead_band(const PlantInput<X>& in, const P& p) {
     const X out = in.spool_command_v + p.valve_offset_v;
     return (value_of(out) < 0.0 ? X(-out) : out) - p.dead_band;
   }
 
-  /// How far the valve asks the pump for flow, from 0 to 1.
+  /// How much flow the valve demands of the pump, from 0 to 1.
   template <typename X, typename P>
   static X demand(const PlantInput<X>& in, const P& p, const PresentTerms& terms) {
     using std::tanh;
@@ -204,8 +203,8 @@ struct Chambers {
     return tanh(X(positive_part(beyond_dead_band(in, p)) / whole));
   }
 
-  /// Rate of the time for which the pump has been asked for flow [1]. Without a demand the time
-  /// fades.
+  /// Rate of the time for which the pump has been asked for flow [1]. Without a demand, that time
+  /// decays.
   template <typename X, std::size_t M, typename P>
   [[gnu::noinline]] static X demand_rate(const std::array<X, M>& x, const PlantInput<X>& in,
                                          const P& p, const PresentTerms& terms) {
@@ -233,8 +232,8 @@ struct Chambers {
            signed_sqrt(X(in.supply_pressure_pa - in.tank_pressure_pa), p.leakage_smoothing_pa);
   }
 
-  /// Pressure that the pump keeps [Pa]: its limit or, with load sensing, what the driven chamber
-  /// has and the margin more, up to the limit.
+  /// Pressure that the pump maintains [Pa]: its limit or, with load sensing, the pressure of the
+  /// driven chamber plus the margin, up to the limit.
   template <typename X, std::size_t M, typename P>
   [[gnu::noinline]] static X sensed_pressure(const X& limit_pa, const std::array<X, M>& x,
                                              const PlantInput<X>& in, const P& p,
@@ -246,7 +245,7 @@ struct Chambers {
     return value_of(kept_pa) < value_of(limit_pa) ? kept_pa : limit_pa;
   }
 
-  /// Flow of the pump [m3/s]: what its pressure asks for, within its largest.
+  /// Flow of the pump [m3/s]: what its pressure demands, up to its largest flow.
   template <typename X, std::size_t M, typename P>
   static X pump_flow(const X& limit_pa, const std::array<X, M>& x, const PlantInput<X>& in,
                      const P& p, const PresentTerms& terms) {
@@ -259,7 +258,7 @@ struct Chambers {
 
   /// Rate of the supply pressure at the valve [Pa/s].
   ///
-  /// @param limit_pa  pressure that the pump is limited to
+  /// @param limit_pa  pressure to which the pump is limited
   /// @param taken     flow that the valve takes from the supply [m3/s]
   template <typename X, std::size_t M, typename P>
   static X supply_rate(const X& limit_pa, const X& taken, const std::array<X, M>& x,

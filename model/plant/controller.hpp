@@ -12,9 +12,9 @@ struct ControllerOutput {
   X limited{};
 };
 
-/// Copies the gains of a force, pressure or acceleration loop to where the controller reads those
-/// of a position loop. The controller computes the same for all; the gains are in V per unit of the
-/// controlled quantity.
+/// Copies the gains of a force, pressure or acceleration loop to the members from which the
+/// controller reads the gains of a position loop. The controller computes all loops alike; the
+/// gains are in V per unit of the controlled quantity.
 template <typename P>
 void take_gains(Feedback feedback, P& p) {
   switch (feedback) {
@@ -38,22 +38,22 @@ void take_gains(Feedback feedback, P& p) {
   }
 }
 
-/// Error that the controller acts on.
+/// The signals on which the controller acts.
 template <typename X>
 struct LoopError {
   X error{};        ///< reference minus controlled quantity, in the unit of that quantity
-  X pressure_pa{};  ///< load pressure, where it is fed back
-  X reference{};    ///< where its rate is fed forward
+  X pressure_pa{};  ///< load pressure, if it is fed back
+  X reference{};    ///< reference, if its rate is fed forward
 };
 
-/// Rate of the reference behind its filter [m/s]: v_f = N (r - r_f).
+/// Rate of the filtered reference [m/s]: v_f = N (r - r_f).
 template <typename X, typename State, typename P>
 X reference_rate(const LoopError<X>& loop, const State& state, const P& p, const Layout& layout) {
   return (loop.reference - state[static_cast<std::size_t>(layout.reference)]) *
          p.derivative_filter_rad_per_s;
 }
 
-/// Rate of that rate behind the same filter once more [m/s2]: a_f = N (v_f - v_ff).
+/// Rate of v_f after a second pass through the same filter [m/s2]: a_f = N (v_f - v_ff).
 template <typename X, typename State, typename P>
 X reference_acceleration(const LoopError<X>& loop, const State& state, const P& p,
                          const Layout& layout) {
@@ -61,7 +61,7 @@ X reference_acceleration(const LoopError<X>& loop, const State& state, const P& 
          p.derivative_filter_rad_per_s;
 }
 
-/// u = K_p e + I + K_d N (e - e_f) - K_dp P_L + K_vf v_f + K_af a_f, then the limit.
+/// Computes u = K_p e + I + K_d N (e - e_f) - K_dp P_L + K_vf v_f + K_af a_f, and limits it.
 ///
 /// @param state  the whole state vector; `layout` has the indices of integral and filter
 template <typename X, typename State, typename P>
@@ -83,9 +83,9 @@ ControllerOutput<X> controller_output(const LoopError<X>& loop, const State& sta
   return {wanted, clamp_symmetric(wanted, p.output_limit_v)};
 }
 
-/// Rate at which an integral under saturation is pulled back to the limit [1/s]: K_i / K_p, the
-/// tracking time constant being the integral time (back-calculation; Astrom and Hagglund, 1995).
-/// A pure integral controller is pulled back within 10 ms.
+/// Rate at which back-calculation pulls a saturated integral back to the limit [1/s]: K_i / K_p.
+/// The tracking time constant is then the integral time (Astrom and Hagglund, 1995). A purely
+/// integral controller is pulled back within 10 ms.
 template <typename P>
 auto anti_windup_rate(const P& p) {
   using C = std::remove_cvref_t<decltype(p.kp_v_per_m)>;
@@ -99,10 +99,9 @@ X integral_rate(const X& error, const ControllerOutput<X>& u, const P& p) {
   return error * p.ki_v_per_m_s + (u.limited - u.wanted) * anti_windup_rate(p);
 }
 
-/// One tick of the sampled controller. The filters advance by backward Euler, the output is
-/// constant until the next tick, and the integral advances by forward Euler with the same
-/// back-calculation. Back-calculation takes at least one period to reach the limit, so it cannot
-/// overshoot it.
+/// One tick of the sampled controller. The filters advance by backward Euler, the integral by
+/// forward Euler with the same back-calculation, and the output is constant until the next tick.
+/// Back-calculation takes at least one period to reach the limit, so it cannot overshoot it.
 template <typename X, typename State, typename P>
 void controller_tick(const LoopError<X>& loop, State& state, const P& p, const Layout& layout) {
   const X& error = loop.error;

@@ -11,63 +11,64 @@
 
 namespace rigcal::model {
 
-/// Optional terms of a rig; an absent one costs nothing.
+/// Optional terms of a rig. An absent term costs no time.
 struct PresentTerms {
   bool friction = false;         ///< Coulomb or breakaway friction was given
   bool stribeck = false;         ///< breakaway friction was given
   bool seal_friction = false;    ///< friction grows with the pressure across the piston
-  bool shaped_friction = false;  ///< it does, or has pre-sliding
-  int bristles = -1;             ///< index of the bristles' force; -1: friction without pre-sliding
-  bool orifice_leak = false;     ///< the leakage coefficient is not zero, or free
-  bool leak_line = false;        ///< the leak begins laminar: its resistance was given
-  bool laminar_leak = false;     ///< likewise
-  bool null_leak = false;        ///< likewise, across the null of the valve
-  bool valve_offset = false;     ///< null shift: not zero, or free
-  bool spool_shape = false;      ///< null shift or overlap: not zero, or free
-  bool external_force = false;   ///< recorded, or not zero, or free
-  bool varying_load = false;     ///< the load's gradient or curvature: not zero, or free
-  bool curved_load = false;      ///< the load's curvature: not zero, or free
-  bool overlaps = false;         ///< an overlap of an edge: not zero, or free
-  bool null_opening = false;     ///< covered edges leak through an orifice
-  bool line_loss = false;        ///< the lines throttle, too
-  bool air = false;              ///< the bulk modulus falls at low pressure
-  bool external_leak = false;    ///< for either chamber: not zero, or free
-  int hoses = -1;                ///< index of the first state of yielding hoses; -1: rigid hoses
-  int payload = -1;              ///< index of the first state of the second mass; -1: none
-  bool pilot = false;            ///< the drive of the spool is a pilot pressure
-  bool power_opening = false;    ///< the spool opens by a power law
-  bool return_band = false;      ///< the edges to the tank have their own dead band
-  bool return_power = false;     ///< likewise, their own power law
-  bool return_line = false;      ///< the line to the tank throttles, too
-  bool return_loss = false;      ///< the line to the tank has a loss in proportion to its flow
-  bool bypass = false;           ///< a closed valve passes the pump's flow to the tank
-  bool table_opening = false;    ///< the spool opens by a table
-  bool compensator = false;      ///< edges from the supply are pressure-compensated
-  bool load_sensing = false;     ///< the pump follows the pressure of the driven chamber
-  bool accumulator = false;      ///< gas of an accumulator beside the supply's capacity
-  bool relief = false;           ///< a relief valve for each chamber
-  /// The valve has any term beside gains and overlaps of its edges, null opening and line loss.
+  bool shaped_friction = false;  ///< friction depends on the pressure, or has pre-sliding
+  int bristles = -1;  ///< index of the force of the bristles; -1: friction without pre-sliding
+  bool orifice_leak = false;    ///< the leakage coefficient is not zero, or is free
+  bool leak_line = false;       ///< the leak is laminar at low pressure: its resistance was given
+  bool laminar_leak = false;    ///< the laminar leakage was given
+  bool null_leak = false;       ///< the laminar leakage of the valve's closed edges was given
+  bool valve_offset = false;    ///< the null shift is not zero, or is free
+  bool spool_shape = false;     ///< null shift or overlap is not zero, or is free
+  bool external_force = false;  ///< the external force is recorded, not zero, or free
+  bool varying_load = false;    ///< gradient or curvature of the load is not zero, or is free
+  bool curved_load = false;     ///< the curvature of the load is not zero, or is free
+  bool overlaps = false;        ///< the overlap of an edge is not zero, or is free
+  bool null_opening = false;    ///< covered edges leak through an orifice
+  bool line_loss = false;       ///< the lines throttle the flow, too
+  bool air = false;             ///< the bulk modulus falls at low pressure
+  bool external_leak = false;   ///< the external leak of a chamber is not zero, or is free
+  int hoses = -1;               ///< index of the first state of yielding hoses; -1: rigid hoses
+  int payload = -1;             ///< index of the first state of the second mass; -1: no second mass
+  bool pilot = false;           ///< the drive of the spool is a pilot pressure
+  bool power_opening = false;   ///< the spool opens according to a power law
+  bool return_band = false;     ///< the edges to the tank have their own dead band
+  bool return_power = false;    ///< the edges to the tank have their own power law
+  bool return_line = false;     ///< the line to the tank throttles the flow, too
+  bool return_loss = false;  ///< the line to the tank has a pressure loss proportional to its flow
+  bool bypass = false;       ///< a closed valve passes the flow of the pump to the tank
+  bool table_opening = false;  ///< the spool opens according to a table
+  bool compensator = false;    ///< edges from the supply are pressure-compensated
+  bool load_sensing = false;   ///< the pump follows the pressure of the driven chamber
+  bool accumulator = false;    ///< an accumulator adds to the capacity of the supply
+  bool relief = false;         ///< each chamber has a relief valve
+  /// The valve has any term besides gains and overlaps of its edges, null opening and line loss.
   bool shaped_valve = false;
   bool pump_flow = false;  ///< the flow of the pump is limited
-  bool make_up = false;    ///< the tank fills a chamber that is pulled empty
-  int pump = -1;           ///< index of the time of demand; -1: its limit is constant
-  int supply = -1;         ///< index of the supply pressure at the valve; -1: the source's
+  bool make_up = false;    ///< the tank fills a chamber whose pressure drops too low
+  int pump = -1;           ///< index of the demand time of the pump; -1: its limit is constant
+  int supply =
+      -1;  ///< index of the supply pressure at the valve; -1: equal to the pressure of the source
   bool valve_rate_limit = false;
-  bool retracted_position = false;     ///< else half a stroke below zero
-  bool initial_load_pressure = false;  ///< else the load pressure starts in equilibrium
-  bool initial_pressure_a = false;     ///< else from the other and the load
+  bool retracted_position = false;     ///< otherwise half a stroke below zero
+  bool initial_load_pressure = false;  ///< otherwise the load pressure starts in equilibrium
+  bool initial_pressure_a = false;     ///< otherwise from the other pressure and the load
   bool initial_pressure_b = false;
 };
 
 /// Everything that the program knows about a state. Error control, solver and FMU read this row.
-/// The rate of the state is in the plant's derivative() or, if the plant does not own it, in
-/// system.hpp.
+/// The derivative of the state is in derivative() of the plant or, if the state does not belong to
+/// the plant, in system.hpp.
 struct StateRow {
   std::string_view name;     ///< name of the output with the same value, if there is one
   std::string_view unit;     ///< SI
   std::string_view meaning;  ///< one line
-  double floor = 0.0;        ///< size below which it counts as zero in the error control
-  /// Typical size; of a pressure as a fraction of the supply pressure. An importer derives its
+  double floor = 0.0;        ///< size below which the error control treats it as zero
+  /// Typical size. For a pressure, it is a fraction of the supply pressure. An importer derives its
   /// absolute tolerance from it.
   double nominal = 0.0;
 };
@@ -122,7 +123,7 @@ struct Layout {
   int pump = -1;        ///< time for which the pump has been asked for flow [s]
   int payload = -1;     ///< position [m] and velocity [m/s] of the second mass
   int bristles = -1;    ///< force of the bristles [N]
-  int valve_order = 0;  ///< 0: spool follows the command; 1, 2: lag
+  int valve_order = 0;  ///< 0: the spool follows the command; 1, 2: order of its lag
   int valve = -1;       ///< first valve state: spool signal [V], then its rate [V/s]
   bool pid = false;
   Feedback feedback = Feedback::position;  ///< quantity that the loop controls
@@ -139,16 +140,18 @@ struct Layout {
   std::array<const StateRow*, kMostAdded> added{};  ///< the states after those of the plant
 
   bool sampled() const { return held >= 0; }
-  /// Whether the loop feeds back the position of the piston and nothing else, and nothing forward.
+  /// Whether the loop feeds back only the position of the piston, and feeds nothing forward.
   bool position_alone() const {
     return feedback == Feedback::position && !pressure_feedback && reference < 0;
   }
-  /// Whether a state is one that a sampled controller's tick changes.
+  /// Whether a state changes at the tick of a sampled controller.
   bool of_controller(int state) const {
     return state >= 0 && (state == integral || state == filter || state == reference ||
                           state == rate || state == held);
   }
 
+  /// Adds a state to the layout.
+  ///
   /// @return  index of the state
   int add(const StateRow& row) {
     added.at(static_cast<std::size_t>(states - plant_states)) = &row;
@@ -156,7 +159,7 @@ struct Layout {
   }
 };
 
-/// Size below which each state counts as zero; 1 for the unused states.
+/// Size below which the error control treats each state as zero; 1 for unused states.
 template <typename Plant, std::size_t N>
 std::array<double, N> state_floors(const Layout& layout) {
   std::array<double, N> floor;
@@ -168,13 +171,13 @@ std::array<double, N> state_floors(const Layout& layout) {
   return floor;
 }
 
-/// @param free  table indices of the parameters whose sensitivities are wanted
+/// @param free  table indices of the parameters whose sensitivities are requested
 inline Layout layout_of(const Rig& rig, const ParameterValues& values, std::span<const int> free,
                         int plant_states, bool force_recorded = false) {
   Layout layout;
   layout.plant_states = plant_states;
   layout.states = plant_states;
-  // Terms of another plant are not in the table of this one.
+  // A term of another plant is not in the table of this plant.
   const auto given = [&values](std::string_view key) {
     return parameter_index(values.plant, key) >= 0 && values.is_given(key);
   };

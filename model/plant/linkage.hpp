@@ -12,21 +12,21 @@
 
 namespace rigcal::model {
 
-/// A cylinder of two chambers that turns an arm, as on an excavator, behind an electric or a
-/// pilot-operated valve and a pump of limited flow.
+/// A cylinder with two chambers that turns an arm, as on an excavator, driven by an electric or
+/// pilot-operated valve and a pump with limited flow.
 ///
 ///   J omega' = D(theta) (A_A p_A - A_B p_B) - c omega - M_c(omega) + M_stops - M(theta)
 ///   p_A'     = beta(p_A) / V_A (Q_A - Q_leak - G_A (p_A - P_t) + Q_mA - A_A D omega)
 ///   p_B'     = beta(p_B) / V_B (Q_leak - Q_B - G_B (p_B - P_t) + Q_mB + A_B D omega)
 ///
-/// D is the lever: travel of the piston per angle, and so moment per force. Positive angle and
-/// piston travel go together: chamber A is the one whose pressure raises the angle.
+/// D is the lever: piston travel per angle, and so moment per force. Positive angle and piston
+/// travel correspond: pressure in chamber A increases the angle.
 struct LinkagePlant : Chambers {
   static constexpr std::string_view kName = "linkage";  ///< in campaign files
   enum Motion {
     angle,
     angular_velocity,
-    position = angle,  ///< what System calls the first two
+    position = angle,  ///< the names that System uses for the first two
     velocity = angular_velocity
   };
   template <typename T>
@@ -54,17 +54,18 @@ struct LinkagePlant : Chambers {
       StateRow{"angular_velocity", "rad/s", "angular velocity of the joint", 1e-5, 0.1}, kPressureA,
       kPressureB};
 
-  /// The state that an output reads, but for its sensor; none: it takes more.
+  /// Index of the state that an output reads apart from its sensor; std::nullopt if the output
+  /// depends on more than one state.
   static constexpr std::optional<int> state_of(Output output) {
     if (output == Output::angle) return angle;
     if (output == Output::angular_velocity) return angular_velocity;
     return pressure_of(output);
   }
 
-  /// No output: the chambers differ.
+  /// No output is reversible, because the chambers differ.
   static bool reversible(Output, const PresentTerms&) { return false; }
 
-  /// Travel of the piston per angle [m/rad].
+  /// Piston travel per angle [m/rad].
   template <typename X, typename C>
   static X lever(const X& theta, const Coefficients<C>& p) {
     const X from = theta - p.reference_angle_rad;
@@ -72,7 +73,7 @@ struct LinkagePlant : Chambers {
            p.lever_m_per_rad;
   }
 
-  /// Travel of the piston from the reference angle [m]: the integral of the lever.
+  /// Piston travel from the reference angle [m]: the integral of the lever.
   template <typename X, typename C>
   static X travel(const X& theta, const Parameters<C>& p) {
     const X from = theta - p.reference_angle_rad;
@@ -82,7 +83,7 @@ struct LinkagePlant : Chambers {
            from;
   }
 
-  /// Moment of the load against positive angle [N m].
+  /// Moment of the load, directed against positive angles [N m].
   template <typename X, typename C>
   static X gravity_moment(const X& theta, const Coefficients<C>& p) {
     const X from = theta - p.reference_angle_rad;
@@ -106,7 +107,7 @@ struct LinkagePlant : Chambers {
     return q.supply_to_a + q.supply_to_b;
   }
 
-  /// Moment of stops and support on the arm, towards larger angles [N m].
+  /// Moment of stops and support on the arm, directed towards larger angles [N m].
   template <typename X, typename C>
   static X stops_moment(const X& theta, const X& omega, const Coefficients<C>& p) {
     return stop_force(X(p.lower_stop_rad - theta), X(-omega), p.angle_stop_stiffness_n_m_per_rad,
@@ -115,8 +116,8 @@ struct LinkagePlant : Chambers {
                       p.angle_stop_damping_s_per_rad);
   }
 
-  /// Oil in the chambers [m3]. An arm pressed into its stop does not squeeze the oil below a
-  /// thousandth of the swept volume.
+  /// Oil volumes of the chambers [m3], limited below to a thousandth of the swept volume for an arm
+  /// that is pressed into its stop.
   template <typename X, typename C>
   static std::array<X, 2> volumes(const X& theta, const Coefficients<C>& p) {
     const X x = travel(theta, p);
@@ -145,8 +146,8 @@ struct LinkagePlant : Chambers {
             flow[1] * bulk_modulus(x[pressure_b], p, terms) / volume[1]};
   }
 
-  /// Outputs of the plant other than command and pilot pressure. Servo and work flow are the means
-  /// of both chambers: Q_L = (Q_A + Q_B) / 2.
+  /// Outputs of the plant other than command and pilot pressure. Servo flow and work flow are means
+  /// over both chambers: Q_L = (Q_A + Q_B) / 2.
   template <typename X, std::size_t M, typename C>
   static X output(Output output, const std::array<X, M>& x, const PlantInput<X>& in,
                   const Coefficients<C>& p, const PresentTerms& terms) {
@@ -190,16 +191,15 @@ struct LinkagePlant : Chambers {
     return X(0.0);
   }
 
-  /// State at rest: at the reference angle, or at the nearer stop. The pressures balance the load,
-  /// and their sum is that of supply and tank.
+  /// State at rest: at the reference angle, or at the closer stop if that is out of reach. The
+  /// pressures balance the load, and their sum is that of supply and tank pressure.
   template <typename C>
   static std::array<C, kStates> rest(const PlantInput<C>& in, const Coefficients<C>& p,
                                      const PresentTerms&) {
     return settled({C(p.reference_angle_rad), C(0.0), C(0.0), C(0.0)}, in, p, false, false);
   }
 
-  /// Initial state from the readings of the sensors, as far as there are any; missing pressures
-  /// balance the load.
+  /// Initial state from those sensor readings that were given. Missing pressures balance the load.
   template <typename C>
   static std::array<C, kStates> initial(const PlantInput<C>& in, const Coefficients<C>& p,
                                         const PresentTerms& terms) {
@@ -211,8 +211,8 @@ struct LinkagePlant : Chambers {
   }
 
  private:
-  /// Fills in the pressures that are not given and puts an arm that reads as beyond a stop onto it,
-  /// pressed in by what the pressures do not balance.
+  /// Fills in the pressures that are not given. If the reading puts the arm beyond a stop, moves it
+  /// onto the stop, pressed in as far as the unbalanced pressures push it.
   template <typename C>
   static std::array<C, kStates> settled(std::array<C, kStates> x, const PlantInput<C>& in,
                                         const Coefficients<C>& p, bool given_a, bool given_b) {

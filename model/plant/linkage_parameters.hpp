@@ -10,8 +10,8 @@
 
 namespace rigcal::model {
 
-/// A cylinder that turns an arm. It has the oil, valve and chambers of TwoChamberParameters; the
-/// members of a load that slides have no row in its table.
+/// A cylinder that turns an arm. Oil, valve and chambers are those of TwoChamberParameters. The
+/// inherited members for a sliding load have no row in the table.
 template <typename T>
 struct LinkageParameters : TwoChamberParameters<T> {
   T inertia_kg_m2{};
@@ -37,7 +37,7 @@ struct LinkageParameters : TwoChamberParameters<T> {
   T initial_angular_velocity_rad_per_s{};
 };
 
-/// The joint: what replaces mass, stroke and position of a load that slides.
+/// The joint: replaces mass, stroke and position of a sliding load.
 template <typename T>
 constexpr auto joint_rows() {
   using P = LinkageParameters<T>;
@@ -54,7 +54,7 @@ constexpr auto joint_rows() {
   };
 }
 
-/// Optional terms of lever, load and stops.
+/// Optional terms for lever, load and stops.
 template <typename T>
 constexpr auto linkage_term_rows() {
   using P = LinkageParameters<T>;
@@ -94,8 +94,8 @@ constexpr auto angle_rows() {
   };
 }
 
-/// The linkage, in the order of `rigcal params`: its own rows, and those of oil, valve, chambers
-/// and sensors that do not speak of a load that slides.
+/// Rows of the linkage, in the order of `rigcal params`: its own rows, and those of oil, valve,
+/// chambers and sensors that do not concern a sliding load.
 template <typename T>
 constexpr auto linkage_fields() {
   using Keys = std::string_view;

@@ -9,12 +9,12 @@
 
 namespace rigcal::model {
 
-/// The paper's plant: piston and load pressure of a symmetric cylinder of constant volume.
+/// The paper's plant: piston and load pressure of a symmetric cylinder with constant volume.
 ///
 ///   m x''  = A P_L - b x' - k x - F_dry(x') - F_ext(x) - m_2 x_2''     eq. 12
 ///   P_L'   = (4 beta / V_t) (Q_L - Q_leak - A x')                      eq. 13
 ///
-/// A plant is a parameter table (`Parameters`), a right-hand side and its outputs.
+/// A plant consists of a parameter table (`Parameters`), a right-hand side and outputs.
 struct LoadPressurePlant {
   static constexpr std::string_view kName = "load_pressure";  ///< in campaign files
   static constexpr int kStates = 3;
@@ -47,7 +47,8 @@ struct LoadPressurePlant {
       kPistonPosition, kPistonVelocity,
       StateRow{"load_pressure", "Pa", "pressure of chamber A less that of B", 100.0, 0.1}};
 
-  /// The state that an output reads, but for its sensor; none: it takes more.
+  /// Index of the state that an output reads apart from its sensor; std::nullopt if the output
+  /// depends on more than one state.
   static constexpr std::optional<int> state_of(Output output) {
     switch (output) {
       case Output::position:
@@ -61,14 +62,14 @@ struct LoadPressurePlant {
     }
   }
 
-  /// Whether reversed inputs reverse the states and an output. All terms are odd functions except
-  /// those that act in one direction only; the chamber pressures swap.
+  /// Whether reversed inputs reverse the states and an output. All terms are odd functions, except
+  /// those that act in one direction only. The chamber pressures swap instead of changing sign.
   static bool reversible(Output output, const PresentTerms& terms) {
     return !terms.external_force && !terms.curved_load && !terms.valve_offset &&
            output != Output::pressure_a && output != Output::pressure_b;
   }
 
-  /// Spool travel [m], eq. 6: x_v = k_sv u, after null shift and overlap.
+  /// Spool travel [m], eq. 6: x_v = k_sv u, with null shift and overlap.
   template <typename X, typename C>
   static X spool(const PlantInput<X>& in, const Coefficients<C>& p, const PresentTerms& terms) {
     if (!terms.spool_shape) return in.spool_command_v * p.valve_gain_m_per_v;
@@ -76,7 +77,7 @@ struct LoadPressurePlant {
            p.valve_gain_m_per_v;
   }
 
-  /// Flow of the servo valve to the load [m3/s], eq. 4, less the loss across its null.
+  /// Flow of the servo valve to the load [m3/s], eq. 4, minus the leakage across its null.
   template <typename X, typename C>
   static X servo_flow(const X& P_L, const PlantInput<X>& in, const Coefficients<C>& p,
                       const PresentTerms& terms) {
@@ -86,7 +87,7 @@ struct LoadPressurePlant {
     return flow - P_L * p.valve_null_leakage_m3_per_s_pa;
   }
 
-  /// Internal leakage across the piston [m3/s]: orifice (eq. 11) and laminar path.
+  /// Internal leakage across the piston [m3/s]: an orifice (eq. 11) and a laminar path.
   template <typename X, typename C>
   static X leakage_flow(const X& P_L, const Coefficients<C>& p, const PresentTerms& terms) {
     if (!terms.laminar_leak && !terms.leak_line)
@@ -122,8 +123,8 @@ struct LoadPressurePlant {
   }
 
   /// Outputs of the plant other than position and velocity. Its chambers share the load pressure
-  /// equally. `force` is the reading of a load cell in the rod, the force that the rod transmits to
-  /// mass, damper and spring of the load: A P_L minus the dry friction of the cylinder
+  /// equally. `force` is the reading of a load cell in the rod: the force that the rod transmits to
+  /// mass, damper and spring of the load, A P_L minus the dry friction of the cylinder
   /// (docs/model.md).
   template <typename X, std::size_t M, typename C>
   static X output(Output output, const std::array<X, M>& x, const PlantInput<X>& in,
@@ -159,15 +160,15 @@ struct LoadPressurePlant {
     return X(0.0);
   }
 
-  /// State at rest: zero.
+  /// State at rest: all zero.
   template <typename C>
   static std::array<C, kStates> rest(const PlantInput<C>& /*in*/, const Coefficients<C>& /*p*/,
                                      const PresentTerms& /*terms*/) {
     return {C(0.0), C(0.0), C(0.0)};
   }
 
-  /// Initial state: recorded position and load pressure without the errors of their sensors. A load
-  /// pressure that is not given balances load and spring.
+  /// Initial state: recorded position and load pressure, corrected for sensor errors. A load
+  /// pressure that was not given balances load and spring.
   template <typename C>
   static std::array<C, kStates> initial(const PlantInput<C>& /*in*/, const Coefficients<C>& p,
                                         const PresentTerms& terms) {

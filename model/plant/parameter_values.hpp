@@ -15,10 +15,10 @@ struct ParameterField {
   ParameterSpec spec;
 };
 
-/// Parameters that every plant shares: piston, valve, friction, leakage, controller, sensors.
-/// SI; the unit ends the name.
+/// Parameters that all plants share: piston, valve, friction, leakage, controller, sensors. In SI
+/// units; each name ends in its unit.
 ///
-/// @tparam T  double, or a dual number when derivatives are wanted
+/// @tparam T  double, or a dual number if derivatives are needed
 template <typename T>
 struct CommonParameters {
   T mass_kg{};
@@ -115,7 +115,7 @@ struct LoadPressureParameters : CommonParameters<T> {
   T initial_load_pressure_pa{};
 };
 
-/// Rows one after the other.
+/// Concatenates arrays of rows.
 template <typename F, std::size_t... N>
 constexpr auto joined(const std::array<F, N>&... rows) {
   std::array<F, (N + ...)> all{};
@@ -127,7 +127,7 @@ constexpr auto joined(const std::array<F, N>&... rows) {
   return all;
 }
 
-// Rows that every plant shares. To add a parameter: a member above and a row here; the campaign
+// Rows that all plants share. To add a parameter, add a member above and a row here; the campaign
 // file, the results, the fit and the documents follow.
 
 /// Mass, damper and spring.
@@ -212,7 +212,7 @@ constexpr auto load_rows() {
   };
 }
 
-/// Dead time, sensors and initial motion, which the solver needs of every plant.
+/// Dead time, sensors and initial motion, which the solver needs for every plant.
 template <template <typename> class Parameters, typename T>
 constexpr auto sensor_rows() {
   using P = Parameters<T>;
@@ -257,14 +257,14 @@ constexpr auto sensor_rows() {
   };
 }
 
-/// Parameters that hydraulic plants have in common, apart from their motion.
+/// Parameters that all hydraulic plants share, except those for their motion.
 template <template <typename> class Parameters, typename T>
 constexpr auto shared_rows() {
   return joined(oil_rows<Parameters, T>(), valve_rows<Parameters, T>(), load_rows<Parameters, T>(),
                 sensor_rows<Parameters, T>());
 }
 
-/// The controller.
+/// Limits and gains of the controller.
 template <template <typename> class Parameters, typename T>
 constexpr auto controller_rows() {
   using P = Parameters<T>;
@@ -295,7 +295,7 @@ constexpr auto controller_rows() {
   };
 }
 
-/// The load-pressure plant, in the order of `rigcal params`.
+/// Rows of the load-pressure plant, in the order of `rigcal params`.
 template <typename T>
 constexpr auto load_pressure_fields() {
   using P = LoadPressureParameters<T>;

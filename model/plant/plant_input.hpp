@@ -9,16 +9,16 @@
 
 namespace rigcal::model {
 
-/// Inputs of a plant at one instant; X carries time derivatives where they are needed.
+/// Inputs of a plant at one instant. X includes time derivatives if they are needed.
 template <typename X>
 struct PlantInput {
   X spool_command_v;     ///< valve signal after its dynamics [V]
-  X external_force_n;    ///< load against positive travel [N]; set where that term takes part
+  X external_force_n;    ///< load against positive travel [N]; set only if the model has that term
   X supply_pressure_pa;  ///< P_s [Pa]
-  X tank_pressure_pa;    ///< P_t [Pa]; set where the plant has one
+  X tank_pressure_pa;    ///< P_t [Pa]; set only if the plant has a tank
 };
 
-/// Dry friction of piston and rod [N]; absent unless given.
+/// Dry friction of piston and rod [N]; zero unless it was given.
 template <typename X, typename C>
 X friction(const X& v, const CommonParameters<C>& p, const PresentTerms& terms) {
   if (!terms.friction) return X(0.0);
@@ -27,10 +27,10 @@ X friction(const X& v, const CommonParameters<C>& p, const PresentTerms& terms) 
                       p.friction_smoothing_m_per_s);
 }
 
-/// Internal leakage across the piston, A to B [m3/s]: orifice (eq. 11), behind a laminar path where
-/// that was given, and a laminar path beside it.
+/// Internal leakage across the piston from A to B [m3/s]: an orifice (eq. 11), in series with a
+/// laminar resistance if that was given, and a laminar path in parallel.
 ///
-/// @param p  with leak_conductance, orifice_conductance() of the leak
+/// @param p  with leak_conductance: orifice_conductance() of the leak
 template <typename X, typename P>
 X internal_leak(const X& load_pressure_pa, const P& p, const PresentTerms& terms) {
   const X laminar = load_pressure_pa * p.laminar_leakage_m3_per_s_pa;
@@ -41,10 +41,10 @@ X internal_leak(const X& load_pressure_pa, const P& p, const PresentTerms& terms
   return laminar + orifice_leakage(load_pressure_pa, p.leak_conductance, p.leakage_smoothing_pa);
 }
 
-/// Dry friction of steady sliding, without its sign [N]; that of seals grows with the pressure that
-/// presses them on.
+/// Magnitude of the dry friction in steady sliding [N]. Seal friction grows with the pressure that
+/// presses the seals on.
 ///
-/// @tparam Plant  has the velocity and the pressure across the piston
+/// @tparam Plant  provides the velocity and the pressure across the piston
 template <typename Plant, typename X, std::size_t M, typename C>
 X sliding_friction_of(const std::array<X, M>& x, const CommonParameters<C>& p,
                       const PresentTerms& terms) {
@@ -67,8 +67,8 @@ X bristle_rate_of(const std::array<X, M>& x, const CommonParameters<C>& p,
                       sliding_friction_of<Plant>(x, p, terms), p.bristle_stiffness_n_per_m);
 }
 
-/// Dry friction of seals or with pre-sliding [N]. Not inlined, so that the code of rigs without it
-/// stays short.
+/// Dry friction of seals or with pre-sliding [N]. Not inlined, to keep the code of rigs without it
+/// short.
 template <typename Plant, typename X, std::size_t M, typename C>
 [[gnu::noinline]] X shaped_friction(const std::array<X, M>& x, const CommonParameters<C>& p,
                                     const PresentTerms& terms) {
@@ -82,14 +82,14 @@ template <typename Plant, typename X, std::size_t M, typename C>
          smooth_sign(x[static_cast<std::size_t>(Plant::velocity)], p.friction_smoothing_m_per_s);
 }
 
-/// Dry friction of piston and rod [N], with any of its terms.
+/// Dry friction of piston and rod [N], with any of the optional terms.
 template <typename Plant, typename X, std::size_t M, typename C>
 X friction_of(const std::array<X, M>& x, const CommonParameters<C>& p, const PresentTerms& terms) {
   if (terms.shaped_friction) return shaped_friction<Plant>(x, p, terms);
   return friction(x[static_cast<std::size_t>(Plant::velocity)], p, terms);
 }
 
-/// Load against positive travel [N]: the external force and the part that varies with the travel.
+/// Load against positive travel [N]: the external force plus the load that varies with the travel.
 template <typename X, typename C>
 X external_load(const X& x, const PlantInput<X>& in, const CommonParameters<C>& p,
                 const PresentTerms& terms) {
@@ -102,7 +102,7 @@ X external_load(const X& x, const PlantInput<X>& in, const CommonParameters<C>& 
 
 /// Acceleration of the second mass [m/s2].
 ///
-/// @param position  index of the first mass's position; its velocity follows
+/// @param position  index of the first mass's position; its velocity is the next state
 template <typename X, std::size_t M, typename C>
 X payload_acceleration(const std::array<X, M>& x, int position, const PresentTerms& terms,
                        const CommonParameters<C>& p) {

@@ -10,8 +10,9 @@
 
 namespace rigcal::model {
 
-/// Every plant, in the order of PlantKind. To add one: its header above, its type here at the end,
-/// and its solvers in model/CMakeLists.txt; campaign files, fits and `rigcal params` follow.
+/// Every plant, in the order of PlantKind. To add a plant, include its header above, append its
+/// type here, and add its solvers to model/CMakeLists.txt; campaign files, fits and `rigcal params`
+/// follow.
 using Plants = std::tuple<LoadPressurePlant, TwoChamberPlant, LinkagePlant>;
 inline constexpr std::size_t kPlantCount = std::tuple_size_v<Plants>;
 

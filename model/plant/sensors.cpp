@@ -7,10 +7,11 @@
 namespace rigcal::model {
 namespace {
 
-/// Least number of samples per lag. Straight lines between them are accurate to 1e-3 of a signal
-/// that passes the sensor.
+/// Minimum number of times per lag. Linear interpolation between them is then accurate to 1e-3 of a
+/// signal that passes the sensor.
 constexpr double kTimesPerLag = 8.0;
-/// A lag shorter than this share of a sample is none.
+/// Maximum number of pieces of a sample interval. A lag that would need more has no noticeable
+/// effect.
 constexpr double kMostBetweenSamples = 256.0;
 
 std::string_view sensor_name(Output output) {
@@ -36,7 +37,7 @@ std::string_view sensor_name(Output output) {
   }
 }
 
-/// y' = (x - y) / lag over one interval on which x is straight, exactly, with dy / d lag.
+/// Solves y' = (x - y) / lag exactly, with x linear between two times, and computes dy / d lag.
 void follow(const Eigen::VectorXd& x, std::span<const double> times_s, double lag_s,
             Eigen::VectorXd& y, Eigen::VectorXd& y_by_lag) {
   y.resize(x.size());
@@ -57,7 +58,7 @@ void follow(const Eigen::VectorXd& x, std::span<const double> times_s, double la
 Eigen::MatrixXd at_samples(const SensorTimes& at, const Eigen::MatrixXd& all) {
   const auto samples = static_cast<Eigen::Index>(at.sample.size());
   Eigen::MatrixXd kept(samples, all.cols());
-  if (all.cols() == 0) return kept;  // no row of a matrix without columns
+  if (all.cols() == 0) return kept;  // a matrix without columns has no rows to copy
   for (Eigen::Index i = 0; i < samples; ++i)
     kept.row(i) = all.row(static_cast<Eigen::Index>(at.sample[static_cast<std::size_t>(i)]));
   return kept;
@@ -70,7 +71,7 @@ Sensor sensor_of(Output output, const ParameterValues& values) {
   if (name.empty()) return {};
   const auto index = [&](const char* what) { return parameter_index(values.plant, name + what); };
   Sensor sensor{index("_gain"), index("_offset"), index("_lag"), index("_maximum"), 0.0};
-  if (sensor.gain < 0) return {};  // a plant without that sensor
+  if (sensor.gain < 0) return {};  // the plant does not have that sensor
   const auto lag = static_cast<std::size_t>(sensor.lag);
   if (values.given[lag]) sensor.lag_s = values.value[lag];
   return sensor;

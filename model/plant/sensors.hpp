@@ -10,36 +10,37 @@
 
 namespace rigcal::model {
 
-/// Response of a sensor: y' = (x - y) / lag from y = x at the first sample, then reading = gain y +
-/// offset, at most `maximum`. Indices are rows of the parameter table.
+/// Response of a sensor: y' = (x - y) / lag, with y = x at the first sample. The reading is
+/// gain y + offset, limited to `maximum`. Indices refer to rows of the parameter table.
 struct Sensor {
   int gain = -1;
   int offset = -1;
   int lag = -1;
   int maximum = -1;
-  double lag_s = 0.0;  ///< 0: none
+  double lag_s = 0.0;  ///< 0: no lag
 };
 
-/// The sensor of an output; indices of -1 where it has none (velocity, spool, flows).
+/// Returns the sensor of an output. Its indices are -1 for outputs without a sensor (velocity,
+/// spool, flows).
 Sensor sensor_of(Output output, const ParameterValues& values);
 
-/// Times at which the outputs are needed to compute the sensors: the sample times, and as many
-/// between them as the shortest lag requires.
+/// Times at which the sensor computation needs the outputs: the sample times, and as many in
+/// between as the shortest lag requires.
 struct SensorTimes {
   std::vector<double> times_s;
-  std::vector<std::size_t> sample;  ///< position of each sample time in times_s
+  std::vector<std::size_t> sample;  ///< index of each sample time in times_s
 };
-/// None where no sensor lags: then the sample times are all that is needed.
+/// Returns std::nullopt if no sensor has a lag. The sample times are then sufficient.
 std::optional<SensorTimes> sensor_times(std::span<const Output> outputs,
                                         const ParameterValues& values,
                                         std::span<const double> samples_s);
 
 /// Converts quantities at the times of `at` into readings at its samples, with the sensitivities to
-/// the sensors' own parameters among `free`. Between two times a quantity is interpolated linearly.
-/// A reading at its maximum depends on nothing, so a saturated record is not fitted.
+/// those parameters of the sensors that are in `free`. Between two times a quantity is interpolated
+/// linearly. A reading at its maximum has no sensitivities, so a saturated record is not fitted.
 ///
 /// @param at   sensor_times() of the samples
-/// @param run  an ok run with a matrix row for each time; afterwards it has one for each sample
+/// @param run  a successful run with one matrix row per time; on return it has one row per sample
 void read_sensors(const std::optional<SensorTimes>& at, std::span<const Output> outputs,
                   const ParameterValues& values, std::span<const int> free, Simulation& run);
 

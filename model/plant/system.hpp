@@ -16,7 +16,7 @@
 
 namespace rigcal::model {
 
-/// Plant, valve and controller as one system of N states with sensitivities to P parameters.
+/// Plant, valve and controller as one system of N states, with sensitivities to P parameters.
 template <typename Plant, int N, int P>
 class System {
  public:
@@ -25,7 +25,7 @@ class System {
   template <typename T>
   using Coefficients = typename Plant::template Coefficients<T>;
 
-  /// @param free  table indices of the P (or fewer) parameters of the sensitivity columns
+  /// @param free  table indices of the P or fewer parameters with a sensitivity column
   System(const Layout& layout, const ParameterValues& values, std::span<const int> free,
          InputTrack drive, std::optional<InputTrack> external_force,
          std::optional<InputTrack> supply_pressure, std::optional<InputTrack> tank_pressure,
@@ -59,7 +59,7 @@ class System {
   std::optional<InputTrack>& supply_pressure() { return supply_pressure_; }
   std::optional<InputTrack>& tank_pressure() { return tank_pressure_; }
   std::optional<InputTrack>& spool_error() { return spool_error_; }
-  /// Sensitivity column of the transport delay among the P directions, or -1.
+  /// Sensitivity column of the transport delay among the P directions; -1 if it has none.
   int delay_direction() const { return delay_direction_; }
 
   /// Derivative of the states and, by the chain rule, of their sensitivities.
@@ -67,12 +67,12 @@ class System {
     return right_hand_side(ByParameters{}, x, t);
   }
 
-  /// Derivative of the states alone.
+  /// Derivative of the states without sensitivities.
   [[gnu::flatten]] Values<N> derivative_of_values(const Values<N>& x, double t) const {
     return right_hand_side(Plain{}, x, t);
   }
 
-  /// f and its partial derivatives by states, time and parameters.
+  /// Returns f and its partial derivatives with respect to states, time and parameters.
   Linearisation<N, P> linearise(const Values<N>& x, double t) const {
     if constexpr (N <= Plant::kStates + 1) {
       return linearise_inlined(x, t);
@@ -81,11 +81,12 @@ class System {
     }
   }
 
-  /// Whether the drive acts on controller and valve alone: the plant sees the states of the valve.
+  /// Whether the drive acts only on controller and valve. The plant then sees only the states of
+  /// the valve.
   bool drive_stops_at_valve() const { return N > Plant::kStates && layout_.valve_order > 0; }
 
-  /// Brings a linearisation at (x, t) up to date after a jump of the drive, which stops at the
-  /// valve: the rows of controller and valve. A recorded command jumps at every sample.
+  /// Updates a linearisation at (x, t) after a jump of a drive that acts only on controller and
+  /// valve. Recomputes the rows of controller and valve. A recorded command jumps at every sample.
   void follow_drive(const Values<N>& x, double t, Linearisation<N, P>& lin) const {
     if constexpr (N > Plant::kStates) {
       Numbers<ByStates> rates{};
@@ -104,8 +105,8 @@ class System {
     }
   }
 
-  /// f and its derivatives for settle(). A sampled controller changes only at its ticks; its rates
-  /// are taken as the change of a tick over the sample time.
+  /// f and its derivatives for settle(). A sampled controller changes only at its ticks, so its
+  /// rate is taken as the change at a tick divided by the sample time.
   Linearisation<N, P> linearise_settling(const Values<N>& x, double t) const {
     Linearisation<N, P> lin = linearise(x, t);
     if (!layout_.sampled()) return lin;
@@ -119,7 +120,7 @@ class System {
     return lin;
   }
 
-  /// The sampled controller's tick at t.
+  /// Applies the sampled controller's tick at t.
   void tick(X& x, double t) const {
     const C drive = input_value(ByParameters{}, drive_, t, true);
     controller_tick(loop_error(ByParameters{}, x, drive, t), x, parameters_of(ByParameters{}),
@@ -132,7 +133,8 @@ class System {
     return controller_output(loop_error(Plain{}, x, drive, t), x, passive_, layout_);
   }
 
-  /// Value of each wanted output, with sensitivities; sensors come after (sensors.hpp).
+  /// Computes each requested output with its sensitivities. Sensors are applied later
+  /// (sensors.hpp).
   void observe(const X& x, double t, std::span<const Output> outputs, std::span<C> result) const {
     C command{};
     PlantInput<C> in{};
@@ -172,7 +174,7 @@ class System {
     }
   }
 
-  /// State at the first sample. For Before::steady it is the point to settle from. Call
+  /// State at the first sample. For Before::steady it is the point from which the rig settles. Call
   /// forget_hoses() afterwards.
   X initial(InitialState mode, Before before, double t) {
     const Coefficients<C>& p = parameters_of(ByParameters{});
@@ -194,20 +196,21 @@ class System {
       if (layout_.pid && layout_.feedback == Feedback::position)
         states[Plant::position] = while_it_waits_;
     }
-    if (layout_.payload >= 0) {  // as if it were fixed to the first mass
+    if (layout_.payload >= 0) {  // starts as if it were fixed to the first mass
       const auto payload = static_cast<std::size_t>(layout_.payload);
       states[payload] = states[Plant::position];
       states[payload + 1] = states[Plant::velocity];
     }
-    if (layout_.bristles >= 0)  // as if the motion had gone on for long
+    if (layout_.bristles >= 0)  // starts as if the motion had been steady for long
       states[static_cast<std::size_t>(layout_.bristles)] =
           friction(states[Plant::velocity], p, layout_.terms);
     if (given && layout_.integral >= 0)
       states[static_cast<std::size_t>(layout_.integral)] = p.initial_integral_v;
-    if (layout_.reference >= 0)  // its rate begins at zero
+    if (layout_.reference >= 0)  // the filtered rate begins at zero
       states[static_cast<std::size_t>(layout_.reference)] = states[Plant::position];
     if (given || before == Before::steady) {
-      // The loop was closed before the record began: no kick of the derivative, spool at rest.
+      // The loop was closed before the record began: the derivative gives no kick, and the spool is
+      // at rest.
       const C drive =
           before == Before::hold ? input_value(ByParameters{}, drive_, t, true) : while_it_waits_;
       const LoopError<C> loop = loop_error(ByParameters{}, states, drive, t);
@@ -225,7 +228,8 @@ class System {
     return states;
   }
 
-  /// Sets the memory of the hoses to its value after an instantaneous rise to their pressure.
+  /// Sets the memory of the hoses to its value after an instantaneous rise to their present
+  /// pressure.
   void forget_hoses([[maybe_unused]] X& states, [[maybe_unused]] double t) const {
     [[maybe_unused]] const Coefficients<C>& p = parameters_of(ByParameters{});
     if constexpr (requires { Plant::kHoses; }) {
@@ -237,7 +241,7 @@ class System {
     }
   }
 
-  /// States that the outputs are made of.
+  /// Indices of the states on which the outputs depend.
   static std::vector<std::size_t> observed_states(std::span<const Output> outputs) {
     std::vector<std::size_t> states;
     for (std::size_t i = 0; i < N; ++i) {
@@ -251,8 +255,8 @@ class System {
   }
 
  private:
-  // Modes of computing a right-hand side: numbers alone, or numbers with their derivatives by all
-  // parameters, by a block of them, or by the states and time.
+  // Modes of computing a right-hand side: plain numbers, or numbers with derivatives with respect
+  // to all parameters, to a block of them, or to the states and time.
   struct Plain {
     using Number = double;
   };
@@ -266,7 +270,7 @@ class System {
   static constexpr int kBlock = 4;
   static constexpr std::size_t kBlocks = P / kBlock;
   static_assert(P % kBlock == 0);
-  /// The derivatives by more parameters at a time do not stay in registers.
+  /// Derivatives with respect to more parameters at a time would not fit into the registers.
   struct ByBlock {
     using Number = Dual<kBlock>;
     std::size_t block;  ///< block of parameters
@@ -293,7 +297,7 @@ class System {
     return Coefficients<T>(parameters);
   }
 
-  /// The parameters, with their derivatives where Number<K> is to have derivatives by them.
+  /// The parameters, with derivatives if Number<K> has derivatives with respect to them.
   template <typename K>
   const auto& parameters_of([[maybe_unused]] K by) const {
     if constexpr (P > 0 && std::is_same_v<K, ByParameters>) {
@@ -305,15 +309,15 @@ class System {
     }
   }
 
-  /// Direction of the transport delay among those of a number, or -1.
+  /// Direction of the transport delay among those of a number; -1 if it is not one of them.
   int direction_of_delay(ByParameters /*by*/) const { return delay_direction_; }
   int direction_of_delay(ByBlock by) const {
     const int direction = delay_direction_ - kBlock * static_cast<int>(by.block);
     return direction < kBlock ? std::max(direction, -1) : -1;
   }
 
-  /// An input at one instant: with its derivative by time, or by the transport delay, -d/dt, where
-  /// it is delayed and that is a parameter of the sensitivities.
+  /// Value of an input at one instant. It has a derivative with respect to time, or, for a delayed
+  /// input, the derivative -d/dt with respect to the transport delay if that is a free parameter.
   template <typename K>
   Number<K> input_value(K by, const InputTrack& track, double t, bool delayed) const {
     if (delayed && track.waits()) return drive_that_waits(by);
@@ -359,14 +363,15 @@ class System {
     return rates;
   }
 
-  /// Whether loop_rates() gives the derivative of a state.
+  /// Whether loop_rates() computes the derivative of a state.
   bool is_of_loop(std::size_t i) const {
     const int state = static_cast<int>(i);
     return (layout_.of_controller(state) && state != layout_.held) ||
            (state >= layout_.valve && state < layout_.valve + layout_.valve_order);
   }
 
-  /// The states as independent variables, or as numbers without derivatives by the parameters.
+  /// The states as independent variables, or as numbers with zero derivatives with respect to the
+  /// parameters.
   static Numbers<ByStates> lifted(const Values<N>& x) {
     Numbers<ByStates> result;
     for (std::size_t i = 0; i < N; ++i) {
@@ -387,7 +392,7 @@ class System {
     for (std::size_t k = 0; k < N; ++k) lin.jacobian[i][k] = f.derivative[k];
   }
 
-  /// Linearises by the states and time first, then by the parameters.
+  /// Linearises with respect to states and time first, then with respect to the parameters.
   Linearisation<N, P> linearise_by_calls(const Values<N>& x, double t) const {
     const auto f = right_hand_side(ByStates{}, lifted(x), t);
     Linearisation<N, P> lin;
@@ -399,8 +404,8 @@ class System {
     return lin;
   }
 
-  /// An eighth of a simulation with sensitivities is saved where all of it is inlined. With more
-  /// states that would take long to compile.
+  /// Inlining everything saves an eighth of a simulation with sensitivities. With more states it
+  /// would take long to compile.
   [[gnu::flatten]] Linearisation<N, P> linearise_inlined(const Values<N>& x, double t) const {
     return linearise_by_calls(x, t);
   }
@@ -419,8 +424,8 @@ class System {
     }
   }
 
-  /// Error that the controller acts on. The solver that has only the plant's states supports
-  /// position loops alone.
+  /// Signals on which the controller acts. The solver with only the plant's states supports only
+  /// position loops.
   template <typename K>
   LoopError<Number<K>> loop_error(K by, const Numbers<K>& x, const Number<K>& drive,
                                   double t) const {
@@ -430,7 +435,7 @@ class System {
     return {drive - x[Plant::position], Number<K>(0.0), Number<K>(0.0)};
   }
 
-  /// Not inlined, so that the code of position loops stays short.
+  /// Not inlined, to keep the code of position loops short.
   template <typename K>
   [[gnu::noinline]] LoopError<Number<K>> other_loop_error(K by, const Numbers<K>& x,
                                                           const Number<K>& drive, double t) const {
@@ -493,14 +498,14 @@ class System {
     return in;
   }
 
-  /// Supply pressure before its resistance.
+  /// Supply pressure upstream of the supply resistance.
   template <typename K>
   Number<K> source_pressure(K by, double t) const {
     return supply_pressure_ ? input_value(by, *supply_pressure_, t, false)
                             : Number<K>(parameters_of(by).supply_pressure_pa);
   }
 
-  /// Rate of the spool signal within its limit [V/s].
+  /// Rate of the spool signal, limited to its maximum [V/s].
   template <typename K>
   Number<K> spool_rate(K by, const Number<K>& rate) const {
     return layout_.terms.valve_rate_limit
@@ -519,7 +524,7 @@ class System {
     }
   }
 
-  /// Writes the derivatives of controller and valve; the others stay unchanged.
+  /// Writes the derivatives of controller and valve, and leaves the others unchanged.
   ///
   /// @return  command to the valve
   template <typename K>
@@ -605,8 +610,9 @@ class System {
 
   Layout layout_;
   Coefficients<double> passive_{};
-  Coefficients<C> active_{};  ///< with derivatives by the free parameters
-  std::array<Coefficients<Dual<kBlock>>, kBlocks> active_blocks_{};  ///< the same, by blocks
+  Coefficients<C> active_{};  ///< with derivatives with respect to the free parameters
+  std::array<Coefficients<Dual<kBlock>>, kBlocks>
+      active_blocks_{};  ///< the same coefficients, in blocks of free parameters
   InputTrack drive_;
   std::optional<InputTrack> external_force_;
   std::optional<InputTrack> supply_pressure_;

@@ -17,15 +17,15 @@ C valve_conductance(const C& discharge_coefficient, const C& area_gradient_m,
   return discharge_coefficient * area_gradient_m / sqrt(density_kg_per_m3);
 }
 
-/// Flow of a matched symmetric servo valve to the load, eqs. 4, 6, 7 with the sign put right:
+/// Flow of a matched symmetric servo valve to the load, eqs. 4, 6, 7 with the sign corrected:
 /// Q = C_d w x_v sqrt((P_s - sgn(x_v) P_L) / rho).
 ///
 /// @param spool_m      x_v [m]
 /// @param conductance  valve_conductance()
 /// @return             [m3/s], positive into chamber A
-/// @deviation          the paper prints P_s - P_L for both signs; the root is signed and
-///                     straightened within `smoothing_pa`, so that the flow reverses when P_L
-///                     passes P_s
+/// @deviation          the paper has P_s - P_L for both signs. Here the root is signed, and
+///                     smoothed within `smoothing_pa`, so that the flow reverses when P_L exceeds
+///                     P_s
 template <typename X, typename C, typename S>
 X servo_flow(const X& spool_m, const X& load_pressure_pa, const S& supply_pressure_pa,
              const C& conductance, const C& smoothing_pa) {
@@ -49,7 +49,7 @@ X orifice_leakage(const X& load_pressure_pa, const C& conductance, const C& smoo
   return signed_sqrt(load_pressure_pa, smoothing_pa) * conductance;
 }
 
-/// Dry friction of steady sliding, without its sign [N]: F_c + F_st exp(-(v / v_st)^2).
+/// Magnitude of the dry friction in steady sliding [N]: F_c + F_st exp(-(v / v_st)^2).
 template <typename X, typename C>
 X sliding_friction(const X& velocity_m_per_s, const C& coulomb_n, const C& stribeck_n,
                    const C& stribeck_velocity_m_per_s) {
@@ -58,7 +58,7 @@ X sliding_friction(const X& velocity_m_per_s, const C& coulomb_n, const C& strib
   return coulomb_n + stribeck_n * exp(-(ratio * ratio));
 }
 
-/// Dry friction: that of steady sliding times sgn(v), the sign straightened within v_0.
+/// Dry friction: the friction of steady sliding times sgn(v), with the sign smoothed within v_0.
 template <typename X, typename C>
 X dry_friction(const X& velocity_m_per_s, const C& coulomb_n, const C& stribeck_n,
                const C& stribeck_velocity_m_per_s, const C& smoothing_m_per_s) {
@@ -66,8 +66,8 @@ X dry_friction(const X& velocity_m_per_s, const C& coulomb_n, const C& stribeck_
          smooth_sign(velocity_m_per_s, smoothing_m_per_s);
 }
 
-/// Rate of the force of the bristles, F_b' = sigma_0 (v - |v| F_b / g(v)): they bend until they
-/// slide at g(v).
+/// Rate of the force of the bristles, F_b' = sigma_0 (v - |v| F_b / g(v)): they bend until their
+/// force reaches g(v) and they slide.
 ///
 /// @param sliding_n  g(v), sliding_friction()
 /// @source   C. Canudas de Wit, H. Olsson, K. J. Astrom and P. Lischinsky, A new model for control
@@ -98,10 +98,11 @@ X varying_load(const X& x, const C& gradient_n_per_m, const C& curvature_n_per_m
   return (x * curvature_n_per_m2 + gradient_n_per_m) * x;
 }
 
-/// Opening of a metering edge that leaks while it is covered: c + y where it is open, c^2 / (c - y)
-/// beyond, so that the leak fades as the land covers more of it. Continuous with its slope.
+/// Opening of a metering edge that leaks while it is covered: c + y if it is open, c^2 / (c - y) if
+/// it is covered, so that the leak decays as the overlap increases. Value and slope are continuous.
 ///
-/// @param y  spool travel since the land's edge met the port's, positive when open
+/// @param y  spool travel from the point at which the land's edge meets the port's, positive when
+///           open
 /// @param c  opening at y = 0, > 0, in the unit of y
 /// @source   B. Eryilmaz and B. H. Wilson, Unified modeling and analysis of a proportional valve,
 ///           J. Franklin Institute 343 (2006) 48-68, with k = 1
@@ -111,8 +112,8 @@ X leaking_opening(const X& y, const C& c) {
   return c * c / (c - y);
 }
 
-/// Opening of one orifice that passes the flow of an edge in series with a fixed orifice: 1 / o^2 =
-/// 1 / y^2 + 1 / l^2.
+/// Opening of the single orifice that is equivalent to an edge in series with a fixed orifice:
+/// 1 / o^2 = 1 / y^2 + 1 / l^2.
 ///
 /// @param y  opening of the edge, >= 0
 /// @param l  opening that represents bores and lines, > 0, in the unit of y
@@ -126,7 +127,7 @@ X series_opening(const X& y, const C& l) {
 /// Flow through an orifice and a line with laminar loss [m3/s], Q = G sgn(P) sqrt(|P - R Q|):
 /// 2 G P / (G R + sqrt((G R)^2 + 4 |P|)).
 ///
-/// @param head_pa      P, of orifice and line together
+/// @param head_pa      P, across orifice and line together
 /// @param conductance  G, flow of the orifice per root of pressure, >= 0
 /// @param resistance   R of the line [Pa s/m3], >= 0
 template <typename X, typename C>
@@ -138,10 +139,10 @@ X flow_before_line(const X& head_pa, const X& conductance, const C& resistance,
   return 2.0 * conductance * head_pa / (line + sqrt(X(line * line + 4.0 * size_pa)));
 }
 
-/// Opening by a power law, y_r (y / y_r)^n, as of an edge with notches.
+/// Opening that follows a power law, y_r (y / y_r)^n, for example of an edge with notches.
 ///
 /// @param y        signal beyond the dead band, > 0
-/// @param range    y_r, signal at which it is that of n = 1, in the unit of y
+/// @param range    y_r, signal at which the opening is the same as with n = 1, in the unit of y
 /// @param exponent n >= 1
 template <typename X, typename C>
 X power_opening(const X& y, const C& range, const C& exponent) {
@@ -150,13 +151,14 @@ X power_opening(const X& y, const C& range, const C& exponent) {
   return exp(X(log(X(y / range)) * exponent)) * range;
 }
 
-/// Opening by a table, as of an edge with notches or of a flow curve from a data sheet: straight
-/// between 0, the values at 20, 40, 60 and 80 % of the range, and 1 at all of it; the last piece
-/// goes on beyond.
+/// Opening from a table, for example for an edge with notches or a flow curve from a data sheet. It
+/// interpolates linearly between 0, the values at 20, 40, 60 and 80 % of the range, and 1 at the
+/// full range, and extrapolates the last piece.
 ///
 /// @param y       signal beyond the dead band, >= 0
-/// @param range   y_r, signal at which it is y_r itself, in the unit of y
-/// @param shares  opening at each fifth of the range over the one at all of it
+/// @param range   y_r, signal at which the opening is y_r, in the unit of y
+/// @param shares  openings at 20, 40, 60 and 80 % of the range, relative to the opening at the full
+///                range
 template <typename X, typename C>
 X table_opening(const X& y, const C& range, const std::array<C, 4>& shares) {
   constexpr double kPieces = 5.0;
@@ -167,17 +169,18 @@ X table_opening(const X& y, const C& range, const std::array<C, 4>& shares) {
   return ((place - static_cast<double>(piece)) * (to - from) + from) * range;
 }
 
-/// Pressure across an edge behind a compensator [Pa]: it throttles what is more than its spring's
-/// pressure, so that the flow no longer depends on the load; below it is open.
+/// Pressure across an edge behind a compensator [Pa]. The compensator throttles any excess over the
+/// pressure of its spring, so that the flow no longer depends on the load. Below the spring
+/// pressure it is fully open.
 template <typename X, typename C>
 X compensated_head(const X& head_pa, const C& spring_pa) {
   return value_of(head_pa) > value_of(spring_pa) ? X(spring_pa) : head_pa;
 }
 
-/// Largest flow of a pump that rises from one value to a second [m3/s]:
+/// Largest flow of a pump, which rises from a first value to a second [m3/s]:
 /// Q_1 + (Q_2 - Q_1) (1 + tanh((t - T_2) / tau_2)) / 2.
 ///
-/// @param demand_s  t, time for which it has been asked for flow
+/// @param demand_s  t, time for which the pump has been asked for flow
 template <typename X, typename C>
 X two_stages(const X& demand_s, const X& first, const C& second, const C& delay_s,
              const C& rise_s) {
@@ -185,9 +188,10 @@ X two_stages(const X& demand_s, const X& first, const C& second, const C& delay_
   return (tanh(X((demand_s - delay_s) / rise_s)) + 1.0) * (0.5 * (second - first)) + first;
 }
 
-/// Force of an end stop on the piston [N], away from the stop: k d (1 + lambda d'), never a pull.
+/// Force of an end stop on the piston [N], directed away from the stop: k d (1 + lambda d'). It
+/// never pulls.
 ///
-/// @param depth_m     d, how far the piston is beyond the stop; no force where negative
+/// @param depth_m     d, penetration of the piston into the stop; no force if negative
 /// @param approach_m_per_s  d'
 /// @source   K. H. Hunt and F. R. E. Crossley, Coefficient of restitution interpreted as damping in
 ///           vibroimpact, J. Applied Mechanics 42 (1975) 440-445, with exponent 1
@@ -200,23 +204,23 @@ X stop_force(const X& depth_m, const X& approach_m_per_s, const C& stiffness_n_p
 
 constexpr double kAtmosphere_pa = 101325.0;
 
-/// Absolute pressure [Pa] of one that counts from the atmosphere; at 1 kPa its fall ends.
+/// Absolute pressure [Pa] for a pressure relative to the atmosphere; at least 1 kPa.
 template <typename X>
 X absolute_pressure(const X& pressure_pa) {
   constexpr double kLeast_pa = 1e3;
   return at_least(X(pressure_pa + kAtmosphere_pa), kLeast_pa);
 }
 
-/// What an accumulator takes up per pressure [m3/Pa], its gas following p V^n = constant:
-/// V_0 / (n p) (p_g / p)^(1/n) above the precharge. The bladder fills its shell below; that it
-/// lifts off over some hundredths of the pressure keeps the derivative continuous.
+/// Oil that an accumulator takes up per pressure [m3/Pa]. Above the precharge its gas follows
+/// p V^n = constant: V_0 / (n p) (p_g / p)^(1/n). Below the precharge the bladder fills its shell.
+/// It lifts off over a few hundredths of the pressure, which keeps the derivative continuous.
 ///
 /// @param pressure_pa   above atmosphere
-/// @param volume_m3     V_0, of the gas at the precharge
+/// @param volume_m3     V_0, volume of the gas at the precharge
 /// @param precharge_pa  p_g, above atmosphere
 /// @source   D. R. Otis and A. Pourmovahed, An algorithm for computing nonflow gas processes in gas
 ///           springs and hydropneumatic accumulators, J. Dyn. Sys. Meas. Control 107 (1985) 93-96;
-///           here with one exponent instead of their heat transfer
+///           here with a single exponent instead of their heat transfer
 template <typename X, typename C>
 X accumulator_capacity(const X& pressure_pa, const C& volume_m3, const C& precharge_pa,
                        const C& exponent) {
@@ -230,11 +234,11 @@ X accumulator_capacity(const X& pressure_pa, const C& volume_m3, const C& precha
   return above * exp(X(log(X(first / p)) / exponent)) * volume_m3 / (p * exponent);
 }
 
-/// Change of pressure after a turn over which a hose begins to yield [Pa]. The threads of a braid
-/// are locked by dry friction, which grows with the pressure that presses them together.
+/// Change of pressure, counted from its last reversal, after which a hose begins to yield [Pa]. Dry
+/// friction locks the threads of the braid, and grows with the pressure that presses them together.
 ///
-/// @param constant_pa  constant part
-/// @param ratio        ratio of the other part to the absolute pressure
+/// @param constant_pa  constant component
+/// @param ratio        ratio of the other component to the absolute pressure
 /// @source   B. Tondu and P. Lopez, Modeling and control of McKibben artificial muscle robot
 ///           actuators, IEEE Control Systems Magazine 20 (2000) 2, 15-38: the thread's friction
 template <typename X, typename C>
@@ -242,15 +246,15 @@ X hose_yield(const X& pressure_pa, const C& constant_pa, const C& ratio) {
   return absolute_pressure(pressure_pa) * ratio + constant_pa;
 }
 
-/// Fraction of a braided hose that yields to a change of pressure: none when the pressure turns,
-/// all of it after a long change in one direction.
+/// Fraction of a braided hose that yields to a change of pressure: zero when the pressure reverses,
+/// one after a long change in one direction.
 ///
-/// @param memory  z, from -1 (has yielded to falling pressure) to 1 (to rising); it follows
-///                z' = (1 - share) p' / hose_yield()
+/// @param memory  z, from -1 (yielded to falling pressure) to 1 (yielded to rising pressure); its
+///                rate is z' = (1 - share) p' / hose_yield()
 /// @param rises   whether the pressure rises now
-/// @source   an operator of the kind of Bouc and Wen: Y.-K. Wen, Method for random vibration of
-///           hysteretic systems, J. Engineering Mechanics Division 102 (1976) 249-263; the
-///           exponent 2 from the records of docs/festo.md
+/// @source   a Bouc-Wen operator: Y.-K. Wen, Method for random vibration of hysteretic systems, J.
+///           Engineering Mechanics Division 102 (1976) 249-263; the exponent 2 is from the records
+///           in docs/festo.md
 template <typename X>
 X yielding_share(const X& memory, bool rises) {
   const X along = rises ? X(memory) : X(-memory);
@@ -258,16 +262,15 @@ X yielding_share(const X& memory, bool rises) {
   return value_of(half) < 1.0 ? X(half * half) : X(half * 0.0 + 1.0);
 }
 
-/// Bulk modulus of oil with undissolved air [Pa]: the air is compressed polytropically, the oil at
+/// Bulk modulus of oil with undissolved air [Pa]. The air is compressed polytropically, the oil at
 /// its own modulus.
 ///
 ///   beta = (1 - a + a r) / ((1 - a) / beta_l + a r / (n p)),  r = (p_0 / p)^(1/n)
 ///
-/// @param pressure_pa  above atmosphere; at 1 kPa absolute the fall ends
-/// @param air_fraction a, volume share at atmospheric pressure p_0
+/// @param pressure_pa   above atmosphere; constant below 1 kPa absolute
+/// @param air_fraction  a, volume fraction at atmospheric pressure p_0
 /// @source   H. Gholizadeh, R. Burton and G. Schoenau, Fluid bulk modulus: a literature survey,
-/// Int.
-///           J. Fluid Power 12 (2011) 5-15: the compression only model
+///           Int. J. Fluid Power 12 (2011) 5-15: the compression-only model
 template <typename X, typename C>
 X aerated_bulk_modulus(const X& pressure_pa, const C& oil_pa, const C& air_fraction,
                        const C& exponent) {

@@ -12,7 +12,8 @@
 
 namespace rigcal::model {
 
-/// Piston and both chamber pressures of a cylinder behind a valve of four metering edges.
+/// Piston and both chamber pressures of a cylinder that is driven by a valve with four metering
+/// edges.
 ///
 ///   m v'  = A_A p_A - A_B p_B - b v - k x - F_dry(v) + F_stops - (m + m_2) g - F_ext(x)
 ///           - m_2 x_2''
@@ -43,30 +44,31 @@ struct TwoChamberPlant : Chambers {
   static constexpr std::array<StateRow, kStates> kStateRows{kPistonPosition, kPistonVelocity,
                                                             kPressureA, kPressureB};
 
-  /// The state that an output reads, but for its sensor; none: it takes more.
+  /// Index of the state that an output reads apart from its sensor; std::nullopt if the output
+  /// depends on more than one state.
   static constexpr std::optional<int> state_of(Output output) {
     if (output == Output::position) return position;
     if (output == Output::velocity) return velocity;
     return pressure_of(output);
   }
 
-  /// No output: the chambers differ.
+  /// No output is reversible, because the chambers differ.
   static bool reversible(Output, const PresentTerms&) { return false; }
 
-  /// Spool travel [m], eq. 6, after null shift; the overlap is that of the edges.
+  /// Spool travel [m], eq. 6, with null shift. The overlap belongs to the edges.
   template <typename X, typename C>
   static X spool(const PlantInput<X>& in, const Coefficients<C>& p, const PresentTerms& terms) {
     if (terms.shaped_valve) return shaped_spool(in, p, terms);
     return p.valve_gain_m_per_v * (in.spool_command_v + p.valve_offset_v);
   }
 
-  /// Flow of one edge [m3/s] at a spool signal that opens it when positive [V]: its orifice, and
-  /// the laminar leak of its clearance.
+  /// Flow through one edge [m3/s]: its orifice plus the laminar leak through its clearance. A
+  /// positive spool signal [V] opens the edge.
   template <typename X, typename C>
   static X edge(const X& signal_v, const C& gain, const C& overlap_v, const X& up_pa,
                 const X& down_pa, const Coefficients<C>& p, const PresentTerms& terms) {
     const X travel_v = signal_v - p.valve_dead_band_v - overlap_v;
-    if (!terms.null_opening && !(value_of(travel_v) > 0.0))  // covered, as half of them always are
+    if (!terms.null_opening && !(value_of(travel_v) > 0.0))  // covered, as two of four always are
       return terms.null_leak ? (up_pa - down_pa) * p.valve_null_leakage_m3_per_s_pa : X(0.0);
     X opening_v = terms.null_opening ? leaking_opening(travel_v, p.valve_null_opening_v) : travel_v;
     if (terms.line_loss) opening_v = series_opening(opening_v, p.valve_line_opening_v);
@@ -91,7 +93,7 @@ struct TwoChamberPlant : Chambers {
             edge(out, p.gain_b_to_tank, p.overlap_b_to_tank_v, p_B, P_t, p, terms)};
   }
 
-  /// Not inlined, so that the code of a plain valve stays short.
+  /// Not inlined, to keep the code of a plain valve short.
   template <typename X, std::size_t M, typename C>
   [[gnu::noinline]] static ValveFlows<X> flows_of_shape(const std::array<X, M>& x,
                                                         const PlantInput<X>& in,
@@ -128,8 +130,8 @@ struct TwoChamberPlant : Chambers {
     return terms.retracted_position ? p.retracted_position_m : C(-0.5 * p.stroke_m);
   }
 
-  /// Oil in the chambers [m3]. A piston pressed into its stop does not squeeze the oil below a
-  /// thousandth of the swept volume.
+  /// Oil volumes of the chambers [m3], limited below to a thousandth of the swept volume for a
+  /// piston that is pressed into its stop.
   template <typename X, typename C>
   static std::array<X, 2> volumes(const X& x, const Coefficients<C>& p, const PresentTerms& terms) {
     const X extended = x - retracted_stop(p, terms);
@@ -163,7 +165,7 @@ struct TwoChamberPlant : Chambers {
             flow[1] / (take_b + yields[1] * p.hose_capacity_b_m3_per_pa)};
   }
 
-  /// Fraction of each hose that yields; a pressure changes in the direction of the flow into its
+  /// Fraction of each hose that yields. A pressure changes in the direction of the flow into its
   /// chamber.
   template <typename X, std::size_t M>
   static std::array<X, 2> hose_shares(const std::array<X, M>& x, const X& toward_a,
@@ -190,7 +192,8 @@ struct TwoChamberPlant : Chambers {
             (1.0 - yields[1]) * dx[pressure_b] / yield_b};
   }
 
-  /// Memory of hoses that came to their pressure in one go, from the tank's or from the supply's.
+  /// Memory of a hose that came to its pressure in one monotonic change, from the tank's or the
+  /// supply's.
   template <typename X, typename C>
   static X hose_memory(const X& pressure_pa, const PlantInput<C>& in) {
     return clamp_symmetric(X((2.0 * pressure_pa - in.supply_pressure_pa - in.tank_pressure_pa) /
@@ -198,7 +201,7 @@ struct TwoChamberPlant : Chambers {
                            C(1.0));
   }
 
-  /// Outputs of the plant other than position and velocity. Servo and work flow are the means of
+  /// Outputs of the plant other than position and velocity. Servo flow and work flow are means over
   /// both chambers: Q_L = (Q_A + Q_B) / 2.
   template <typename X, std::size_t M, typename C>
   static X output(Output output, const std::array<X, M>& x, const PlantInput<X>& in,
@@ -234,16 +237,15 @@ struct TwoChamberPlant : Chambers {
     return X(0.0);
   }
 
-  /// State at rest: at x = 0, or at the nearer stop. The pressures balance the load, and their sum
-  /// is that of supply and tank.
+  /// State at rest: at x = 0, or at the closer stop if that is out of reach. The pressures balance
+  /// the load, and their sum is that of supply and tank pressure.
   template <typename C>
   static std::array<C, kStates> rest(const PlantInput<C>& in, const Coefficients<C>& p,
                                      const PresentTerms& terms) {
     return settled({C(0.0), C(0.0), C(0.0), C(0.0)}, in, p, terms, false, false);
   }
 
-  /// Initial state from the readings of the sensors, as far as there are any; missing pressures
-  /// balance the load.
+  /// Initial state from those sensor readings that were given. Missing pressures balance the load.
   template <typename C>
   static std::array<C, kStates> initial(const PlantInput<C>& in, const Coefficients<C>& p,
                                         const PresentTerms& terms) {
@@ -255,8 +257,8 @@ struct TwoChamberPlant : Chambers {
   }
 
  private:
-  /// Fills in the pressures that are not given and puts a piston that reads as beyond a stop onto
-  /// it: a reading is off by more than a stop gives way.
+  /// Fills in the pressures that are not given. If the reading puts the piston beyond a stop, moves
+  /// it onto the stop, because a sensor's error exceeds the elastic travel of a stop.
   template <typename C>
   static std::array<C, kStates> settled(std::array<C, kStates> x, const PlantInput<C>& in,
                                         const Coefficients<C>& p, const PresentTerms& terms,

@@ -10,7 +10,7 @@
 
 namespace rigcal::model {
 
-/// A cylinder with both chambers: single-rod or double-rod.
+/// A single-rod or double-rod cylinder with two chambers.
 template <typename T>
 struct TwoChamberParameters : CommonParameters<T> {
   T area_a_m2{};
@@ -77,7 +77,7 @@ struct TwoChamberParameters : CommonParameters<T> {
   T initial_pressure_b_pa{};
 };
 
-/// Areas, travel and oil of both chambers.
+/// Areas, travel and oil volumes of both chambers.
 template <template <typename> class Parameters, typename T>
 constexpr auto chamber_rows() {
   using P = Parameters<T>;
@@ -95,7 +95,7 @@ constexpr auto chamber_rows() {
   };
 }
 
-/// Optional terms of stops, edges, chambers, hoses and supply.
+/// Optional terms for stops, edges, chambers, hoses and supply.
 template <template <typename> class Parameters, typename T>
 constexpr auto chamber_term_rows() {
   using P = Parameters<T>;
@@ -131,7 +131,7 @@ constexpr auto chamber_term_rows() {
   };
 }
 
-/// The gain of an electric valve, which a pilot-operated one lacks.
+/// The gain of an electric valve. A pilot-operated valve does not have it.
 template <template <typename> class Parameters, typename T>
 constexpr auto electric_gain_rows() {
   using P = Parameters<T>;
@@ -143,8 +143,8 @@ constexpr auto electric_gain_rows() {
   };
 }
 
-/// Optional terms of a valve that is driven by a pilot pressure, meters in and out differently or
-/// opens by a law of its own, and of pump, accumulator and check valves.
+/// Optional terms for a valve that is driven by a pilot pressure, meters in and out differently or
+/// has its own opening law, and for pump, accumulator and check valves.
 template <template <typename> class Parameters, typename T>
 constexpr auto metering_rows() {
   using P = Parameters<T>;
@@ -186,7 +186,7 @@ constexpr auto metering_rows() {
   };
 }
 
-/// Pressures of both chambers at the first sample.
+/// Initial pressures of both chambers.
 template <template <typename> class Parameters, typename T>
 constexpr auto chamber_initial_rows() {
   using P = Parameters<T>;
@@ -200,7 +200,7 @@ constexpr auto chamber_initial_rows() {
   };
 }
 
-/// Rows but those with certain keys.
+/// Returns the rows except those with the given keys.
 template <typename F, std::size_t N, std::size_t M>
 constexpr auto rows_without(const std::array<F, N>& rows,
                             const std::array<std::string_view, M>& keys) {
@@ -216,7 +216,7 @@ constexpr auto rows_without(const std::array<F, N>& rows,
 
 inline constexpr std::array kElectricGain{std::string_view("valve_gain")};
 
-/// The two-chamber plant, in the order of `rigcal params`.
+/// Rows of the two-chamber plant, in the order of `rigcal params`.
 template <typename T>
 constexpr auto two_chamber_fields() {
   return joined(

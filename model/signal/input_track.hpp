@@ -8,7 +8,7 @@
 namespace rigcal::model {
 
 /// A signal during a simulation: the current segment and its end. Times count from the first
-/// sample, so that long time stamps cost no digits. The signal may be delayed by a dead time.
+/// sample, so that long time stamps lose no digits. The signal may be delayed by a dead time.
 class InputTrack {
  public:
   /// @param before    unless it is `hold`, the track waits until the signal begins
@@ -30,7 +30,7 @@ class InputTrack {
   double value(double t) const { return signal_.value(segment_, t + shift_s_); }
   SignalSample sample(double t) const { return signal_.sample(segment_, t + shift_s_); }
   double max_step() const { return signal_.max_step(); }
-  /// Whether the signal has not begun yet; value() and sample() must not be used then.
+  /// Whether the signal has not begun yet. Neither value() nor sample() may be called then.
   bool waits() const { return waits_; }
   double first_value() const { return signal_.value(begins_s_); }
 

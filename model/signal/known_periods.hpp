@@ -5,23 +5,23 @@
 
 namespace rigcal::model {
 
-/// Samples of a periodic run of which all before `end` are known: the last period, `samples` long,
-/// and the one before it where shares are not zero.
+/// Samples of a periodic run. All before `end` are known: the last period, which is `samples` long,
+/// and also the period before it if any multiple is not zero.
 struct KnownPeriods {
   std::size_t end;
   std::size_t samples;
-  double sign;  ///< -1 where each period is the one before it with the other sign, else 1
+  double sign;  ///< -1 if each period is its predecessor with the opposite sign, else 1
 };
 
-/// Continues a column of samples. Each further period is the last known one plus a multiple of its
-/// change from the one before; every other one has the sign of `known`.
+/// Extrapolates a column of samples. Each further period is the last known one plus a multiple of
+/// its change since the previous one. Every other period is multiplied by the sign of `known`.
 ///
-/// @param share  the multiples, shape (further periods); a period with zero ignores the change
+/// @param share  the multiples, shape (further periods); for zero, the change is not read
 void continue_periods(const KnownPeriods& known, std::span<const double> share,
                       std::span<double> column);
 
-/// Adds to each further period of a column a multiple of the change in the last known period of
-/// `values`; every other one has the sign of `known`.
+/// Adds a multiple of the change of `values` over the last known period to each further period of a
+/// column. Every other period is multiplied by the sign of `known`.
 ///
 /// @param share  the multiples, shape (further periods)
 void add_changes(const KnownPeriods& known, std::span<const double> share,

@@ -7,8 +7,9 @@
 
 namespace rigcal::model {
 
-/// Sample times and edges are rounded: closer than this [s] is the same instant. A nanosecond at
-/// most, unless the time stamps themselves are coarser.
+/// Largest difference [s] between two times that count as the same instant, because sample times
+/// and edges are rounded. It is at most a nanosecond, unless the time stamps themselves are
+/// coarser.
 inline double same_instant_s(std::span<const double> times_s) {
   const double longest = std::max({1.0, std::abs(times_s.front()), std::abs(times_s.back())});
   constexpr double kEpsilon = std::numeric_limits<double>::epsilon();

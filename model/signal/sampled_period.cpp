@@ -10,7 +10,8 @@
 namespace rigcal::model {
 namespace {
 
-/// 3 Hz repeat at the samples of 1 kHz after three periods; longer than this is not looked for.
+/// Largest number of drive periods to try. With a drive at 3 Hz and samples at 1 kHz, the samples
+/// repeat after three periods.
 constexpr int kMostPeriods = 20;
 
 bool constant(const std::optional<Signal>& signal) { return !signal || signal->period_s() == 0.0; }
@@ -37,7 +38,7 @@ std::optional<SampledPeriod> sampled_period(const SimulationInputs& inputs,
     const auto samples = next - times_s.begin();
     const Eigen::Index later = times.size() - samples;
     const auto excess = (times.tail(later) - times.head(later) - duration_s).abs();
-    // Checks the last one first, since it usually decides.
+    // Checks the last difference first, because it usually decides.
     if (excess(later - 1) <= same_s && excess.maxCoeff() <= same_s)
       return SampledPeriod{duration_s, static_cast<std::size_t>(samples), halves % 2 == 1};
   }

@@ -8,23 +8,24 @@
 
 namespace rigcal::model {
 
-/// After how long the inputs of a rig and the instants of its samples repeat themselves.
+/// Period after which both the inputs of a rig and its sampling instants repeat.
 struct SampledPeriod {
   double duration_s = 0.0;
   std::size_t samples = 0;
-  bool reversed = false;  ///< the inputs with the other sign: an odd number of half periods
+  bool reversed =
+      false;  ///< an odd number of half periods: the inputs repeat with the opposite sign
 
-  /// Factor of a periodic quantity from one period to the next.
+  /// Factor from one period to the next of a periodic quantity.
   double sign() const { return reversed ? -1.0 : 1.0; }
 };
 
-/// Finds the shortest whole number of periods of the drive after which every sample (and every tick
-/// of a controller with `tick_s`) has a counterpart, if that is shorter than the record. Half
-/// periods count if the drive then has the opposite sign and the rig is `reversible`.
+/// Finds the shortest whole number of drive periods after which every sample (and every tick of a
+/// controller with `tick_s`) has a counterpart, if that is shorter than the record. Half periods
+/// count if the drive then has the opposite sign and the rig is `reversible`.
 ///
 /// @param reversible  whether reversed inputs reverse the response of the rig
-/// @param tick_s      sample time of the controller; empty if it has none
-/// @return            none if an input or the samples are not periodic
+/// @param tick_s      sample time of the controller; std::nullopt if it has none
+/// @return            std::nullopt if an input or the samples are not periodic
 std::optional<SampledPeriod> sampled_period(const SimulationInputs& inputs,
                                             std::span<const double> times_s, bool reversible,
                                             std::optional<double> tick_s);

@@ -11,9 +11,10 @@ namespace {
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// A time this close to an edge, in half periods, is at the edge: sample times are rounded.
+/// Largest distance from an edge, in half periods, at which a time counts as at the edge, because
+/// sample times are rounded.
 constexpr double kEdgeTolerance = 1e-9;
-/// Steps per period that no step may exceed, so that none skips an oscillation.
+/// Minimum number of steps per period, so that no step skips an oscillation.
 constexpr double kStepsPerPeriod = 8.0;
 
 void require_frequency(double frequency_hz) {
@@ -108,9 +109,11 @@ Signal Signal::linear(std::vector<double> time_s, std::vector<double> value) {
   return s;
 }
 
-// Segments. square: half period k (segment 0 also covers t < 0); shaped: the same with its pieces.
-// chirp: the sweep, then the constant end frequency. hold, linear: segment 0 before the first
-// sample, k + 1 from sample k.
+// Segments of each kind:
+//   square        segment k is half period k; segment 0 also covers t < 0
+//   shaped        as square, with pieces instead of half periods
+//   chirp         the sweep, then the constant end frequency
+//   hold, linear  segment 0 before the first sample, then k + 1 from sample k
 std::size_t Signal::segment_at(double t) const {
   switch (kind_) {
     case Kind::constant:

@@ -13,62 +13,64 @@ struct SignalSample {
   double slope = 0.0;
 };
 
-/// Drive before its first sample.
+/// What the drive was before its first sample.
 enum class Before {
-  hold,    ///< its first value; the rig starts from its initial state
+  hold,    ///< equal to its first value; the rig starts from its initial state
   rest,    ///< neutral: no command, or the reference at which the piston rests
-  steady,  ///< its first value, at which the rig had settled
+  steady,  ///< equal to its first value, and the rig had settled at that
 };
 
-/// One period of a signal of amplitude 1, in pieces of equal length within which it is smooth. To
-/// add a waveform: a shape, and a row of datasets/campaign/waveform.cpp.
+/// One period of a signal with amplitude 1, in pieces of equal length. The signal is smooth within
+/// a piece. To add a waveform, add a shape and a row in datasets/campaign/waveform.cpp.
 struct PeriodicShape {
-  int pieces = 1;  ///< at whose ends a simulation ends a step
-  /// @param piece  of the period, from 0
-  /// @param phase  within the period, in periods; before t = 0 negative, of the first piece
+  int pieces = 1;  ///< number of pieces; a simulation ends a step at the end of each
+  /// @param piece  index within the period, from 0
+  /// @param phase  within the period, in periods; before t = 0 it is negative, and in the first
+  ///               piece
   /// @return       value, and slope per period
   SignalSample (*at)(int piece, double phase) = nullptr;
-  bool reverses = false;  ///< half a period later it is the same with the other sign
+  bool reverses = false;  ///< after half a period the signal repeats with the opposite sign
 };
 
 /// A scalar function of time that is smooth between breakpoints. A simulation ends a step at every
-/// breakpoint and evaluates the signal by segment, so that no edge is smeared or skipped.
+/// breakpoint and evaluates the signal segment by segment, so that it neither smears nor skips an
+/// edge.
 class Signal {
  public:
   /// c for all t.
   static Signal constant(double value);
   /// A sin(2 pi f t).
   static Signal sine(double amplitude, double frequency_hz);
-  /// A sgn(sin(2 pi f t)), +A at t = 0; at an edge the value of the new half period.
+  /// A sgn(sin(2 pi f t)), +A at t = 0. At an edge it has the value of the new half period.
   static Signal square(double amplitude, double frequency_hz);
-  /// A times a shape that repeats itself f times a second; the shape outlives the signal.
+  /// A times a shape that repeats f times a second. The shape must outlive the signal.
   static Signal shaped(const PeriodicShape& shape, double amplitude, double frequency_hz);
-  /// A sin(phase) whose frequency goes from f0 to f1 over `sweep_s`, then stays at f1.
+  /// A sin(phase), with a frequency that sweeps from f0 to f1 over `sweep_s` and then stays at f1.
   static Signal chirp(double amplitude, double start_hz, double end_hz, double sweep_s,
                       bool logarithmic);
-  /// Each sample lasts until the next one (zero-order hold); the first also applies before its
-  /// time.
+  /// Zero-order hold: each sample lasts until the next one. The first sample also applies before
+  /// its time.
   static Signal held(std::vector<double> time_s, std::vector<double> value);
-  /// Samples joined by straight lines, constant outside.
+  /// Samples joined by straight lines; constant before the first and after the last.
   static Signal linear(std::vector<double> time_s, std::vector<double> value);
   /// offset + A sin(2 pi f t + phase).
   static Signal ripple(double offset, double amplitude, double frequency_hz, double phase_rad);
 
-  /// Segment at time t; the later one at a breakpoint.
+  /// Segment at time t. At a breakpoint it is the later one.
   std::size_t segment_at(double t) const;
-  /// End of a segment; infinity for the last.
+  /// End of a segment; infinity for the last one.
   double segment_end(std::size_t segment) const;
-  /// Value and derivatives at t by the formula of `segment`.
+  /// Value and slope at t, computed with the formula of `segment`.
   SignalSample sample(std::size_t segment, double t) const;
-  /// Value alone, for less.
+  /// Value without the slope, which is cheaper.
   double value(std::size_t segment, double t) const;
   /// Value at t.
   double value(double t) const { return value(segment_at(t), t); }
-  /// Time after which it repeats itself; 0 for a constant, none if it does not.
+  /// Time after which the signal repeats; 0 for a constant, std::nullopt if it does not repeat.
   std::optional<double> period_s() const;
   /// Whether the signal changes its sign after half a period.
   bool reverses() const;
-  /// Longest step that cannot skip an oscillation; infinity if the segments are that.
+  /// Longest step that cannot skip an oscillation; infinity if the breakpoints ensure that.
   double max_step() const;
 
  private:

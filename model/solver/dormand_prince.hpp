@@ -8,7 +8,7 @@
 
 namespace rigcal::model {
 
-/// Odeint's Dormand-Prince 5(4): explicit, for parts that are not stiff.
+/// Odeint's Dormand-Prince 5(4), an explicit method for rigs that are not stiff.
 template <int N, int P>
 class DormandPrince {
  public:
@@ -23,8 +23,8 @@ class DormandPrince {
     stepper_.do_step(f, x, f_old_, t, x_out, f_new_, dt, x_err);
   }
 
-  /// The solution within the step just done: the quartic through both ends with their slopes and
-  /// Odeint's dense output half way.
+  /// The solution within the last step: the quartic that has the values and slopes at both ends and
+  /// agrees with Odeint's dense output at half time.
   Interpolant<N, P> dense_output(const X& x_old, const X& x_new, double dt) const {
     X middle;
     stepper_.calc_state(0.5 * dt, middle, x_old, f_old_, 0.0, x_new, f_new_, dt);
@@ -41,7 +41,7 @@ class DormandPrince {
     return result;
   }
 
-  /// Derivative at the end of the step just done.
+  /// Derivative at the end of the last step.
   const X& f_new() const { return f_new_; }
 
  private:

@@ -8,17 +8,17 @@
 namespace rigcal::model {
 
 /// Error of a step in units of the tolerance. Each state is compared with its own running peak,
-/// since velocity and pressure differ by 1e7. Each sensitivity is compared with its running peak,
-/// too, but never more finely than a small fraction of the effect of the parameter on the state.
-/// Both control the step: otherwise sensitivities diverge where the states do not (paper.md).
-/// Unused states, where N has room for more, do not count.
+/// because the scales of velocity and pressure differ by 1e7. Each sensitivity is compared with its
+/// running peak, too, but never more strictly than with a small fraction of the parameter's effect
+/// on the state. Both control the step; otherwise sensitivities can diverge while the states do not
+/// (paper.md). If N exceeds the number of states, the unused ones do not count.
 template <int N, int P>
 class ErrorNorm {
  public:
   using X = State<N, P>;
 
-  /// @param states           that the rig has, at most N; the others must stay zero
-  /// @param floor            shape (N): below it a state counts as zero
+  /// @param states           number of states of the rig, at most N; the others must stay zero
+  /// @param floor            shape (N): size below which a state counts as zero
   /// @param parameter_scale  shape (P): typical size of each parameter, > 0
   ErrorNorm(int states, const std::array<double, static_cast<std::size_t>(N)>& floor,
             const std::array<double, static_cast<std::size_t>(P)>& parameter_scale,
@@ -37,7 +37,7 @@ class ErrorNorm {
     for (std::size_t i = 0; i < N; ++i) peak_[i] = peak_of(i, x[i]);
   }
 
-  /// Root mean square over the states; not finite if the error is not.
+  /// Root mean square of the error over the states; not finite if the error is not.
   double of_states(const X& error, const X& x_new) const {
     double sum = 0.0;
     for (std::size_t i = 0; i < N; ++i) {
@@ -48,8 +48,8 @@ class ErrorNorm {
     return std::sqrt(sum / states_);
   }
 
-  /// Root mean square over the states of one sensitivity, the largest of them; not finite if an
-  /// error is not.
+  /// Root mean square over the states for each sensitivity column, maximised over the columns; not
+  /// finite if an error is not.
   double of_sensitivities(const X& error, const X& x_new) const {
     double worst = 0.0;
     if constexpr (P > 0) {
@@ -62,13 +62,13 @@ class ErrorNorm {
       }
       for (std::size_t j = 0; j < P && std::isfinite(worst); ++j) {
         const double column = sum[j];
-        if (!(column <= worst)) worst = column;  // NaN fails as well
+        if (!(column <= worst)) worst = column;  // true for NaN, too
       }
     }
     return std::sqrt(worst / states_) / sensitivity_tolerance_;
   }
 
-  /// Sum over the states of a b, each in units of the tolerance.
+  /// Inner product of a and b over the states, each in units of the tolerance.
   Active<P> inner(const X& a, const X& b) const {
     Active<P> sum(0.0);
     for (std::size_t i = 0; i < N; ++i) {

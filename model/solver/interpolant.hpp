@@ -4,7 +4,7 @@
 
 namespace rigcal::model {
 
-/// The solution within one step: a polynomial of at most fourth degree in s, which runs from 0 to 1
+/// The solution within one step: a polynomial of degree four or less in s, which goes from 0 to 1
 /// along the step.
 template <int N, int P>
 struct Interpolant {

@@ -10,9 +10,9 @@
 
 namespace rigcal::model {
 
-/// With periodic inputs a step ends where one ended a period ago, if that is close to the choice of
-/// the error control. Steps that were rejected a period ago are not tried again, and two periods
-/// differ only by their states, not by their steps.
+/// With periodic inputs, makes a step end at the same phase as a step one period earlier, if that
+/// is close to the choice of the error control. Steps that were rejected one period earlier are not
+/// tried again, and two periods differ only in their states, not in their steps.
 class RepeatedSteps {
  public:
   explicit RepeatedSteps(const std::optional<SampledPeriod>& period) {
@@ -21,14 +21,14 @@ class RepeatedSteps {
 
   struct Step {
     double size_s;
-    bool forced;  ///< a longer one was rejected a period ago
+    bool forced;  ///< a longer step was rejected one period earlier
   };
 
-  /// The step to take at time t in place of the one planned.
+  /// Returns the step to take at time t instead of the planned one.
   Step follow(double t, double planned);
 
-  /// A step was accepted.
-  /// @param forced  a longer one was rejected, now or a period ago
+  /// Records an accepted step.
+  /// @param forced  a longer step was rejected, now or one period earlier
   void note(double t_new, bool forced) {
     if (std::isfinite(period_s_)) ends_.push_back({t_new, forced});
   }
@@ -41,7 +41,7 @@ class RepeatedSteps {
 
   double period_s_ = std::numeric_limits<double>::infinity();
   std::vector<End> ends_;
-  std::size_t next_ = 0;  ///< the first that ended later than a period ago
+  std::size_t next_ = 0;  ///< first step end that is less than a period ago
 };
 
 }  // namespace rigcal::model

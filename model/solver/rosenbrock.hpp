@@ -9,9 +9,9 @@
 namespace rigcal::model {
 
 /// Coefficients of RODAS4P, an L-stable, stiffly accurate Rosenbrock method of order 4(3) with
-/// dense output whose order does not fall on stiff linear parts (G. Steinebach, Order-reduction of
-/// ROW-methods for DAEs and method of lines applications, TH Darmstadt preprint 1741, 1995), in the
-/// form of Hairer and Wanner, Solving ODEs II, IV.7.
+/// dense output, without order reduction on stiff linear problems (G. Steinebach, Order-reduction
+/// of ROW-methods for DAEs and method of lines applications, TH Darmstadt preprint 1741, 1995). The
+/// form is that of Hairer and Wanner, Solving ODEs II, IV.7.
 struct Rodas4P {
   static constexpr int kStages = 6;
   static constexpr double kGamma = 0.25;
@@ -37,26 +37,26 @@ struct Rodas4P {
       {1.638054557396973, -0.7373619806678748, 8.477918219238990, 15.99253148779520,
        -1.882352941176471}};
 
-  /// Points of a step at which the Jacobian of the sensitivities is evaluated: its start, middle
-  /// and end, with a parabola between them.
+  /// Points of a step at which the Jacobian of the sensitivities is evaluated: start, middle and
+  /// end. A parabola interpolates between them.
   static constexpr std::size_t kNodes = 3;
-  /// Weight of each node at a time c of the step.
+  /// Weight of each node at relative time c within the step.
   static constexpr std::array<double, kNodes> weights(double c) {
     return {(2.0 * c - 1.0) * (c - 1.0), 4.0 * c * (1.0 - c), c * (2.0 * c - 1.0)};
   }
-  /// Weight of each node in the slope at the begin, times the size of the step.
+  /// Weight of each node in the slope at the start of the step, times the step size.
   static constexpr std::array<double, kNodes> kFirstSlope{-3.0, 4.0, -1.0};
 };
 
 /// RODAS4P as an error stepper with dense output.
 ///
 /// Odeint's own rosenbrock4 (RODAS) has a wrong sign in its d4, which costs it order on systems
-/// that depend on time; it works on heap-allocated uBLAS matrices, knows no sensitivities, and
-/// needs three times the steps at a tolerance of 1e-6 where a valve is stiff (docs/decisions/0002).
+/// that depend on time; it works on heap-allocated uBLAS matrices, has no sensitivities, and needs
+/// three times as many steps at a tolerance of 1e-6 with a stiff valve (docs/decisions/0002).
 ///
-/// The sensitivities S follow the states: the method goes through their own equations
+/// The sensitivities S follow the states: the method integrates their own equations
 ///   S' = J(t) S + f_p(t)
-/// with the same matrix, J and f_p being taken along the dense output of the states, so that no
+/// with the same matrix. J and f_p are evaluated along the dense output of the states, so that no
 /// second derivatives are needed (docs/decisions/0009).
 template <int N, int P>
 class Rosenbrock {
@@ -64,8 +64,8 @@ class Rosenbrock {
   using X = State<N, P>;
   using K = Rodas4P;
 
-  /// One step of the states from x at t of size dt; their sensitivities are left as they are.
-  /// @param system  has derivative_of_values(x, t)
+  /// Advances the states from x at t by dt and leaves their sensitivities unchanged.
+  /// @param system  provides derivative_of_values(x, t)
   /// @param lin     linearisation of the system at (x, t)
   template <typename System>
   void do_step(const System& system, const Linearisation<N, P>& lin, const X& x, double t, X& x_out,
@@ -86,8 +86,8 @@ class Rosenbrock {
     }
   }
 
-  /// The sensitivities over the step that do_step() just made.
-  /// @param system  has linearise(x, t)
+  /// Advances the sensitivities over the step that do_step() just made.
+  /// @param system  provides linearise(x, t)
   /// @return        linearisation at the end of the step
   template <typename System>
   const Linearisation<N, P>& sensitivities(const System& system, const Linearisation<N, P>& lin,
@@ -100,7 +100,7 @@ class Rosenbrock {
     nodes_[1] = system.linearise(middle, t + 0.5 * dt);
     nodes_[2] = system.linearise(x_new_, t + dt);
     for (std::size_t i = 0; i < N; ++i) start_[i] = x[i].derivative;
-    // dt (J' S + f_p'): the time derivatives from the values at the nodes.
+    // dt (J' S + f_p'), with the time derivatives computed from the values at the nodes.
     change_ = Tangents<N, P>{};
     for (std::size_t k = 0; k < K::kNodes; ++k)
       add_scaled(change_, K::kFirstSlope[k], rate(nodes_[k], start_));
@@ -117,7 +117,7 @@ class Rosenbrock {
     return nodes_.back();
   }
 
-  /// The solution within the step just done, as a polynomial.
+  /// The solution within the last step, as a polynomial.
   Interpolant<N, P> dense_output(const X& x_old, const X& x_new) const {
     const Interpolant<N, 0> states = dense_values();
     if constexpr (P == 0) {
@@ -157,7 +157,7 @@ class Rosenbrock {
     }
   }
 
-  /// Jacobian and derivatives by the parameters at the time of a stage.
+  /// Jacobian and derivatives with respect to the parameters at the time of a stage.
   template <std::size_t kStage>
   Linearisation<N, P> linearisation_at() const {
     constexpr auto kWeight = K::weights(K::kTime[kStage]);
@@ -180,7 +180,7 @@ class Rosenbrock {
     }
   }
 
-  /// @return  where the stage begins
+  /// @return  the tangents at the start of the stage
   template <std::size_t kStage>
   Tangents<N, P> tangent_stage(double dt) {
     Tangents<N, P> point = start_;
@@ -216,7 +216,7 @@ class Rosenbrock {
     return result;
   }
 
-  /// x_old (1 - s) + s (x_new + (1 - s) (d_0 + s d_1)) in powers of s, for number i of the stages.
+  /// x_old (1 - s) + s (x_new + (1 - s) (d_0 + s d_1)) in powers of s, for component i.
   template <typename T, typename Stages>
   static std::array<T, 4> dense_coefficients(const T& x_old, const T& x_new, const Stages& stages,
                                              std::size_t i) {
@@ -242,7 +242,7 @@ class Rosenbrock {
   Values<N> point_;
   Values<N> x_new_;
   std::array<Values<N>, K::kStages> g_;       ///< stages of the states
-  std::array<Tangents<N, P>, K::kStages> u_;  ///< and of their sensitivities
+  std::array<Tangents<N, P>, K::kStages> u_;  ///< stages of their sensitivities
   std::array<Linearisation<N, P>, K::kNodes> nodes_;
   Tangents<N, P> start_;
   Tangents<N, P> change_;

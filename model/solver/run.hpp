@@ -22,10 +22,9 @@
 
 namespace rigcal::model {
 
-/// Walks a system from the first sample to the last: steps under error control, each ending at the
-/// next breakpoint of an input or tick of the controller at the latest, samples read from the dense
-/// output in between. Inside, time counts from the first sample.
-///
+/// Integrates a system from the first sample to the last. Steps are chosen by error control, and
+/// each ends no later than the next breakpoint of an input or tick of the controller. Samples
+/// within a step are read from the dense output. Internally, time counts from the first sample.
 template <typename Plant, int N, int P>
 class Run {
  public:
@@ -60,8 +59,9 @@ class Run {
     for_each_track([this](InputTrack& track) { h_max_ = std::min(h_max_, track.max_step()); });
   }
 
-  /// Writes the outputs of every sample, and the state at the last, into `result` (matrices already
-  /// sized); columns [first_column, first_column + columns) of the sensitivities.
+  /// Writes the outputs at every sample, and the state at the last one, into `result`, whose
+  /// matrices already have their sizes. Sensitivities go into `columns` columns from
+  /// `first_column` on.
   /// @param start  state at the first sample
   void operator()(const X& start, Simulation& result, int first_column, int columns) {
     result_ = &result;
@@ -90,10 +90,11 @@ class Run {
   }
 
  private:
-  /// Across kinks Dormand and Prince's formula sees less of its error than Rosenbrock's: at a fifth
-  /// of the tolerance both are as far off on the six signals of bench/.
+  /// At a kink, the Dormand-Prince formula underestimates its error more than the Rosenbrock
+  /// formula. At a fifth of the tolerance, both are equally accurate on the six signals in bench/.
   static constexpr double kCare = 5.0;
-  /// A step that was forced is let free where its error is less: it could be half as long again.
+  /// A forced step is no longer forced if its error is below this: it could then be half as long
+  /// again.
   static constexpr double kStillForced = 0.1;
   static constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
@@ -110,7 +111,7 @@ class Run {
 
   bool at(double a, double b) const { return std::abs(a - b) <= same_instant_s_; }
 
-  /// A first step from the slope of the state; the error control takes it from there.
+  /// Estimates a first step from the slope of the state. Error control adjusts it from there.
   double first_step(double span) const {
     X small{};
     add_scaled(small, 1e-6, system_.derivative(x_, t_));
@@ -119,8 +120,8 @@ class Run {
     return std::clamp(h, 1e-9, std::max(1e-9, 1e-2 * span));
   }
 
-  /// The next event: a breakpoint of an input, a tick of the controller, a check for the steady
-  /// state, or the end of the run.
+  /// Time of the next event: a breakpoint of an input, a tick of the controller, a check for the
+  /// steady state, or the end of the run.
   double next_event() {
     double stop =
         std::min({sample_time(times_s_.size() - 1), next_tick(), steady_state_.next_look_s()});
@@ -130,7 +131,7 @@ class Run {
 
   double next_tick() const { return static_cast<double>(ticks_ + 1) * period_s_; }
 
-  /// One accepted step, at most to `stop`; false if the run has failed.
+  /// Makes one accepted step that ends no later than `stop`; returns false if the run has failed.
   bool step_towards(double stop) {
     prepare_step();
     bool rejected = false;
@@ -147,7 +148,7 @@ class Run {
       const double factor = step_factor(error);
       if (error <= 1.0) {
         ++result_->steps;
-        // A step that an event cut short is no reason against the longer step planned before.
+        // A step that an event cut short does not rule out the longer step that was planned before.
         h_ = cut_short ? std::max(h_, step * factor) : step * factor;
         if (after_jump_) h_after_jump_ = step * factor;
         after_jump_ = false;
@@ -177,7 +178,7 @@ class Run {
     }
   }
 
-  /// One step.
+  /// Tries one step.
   ///
   /// @return  its error in units of the tolerance
   double try_step(double step, X& x_new, X& x_err) {
@@ -196,7 +197,7 @@ class Run {
     return error;
   }
 
-  /// Prepares the next step: the linearisation, or the slope of the explicit method.
+  /// Prepares the next step: computes the linearisation, or the slope for the explicit method.
   void prepare_step() {
     if (implicit_ && !lin_known_) {
       lin_ = system_.linearise(values_of(x_), t_);
@@ -207,18 +208,18 @@ class Run {
 
   double step_factor(double error) const {
     if (!std::isfinite(error)) return 0.1;
-    // Error of a step: h^4 of the embedded Rosenbrock formula, h^5 of Dormand and Prince's.
+    // The error grows as h^4 for the embedded Rosenbrock formula, and as h^5 for Dormand-Prince.
     const double e = std::max(error, 1e-10);
     return std::clamp(0.9 * (implicit_ ? inverse_fourth_root(e) : std::pow(e, -0.2)), 0.2, 5.0);
   }
 
-  /// Samples at the present instant.
+  /// Emits the samples at the present instant.
   void emit_present() {
     while (next_sample_ < times_s_.size() && at(sample_time(next_sample_), t_)) emit(x_, t_);
   }
 
   /// Emits the samples strictly between the present and the end of the completed step. A sample at
-  /// t_new itself waits, since an event there may change its value.
+  /// t_new itself waits, because an event there may change its value.
   void emit_until(double t_new, const X& x_new) {
     const double last = t_new - same_instant_s_;
     std::size_t end = next_sample_;
@@ -242,7 +243,8 @@ class Run {
     }
   }
 
-  /// Samples [begin, end) of an output that is a state: a polynomial of the share of the step.
+  /// Stores samples [begin, end) of an output that is a state, from its polynomial in the fraction
+  /// of the step.
   void store_polynomial(std::size_t begin, std::size_t end, std::size_t output,
                         const std::array<C, 5> polynomial, double rate) {
     const double origin = times_s_.front() + t_;
@@ -256,8 +258,9 @@ class Run {
     ++next_sample_;
   }
 
-  /// Inputs that end a segment now go to their next one, then the controller ticks. Where the time
-  /// of a jump depends on the transport delay, the sensitivity to it jumps by f(before) - f(after).
+  /// Switches inputs whose segment ends now to their next one, then lets the controller tick. If
+  /// the time of a jump depends on the transport delay, the sensitivity to it jumps by
+  /// f(before) - f(after).
   void pass_events() {
     const bool drive_jumped = passed(system_.drive(), t_);
     bool others_jumped = false;
@@ -287,8 +290,8 @@ class Run {
       slope_known_ = false;
       lin_known_ = lin_known_ && !others_jumped && system_.drive_stops_at_valve();
       if (lin_known_) system_.follow_drive(values_of(x_), t_, lin_);
-      // The jump before this one needed such a short step, so this one will, too; this saves a
-      // rejection at each recorded sample.
+      // The previous jump needed such a short step, so this one will, too. This saves a rejection
+      // at each recorded sample.
       h_ = std::min(h_, h_after_jump_);
       after_jump_ = true;
     }
@@ -319,8 +322,8 @@ class Run {
     }
     for (std::size_t k = 0; k < outputs_.size(); ++k) {
       const std::span values = column(result_->outputs, static_cast<int>(k));
-      // The sensitivities first: they follow from the values, of which all but the last periods
-      // change.
+      // The sensitivities come first, because they follow from the values, of which all but the
+      // last known periods change.
       for (int j = 0; j < columns_; ++j) {
         const std::span by = column(result_->sensitivities[k], first_column_ + j);
         continue_periods(known, share, by);
@@ -402,19 +405,19 @@ class Run {
   std::vector<C> observed_;
   std::vector<std::size_t> observed_states_;  ///< states that the outputs depend on
   bool states_alone_ = true;                  ///< every output is a state
-  std::vector<std::size_t> state_of_output_;  ///< then this one
+  std::vector<std::size_t> state_of_output_;  ///< index of that state for each output
   Rosenbrock<N, P> rosenbrock_;
   DormandPrince<N, P> dormand_prince_;
-  bool implicit_;                ///< the method
+  bool implicit_;                ///< whether the method is implicit
   Linearisation<N, P> lin_;      ///< at the present point, if known
   Linearisation<N, P> lin_end_;  ///< at the end of the step just tried
   bool lin_known_ = false;
-  X slope_{};  ///< derivative at the present point, if explicit and known
+  X slope_{};  ///< derivative at the present point, for the explicit method and if known
   bool slope_known_ = false;
-  Simulation* result_ = nullptr;  ///< owned by the caller, for the time of one run
+  Simulation* result_ = nullptr;  ///< owned by the caller; set during one run
   int first_column_ = 0;
   int columns_ = 0;
-  double period_s_ = 0.0;  ///< sample time of the controller; infinite if continuous
+  double period_s_ = 0.0;  ///< sample time of the controller; infinite for a continuous controller
   long ticks_ = 0;
   double h_max_ = 0.0;
   double t_ = 0.0;

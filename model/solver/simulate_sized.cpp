@@ -15,17 +15,18 @@
 namespace rigcal::model {
 namespace {
 
-/// Typical size of a state over its floor, where it is near zero.
+/// Typical size of a state near zero, as a multiple of its floor.
 constexpr double kFloorsOfAState = 1e3;
 
-/// Typical size of a parameter, for the error scale of its sensitivity.
+/// Typical size of a parameter, which scales the error of its sensitivity.
 double scale_of(const ParameterSpec& spec, double value) {
   if (value != 0.0) return std::abs(value);
   const double range = std::max(std::abs(spec.lower), std::abs(spec.upper));
   return std::isfinite(range) && range > 0.0 ? 1e-3 * range : 1.0;
 }
 
-/// The state to go on from, with its own directions among [first, first + count) of all columns.
+/// The state from which a run continues. Each component whose sensitivity column is within
+/// [first, first + count) is an independent variable.
 template <int N, int P>
 State<N, P> state_to_go_on_from(const SizedRequest& request, int first, int count) {
   State<N, P> x;
@@ -43,8 +44,8 @@ State<N, P> state_to_go_on_from(const SizedRequest& request, int first, int coun
   return x;
 }
 
-/// One pass with at most P columns of the sensitivities: those of the free parameters, then those
-/// of the state to go on from.
+/// Makes one pass with at most P sensitivity columns. The free parameters come first, then the
+/// state from which the run continues.
 template <typename Plant, int N, int P>
 void pass(const SizedRequest& request, int first, int count, Simulation& result) {
   const double start_s = request.times_s.front();
@@ -96,8 +97,8 @@ void pass(const SizedRequest& request, int first, int count, Simulation& result)
   run(start, result, first, count);
 }
 
-/// Computes the columns from `first` on, with the first width that has room for all of them, or the
-/// last width.
+/// Computes the columns from `first` on. Uses the first width that has room for all of them, or
+/// else the last width.
 ///
 /// @return  number of computed columns
 template <typename Plant, int N, int Width, int... Wider>
@@ -110,7 +111,7 @@ int next_pass(const SizedRequest& request, int first, int left, Simulation& resu
   return count;
 }
 
-/// Passes until every column of the sensitivities had its turn.
+/// Makes passes until all sensitivity columns are computed.
 template <typename Plant, int N>
 void passes(const SizedRequest& request, Simulation& result) {
   const int columns = static_cast<int>(request.free.size()) +

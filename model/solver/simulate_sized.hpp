@@ -9,30 +9,31 @@
 
 namespace rigcal::model {
 
-/// Everything that one simulation needs, its plant and number of states fixed at compile time in
-/// simulate_sized.cpp (compiled once per plant and number, so that the parts build side by side).
+/// Everything that one simulation needs. Plant and number of states are fixed at compile time in
+/// simulate_sized.cpp, which is compiled once per plant and number, so that the builds run in
+/// parallel.
 struct SizedRequest {
   const Layout& layout;
   InitialState initial;
   Before before;
-  const Eigen::VectorXd* state;  ///< start of the run instead of `initial`; null: none
+  const Eigen::VectorXd* state;  ///< start of the run; null: start from `initial`
   const ParameterValues& parameters;
   std::span<const int> free;
   const SimulationInputs& inputs;
   std::span<const double> times_s;
   std::span<const Output> outputs;
   const SimulationOptions& options;
-  std::optional<SampledPeriod> period;            ///< after which a steady state repeats itself
-  std::chrono::steady_clock::time_point started;  ///< from when max_seconds counts
+  std::optional<SampledPeriod> period;  ///< period of the inputs, with which a steady state repeats
+  std::chrono::steady_clock::time_point started;  ///< start of the time limit max_seconds
 };
 
-/// Instruction set of a compiled solver; `base` runs everywhere.
+/// Instruction set of a compiled solver. `base` runs on every processor.
 enum class InstructionSet { base, avx2 };
 
-/// @return  of this processor, the best that the solver is compiled for
+/// @return  the best instruction set that this processor has and the solver is compiled for
 InstructionSet best_instruction_set();
 
-/// @tparam N  room for the layout's states, at least as many
+/// @tparam N  room for states, at least as many as the layout has
 template <typename Plant, int N, InstructionSet Set>
 void simulate_sized(const SizedRequest& request, Simulation& result);
 

@@ -13,13 +13,13 @@
 namespace rigcal::model {
 
 /// Detects when a run with periodic inputs is so close to its periodic steady state that the rest
-/// of it is known. Either the states and their sensitivities repeat those of a period ago, or each
-/// period adds a fixed fraction of the change of the one before, as with a single slow mode
-/// (docs/decisions/0012). If a half period reverses the inputs, the states of the half period
-/// before are taken with the opposite sign.
+/// of it can be extrapolated. Either the states and their sensitivities repeat those of one period
+/// earlier, or each period adds a fixed fraction of the previous period's change, as a single slow
+/// mode does (docs/decisions/0012). If a half period reverses the inputs, the states are compared
+/// with those of half a period earlier with the opposite sign.
 ///
-/// It checks a few times per period, at instants that are whole fractions of a period before the
-/// end, so that the final state is one of the checked ones or follows from one.
+/// The detector checks a few times per period, at whole fractions of a period before the end, so
+/// that the final state either is a checked one or follows from one.
 template <int N, int P>
 class SteadyState {
  public:
@@ -36,7 +36,7 @@ class SteadyState {
     looks_left_ = static_cast<long>(std::ceil(end_s / interval_s_)) - 1;
   }
 
-  /// When to look next; infinity if never.
+  /// Time of the next check; infinity if there is none.
   double next_look_s() const {
     return looks_left_ > 0 ? end_s_ - static_cast<double>(looks_left_) * interval_s_
                            : std::numeric_limits<double>::infinity();
@@ -44,7 +44,7 @@ class SteadyState {
 
   /// Checks the state at this instant.
   ///
-  /// @return  whether the rest of the run is known
+  /// @return  whether the rest of the run can be extrapolated
   [[gnu::cold]] bool look(const X& x, const ErrorNorm<N, P>& norm) {
     const auto phase = static_cast<std::size_t>(looks_left_ % looks_a_period_);
     periods_left_ = static_cast<double>(looks_left_) / static_cast<double>(looks_a_period_);
@@ -62,9 +62,10 @@ class SteadyState {
     return looks_ > 2 * looks_a_period_ && follows(change, before, norm, phase == 0);
   }
 
-  /// Whether it is in its steady state; else it comes nearer by a fixed share in each period.
+  /// Whether the run is in its steady state. If not, it approaches it by a fixed fraction per
+  /// period.
   bool reached() const { return reached_; }
-  /// Change over the next `periods`, in multiples of the last change.
+  /// Change over the next `periods`, as a multiple of the last change.
   [[gnu::cold]] C growth(long periods) const {
     C sum(0.0);
     for (long k = 0; k < periods; ++k) sum = ratio_ * (sum + 1.0);
@@ -72,7 +73,7 @@ class SteadyState {
   }
   std::size_t samples() const { return samples_; }  ///< samples in one period
   double sign() const { return sign_; }             ///< sign from one period to the next
-  /// State at the end of the run, once the rest of it is known.
+  /// State at the end of the run, once the rest of it can be extrapolated.
   [[gnu::cold]] X at_end() const {
     // Counts from the last check at this phase of a period.
     const long periods = std::lround(std::ceil(periods_left_));
@@ -85,10 +86,12 @@ class SteadyState {
   }
 
  private:
-  /// A whole period: four for half of one, so that a step is cut short as often.
+  /// Number of checks per whole period. A half period gets four, so that steps are cut short
+  /// equally often.
   static constexpr long kLooks = 8;
-  // Allowed error of the rest of the run, in tolerances of a step, if it is taken as steady and if
-  // it is extrapolated. Sensitivities always have larger errors than the states.
+  // Allowed error of the rest of the run in units of the step tolerance: kSteady if it is taken as
+  // steady, kForeseen if it is extrapolated. Sensitivities always have larger errors than the
+  // states.
   static constexpr double kSteady = 1.0;
   static constexpr double kForeseen = 2.0;
   static constexpr double kLooserSensitivities = 10.0;
@@ -104,9 +107,9 @@ class SteadyState {
                     norm.of_sensitivities(change, change) / kLooserSensitivities);
   }
 
-  /// Whether all changes in a period are the same fraction of those in the period before.
+  /// Whether all changes over a period are the same fraction of those over the period before.
   ///
-  /// @param ends  whether the period ends here; only then the answer is valid
+  /// @param ends  whether the period ends here; the answer is valid only then
   [[gnu::cold]] bool follows(const X& change, const X& before, const ErrorNorm<N, P>& norm,
                              bool ends) {
     // Multiple of the present change that is still to come.
@@ -117,7 +120,8 @@ class SteadyState {
     along_ = along_ + norm.inner(change, before);
     square_ = square_ + norm.inner(before, before);
     if (!ends) return false;
-    // The share itself changes as the changes become small: as much again in each of these periods.
+    // The fraction itself drifts as the changes become small. The drift is assumed to continue in
+    // each of these periods.
     const C ratio = along_ / square_;
     X drift = change;
     for (std::size_t i = 0; i < N; ++i) drift[i] = drift[i] * (ratio - ratio_);
@@ -129,10 +133,11 @@ class SteadyState {
     return result;
   }
 
-  std::array<X, static_cast<std::size_t>(kLooks)> seen_{};    ///< next() of each phase
-  std::array<X, static_cast<std::size_t>(kLooks)> change_{};  ///< next() of that since a period ago
+  std::array<X, static_cast<std::size_t>(kLooks)> seen_{};  ///< next() of each phase
+  std::array<X, static_cast<std::size_t>(kLooks)>
+      change_{};  ///< next() of the change since one period earlier
   C ratio_{0.0};  ///< ratio of the changes in the last complete period to those in the one before
-  C along_{0.0};  ///< sums of this period, for the next one
+  C along_{0.0};  ///< sum over this period, for the next ratio
   C square_{0.0};
   bool follows_ = false;
   bool reached_ = false;

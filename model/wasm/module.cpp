@@ -1,4 +1,4 @@
-// The model as a WebAssembly module, for pages that simulate (report/live). WebAssembly functions
+// The model as a WebAssembly module for pages that simulate (report/live). WebAssembly functions
 // exchange only numbers, so every argument is a number or the address of an array of numbers. The
 // module runs one simulation at a time.
 
@@ -19,11 +19,12 @@
 // Exports a function to the page.
 #define RIGCAL_EXPORT(name) extern "C" __attribute__((export_name(#name)))
 
-/// Provided by the page: receives the message of a failure. The module must not be used afterwards.
+/// Implemented by the page, which receives the message of a failure. The module must not be used
+/// afterwards.
 extern "C" __attribute__((import_module("rigcal"), import_name("failed"))) void rigcal_failed(
     const char* message);
 
-// WebAssembly of these compilers cannot unwind the stack. If the model throws because a caller
+// WebAssembly from these compilers cannot unwind the stack. If the model throws because a caller
 // broke its contract, the page receives the message and the module ends.
 extern "C" void* __cxa_allocate_exception(std::size_t size) noexcept {
   return ::operator new(size);
@@ -39,7 +40,7 @@ namespace {
 
 using namespace rigcal::model;
 
-/// An input begins with seven numbers: kind, number of samples, amplitude, frequency [Hz], end
+/// The first seven numbers of an input are kind, number of samples, amplitude, frequency [Hz], end
 /// frequency [Hz], sweep time [s], and 1 for a logarithmic sweep. Times and values of the samples
 /// follow.
 constexpr std::size_t kInputNumbers = 7;
@@ -90,11 +91,11 @@ RIGCAL_EXPORT(output_count) int output_count() { return static_cast<int>(kAllOut
 /// Simulates without sensitivities.
 ///
 /// @param rig      enumerators of plant, controller, initial state and method; tolerance; time
-///                 limit [s]; enumerators of the controlled quantity and of what was before; time
-///                 of the drive's first sample [s]
+///                 limit [s]; enumerators of the controlled quantity and of Before; time of the
+///                 drive's first sample [s]
 /// @param values   shape (2, parameters): SI values, and 1 for each that is given
-/// @param drive    an input as described at kInputNumbers; `force`, `supply` and `tank` likewise,
-///                 or null
+/// @param drive    an input in the format of kInputNumbers. `force`, `supply` and `tank` have the
+///                 same format; null if absent.
 /// @param outputs  shape (samples, outputs), column by column, SI; written only if the result is ok
 /// @return         SimulationStatus; 0 is ok
 RIGCAL_EXPORT(simulate)

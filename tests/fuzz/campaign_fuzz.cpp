@@ -5,9 +5,10 @@
 
 using namespace rigcal;
 
-/// A campaign file loads, or is refused with its place.
+/// A campaign file either loads or is rejected with the place of the error.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const auto record = fuzz::scratch_file("record.csv", "t_s,x_mm\n0,0\n");  // it may name it
+  static const auto record =
+      fuzz::scratch_file("record.csv", "t_s,x_mm\n0,0\n");  // a campaign may refer to it
   const auto file = fuzz::scratch_file("campaign.toml", fuzz::text_of_bytes(data, size));
   try {
     const datasets::Campaign campaign = datasets::load_campaign(file);

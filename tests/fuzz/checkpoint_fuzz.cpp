@@ -12,8 +12,8 @@ using namespace rigcal;
 
 namespace {
 
-/// Identity of the fit that a checkpoint belongs to. It includes version and revision, which no
-/// corpus can know, so inputs have a placeholder.
+/// Identity of the fit to which a checkpoint belongs. It includes version and revision, which a
+/// corpus cannot know, so inputs have a placeholder.
 const std::string& fit_identity() {
   static const std::string text =
       report::parse_json(report::checkpoint_text({}, {}), "identity").at("fit").dump();
@@ -22,7 +22,7 @@ const std::string& fit_identity() {
 
 constexpr std::string_view kIdentitySign = "\"@FIT@\"";
 
-/// A checkpoint with the hash of its own content, so that what is in it is looked at.
+/// Gives a checkpoint the hash of its own content, so that the reader goes on to the content.
 std::string with_own_hash(const std::string& text) {
   try {
     report::Json json = report::parse_json(text, "input");
@@ -37,7 +37,7 @@ std::string with_own_hash(const std::string& text) {
 
 }  // namespace
 
-/// A checkpoint is read, and then is what it says once written and read again; or is refused.
+/// A checkpoint either is rejected, or is the same after it was read, written and read again.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   std::string text(fuzz::text_of_bytes(data, size));
   if (const auto at = text.find(kIdentitySign); at != std::string::npos)

@@ -4,9 +4,10 @@
 
 using namespace rigcal;
 
-/// The fitted.toml of any campaign that loads, loads.
+/// If a campaign loads, the fitted.toml written from it loads, too.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const auto record = fuzz::scratch_file("record.csv", "t_s,x_mm\n0,0\n");  // it may name it
+  static const auto record =
+      fuzz::scratch_file("record.csv", "t_s,x_mm\n0,0\n");  // a campaign may refer to it
   const auto file = fuzz::scratch_file("campaign.toml", fuzz::text_of_bytes(data, size));
   std::string text;
   try {
@@ -17,7 +18,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   const auto fitted = fuzz::scratch_file("fitted.toml", text);
   const datasets::Campaign again = datasets::load_campaign(fitted);
-  // The first line names the file that it was written from.
+  // The first line names the file from which it was written.
   const std::string written = fitted_campaign_text(again, {}, fuzz::scratch_folder());
   fuzz::require(written.substr(written.find('\n')) == text.substr(text.find('\n')),
                 "written again, fitted.toml is the same");

@@ -11,8 +11,8 @@
 #include <string>
 #include <string_view>
 
-/// What libFuzzer calls with each input; 0: it counts. Whatever escapes from it, or aborts, is a
-/// find.
+/// libFuzzer calls this with each input; a return value of 0 accepts the input. An exception that
+/// escapes or an abort is a finding.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
 namespace rigcal::fuzz {
@@ -21,7 +21,7 @@ inline std::string_view text_of_bytes(const std::uint8_t* data, std::size_t size
   return {reinterpret_cast<const char*>(data), size};
 }
 
-/// A folder of this process, in memory where the system has such a place.
+/// A temporary folder for this process, in memory if the system supports that.
 inline const std::filesystem::path& scratch_folder() {
   static const std::filesystem::path folder = [] {
     const std::filesystem::path memory = "/dev/shm";
@@ -30,7 +30,7 @@ inline const std::filesystem::path& scratch_folder() {
     const auto path = above / ("rigcal-fuzz-" + std::to_string(::getpid()));
     std::filesystem::create_directories(path);
     std::atexit([] {
-      std::error_code ignored;  // what stays behind harms nothing
+      std::error_code ignored;  // leftovers do no harm
       std::filesystem::remove_all(scratch_folder(), ignored);
     });
     return path;
@@ -38,7 +38,7 @@ inline const std::filesystem::path& scratch_folder() {
   return folder;
 }
 
-/// A file of this content; the one of that name before it is gone.
+/// Creates a file with the given content, replacing any earlier file with that name.
 inline std::filesystem::path scratch_file(const std::string& name, std::string_view content) {
   const std::filesystem::path path = scratch_folder() / name;
   std::filesystem::remove(path);
@@ -46,7 +46,7 @@ inline std::filesystem::path scratch_file(const std::string& name, std::string_v
   return path;
 }
 
-/// A property that every input must have.
+/// Aborts if a property is violated that every input must have.
 inline void require(bool holds, const char* property) {
   if (holds) return;
   std::cerr << "violated: " << property << '\n';

@@ -16,14 +16,14 @@ namespace rigcal::fuzz {
 
 using Json = nlohmann::ordered_json;
 
-/// Every value of a JSON text, itself included.
+/// Collects all values within a JSON value, including itself.
 inline void collect_values(Json& json, std::vector<Json*>& values) {
   values.push_back(&json);
   if (json.is_structured())
     for (Json& child : json) collect_values(child, values);
 }
 
-/// What readers do not expect in the place of a value.
+/// A value that readers do not expect.
 inline Json odd_value(std::mt19937& random) {
   static const std::vector<Json> odd{nullptr,
                                      true,
@@ -52,7 +52,7 @@ inline Json odd_value(std::mt19937& random) {
   return odd[random() % odd.size()];
 }
 
-/// Changes one value of a JSON text: bytes alone would leave hardly any that parses.
+/// Changes one value in a JSON text. Changing bytes would leave hardly any text that parses.
 inline void mutate_json(Json& json, std::mt19937& random) {
   std::vector<Json*> values;
   collect_values(json, values);
@@ -62,7 +62,7 @@ inline void mutate_json(Json& json, std::mt19937& random) {
     case 0:
       value = odd_value(random);
       break;
-    case 1:  // a copy, since one may contain the other
+    case 1:  // copied, because one value may contain the other
       value = Json(other);
       break;
     case 2:
@@ -77,7 +77,7 @@ inline void mutate_json(Json& json, std::mt19937& random) {
   }
 }
 
-/// The body of LLVMFuzzerCustomMutator() for inputs in JSON; other inputs change by bytes.
+/// The body of LLVMFuzzerCustomMutator() for JSON inputs. Other inputs are changed byte by byte.
 inline std::size_t mutate_json_text(std::uint8_t* data, std::size_t size, std::size_t most_bytes,
                                     unsigned seed) {
   std::mt19937 random(seed);

@@ -5,8 +5,8 @@
 
 #include "tests/fuzz/fuzz.hpp"
 
-/// Hands every file of the folders that are given to the fuzz target: what was once found must
-/// not come back.
+/// Passes every file in the given folders to the fuzz target, so that earlier findings cannot recur
+/// unnoticed.
 int main(int argc, char** argv) {
   int count = 0;
   for (int i = 1; i < argc; ++i) {
@@ -16,7 +16,7 @@ int main(int argc, char** argv) {
     std::sort(files.begin(), files.end());
     for (const std::filesystem::path& file : files) {
       std::printf("%s\n", file.c_str());
-      std::fflush(stdout);  // it names the one that ends the process
+      std::fflush(stdout);  // shows which file was the last if the process ends
       std::ifstream stream(file, std::ios::binary);
       const std::string content{std::istreambuf_iterator<char>(stream), {}};
       LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(content.data()), content.size());

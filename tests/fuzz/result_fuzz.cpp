@@ -22,7 +22,7 @@ using namespace rigcal::report;
 
 namespace {
 
-/// What `attempt` reads is read, or refused as input.
+/// Runs `attempt`, which may succeed or reject its input.
 template <typename Attempt>
 void read_or_refuse(Attempt attempt) {
   try {
@@ -31,7 +31,7 @@ void read_or_refuse(Attempt attempt) {
   }
 }
 
-/// A fit with residual tests, so that their curves are drawn.
+/// A fit with residual tests, so that the page draws their curves.
 std::string tested_fit() {
   auto fit = test::stored_result();
   fit["conditions"][0]["residual_tests"]["position"] = json_of(StoredResidualTests());
@@ -40,7 +40,8 @@ std::string tested_fit() {
 
 }  // namespace
 
-/// Gives a fit.json, another result in JSON or a table to every reader; each reads or refuses it.
+/// Passes the input as fit.json, as another JSON result and as a table to every reader. Each either
+/// reads or rejects it.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string text(fuzz::text_of_bytes(data, size));
   const auto file = fuzz::scratch_file("fit.json", text);
@@ -57,7 +58,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (const std::string& kind : kinds) {
     const auto read = [&](const std::filesystem::path& path) -> std::optional<std::string> {
       if (path == kind) return text;
-      // The files beside the tested one are undamaged.
+      // The other files of the result are undamaged.
       const bool of_fit = kind == "residual_tests.json" || kind == "residuals/sine.csv";
       if (path == "fit.json" && of_fit) return tested_fit();
       if (path == "residual_tests.json" &&

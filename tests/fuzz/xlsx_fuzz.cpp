@@ -9,9 +9,9 @@
 using namespace rigcal;
 using namespace rigcal::datasets;
 
-/// Every column of a workbook whose sheet is this XML is read as finite numbers, as many in each,
-/// or is refused. (Archives are for libzip, which its makers fuzz; a changed byte in one is mostly
-/// a wrong checksum.)
+/// A workbook whose sheet has this XML either is rejected, or all its columns are read as finite
+/// values and have equal lengths. (The archive is left to libzip, whose authors fuzz it; a changed
+/// byte in an archive mostly results in a wrong checksum.)
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto file = fuzz::scratch_folder() / "record.xlsx";
   test::write_zip(file, test::xlsx_parts({{"Log", std::string(fuzz::text_of_bytes(data, size))}}),

@@ -4,7 +4,7 @@
 
 #include "tests/model/two_chamber_rig.hpp"
 
-// The drive before its first sample.
+// Tests of the drive before its first sample.
 
 using namespace rigcal::model;
 
@@ -17,7 +17,7 @@ Simulation ran(const Experiment& e) {
   return run;
 }
 
-/// A command that is a step from the first sample on, with a delay and a lag.
+/// A command that steps at the first sample, with a delay and a lag.
 Experiment step_at_start() {
   Experiment e;
   e.rig.controller = ControllerKind::none;
@@ -29,7 +29,7 @@ Experiment step_at_start() {
   return e;
 }
 
-/// The same run with half a second of `value` before it.
+/// Simulates the same experiment with half a second of `value` before it.
 Eigen::MatrixXd with_a_past(Experiment e, double value) {
   e.rig.before = Before::hold;
   const double begin_s = e.times_s.front();
@@ -48,7 +48,7 @@ TEST_CASE("before: at rest, a record may begin at its command step", "[model]") 
   e.rig.before = Before::rest;
   const Simulation run = ran(e);
   CHECK(difference(run.outputs, with_a_past(e, 0.0)) < 1e-4);
-  // With `hold` the valve is open at the first sample, and the piston moves before the delay is
+  // With `hold` the valve is open at the first sample, so the piston moves before the delay is
   // over.
   CHECK(std::abs(held(4, 0) - 0.01) > 5e-4);
   CHECK(std::abs(run.outputs(4, 0) - 0.01) < 1e-9);

@@ -8,7 +8,8 @@
 #include "tests/model/two_chamber_rig.hpp"
 #include "tests/support/sanitized.hpp"
 
-// Records of another simulator with known parameters: shared/data/sim_hopsan_leaky_servo.
+// Compares the model with records from another simulator with known parameters
+// (shared/data/sim_hopsan_leaky_servo).
 
 using namespace rigcal::model;
 using Row = std::map<std::string, std::string>;
@@ -38,7 +39,7 @@ std::vector<Row> read_csv(const std::string& path) {
   return rows;
 }
 
-/// Its rig, with the parameters that its README gives.
+/// The rig of a case, with the parameters from the README of the records.
 Experiment experiment(const Row& c) {
   const auto number = [&c](const char* key) { return std::stod(c.at(key)); };
   Experiment e;
@@ -55,7 +56,7 @@ Experiment experiment(const Row& c) {
   return e;
 }
 
-/// 1 - rho2
+/// Fraction of the variance that is not explained, 1 - rho2.
 double unexplained(const Eigen::VectorXd& simulated, const Eigen::VectorXd& measured) {
   const auto variance = [](const Eigen::VectorXd& v) {
     return (v.array() - v.mean()).square().mean();
@@ -63,7 +64,7 @@ double unexplained(const Eigen::VectorXd& simulated, const Eigen::VectorXd& meas
   return variance(measured - simulated) / variance(measured);
 }
 
-/// The rows of cases.csv: all of them, or every fourth where that would take long.
+/// All rows of cases.csv, or every fourth if all would take too long.
 std::vector<Row> cases_to_run() {
   const auto all = read_csv(kFolder + "cases.csv");
   CHECK(all.size() == 29);
@@ -77,7 +78,8 @@ struct Unexplained {
   double position, load_pressure;
 };
 
-/// What the experiment, run at the times of a record, leaves of it.
+/// Runs the experiment at the times of a record, and returns the fractions of the record's variance
+/// that it does not explain.
 Unexplained unexplained(Experiment& e, const std::string& file) {
   e.times_s.clear();
   const auto rows = read_csv(file);
@@ -106,8 +108,8 @@ TEST_CASE("hopsan: the position of every case follows with the true parameters",
     Experiment e = experiment(c);
     const auto [position, pressure] = unexplained(e, kFolder + c.at("file"));
     CHECK(position < 1e-6);
-    // e5: what the same equations reach, integrated by somebody else. Where that is tiny, the
-    // default tolerance of this run is what remains: (3e-6)^2 of x, (2e-4)^2 of a ringing P_L.
+    // e5 is the value for an independent integration of the same equations. If it is tiny, the
+    // default tolerance of this run remains: (3e-6)^2 for x, (2e-4)^2 for a ringing P_L.
     CHECK(position < 2.0 * std::stod(c.at("e5_x")) + 1e-11);
     CHECK(pressure < 2.0 * std::stod(c.at("e5_pl")) + 5e-8);
   }
@@ -133,8 +135,8 @@ TEST_CASE("hopsan: both chambers of every case follow with the true parameters",
     const auto [position, pressure] = unexplained(e, kFolder + c.at("file"));
     CHECK(position < 1e-6);
     CHECK(pressure < 1e-5);
-    // e6: what an independent integration of the same equations attains; the rest is the tolerance
-    // of this run, (3e-6)^2 of x and (4e-4)^2 of P_L.
+    // e6 is the value for an independent integration of the same equations. In addition there is
+    // the tolerance of this run: (3e-6)^2 for x and (4e-4)^2 for P_L.
     CHECK(position < 2.0 * std::stod(c.at("e6_x")) + 1e-11);
     CHECK(pressure < 2.0 * std::stod(c.at("e6_pl")) + 2e-7);
   }

@@ -4,8 +4,8 @@
 
 namespace rigcal::model {
 
-/// The arm of a small excavator: a pilot-operated valve, a pump without a limit, stops at -1 and 1
-/// rad, nothing that weighs.
+/// The weightless arm of a small excavator, with a pilot-operated valve, an unlimited pump, and
+/// stops at -1 and 1 rad.
 inline Experiment arm_rig() {
   Experiment e;
   e.rig.plant = PlantKind::linkage;

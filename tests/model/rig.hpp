@@ -17,7 +17,7 @@ inline constexpr double kPi = std::numbers::pi;
 inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The rig that reproduces the paper's tables, its internal leak at a medium opening.
+/// The rig that reproduces the paper's tables, with its internal leak at a medium opening.
 inline ParameterValues paper_rig() {
   auto values = ParameterValues::defaults(PlantKind::load_pressure);
   for (const auto& [key, value] : test::kPaperRig) values.set(key, value);
@@ -25,7 +25,7 @@ inline ParameterValues paper_rig() {
   return values;
 }
 
-/// `count` times from `first` to `last`, both included.
+/// Returns `count` equidistant times from `first` to `last`, both included.
 inline std::vector<double> grid(double first, double last, int count) {
   std::vector<double> times(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
@@ -34,7 +34,7 @@ inline std::vector<double> grid(double first, double last, int count) {
   return times;
 }
 
-/// Everything that one call of simulate() takes.
+/// All arguments of one call of simulate().
 struct Experiment {
   Rig rig;
   ParameterValues values = paper_rig();
@@ -57,7 +57,7 @@ inline double peak(const Eigen::MatrixXd& m) {
   return m.size() == 0 ? 0.0 : m.cwiseAbs().maxCoeff();
 }
 
-/// Largest difference of two runs in any output, relative to that output's peak.
+/// Largest difference between two runs in any output, relative to that output's peak.
 inline double difference(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   double worst = 0.0;
   for (Eigen::Index k = 0; k < a.cols(); ++k) {

@@ -11,7 +11,7 @@
 #include "tests/model/rig.hpp"
 #include "tests/support/sanitized.hpp"
 
-// Sensitivities of a scenario against central differences.
+// Compares the sensitivities of a scenario with central differences.
 
 namespace rigcal::model {
 
@@ -41,13 +41,14 @@ inline Experiment experiment(const Scenario& s, const Experiment& rig = {}) {
     e.inputs.supply_pressure_pa = Signal::ripple(6e6, 2e5, 20.0, 0.4);
   }
   e.times_s.clear();
-  for (int i = 0; i < 50; ++i) e.times_s.push_back(0.00131 + 0.00253 * i);  // off every edge
+  for (int i = 0; i < 50; ++i) e.times_s.push_back(0.00131 + 0.00253 * i);  // avoids every edge
   if (s.initial == InitialState::rest) e.times_s.insert(e.times_s.begin(), 0.0);
   e.rig.before = s.before;
   e.inputs.drive_begins_s = e.times_s.front();
   e.outputs.assign(kAllOutputs.begin(), kAllOutputs.end());
   e.options.tolerance = 1e-9;
-  // One method: where two take turns, the errors of the runs of a difference are not alike.
+  // Uses a single method. With two that take turns, the errors of the two runs of a difference
+  // would not be alike.
   e.options.method = Method::rosenbrock;
   return e;
 }
@@ -63,7 +64,7 @@ inline std::vector<int> fittable(const Experiment& e) {
   return result;
 }
 
-/// Central difference of all outputs by one parameter.
+/// Central difference of all outputs with respect to one parameter.
 inline Eigen::MatrixXd difference_by(Experiment e, int index, double relative_step) {
   e.free.clear();
   const double value = e.values.value[static_cast<std::size_t>(index)];
@@ -77,13 +78,13 @@ inline Eigen::MatrixXd difference_by(Experiment e, int index, double relative_st
   return (above.outputs - below.outputs) / (2.0 * step);
 }
 
-/// Step of the differences: (587 rad/s 0.13 s / 2 1e-4)^2 / 6 = 2e-6 of truncation in the ringing.
+/// Step of the differences. Truncation in the ringing is (587 rad/s 0.13 s / 2 1e-4)^2 / 6 = 2e-6.
 inline constexpr double kRelativeStep = 1e-4;
 
-/// Compares all sensitivities of an experiment with differences; adds to `seen` the parameters that
-/// matter in it.
+/// Compares all sensitivities of an experiment with differences. Adds the parameters that have an
+/// effect to `seen`.
 ///
-/// @param parts  peak of what an output is the difference of: its noise is theirs
+/// @param parts  for an output that is a difference: peak of its terms, whose noise it has
 inline void check_sensitivities(Experiment e, std::set<int>& seen,
                                 const std::map<Output, double>& parts = {}) {
   e.free = fittable(e);
@@ -95,7 +96,7 @@ inline void check_sensitivities(Experiment e, std::set<int>& seen,
     const std::string key(parameter_table(e.rig.plant)[index].key);
     const bool at_zero = e.values.value[index] == 0.0;
     if (at_zero || std::isinf(e.values.value[index])) continue;
-    if (test::kSanitized && seen.count(e.free[j]) == 1) continue;  // once for each parameter
+    if (test::kSanitized && seen.count(e.free[j]) == 1) continue;  // once per parameter
     const Eigen::MatrixXd expected = difference_by(e, e.free[j], kRelativeStep);
     for (std::size_t k = 0; k < e.outputs.size(); ++k) {
       const Eigen::VectorXd exact = run.sensitivities[k].col(static_cast<Eigen::Index>(j));
@@ -104,8 +105,8 @@ inline void check_sensitivities(Experiment e, std::set<int>& seen,
       const double least = part == parts.end() ? 0.0 : part->second;
       const double output_peak =
           std::max(least, peak(run.outputs.col(static_cast<Eigen::Index>(k))));
-      // Noise of the difference: errors of 1e-9 a step, mostly alike in both runs, over the step;
-      // more where the leak's root is steep, at zero pressure.
+      // Noise of the difference: errors of 1e-9 per step, mostly alike in both runs, divided by the
+      // step. There is more at zero pressure, where the leak's root is steep.
       const double noise = 5e-8 * output_peak / (kRelativeStep * std::abs(e.values.value[index]));
       CAPTURE(key, output_name(e.outputs[k]), peak(exact));
       CHECK(peak(exact - by_difference) <= 2e-3 * peak(by_difference) + noise);
@@ -114,7 +115,7 @@ inline void check_sensitivities(Experiment e, std::set<int>& seen,
   }
 }
 
-/// Every parameter that can be fitted was seen, and no other.
+/// Checks that every parameter that can be fitted was seen, and no other.
 inline void check_all_seen(PlantKind plant, const std::set<int>& seen) {
   const auto table = parameter_table(plant);
   for (std::size_t i = 0; i < table.size(); ++i) {

@@ -12,7 +12,8 @@ Signal recorded(bool straight) {
   return straight ? Signal::linear(times, value) : Signal::held(times, value);
 }
 
-/// Every waveform, every combination of terms that changes the layout, every parameter once.
+/// Every waveform, every combination of terms that changes the layout, and every parameter at least
+/// once.
 const std::vector<Scenario>& scenarios() {
   const NamedValues offsets{{"position_offset", 1e-3},
                             {"load_pressure_offset", 1e5},
@@ -234,7 +235,8 @@ TEST_CASE("sensitivity: many at once equal one at a time", "[model]") {
     for (std::size_t k = 0; k < e.outputs.size(); ++k) {
       const Eigen::VectorXd expected = alone.sensitivities[k].col(0);
       CAPTURE(all[j], output_name(e.outputs[k]));
-      // Other steps, the same solution: 20 times looser than the states, some hundred steps.
+      // The same solution with other steps. The tolerance is 20 times looser than for the states,
+      // over some hundred steps.
       CHECK(peak(together.sensitivities[k].col(static_cast<Eigen::Index>(j)) - expected) <=
             6e-4 * peak(expected));
     }
@@ -256,7 +258,7 @@ TEST_CASE("sensitivity: the same by both methods", "[model]") {
       for (Eigen::Index j = 0; j < static_cast<Eigen::Index>(e.free.size()); ++j) {
         const Eigen::VectorXd expected = implicit.sensitivities[k].col(j);
         const auto index = static_cast<std::size_t>(e.free[static_cast<std::size_t>(j)]);
-        // What is nothing against the output itself counts as nothing.
+        // Values that are negligible relative to the output itself count as zero.
         const double size = std::max(std::abs(e.values.value[index]), 1e-12);
         const double least = 1e-6 * peak(implicit.outputs.col(static_cast<Eigen::Index>(k))) / size;
         CAPTURE(scenario.name, j, k, peak(expected));
@@ -278,13 +280,13 @@ TEST_CASE("sensitivity: exact where the leak is stiff", "[model]") {
   const Simulation run = e();
   REQUIRE(run.ok());
   for (std::size_t j = 0; j < e.free.size(); ++j) {
-    // Mass hardly matters here (and the bulk modulus not at all): a long step lifts it out of the
-    // noise.
+    // Mass hardly matters here, and the bulk modulus not at all. A long step raises their effects
+    // above the noise.
     const Eigen::MatrixXd expected = difference_by(e, e.free[j], 1e-2);
     for (std::size_t k = 0; k < 2; ++k) {
       CAPTURE(e.free[j], k);
       const auto exact = run.sensitivities[k].col(static_cast<Eigen::Index>(j));
-      // (1e-2)^2 of truncation, and the noise of runs whose steps are 1e-9 off.
+      // Truncation of (1e-2)^2, and the noise of runs with an error of 1e-9 per step.
       const double noise = 1e-7 * peak(run.outputs.col(static_cast<Eigen::Index>(k))) /
                            (1e-2 * e.values.value[static_cast<std::size_t>(e.free[j])]);
       CHECK(peak(exact - expected.col(static_cast<Eigen::Index>(k))) < 1e-3 * peak(exact) + noise);
@@ -294,7 +296,8 @@ TEST_CASE("sensitivity: exact where the leak is stiff", "[model]") {
 }
 
 TEST_CASE("sensitivity: at the tolerance of a fit good to a percent", "[model]") {
-  // Step control sees the sensitivities; without that they are wrong in silence (paper.md).
+  // Step control includes the sensitivities. Otherwise they would be wrong without notice
+  // (paper.md).
   Experiment e;
   e.inputs.drive = Signal::square(0.0508, 1.0);
   e.times_s = grid(0.0, 2.0, 201);

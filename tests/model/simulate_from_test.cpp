@@ -15,7 +15,7 @@ struct Case {
   Experiment experiment;
 };
 
-/// Rigs with every kind of state.
+/// Rigs that together have every kind of state.
 std::vector<Case> cases() {
   Experiment loop;
   loop.inputs.drive = Signal::sine(0.02, 4.0);
@@ -45,7 +45,7 @@ Simulation from(const Experiment& e, const Eigen::VectorXd& state) {
   return run;
 }
 
-/// Its samples from `first` to `last`.
+/// The experiment restricted to its samples from `first` to `last`.
 Experiment part(Experiment e, int first, int last) {
   e.times_s = {e.times_s.begin() + first, e.times_s.begin() + last + 1};
   return e;
@@ -66,7 +66,7 @@ TEST_CASE("simulate_from: two halves are the whole", "[model]") {
     const auto floor = whole.state_floor.array();
     CHECK(peak(((whole.end_state - second.end_state).array() / floor).matrix()) < 1.0);
 
-    // The chain rule: what the first half does to its end, the second half passes on.
+    // Chain rule: the second half passes on how the first half changes its end state.
     const Eigen::Index states = first.end_state.size();
     REQUIRE(second.end_sensitivities.cols() == parameters + states);
     const Eigen::MatrixXd passed_on =
@@ -101,7 +101,7 @@ TEST_CASE("simulate_from: sensitivities to the state against differences", "[mod
       const Eigen::ArrayXd end_error =
           (run.end_sensitivities.col(parameters + i) - by_end).array() / run.state_floor.array();
       const Eigen::ArrayXd end_size = by_end.array() / run.state_floor.array();
-      // Errors of 1e-9 of a state of some 1e4 floors, over a step of 3.
+      // Errors of 1e-9 for a state of some 1e4 floors, with a step of 3.
       CHECK((end_error * run.state_floor(i)).abs().maxCoeff() <
             1e-3 * (end_size * run.state_floor(i)).abs().maxCoeff() + 1e-4);
       for (std::size_t k = 0; k < e.outputs.size(); ++k) {

@@ -22,14 +22,14 @@ Experiment paper(const Signal& drive, double seconds = 1.0) {
   return e;
 }
 
-/// A valve driven by a recorded command instead of a loop.
+/// A valve that is driven by a recorded command instead of a loop.
 Experiment open_loop(const Signal& command_v, double seconds = 1.0) {
   Experiment e = paper(command_v, seconds);
   e.rig.controller = ControllerKind::none;
   return e;
 }
 
-/// 40 samples in a second; `scale` -1 mirrors them.
+/// A signal with 40 samples in one second. A `scale` of -1 mirrors it.
 Signal forty_samples(bool straight, double scale = 1.0) {
   std::vector<double> value;
   value.reserve(40);
@@ -67,7 +67,7 @@ TEST_CASE("simulate: two methods agree on every waveform", "[model]") {
     e.options.tolerance = 1e-8;
     const Simulation implicit = ok(e);
     e.options.method = Method::dopri5;
-    // Each is within some hundred local errors of 1e-8 of the peak of each state.
+    // Each has an error of some hundred local errors of 1e-8, relative to the peak of each state.
     CHECK(difference(implicit.outputs, ok(e).outputs) < 2e-5);
     e.options.method = Method::rosenbrock;
     e.options.tolerance = 1e-5;
@@ -80,7 +80,7 @@ namespace {
 struct Term {
   const char* name;
   std::vector<std::pair<const char*, double>> values;
-  std::vector<std::pair<const char*, double>> neutral;  ///< values at which the plain model is left
+  std::vector<std::pair<const char*, double>> neutral;  ///< values at which the plain model remains
 };
 
 const std::vector<Term>& terms() {
@@ -127,7 +127,7 @@ TEST_CASE("simulate: two methods agree on every optional term", "[model]") {
     const Simulation implicit = ok(e);
     e.options.method = Method::dopri5;
     CHECK(difference(implicit.outputs, ok(e).outputs) < 2e-5);
-    CHECK(difference(implicit.outputs, plain.outputs) > 1e-4);  // the term does something
+    CHECK(difference(implicit.outputs, plain.outputs) > 1e-4);  // the term has an effect
   }
 }
 
@@ -140,13 +140,14 @@ TEST_CASE("simulate: an optional term at its neutral value leaves the plain mode
     CAPTURE(term.name);
     CHECK(difference(plain.outputs, ok(with(base, term.neutral)).outputs) < 1e-5);
   }
-  // Valve and sampling have no neutral value but a limit: ever faster, ever nearer.
+  // Valve and sampling have no neutral value, but they approach the plain model as they become
+  // faster.
   const std::vector<Term> fast{
       {"lag", {{"valve_time_constant", 1e-6}}, {}},
       {"second order", {{"valve_frequency", 1e6}, {"valve_damping_ratio", 1.0}}, {}}};
   for (const Term& term : fast) {
     CAPTURE(term.name);
-    // 2 us of lag on a mode of 587 rad/s: 1.2e-3 rad of the ringing pressure.
+    // A lag of 2 us on a mode of 587 rad/s is 1.2e-3 rad of the ringing pressure.
     CHECK(difference(plain.outputs, ok(with(base, term.values)).outputs) < 5e-3);
   }
 }
@@ -155,18 +156,19 @@ TEST_CASE("simulate: the mirrored reference gives the mirrored run", "[model]") 
   for (const Term& term : terms()) {
     CAPTURE(term.name);
     if (std::string(term.name) == "valve offset" || std::string(term.name) == "external force") {
-      continue;  // these two have a side
+      continue;  // these two terms are not symmetric
     }
     Experiment e = with(paper(forty_samples(false)), term.values);
     e.outputs = {Output::position, Output::load_pressure, Output::servo_flow, Output::command};
     const Simulation run = ok(e);
     e.inputs.drive = forty_samples(false, -1.0);
-    CHECK(run.outputs == -ok(e).outputs);  // rounding is symmetric too
+    CHECK(run.outputs == -ok(e).outputs);  // rounding is symmetric, too
   }
 }
 
 TEST_CASE("simulate: the paper's exact symmetry leaves position and command unchanged", "[model]") {
-  // m, b, k, beta, P_s times s; k_sv and C_leak over the root of s. The smoothing scales with P.
+  // m, b, k, beta and P_s are multiplied by s; k_sv and C_leak are divided by the root of s. The
+  // smoothing scales with P.
   const double s = 4.0;
   Experiment e = paper(Signal::square(0.01, 2.0));
   e.set("stiffness", 2e4);
@@ -186,7 +188,7 @@ TEST_CASE("simulate: the paper's exact symmetry leaves position and command unch
 }
 
 TEST_CASE("simulate: a constant command ends in the orifice law's velocity", "[model]") {
-  // Q_L = A v with P_L = b v / A where nothing leaks.
+  // Q_L = A v with P_L = b v / A, if nothing leaks.
   Experiment e = open_loop(Signal::constant(1.0), 2.0);
   e.set("leakage_coefficient", 0.0);
   e.outputs = {Output::velocity,   Output::load_pressure, Output::spool,
@@ -196,13 +198,13 @@ TEST_CASE("simulate: a constant command ends in the orifice law's velocity", "[m
   const double v = last(0);
   const double P_L = 1000.0 * v / 1.62e-3;
   const double spool = 0.0406e-3;
-  // The ringing has decayed by exp(-b / 2m * 2 s) = 8e-6.
+  // The ringing has decayed to exp(-b / 2m * 2 s) = 8e-6.
   CHECK_THAT(last(1), WithinRel(P_L, 1e-4));
   CHECK_THAT(v,
              WithinRel(0.6 * 0.02075 * spool * std::sqrt((6.2e6 - P_L) / 847.0) / 1.62e-3, 1e-4));
   CHECK(last(2) == spool);
   CHECK_THAT(last(3), WithinRel(last(4), 1e-4));
-  CHECK(run.outputs.col(5) == Eigen::VectorXd::Zero(101));  // a coefficient of 0 is no leak at all
+  CHECK(run.outputs.col(5) == Eigen::VectorXd::Zero(101));  // a coefficient of 0 means no leak
 }
 
 TEST_CASE("simulate: flow and power balance", "[model]") {
@@ -228,7 +230,8 @@ TEST_CASE("simulate: flow and power balance", "[model]") {
     dissipated += 1000.0 * at(i, 1) * at(i, 1) * dt;
     against_load += 300.0 * at(i, 1) * dt;
   }
-  // The central difference of a 587 rad/s mode over 50 us is off by (omega dt)^2 / 6 = 1.4e-4.
+  // The central difference of a 587 rad/s mode over 50 us has an error of (omega dt)^2 / 6 =
+  // 1.4e-4.
   CHECK(worst < 5e-4 * peak(run.outputs.col(3)));
   const auto energy = [&](Eigen::Index i) {
     return 0.5 * 85.0 * at(i, 1) * at(i, 1) + 0.5 * 2e4 * at(i, 0) * at(i, 0) +
@@ -237,7 +240,7 @@ TEST_CASE("simulate: flow and power balance", "[model]") {
   const double stored = energy(20000) - energy(0);
   CHECK_THAT(work_in, WithinAbs(stored + dissipated + against_load, 1e-3 * dissipated));
   CHECK(dissipated > 0.1);
-  // The rod force is A P_L where there is no dry friction.
+  // Without dry friction the rod force is A P_L.
   CHECK(peak(run.outputs.col(6) - 1.62e-3 * run.outputs.col(2)) < 1e-9);
 }
 
@@ -263,7 +266,7 @@ TEST_CASE("simulate: within its overlap the valve passes nothing", "[model]") {
   e.set("valve_dead_band", 0.6);
   e.outputs = {Output::position, Output::servo_flow, Output::spool};
   CHECK(peak(ok(e).outputs) == 0.0);
-  // A null shift of 0.2 V opens it on one side only.
+  // With a null shift of 0.2 V, it opens only on one side.
   e.set("valve_offset", 0.2);
   const Simulation run = ok(e);
   CHECK(run.outputs.col(2).minCoeff() == 0.0);
@@ -275,17 +278,17 @@ TEST_CASE("simulate: Coulomb friction holds a load below it", "[model]") {
   e.rig.initial = InitialState::given;
   e.set("leakage_coefficient", 0.35).set("external_force", 200.0);
   e.outputs = {Output::velocity, Output::position};
-  // The leak lets a free piston sink, at a speed that the orifice and the load set.
+  // Because of the leak, a free piston sinks at a speed that the orifice and the load determine.
   const double sinks = ok(e).outputs(100, 1);
   CHECK(sinks < -1e-3);
   e.set("coulomb_friction", 300.0).set("friction_smoothing", 1e-6);
-  // Straightened friction creeps: v_0 atanh(200 / 300) = 0.8 um/s.
+  // With smoothed friction the piston creeps: v_0 atanh(200 / 300) = 0.8 um/s.
   CHECK_THAT(ok(e).outputs(100, 0), WithinAbs(-1e-6 * std::atanh(200.0 / 300.0), 1e-8));
   CHECK(std::abs(ok(e).outputs(100, 1)) < 1e-5);
 }
 
 TEST_CASE("simulate: a transport delay shifts the run exactly", "[model]") {
-  // A reference that rests until it is recorded to move, so that nothing came before.
+  // The reference rests until its recorded motion begins, so the time before does not matter.
   std::vector<double> value(41, 0.0);
   for (std::size_t i = 1; i < value.size(); ++i) value[i] = 0.01 * std::sin(0.4 * double(i));
   Experiment e = paper(Signal::held(grid(0.0, 1.0, 41), value));
@@ -296,7 +299,7 @@ TEST_CASE("simulate: a transport delay shifts the run exactly", "[model]") {
   for (double& t : e.times_s) t += delay;
   e.times_s.insert(e.times_s.begin(), 0.0);
   const Simulation late = ok(e);
-  // The steps differ before the first move only; both are within the default tolerance.
+  // The steps differ only before the first motion, and both runs are within the default tolerance.
   CHECK(difference(prompt.outputs, late.outputs.bottomRows(76)) < 1e-5);
 }
 
@@ -305,7 +308,7 @@ TEST_CASE("simulate: a constant force deflects the spring", "[model]") {
   e.set("stiffness", 5e4).set("external_force", 500.0).set("laminar_leakage", 1e-10);
   e.outputs = {Output::position, Output::load_pressure, Output::force};
   const Simulation run = ok(e);
-  // The leak equalises the chambers; then k x = -F.
+  // The leak equalises the chambers, so k x = -F.
   CHECK_THAT(run.outputs(100, 0), WithinRel(-0.01, 1e-3));
   CHECK(std::abs(run.outputs(100, 1)) < 100.0);
 }
@@ -339,7 +342,7 @@ TEST_CASE("simulate: an error of the spool acts as a null shift, and as a comman
   }
   const Simulation command = ok(by_command);
   const Simulation error = ok(by_error);
-  // The error acts behind the valve's lag, which hardly matters here.
+  // The error acts downstream of the valve's lag, which hardly matters here.
   CHECK(difference(command.outputs, error.outputs) < 1e-3);
   CHECK(difference(command.sensitivities[0], error.sensitivities[0]) < 1e-2);
 }
@@ -363,7 +366,7 @@ TEST_CASE("simulate: sensor offsets shift their output and nothing else", "[mode
 
 TEST_CASE("simulate: equilibria stay put", "[model]") {
   CHECK(peak(ok(paper(Signal::constant(0.0))).outputs) == 0.0);
-  // At rest under pressure, force and spring, at the recorded position less its offset.
+  // At rest under pressure, force and spring, at the recorded position minus its offset.
   Experiment e = paper(Signal::constant(0.0));
   e.rig.initial = InitialState::given;
   e.inputs.drive = Signal::constant(0.02);
@@ -398,7 +401,8 @@ TEST_CASE("simulate: initial values are readings, their sensors' offsets include
 }
 
 TEST_CASE("simulate: a closed loop that starts in motion gets no kick", "[model]") {
-  // Filter and valve start in step with the loop: no jump of command or spool at the first sample.
+  // Filter and valve start in equilibrium with the loop, so neither command nor spool jumps at the
+  // first sample.
   for (const bool sampled : {false, true}) {
     CAPTURE(sampled);
     Experiment e = paper(Signal::constant(0.03));
@@ -437,8 +441,8 @@ TEST_CASE("simulate: the clock may start anywhere", "[model]") {
   struct Row {
     double start_s, tolerance;
   };
-  // The same run within its tolerance; at 1.7e9 s the time stamps are rounded to 2.4e-7 s, on
-  // signals that change by their size in some 10 ms.
+  // The run is the same within its tolerance. At 1.7e9 s, time stamps are rounded to 2.4e-7 s, and
+  // signals change by their full size within about 10 ms.
   for (const Row& row : {Row{-3.0, 1e-6}, Row{0.1, 1e-6}, Row{1e5, 1e-6}, Row{1.7e9, 1e-4}}) {
     CAPTURE(row.start_s);
     Experiment later = e;
@@ -448,7 +452,7 @@ TEST_CASE("simulate: the clock may start anywhere", "[model]") {
     later.inputs.drive = Signal::held(times, value);
     CHECK(difference(reference.outputs, ok(later).outputs) < row.tolerance);
   }
-  // A waveform keeps its own clock: the phase at the first sample is that of its time.
+  // A waveform has its own clock: the phase at the first sample follows from the sample's time.
   Experiment sine = open_loop(Signal::sine(1.0, 1.0));
   sine.outputs = {Output::command};
   sine.times_s = {0.25, 0.5};
@@ -473,7 +477,7 @@ TEST_CASE("simulate: a short pulse after a long rest is not leapt over", "[model
   const double travel = ok(e).outputs(2, 0);
   e.times_s = grid(0.0, 3.0, 3001);
   const Simulation dense = ok(e);
-  // Flow of 5 V for 10 ms over the area, roughly: 1.3 mm.
+  // Approximately the flow at 5 V for 10 ms divided by the area: 1.3 mm.
   CHECK(travel > 5e-4);
   CHECK_THAT(travel, WithinRel(dense.outputs(3000, 0), 1e-6));
   CHECK(dense.outputs(1500, 0) == 0.0);
@@ -490,11 +494,12 @@ TEST_CASE("simulate: follows a recording of thousands of samples", "[model]") {
   const Simulation smooth = ok(e);
   e.inputs.drive = Signal::linear(times, value);
   const Simulation straight = ok(e);
-  // Chords of 1 ms leave (2 pi dt)^2 / 8 = 5e-6 of a 1 Hz sine.
+  // Straight lines over 1 ms deviate by (2 pi dt)^2 / 8 = 5e-6 from a 1 Hz sine.
   CHECK(difference(smooth.outputs.leftCols(1), straight.outputs.leftCols(1)) < 2e-5);
   e.inputs.drive = Signal::held(times, value);
   const Simulation held = ok(e);
-  // A hold of 1 ms is a delay of 0.5 ms: pi 1e-3 of the sine, halved where the loop is slower.
+  // A hold of 1 ms acts as a delay of 0.5 ms: pi 1e-3 of the sine, or half of that because the loop
+  // is slower.
   const double lag = difference(smooth.outputs.leftCols(1), held.outputs.leftCols(1));
   CHECK(lag < 4e-3);
   CHECK(lag > 1e-3);
@@ -513,7 +518,7 @@ TEST_CASE("simulate: a command that changes sooner than the step would end costs
   e.inputs.drive = Signal::held(changes, command);
   for (const char* key : {"mass", "bulk_modulus", "valve_gain", "leakage_coefficient"})
     e.free.push_back(parameter_index(PlantKind::load_pressure, key));
-  for (const double leak : {0.0, 0.35, 10.0}) {  // with the last the leak is stiff
+  for (const double leak : {0.0, 0.35, 10.0}) {  // the leak is stiff with the last value
     CAPTURE(leak);
     e.set("leakage_coefficient", leak);
     e.options.tolerance = 1e-6;
@@ -529,7 +534,7 @@ TEST_CASE("simulate: a command that changes sooner than the step would end costs
 TEST_CASE("simulate: a sample's value does not depend on the samples beside it", "[model]") {
   for (const Signal& drive : {Signal::square(0.01, 2.0), Signal::sine(0.02, 2.0)}) {
     Experiment e = paper(drive);
-    e.times_s = grid(0.0, 1.0, 21);  // with half a period too, as the many
+    e.times_s = grid(0.0, 1.0, 21);  // half a period is sampled here, too
     const Simulation few = ok(e);
     e.times_s = grid(0.0, 1.0, 1001);
     const Simulation many = ok(e);
@@ -555,7 +560,7 @@ TEST_CASE("simulate: a sensitivity that only decays ends at zero, not below what
       CHECK(std::fpclassify(by.data()[i]) != FP_SUBNORMAL);
   }
   volatile double small = 1e-300;
-  CHECK(small * 1e-10 > 0.0);  // and for others they are what they were
+  CHECK(small * 1e-10 > 0.0);  // after the run, subnormal numbers exist again
 }
 
 TEST_CASE("simulate: repeats to the bit", "[model]") {
@@ -570,7 +575,7 @@ TEST_CASE("simulate: repeats to the bit", "[model]") {
 }
 
 TEST_CASE("simulate: leakage and low frequency cost few steps", "[model]") {
-  // A guard against stiffness: an explicit method takes 1e5 steps (paper.md).
+  // Guards against stiffness: an explicit method takes 1e5 steps (paper.md).
   for (const Signal& drive : {Signal::sine(0.0508, 0.1), Signal::square(0.0508, 0.1)}) {
     Experiment e = paper(drive, 10.0);
     e.set("leakage_coefficient", 1.35);
@@ -634,13 +639,13 @@ TEST_CASE("simulate: a failed run has a status, a time, a reason and no numbers"
 }
 
 TEST_CASE("simulate: an unstable loop stays within what the supply can drive", "[model]") {
-  // The orifice turns back at P_s, so that v < A P_s / b whatever the command; the run is finite.
+  // The orifice flow reverses at P_s, so v < A P_s / b for any command, and the run stays finite.
   Experiment e = paper(Signal::sine(0.02, 1.0), 2.0);
   e.set("sample_time", 0.05).set("kp", 1e8).set("output_limit", kInfinity);
   e.outputs = {Output::velocity, Output::position};
   const Simulation run = ok(e);
   CHECK(peak(run.outputs.col(0)) < 1.62e-3 * 6.2e6 / 1000.0);
-  CHECK(peak(run.outputs.col(1)) > 0.05);  // far off the reference: unstable indeed
+  CHECK(peak(run.outputs.col(1)) > 0.05);  // far from the reference, so the loop is indeed unstable
 }
 
 TEST_CASE("simulate: tells where in time a run failed", "[model]") {

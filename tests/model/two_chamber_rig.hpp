@@ -4,7 +4,8 @@
 
 namespace rigcal::model {
 
-/// The paper's rig with both chambers: its piston, half of its volume to each side of mid-stroke.
+/// The paper's rig with both chambers: its piston, with half of its volume on each side of
+/// mid-stroke.
 inline Experiment two_chamber_rig() {
   Experiment e;
   e.rig.plant = PlantKind::two_chamber;
@@ -20,7 +21,7 @@ inline Experiment two_chamber_rig() {
   return e;
 }
 
-/// A single-rod cylinder on an open valve command.
+/// A single-rod cylinder with the valve open at a constant command.
 inline Experiment single_rod_rig() {
   Experiment e = two_chamber_rig();
   e.rig.controller = ControllerKind::none;
@@ -32,7 +33,7 @@ inline Experiment single_rod_rig() {
   return e;
 }
 
-/// A cylinder of a mobile machine that slides: a pilot-operated valve, a pump without a limit.
+/// A sliding cylinder of a mobile machine, with a pilot-operated valve and an unlimited pump.
 inline Experiment pilot_rig() {
   Experiment e;
   e.rig.plant = PlantKind::two_chamber;
@@ -52,7 +53,7 @@ inline Experiment pilot_rig() {
   return e;
 }
 
-/// The same behind an electric valve.
+/// pilot_rig() with an electric valve.
 inline Experiment proportional_rig() {
   Experiment e = pilot_rig();
   e.rig.pilot = false;

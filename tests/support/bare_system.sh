@@ -1,6 +1,6 @@
-# Functions of bash scripts that make a bare Debian system in a folder, and run commands in it.
+# Functions for bash scripts that set up a bare Debian system in a folder and run commands in it.
 
-# Prints why no such system can be made here; nothing if one can.
+# Prints why no such system can be set up on this machine; prints nothing if one can.
 no_bare_system() {
   if [ "$(id -u)" != 0 ]; then
     echo "it needs root for a chroot"
@@ -11,8 +11,8 @@ no_bare_system() {
   fi
 }
 
-# make_bare_system SUITE ROOT: installs that release of Debian in the folder ROOT, from the same mirror and with the
-# same settings as this machine. Fails with the reason if the packages are not available.
+# make_bare_system SUITE ROOT: installs the Debian release SUITE in the folder ROOT, from this machine's mirror and with
+# its settings. Fails with the reason if the packages are not available.
 make_bare_system() (
   set -euo pipefail
   suite=$1 root=$2
@@ -26,10 +26,10 @@ make_bare_system() (
     sed "s/\b${own:-$suite}\b/$suite/g" "$file" >"$made/${file##*/}"
     files+=("$made/${file##*/}")
   done
-  apt-config dump | grep -E '^Acquire::' >"$made/apt.conf" || true  # proxies and authorities
+  apt-config dump | grep -E '^Acquire::' >"$made/apt.conf" || true  # proxies and certificate authorities
   mmdebstrap --quiet --variant=minbase --aptopt="$made/apt.conf" --dpkgopt=force-unsafe-io "$suite" "$root" "${files[@]}" \
     >"$made/told" 2>&1 || { cat "$made/told" >&2; exit 1; }
-  # Settings that a private network needs.
+  # Copies settings that a private network needs.
   for folder in apt/apt.conf.d apt/auth.conf.d; do
     [ ! -d "/etc/$folder" ] || cp -a "/etc/$folder/." "$root/etc/$folder/"
   done
@@ -42,8 +42,8 @@ make_bare_system() (
   fi
 )
 
-# inside ROOT COMMAND...: runs a command there. Its mounts and all processes that it started end with it. The folder
-# $read_only_folder, if set, is mounted at the same path.
+# inside ROOT COMMAND...: runs a command in ROOT. Its mounts and all processes that it starts end with it. If
+# $read_only_folder is set, that folder is mounted at the same path.
 inside() {
   read_only_folder=${read_only_folder:-} unshare --mount --pid --fork --kill-child bash -c '
     set -e

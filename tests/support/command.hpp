@@ -18,21 +18,21 @@
 
 namespace rigcal::test {
 
-/// What a finished command left.
+/// Result of a finished command.
 struct Outcome {
-  int exit_code = -1;  ///< minus the signal if one ended it
+  int exit_code = -1;  ///< minus the signal number if a signal ended it
   std::string out;
   std::string err;
 };
 
-/// A folder of its own in which the command runs as a user calls it.
+/// A temporary folder in which the command runs as a user would call it.
 class CommandFolder {
  public:
   using Arguments = std::vector<std::string>;
 
   CommandFolder() { std::filesystem::create_directories(work()); }
 
-  /// The working folder of the command.
+  /// Working folder of the command.
   std::filesystem::path work() const { return root_ / "work"; }
 
   void write(const std::string& name, const std::string& content) const {
@@ -41,7 +41,7 @@ class CommandFolder {
   std::string read(const std::string& name) const { return text_of(work() / name); }
   bool has(const std::string& name) const { return std::filesystem::exists(work() / name); }
 
-  /// Every file below the working folder, relative to it.
+  /// All files below the working folder, with relative paths.
   std::set<std::string> files() const {
     std::set<std::string> names;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(work())) {
@@ -52,7 +52,7 @@ class CommandFolder {
     return names;
   }
 
-  /// @param out  where stdout goes in place of a file that is read back
+  /// @param out  where stdout goes; empty: into a file that is read back
   Outcome run(const Arguments& arguments, const std::string& out = {}) const {
     return finish(start(arguments, out));
   }
@@ -68,8 +68,8 @@ class CommandFolder {
     return finish(process);
   }
 
-  /// Runs the command and kills it once a file of its working folder contains `sign`; returns how
-  /// it ended, which may be by itself if it was faster.
+  /// Runs the command and kills it once a file in its working folder contains `sign`. Returns how
+  /// it ended; a fast command may end before it is killed.
   Outcome run_and_kill(const Arguments& arguments, const std::string& file,
                        const std::string& sign) const {
     const pid_t process = start(arguments, {});

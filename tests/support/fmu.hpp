@@ -17,7 +17,7 @@
 
 #include "model/fmi/fmi2.hpp"
 
-// A small importer of FMUs: unpacks the archive, reads the model description, loads the library.
+// A small FMU importer: unpacks the archive, reads the model description, and loads the library.
 
 namespace rigcal::test {
 
@@ -42,9 +42,9 @@ inline void unzip(const std::filesystem::path& archive, const std::filesystem::p
   }
 }
 
-/// One ScalarVariable.
+/// A ScalarVariable of the model description.
 struct Variable {
-  std::size_t index = 0;  ///< from 1
+  std::size_t index = 0;  ///< counts from 1
   unsigned reference = 0;
   std::string causality;
   std::string variability;
@@ -104,7 +104,7 @@ class Fmu {
   boost::property_tree::ptree xml_;
 };
 
-/// Its shared library, whose functions are called by their names.
+/// The shared library of an FMU. Its functions are called by name.
 class FmuLibrary {
  public:
   explicit FmuLibrary(const std::filesystem::path& file)
@@ -128,7 +128,7 @@ class FmuLibrary {
 
 #define RIGCAL_FMI2(library, name) (library).function<decltype(name)>(#name)
 
-/// An instance; its logged messages are kept.
+/// An instance of an FMU. It keeps the logged messages.
 class FmuRun {
  public:
   FmuRun(const Fmu& fmu, const FmuLibrary& library, fmi2Type type, const std::string& guid = {})
@@ -142,7 +142,7 @@ class FmuRun {
   FmuRun& operator=(const FmuRun&) = delete;
   ~FmuRun() { RIGCAL_FMI2(library_, fmi2FreeInstance)(component); }
 
-  /// What was logged, one message a line.
+  /// The logged messages, one per line.
   const std::string& messages() const { return messages_; }
 
   void initialize(double start, double tolerance,
@@ -173,7 +173,7 @@ class FmuRun {
     return RIGCAL_FMI2(library_, fmi2DoStep)(component, time, length, 1);
   }
 
-  /// Ends the test with what was logged.
+  /// Throws the logged messages if the status is not ok.
   void require(fmi2Status status) const {
     if (status != fmi2OK) throw std::runtime_error("the FMU says: " + messages_);
   }
@@ -198,7 +198,7 @@ class FmuRun {
   std::string messages_;
 };
 
-/// Model exchange by the classical method of Runge and Kutta at a fixed step.
+/// Model exchange by the classical Runge-Kutta method with a fixed step.
 class ExchangeRun {
  public:
   explicit ExchangeRun(FmuRun& run) : run_(run), x_(run.fmu().states()) {
@@ -207,7 +207,7 @@ class ExchangeRun {
         RIGCAL_FMI2(run_.library(), fmi2GetContinuousStates)(run_.component, x_.data(), x_.size()));
   }
 
-  /// Event mode at the present time; takes over the states if they changed.
+  /// Handles event mode at the present time, and adopts the states if they changed.
   void event() {
     auto& library = run_.library();
     run_.require(RIGCAL_FMI2(library, fmi2EnterEventMode)(run_.component));

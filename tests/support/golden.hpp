@@ -8,7 +8,7 @@
 
 namespace rigcal::test {
 
-/// All lines of tests/golden/statistics.txt of this name, in their order.
+/// All lines with the given name in tests/golden/statistics.txt, in their order.
 inline std::vector<std::vector<double>> golden_lines(const std::string& name) {
   std::ifstream file(RIGCAL_SOURCE_DIR "/tests/golden/statistics.txt");
   std::vector<std::vector<double>> found;
@@ -24,7 +24,7 @@ inline std::vector<std::vector<double>> golden_lines(const std::string& name) {
   return found;
 }
 
-/// The only one.
+/// The first line with the given name.
 inline std::vector<double> golden(const std::string& name) { return golden_lines(name).at(0); }
 
 }  // namespace rigcal::test

@@ -6,7 +6,8 @@
 
 namespace rigcal::test {
 
-/// The rig that reproduces the paper's tables, its internal leak at a medium opening. SI.
+/// The rig that reproduces the paper's tables, with its internal leak at a medium opening. SI
+/// units.
 inline constexpr auto kPaperRig = std::to_array<std::pair<std::string_view, double>>({
     {"mass", 85.0},
     {"damping", 1000.0},

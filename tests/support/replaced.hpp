@@ -5,8 +5,8 @@
 
 namespace rigcal::test {
 
-/// `text` with its first `from` replaced.
-/// @throws std::logic_error  it is not there
+/// Returns `text` with the first occurrence of `from` replaced.
+/// @throws std::logic_error  if `from` does not occur
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
   if (at == std::string::npos) throw std::logic_error("the fixture has no '" + from + "'");

@@ -2,8 +2,8 @@
 
 namespace rigcal::test {
 
-/// Whether AddressSanitizer watches, which takes ten times longer: what is a matter of many draws
-/// or of a long record is then shown with fewer. The optimised build shows it in full.
+/// Whether the build uses AddressSanitizer, which makes it ten times slower. Tests with many draws
+/// or long records then use fewer or shorter ones. The optimised build runs them in full.
 #if defined(__SANITIZE_ADDRESS__)
 inline constexpr bool kSanitized = true;
 #elif defined(__has_feature)

@@ -4,7 +4,7 @@
 
 namespace rigcal::test {
 
-/// What stays as it is in campaigns of a small rig, as lines of [rig.parameters].
+/// The parameters that all campaigns with a small rig have in common, as lines of [rig.parameters].
 inline const std::string kSmallRig = R"(stiffness = "0 N/m"
 piston_area = "633 mm2"
 total_volume = "468 cm3"

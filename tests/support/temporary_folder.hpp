@@ -11,17 +11,17 @@
 
 namespace rigcal::test {
 
-/// All bytes of a file; empty if it cannot be read.
+/// All bytes of a file; empty if the file cannot be read.
 inline std::string text_of(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// A folder of its own that goes with the test.
+/// A temporary folder that is removed at the end of the test.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
-    const std::string ending(6, 'X');  // which mkdtemp() replaces
+    const std::string ending(6, 'X');  // placeholder that mkdtemp() replaces
     std::string name =
         (std::filesystem::temp_directory_path() / ("rigcal-test-" + ending)).string();
     if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder " + name);
@@ -30,14 +30,14 @@ class TemporaryFolder {
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
   ~TemporaryFolder() {
-    std::error_code ignored;  // a leftover in the temporary folder harms no test
+    std::error_code ignored;  // leftovers in the temporary folder do no harm
     std::filesystem::remove_all(path_, ignored);
   }
 
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
 
-  /// Makes the file and missing folders above it.
+  /// Writes a file, and creates missing parent folders.
   std::filesystem::path write(const std::string& name, const std::string& content) const {
     const std::filesystem::path file = path_ / name;
     std::filesystem::create_directories(file.parent_path());

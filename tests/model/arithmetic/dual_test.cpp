@@ -10,7 +10,7 @@ using Catch::WithinRel;
 
 namespace {
 
-/// One function of (x, y) on plain numbers and on dual numbers.
+/// A function of (x, y), for plain numbers and for dual numbers.
 struct Operation {
   const char* name;
   std::function<double(double, double)> plain;
@@ -74,8 +74,8 @@ std::vector<Operation> operations() {
 constexpr double kX = 0.7;
 constexpr double kY = 0.4;
 constexpr double kStep = 1e-5;
-// A central difference is off by kStep^2 / 6 of a third derivative (below 170 here: 6 x / y^4 of
-// x / y) and by rounding over kStep, 1e-11.
+// Errors of a central difference: kStep^2 / 6 times a third derivative, which is below 170 here (6
+// x / y^4 for x / y), and rounding divided by kStep, which is 1e-11.
 constexpr double kDifference = 5e-9;
 
 }  // namespace

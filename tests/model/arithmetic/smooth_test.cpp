@@ -16,7 +16,8 @@ TEST_CASE("signed_sqrt: odd, straight at zero, a root far away", "[model]") {
   for (const double p : {0.1, 30.0, 100.0, 5e3, 6.2e6}) {
     CAPTURE(p);
     CHECK(signed_sqrt(-p, kRootEps) == -signed_sqrt(p, kRootEps));
-    // (1 + (eps/P)^2)^(-1/4) expanded: the relative distance to a root is (eps/P)^2 / 4 at most.
+    // Expansion of (1 + (eps/P)^2)^(-1/4): the relative difference from a root is at most (eps/P)^2
+    // / 4.
     const double below = 0.25 * (kRootEps / p) * (kRootEps / p);
     CHECK(signed_sqrt(p, kRootEps) <= std::sqrt(p));
     CHECK(signed_sqrt(p, kRootEps) >= std::sqrt(p) * (1.0 - below - 1e-15));
@@ -45,7 +46,7 @@ TEST_CASE("clamp_symmetric: value and derivative switch at the limit", "[model]"
     CHECK(y.value == row.value);
     CHECK(y.derivative[0] == row.slope);
   }
-  // The limit may be the variable: then its derivative comes through, with the sign of the side.
+  // If the limit is the variable, its derivative is passed on with the sign of the side.
   CHECK(clamp_symmetric(D(12.0), D::variable(10.0, 0)).derivative[0] == 1.0);
   CHECK(clamp_symmetric(D(-12.0), D::variable(10.0, 0)).derivative[0] == -1.0);
 }

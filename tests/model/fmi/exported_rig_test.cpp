@@ -17,7 +17,7 @@ ExportedRig sampled_rig() {
              Before::steady};
   rig.values = ParameterValues::defaults(PlantKind::two_chamber);
   rig.tolerance = 1e-7;
-  rig.values.set("mass", 0.1 + 0.2);  // no short decimal
+  rig.values.set("mass", 0.1 + 0.2);  // has no short decimal representation
   rig.values.set("external_force", -3.5e-300);
   rig.values.set("sample_time", 1e-3);
   rig.values.set("initial_pressure_a", 2e6);

@@ -13,7 +13,7 @@
 #include "tests/model/rig.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-// Calls of an importer to an instance: which are allowed, when, and with which values.
+// Tests which calls an importer may make to an instance, when, and with which values.
 
 using namespace rigcal::model;
 using Catch::Contains;
@@ -31,7 +31,7 @@ ExportedRig exported(double sample_time_s = 0.0) {
   return rig;
 }
 
-/// An instance of a rig with the folder of its resources.
+/// An instance of a rig, with the folder of its resources.
 struct Importer {
   TemporaryFolder folder;
   FmuInstance instance;
@@ -251,7 +251,8 @@ TEST_CASE("fmu instance: inputs act at once, each on what it is", "[model]") {
         Approx(values["kp"] * (0.002 - instance.real(kStateReference))));
   const double flow = instance.derivatives()[2];
   instance.set_real(kSupplyPressure, 4.0 * values["supply_pressure"]);
-  CHECK(instance.derivatives()[2] / flow == Approx(2.0).epsilon(0.02));  // root of the pressure
+  CHECK(instance.derivatives()[2] / flow ==
+        Approx(2.0).epsilon(0.02));  // root of the pressure ratio
   CHECK_THAT(complaint([&] { instance.set_real(kTank, 1e5); }), Contains("no input has"));
   CHECK_THAT(complaint([&] { instance.set_real(kReference, kNaN); }),
              Contains("value reference 0: found nan"));
@@ -263,7 +264,7 @@ TEST_CASE("fmu instance: a step begins where the last one ended, and has a lengt
   FmuInstance& instance = importer.instance;
   instance.step(10.0, 0.1);
   CHECK(instance.state().time_s == Approx(10.1).epsilon(1e-15));
-  instance.step(10.1 + 0.9e-4, 0.1);  // within a thousandth of the step of time
+  instance.step(10.1 + 0.9e-4, 0.1);  // within a thousandth of the step
   CHECK(instance.state().time_s == Approx(10.2 + 0.9e-4).epsilon(1e-15));
   const double now = instance.state().time_s;
   for (const double off : {1.1e-4, -1.1e-4, 0.1})
@@ -322,7 +323,7 @@ TEST_CASE("fmu instance: however a ramp is cut into steps, it leads to the same 
   CHECK(std::abs(whole) > 1e-4);
   CHECK(position_after({0.1, 0.1}, 1e-9) == Approx(whole).epsilon(1e-6));
   CHECK(position_after({0.05, 0.15}, 1e-9) == Approx(whole).epsilon(1e-6));
-  // a tolerance of a millionth of the peak per step
+  // the tolerance is a millionth of the peak per step
   CHECK(position_after({0.2}, 1e-6) == Approx(whole).epsilon(1e-4));
 }
 
@@ -376,7 +377,7 @@ TEST_CASE("fmu instance: a step takes the ticks within it, the one at its end wi
   const double kp = exported().values["kp"];
   const unsigned command = kOutputReference + static_cast<unsigned>(Output::command);
   instance.set_real(kReference, 0.001);
-  // Before the first step the importer reads the controller's output for the inputs.
+  // Before the first step, the importer reads the controller's output for the inputs.
   CHECK(instance.real(command) == Approx(kp * 0.001));
   CHECK(instance.state().ticks == 0);
   instance.step(0.0, 0.03);
@@ -418,7 +419,7 @@ TEST_CASE("fmu instance: the initial state follows what is set before it is left
   instance.enter_initialization();
   const double before = instance.real(kStateReference + 2);
   instance.set_real(kForce, 600.0);
-  // In equilibrium the load pressure balances the force.
+  // In equilibrium, the load pressure balances the force.
   CHECK(instance.real(kStateReference + 2) - before ==
         Approx(570.0 / exported().values["piston_area"]).epsilon(1e-9));
   instance.exit_initialization();

@@ -1,5 +1,5 @@
-// Friction with pre-sliding: against closed forms, and against an integrator and a right-hand side
-// of this file (docs/model.md, section 2).
+// Tests friction with pre-sliding: against closed forms, and against an integrator and a right-hand
+// side in this file (docs/model.md, section 2).
 
 #include <array>
 #include <catch2/catch.hpp>
@@ -16,8 +16,8 @@ using Catch::WithinRel;
 
 namespace {
 
-/// A piston that a recorded load pushes while its chambers are joined by a wide laminar path, so
-/// that spring and friction alone hold it.
+/// A piston that a recorded load pushes, while a wide laminar path joins its chambers. Only spring
+/// and friction resist the load.
 Experiment pushed_piston(const Signal& load, std::vector<double> times_s) {
   Experiment e;
   e.rig.controller = ControllerKind::none;
@@ -34,7 +34,8 @@ Experiment pushed_piston(const Signal& load, std::vector<double> times_s) {
 
 constexpr double kBreakaway_n = 280.0;  // g at rest
 
-/// Force of bristles that were bent by a travel from `from_n`: dF/dx = sigma_0 (1 -+ F / g).
+/// Force of bristles after a travel that started with the force `from_n`:
+/// dF/dx = sigma_0 (1 -+ F / g).
 double bent(double travel_m, double from_n) {
   const double limit = travel_m < 0.0 ? -kBreakaway_n : kBreakaway_n;
   return limit + (from_n - limit) * std::exp(-1e6 * std::abs(travel_m) / kBreakaway_n);
@@ -43,7 +44,7 @@ double bent(double travel_m, double from_n) {
 }  // namespace
 
 TEST_CASE("bristles: a slow push bends them before they slide, and they stay bent", "[model]") {
-  // Out by 150 N within 50 s, then back to nothing: so slow that v hardly lowers g.
+  // Pushes out with 150 N within 50 s, then back to zero, so slowly that v hardly lowers g.
   const Signal load =
       Signal::linear({0.0, 50.0, 51.0, 101.0, 102.0}, {0.0, -150.0, -150.0, 0.0, 0.0});
   const Simulation run = pushed_piston(load, {0.0, 50.9, 102.0})();
@@ -51,7 +52,7 @@ TEST_CASE("bristles: a slow push bends them before they slide, and they stay ben
   REQUIRE(run.ok());
   const double out_m = run.outputs(1, 0);
   CHECK_THAT(2e4 * out_m + bent(out_m, 0.0), WithinRel(150.0, 1e-3));
-  CHECK(out_m > 150.0 / (1e6 + 2e4));  // more than a spring would
+  CHECK(out_m > 150.0 / (1e6 + 2e4));  // further than a linear spring would give
   const double back_m = run.outputs(2, 0);
   REQUIRE(back_m > 0.05 * out_m);
   CHECK_THAT(2e4 * back_m + bent(back_m - out_m, bent(out_m, 0.0)), WithinAbs(0.0, 0.1));
@@ -77,7 +78,7 @@ TEST_CASE("bristles: where they slide they are dry friction", "[model]") {
   REQUIRE(v > 0.01);
   const double friction_n = 200.0 + 80.0 * std::exp(-std::pow(v / 0.02, 2));
   CHECK_THAT(1.62e-3 * run.outputs(1, 1), WithinRel(2e3 * v + friction_n, 1e-6));
-  CHECK_THAT(run.outputs(1, 2), WithinRel(2e3 * v, 1e-6));  // the cell is beyond the seals
+  CHECK_THAT(run.outputs(1, 2), WithinRel(2e3 * v, 1e-6));  // the load cell is outside the seals
 }
 
 TEST_CASE("bristles: stick and slip follow an integrator of another kind", "[model]") {
@@ -94,7 +95,8 @@ TEST_CASE("bristles: stick and slip follow an integrator of another kind", "[mod
     return 1e6 * (x[1] - std::abs(x[1]) * x[3] / sliding(x[1]));
   };
   const auto friction_n = [&](const PistonState& x) { return x[3] + 500.0 / 1e6 * bristles(x); };
-  // The laminar path is so wide that the pressure follows the speed at once: it is not stepped.
+  // The laminar path is so wide that the pressure follows the speed immediately, so it is not
+  // integrated.
   const auto pressure = [&](const PistonState& x) { return -area * x[1] / 1e-5; };
   REQUIRE(stiff * 1e-5 > 1e6);  // 1/s
   const auto rates = [&](const PistonState& x, double t) -> PistonState {

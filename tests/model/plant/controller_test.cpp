@@ -33,7 +33,7 @@ Layout layout_with(int integral, int filter, int held) {
   return layout;
 }
 
-/// A loop that saturates: a step of the reference that requires twice the limit.
+/// A loop that saturates: the reference steps by twice what the limit allows.
 Experiment step_of(double amplitude_m) {
   Experiment e;
   e.inputs.drive = Signal::square(amplitude_m, 0.1);
@@ -82,7 +82,8 @@ TEST_CASE("controller: a sampled PID does what a loop written by hand does", "[m
   for (int k = 0; k < 200; ++k) {
     const double error = 0.05 * std::sin(0.1 * k) + 0.01;
     controller_tick(LoopError<double>{error}, state, gains, layout);
-    // e_f by backward Euler; u; then the integral by forward Euler with tracking time K_p / K_i.
+    // Backward Euler for e_f, then u, then forward Euler for the integral with tracking time K_p /
+    // K_i.
     filtered += 0.004 * 80.0 * (error - filtered) / (1.0 + 0.004 * 80.0);
     const double wanted = 100.0 * error + integral + 1.5 * 80.0 * (error - filtered);
     const double u = std::min(4.0, std::max(-4.0, wanted));
@@ -97,7 +98,8 @@ TEST_CASE("controller: a sampled PID does what a loop written by hand does", "[m
 }
 
 TEST_CASE("controller: a slow sampled loop does not shake while it saturates", "[model]") {
-  // K_i T_s / K_p = 5 here: plain back-calculation would throw the integral about, ever further.
+  // Here K_i T_s / K_p = 5, so plain back-calculation would make the integral oscillate with
+  // growing amplitude.
   const Gains gains{1.0, 50.0, 0.0, 50.0, 2.0, 0.1};
   const Layout layout = layout_with(0, -1, 1);
   std::array<double, 2> state{};
@@ -111,8 +113,8 @@ TEST_CASE("controller: a slow sampled loop does not shake while it saturates", "
 }
 
 TEST_CASE("controller: the integral is back at once after saturation", "[model]") {
-  // Without anti-windup the integral grows with the error alone; it is made here from the same
-  // parts, on the same plant reduced to a pure integrator of the limited command.
+  // Without anti-windup, the integral grows with the error only. The test builds that controller
+  // from the same functions, with the plant reduced to an integrator of the limited command.
   const auto settle = [](bool anti_windup) {
     const Gains gains{100.0, 200.0, 0.0, 50.0, 2.0, 0.001};
     const Layout layout = layout_with(0, -1, -1);
@@ -130,7 +132,7 @@ TEST_CASE("controller: the integral is back at once after saturation", "[model]"
   };
   CHECK(settle(true) < 0.5 * settle(false));
 
-  // In the whole loop: the command leaves its limit before the error changes sign.
+  // In the whole loop, the command leaves its limit before the error changes sign.
   Experiment e = step_of(0.04);
   const Simulation p_only = e();
   e.set("ki", 800.0);
@@ -149,8 +151,8 @@ TEST_CASE("controller: the integral is back at once after saturation", "[model]"
 }
 
 TEST_CASE("controller: the filtered derivative is the transfer function's", "[model]") {
-  // The plant cannot move (mass 1e6 kg, valve almost shut), so e is the reference and the command
-  // is K_p e + K_d N s / (s + N) e: closed form for a sine that starts at t = 0.
+  // The plant cannot move (mass 1e6 kg, valve almost closed), so e equals the reference, and the
+  // command is K_p e + K_d N s / (s + N) e. It has a closed form for a sine that starts at t = 0.
   Experiment e;
   const double n = 40.0;
   const double omega = 2.0 * 3.14159265358979323846 * 2.0;
@@ -169,13 +171,13 @@ TEST_CASE("controller: the filtered derivative is the transfer function's", "[mo
         (n * std::sin(omega * t) - omega * std::cos(omega * t) + omega * std::exp(-n * t));
     const double expected = 78.74 * sine + 5.0 * n * (sine - filtered);
     CAPTURE(t);
-    // Ten times the tolerance over the peak of u, 1.3 V (dense output included).
+    // Ten times the tolerance relative to the peak of u, 1.3 V (including dense output).
     CHECK_THAT(run.outputs(static_cast<Eigen::Index>(i), 0), WithinAbs(expected, 1e-6));
   }
 }
 
 TEST_CASE("controller: a PID of the whole loop against a Runge-Kutta of small steps", "[model]") {
-  // All written out again, with fixed steps of 2 us (the hydraulic mode turns 587 rad/s).
+  // An independent implementation with fixed steps of 2 us (the hydraulic mode has 587 rad/s).
   Experiment e;
   e.inputs.drive = Signal::sine(0.02, 1.0);
   e.set("kp", 300.0).set("ki", 500.0).set("kd", 2.0).set("derivative_filter", 100.0);
@@ -225,13 +227,14 @@ TEST_CASE("controller: a PID of the whole loop against a Runge-Kutta of small st
     }
   }
   CHECK(peak(run.outputs.col(1)) == 3.0);
-  // Kinks at the limit cost some digits of the requested 1e-8: 1e-5 of the peaks.
+  // Kinks at the limit cost some digits of the requested 1e-8, which leaves 1e-5 of the peaks.
   CHECK(worst_x < 1e-5 * 0.02);
   CHECK(worst_u < 1e-5 * 3.0);
 }
 
 TEST_CASE("controller: one tick pulls the integral back to the limit at the most", "[model]") {
-  // K_i T_s / K_p = 1.5: the pull alone would go half as far again as the excess.
+  // With K_i T_s / K_p = 1.5, plain back-calculation would overshoot the limit by half of the
+  // excess.
   const Gains gains{1.0, 15.0, 0.0, 50.0, 2.0, 0.1};
   std::array<double, 2> state{6.0, 0.0};
   controller_tick(LoopError<double>{0.0}, state, gains, layout_with(0, -1, 1));
@@ -240,7 +243,7 @@ TEST_CASE("controller: one tick pulls the integral back to the limit at the most
 }
 
 TEST_CASE("controller: a sampled output is that of the last tick", "[model]") {
-  // The plant cannot move; the error is the reference, a ramp of 0.1 m/s.
+  // The plant cannot move, so the error equals the reference, a ramp of 0.1 m/s.
   Experiment e;
   e.inputs.drive = Signal::linear({0.0, 1.0}, {0.0, 0.1});
   e.set("mass", 1e6).set("valve_gain", 1e-12).set("kp", 50.0).set("sample_time", 0.02);

@@ -1,5 +1,5 @@
-// Loops on position, force, load pressure and acceleration, and the inner feedback of the load
-// pressure (docs/model.md).
+// Tests loops on position, force, load pressure and acceleration, and the inner feedback of the
+// load pressure (docs/model.md).
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -90,7 +90,7 @@ TEST_CASE("feedback: pressure feedback damps what rings", "[model]") {
 
 TEST_CASE("feedback: integral action leaves no error of force and load pressure", "[model]") {
   for (const Loop& loop : kLoops) {
-    if (loop.feedback == Feedback::acceleration) continue;  // lags behind a damper
+    if (loop.feedback == Feedback::acceleration) continue;  // it lags, because of the damper
     Experiment e = loop_on(loop);
     e.set("stiffness", 3e5).set("damping", 2e4).set(gain_keys(loop.feedback).ki, 20.0 * loop.ki);
     e.inputs.drive = Signal::constant(0.5 * loop.amplitude);

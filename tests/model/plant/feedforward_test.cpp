@@ -1,5 +1,5 @@
-// Feed-forward of a position loop's reference: closed forms of a sine, and the
-// ticks of a sampled controller step by step (docs/model.md, section 3).
+// Tests the feed-forward of a position loop's reference: against closed forms for a sine, and
+// against the ticks of a sampled controller computed step by step (docs/model.md, section 3).
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -19,7 +19,7 @@ namespace {
 constexpr double kFilter_rad_per_s = 200.0;
 constexpr double kOmega_rad_per_s = 2.0 * kPi * 3.0;
 
-/// A loop whose command is the feed-forward alone.
+/// A loop whose command consists only of the feed-forward.
 Experiment fed_forward() {
   Experiment e;
   e.set("kp", 0.0).set("derivative_filter", kFilter_rad_per_s);
@@ -98,7 +98,7 @@ TEST_CASE(
     return largest;
   };
   const double lagging_m = worst(e);
-  // Volts per speed of a piston without a load.
+  // Volts per speed for a piston without load.
   const double flow_per_volt = e.values["valve_gain"] * e.values["discharge_coefficient"] *
                                e.values["area_gradient"] *
                                std::sqrt(e.values["supply_pressure"] / e.values["density"]);

@@ -22,7 +22,7 @@ TEST_CASE("layout_of: states follow from what was given", "[model]") {
            Row{{"sample_time"}, kPid, -1, -1, -1, 3, 4},
            Row{{"valve_frequency", "ki", "kd", "sample_time"}, kPid, 3, 5, 6, 7, 8},
            Row{{"valve_time_constant", "ki", "kd"}, kPid, 3, 4, 5, -1, 6},
-           // Without a controller its parameters bring no states.
+           // Without a controller, its parameters add no states.
            Row{{"ki", "kd", "sample_time"}, ControllerKind::none, -1, -1, -1, -1, 3},
        }) {
     auto values = paper_rig();

@@ -1,5 +1,4 @@
-// The internal leak in one law from laminar to turbulent (docs/model.md,
-// section 2).
+// Tests the internal leak as a single law from laminar to turbulent (docs/model.md, section 2).
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -13,14 +12,13 @@ using Catch::WithinRel;
 
 namespace {
 
-/// Leak of a piston under load with its valve closed, and the pressure
-/// across it.
+/// Pressure across the piston and its leakage, for a piston under load with the valve closed.
 std::pair<double, double> held_leak(Experiment e, double load_n) {
   e.rig.controller = ControllerKind::none;
   e.inputs.drive = Signal::constant(0.0);
   e.set("external_force", load_n).set("leakage_coefficient", 0.5);
   e.set("leakage_resistance", 2e11);
-  e.rig.initial = InitialState::given;  // pressures that hold the load
+  e.rig.initial = InitialState::given;  // pressures that balance the load
   e.times_s = {0.0};
   e.outputs = {Output::load_pressure, Output::leakage_flow};
   const Simulation run = e();
@@ -37,7 +35,7 @@ TEST_CASE("leak: orifice and laminar path in series are one law", "[model]") {
     const double density = rig.values["density"];
     for (const double load_n : {-400.0, 3.0, 60.0, 400.0}) {
       const auto [head_pa, flow] = held_leak(rig, load_n);
-      // The line takes R Q, the orifice the rest.
+      // The line takes the pressure R Q, the orifice the rest.
       const double conductance = 0.5 * area * std::sqrt(2.0 / density);
       const double rest_pa = std::abs(head_pa) - 2e11 * std::abs(flow);
       REQUIRE(rest_pa > 0.0);

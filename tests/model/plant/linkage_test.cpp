@@ -1,5 +1,5 @@
-// The cylinder on a lever: against the plant that slides, in steady motion, and term by term
-// against closed forms (docs/model.md, sections 9 and 10).
+// Tests the cylinder on a lever: against the plant with a sliding load, in steady motion, and term
+// by term against closed forms (docs/model.md, sections 9 and 10).
 
 #include "model/plant/linkage.hpp"
 
@@ -25,7 +25,7 @@ Eigen::RowVectorXd last_of_arm(const Experiment& e) {
 
 double quadratic_of(double x, double c0, double c1, double c2) { return c0 + (c1 + c2 * x) * x; }
 
-/// Flow of an open edge of arm_rig() [m3/s].
+/// Flow through an open edge of arm_rig() [m3/s].
 double spool_edge_flow(double opening_m, double head_pa) {
   return 0.65 * 0.02 * opening_m * std::sqrt(2.0 * head_pa / 870.0);
 }
@@ -124,7 +124,7 @@ TEST_CASE("linkage: at rest the piston holds the moment of the load at its angle
 
 TEST_CASE("linkage: in steady motion the flows are those of the edges", "[model]") {
   Experiment e = arm_rig();
-  // So slow that it is steady, and damping of the order of what the pressures push.
+  // Slow enough to be steady, with damping of the order of the pressure forces.
   e.set("joint_damping", 4e4).set("gain_b_to_tank", 0.7).set("pilot_gain", 1e-11);
   e.set("lower_stop", -2.0).set("upper_stop", 2.0);
   e.inputs.drive = Signal::constant(2e6);
@@ -170,16 +170,17 @@ TEST_CASE("linkage: through an open centre the pump's pressure follows the spool
   e.set("bypass_opening", 4e-4).set("bypass_range", 2e6);
   e.times_s = {0.0, 20.0};
   e.outputs = {Output::pressure_a};
-  // At the stop all of the pump's flow takes this way, as long as the pump is not cut off.
+  // At the stop, all flow of the pump takes the bypass, as long as the pressure limit is not
+  // reached.
   for (const double beyond_pa : {4e5, 8e5}) {
     e.inputs.drive = Signal::constant(1e6 + beyond_pa);
     const double a_pa = last_of_arm(e)(0);
     REQUIRE(a_pa < 1.9e7);
     CHECK_THAT(spool_edge_flow(4e-4 * (1.0 - beyond_pa / 2e6), a_pa - 2e5), WithinRel(5e-4, 1e-4));
   }
-  e.inputs.drive = Signal::constant(3.1e6);  // it is closed
+  e.inputs.drive = Signal::constant(3.1e6);  // the bypass is closed
   CHECK_THAT(last_of_arm(e)(0), WithinRel(2e7, 1e-4));
-  // The other way round it opens as far.
+  // In the other direction it opens equally far.
   e.set("bypass_opening", 5e-4).set("upper_stop", 2.0);
   e.outputs = {Output::pressure_b};
   e.inputs.drive = Signal::constant(-1.4e6);
@@ -216,7 +217,7 @@ TEST_CASE("linkage: a pump gives its first flow, then its second", "[model]") {
   CHECK_THAT(run.outputs(1, 1), WithinRel(2e-4 / volume_per_rad, 1e-4));
   CHECK_THAT(run.outputs(2, 1), WithinRel(2.5e-4 / volume_per_rad, 5e-2));  // in the middle
   CHECK_THAT(run.outputs(3, 1), WithinRel(3e-4 / volume_per_rad, 1e-4));
-  // The time of demand fades while the valve is closed.
+  // The demand time decays while the valve is closed.
   e.inputs.drive =
       Signal::linear({0.0, 7.99, 8.0, 40.0, 40.01, 42.0}, {4e6, 4e6, 0.0, 0.0, 4e6, 4e6});
   e.times_s = {0.0, 7.9, 41.5};
@@ -236,7 +237,7 @@ TEST_CASE("linkage: at its stop the chamber fills to the pressure that the pump 
   const auto end = last_of_arm(e);
   CHECK_THAT(end(1), WithinRel(2e7, 1e-4));
   CHECK_THAT(end(2), WithinRel(2e5, 1e-3));
-  // Pressed in by what the piston pushes, over the stiffness of the stop.
+  // Pressed in by the piston force divided by the stiffness of the stop.
   CHECK_THAT(end(0), WithinAbs(1.0 + 0.3 * (4e-3 * 2e7 - 2.4e-3 * 2e5) / 1e7, 1e-6));
 }
 
@@ -252,7 +253,7 @@ TEST_CASE("linkage: a support holds what the pressures do not", "[model]") {
 }
 
 TEST_CASE("linkage: the tank fills a chamber that the load pulls empty", "[model]") {
-  // The load raises the arm, while the pump fills chamber A by little: A cavitates.
+  // The load raises the arm while the pump fills chamber A too slowly, so A cavitates.
   Experiment e = arm_rig();
   e.set("lower_stop", -1.0).set("upper_stop", 20.0).set("gravity_moment", -2e3);
   e.set("joint_damping", 4e3).set("gain_supply_to_a", 0.01).set("pilot_gain", 1e-10);

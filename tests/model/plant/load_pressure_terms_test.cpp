@@ -1,6 +1,6 @@
-// Sign and size of every optional term of the load-pressure plant, by steady states and exact
-// solutions that were derived by hand (docs/model.md). Agreement of two methods, or of derivatives
-// with differences, proves neither.
+// Tests sign and size of every optional term of the load-pressure plant against steady states and
+// exact solutions that were derived by hand (docs/model.md). Agreement between two methods, or
+// between derivatives and differences, would prove neither.
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -20,13 +20,13 @@ double pressure_root(double pressure_pa) {
   return std::copysign(std::sqrt(std::abs(pressure_pa)), pressure_pa);
 }
 
-/// The paper's rig on a constant command, without any optional term and without its leak.
+/// The paper's rig with a constant command, without optional terms and without its leak.
 Experiment driven_by(double command_v) {
   Experiment e;
   e.rig.controller = ControllerKind::none;
   e.inputs.drive = Signal::constant(command_v);
   e.set("leakage_coefficient", 0.0).set("damping", 4000.0);
-  e.times_s = {0.0, 5.0};  // the ringing has decayed by exp(-b / 2m * 5 s) = 1e-51
+  e.times_s = {0.0, 5.0};  // the ringing has decayed to exp(-b / 2m * 5 s) = 1e-51
   e.outputs = {Output::velocity,   Output::load_pressure, Output::spool,
                Output::servo_flow, Output::leakage_flow,  Output::work_flow,
                Output::force,      Output::pressure_a,    Output::pressure_b};
@@ -46,7 +46,7 @@ SteadyLoad steady_load(const Experiment& e) {
   return {last(0), last(1), last(2), last(3), last(4), last(5), last(6), last(7), last(8)};
 }
 
-/// Flow of the valve at a spool travel, eq. 4.
+/// Flow of the valve for a spool travel, eq. 4.
 double valve_flow(double spool_m, double P_L) {
   const double direction = spool_m < 0.0 ? -1.0 : 1.0;
   return 0.6 * 0.02075 * spool_m * pressure_root((6.2e6 - direction * P_L) / 847.0);
@@ -66,7 +66,7 @@ TEST_CASE("load_pressure: the valve's null leak takes flow from the load", "[mod
     CHECK(std::abs(s.P_L) > 1e6);
     CHECK_THAT(kArea_m2 * s.v,
                WithinRel(valve_flow(travel(command_v), s.P_L) - 5e-11 * s.P_L, 1e-6));
-    CHECK_THAT(s.servo_flow, WithinRel(kArea_m2 * s.v, 1e-6));  // what reaches the load
+    CHECK_THAT(s.servo_flow, WithinRel(kArea_m2 * s.v, 1e-6));  // the flow that reaches the load
     CHECK(s.leakage_flow == 0.0);                               // none of it crosses the piston
   }
 }
@@ -123,7 +123,7 @@ TEST_CASE("load_pressure: dry friction opposes the motion and stays within the c
     const SteadyLoad coulomb = steady_load(e);
     CHECK(direction * coulomb.v > 0.02);  // tanh(20) is 1 to the last digit
     CHECK_THAT(kArea_m2 * coulomb.P_L, WithinRel(4000.0 * coulomb.v + direction * 300.0, 1e-6));
-    // What the rod passes on is the damper's force alone.
+    // The rod transmits only the force of the damper.
     CHECK_THAT(coulomb.force_n, WithinRel(4000.0 * coulomb.v, 1e-6));
 
     e.set("stribeck_friction", 200.0).set("stribeck_velocity", 0.05);

@@ -1,4 +1,4 @@
-// The load at the rod: forces that vary with travel, and a second mass. Compared with exact
+// Tests the load at the rod: forces that vary with travel, and a second mass. Compares with exact
 // solutions that were derived by hand (docs/model.md).
 
 #include <catch2/catch.hpp>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kPistonArea_m2 = 1.62e-3;
 
-/// Extended by 20 mm, at rest, with a closed valve without leakage.
+/// Extended by 20 mm, at rest, with a closed valve and no leakage.
 Experiment held_at(double position_m, Experiment e) {
   e.rig.controller = ControllerKind::none;
   e.rig.initial = InitialState::given;
@@ -26,7 +26,7 @@ Experiment held_at(double position_m, Experiment e) {
   return e;
 }
 
-/// Two masses with a spring and a damper between them; a constant force pushes the first. The
+/// Two masses with a spring and a damper between them. A constant force pushes the first. The
 /// piston is so small that its oil has no effect.
 struct TwoMasses {
   double mass_kg = 85.0, payload_kg = 40.0, frequency = 60.0, ratio = 0.15, push_n = -500.0;

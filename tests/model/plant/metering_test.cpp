@@ -1,5 +1,6 @@
-// Valve, pump and check valves of cylinders with two chambers: each term against its closed form,
-// all of them against an integrator and a right-hand side of this file (docs/model.md, section 10).
+// Tests valve, pump and check valves of cylinders with two chambers: each term against its closed
+// form, and all terms together against an integrator and a right-hand side in this file
+// (docs/model.md, section 10).
 
 #include <algorithm>
 #include <array>
@@ -35,7 +36,7 @@ double valve_supply_pa(const Experiment& e) {
   return run.end_state(layout.supply);
 }
 
-/// Flow of an open edge of pilot_rig() [m3/s].
+/// Flow through an open edge of pilot_rig() [m3/s].
 double edge_flow_of(double opening_m, double head_pa) {
   return 0.65 * 0.02 * opening_m * std::sqrt(2.0 * head_pa / 870.0);
 }
@@ -58,8 +59,8 @@ Experiment all_metering_terms() {
   return e;
 }
 
-/// The equations of section 10 for all_metering_terms() once more. The states are position,
-/// velocity, both pressures, supply pressure at the valve and time of demand.
+/// An independent implementation of the equations in section 10 for all_metering_terms(). The
+/// states are position, velocity, both pressures, supply pressure at the valve and demand time.
 using SlideState = std::array<double, 6>;
 SlideState slide_rates(const SlideState& x, double t) {
   constexpr double kTank_pa = 2e5;
@@ -80,7 +81,7 @@ SlideState slide_rates(const SlideState& x, double t) {
     const double y = travel(way_pa - 0.8e6, 1.3);
     const double conductance = gain * per_opening * y / std::sqrt(1.0 + std::pow(y / 3e-4, 2));
     const double head = p - kTank_pa;
-    // Edge and line in series, by bisection instead of the closed form.
+    // Edge and line in series, solved by bisection instead of the closed form.
     double low = 0.0;
     double high = conductance * std::sqrt(std::abs(head));
     for (int i = 0; i < 60 && high > 0.0; ++i) {
@@ -128,7 +129,7 @@ TEST_CASE("metering: all terms together follow an integrator of another kind", "
   INFO(run.reason);
   REQUIRE(run.ok());
   SlideState x{0.0, 0.0, run.outputs(0, 2), run.outputs(0, 3), 2e7, 0.0};
-  constexpr int kSteps = 16000;  // Runge and Kutta's method, between two samples
+  constexpr int kSteps = 16000;  // classical Runge-Kutta steps between two samples
   const double h = 0.1 / kSteps;
   const auto moved = [](const SlideState& from, const SlideState& rate, double by) {
     SlideState to = from;
@@ -210,7 +211,7 @@ TEST_CASE("metering: behind a compensator the speed does not depend on the load"
     const auto end = last_of_slide(e);
     CHECK_THAT(end(1), WithinRel(edge_flow_of(1e-5, 6e5) / 4e-3, 1e-6));
   }
-  // Where the supply leaves less, it is a plain edge.
+  // If the supply leaves less, it acts as a plain edge.
   CHECK(compensated_head(3e5, 6e5) == 3e5);
   CHECK(compensated_head(-3e5, 6e5) == -3e5);
   CHECK(compensated_head(7e5, 6e5) == 6e5);
@@ -222,7 +223,7 @@ TEST_CASE("metering: the spool opens by a power or a table of the command, both 
   by_power.set("valve_exponent", 2.5).set("valve_range", 8.0);
   Experiment by_table = proportional_rig();
   by_table.set("valve_range", 10.0).set("opening_20", 0.05).set("opening_40", 0.2);
-  by_table.set("opening_80", 0.7);  // 0.6 at 60 %, as nothing else is given
+  by_table.set("opening_80", 0.7);  // 0.6 at 60 % by default
   by_power.outputs = by_table.outputs = {Output::spool};
   for (const double sign : {1.0, -1.0}) {
     for (const double beyond_v : {1.0, 4.0, 8.0, 9.0}) {
@@ -262,7 +263,7 @@ TEST_CASE("metering: through an open centre the pump's pressure follows the spoo
   e.set("bypass_opening", 4e-4).set("valve_bypass_range", 8.0).set("stroke", 0.2);
   e.set("valve_gain", 2e-5);
   e.times_s = {0.0, 20.0};
-  for (const double beyond_v : {2.0, 4.0}) {  // at its stop
+  for (const double beyond_v : {2.0, 4.0}) {  // the piston is at its stop
     e.inputs.drive = Signal::constant(0.5 + beyond_v);
     const double a_pa = last_of_slide(e)(2);
     CHECK_THAT(edge_flow_of(4e-4 * (1.0 - beyond_v / 8.0), a_pa - 2e5), WithinRel(5e-4, 1e-4));
@@ -281,15 +282,17 @@ TEST_CASE("metering: a load-sensing pump keeps its margin above the driven chamb
   e.inputs.drive = Signal::constant(-5.5);
   const auto back = last_of_slide(e);
   CHECK_THAT(valve_supply_pa(e), WithinRel(back(3) + 1.5e6 + 1e8 * 2.4e-3 * back(1), 1e-6));
-  e.inputs.drive = Signal::constant(0.0);  // closed: standby
+  e.inputs.drive = Signal::constant(0.0);  // valve closed: standby pressure
   CHECK_THAT(valve_supply_pa(e), WithinRel(2e5 + 1.5e6, 1e-6));
-  e.set("stroke", 0.1).inputs.drive = Signal::constant(5.5);  // at its stop: the limit
+  e.set("stroke", 0.1).inputs.drive = Signal::constant(5.5);  // piston at its stop: pressure limit
   CHECK_THAT(valve_supply_pa(e), WithinRel(2e7, 1e-4));
 }
 
 TEST_CASE("metering: an accumulator gives oil by the gas law", "[model]") {
   Experiment e = proportional_rig();
-  e.set("supply_resistance", 1e15).set("supply_capacity", 1e-18).set("stroke", 2.0);  // no pump
+  e.set("supply_resistance", 1e15)
+      .set("supply_capacity", 1e-18)
+      .set("stroke", 2.0);  // no flow from the pump
   e.set("accumulator_volume", 4e-3).set("accumulator_precharge", 8e6);
   e.set("accumulator_exponent", 1.25).set("valve_gain", 1e-5).set("bulk_modulus", 8e10);
   const auto end = last_of_slide(e);
@@ -299,9 +302,9 @@ TEST_CASE("metering: an accumulator gives oil by the gas law", "[model]") {
   const double supply_pa = valve_supply_pa(e);
   REQUIRE(supply_pa > 1e7);
   REQUIRE(supply_pa < 1.9e7);
-  // What left went into chamber A; its oil is nearly rigid here.
+  // The oil that left it went into chamber A, where the oil is practically rigid in this test.
   CHECK_THAT(gas_m3(supply_pa) - gas_m3(2e7), WithinRel(4e-3 * end(0), 2e-3));
-  // It contains no oil below the precharge.
+  // Below the precharge it contains no oil.
   CHECK(accumulator_capacity(6e6, 4e-3, 8e6, 1.25) <
         1e-9 * accumulator_capacity(9e6, 4e-3, 8e6, 1.25));
 }
@@ -314,7 +317,7 @@ TEST_CASE("metering: a relief valve opens where a load pushes the piston in", "[
   const auto end = last_of_slide(e);
   REQUIRE(end(1) < -1e-3);
   CHECK_THAT(1e-10 * (end(2) - 1.1e7), WithinRel(-4e-3 * end(1), 1e-4));
-  // The other chamber is filled by the tank.
+  // The tank fills the other chamber.
   CHECK_THAT(1e-8 * (2e5 - end(3)), WithinRel(-2.4e-3 * end(1), 1e-3));
   CHECK_THAT(4e-3 * end(2) - 2.4e-3 * end(3) - 4e4 * end(1), WithinRel(6e4, 1e-4));
 }

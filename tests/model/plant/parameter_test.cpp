@@ -15,8 +15,8 @@ namespace {
 
 const std::set<std::string> kSymbols{"s", "hz", "m", "kg", "n", "pa", "v", "a", "rad"};
 
-/// "m3/(s Pa)" -> "_m3_per_s_pa": factors joined by _, one "per" before those of the denominator.
-/// Empty for "1"; a symbol outside the closed set gives "?".
+/// "m3/(s Pa)" -> "_m3_per_s_pa": factors joined by _, with one "per" before those in the
+/// denominator. Empty for "1"; "_?" for a symbol outside the closed set.
 std::string unit_suffix(std::string_view unit) {
   if (unit == "1") return "";
   std::string spaced;
@@ -79,7 +79,8 @@ TEST_CASE("parameters: bounds are in order and hold the default", "[model]") {
       CHECK(spec.kind == ParameterKind::plant);
       continue;
     }
-    // A 0 below the bounds represents an absent term, which must be given with its value.
+    // A zero below the bounds represents an absent term. If the term is given, its value must be
+    // given.
     const bool absent =
         *spec.default_value == 0.0 && spec.lower > 0.0 &&
         (spec.kind == ParameterKind::term || spec.kind == ParameterKind::controller ||
@@ -108,7 +109,8 @@ TEST_CASE("plant_from_name: reads every name of plant_names", "[model]") {
 TEST_CASE("ParameterValues: set marks as given, missing names what has no value", "[model]") {
   auto values = ParameterValues::defaults(PlantKind::load_pressure);
   const auto missing = values.missing();
-  CHECK(missing.size() == 13);  // the plant's parameters but leakage_smoothing, which has a default
+  CHECK(missing.size() ==
+        13);  // all plant parameters except leakage_smoothing, which has a default
   CHECK(missing.front() == "mass");
   CHECK(values["leakage_smoothing"] == 100.0);
   CHECK_FALSE(values.is_given("mass"));

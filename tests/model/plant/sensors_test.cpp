@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kLag_s = 0.01;
 
-/// Reading of a position that goes as `x`, by a sensor of kLag_s.
+/// Reading of a position x(t) by a sensor with the lag kLag_s.
 template <typename F>
 Eigen::VectorXd lagged(const std::vector<double>& samples_s, F x) {
   auto values = paper_rig();
@@ -37,7 +37,7 @@ TEST_CASE("sensors: a lag follows a ramp one time constant late", "[model]") {
   REQUIRE(y.size() == 21);
   for (Eigen::Index i = 0; i < y.size(); ++i) {
     const double t = times[static_cast<std::size_t>(i)];
-    // Straight pieces are exact here.
+    // Straight pieces are exact in this case.
     CHECK_THAT(y(i), WithinAbs(3.0 * (t - kLag_s * (1.0 - std::exp(-t / kLag_s))), 1e-12));
   }
 }
@@ -67,7 +67,7 @@ TEST_CASE("sensors: gain and offset make the reading, and the start is read back
   const Simulation read = e();
   REQUIRE(plain.ok());
   REQUIRE(read.ok());
-  // The loop sees the true position: nothing else changes but rounding.
+  // The loop sees the true position, so nothing changes except rounding.
   CHECK(peak(read.outputs.col(0) - (1.1 * plain.outputs.col(0).array() - 0.001).matrix()) < 1e-9);
   CHECK(peak(read.outputs.col(1) - 0.9 * plain.outputs.col(1)) < 1e-6 * peak(plain.outputs.col(1)));
   CHECK_THAT(read.outputs(0, 0), WithinRel(0.021 * 1.1 - 0.001, 1e-12));
@@ -106,7 +106,7 @@ TEST_CASE("sensors: at its limit a reading depends on nothing", "[model]") {
   }
   CHECK(reached > 0);
   CHECK(reached < free.outputs.rows());
-  CHECK(limited.outputs.col(1) == free.outputs.col(1));  // the loop sees the position itself
+  CHECK(limited.outputs.col(1) == free.outputs.col(1));  // the loop sees the true position
 }
 
 TEST_CASE("sensors: the shortest lag is followed by eight times and more", "[model]") {
@@ -116,6 +116,6 @@ TEST_CASE("sensors: the shortest lag is followed by eight times and more", "[mod
   const std::vector outputs{Output::position, Output::load_pressure};
   const auto at = sensor_times(outputs, values, grid(0.0, 0.1, 11));
   REQUIRE(at);
-  // 10 ms between samples: 8 * 10 / 2.1 = 38.1 pieces of each.
+  // There are 10 ms between samples: 8 * 10 / 2.1 = 38.1 pieces per interval.
   CHECK(at->times_s.size() == 10 * 39 + 1);
 }

@@ -11,7 +11,7 @@ namespace {
 
 int row(std::string_view key) { return parameter_index(PlantKind::load_pressure, key); }
 
-/// Linearises on both sides of the first jump of a drive.
+/// Linearises just before and just after the first jump of a drive.
 template <int N>
 void check_jump(const Rig& rig, const ParameterValues& values, const std::vector<int>& free,
                 const Signal& drive) {
@@ -31,7 +31,7 @@ void check_jump(const Rig& rig, const ParameterValues& values, const std::vector
   const auto before = followed;
   system.follow_drive(x, t, followed);
   const auto expected = system.linearise(x, t);
-  CHECK((before.f != expected.f || before.f_t != expected.f_t));  // or nothing jumped
+  CHECK((before.f != expected.f || before.f_t != expected.f_t));  // otherwise nothing jumped
   CHECK(followed.f == expected.f);
   CHECK(followed.f_t == expected.f_t);
   CHECK(followed.jacobian == expected.jacobian);

@@ -26,7 +26,7 @@ TEST_CASE("servo_flow: eq. 4 where the head is large", "[model]") {
   struct Row {
     double spool, pressure, head;
   };
-  // At heads above 1 MPa the straightening at 100 Pa changes less than 1e-8.
+  // At heads above 1 MPa, the smoothing at 100 Pa changes the flow by less than 1e-8.
   for (const Row& row : {Row{1e-4, 0.0, 6.2e6}, Row{1e-4, 2e6, 4.2e6}, Row{1e-4, -2e6, 8.2e6},
                          Row{-1e-4, 2e6, 8.2e6}, Row{-1e-4, -2e6, 4.2e6}}) {
     CAPTURE(row.spool, row.pressure);
@@ -48,7 +48,7 @@ TEST_CASE("servo_flow: turns back where the load pressure passes the supply", "[
   CHECK(servo(1e-4, kSupply) == 0.0);
   CHECK(servo(1e-4, kSupply + 1.0) < 0.0);
   CHECK(servo(-1e-4, -kSupply - 1.0) > 0.0);
-  // Always against the pressure: a runaway would need a positive slope.
+  // The slope always opposes the pressure. A runaway would need a positive slope.
   for (const double pressure : {-6.2e6, 0.0, 6.1e6, 6.2e6, 6.3e6}) {
     CAPTURE(pressure);
     CHECK(servo(D(1e-4), D::variable(pressure, 0)).derivative[0] < 0.0);
@@ -71,7 +71,7 @@ TEST_CASE("dry_friction: breakaway, Coulomb limit, odd, nothing at rest", "[mode
   const auto friction = [](auto v) { return dry_friction(v, 200.0, 80.0, 0.01, 1e-4); };
   CHECK(friction(0.0) == 0.0);
   CHECK(friction(-0.02) == -friction(0.02));
-  CHECK_THAT(friction(0.2), WithinRel(200.0, 1e-14));  // exp(-400) is nothing
+  CHECK_THAT(friction(0.2), WithinRel(200.0, 1e-14));  // exp(-400) is negligible
   CHECK_THAT(friction(0.01), WithinRel(200.0 + 80.0 * std::exp(-1.0), 1e-14));
   CHECK_THAT(friction(D::variable(0.0, 0)).derivative[0], WithinRel(280.0 / 1e-4, 1e-14));
 }
@@ -106,19 +106,19 @@ TEST_CASE("aerated_bulk_modulus: oil at high pressure, the air's at low", "[mode
     CHECK(beta > before);
     before = beta;
   }
-  // beta = -V dp/dV of oil and air that are compressed each for itself.
+  // beta = -V dp/dV for oil and air that are compressed independently.
   const double p = 8e5;
   const auto volume = [&](double at) {
     return 0.99 * std::exp(-at / oil) + 0.01 * std::pow(101325.0 / (at + 101325.0), 1.0 / 1.4);
   };
   const double slope = (volume(p + 10.0) - volume(p - 10.0)) / 20.0;
-  // The law leaves out how much the oil itself has shrunk: p / beta.
+  // The law neglects how much the oil itself has shrunk, p / beta.
   CHECK_THAT(aerated_bulk_modulus(p, oil, 0.01, 1.4), WithinRel(-volume(p) / slope, 2.0 * p / oil));
 }
 
 TEST_CASE("terms: a hose is stiff where its pressure turns and yields as it goes on", "[model]") {
   const double yield_pa = 5e5;
-  double memory = 1.0;  // came up
+  double memory = 1.0;  // the pressure came from below
   const auto walk = [&](double to_pa) {
     double taken = 0.0;
     const double step_pa = to_pa / 20000.0;
@@ -146,7 +146,7 @@ TEST_CASE("terms: a braid yields later the higher the pressure", "[model]") {
 }
 
 TEST_CASE("terms: two orifices in series pass the flow of one", "[model]") {
-  // y sqrt(P - p) = l sqrt(p) = o sqrt(P) for the pressure p between them.
+  // With the pressure p between them: y sqrt(P - p) = l sqrt(p) = o sqrt(P).
   const double head_pa = 3e6;
   for (const double y : {0.0, 0.3, 2.0, 40.0}) {
     const double l = 7.0;

@@ -5,7 +5,8 @@ using namespace rigcal::model;
 
 namespace {
 
-/// Every combination of terms that changes the layout, every parameter of the plant once.
+/// Every combination of terms that changes the layout, with every parameter of the plant at least
+/// once.
 std::vector<std::pair<Scenario, Experiment>> two_chamber_scenarios() {
   const NamedValues edges{
       {"gain_supply_to_a", 1.1},    {"gain_a_to_tank", 0.9},      {"gain_supply_to_b", 0.8},
@@ -147,7 +148,7 @@ std::vector<std::pair<Scenario, Experiment>> two_chamber_scenarios() {
       {{"table, load sensing", Signal::sine(9.0, 8.0), by_table, none}, proportional_rig()});
   rows.push_back(
       {{"pushed in against its valves", Signal::sine(4.0, 8.0), pushed, none}, proportional_rig()});
-  // Into the other stop, its position half a stroke out.
+  // Into the other stop, whose position is half a stroke out.
   rows.push_back({{"short stroke",
                    Signal::square(3.0, 4.0),
                    {{"stroke", 0.008}, {"stop_stiffness", 2e6}},

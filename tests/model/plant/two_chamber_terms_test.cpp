@@ -1,5 +1,5 @@
-// Sign and size of every optional term of the two-chamber plant, as steady states, exact solutions
-// and one derivative written by hand (docs/model.md).
+// Tests sign and size of every optional term of the two-chamber plant against steady states, exact
+// solutions, and one derivative written by hand (docs/model.md).
 
 #include <array>
 #include <catch2/catch.hpp>
@@ -23,12 +23,12 @@ double head_root(double pressure_pa) {
   return std::copysign(std::sqrt(std::abs(pressure_pa)), pressure_pa);
 }
 
-/// Flow of an open edge.
+/// Flow through an open edge.
 double edge_flow(double opening_v, double head_pa) {
   return 0.6 * 0.02075 * 4e-6 * opening_v * head_root(2.0 * head_pa / 847.0);
 }
 
-/// A single-rod cylinder with so long a stroke that it comes to a steady speed.
+/// A single-rod cylinder with a stroke long enough to reach a steady speed.
 Experiment driven_rod(double command_v) {
   Experiment e = single_rod_rig();
   e.inputs.drive = Signal::constant(command_v);
@@ -72,7 +72,7 @@ TEST_CASE("two_chamber: in steady motion the pressures hold what loads the pisto
       CAPTURE(row.key, direction, s.v);
       CHECK(direction * s.v > 0.03);
       CHECK_THAT(s.push_n(), WithinRel(400.0 * s.v + row.load_n, 1e-5));
-      // A load cell in the rod reads all but the dry friction of the cylinder.
+      // A load cell in the rod reads everything except the dry friction of the cylinder.
       const double friction_n = std::string(row.key) == "coulomb_friction" ? row.load_n : 0.0;
       CHECK_THAT(s.force_n, WithinRel(s.push_n() - friction_n, 1e-9));
       CHECK_THAT(s.work_flow, WithinRel(0.5 * (kA_m2 + kB_m2) * s.v, 1e-9));
@@ -190,7 +190,7 @@ TEST_CASE("two_chamber: the supply falls by its resistance times what either edg
 }
 
 TEST_CASE("two_chamber: the supply follows its source with resistance times capacity", "[model]") {
-  Experiment e = driven_rod(0.0);  // a closed valve takes nothing
+  Experiment e = driven_rod(0.0);  // a closed valve takes no flow
   e.set("supply_resistance", 2e10).set("supply_capacity", 5e-12);
   e.inputs.supply_pressure_pa = Signal::linear({0.0, 1e-6, 1.0}, {4e6, 5e6, 5e6});
   const double tau = 2e10 * 5e-12;
@@ -253,12 +253,13 @@ TEST_CASE("two_chamber: the derivative with volumes, air, stops and hoses, by ha
   for (const Row& row : {
            Row{0.03, 0.04, 2e6, 3e6, 0.4, -0.3, 0.0},
            Row{0.03, -0.04, 2e6, 3e6, 0.4, -0.3, 0.0},
-           // 1 mm into the retracted stop on the way in, and on the way out; the same extended.
+           // 1 mm into the retracted stop, moving in and moving out; then the same at the extended
+           // stop.
            Row{-0.081, -0.1, 2e6, 5e5, 0.2, 0.1, 1e4 * (1.0 + 2.0 * 0.1)},
            Row{-0.081, 0.1, 2e6, 5e5, 0.2, 0.1, 1e4 * (1.0 - 2.0 * 0.1)},
            Row{0.121, 0.1, 2e6, 5e5, 0.2, 0.1, -1e4 * (1.0 + 2.0 * 0.1)},
            Row{0.121, -0.1, 2e6, 5e5, 0.2, 0.1, -1e4 * (1.0 - 2.0 * 0.1)},
-           // So fast on the way out that the stop would have to pull.
+           // Moving out so fast that the stop would have to pull.
            Row{0.121, -0.6, 2e6, 5e5, 0.2, 0.1, 0.0},
        }) {
     CAPTURE(row.x, row.v);
@@ -273,7 +274,8 @@ TEST_CASE("two_chamber: the derivative with volumes, air, stops and hoses, by ha
     const double flow_b = kB_m2 * row.v - 3e-12 * (row.p_B - kTank_pa);
     const double volume_a = std::max(2e-5 + kA_m2 * (row.x + 0.08), 1e-3 * kA_m2 * 0.2);
     const double volume_b = std::max(3e-5 + kB_m2 * (0.2 - row.x - 0.08), 1e-3 * kB_m2 * 0.2);
-    // The share that yields, where the pressure goes: ((1 + z) / 2)^2 up, ((1 - z) / 2)^2 down.
+    // The fraction that yields in the direction of the pressure change: ((1 + z) / 2)^2 up, ((1 -
+    // z) / 2)^2 down.
     const auto yields = [](double z, double flow) {
       return std::pow(0.5 * (1.0 + (flow > 0.0 ? z : -z)), 2);
     };
@@ -310,13 +312,13 @@ TEST_CASE("two_chamber: without a given place zero lies half way between the sto
   e.outputs = {Output::position, Output::pressure_a, Output::pressure_b};
   for (const double side : {-1.0, 1.0}) {
     for (const double press : {-1.0, 1.0}) {
-      e.set("initial_position", 0.15 * side);  // read as beyond the stop at 0.1
+      e.set("initial_position", 0.15 * side);  // the reading is beyond the stop at 0.1
       e.set("initial_pressure_a", press > 0.0 ? 3e6 : 1e6);
       e.set("initial_pressure_b", press > 0.0 ? 1e6 : 3e6);
       const Simulation run = e();
       REQUIRE(run.ok());
       const double push = kA_m2 * run.outputs(0, 1) - kB_m2 * run.outputs(0, 2);
-      // Into the stop by force over stiffness, or just at it.
+      // Pressed into the stop by force over stiffness, or just touching it.
       const double depth = push * side > 0.0 ? push / 1e8 : 0.0;
       CAPTURE(side, push);
       CHECK_THAT(run.outputs(0, 0), WithinAbs(0.1 * side + depth, 1e-12));

@@ -17,7 +17,7 @@ namespace {
 
 using Plant = TwoChamberPlant;
 
-/// Values as the plant takes them.
+/// Values in the form that the plant uses.
 Plant::Coefficients<double> coefficients(const ParameterValues& values) {
   TwoChamberParameters<double> p;
   const auto& fields = kTwoChamberFields<double>;
@@ -25,13 +25,15 @@ Plant::Coefficients<double> coefficients(const ParameterValues& values) {
   return Plant::Coefficients<double>(p);
 }
 
-/// What goes in, is stored and is lost at one instant; or the integrals of it [J].
+/// Power that enters, is stored and is dissipated at one instant [W], or the integrals of these
+/// [J].
 struct Powers {
-  double in = 0.0;          ///< from the source less what flows back into the tank [W]
-  double held = 0.0;        ///< by masses and springs, as their state says [J]
+  double in = 0.0;          ///< from the source, minus the return flow into the tank [W]
+  double held = 0.0;        ///< stored in masses and springs, computed from their states [J]
   double compressed = 0.0;  ///< into the oil of both chambers [W]
-  double lost = 0.0;        ///< each term by a formula that is never negative but the next [W]
-  double hose_lost = 0.0;   ///< part of it, in the slip of the hoses: positive in the mean [W]
+  double lost = 0.0;        ///< dissipated; except for hose_lost, no term can be negative [W]
+  double hose_lost =
+      0.0;  ///< the component of `lost` from the slip of the hoses; positive on average [W]
 };
 
 constexpr std::size_t kMostStates = 12;
@@ -72,7 +74,8 @@ Powers powers(const States& x, double spool_v, const Layout& layout,
     result.held += 0.5 * p.supply_capacity_m3_per_pa * P_s * P_s;
   }
   if (layout.hoses >= 0) {
-    // A hose stores C (p - p_h z): a spring of C behind a slip of p_h z, where z is its memory.
+    // A hose stores C (p - p_h z): a spring with capacity C in series with a slip of p_h z, where z
+    // is its memory.
     const auto rates = Plant::hose_rates(x, dx, p, terms);
     for (const int side : {0, 1}) {
       const double C = side == 0 ? p.hose_capacity_a_m3_per_pa : p.hose_capacity_b_m3_per_pa;
@@ -99,7 +102,7 @@ Powers powers(const States& x, double spool_v, const Layout& layout,
   return result;
 }
 
-/// Energies of a run, by the trapezoidal rule over its samples [J].
+/// Energies of a run [J], by the trapezoidal rule over its samples.
 Powers energies(const Experiment& e) {
   const Layout layout = layout_of(e.rig, e.values, {}, Plant::kStates);
   const auto p = coefficients(e.values);
@@ -107,7 +110,7 @@ Powers energies(const Experiment& e) {
   Powers sum;
   Powers before;
   for (std::size_t i = 0; i < e.times_s.size(); ++i) {
-    // From sample to sample, because states are available only at the end of a run.
+    // Simulates from sample to sample, because states are available only at the end of a run.
     const std::size_t from = i == 0 ? 0 : i - 1;
     const auto times = std::span(e.times_s).subspan(from, i - from + 1);
     const std::vector<Output> outputs{Output::spool};
@@ -133,21 +136,21 @@ Powers energies(const Experiment& e) {
   return sum;
 }
 
-/// Part of the half second over which energy is followed.
+/// Fraction of half a second over which the energy balance is computed.
 constexpr double kPart = rigcal::test::kSanitized ? 0.4 : 1.0;
 
 std::vector<double> energy_grid(int intervals) {
   return grid(0.0, 0.5 * kPart, static_cast<int>(kPart * intervals) + 1);
 }
 
-/// Work put in less what is stored and what is dissipated, over the work [1].
+/// Work input minus stored and dissipated energy, relative to the work [1].
 double gap(const Powers& total) {
   return (total.in - total.held - total.compressed - total.lost) / total.in;
 }
 
 double energy_gap(const Experiment& e) { return gap(energies(e)); }
 
-/// The paper's rig, as symmetric two-chamber cylinder and as load-pressure plant.
+/// Compares the paper's rig as a symmetric two-chamber cylinder and as a load-pressure plant.
 double distance_from_load_pressure(double amplitude_m) {
   Experiment both = two_chamber_rig();
   Experiment one;
@@ -180,7 +183,7 @@ TEST_CASE("two_chamber: two equal edges in series are the servo valve of eq. 4",
           p.valve_gain_m_per_v * command_v, P_L, P_s,
           valve_conductance(p.discharge_coefficient, p.area_gradient_m, p.density_kg_per_m3),
           p.leakage_smoothing_pa);
-      // eps bends the roots of half the head a little otherwise
+      // The smoothing acts slightly differently on the roots of half the head.
       CHECK_THAT(Plant::output(Output::servo_flow, x, in, p, {}), WithinRel(expected, 1e-7));
     }
   }
@@ -202,7 +205,8 @@ TEST_CASE("two_chamber: work in is stored or dissipated", "[model]") {
   SECTION("into the stop") {
     e.set("retracted_position", -0.195).set("stop_stiffness", 2e6).set("stop_damping", 20.0);
   }
-  // The trapezoidal rule on the samples is what remains: it falls with the square of their spacing.
+  // The remaining error is that of the trapezoidal rule, which falls with the square of the sample
+  // spacing.
   e.times_s = energy_grid(2000);
   const double coarse = energy_gap(e);
   e.times_s = energy_grid(8000);
@@ -217,7 +221,7 @@ TEST_CASE("two_chamber: what hoses take in they give back or turn into heat", "[
   e.set("hose_capacity_a", 3e-13).set("hose_capacity_b", 2e-13).set("hose_yield", 6e5);
   e.set("supply_resistance", 2e10).set("supply_capacity", 5e-12);
   e.options.tolerance = 1e-9;
-  // Where a pressure turns the power jumps: the rule is of first order there.
+  // Where a pressure reverses, the power jumps, and the rule is of first order.
   e.times_s = energy_grid(8000);
   const Powers total = energies(e);
   CHECK_THAT(gap(total), WithinAbs(0.0, 1e-5));
@@ -226,7 +230,8 @@ TEST_CASE("two_chamber: what hoses take in they give back or turn into heat", "[
 
 TEST_CASE("two_chamber: the load-pressure plant is its limit where the volumes do not vary",
           "[model]") {
-  // The stiffness of both chambers is even in the travel, so the distance falls with its square.
+  // The stiffness of the chambers is an even function of travel, so the difference falls with its
+  // square.
   const double far = distance_from_load_pressure(4e-3);
   const double near = distance_from_load_pressure(1e-3);
   CHECK(near < far / 10.0);
@@ -252,7 +257,7 @@ TEST_CASE("two_chamber: mirrored, it does the mirrored thing", "[model]") {
   const Simulation mirrored = m();
   REQUIRE(run.ok());
   REQUIRE(mirrored.ok());
-  // Other roundings, the same equations.
+  // The equations are the same, only rounding differs.
   const auto close = [](const auto& a, const auto& b) { return peak(a - b) < 1e-9 * peak(a); };
   CHECK(close(run.outputs.col(0), -mirrored.outputs.col(0)));
   CHECK(close(run.outputs.col(1), mirrored.outputs.col(2)));
@@ -275,7 +280,7 @@ TEST_CASE("two_chamber: a stop holds the piston and gives way by force over stif
   CHECK_THAT(run.outputs(3000, 2), WithinRel(4.4e6, 1e-3));
   CHECK_THAT(run.outputs(3000, 3), WithinRel(1e5, 1e-2));
   CHECK_THAT(run.outputs(3000, 1), WithinAbs(0.0, 1e-6));
-  // Steps wait for nothing: arrival and 2 s of standing cost a few hundred.
+  // Steps are not limited by the stop: the arrival and 2 s at rest cost a few hundred.
   CHECK(run.steps + run.rejected_steps < 3000);
 }
 
@@ -283,7 +288,7 @@ TEST_CASE("two_chamber: steady speeds are those of orifices in series with the p
   Experiment e = single_rod_rig();
   e.inputs.drive = Signal::constant(2.0);
   e.set("damping", 0.0).set("retracted_position", 0.0).set("mass", 1.0);
-  e.times_s = {0.0, 3.0};  // the ringing has died away
+  e.times_s = {0.0, 3.0};  // the ringing has decayed
   e.outputs = {Output::velocity, Output::pressure_a, Output::pressure_b};
   const Simulation run = e();
   REQUIRE(run.ok());
@@ -365,14 +370,14 @@ TEST_CASE("two_chamber: hoses that yield damp the ringing of a piston", "[model]
   e.outputs = {Output::velocity};
   const Simulation rigid = e();
   e.set("hose_capacity_a", 3e-13).set("hose_capacity_b", 3e-13);
-  // What grows with the pressure alone, 3 bar at 25 bar absolute.
+  // Only the component that is proportional to the pressure: 3 bar at 25 bar absolute.
   Experiment braided = e;
   const Simulation braid = braided.set("hose_yield_ratio", 0.12)();
   const Simulation soft = e.set("hose_yield", 3e5)();
   REQUIRE(rigid.ok());
   REQUIRE(soft.ok());
   REQUIRE(braid.ok());
-  // Nothing else takes energy: a closed valve, no friction.
+  // Nothing else dissipates energy: the valve is closed, and there is no friction.
   CHECK(peak(rigid.outputs.bottomRows(500)) > 0.045);
   CHECK(peak(soft.outputs.bottomRows(500)) < 0.025);
   CHECK(peak(braid.outputs.bottomRows(500)) < 0.025);
@@ -389,7 +394,7 @@ TEST_CASE("two_chamber: at rest the pressures hold the load", "[model]") {
   CHECK_THAT(run.outputs(0, 1) + run.outputs(0, 2), WithinRel(4.5e6, 1e-12));
   CHECK_THAT(2.0e-4 * run.outputs(0, 1) - 1.2e-4 * run.outputs(0, 2),
              WithinRel(5.0 * 9.81 + 40.0, 1e-9));
-  CHECK(peak(run.outputs.row(1) - run.outputs.row(0)) < 1.0);  // Pa: nothing moves
+  CHECK(peak(run.outputs.row(1) - run.outputs.row(0)) < 1.0);  // Pa: no motion
   SECTION("a pressure that was read tells the other") {
     e.rig.initial = InitialState::given;
     e.set("initial_pressure_a", 2e6).set("pressure_a_offset", 1e5).set("pressure_a_gain", 1.9);

@@ -1,4 +1,4 @@
-// The spool's answer to a step of the command from rest, in closed form.
+// Tests the response of the spool at rest to a step of the command against closed forms.
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -51,7 +51,8 @@ TEST_CASE("valve: a second-order lag", "[model]") {
 }
 
 TEST_CASE("valve: a first-order lag within its rate limit", "[model]") {
-  // A ramp until the lag alone is slower, at 2 V - r tau; then the lag's exponential.
+  // A ramp until the lag becomes slower than the limit, at 2 V - r tau; then the exponential of the
+  // lag.
   const double tau = 4e-3;
   const double rate = 200.0;
   Experiment e;

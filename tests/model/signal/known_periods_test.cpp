@@ -7,7 +7,7 @@ using namespace rigcal::model;
 
 namespace {
 
-/// Two periods of three samples are known; two and a third are to come.
+/// Two periods of three samples are known; two and a third are to be extrapolated.
 const KnownPeriods kTwoOfThree{6, 3, 1.0};
 const KnownPeriods kReversed{6, 3, -1.0};
 std::vector<double> two_periods() {
@@ -41,7 +41,7 @@ TEST_CASE("known_periods: each with the other sign, where that is how they repea
   continue_periods(kReversed, std::vector{0.0, 0.0, 0.0}, column);
   CHECK(column ==
         std::vector{1.0, 2.0, 3.0, -5.0, -4.0, -3.0, 5.0, 4.0, 3.0, -5.0, -4.0, -3.0, 5.0});
-  // The last period is (5, 4, 3) against (1, 2, 3) before it, both with the sign of the first.
+  // The last period is (5, 4, 3) and the one before it (1, 2, 3), both with the sign of the first.
   column = known;
   column.resize(13, 0.0);
   continue_periods(kReversed, std::vector{0.5, 0.75, 1.0}, column);

@@ -13,7 +13,7 @@ std::optional<SampledPeriod> period_of(const Signal& drive, const std::vector<do
   return sampled_period({drive, {}, {}}, times_s, false, tick_s);
 }
 
-/// For a rig whose response reverses with its inputs.
+/// Period for a rig whose response reverses with its inputs.
 std::optional<SampledPeriod> reversible_period_of(const Signal& drive,
                                                   const std::vector<double>& times_s,
                                                   std::optional<double> tick_s = {}) {
@@ -30,12 +30,12 @@ TEST_CASE("sampled_period: one period of the drive, or as many as take whole sam
     CHECK(period->duration_s == Approx(0.1).epsilon(1e-15));
     CHECK(period->samples == 100);
   }
-  const auto three = period_of(Signal::sine(0.01, 3.0), times_s);  // 333 1/3 samples each
+  const auto three = period_of(Signal::sine(0.01, 3.0), times_s);  // 333 1/3 samples per period
   REQUIRE(three);
   CHECK(three->duration_s == Approx(1.0).epsilon(1e-15));
   CHECK(three->samples == 1000);
   const auto late = period_of(Signal::sine(0.01, 10.0), grid(1.6e9, 1.6e9 + 3.0, 3001));
-  REQUIRE(late);  // time stamps as coarse as 2e-7 s
+  REQUIRE(late);  // time stamps have a resolution of only 2e-7 s
   CHECK(late->samples == 100);
 }
 
@@ -44,7 +44,7 @@ TEST_CASE("sampled_period: none where inputs or samples do not repeat themselves
   const Signal sine = Signal::sine(0.01, 10.0);
   CHECK_FALSE(period_of(Signal::chirp(0.01, 1.0, 10.0, 2.0, false), times_s));
   CHECK_FALSE(period_of(Signal::held({0.0, 1.0}, {0.0, 1.0}), times_s));
-  CHECK_FALSE(period_of(Signal::constant(0.01), times_s));   // nor has it one to look at
+  CHECK_FALSE(period_of(Signal::constant(0.01), times_s));   // a constant has no period to detect
   CHECK_FALSE(period_of(Signal::sine(0.01, 0.1), times_s));  // longer than the record
   CHECK_FALSE(period_of(Signal::sine(0.01, kPi), times_s));
   auto shaken = times_s;
@@ -69,15 +69,15 @@ TEST_CASE("sampled_period: half periods of a reversible rig", "[model]") {
     CHECK_FALSE(period_of(drive, times_s)->reversed);
   }
   const auto three_halves = reversible_period_of(Signal::square(0.01, 3.0), times_s);
-  REQUIRE(three_halves);  // 166 2/3 samples each
+  REQUIRE(three_halves);  // 166 2/3 samples per half period
   CHECK(three_halves->reversed);
   CHECK(three_halves->samples == 500);
   const auto odd = reversible_period_of(Signal::sine(0.01, 8.0), grid(0.0, 3.0, 601));
-  REQUIRE(odd);  // 12 1/2 samples
+  REQUIRE(odd);  // 12 1/2 samples per half period
   CHECK_FALSE(odd->reversed);
   CHECK(odd->samples == 25);
   const auto raised = reversible_period_of(Signal::ripple(0.1, 0.01, 10.0, 0.0), times_s);
-  REQUIRE(raised);  // not the negative of itself half a period later
+  REQUIRE(raised);  // half a period later it is not its own negative
   CHECK_FALSE(raised->reversed);
   CHECK(raised->samples == 100);
   CHECK(reversible_period_of(Signal::sine(0.01, 10.0), times_s, 2e-3)->samples == 50);

@@ -35,8 +35,8 @@ std::vector<Named> all_kinds() {
 }  // namespace
 
 TEST_CASE("signal: the slope is the derivative of the value", "[model]") {
-  // A central difference of this step is off by h^2 / 6 of the third derivative (below 4e4) and by
-  // rounding / h, 1e-10.
+  // Errors of a central difference with this step: h^2 / 6 of the third derivative, which is below
+  // 4e4, and rounding / h, which is 1e-10.
   constexpr double kStep = 1e-5;
   for (const Named& row : all_kinds()) {
     for (const double t : {0.13, 0.71, 1.9, 2.2, 3.05}) {
@@ -102,7 +102,8 @@ TEST_CASE("square: rounded sample times at an edge get the new half period", "[m
     const Signal square = Signal::square(1.0, frequency_hz);
     for (int k = 1; k < 400; ++k) {
       const double expected = k % 2 == 0 ? 1.0 : -1.0;
-      const double edge = k * (0.5 / frequency_hz);  // not rounded as the signal rounds it
+      const double edge =
+          k * (0.5 / frequency_hz);  // rounded differently from the signal's own edges
       CAPTURE(frequency_hz, k);
       CHECK(square.value(edge) == expected);
       CHECK(square.value(std::nextafter(edge, 0.0)) == expected);
@@ -124,13 +125,13 @@ TEST_CASE("chirp: phase and frequency are continuous where the sweep ends", "[mo
     CHECK_THAT(chirp.sample(0, 0.0).slope, WithinRel(2.0 * kPi * 0.5, 1e-14));
     CHECK_THAT(chirp.value(3.0 + 1.0 / 8.0), WithinAbs(chirp.value(3.0), 1e-12));
   }
-  // Cycles of a linear sweep: (f0 + f1) / 2 times its length; of a logarithmic one
-  // (f1 - f0) T / ln(f1 / f0).
+  // Number of cycles in a linear sweep: (f0 + f1) / 2 times its length. In a logarithmic one: (f1 -
+  // f0) T / ln(f1 / f0).
   CHECK_THAT(Signal::chirp(1.0, 1.0, 2.0, 1.5, false).value(1.5),
              WithinAbs(std::sin(2.0 * kPi * 2.25), 1e-12));
   CHECK_THAT(Signal::chirp(1.0, 1.0, 2.0, 1.5, true).value(1.5),
              WithinAbs(std::sin(2.0 * kPi * 1.5 / std::log(2.0)), 1e-12));
-  // The same frequency at both ends is a sine, logarithmic or not.
+  // With the same frequency at both ends it is a sine, whether logarithmic or not.
   CHECK_THAT(Signal::chirp(1.0, 2.0, 2.0, 1.0, true).value(0.3),
              WithinAbs(Signal::sine(1.0, 2.0).value(0.3), 1e-12));
 }
@@ -139,7 +140,7 @@ TEST_CASE("signal: no step may skip an oscillation", "[model]") {
   CHECK(Signal::sine(1.0, 10.0).max_step() <= 0.1 / 4.0);
   CHECK(Signal::chirp(1.0, 20.0, 1.0, 5.0, false).max_step() <= 0.05 / 4.0);
   CHECK(Signal::constant(1.0).max_step() == kInfinity);
-  CHECK(Signal::square(1.0, 10.0).max_step() == kInfinity);  // its segments see to that
+  CHECK(Signal::square(1.0, 10.0).max_step() == kInfinity);  // its segments ensure that
 }
 
 TEST_CASE("signal: refuses what is not a signal", "[model]") {
@@ -157,7 +158,8 @@ TEST_CASE("signal: refuses what is not a signal", "[model]") {
 }
 
 TEST_CASE("Signal::shaped: a shape in pieces, of any amplitude and frequency", "[model]") {
-  // Up, then constant, then down twice as far in half a period: 0, 1, 1, -1 at the ends of pieces.
+  // Up, then constant, then down twice as far within half a period: 0, 1, 1, -1 at the ends of the
+  // pieces.
   static constexpr PeriodicShape kShape{4,
                                         [](int piece, double phase) {
                                           if (piece == 0) return SignalSample{4.0 * phase, 4.0};
@@ -173,7 +175,7 @@ TEST_CASE("Signal::shaped: a shape in pieces, of any amplitude and frequency", "
   for (std::size_t k = 0; k < 9; ++k) {
     const double end = 0.5 * static_cast<double>(k + 1);
     CHECK(signal.segment_end(k) == Approx(end));
-    CHECK(signal.segment_at(end) == k + 1);  // at an edge the later piece
+    CHECK(signal.segment_at(end) == k + 1);  // at an edge, the later piece
     CHECK(signal.segment_at(end - 1e-3) == k);
   }
   CHECK(signal.value(0.25) == Approx(1.5));
@@ -181,7 +183,7 @@ TEST_CASE("Signal::shaped: a shape in pieces, of any amplitude and frequency", "
   CHECK(signal.value(1.25) == Approx(0.0).margin(1e-12));
   CHECK(signal.value(4.25) == Approx(1.5));  // two periods later
   CHECK(signal.sample(6, 3.25).slope == Approx(3.0 * 0.5 * -8.0));
-  CHECK(signal.value(-0.1) == Approx(-0.6));  // the first piece goes on
+  CHECK(signal.value(-0.1) == Approx(-0.6));  // the first piece continues before zero
   CHECK(signal.max_step() == kInfinity);
   CHECK_THROWS_AS(Signal::shaped(kShape, 1.0, -1.0), std::invalid_argument);
 }

@@ -35,10 +35,10 @@ TEST_CASE("error_norm: each state against its own running peak", "[model]") {
   n.see(state(0.1, 0.0, 1e6, 0.0));
   const X now = state(0.1, 0.0, 1e6, 0.0);
   const double e = worst(n, state(0.5 * kTolerance, 0.0, 0.0, 0.0), now);
-  CHECK_THAT(e, WithinRel(std::sqrt(0.5), 1e-14));  // one state of two at its tolerance
+  CHECK_THAT(e, WithinRel(std::sqrt(0.5), 1e-14));  // one of two states is at its tolerance
   CHECK_THAT(worst(n, state(0.0, 0.0, 2e6 * kTolerance, 0.0), now),
              WithinRel(std::sqrt(0.5), 1e-14));
-  // A new value above the peak counts at once.
+  // A new value above the peak counts immediately.
   CHECK_THAT(worst(n, state(kTolerance, 0.0, 0.0, 0.0), state(1.0, 0.0, 0.0, 0.0)),
              WithinRel(std::sqrt(0.5), 1e-14));
 }
@@ -61,8 +61,8 @@ TEST_CASE("error_norm: the worst of state and sensitivities rules", "[model]") {
   n.see(state(1.0, 3.0, 1e6, 0.0));
   const double state_error = 0.1 * kTolerance;
   const double e = worst(n, state(state_error, 3.0 * kTolerance * 50.0, 0.0, 0.0), kZero);
-  CHECK_THAT(e, WithinRel(std::sqrt(0.5), 1e-14));  // at the fifty times looser tolerance
-  // A sensitivity that is still zero: one hundredth of state / parameter is its floor.
+  CHECK_THAT(e, WithinRel(std::sqrt(0.5), 1e-14));  // the tolerance is fifty times looser
+  // The floor of a sensitivity that is still zero is one hundredth of state / parameter.
   Norm fresh = norm();
   fresh.see(state(1.0, 0.0, 1e6, 0.0));
   CHECK_THAT(worst(fresh, state(0.0, 50.0 * kTolerance * 0.01 * 1.0 / 2.0, 0.0, 0.0), kZero),

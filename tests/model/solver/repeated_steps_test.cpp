@@ -6,7 +6,7 @@ using namespace rigcal::model;
 
 namespace {
 
-/// A period of one second in which steps ended at 0.1, 0.3 (forced) and 0.6.
+/// After a period of one second in which steps ended at 0.1, 0.3 (forced) and 0.6.
 RepeatedSteps after_a_period() {
   RepeatedSteps steps(SampledPeriod{1.0, 10});
   steps.note(0.1, false);
@@ -23,15 +23,15 @@ TEST_CASE("repeated_steps: end where one ended a period ago, if that is about as
   const auto at = [&steps](double t, double planned) { return steps.follow(t, planned).size_s; };
   CHECK(at(1.0, 0.12) == Approx(0.1));
   CHECK_FALSE(steps.follow(1.0, 0.12).forced);
-  CHECK(at(1.0, 0.095) == Approx(0.1));  // by little longer than planned
-  CHECK(at(1.0, 0.05) == 0.05);          // not by more
-  CHECK(at(1.0, 0.15) == 0.15);          // nor shorter by more than a third
-  CHECK(at(1.1, 1.0) == Approx(0.2));    // what was forced is taken if it is much shorter
+  CHECK(at(1.0, 0.095) == Approx(0.1));  // slightly longer than planned
+  CHECK(at(1.0, 0.05) == 0.05);          // not much longer
+  CHECK(at(1.0, 0.15) == 0.15);          // not shorter by more than a third
+  CHECK(at(1.1, 1.0) == Approx(0.2));    // a forced step is repeated even if it is much shorter
   CHECK(steps.follow(1.1, 1.0).forced);
   CHECK(at(1.2, 0.11) == Approx(0.1));  // from between two ends to the next one
-  CHECK(at(1.3, 0.65) == Approx(0.7));  // the last one in reach
-  CHECK(at(1.3, 0.3) == Approx(0.3));   // after that was rejected
-  CHECK(at(2.5, 0.3) == 0.3);           // behind all that is known
+  CHECK(at(1.3, 0.65) == Approx(0.7));  // the last end within reach
+  CHECK(at(1.3, 0.3) == Approx(0.3));   // after the longer step was rejected
+  CHECK(at(2.5, 0.3) == 0.3);           // beyond all known ends
 }
 
 TEST_CASE("repeated_steps: an instant is not left by a step of its rounding", "[model]") {

@@ -12,7 +12,7 @@ using Catch::WithinAbs;
 
 namespace {
 
-/// One equation x' = f(x, t; p) with the derivatives that a step wants, written by hand.
+/// One equation x' = f(x, t; p), with the derivatives that a step needs, written by hand.
 struct Equation {
   std::function<double(double x, double t)> f;
   std::function<double(double x, double t)> f_x;
@@ -31,14 +31,15 @@ struct Equation {
   }
 };
 
-/// x' = -t x^2, x(0) = 2: nonlinear, depends on time; x = 2 / (1 + t^2).
+/// x' = -t x^2, x(0) = 2: nonlinear and dependent on time; x = 2 / (1 + t^2).
 Equation nonlinear() {
   return {[](double x, double t) { return -t * x * x; },
           [](double x, double t) { return -2.0 * t * x; }, [](double x, double) { return -x * x; },
           [](double t) { return 2.0 / (1.0 + t * t); }};
 }
 
-/// Prothero and Robinson: x' = -lambda (x - g) + g' with g = sin(t + 1), whose solution is g.
+/// Problem by Prothero and Robinson: x' = -lambda (x - g) + g' with g = sin(t + 1), whose solution
+/// is g.
 Equation prothero_robinson(double lambda) {
   return {[=](double x, double t) { return -lambda * (x - std::sin(t + 1.0)) + std::cos(t + 1.0); },
           [=](double, double) { return -lambda; },
@@ -48,7 +49,7 @@ Equation prothero_robinson(double lambda) {
 
 struct Errors {
   double end = 0.0;    ///< at t = 1
-  double dense = 0.0;  ///< largest within the steps
+  double dense = 0.0;  ///< largest error within the steps
 };
 
 Errors errors_of(const Equation& equation, int steps) {
@@ -76,8 +77,8 @@ struct SignOfD4Changed : AsShipped {
   const double d4 = -AsShipped::d4;
 };
 
-/// The step of Odeint's rosenbrock4 for one equation, with its coefficients (it is based on uBLAS,
-/// which does not compile as C++20 in Boost 1.74).
+/// A step of Odeint's rosenbrock4 for one equation, with its coefficients. The original uses uBLAS,
+/// which does not compile as C++20 in Boost 1.74.
 template <typename Coefficients>
 double odeint_error(const Equation& equation, int steps) {
   const Coefficients c;
@@ -116,8 +117,8 @@ TEST_CASE("rosenbrock: order 4 where the equation is nonlinear and depends on ti
 }
 
 TEST_CASE("rosenbrock: no order reduction on Prothero and Robinson's problem", "[model]") {
-  // Order 4 with one constant for every stiffness: the worst error over all lambda falls so. (At a
-  // given large lambda the error is h^3 / lambda, far below that.)
+  // Order 4 with the same constant for every stiffness: the worst error over all lambda has this
+  // order. (For a given large lambda, the error is h^3 / lambda, which is far smaller.)
   const auto worst_error = [](int steps) {
     Errors worst;
     for (const double lambda : {1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6}) {
@@ -136,7 +137,7 @@ TEST_CASE("rosenbrock: no order reduction on Prothero and Robinson's problem", "
 }
 
 TEST_CASE("rosenbrock4 of Odeint: loses order where the equation depends on time", "[model]") {
-  // Why it is not used: d4 of default_rosenbrock_coefficients has the wrong sign.
+  // The reason for not using it: d4 in default_rosenbrock_coefficients has the wrong sign.
   const auto measured_order = [](auto error) { return order(error(40), error(80)); };
   const auto shipped = [](int n) { return odeint_error<AsShipped>(nonlinear(), n); };
   const auto changed = [](int n) { return odeint_error<SignOfD4Changed>(nonlinear(), n); };
@@ -156,7 +157,7 @@ TEST_CASE("rosenbrock: L-stable, an infinitely fast mode is gone after one step"
     State<1, 0> error;
     stepper.do_step(decay, decay.linearise(1.0, 0.0), x, 0.0, x_new, 1.0, error);
     CAPTURE(z, x_new[0]);
-    CHECK(std::abs(x_new[0]) < 20.0 / z);  // R(z) falls at least like 1 / z
+    CHECK(std::abs(x_new[0]) < 20.0 / z);  // R(z) falls at least as fast as 1 / z
   }
 }
 
@@ -194,7 +195,7 @@ struct Pair {
   }
 };
 
-/// From t = 0 to 1.
+/// Integrates from t = 0 to 1.
 Pair::X after_a_second(const Pair& system, int steps) {
   Rosenbrock<2, 2> stepper;
   Pair::X x{Pair::D(0.9), Pair::D(-0.4)};
@@ -224,7 +225,7 @@ TEST_CASE("rosenbrock: sensitivities are the derivatives of the solution", "[mod
   };
   for (std::size_t i = 0; i < 2; ++i) {
     CAPTURE(i);
-    // Central difference: kStep^2 of a third derivative near 1.
+    // Error of the central difference: kStep^2 times a third derivative of about 1.
     CHECK_THAT(end[i].derivative[0],
                WithinAbs(difference({1.3 + kStep, 0.8}, {1.3 - kStep, 0.8}, i), 2e-8));
     CHECK_THAT(end[i].derivative[1],

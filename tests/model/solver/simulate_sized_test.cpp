@@ -11,10 +11,10 @@ using namespace rigcal::model;
 
 namespace {
 
-/// As many as go through one pass.
+/// As many parameters as fit into one pass.
 constexpr const char* kFree[] = {"mass", "bulk_modulus", "valve_gain", "leakage_coefficient"};
 
-/// As simulate() would where the processor has no AVX2.
+/// Simulates as simulate() would on a processor without AVX2.
 template <typename Plant, int N>
 Simulation by_base(const Experiment& e) {
   const Layout layout = layout_of(e.rig, e.values, e.free, Plant::kStates);
@@ -36,7 +36,7 @@ Simulation by_base(const Experiment& e) {
 template <typename Plant, int N>
 void check_same(Experiment e) {
   e.options.periodic_steady_state = false;
-  // Steps of other sizes, where rounding makes them so, are exact enough then.
+  // Rounding may lead to different steps. With this tolerance, both are exact enough.
   e.options.tolerance = 1e-11;
   for (const char* key : kFree) e.free.push_back(parameter_index(e.values.plant, key));
   const Simulation here = e();

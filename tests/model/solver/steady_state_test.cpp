@@ -16,17 +16,18 @@ namespace {
 constexpr double kStepTolerance = 1e-6;
 constexpr int kPeriods = 41;
 
-/// One state and its sensitivity to a parameter, from period to period; the same at all instants of
-/// one period but for a factor.
+/// One state and its sensitivity to a parameter, as a function of the period. Within a period, the
+/// values at all instants differ only by a factor.
 using Value = std::function<Dual<1>(double period)>;
 
 struct Foreseen {
-  double period = 0.0;  ///< after so many the rest was known; all of them if it never was
+  double period =
+      0.0;  ///< number of periods after which the rest was known; all of them if it never was
   bool reached = false;
   Dual<1> end{0.0};
 };
 
-/// @param sign  of each period against the one before it
+/// @param sign  factor from each period to the next
 Foreseen watch(const Value& value, double sign = 1.0) {
   constexpr double kPeriod = 0.1;
   const double end_s = kPeriods * kPeriod;
@@ -44,7 +45,7 @@ Foreseen watch(const Value& value, double sign = 1.0) {
   return {kPeriods, false, Dual<1>(0.0)};
 }
 
-/// 1 + size ratio^period, its sensitivity that to `ratio`.
+/// 1 + size ratio^period, with its sensitivity to `ratio`.
 Value decay(double size, double ratio) {
   return [=](double period) {
     Dual<1> x(1.0 + size * std::pow(ratio, period));
@@ -57,7 +58,7 @@ Value operator+(const Value& a, const Value& b) {
   return [=](double period) { return a(period) + b(period); };
 }
 
-/// Its state is what that of `value` comes to, but for `tolerances` of a step.
+/// Checks that the extrapolated end agrees with that of `value` within `tolerances` of a step.
 void check_end(const Foreseen& found, const Value& value, double tolerances, double sign = 1.0) {
   const Dual<1> end = value(kPeriods) * std::pow(sign, kPeriods);
   CHECK(std::abs(found.end.value - end.value) < tolerances * kStepTolerance);
@@ -72,8 +73,8 @@ std::vector<int> indices(const Experiment& e, const std::vector<const char*>& ke
 }
 
 struct Both {
-  Simulation all;       ///< every period simulated
-  Simulation foreseen;  ///< as simulate() does
+  Simulation all;       ///< every period is simulated
+  Simulation foreseen;  ///< extrapolated, as simulate() does by default
 };
 
 Both both(Experiment e) {
@@ -86,7 +87,8 @@ Both both(Experiment e) {
   return result;
 }
 
-/// Both are as far from a run at a much smaller tolerance, but for a few tolerances of a step.
+/// Checks that the extrapolated run is about as exact as the complete one, compared with a run at a
+/// much smaller tolerance.
 void check_as_exact(const Experiment& e, const Both& runs) {
   Experiment tight = e;
   tight.options.tolerance = 1e-9;
@@ -110,7 +112,7 @@ TEST_CASE("steady_state: a constant is known after a period, a decay when it is 
   CHECK(constant.period < 1.2);
   CHECK(constant.reached);
   check_end(constant, decay(0.0, 0.5), 1.0);
-  const Foreseen gone = watch(decay(1.0, 1e-4));  // before three periods have been
+  const Foreseen gone = watch(decay(1.0, 1e-4));  // before three periods have passed
   CHECK(gone.period < 3.0);
   CHECK(gone.reached);
   check_end(gone, decay(1.0, 1e-4), 1.0);
@@ -119,7 +121,7 @@ TEST_CASE("steady_state: a constant is known after a period, a decay when it is 
 TEST_CASE("steady_state: a slow decay is foreseen, its sensitivity too", "[model]") {
   for (const double ratio : {0.9, 0.6, -0.5}) {
     CAPTURE(ratio);
-    // A ratio below zero changes sign from period to period, not within one.
+    // A negative ratio changes the sign from period to period, not within one.
     const Value value = ratio > 0.0 ? decay(0.1, ratio) : Value([=](double period) {
       const double whole = std::floor(period + 1e-9);
       return decay(0.1, ratio)(whole);
@@ -140,7 +142,7 @@ TEST_CASE("steady_state: what comes back with the other sign is known as soon", 
     CHECK(reversed.reached == plain.reached);
     check_end(reversed, value, 1.0, -1.0);
   }
-  // What does not reverse as the inputs do is foreseen as it is, or not at all.
+  // Something that does not reverse with the inputs is extrapolated as it is, or not at all.
   const Value there_and_back = [](double period) {
     return Dual<1>(std::pow(-1.0, std::floor(period + 1e-9)));
   };
@@ -165,7 +167,8 @@ TEST_CASE("steady_state: what grows or wanders is never known", "[model]") {
   CHECK(watch(decay(1e-4, 1.02)).period == kPeriods);
   const Value beat = [](double period) { return Dual<1>(1.0 + 0.01 * std::sin(1.7 * period)); };
   CHECK(watch(beat).period == kPeriods);
-  // A drift of a tenth of a tolerance a period is none; over forty of them it would be four.
+  // A drift of a tenth of a tolerance per period is not detectable, but over forty periods it would
+  // be four tolerances.
   const Value creep = [](double period) { return Dual<1>(1.0 + 0.1 * kStepTolerance * period); };
   const Foreseen found = watch(creep);
   if (found.period < kPeriods) check_end(found, creep, 1.5);
@@ -187,10 +190,10 @@ TEST_CASE("steady_state: a run read from its last periods is as exact as one sim
     quick.set("kp", 400.0);
     quick.times_s = grid(0.0, 3.0, 3001);
     cases.push_back({std::string("quick loop, ") + name, quick, 0.3});
-    Experiment one_sided = quick;  // no half period is the negative of the one before it
+    Experiment one_sided = quick;  // half periods are not the negative of their predecessors
     one_sided.set("valve_offset", 0.1).set("external_force", 200.0);
     cases.push_back({std::string("one-sided, ") + name, one_sided, 0.5});
-    Experiment slow = quick;  // a fifth of its distance in each period
+    Experiment slow = quick;  // moves a fifth of the remaining distance in each period
     slow.set("kp", 60.0);
     cases.push_back({std::string("slow loop, ") + name, slow, 0.6});
     Experiment states = quick;
@@ -291,7 +294,7 @@ TEST_CASE("steady_state: reversed inputs reverse a rig that is taken for reversi
     const Simulation reversed = e();
     REQUIRE(run.ok());
     REQUIRE(reversed.ok());
-    CHECK(run.outputs == -reversed.outputs);  // rounding is symmetric too
+    CHECK(run.outputs == -reversed.outputs);  // rounding is symmetric, too
     for (std::size_t k = 0; k < e.outputs.size(); ++k) {
       CAPTURE(output_name(e.outputs[k]));
       CHECK(run.sensitivities[k] == -reversed.sensitivities[k]);
@@ -320,7 +323,7 @@ TEST_CASE("steady_state: whole periods where halves do not reverse all that is a
     return runs.foreseen.steps;
   };
   const long steps = check(e);
-  Experiment chambers = e;  // their pressures trade places, half the supply pressure above zero
+  Experiment chambers = e;  // their pressures swap, around half the supply pressure
   chambers.outputs = {Output::position, Output::pressure_a, Output::pressure_b};
   CHECK(check(chambers) > steps);
   Experiment offset = e;  // zero, but the sensitivity to it is requested

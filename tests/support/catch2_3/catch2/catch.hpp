@@ -1,7 +1,7 @@
 #pragma once
 
-// Maps the parts of Catch2 that the tests use, under the header and names of version 2, to version
-// 3.
+// Provides the parts of Catch2 version 3 that the tests use under the header and names of version
+// 2.
 #include <catch2/catch_approx.hpp>
 #include <catch2/catch_template_test_macros.hpp>
 #include <catch2/catch_test_macros.hpp>
