@@ -21,7 +21,7 @@ struct LackOfFit : metrics::Judged {
   std::string against = "sd";       ///< source of the pure error: "repeats" or "sd"
   double ratio = 0.0;               ///< variance of the residual over that of the pure error
   double freedom = 0.0;             ///< effective degrees of freedom of the residual
-  double pure_error_freedom = 0.0;  ///< of the pure error; infinite if the campaign states `sd`
+  double pure_error_freedom = 0.0;  ///< for the pure error; infinite with a stated `sd`
   /// Probability that noise alone gives this ratio or a larger one. The outcome is adjusted for all
   /// tests.
   double p = 1.0;

@@ -64,8 +64,7 @@ void judge_recordings(const Fit& fit, std::vector<Reason>& reasons) {
 /// An output channel that has no limit in some conditions.
 struct WithoutLimit {
   std::size_t conditions = 0;
-  const ConditionScore* worst =
-      nullptr;  ///< condition with the lowest rho2; the first if none has a rho2
+  const ConditionScore* worst = nullptr;  ///< has the lowest rho2; the first if none has one
   double rho2 = std::numeric_limits<double>::infinity();
 };
 
