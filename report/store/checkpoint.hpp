@@ -8,7 +8,7 @@
 
 namespace rigcal::report {
 
-/// File in the result folder that `fit` updates after every start.
+/// File in the result folder to which `fit` saves its state between two starts.
 inline constexpr const char* kCheckpointFile = "checkpoint.json";
 
 /// Hash of everything that must be unchanged for a fit to resume: inputs, options, seed and

@@ -74,7 +74,7 @@ struct StoredParameter {
   std::optional<Range> ci95;                              ///< interval for the rig
   Later<std::optional<Range>> ci95_if_exact;              ///< assumes an exact model
   Later<std::optional<calib::IntervalSource>> ci95_from;  ///< basis of ci95_if_exact
-  Later<std::optional<double>> degrees_of_freedom;        ///< of that error
+  Later<std::optional<double>> degrees_of_freedom;        ///< for that error
   Omittable<calib::Budget95> budget;
   Omittable<calib::AveragedEstimate> averaged;  ///< if the residuals call for an effect
   Omittable<double> between_days_error;         ///< standard error due to differences between days
@@ -165,8 +165,9 @@ struct StoredCondition {
   Keyed<StoredScore> metrics;  ///< by channel, as are the next four
   Keyed<std::optional<metrics::NoiseFloor>> noise_floor;
   /// One-sided, for each score; used as the guard band of its limit.
-  Omittable < Keyed < std::optional <
-      metrics::Agreement Keyed<std::optional<StoredResidualTests>> residual_tests;
+  Omittable<Keyed<std::optional<metrics::Agreement>>> expanded_uncertainty;
+  Omittable<Keyed<std::optional<metrics::Agreement>>> two_sided_uncertainty;  ///< printed after +-
+  Keyed<std::optional<StoredResidualTests>> residual_tests;
   Later<std::vector<calib::LimitCheck>> limit_checks;
   Later<Keyed<calib::Verdict>> channel_verdicts;
   std::optional<calib::Verdict> verdict;
