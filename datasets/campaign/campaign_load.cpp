@@ -100,7 +100,8 @@ void read_conditions(const TomlNode& node, Campaign& campaign) {
   }
 }
 
-/// [synthetic] says how long and how dense where a condition has neither record nor times.
+/// Sets duration and sample rate from [synthetic] in conditions that have neither these nor a
+/// record.
 void fill_times(Campaign& campaign) {
   if (!campaign.synthetic_settings) return;
   const SyntheticSettings& synthetic = *campaign.synthetic_settings;
@@ -115,7 +116,8 @@ void fill_times(Campaign& campaign) {
   }
 }
 
-/// `synthetic = true` labels records that were made; a table [synthetic] says how to make some.
+/// Reads `synthetic`. The value `true` marks records as synthetic; a table [synthetic] describes
+/// how to make them.
 void read_synthetic_entry(const TomlNode& node, Campaign& campaign) {
   if (node.is_table()) {
     campaign.synthetic_settings = read_synthetic(node, campaign.rig.plant);
@@ -174,7 +176,7 @@ Campaign load_campaign(const std::filesystem::path& file, const std::filesystem:
   if (const auto node = root.find("diagnosis")) check_duty(*node, campaign);
   if (const auto node = root.find("design")) campaign.design = read_design(*node, campaign);
   fill_times(campaign);
-  // Only its own verbs use this section, but a check of the campaign must cover it.
+  // Only `leak-table` and `fit-tables` use this section, but loading a campaign must check it, too.
   if (const auto node = root.find("leak_table")) read_leak_table(*node, campaign);
   check_campaign(campaign, {file.string(), 1, 0});
   return campaign;
