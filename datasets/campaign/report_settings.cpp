@@ -25,8 +25,8 @@ std::optional<double> take_number(std::string_view& text) {
   return value;
 }
 
-/// Removes a word or sign from the front of a text, ignoring blanks before it. Returns false if the
-/// text does not begin with it.
+/// Removes a word or sign, with the blanks around it, from the front of a text. Returns false if
+/// the text does not begin with it.
 bool take(std::string_view& text, std::string_view word) {
   text = without_blanks(text);
   if (!text.starts_with(word)) return false;
