@@ -48,7 +48,8 @@
     };
   };
 
-  // The address stores how the state differs from the case. It has a mark on pages with other sections.
+  // The address stores how the state differs from the case. It has a mark on pages with other
+  // sections.
   const marked = rig.embedded ? "live&" : "";
   const driveKeys = ["waveform", "frequency", "amplitude", "duration", "end_frequency"];
   const address = () => {
@@ -324,7 +325,8 @@
   // A rig with a joint rotates; all other rigs move along a line.
   const motion = rig.turns ? {name: "angle", output: "angle_rad", unit: "deg", si: Math.PI / 180}
     : {name: "position", output: "position_m", unit: "mm", si: 1e-3};
-  // Leak levels from the published table, otherwise from the campaign. The page of a fit has no table of levels.
+  // Leak levels from the published table, otherwise from the campaign. The page of a fit has no
+  // table of levels.
   const levels = document.getElementById("live-levels") && rig.leak >= 0 ? rig.levels ?? (rig.presets.length > 1 ? rig.presets : []) : [];
   const styleOf = (k) => `level-${k % 5}`;
   const ofLevels = levels.length ? [
@@ -367,7 +369,10 @@
     return Float64Array.from(times, at);
   };
   const scaled = (values, si) => values ? Float64Array.from(values, (v) => v / si) : null;
-  /** Returns the measured samples of an output in this case, at the times of the request; null if there are none. */
+  /**
+   * Returns the measured samples of an output in this case, at the times of the request; null if
+   * there are none.
+   */
   const measuredOf = (name) => {
     const chosen = caseOf(state.case);
     const channel = chosen.measured?.find((each) => each.output === name);
@@ -395,7 +400,9 @@
     }
     return scaled(answer.outputs[output(line.output)], plot.si);
   })];
-  /** Results for each leak level with the drive and values of the page, in the order of `levels`. */
+  /**
+   * Results for each leak level with the drive and values of the page, in the order of `levels`.
+   */
   let levelRuns = [];
   let charts = null;
   const sync = "live";
@@ -497,7 +504,10 @@
     clearTimeout(saying);
     saying = setTimeout(() => { $("said").textContent = items.map(([name, text, of]) => `${name} ${text} ${of}`).join("; "); }, 700);
   };
-  /** The table of leak levels: computed values, and below each the value published for the first drive. */
+  /**
+   * The table of leak levels: computed values, and below each the value published for the first
+   * drive.
+   */
   const features = [["servo_flow", "Servo flow", "L/min", 1e-3 / 60], ["leak_flow", "Leak flow", "L/min", 1e-3 / 60], ["mean", "mean", "", 1], ["rms", "rms", "", 1], ["std", "std", "", 1]];
   const residualFeatures = (run, healthy, from) => {
     const position = run.outputs[output(motion.output)];
@@ -679,7 +689,8 @@
     if (rig.embedded) document.getElementById("try").scrollIntoView();
     if (worker && location.hash.slice(1) !== address()) { readAddress(); drawControls(); changed(); }
   });
-  // A page may embed only the rig in a frame with this name. It then receives the height of the content.
+  // A page may embed only the rig in a frame with this name. It then receives the height of the
+  // content.
   if (window.parent !== window && window.name === "rigcal-part") {
     document.documentElement.classList.add("framed");
     new ResizeObserver(() => window.parent.postMessage({rigcalHeight: document.body.scrollHeight}, "*")).observe(document.body);

@@ -1,4 +1,5 @@
-// Replaces the static pictures of the time plots by zoomable ones. The page also works without this script.
+// Replaces the static pictures of the time plots by zoomable ones. The page also works without this
+// script.
 "use strict";
 (() => {
   const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
@@ -117,7 +118,10 @@
       const series = [{label: "time", value: (_, v) => v == null ? "–" : digits(v) + " s"}];
       const values = [this.time];
       const bands = [];
-      /** Adds the band `middle` plus and minus `half`; `names` are its upper and lower edge in the legend. */
+      /**
+       * Adds the band `middle` plus and minus `half`; `names` are its upper and lower edge in the
+       * legend.
+       */
       const addBand = (middle, half, names, fill, stroke = "transparent") => {
         bands.push({series: [series.length, series.length + 1], fill});
         for (const sign of [1, -1]) {
@@ -150,7 +154,8 @@
         hooks: {setScale: [(u, key) => { if (key === "x" && u.status === 1) this.zoom(u.scales.x.min, u.scales.x.max, u); }]},
       }, values, figure);
       if (this.range) chart.setScale("x", {min: this.range[0], max: this.range[1]});
-      // Screen readers use the label of the figure, since a canvas and its legend mean nothing to them.
+      // Screen readers use the label of the figure, since a canvas and its legend mean nothing to
+      // them.
       chart.root.setAttribute("aria-hidden", "true");
       chart.over.addEventListener("dblclick", () => this.reset());
       this.charts.set(figure, chart);

@@ -24,7 +24,7 @@ ASKED = {"starts": 3, "seed": 7, "bootstrap": 20, "profiles": True, "posterior":
 
 
 class Pair:
-    """Runs command and module in the folders `theirs` and `ours`, from which relative paths are equal."""
+    """Runs command and module in the folders `theirs` and `ours`, with equal relative paths."""
 
     def __init__(self, folder: pathlib.Path, data: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
         self.theirs, self.ours = folder / "theirs", folder / "ours"
@@ -44,7 +44,7 @@ class Pair:
 
 
 def files_in(folder: pathlib.Path) -> dict[str, str]:
-    """Returns the texts of all files without the call and the run time, which differ between equal runs."""
+    """Returns the texts of all files, without call and run time, which differ between equal runs."""
     files = {str(file.relative_to(folder)): file.read_text() for file in folder.rglob("*") if file.is_file()}
     manifest = json.loads(files["rigcal-manifest.json"])  # its hashes differ for the same reasons
     files["rigcal-manifest.json"] = str([(each["path"], each["verb"]) for each in manifest["files"]])

@@ -1,4 +1,4 @@
-"""Fixtures for tests of the module. RIGCAL is the path of the command; PYTHONPATH contains the module."""
+"""Fixtures for module tests. RIGCAL is the path of the command; PYTHONPATH contains the module."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def command(*arguments: object, cwd: pathlib.Path | None = None) -> str:
 
 @pytest.fixture(scope="session")
 def data(tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
-    """Returns a folder with synthetic records from a known rig: campaign.toml, records/, truth.json."""
+    """Folder with synthetic records from a known rig: campaign.toml, records/, truth.json."""
     folder = tmp_path_factory.mktemp("rig") / "data"
     command("synthesize", SOURCE / "docs" / "tutorial" / "known_rig.toml", "--seed", 1, "--out", folder)
     return folder

@@ -21,7 +21,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
 
 @pytest.fixture(scope="module")
 def printed(folder: pathlib.Path) -> str:
-    """Returns the output of the script. Its results are in ours/, those of the commands in theirs/."""
+    """Output of the script. Its results are in ours/, those of the commands are in theirs/."""
     done = subprocess.run([sys.executable, SOURCE / "python" / "examples" / "demo.py", folder / "ours"],
                           capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr

@@ -1,4 +1,4 @@
-"""Checks that bad input causes an exception that names the error and its place, and never a crash."""
+"""Checks that bad input never causes a crash, but an exception that names the error and its place."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Checks that a fit lets other threads run, reports progress, and returns its best result on Ctrl-C."""
+"""Checks that a fit lets other threads run, reports progress, and keeps its best result on Ctrl-C."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Checks that the stubs match the module: names, arguments, defaults, and types of returned values."""
+"""Checks that the stubs match the module: names, arguments, defaults, types of returned values."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ FUNCTIONS = {node.name: node for node in TREE.body if isinstance(node, ast.Funct
 
 
 def members(node: ast.ClassDef) -> dict[str, ast.FunctionDef]:
-    """Returns the methods of a class. Of several overloads, returns the one with the most defaults."""
+    """Returns the methods of a class; of several overloads, the one with the most defaults."""
     found: dict[str, ast.FunctionDef] = {}
     for each in node.body:
         if isinstance(each, ast.FunctionDef):
@@ -90,7 +90,7 @@ def test_everything_has_a_docstring(name: str) -> None:
         assert doc and len(doc.strip()) > 2, f"{name}.{member}"
 
 
-# ---- types of values. The stub cannot be imported as a module, so its annotations are evaluated here.
+# ---- types of values. The stub cannot be imported, so its annotations are evaluated here.
 
 
 def namespace() -> dict[str, Any]:
@@ -182,7 +182,8 @@ def test_values_have_the_types_of_the_stub(campaign: rigcal.Campaign, monkeypatc
         assert_has_its_types(campaign.plan(fit), "Result")
 
     seen = seen_by(walk, monkeypatch)
-    # Not every build has a live page (see notebook_test.py). This campaign has no limits; demo_test.py tests limits.
+    # Not every build has a live page (see notebook_test.py). This campaign has no limits; those are
+    # tested in demo_test.py.
     assert seen == CLASSES.keys() - {"LimitCheck", "Page"}
 
 
