@@ -15,7 +15,7 @@ inline constexpr const char* kCheckpointFile = "checkpoint.json";
 /// version.
 std::string fit_identity(const Provenance& provenance);
 
-/// Writes a checkpoint with the provenance of its fit as text. Numbers are read back bit by bit.
+/// Writes a checkpoint with the provenance of its fit as text. Numbers round-trip exactly.
 std::string checkpoint_text(const calib::Checkpoint& checkpoint, const Provenance& provenance);
 
 /// Whether a file is a checkpoint of any fit, complete or not.

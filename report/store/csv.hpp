@@ -12,7 +12,7 @@
 #include "report/store/table.hpp"
 
 // Writes result tables as CSV (RFC 4180, LF). Values are in SI units, and column names end in the
-// unit. Numbers are read back bit by bit; a field without a number is empty. If a fit failed or was
+// unit. Numbers round-trip exactly; a field without a number is empty. If a fit failed or was
 // stopped, the first line of its tables says so: "# status: failed: why".
 
 namespace rigcal::report {

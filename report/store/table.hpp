@@ -28,7 +28,7 @@ struct Table {
   const std::vector<double>* find(std::string_view name) const;
 };
 
-/// Writes a table as CSV: a header, then one line per row. Numbers are read back bit by bit; a
+/// Writes a table as CSV: a header, then one line per row. Numbers round-trip exactly; a
 /// value that is not finite becomes an empty field.
 std::string csv_of(const Table& table);
 

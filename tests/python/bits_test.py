@@ -1,4 +1,4 @@
-"""Checks that the module computes and writes the same results as the command, bit by bit."""
+"""Checks that the module computes and writes exactly the same results as the command."""
 
 from __future__ import annotations
 

@@ -30,7 +30,7 @@ std::string toml_quoted(std::string_view text);
 /// Writes a TOML key, with quotes only if it needs them.
 std::string toml_key(std::string_view key);
 
-/// Writes a number as a TOML float, or for use in a quantity. It is read back bit by bit.
+/// Writes a number as a TOML float, or for use in a quantity. It round-trips exactly.
 std::string toml_number(double value);
 
 /// One value in a TOML file, with its place for error messages. Has functions to convert the value.
