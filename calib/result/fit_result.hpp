@@ -16,7 +16,7 @@
 
 namespace rigcal::calib {
 
-/// Correlation of estimates; NaN where it is not known.
+/// Correlations of the estimates; NaN where unknown.
 struct Correlation {
   std::vector<std::string> names;
   Eigen::MatrixXd matrix;  ///< shape (names)^2

@@ -12,7 +12,7 @@ namespace rigcal::calib {
 /// Data of an earlier fit whose values are validated.
 struct Origin {
   std::set<std::string> estimated_from;  ///< conditions whose records the fit used
-  Aspect parameters;                     ///< as that fit judged them
+  Aspect parameters;                     ///< judgement of that fit
   std::optional<EstimateSpread> spread;  ///< for the values; absent without convergence
 };
 

@@ -108,7 +108,7 @@ struct EstimateTrend {
   std::optional<std::string> reason;  ///< why there is no line
 };
 
-/// One estimate of a series, with its date or temperature as `place`.
+/// One estimate in a series, with its date or temperature as `place`.
 struct PlacedEstimate {
   double place = 0.0;
   double value = 0.0;

@@ -110,7 +110,7 @@ LeakSignal signal_from_text(const Campaign& campaign, const LeakTableSettings& s
 void override_assumption(LeakTableSettings& settings, const Campaign& campaign,
                          std::string_view assignment);
 
-/// Replaces assumptions by the values from an earlier fit; their source says what they replace.
+/// Replaces assumptions with values from an earlier fit; their source says what they replace.
 /// Assumptions that the fit did not estimate are kept. Skips the leakage coefficient, since the
 /// table varies it.
 ///
@@ -127,7 +127,7 @@ void take_fitted(LeakTableSettings& settings, const Campaign& campaign,
 void free_assumptions(LeakTableSettings& settings, const Campaign& campaign,
                       const std::vector<std::string>& names);
 
-/// Returns the values of the rig, replaced by those of the assumptions.
+/// Returns the values of the rig, with those of the assumptions substituted.
 ///
 /// @throws InputError  if a parameter of the plant has no value
 model::ParameterValues leak_table_values(const Campaign& campaign,

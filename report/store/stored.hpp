@@ -105,7 +105,7 @@ Stored load(const ReadFile& read, const std::string& where, const std::string& n
 }
 
 /// Makes a text usable in a file name: keeps letters, digits, "." and "-", and replaces every other
-/// character by "_".
+/// character with "_".
 std::string plain_name(const std::string& text);
 
 /// Name of the file in levels/ with the series of a leak level.

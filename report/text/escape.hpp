@@ -8,7 +8,7 @@
 
 namespace rigcal::report {
 
-/// Replaces each character that the table lists by its text.
+/// Replaces each character in the table with its text.
 template <std::size_t N>
 std::string replaced(std::string_view text,
                      const std::array<std::pair<char, std::string_view>, N>& table) {

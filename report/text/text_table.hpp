@@ -9,7 +9,8 @@ namespace rigcal::report {
 /// Number of columns that a UTF-8 text takes on a terminal. Colour sequences take none.
 std::size_t text_width(std::string_view text);
 
-/// Replaces control characters by blanks, since file names may contain any. Keeps colour sequences.
+/// Replaces control characters with blanks, since file names may contain any. Keeps colour
+/// sequences.
 std::string on_one_line(std::string text);
 
 /// Breaks a line between words so that it fits into `columns`. Continuation lines begin with

@@ -27,7 +27,7 @@ inline constexpr QuantityRange kFlows_m3_per_s{1e-15, 1e3};
 inline constexpr QuantityRange kTemperatures_k{0.0, 1e4};
 /// Standard deviations, steps and ripples in the unit of a channel; zero means no disturbance.
 inline constexpr QuantityRange kDisturbances{0.0, 1e12};
-/// Standard deviations by which residuals are divided.
+/// Standard deviations that residuals are divided by, hence not zero.
 inline constexpr QuantityRange kStandardDeviations{1e-15, 1e12};
 /// Standard deviations of a parameter; values for a laminar leak are small in SI.
 inline constexpr QuantityRange kParameterDeviations{1e-25, 1e12};
