@@ -14,14 +14,14 @@ namespace rigcal::diagnosis {
 struct Judged {
   std::string condition;
   datasets::LeakClass truth = datasets::LeakClass::normal;
-  std::optional<datasets::LeakClass> found;  ///< empty: undecided
+  std::optional<datasets::LeakClass> found;  ///< absent if undecided
 };
 
-/// Numbers of records: rows by true class, columns by assigned class.
+/// Confusion matrix with numbers of records. Rows are true classes, columns are assigned classes.
 struct Confusion {
   static constexpr std::size_t kClasses = datasets::kLeakClasses.size();
   std::array<std::string, kClasses> truth;      ///< names of the rows
-  std::array<std::string, kClasses + 1> found;  ///< names of the columns; the last one undecided
+  std::array<std::string, kClasses + 1> found;  ///< names of the columns; the last is "undecided"
   std::array<std::array<int, kClasses + 1>, kClasses> counts{};
   RIGCAL_DESCRIBE(truth, found, counts)
 
@@ -34,17 +34,19 @@ struct Accuracy {
   int conditions = 0;
   int right = 0;
   int undecided = 0;               ///< counted as wrong
-  int off_by_two_or_more = 0;      ///< wrong by so many classes
+  int off_by_two_or_more = 0;      ///< wrong by at least two classes
   std::optional<double> accuracy;  ///< right / records
-  /// Wilson's 95 % interval for as many independent trials as there are conditions: repeats of one
-  /// condition have common errors.
+  /// Wilson's 95 % interval. The number of conditions serves as the number of independent trials,
+  /// because the repeats of one condition have common errors.
   std::optional<Range> accuracy_ci95;
   Confusion confusion;
   RIGCAL_DESCRIBE(records, conditions, right, undecided, off_by_two_or_more, accuracy,
                   accuracy_ci95, confusion)
 };
 
-/// @param judged  may be empty; then there is no accuracy
+/// Computes the accuracy of a method.
+///
+/// @param judged  classified records; if empty, the accuracy is absent
 Accuracy accuracy_of(const std::vector<Judged>& judged);
 
 /// Wilson's 95 % score interval for a proportion. E. B. Wilson, J. Am. Stat. Assoc. 22 (1927).

@@ -14,12 +14,13 @@
 
 namespace rigcal::calib {
 
-/// One unknown of the designed test. Standard deviations are those of Cramer and Rao, SI; nothing
-/// where the test does not determine it.
+/// One unknown in the designed test. Standard deviations are Cramer-Rao bounds, SI; absent if the
+/// test does not determine the unknown.
 struct DesignedParameter : TestedParameter {
-  bool named = false;  ///< the drive was designed for it
+  bool named = false;  ///< the drive was designed for this parameter
   std::optional<double> sd;
-  /// From the campaign's own signals in the same time, noise and number of repeats.
+  /// Standard deviation from the campaign's own signals, for equal total time, noise and number of
+  /// repeats.
   std::optional<double> sd_own_signals;
   RIGCAL_DESCRIBE(name, unit, scope, level, named, value, sd, sd_own_signals)
 };

@@ -5,7 +5,7 @@
 namespace rigcal::calib {
 namespace {
 
-/// Gravity of a state.
+/// Seriousness of a state.
 int rank(AspectState state) {
   switch (state) {
     case AspectState::fail:

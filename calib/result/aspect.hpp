@@ -15,15 +15,15 @@ enum class AspectState {
   pass,
   reservation,   ///< nothing failed, but the signatory must know
   fail,          ///< a limit is broken, or cannot be evaluated
-  not_assessed,  ///< there was nothing to judge by
+  not_assessed,  ///< the data for a judgement are missing
   note,          ///< for reasons only: shown, but does not change the state of the aspect
 };
 std::string_view to_string(AspectState state);
 
-/// Whether a reason of this state prevents its aspect from passing.
+/// Whether a reason in this state prevents its aspect from passing.
 bool is_against(AspectState state);
 
-/// One reason: a code for scripts, the numbers behind it, and the same in words for people.
+/// One reason: a code for scripts, the numbers behind it, and a sentence for readers.
 struct Reason {
   std::string code;                       ///< "limit_broken", "lack_of_fit", ...; docs/report.md
   AspectState state = AspectState::pass;  ///< state that the reason supports
@@ -37,20 +37,21 @@ struct Reason {
 Reason reason(AspectState state, std::string code, std::string words,
               const std::string& subject = {}, Keyed<double> numbers = {});
 
-/// One aspect with everything that speaks for and against it.
+/// One aspect of a result, with all reasons for and against it.
 struct Aspect {
   AspectState state = AspectState::not_assessed;
-  std::vector<Reason> reasons;  ///< the gravest first
+  std::vector<Reason> reasons;  ///< sorted, most serious first
   RIGCAL_DESCRIBE(state, reasons)
 };
 
-/// The gravest reason that is not a note decides the state. Reasons of one state keep their order.
+/// Makes an aspect whose state is that of its most serious reason, notes excluded. Reasons with the
+/// same state keep their order.
 Aspect aspect_of(std::vector<Reason> reasons);
 
-/// The four things that are judged apart. A verdict follows from them (verdict_of).
+/// The four aspects, each judged separately. verdict_of() derives the verdict from them.
 struct Assessment {
   Aspect agreement;   ///< every scored condition against the limits of the campaign
-  Aspect validation;  ///< the conditions that no estimate rests on, against the same limits
+  Aspect validation;  ///< conditions that were not fitted, against the same limits
   Aspect adequacy;    ///< model error against the noise of the records
   Aspect parameters;  ///< whether the records determine the estimates
   RIGCAL_DESCRIBE(agreement, validation, adequacy, parameters)

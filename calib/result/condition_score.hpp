@@ -29,12 +29,12 @@ struct ChannelScore {
   /// Two-sided, as printed after +-.
   std::optional<metrics::Agreement> two_sided_uncertainty;
   std::optional<double> gain_ratio, phase_deg, delay_s;  ///< at the fundamental (sine, square)
-  std::string problem;                                   ///< why a metric does not exist, in words
-  /// Tests of measured minus simulated, over the longest window; absent if that is too short or the
-  /// residual is constant.
+  std::string problem;                                   ///< in words: why a metric is missing
+  /// Tests of the residual (measured minus simulated) over the longest window; absent if the window
+  /// is too short or the residual is constant.
   std::optional<metrics::ResidualTests> residual_tests;
-  /// Part of the residual of a prediction that the uncertainty of the estimates explains, at the
-  /// samples that count; empty where nothing is known of it. The tests leave it out.
+  /// The component of a prediction's residual that the uncertainty of the estimates explains, at
+  /// the samples that count; empty if that uncertainty is unknown. The tests exclude it.
   std::vector<double> explained;
   std::optional<LackOfFit> lack_of_fit;  ///< test of a prediction; absent if the noise is unknown
 };
@@ -46,13 +46,14 @@ std::string_view to_string(Verdict verdict);
 struct LimitCheck {
   datasets::Channel channel = datasets::Channel::position;
   std::string metric;
-  std::optional<double> value;  ///< absent: it does not exist, see `words`
+  std::optional<double> value;  ///< absent if the metric does not exist; `words` says why
   std::optional<double> limit, warn;
-  /// Distance of the value from the ideal over that of the limit; absent without a value.
+  /// Distance of the value from the ideal, divided by the limit's distance from it; absent without
+  /// a value.
   std::optional<double> tolerance_used;
   Omittable<double> expanded_uncertainty;  ///< uncertainty of the value; absent if unknown
   Verdict verdict = Verdict::pass;
-  bool in_guard_band = false;  ///< WARN because the limit is not kept by more than that
+  bool in_guard_band = false;  ///< WARN: the margin to the limit is below the uncertainty
   std::string words;           ///< why WARN or FAIL; empty for PASS
   RIGCAL_DESCRIBE(channel, metric, value, limit, warn, tolerance_used, expanded_uncertainty,
                   verdict)
@@ -67,23 +68,23 @@ struct ConditionScore {
   std::optional<Verdict> verdict;          ///< worst of the checks; absent without limits
   std::vector<std::string> reasons;        ///< reasons for WARN and FAIL, in words
   std::vector<std::string> data_warnings;  ///< doubts about the recording, in words
-  std::string failure;                     ///< why it could not be simulated; empty if it could
-  std::string not_scored;  ///< why it was not scored although it might be; empty if it was
+  std::string failure;                     ///< why the simulation failed; empty if it did not
+  std::string not_scored;  ///< why a condition that can be simulated has no score; else empty
   long samples = 0;        ///< number of samples inside the windows
   std::vector<double> time_s;
   /// measured mean and simulated value per output channel, whole record
   std::map<datasets::Channel, std::pair<std::vector<double>, std::vector<double>>> series;
-  /// Standard deviation of a measurement about the simulated value, whole record, SI: uncertainty
-  /// of the estimates and noise of the record. Absent where the estimates' uncertainty is not
-  /// known.
+  /// Standard deviation of a measurement about the simulated value, whole record, SI. It combines
+  /// the uncertainty of the estimates with the noise of the record. Absent if the former is
+  /// unknown.
   std::map<datasets::Channel, std::vector<double>> prediction_sd;
   std::vector<double> drive;  ///< reference [m] or command [V] at time_s
-  /// Simulated flows at time_s [m3/s]; empty if it could not be simulated.
+  /// Simulated flows at time_s [m3/s]; empty if the simulation failed.
   std::vector<double> servo_flow_m3_per_s, leakage_flow_m3_per_s;
   std::vector<bool> in_window;  ///< empty: all
 
-  /// Verdict on a channel: the worst of its checks, or the verdict of the condition if that could
-  /// not be simulated. Empty if no limit applies to the channel.
+  /// Verdict on a channel: its worst check, or the condition's verdict if the simulation failed.
+  /// Absent if no limit applies to the channel.
   std::optional<Verdict> verdict_of(datasets::Channel of) const;
 };
 

@@ -11,72 +11,75 @@
 
 namespace rigcal::calib {
 
-/// What a fit knows of the small effects that its model leaves out: how large they may be, and what
-/// it has mistaken for a change of its estimates. Bands, scores, leaks and comparisons all read it.
+/// The small effects that the model of a fit omits: their possible sizes, and how they bias the
+/// estimates. Bands, scores, leaks and comparisons all read them from here.
 struct EffectSpread {
   std::vector<std::string> keys;
-  /// S with S S^T the second moments of their sizes about zero, SI, since nothing is corrected for
-  /// them. Shape (effects, columns).
+  /// S with S S^T the second moments of the effects' sizes about zero, SI. They are not central
+  /// moments, since nothing is corrected for the effects. Shape (effects, columns).
   Eigen::MatrixXd root;
-  /// Change of the estimates per unit of size, SI. Shape (estimates, effects).
+  /// Change of the estimates per unit of an effect's size, SI. Shape (estimates, effects).
   Eigen::MatrixXd moves;
 
   bool empty() const { return keys.empty(); }
-  /// Root of the second moment of one, SI; 0 for an effect that is not among them.
+  /// Root of the second moment of an effect's size, SI; 0 for a key that is not in `keys`.
   double size(std::string_view key) const;
 };
 
-/// The effects that a fit considered, as prior and records leave them.
+/// Returns the effects that a fit considered, with their sizes given prior and records.
 ///
-/// @param budgets  of the estimates, in their order; null where there is none
+/// @param budgets  one per estimate, in order; null for an estimate without a budget
 EffectSpread effect_spread(const Considered& considered,
                            const std::vector<const Budget95*>& budgets);
 
 /// Joint covariance of the estimates of a fit, for predictions.
 struct EstimateSpread {
-  /// One estimate, by which a condition finds those that act in it.
+  /// Identifies one estimate, so that a condition can find those that apply to it.
   struct Estimate {
     int index = 0;  ///< row of the plant's parameter table
     datasets::Scope scope = datasets::Scope::rig;
     std::string level;
   };
-  /// Estimates that one condition has for itself.
+  /// Estimates that apply to one condition only.
   struct Own {
     std::vector<Estimate> estimates;
-    /// S of their covariance with `estimates`, which come after them; shape (both, columns).
+    /// S with S S^T the joint covariance of these estimates, then the shared ones, SI. Shape (own
+    /// and shared estimates, columns).
     Eigen::MatrixXd root;
   };
 
   std::vector<Estimate> estimates;
-  /// S with S S^T their covariance, SI. Shape (estimates, columns).
+  /// S with S S^T the covariance of the estimates, SI. Shape (estimates, columns).
   Eigen::MatrixXd root;
-  /// Where there are many of them: no simulation knows those of two conditions.
+  /// One entry per condition with estimates of its own. They are kept apart because no simulation
+  /// uses those of two conditions, and there may be many.
   std::vector<Own> own = {};
-  EffectSpread effects = {};  ///< moves: of `estimates`
-  /// Dates of the fitted records; empty if one of them has none.
+  EffectSpread effects = {};  ///< its `moves` refer to `estimates`
+  /// Dates of the fitted records; empty if one of them has no date.
   std::vector<std::string> dates = {};
 };
 
-/// Whether numbers are correlations: from -1 to 1, the same on both sides of a diagonal of ones, by
-/// which no combination of estimates has a negative variance. Rows whose diagonal is NaN do not
-/// count, and where another number is missing nothing is said.
+/// Whether a matrix is a correlation matrix: symmetric, ones on the diagonal, entries from -1 to 1,
+/// positive semidefinite. Ignores rows whose diagonal is NaN; returns true if another entry that
+/// counts is not finite, since the matrix then cannot be checked.
 bool are_correlations(const Eigen::MatrixXd& matrix);
 
-/// Covariance of estimates; NaN where a correlation is missing.
+/// Computes the covariance of estimates; NaN where a correlation is missing.
 ///
 /// @param errors  standard errors
-/// @param rows    rows of `correlations`; absent: correlated with nothing
+/// @param rows    row of each estimate in `correlations`; absent for an uncorrelated estimate
 Eigen::MatrixXd covariance_of(const std::vector<double>& errors,
                               const std::vector<std::optional<Eigen::Index>>& rows,
                               const Eigen::MatrixXd& correlations);
 
-/// Adds estimates that a condition has for itself, correlated with nothing.
+/// Adds the estimates that apply to one condition only, uncorrelated with all others.
 ///
 /// @param errors  standard errors, shape (estimates)
 void add_own(std::vector<EstimateSpread::Estimate> estimates, const std::vector<double>& errors,
              EstimateSpread& spread);
 
-/// R with R R^T = M, of a positive semidefinite matrix that rounding may have left without.
+/// Returns R with R R^T = M. M is positive semidefinite except for rounding: eigenvalues that
+/// rounding made negative count as zero.
 Eigen::MatrixXd square_root(const Eigen::MatrixXd& m);
 
 }  // namespace rigcal::calib

@@ -16,7 +16,7 @@
 
 namespace rigcal::calib {
 
-/// Correlation of estimates; NaN where it is not known.
+/// Correlations of the estimates; NaN where unknown.
 struct Correlation {
   std::vector<std::string> names;
   Eigen::MatrixXd matrix;  ///< shape (names)^2
@@ -30,21 +30,21 @@ struct Fit {
   std::string message;  ///< in words: why it stopped, and what is unreliable
   double cost = 0.0;    ///< half the sum of squared weighted residuals, priors included
   long residual_count = 0;
-  double reduced_chi_square = 0.0;  ///< 2 cost / (residuals - rank); about 1 if the noise is all
+  double reduced_chi_square = 0.0;  ///< 2 cost / (residuals - rank); about 1 if there is only noise
   long evaluations = 0;             ///< evaluations of all residuals
   double wall_seconds = 0.0;
   double tolerance = 0.0;              ///< tolerance of the simulations
   double independent_residuals = 0.0;  ///< effective number in the noise model; 0: unknown
   double aic = 0.0,
-         bic = 0.0;  ///< from the independent residuals; to compare models of one campaign
+         bic = 0.0;  ///< from the independent residuals, to compare models within a campaign
   std::vector<FittedParameter> parameters;
   std::vector<LackOfFit> lack_of_fit;  ///< channels of known noise
   std::optional<bool> misfit;          ///< significant lack of fit; absent: cannot be judged
-  std::optional<BetweenRepeats> between_repeats;  ///< absent: no single repeats
-  std::optional<Considered> considered;           ///< small effects; absent: not looked at
-  std::vector<StabilityCheck> stability;          ///< against the validation records
+  std::optional<BetweenRepeats> between_repeats;  ///< absent without single repeats
+  std::optional<Considered> considered;           ///< small effects; absent if not examined
+  std::vector<StabilityCheck> stability;          ///< comparison with the validation records
   std::string interval_advice;                    ///< which interval to believe, and why
-  std::vector<std::string> combinations;          ///< determined combinations of parameters
+  std::vector<std::string> combinations;          ///< parameter combinations that are determined
   Correlation correlation;                        ///< unknowns that have a standard error
   int rank = 0;                                   ///< rank of the scaled Jacobian at the optimum
   std::vector<double> singular_values;
@@ -54,7 +54,7 @@ struct Fit {
   std::vector<Basin> basins;                    ///< sorted by cost
   int bootstrap_replicates = 0;                 ///< replicates that converged
   std::string bootstrap_message;                ///< how they were drawn, and what went wrong
-  std::optional<Posterior> posterior;           ///< absent: not asked for
+  std::optional<Posterior> posterior;           ///< absent if not requested
   std::vector<HeldOut> cross_validation;
   std::string agreement;  ///< agreement of the starts, in words; empty for a single one
   std::vector<SimulationFailure> failures;
@@ -64,9 +64,9 @@ struct Fit {
   Assessment assessment;
   std::optional<Verdict> verdict;  ///< follows from the assessment
 
-  /// A result that may be used: converged, every parameter finite.
+  /// Whether the result may be used: the fit converged, and every parameter is finite.
   bool usable() const;
-  /// The search converged, whatever was stopped after it.
+  /// Whether the search converged, even if a later stage was stopped.
   bool has_converged() const;
 };
 

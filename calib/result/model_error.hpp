@@ -8,21 +8,22 @@
 #include "datasets/record.hpp"
 #include "metrics/residual_tests.hpp"
 
-// Model errors that the records show: error relative to the noise, differences between repeats,
-// predictions of omitted records.
+// Model errors that the records show: errors relative to the noise, differences between repeats,
+// and predictions of records that were not fitted.
 
 namespace rigcal::calib {
 
-/// Model error of one channel of one condition against its pure error (lack_of_fit.hpp).
+/// Test of the model error against the pure error, for one channel of one condition
+/// (lack_of_fit.hpp).
 struct LackOfFit : metrics::Judged {
   std::string condition;
   datasets::Channel channel = datasets::Channel::position;
   std::string against = "sd";       ///< source of the pure error: "repeats" or "sd"
   double ratio = 0.0;               ///< variance of the residual over that of the pure error
   double freedom = 0.0;             ///< effective degrees of freedom of the residual
-  double pure_error_freedom = 0.0;  ///< and of the pure error; infinite where `sd` states it
-  /// Probability of such a ratio, or a larger one, of noise alone. The outcome is that of all tests
-  /// together.
+  double pure_error_freedom = 0.0;  ///< for the pure error; infinite with a stated `sd`
+  /// Probability that noise alone gives this ratio or a larger one. The outcome is adjusted for all
+  /// tests.
   double p = 1.0;
   RIGCAL_DESCRIBE(condition, channel, against, ratio, freedom, pure_error_freedom, p, outcome,
                   reason)
@@ -32,25 +33,26 @@ struct LackOfFit : metrics::Judged {
 
 /// Differences between the repeats of the fitted conditions (between_repeats.hpp).
 struct BetweenRepeats {
-  bool differ = false;  ///< beyond the residuals of their mean, at 5 %
+  bool differ = false;  ///< significantly (5 %) more than the mean's residuals explain
   double p = 1.0;       ///< for the most significant parameter, times the number of parameters
-  double ratio = 0.0;   ///< largest of error by the repeats over error by the residuals
+  double ratio = 0.0;   ///< largest ratio of the error from repeats to that from residuals
   std::vector<std::string> parameters;  ///< parameters whose interval is based on the repeats
-  /// What would explain it: key of a parameter, or "start". Absent: nothing would, as the two
-  /// below.
+  /// Possible cause of the differences: the key of a parameter, or "start". This and the next two
+  /// members are absent if no cause was found.
   std::optional<std::string> cause;
-  std::optional<double> cause_sd;        ///< standard deviation of it: relative; in s for the start
-  std::optional<double> cause_explains;  ///< fraction of the differences that it explains
+  std::optional<double> cause_sd;  ///< standard deviation of the cause: relative, or s (start)
+  std::optional<double> cause_explains;  ///< fraction of the differences that the cause explains
   RIGCAL_DESCRIBE(differ, p, ratio, parameters, cause, cause_sd, cause_explains)
 };
 
-/// A condition that was left out of the fit and predicted by it.
+/// Prediction of a condition from a fit without it.
 struct HeldOut {
   std::string condition;
   std::optional<std::string> problem;            ///< why there is no prediction, in words
   Keyed<double, datasets::Channel> rmse;         ///< error of the prediction, SI
-  Keyed<double, datasets::Channel> fitted_rmse;  ///< in its own fit, SI
-  /// Largest change of a parameter, in its error; 0 if none has one, absent without a prediction.
+  Keyed<double, datasets::Channel> fitted_rmse;  ///< error in the full fit, SI
+  /// Largest change of a parameter in units of its error; 0 if no parameter has an error, absent
+  /// without a prediction.
   std::optional<double> largest_shift;
   std::optional<std::string> shifted;  ///< the parameter that changes most
   RIGCAL_DESCRIBE(condition, problem, rmse, fitted_rmse, largest_shift, shifted)

@@ -11,9 +11,9 @@ namespace rigcal::calib {
 
 /// Data of an earlier fit whose values are validated.
 struct Origin {
-  std::set<std::string> estimated_from;  ///< conditions whose records it was fitted to
-  Aspect parameters;                     ///< as that fit judged them
-  std::optional<EstimateSpread> spread;  ///< for the values; none without convergence
+  std::set<std::string> estimated_from;  ///< conditions whose records the fit used
+  Aspect parameters;                     ///< judgement of that fit
+  std::optional<EstimateSpread> spread;  ///< for the values; absent without convergence
 };
 
 }  // namespace rigcal::calib

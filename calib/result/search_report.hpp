@@ -14,7 +14,7 @@ namespace rigcal::calib {
 
 enum class FitStatus {
   converged,
-  stopped,  ///< a limit of iterations or time, or a signal: the best so far
+  stopped,  ///< by a limit on iterations or time, or by a signal; gives the best result so far
   failed,   ///< no start gave a usable result
 };
 std::string_view to_string(FitStatus status);
@@ -36,8 +36,8 @@ struct StartReport {
   int number = 1;
   std::vector<double> start_values;  ///< SI, order of the unknowns
   std::vector<double> end_values;
-  double initial_cost = kNone;  ///< NaN where it cannot be simulated
-  double final_cost = kNone;    ///< likewise
+  double initial_cost = kNone;  ///< NaN if the simulation fails
+  double final_cost = kNone;    ///< NaN if the simulation fails
   int iterations = 0;
   FitStatus status = FitStatus::failed;
   std::string message;
@@ -47,24 +47,25 @@ struct StartReport {
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Further starts that a fit with one start evaluated with coarse simulations.
+/// Further starts that a single-start fit evaluated with coarse simulations.
 struct FurtherStarts {
   int looked_at = 0;
-  /// Starts that led lower than the campaign's start and were searched to their end.
+  /// Starts that led to a lower cost than the campaign's start, and were then searched fully.
   int followed = 0;
-  /// Starts that ended as low as the result, within the error of coarse simulations.
+  /// Starts that led to the same cost as the result, within the error of coarse simulations.
   int as_low = 0;
 };
 
 /// Converged starts that ended at one point.
 struct Basin {
-  double cost = 0.0;           ///< least of its starts
-  std::vector<int> starts;     ///< numbers, by cost
-  std::vector<double> values;  ///< SI, of its best start
+  double cost = 0.0;           ///< minimum over its starts
+  std::vector<int> starts;     ///< start numbers, sorted by cost
+  std::vector<double> values;  ///< end point of the best start, SI
   RIGCAL_DESCRIBE(cost, starts, values)
 };
 
-/// A simulation that failed during the fit (first few of each kind are kept, all are counted).
+/// A simulation that failed during the fit. All failures are counted, but only the first few of
+/// each kind are kept.
 struct SimulationFailure {
   std::string condition;
   Keyed<double> parameters;  ///< names and SI values of the unknowns

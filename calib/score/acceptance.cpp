@@ -20,7 +20,7 @@ const metrics::MetricSpec& metric(std::string_view name) {
   return *found;
 }
 
-/// Noise floor of a metric for any model; empty if it is unknown.
+/// Best value of a metric that the noise allows any model; absent if the noise is unknown.
 std::optional<double> floor_of(const ChannelScore& score, std::string_view name) {
   if (!score.noise_floor) return std::nullopt;
   if (name == "rho2") return score.noise_floor->rho2;
@@ -29,7 +29,8 @@ std::optional<double> floor_of(const ChannelScore& score, std::string_view name)
   return std::nullopt;
 }
 
-/// Distance of a value from the ideal over that of a bound; infinite beyond a bound that is ideal.
+/// Distance of a value from the ideal, divided by the bound's distance from it. Infinite if the
+/// bound is the ideal and the value is not.
 double used_of(const metrics::MetricSpec& spec, double value, double bound) {
   const double distance = std::abs(value - metrics::ideal(spec));
   const double allowed = std::abs(bound - metrics::ideal(spec));
@@ -142,7 +143,7 @@ std::string tolerance_used_text(double used) {
   constexpr int kMostDigits = 6;
   if (used > 10.0) return "over 1000 %";
   std::string text = significant(100.0 * used, 2);
-  // Near 100 % as many digits as it takes to show on which side the value is.
+  // Close to 100 %, more digits show on which side of the limit the value is.
   for (int digits = 3; text == "100" && used != 1.0 && digits <= kMostDigits; ++digits)
     text = significant(100.0 * used, digits);
   if (used < 1.0 && text.starts_with("100")) return "just below 100 %";

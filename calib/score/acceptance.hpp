@@ -7,20 +7,20 @@
 
 namespace rigcal::calib {
 
-/// Sets checks, verdict and reasons of a score by the campaign's limits: FAIL beyond a limit and
-/// where a limited metric does not exist, WARN between the limit and the warning limit. A channel
-/// that the condition did not record is not judged. By the rule of the guard band, WARN too where a
-/// limit is not kept by more than the score's expanded uncertainty, or where that is not known.
-/// Without any limit for its channels there is no verdict; a condition that could not be simulated
-/// fails.
+/// Judges a score against the campaign's limits, and sets its checks, verdict and reasons. FAIL
+/// means that a limit is broken or that a metric with a limit does not exist; WARN means a value
+/// between the limit and the warning limit. Under the guard band rule, WARN also means that the
+/// margin to the limit does not exceed the score's expanded uncertainty, or that this uncertainty
+/// is unknown. Channels that the condition did not record are not judged. A condition whose
+/// channels have no limits gets no verdict. A condition that could not be simulated fails.
 void judge(const std::vector<datasets::AcceptanceLimit>& limits, datasets::DecisionRule rule,
            ConditionScore& score);
 
-/// Name of a decision rule on certificates: "simple acceptance", "guard band".
+/// Name that certificates use for a decision rule: "simple acceptance", "guard band".
 std::string_view words_of(datasets::DecisionRule rule);
 
-/// Part of a tolerance that is used, rounded so that a limit that is kept never looks exhausted:
-/// "37 %", "99.96 %", "over 1000 %".
+/// Text for the used fraction of a tolerance: "37 %", "99.96 %", "over 1000 %". A limit that is
+/// kept is never rounded to 100 %.
 ///
 /// @param used  fraction of the tolerance; above 1 the limit is broken
 std::string tolerance_used_text(double used);

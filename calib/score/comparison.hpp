@@ -10,18 +10,18 @@
 #include "common/describe.hpp"
 #include "metrics/significance.hpp"
 
-// Whether the numbers of two results differ beyond their errors, and whether those of several
-// results change along a date or a temperature.
+// Tests whether the estimates of two results differ by more than their errors, and whether the
+// estimates of several results have a trend over date or temperature.
 
 namespace rigcal::calib {
 
 /// Significance level of every test in a comparison.
 inline constexpr double kSignificantLevel = 0.05;
 
-/// Reason of a difference between values that neither result estimates.
+/// Reason for not testing a difference between values that neither result estimates.
 inline constexpr const char* kKnownInBoth = "known in both";
 
-/// A parameter in one of the results that are compared, SI.
+/// A parameter in one of the compared results, SI.
 struct ComparedEstimate {
   std::optional<double> value;
   bool fitted = false;
@@ -30,7 +30,7 @@ struct ComparedEstimate {
   std::optional<Range> ci95;
   std::optional<Identifiability> identifiability;
   bool at_bound = false;
-  Omittable<double> between_days_error;  ///< standard error by what differs between days
+  Omittable<double> between_days_error;  ///< standard error due to differences between days
   RIGCAL_DESCRIBE(value, fitted, standard_error, degrees_of_freedom, ci95, identifiability,
                   at_bound, between_days_error)
 };
@@ -38,47 +38,49 @@ struct ComparedEstimate {
 /// An estimate minus that of the first result.
 struct EstimateDifference {
   std::optional<double> difference;
-  std::optional<double> percent;  ///< absent where the first value may be zero
+  std::optional<double> percent;  ///< absent if the first value may be zero
   std::optional<double> standard_error;
   Later<std::optional<double>> degrees_of_freedom;  ///< for this error (Welch and Satterthwaite)
-  std::optional<double> p_value;                    ///< for this parameter alone
+  std::optional<double> p_value;                    ///< for this parameter only
   std::optional<double> p_value_of_all;             ///< adjusted for all parameters (Holm)
   std::optional<bool> significant;
   std::optional<std::string> reason;  ///< why it is not tested
-  Omittable<bool> of_other_dates;     ///< the error includes what differs between days
-  /// Part of the error due to small effects that both models leave out.
+  Omittable<bool> of_other_dates;     ///< the error includes differences between days
+  /// Component of the error due to small effects that both models omit.
   Omittable<double> by_effects;
   RIGCAL_DESCRIBE(difference, percent, standard_error, degrees_of_freedom, p_value, p_value_of_all,
                   significant, reason, of_other_dates, by_effects)
 };
 
-/// What decides how two results may be tested against each other.
+/// How two results depend on each other, which decides how they are tested.
 struct Dependence {
   bool same_records = false;  ///< both were fitted to common data
-  bool other_dates = false;   ///< they are stated to be of different dates
-  double by_effects = 0.0;    ///< variance of the difference by effects, see variance_by_effects()
+  bool other_dates = false;   ///< the campaigns state different dates
+  double by_effects = 0.0;    ///< variance of the difference, from variance_by_effects()
 };
 
-/// The difference, except for the adjustment that needs all parameters together.
+/// Computes and tests the difference of one parameter. judge_together() then adjusts the p-value
+/// for all parameters.
 EstimateDifference difference_of(const ComparedEstimate& first, const ComparedEstimate& other,
                                  const Dependence& dependence);
 
-/// Judges the differences of all parameters together; those without a p-value are left out.
+/// Adjusts the p-values for all parameters, and decides which differences are significant. Skips
+/// differences without a p-value.
 void judge_together(const std::vector<EstimateDifference*>& differences);
 
-/// Variance that the effects which both models leave out give the difference of two estimates of
-/// one rig: the effects are the same in both, and what they move both estimates by cancels. By the
-/// size that either result leaves them.
+/// Variance of the difference of two estimates for one rig due to the effects that the models omit.
+/// The effects are the same in both results, so their common change of both estimates cancels.
+/// Returns the larger of the two variances that follow from the effect sizes in either result.
 ///
-/// @param first, other  of one estimate each
+/// @param first, other  each has one estimate only
 double variance_by_effects(const EffectSpread& first, const EffectSpread& other);
 
-/// The error of an estimate with that by what differs between days.
+/// Adds the error due to differences between days to the error of an estimate.
 metrics::EstimateError with_days(const metrics::EstimateError& own,
                                  const std::optional<double>& between_days_error);
 
-/// Means of a score over the conditions that two results have, and in how many the other is the
-/// better.
+/// Means of a score over the conditions that two results have in common, and the number of
+/// conditions in which the other result is better or worse.
 struct ScoreDifference {
   int conditions = 0;
   double mean_of_first = 0.0, mean = 0.0;
@@ -89,31 +91,33 @@ struct ScoreDifference {
   RIGCAL_DESCRIBE(conditions, mean_of_first, mean, better, worse, p_value, significant, reason)
 };
 
-/// @param scores  of the first result and of the other, a pair for each condition; at least one
-/// @param shared  whether the results share records, so that a sign test means nothing
+/// @param scores  for each condition, the score in the first result and in the other; not empty
+/// @param shared  whether the results share records, which makes a sign test meaningless
 ScoreDifference score_difference(const std::vector<std::pair<double, double>>& scores,
                                  bool higher_is_better, bool shared);
 
-/// A line through estimates, weighted by their errors.
+/// A straight line fitted to estimates, weighted by their errors.
 struct EstimateTrend {
-  long points = 0;  ///< with an error and a position
+  long points = 0;  ///< estimates with an error and a position
   std::optional<double> slope, intercept, standard_error;
   Later<std::optional<double>> degrees_of_freedom;  ///< for the slope's error
-  Later<std::optional<double>> widened;  ///< factor on that error by scatter about the line
+  Later<std::optional<double>> widened;  ///< factor on that error for variation about the line
   std::optional<Range> ci95;
   std::optional<double> p_value, reduced_chi_square;
   std::optional<bool> significant;
   std::optional<std::string> reason;  ///< why there is no line
 };
 
-/// One estimate of a series.
+/// One estimate in a series, with its date or temperature as `place`.
 struct PlacedEstimate {
   double place = 0.0;
   double value = 0.0;
   metrics::EstimateError error;
 };
 
-/// @param shared  whether results of the series share records
+/// Fits a line to a series of estimates, and tests its slope.
+///
+/// @param shared  whether results in the series share records
 EstimateTrend trend_of(const std::vector<PlacedEstimate>& estimates, bool shared);
 
 }  // namespace rigcal::calib

@@ -12,13 +12,13 @@ namespace rigcal::calib {
 
 /// Agreement of one channel over several conditions.
 struct GroupScore {
-  int conditions = 0;  ///< number of those with a score
+  int conditions = 0;  ///< number of conditions with a score
   metrics::Agreement mean;
-  metrics::Agreement worst;  ///< metric by metric
+  metrics::Agreement worst;  ///< worst value of each metric
   RIGCAL_DESCRIBE(conditions, mean, worst)
 };
 
-/// Conditions that have something in common.
+/// Conditions with a common property.
 struct Group {
   std::string by;     ///< "use", "signal", "frequency", "waveform", "leak_level"
   std::string label;  ///< "fit", "sine 0.1 Hz", "0.1 Hz", "sine", "33.33 %"
@@ -27,9 +27,9 @@ struct Group {
   RIGCAL_DESCRIBE(by, label, conditions, metrics)
 };
 
-/// The scores of a result gathered by use, signal (waveform and frequency), frequency, waveform and
-/// leak level (in the order of the campaign). A condition that lacks the property is in no such
-/// group.
+/// Groups the scores of a result by use, signal (waveform and frequency), frequency, waveform and
+/// leak level, the last in the order of the campaign. A condition without a property belongs to no
+/// group for it.
 std::vector<Group> groups(const datasets::Campaign& campaign, const Fit& fit);
 
 }  // namespace rigcal::calib

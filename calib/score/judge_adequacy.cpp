@@ -14,19 +14,19 @@ namespace {
 
 using datasets::Campaign;
 
-/// Share of the residual's variance that must be explained by the input before it counts: less is
-/// not seen beside the rest.
+/// Minimum fraction of the residual's variance that the input must explain before the dependence
+/// counts. A smaller fraction is negligible compared with the rest.
 constexpr double kLeastDriven = 0.1;
 
-/// Standard deviation of the model's error over that of the noise.
+/// Ratio of the model error to the noise, as standard deviations.
 double model_error(const LackOfFit& test) { return std::sqrt(std::max(0.0, test.ratio - 1.0)); }
 
 std::string signal_of(const std::string& condition, datasets::Channel channel) {
   return fmt::format("{} of {}", datasets::info(channel).key, condition);
 }
 
-/// Words for the largest model error of signals that pass. An estimate may exceed the allowed error
-/// by chance; it is then reported as not significant.
+/// Describes the largest model error among signals that pass. An estimate that exceeds the allowed
+/// error by chance is reported as not significant.
 std::string error_words(double largest, double largest_significant, double bound) {
   if (largest <= bound)
     return fmt::format("model error at most {:.2g} times the noise ({:.2g} allowed)", largest,
@@ -42,10 +42,10 @@ std::string error_words(double largest, double largest_significant, double bound
                      noise);
 }
 
-/// Judges the records of known noise.
+/// Judges the records with known noise.
 void judge_lack_of_fit(const Campaign& campaign, const Fit& fit, std::vector<Reason>& reasons) {
-  /// A residual of less than half of the stated noise means that the noise is overstated; then
-  /// nothing is judged by it.
+  /// If the residual's variance is below this fraction of the stated noise variance (half of the
+  /// standard deviation), the noise is overstated and cannot be used for a judgement.
   constexpr double kOverstated = 0.25;
   const double bound = campaign.acceptance_bounds.model_error_to_noise;
   const auto& tests = fit.lack_of_fit;
@@ -110,7 +110,7 @@ void judge_lack_of_fit(const Campaign& campaign, const Fit& fit, std::vector<Rea
   }
 }
 
-/// A signal of unknown noise, which can be judged by its residual only.
+/// A signal with unknown noise, which can only be judged from its residual.
 struct UnjudgedSignal {
   const ConditionScore* condition = nullptr;
   const ChannelScore* channel = nullptr;
@@ -130,7 +130,7 @@ std::vector<UnjudgedSignal> signals_of_unknown_noise(const Fit& fit) {
   return result;
 }
 
-/// The residual that the input explains most, of those given.
+/// Reports the signal whose residual depends most on the input.
 void judge_driven(const std::vector<UnjudgedSignal>& signals, std::vector<Reason>& reasons) {
   const UnjudgedSignal* worst = nullptr;
   double largest = 0.0;
@@ -158,7 +158,7 @@ void judge_driven(const std::vector<UnjudgedSignal>& signals, std::vector<Reason
       worst->condition->id, {{"share", largest}, {"signals", static_cast<double>(count)}}));
 }
 
-/// Judges the records of unknown noise.
+/// Judges the records with unknown noise.
 void judge_residuals(const std::vector<UnjudgedSignal>& signals, std::vector<Reason>& reasons) {
   if (signals.empty()) return;
   judge_driven(signals, reasons);

@@ -15,11 +15,11 @@ namespace {
 
 using datasets::Campaign;
 
-/// Without limits, an agreement below this is named: a model that explains less than nine tenths of
-/// the variance does not describe a record by anybody's standard.
+/// Without limits, an agreement below this value is reported. By any standard, a model that
+/// explains less than nine tenths of the variance does not describe a record.
 constexpr double kPoorRho2 = 0.9;
 
-/// Reports limits of the campaign that apply to no scored condition.
+/// Reports limits in the campaign that apply to no scored condition.
 void judge_unused_limits(const Campaign& campaign, const Fit& fit, std::vector<Reason>& reasons) {
   const auto by_campaign = [&](const ConditionScore& score) {
     const datasets::Condition* condition = campaign.find(score.id);
@@ -44,7 +44,7 @@ void judge_unused_limits(const Campaign& campaign, const Fit& fit, std::vector<R
   }
 }
 
-/// Recordings about which something was found doubtful.
+/// Reports doubtful recordings.
 void judge_recordings(const Fit& fit, std::vector<Reason>& reasons) {
   const ConditionScore* first = nullptr;
   std::size_t count = 0;
@@ -61,14 +61,14 @@ void judge_recordings(const Fit& fit, std::vector<Reason>& reasons) {
              first->id, {{"conditions", static_cast<double>(count)}}));
 }
 
-/// Output channel that no limit judges in some conditions.
+/// An output channel that has no limit in some conditions.
 struct WithoutLimit {
   std::size_t conditions = 0;
-  const ConditionScore* worst = nullptr;  ///< lowest rho2; the first if none has one
+  const ConditionScore* worst = nullptr;  ///< has the lowest rho2; the first if none has one
   double rho2 = std::numeric_limits<double>::infinity();
 };
 
-/// Reports the compared channels that no limit judges.
+/// Reports the compared channels without a limit.
 void judge_without_limits(const Campaign& campaign, const Fit& fit, std::vector<Reason>& reasons) {
   std::map<std::pair<datasets::Channel, bool>, WithoutLimit> found;
   for (const ConditionScore& score : fit.conditions) {
@@ -108,14 +108,14 @@ void judge_without_limits(const Campaign& campaign, const Fit& fit, std::vector<
   }
 }
 
-/// Reports doubts about the sensors of [report].
+/// Reports doubts about the sensors that [report] lists.
 void judge_sensors(const Campaign& campaign, std::vector<Reason>& reasons) {
   for (const datasets::SensorDoubt& doubt : datasets::sensor_doubts(campaign))
     reasons.push_back(reason(doubt.grave ? AspectState::reservation : AspectState::note, doubt.code,
                              doubt.words));
 }
 
-/// The least rho2 of all signals, where the campaign gives no limits.
+/// Reports the lowest rho2 of all signals; for campaigns without limits.
 void name_poor_agreement(const Fit& fit, std::vector<Reason>& reasons) {
   const ConditionScore* where = nullptr;
   const ChannelScore* worst = nullptr;

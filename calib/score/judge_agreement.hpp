@@ -5,9 +5,9 @@
 
 namespace rigcal::calib {
 
-/// Fail where a scored condition breaks a limit or cannot be evaluated; reservation between limit
-/// and warning limit, where a condition was not scored, or where its recording is doubtful; not
-/// assessed without limits, where the least agreement is named.
+/// Fails if a scored condition breaks a limit or cannot be evaluated. Makes a reservation for a
+/// value between limit and warning limit, for a condition that was not scored, and for a doubtful
+/// recording. Without limits agreement is not assessed, and the reason names the lowest agreement.
 Aspect judge_agreement(const datasets::Campaign& campaign, const Fit& fit);
 
 }  // namespace rigcal::calib

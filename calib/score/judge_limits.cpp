@@ -17,7 +17,7 @@ double largest_use(const ConditionScore& score) {
   return used;
 }
 
-/// Scores in the order of how far they use their tolerances, the worst first.
+/// Sorts scores by the used fraction of their tolerances, the worst first.
 std::vector<const ConditionScore*> by_use(const std::vector<const ConditionScore*>& scores) {
   std::vector<const ConditionScore*> sorted = scores;
   std::stable_sort(sorted.begin(), sorted.end(), [](const auto* a, const auto* b) {

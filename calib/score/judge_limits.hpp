@@ -8,14 +8,14 @@
 
 namespace rigcal::calib {
 
-/// Whether there are limits, of the campaign or of a condition.
+/// Whether the campaign or a condition has limits.
 bool has_limits(const datasets::Campaign& campaign, const Fit& fit);
 
-/// The reason where it cannot.
+/// The reason to give if there are no limits.
 Reason no_limits();
 
 /// Appends the verdicts on the limits of some conditions, the worst first: one reason for each
-/// condition that breaks its limits or is not scored, and one for all that keep them.
+/// condition that breaks a limit or is not scored, and a common one for all that keep their limits.
 void judge_limits(const std::vector<const ConditionScore*>& scores, std::vector<Reason>& reasons);
 
 /// "1 condition", "3 conditions".

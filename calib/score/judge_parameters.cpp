@@ -17,10 +17,10 @@ namespace {
 using datasets::Campaign;
 
 /// An upper limit is negligible below this fraction of the same parameter's value elsewhere in the
-/// campaign; it is the fraction that makes an estimate weak.
+/// campaign. Estimates are called weak from the same fraction on.
 constexpr double kNegligibleShare = 0.2;
 
-/// The largest size that a parameter has in the result at another level, condition or known value.
+/// Largest absolute value of the same parameter at other levels or conditions, fitted or known.
 double elsewhere(const Fit& fit, const FittedParameter& parameter) {
   double largest = 0.0;
   for (const FittedParameter& each : fit.parameters) {
@@ -31,7 +31,7 @@ double elsewhere(const Fit& fit, const FittedParameter& parameter) {
   return largest;
 }
 
-/// Largest possible size (95 %) of a parameter that is not distinguishable from zero.
+/// Upper 95 % limit on the absolute value of a parameter that is indistinguishable from zero.
 double upper_limit(const FittedParameter& parameter) {
   return parameter.ci95 ? std::max(std::abs(parameter.ci95->low), std::abs(parameter.ci95->high))
                         : HUGE_VAL;
@@ -58,8 +58,8 @@ Reason judge_bounded(const Campaign& campaign, const Fit& fit, const FittedParam
                 {{"upper_limit", limit}, {"allowed", allowed}});
 }
 
-/// Notes the known values that the estimates take as exact: those for which `prior_sd` could state
-/// an uncertainty and does not.
+/// Notes the known values that the estimates treat as exact because the campaign states no
+/// `prior_sd` for them.
 void note_exact_values(const Campaign& campaign, const Fit& fit, std::vector<Reason>& reasons) {
   const auto table = model::parameter_table(campaign.rig.plant);
   std::set<int> uncertain;
@@ -113,7 +113,7 @@ void note_further_starts(const Fit& fit, std::vector<Reason>& reasons) {
                             {"as_low", static_cast<double>(looks.as_low)}}));
 }
 
-/// A size in a unit that people use for it.
+/// Text of an effect's size in a readable unit.
 std::string readable_size(double value, const std::string& unit) {
   if (unit == "1") return significant(100.0 * value, 2) + " %";
   if (unit == "s" || unit == "m" || unit == "V")
@@ -127,8 +127,8 @@ double half_width_if_exact(const FittedParameter& parameter) {
   return 0.5 * (parameter.ci95_if_exact->high - parameter.ci95_if_exact->low);
 }
 
-/// Other effects that would explain nearly as much as the missing one, with their weights:
-/// "; lag of the position sensor would explain nearly as much (weight 0.3)".
+/// Text that names other effects which explain almost as much as the missing one, with their
+/// weights: "; lag of the position sensor would explain nearly as much (weight 0.3)".
 std::string alternatives_text(const Considered& considered) {
   constexpr double kNegligibleWeight = 0.05;
   std::vector<std::string> words;
@@ -145,8 +145,8 @@ std::string alternatives_text(const Considered& considered) {
   return fmt::format("; the records hardly separate it from {}", fmt::join(words, ", "));
 }
 
-/// What the residuals ask for. It is a reservation where the effect would move an estimate beyond
-/// the interval that it has if the model is exact.
+/// Reports effects that the residuals call for. Makes a reservation if such an effect would move an
+/// estimate out of the interval that assumes an exact model.
 void judge_missing(const Campaign& campaign, const Fit& fit, std::vector<Reason>& reasons) {
   const auto table = model::parameter_table(campaign.rig.plant);
   std::vector<std::string> moved;
@@ -179,7 +179,7 @@ void judge_missing(const Campaign& campaign, const Fit& fit, std::vector<Reason>
   }
 }
 
-/// Whether the validation records alone lead to the same values.
+/// Judges whether the validation records on their own give the same estimates.
 void judge_stability(const Campaign& campaign, const Fit& fit, std::vector<Reason>& reasons) {
   const auto table = model::parameter_table(campaign.rig.plant);
   std::vector<std::string> words;
@@ -209,7 +209,7 @@ void judge_stability(const Campaign& campaign, const Fit& fit, std::vector<Reaso
   }
 }
 
-/// What small effects that the model leaves out do to the estimates.
+/// Judges how small effects that the model omits change the estimates.
 void judge_considered(const Campaign& campaign, const Fit& fit, std::vector<Reason>& reasons) {
   if (!fit.considered) return;
   judge_missing(campaign, fit, reasons);
@@ -238,7 +238,7 @@ void judge_considered(const Campaign& campaign, const Fit& fit, std::vector<Reas
   }
 }
 
-/// Whether the draws of the posterior may be believed.
+/// Judges whether the posterior draws are reliable.
 void judge_posterior(const Fit& fit, std::vector<Reason>& reasons) {
   if (!fit.posterior || fit.posterior->draws == 0) return;
   const Posterior& found = *fit.posterior;
@@ -265,7 +265,7 @@ void judge_posterior(const Fit& fit, std::vector<Reason>& reasons) {
 
 Aspect judge_parameters(const Campaign& campaign, const Fit& fit) {
   const auto table = model::parameter_table(campaign.rig.plant);
-  // Intervals and grades hold only at a minimum.
+  // Intervals and grades are valid only at a minimum.
   if (!fit.has_converged())
     return aspect_of({reason(AspectState::reservation, "not_converged", fit.message)});
   std::vector<Reason> reasons;

@@ -9,8 +9,8 @@
 
 namespace rigcal::calib {
 
-/// Judges the limits of the conditions that are not in `estimated_from`; not assessed if there are
-/// none.
+/// Judges the conditions that are not in `estimated_from` against their limits. Validation is not
+/// assessed if there are no such conditions.
 Aspect judge_validation(const datasets::Campaign& campaign, const Fit& fit,
                         const std::set<std::string>& estimated_from);
 

@@ -19,7 +19,7 @@ namespace {
 
 using datasets::Condition;
 
-/// Samples [first, first + count) of the longest stretch of the record that counts without a gap.
+/// Finds the longest stretch of consecutive samples that count. Returns its first index and count.
 std::pair<std::size_t, std::size_t> longest_stretch(const std::vector<std::size_t>& rows) {
   std::pair<std::size_t, std::size_t> best{0, 0};
   std::size_t begin = 0;
@@ -51,7 +51,7 @@ void compare_at_fundamental(const ProblemCondition& condition, std::span<const d
   }
 }
 
-/// Tests of the residual on the longest stretch without a gap.
+/// Tests the residual over the longest stretch without a gap; absent if it cannot be tested.
 std::optional<metrics::ResidualTests> test_residual(const ProblemCondition& condition,
                                                     std::span<const double> measured,
                                                     std::span<const double> simulated,
@@ -72,7 +72,7 @@ std::optional<metrics::ResidualTests> test_residual(const ProblemCondition& cond
   }
 }
 
-/// The averaged channel and its uncertainty, for the samples in windows.
+/// Returns the averaged channel with its uncertainty, at the samples inside the windows.
 metrics::MeasuredMean measured_mean(const datasets::Campaign& campaign,
                                     const ProblemCondition& condition,
                                     const ProblemChannel& channel) {
@@ -90,7 +90,7 @@ metrics::MeasuredMean measured_mean(const datasets::Campaign& campaign,
   return result;
 }
 
-/// Effects that a fit considered, and those of them that act in a problem.
+/// Effects that a fit considered, and the subset that acts in a problem.
 struct ScoredEffects {
   const EffectSpread& spread;
   std::vector<Effect> acting;
@@ -227,7 +227,7 @@ std::vector<std::string> overfitting_warnings(const std::vector<ConditionScore>&
   for (const ConditionScore& score : scores) {
     for (const ChannelScore& channel : score.channels) {
       if (!channel.agreement || !channel.noise_floor || score.samples < 2) continue;
-      // One draw of the noise scatters about its variance by sqrt(2 / n).
+      // The variance of n noise samples has a relative standard deviation of sqrt(2 / n).
       const double scatter = 5.0 * std::sqrt(2.0 / static_cast<double>(score.samples));
       const double unexplained = 1.0 - channel.agreement->rho2;
       const double least = 1.0 - channel.noise_floor->rho2;

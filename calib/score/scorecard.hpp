@@ -13,26 +13,26 @@ namespace rigcal::calib {
 /// Simulates every condition of a problem at z, over the whole record, and scores it.
 ///
 /// @param z        shape (unknowns), in the unit box
-/// @param effects  that the fit considered; those of sensors count in the uncertainty of the scores
-/// @return         in the order of the problem's conditions; a condition that cannot be simulated
-///                 says why
+/// @param effects  effects considered in the fit; sensor effects count in the scores' uncertainty
+/// @return         one score per condition, in order; a condition that cannot be simulated says why
 std::vector<ConditionScore> score_conditions(const Problem& problem, std::span<const double> z,
                                              int threads, const EffectSpread& effects = {});
 
-/// Makes the residual tests of predictions again, without what the uncertainty of the estimates
-/// explains (ChannelScore::explained): under the right model an estimate that is off leaves a
-/// structure that is no error of the model.
+/// Repeats the residual tests of predictions without the component that the uncertainty of the
+/// estimates explains (ChannelScore::explained). Even in a correct model, an inexact estimate
+/// leaves structure in the residual, and this is not a model error.
 ///
-/// @param scores  of the problem's conditions, in their order
+/// @param scores  one per condition of the problem, in order
 void test_predictions(const Problem& problem, std::vector<ConditionScore>& scores);
 
-/// The same conditions without scores, since their nuisance parameters were not estimated.
+/// Returns the conditions of a problem without scores, for validation conditions whose nuisance
+/// parameters were not estimated.
 ///
 /// @param why  in words
 std::vector<ConditionScore> unscored_conditions(const Problem& problem, const std::string& why);
 
-/// Scores that are better than the noise allows any model, in words: the fit follows the noise, or
-/// the noise is smaller than its stated standard deviation.
+/// Warns of scores that are better than the noise allows any model. Then the fit follows the noise,
+/// or the noise is smaller than its stated standard deviation.
 std::vector<std::string> overfitting_warnings(const std::vector<ConditionScore>& scores);
 
 }  // namespace rigcal::calib

@@ -35,7 +35,7 @@ std::optional<Range> recorded_range(const Record* record, Channel channel) {
   return range;
 }
 
-/// Value in a condition, fitted or known; the narrower scope wins.
+/// Value of a parameter in a condition, fitted or known. The narrowest scope takes precedence.
 double value_in(const Campaign& campaign, const Condition& condition, const Fit& fit,
                 std::string_view key) {
   const int index = model::parameter_index(campaign.rig.plant, key);

@@ -12,10 +12,10 @@
 
 namespace rigcal::calib {
 
-/// Ranges covered by the conditions of a fit; a range is empty if no condition gives it.
+/// Ranges covered by the conditions of a fit; a range is absent if no condition provides a value.
 struct Validity {
   std::optional<Range> frequency_hz;
-  std::optional<Range> amplitude_m, amplitude_v;  ///< half of peak to peak of the drive
+  std::optional<Range> amplitude_m, amplitude_v;  ///< half the peak-to-peak value of the drive
   std::optional<Range> supply_pressure_pa;
   std::optional<Range> leakage_coefficient;
   std::vector<std::string> leak_levels;
@@ -30,7 +30,7 @@ struct Validity {
   Amplitude amplitude() const;
 };
 
-/// Stores an amplitude in the member of its unit: `amplitude_m`, `amplitude_v`, ...
+/// Stores an amplitude in the member for its unit: `amplitude_m`, `amplitude_v`, ...
 template <typename Target, typename Value>
 void put_amplitude(std::string_view unit, const std::optional<Value>& amplitude, Target& target) {
   if (unit == "m") target.amplitude_m = amplitude;
@@ -41,10 +41,11 @@ void put_amplitude(std::string_view unit, const std::optional<Value>& amplitude,
   if (unit == "m/s2") target.amplitude_m_per_s2 = *amplitude;
 }
 
-/// Ranges covered by the conditions of some uses, with the values of `fit` if it has them.
+/// Computes the ranges covered by the conditions with the given uses. Values from `fit` take
+/// precedence.
 ///
-/// @param records  those that were compared; they give the amplitude if a condition does not state
-///                 it, and the supply if it was recorded
+/// @param records  compared records; they provide the amplitude if a condition does not state one,
+///                 and the supply pressure if it was recorded
 Validity coverage(const datasets::Campaign& campaign, const std::vector<datasets::Record>& records,
                   const Fit& fit, const std::vector<datasets::Use>& uses);
 

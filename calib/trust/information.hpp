@@ -27,9 +27,9 @@ std::vector<std::optional<double>> cramer_rao(const Problem& problem, std::span<
 std::vector<double> point_at(const Problem& problem,
                              const std::vector<datasets::FittedValue>* values);
 
-/// One unknown of a test that is planned.
+/// One unknown in a planned test.
 struct TestedParameter {
-  std::string name;  ///< that of results: "mass_kg"
+  std::string name;  ///< name in result files: "mass_kg"
   std::string unit;
   datasets::Scope scope = datasets::Scope::rig;
   std::optional<std::string> level;  ///< leak level or condition; absent: the rig

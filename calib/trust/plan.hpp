@@ -12,21 +12,21 @@ namespace rigcal::calib {
 /// Information in one existing or planned record.
 struct PlannedRecord {
   std::string condition;
-  bool recorded = false;               ///< false: planned, simulated only
-  std::optional<std::string> problem;  ///< why nothing is known of it
-  /// Standard deviation of each unknown from this record alone, SI; shape (unknowns), also if
-  /// nothing is known.
+  bool recorded = false;               ///< false: planned, only simulated
+  std::optional<std::string> problem;  ///< why its information is unknown
+  /// Standard deviation of each unknown from this record only, SI. Shape (unknowns), even if the
+  /// information is unknown.
   std::vector<std::optional<double>> sd_alone;
-  std::vector<std::optional<double>> sd_without;  ///< likewise, from all other records
+  std::vector<std::optional<double>> sd_without;  ///< from all other records, SI; shape (unknowns)
   RIGCAL_DESCRIBE(condition, recorded, problem, sd_alone, sd_without)
 };
 
-/// One unknown, with its standard deviations, SI; absent where it is not determined.
+/// One unknown with its standard deviations, SI; absent where the records do not determine it.
 struct PlannedParameter : TestedParameter {
   bool nuisance = false;
-  std::optional<double> sd_recorded;  ///< from all records that exist
-  std::optional<double> sd_all;       ///< and with the planned ones
-  std::optional<std::string> remedy;  ///< what would determine it
+  std::optional<double> sd_recorded;  ///< from all existing records
+  std::optional<double> sd_all;       ///< from all existing and planned records
+  std::optional<std::string> remedy;  ///< addition that would determine the unknown
   RIGCAL_DESCRIBE(name, unit, scope, level, nuisance, value, sd_recorded, sd_all, remedy)
 };
 

@@ -70,7 +70,8 @@ void check_tank(const Campaign& campaign) {
                    "model = \"two_chamber\"");
 }
 
-/// The quantities of a linkage are angle and moment, those of the other plants position and force.
+/// Checks that the channels suit the plant: angle for a linkage; position, acceleration and force
+/// for all other plants.
 void check_motion(const Campaign& campaign) {
   const bool turns = campaign.rig.plant == model::PlantKind::linkage;
   for (const auto& [channel, setting] : campaign.channels) {
@@ -126,7 +127,7 @@ bool carries(const Campaign& campaign, const Condition& condition, Channel chann
       [&](const RepeatPattern& pattern) { return carries(campaign, pattern, channel); });
 }
 
-/// A drive that is recorded must be in the record, and must not have been switched off.
+/// Checks that a condition with a recorded drive has a record with the drive as input channel.
 void check_recorded_drive(const Campaign& campaign, const Condition& condition) {
   if (condition.waveform != Waveform::recorded) return;
   if (!condition.has_record()) {
@@ -259,7 +260,7 @@ void check_campaign(const Campaign& campaign, const Location& start) {
   for (const Condition& condition : campaign.conditions) {
     if (condition.use == Use::ignore) continue;
     if (condition.use == Use::diagnose) {
-      // The diagnosis reports everything that is missing, at once.
+      // The diagnosis itself reports all missing values at once.
       if (values_in(campaign, condition).missing().empty()) check_values(campaign, condition);
       continue;
     }

@@ -30,7 +30,7 @@ std::optional<long> whole_number(std::string_view text) {
   return whole ? std::optional(value) : std::nullopt;
 }
 
-/// "01..10" -> 01, 02, ..., 10: zeros in front are kept.
+/// Expands "01..10" to 01, 02, ..., 10. Leading zeros are kept.
 std::vector<std::string> read_range(const TomlNode& node) {
   const std::string expected = fmt::format(
       "a range such as \"01..10\" of at most {} numbers, or a list of texts", kMostRepeats);
@@ -183,7 +183,7 @@ struct Rule {
   bool allowed;
 };
 
-/// Checks which keys a waveform needs and allows.
+/// Checks that a condition has the keys that its waveform needs, and no others.
 void check_waveform_keys(const TomlNode& node, Waveform waveform) {
   const bool recorded = waveform == Waveform::recorded;
   const bool chirp = waveform == Waveform::chirp;

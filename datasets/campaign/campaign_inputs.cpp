@@ -51,7 +51,7 @@ model::Signal drive(const Campaign& campaign, const Condition& condition, const 
   return recorded_signal(campaign, *record, channel);
 }
 
-/// A measured channel that acts on the rig besides the drive.
+/// Returns a measured channel that acts on the rig in addition to the drive, if it was recorded.
 std::optional<model::Signal> side_input(const Campaign& campaign, const Record* record,
                                         Channel channel) {
   const auto setting = campaign.channels.find(channel);
@@ -88,7 +88,7 @@ std::vector<double> sample_times(const Condition& condition, const Record* recor
         condition.where,
         fmt::format("condition \"{}\": {} s at {} Hz are more than {:.0f} samples", condition.id,
                     *condition.duration_s, *condition.sample_rate_hz, kMostSamples));
-  // A duration of a whole number of samples must not lose the last one to rounding.
+  // If the duration is a whole number of intervals, rounding must not drop the last sample.
   constexpr double kSlack = 1e-9;
   const auto intervals = static_cast<std::size_t>(
       std::floor(*condition.duration_s * *condition.sample_rate_hz * (1.0 + kSlack)));

@@ -147,7 +147,8 @@ void read_conditions(const TomlNode& node, Campaign& campaign) {
   }
 }
 
-/// [synthetic] says how long and how dense where a condition has neither record nor times.
+/// Sets duration and sample rate from [synthetic] in conditions that have neither these nor a
+/// record.
 void fill_times(Campaign& campaign) {
   if (!campaign.synthetic_settings) return;
   const SyntheticSettings& synthetic = *campaign.synthetic_settings;
@@ -162,7 +163,8 @@ void fill_times(Campaign& campaign) {
   }
 }
 
-/// `synthetic = true` labels records that were made; a table [synthetic] says how to make some.
+/// Reads `synthetic`. The value `true` marks records as synthetic; a table [synthetic] describes
+/// how to make them.
 void read_synthetic_entry(const TomlNode& node, Campaign& campaign) {
   if (node.is_table()) {
     campaign.synthetic_settings = read_synthetic(node, campaign.rig.plant);

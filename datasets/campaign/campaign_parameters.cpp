@@ -24,14 +24,14 @@ std::string with_unit(const model::ParameterSpec& spec, double value) {
   return spec.unit == "1" ? fmt::format("{}", value) : fmt::format("{} {}", value, spec.unit);
 }
 
-/// Value of a parameter within the limits of its table row.
+/// Reads the value of a parameter, and checks it against the limits in the parameter table.
 double read_value(const TomlNode& node, const model::ParameterSpec& spec) {
   const double value = node.quantity(spec.unit);
   if (const auto problem = outside_limits(spec, value)) node.fail(*problem);
   return value;
 }
 
-/// Index of a key that is allowed in this table.
+/// Returns the parameter index of a key, and checks that the key is allowed in this table.
 int read_index(const TomlNode& table, std::string_view key, model::PlantKind plant,
                ParameterGroup group, const std::vector<std::string>& others) {
   const int index = model::parameter_index(plant, key);
@@ -156,7 +156,7 @@ void read_setting_table(const TomlNode& node, const model::ParameterSpec& spec,
 
 void differ_between_repeats(const model::ParameterSpec& spec, double sd,
                             ParameterSetting& setting) {
-  constexpr double kReach = 8.0;  // in standard deviations; no repeat is farther from the mean
+  constexpr double kReach = 8.0;  // in standard deviations; no repeat differs more from the mean
   setting.between_repeats = true;
   setting.fit = true;
   setting.scope = Scope::condition;
@@ -282,7 +282,7 @@ Overrides read_overrides(const TomlNode& table, model::PlantKind plant, Paramete
 
 namespace {
 
-/// Whether a key is in the table of a plant and was given.
+/// Whether the plant has a parameter with this key and its value was given.
 bool has_key(const model::ParameterValues& values, std::string_view key) {
   return model::parameter_index(values.plant, key) >= 0 && values.is_given(key);
 }
@@ -298,7 +298,7 @@ std::optional<ParameterConflict> find_supply_conflict(const model::ParameterValu
                   resistance ? "supply_capacity" : "supply_resistance")};
 }
 
-/// A spool follows a voltage or a pilot pressure; each has keys of its own.
+/// Checks the keys of the valve drive: a spool follows either a voltage or a pilot pressure.
 std::optional<ParameterConflict> find_pilot_conflict(const model::Rig& rig,
                                                      const model::ParameterValues& values) {
   const bool pilot = values.is_given("pilot_gain");
@@ -350,7 +350,7 @@ std::optional<ParameterConflict> find_pilot_conflict(const model::Rig& rig,
   return std::nullopt;
 }
 
-/// One law says how far an edge opens.
+/// Checks that only one law describes the opening of a metering edge.
 std::optional<ParameterConflict> find_opening_conflict(const model::ParameterValues& values) {
   constexpr std::array kTable{"opening_20", "opening_40", "opening_60", "opening_80"};
   const char* above = nullptr;
@@ -371,7 +371,7 @@ std::optional<ParameterConflict> find_opening_conflict(const model::ParameterVal
   return std::nullopt;
 }
 
-/// A value that needs another one, and the name of the pair in messages.
+/// A parameter that requires another one, and the reason, for messages.
 struct Companion {
   const char* key;
   const char* needed;
@@ -429,7 +429,7 @@ std::optional<ParameterConflict> find_pump_conflict(const model::ParameterValues
   return std::nullopt;
 }
 
-/// Valve and pump of a cylinder with two chambers.
+/// Checks valve and pump of a cylinder with two chambers.
 std::optional<ParameterConflict> find_metering_conflict(const model::Rig& rig,
                                                         const model::ParameterValues& values) {
   if (model::parameter_index(values.plant, "pilot_gain") < 0) return std::nullopt;
@@ -438,7 +438,7 @@ std::optional<ParameterConflict> find_metering_conflict(const model::Rig& rig,
   return find_pump_conflict(values);
 }
 
-/// The lever must not change its sign between the stops.
+/// Checks that the lever is positive everywhere between the stops.
 std::optional<ParameterConflict> find_joint_conflict(const model::ParameterValues& values) {
   const double lower = values["lower_stop"];
   const double upper = values["upper_stop"];
@@ -475,7 +475,7 @@ std::optional<ParameterConflict> find_linkage_conflict(const model::Rig& rig,
   return find_joint_conflict(values);
 }
 
-/// A second mass needs all of its parameters.
+/// Checks that a second mass has either all or none of its parameters.
 std::optional<ParameterConflict> find_payload_conflict(const model::ParameterValues& values) {
   constexpr std::array kKeys{"payload_mass", "payload_frequency", "payload_damping_ratio"};
   const auto given = [&](std::string_view key) {
@@ -493,8 +493,8 @@ std::optional<ParameterConflict> find_payload_conflict(const model::ParameterVal
   return std::nullopt;
 }
 
-/// Friction with pre-sliding needs the force at which it slides, and replaces the straightened
-/// sign.
+/// Checks the parameters of pre-sliding friction. It needs the sliding force, and replaces the
+/// smoothed sign function.
 std::optional<ParameterConflict> find_bristle_conflict(const model::ParameterValues& values) {
   if (has_key(values, "bristle_damping") && !has_key(values, "bristle_stiffness"))
     return ParameterConflict{"bristle_damping",
@@ -507,7 +507,8 @@ std::optional<ParameterConflict> find_bristle_conflict(const model::ParameterVal
   return std::nullopt;
 }
 
-/// The terms that bring states of their own, and how many; those that two keys stand for once.
+/// Checks that the solver of the plant has room for all states. Terms that add states are listed in
+/// the message.
 std::optional<ParameterConflict> find_room_conflict(const model::Rig& rig,
                                                     const model::ParameterValues& values) {
   const model::StateCount count = model::count_states(rig, values);
@@ -526,7 +527,7 @@ std::optional<ParameterConflict> find_room_conflict(const model::Rig& rig,
                   count.needed, to_string(values.plant), count.room, fmt::join(present, ", "))};
 }
 
-/// A loop needs the gains of its controlled quantity, and takes no others.
+/// Checks that a loop has the gains for its controlled quantity, and no others.
 std::optional<ParameterConflict> find_loop_conflict(const model::Rig& rig,
                                                     const model::ParameterValues& values) {
   const auto given = [&](std::string_view key) {
@@ -581,7 +582,7 @@ std::optional<ParameterConflict> find_loop_conflict(const model::Rig& rig,
 
 std::optional<ParameterConflict> find_conflict(const model::Rig& rig,
                                                const model::ParameterValues& values) {
-  // Some plants lack some parameters.
+  // Not every plant has every parameter.
   const auto given = [&](std::string_view key) {
     return model::parameter_index(values.plant, key) >= 0 && values.is_given(key);
   };

@@ -12,19 +12,19 @@ namespace rigcal::datasets {
 
 /// Section of the campaign file that a parameter belongs to.
 enum class ParameterGroup {
-  rig,         ///< [rig.parameters]: everything but the controller's
+  rig,         ///< [rig.parameters]: all parameters except the controller's
   controller,  ///< [rig.controller]
   any,         ///< [synthetic] parameters
 };
 
-/// Declares a parameter to differ at random from repeat to repeat about its value
-/// (ParameterSetting::between_repeats). Bounds that are NaN become eight standard deviations,
-/// within the parameter's limits.
+/// Declares that a parameter varies randomly between repeats about its value
+/// (ParameterSetting::between_repeats). Bounds that are NaN are set to eight standard deviations
+/// from the value, within the parameter's limits.
 void differ_between_repeats(const model::ParameterSpec& spec, double sd, ParameterSetting& setting);
 
 const model::ParameterSpec& spec_of(model::PlantKind plant, int index);
 
-/// Keys of a group in the order of the parameter table.
+/// Lists the keys in a group, in the order of the parameter table.
 std::vector<std::string> parameter_keys(model::PlantKind plant, ParameterGroup group);
 
 /// Rows of the parameters of all plants: what one of them has is a key.
@@ -42,32 +42,36 @@ inline KeyForm known_values_form(ParameterGroup group) {
 /// Explains why a value is outside the limits of the parameter table; empty if it is inside.
 std::optional<std::string> outside_limits(const model::ParameterSpec& spec, double value);
 
-/// Fills in missing bounds (NaN): value/10 to 10 value within the parameter's limits, or the limits
-/// themselves for a value of 0.
+/// Sets missing bounds (NaN) to value/10 and 10 value within the parameter's limits, or to the
+/// limits themselves if the value is 0.
 ///
-/// @return  the problem if a bound is then not finite or the value is outside; else empty
+/// @return  the problem if a bound is still not finite or the value is outside the bounds,
+/// otherwise
+///          std::nullopt
 std::optional<std::string> complete_bounds(const model::ParameterSpec& spec,
                                            ParameterSetting& setting);
 
-/// Why a parameter cannot be fitted; empty if it can.
+/// Explains why a parameter cannot be fitted; std::nullopt if it can.
 std::optional<std::string> cannot_be_fitted(const model::ParameterSpec& spec);
 
-/// Table [rig.parameters] or [rig.controller]; keys in `others` belong to someone else.
+/// Reads the table [rig.parameters] or [rig.controller]. Ignores the keys in `others`, which other
+/// functions read.
 ///
-/// @throws InputError
+/// @throws InputError  if a key or value is not allowed
 std::vector<ParameterSetting> read_settings(const TomlNode& table, model::PlantKind plant,
                                             ParameterGroup group,
                                             const std::vector<std::string>& others = {});
 
-/// Table of known values: `parameters = { }` or `controller = { }`.
+/// Reads a table of known values: `parameters = { }` or `controller = { }`.
 ///
-/// @throws InputError
+/// @throws InputError  if a key or value is not allowed
 Overrides read_overrides(const TomlNode& table, model::PlantKind plant, ParameterGroup group);
 
-/// Whether a table of known values has one for the parameter of this table index.
+/// Whether a list of known values has one for the parameter with this table index.
 bool has_entry(const Overrides& overrides, int index);
 
-/// Parameters that contradict or miss one another.
+/// A conflict between parameters: they contradict each other, or one requires another that is
+/// missing.
 struct ParameterConflict {
   std::string key;
   std::string message;
@@ -75,8 +79,8 @@ struct ParameterConflict {
 std::optional<ParameterConflict> find_conflict(const model::Rig& rig,
                                                const model::ParameterValues& values);
 
-/// Conflict between the `gain_sd` of a channel and the gain of its sensor in [rig.parameters],
-/// which is estimated or has a prior: the same uncertainty would count twice.
+/// A conflict between the `gain_sd` of a channel and a sensor gain in [rig.parameters] that is
+/// estimated or has a prior. The same uncertainty would be counted twice.
 struct GainKnownTwice {
   Location where;  ///< place of the channel's `gain_sd`
   std::string message;

@@ -16,7 +16,7 @@ bool is_in_counts(const TomlNode& node) {
   return unit && unit->is_string() && unit->string() == kCounts;
 }
 
-/// Counts have no unit, so they stay as they are.
+/// Reads a channel in converter counts. Counts have no unit, so they are not converted.
 UnitConversion read_counts(const TomlNode& node) {
   for (const char* key : {"gain", "offset", "sd", "gain_sd", "offset_sd", "ignore_unit"}) {
     if (const auto entry = node.find(key))
@@ -25,7 +25,7 @@ UnitConversion read_counts(const TomlNode& node) {
   return {};
 }
 
-/// SI = conversion(gain * raw + offset), the offset in the channel's own unit.
+/// Reads the conversion SI = conversion(gain * raw + offset). The offset is in the channel's unit.
 UnitConversion read_conversion(const TomlNode& node, std::string_view si_unit, StatedUnit& stated) {
   const TomlNode unit =
       node.require("unit", fmt::format("the unit of the column, such as \"{}\"", si_unit));
@@ -67,7 +67,7 @@ ChannelRole default_role(Channel channel, Channel drive) {
   }
 }
 
-/// The model has no use for some roles.
+/// Checks that the model can use a channel in this role.
 void check_role(const TomlNode& node, Channel channel, ChannelRole role, Channel drive) {
   const bool drives = channel == drive;
   const bool can_be_input = drives || channel == Channel::supply_pressure ||

@@ -44,19 +44,19 @@ const std::vector<CampaignKey>& sensor_keys() {
   return keys;
 }
 
-/// Stated uncertainty of a sensor, and its place in the file.
+/// Stated uncertainty of a sensor, with its place in the file.
 struct Statement {
   double sd = 0.0;
   TomlNode node;
 };
 
-/// Merges the statements of sensors and [recording.channels] about the same number of a channel.
+/// Merges what sensors and [recording.channels] state about the same uncertainty of a channel.
 class Statements {
  public:
   explicit Statements(const TomlNode& root) : root_(root) {}
 
   /// @param key  "gain_sd" or "offset_sd"
-  /// @throws InputError  two statements differ
+  /// @throws InputError  if two statements differ
   void merge(Channel channel, std::string_view key, Statement stated, double& into) {
     constexpr double kSame = 1e-6;
     std::optional<Statement>& other = known_[{channel, std::string(key)}];

@@ -15,14 +15,14 @@ const KeyTable<Campaign>& recording_keys();
 /// [recording] into the campaign, whose controller is known already.
 void read_recording(const TomlNode& node, Campaign& campaign);
 
-/// The limits in an `acceptance` of a condition; needs the channels.
+/// Reads the limits from the `acceptance` table of a condition; needs the channels.
 std::vector<AcceptanceLimit> read_limits(const TomlNode& node, const Campaign& campaign);
 
-/// Reads the channels in `not_judged` of an `acceptance` section that has these limits.
+/// Reads `not_judged` from an `acceptance` section with these limits.
 std::vector<Channel> read_not_judged(const TomlNode& node, const Campaign& campaign,
                                      const std::vector<AcceptanceLimit>& limits);
 
-/// Reads [acceptance] into the campaign: limits and further conditions; needs rig and channels.
+/// Reads [acceptance] into the campaign: limits and further requirements; needs rig and channels.
 void read_acceptance(const TomlNode& node, Campaign& campaign);
 
 /// Keys of [acceptance], and those of `acceptance` in a condition.
@@ -44,16 +44,18 @@ BetweenDaysSettings read_between_days(const TomlNode& node, const Campaign& camp
 /// [diagnosis]
 const KeyTable<DiagnosisSettings>& diagnosis_keys();
 DiagnosisSettings read_diagnosis(const TomlNode& node);
-/// @throws InputError  `duty` names no condition of the campaign
+/// Checks that `duty` names a condition in the campaign.
+///
+/// @throws InputError  if it does not
 void check_duty(const TomlNode& node, const Campaign& campaign);
 
 /// [report]
 const std::vector<CampaignKey>& report_keys();
 ReportSettings read_report(const TomlNode& node);
-/// Copies the uncertainties that the sensors of [report] state into the channels.
+/// Copies the uncertainties stated for the sensors in [report] to the channels.
 ///
 /// @param root  the whole file
-/// @throws InputError  two statements about one channel differ (names both places)
+/// @throws InputError  if two statements about one channel differ; names both places
 void apply_sensors(const TomlNode& root, Campaign& campaign);
 
 const KeyTable<DesignSettings>& design_keys();
@@ -72,7 +74,7 @@ const KeyTable<Condition>& condition_keys();
 /// One [[condition]]; needs the rig and the channels.
 Condition read_condition(const TomlNode& node, const Campaign& campaign);
 
-/// Reads the name of a channel as a key of a table; an error names the known ones.
+/// Converts a table key to a channel; an error lists the known channels.
 Channel read_channel_key(const TomlNode& table, const std::string& key);
 
 /// Keys of the channels that a model may be compared with.
@@ -84,10 +86,10 @@ KeyForm channels_form(std::string name);
 /// Output channels of the records, in the order of the channel table.
 std::vector<Channel> output_channels(const Campaign& campaign);
 
-/// Checks that need several sections: parameters without a value, contradictions, runs without
-/// records.
+/// Makes the checks that involve several sections: parameters without a value, contradictions,
+/// conditions without records.
 ///
-/// @param start  start of the file
+/// @param start  location for errors that concern the whole file
 void check_campaign(const Campaign& campaign, const Location& start);
 
 }  // namespace rigcal::datasets

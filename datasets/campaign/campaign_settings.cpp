@@ -14,7 +14,7 @@ namespace {
 constexpr std::string_view kWarnPrefix = "warn_";
 constexpr const char* kNegligible = "negligible";
 constexpr const char* kNotJudged = "not_judged";
-/// Records that begin a second apart from their drive are no day-to-day variation.
+/// An offset of more than a second between record and drive is not a day-to-day variation.
 constexpr double kMostTriggerSd_s = 1.0;
 
 using metrics::kMetrics;
@@ -141,7 +141,7 @@ std::map<std::string, Overrides> read_true_levels(const TomlNode& table, model::
   return levels;
 }
 
-/// Limits of an `acceptance`, whose keys in `others` are none.
+/// Reads the limits from an `acceptance` table. The keys in `others` are not limits.
 Limits limits_but(const TomlNode& node, const Campaign& campaign,
                   const std::vector<std::string>& others) {
   std::vector<Channel> outputs = output_channels(campaign);
@@ -170,7 +170,7 @@ Limits limits_but(const TomlNode& node, const Campaign& campaign,
     if (std::find(outputs.begin(), outputs.end(), channel) == outputs.end()) {
       entry.fail("is no output channel: expected one of those in [recording.channels]");
     }
-    // The table of a channel replaces the general limits.
+    // Limits in the table of a channel replace the general limits.
     for (const auto& limit : entry.entries()) {
       const std::string& name = limit.first;
       if (!is_limit(name)) entry.fail_unknown(name, "metric", names);

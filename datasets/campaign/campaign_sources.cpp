@@ -12,15 +12,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Limit of folder entries that the patterns of one condition may visit.
+/// Maximum number of folder entries that the patterns of one condition may visit.
 constexpr long kMostEntries = 200'000;
 
 bool is_pattern(std::string_view text) {
   return text.find_first_of("*?") != std::string_view::npos;
 }
 
-/// Whether a file name matches a pattern; '*' matches any text, '?' one character. Linear in
-/// memory, at most quadratic in time.
+/// Whether a file name matches a pattern: '*' matches any text, '?' one character. Takes at most
+/// quadratic time.
 bool fits(std::string_view name, std::string_view pattern) {
   std::size_t n = 0;
   std::size_t p = 0;
@@ -43,7 +43,9 @@ bool fits(std::string_view name, std::string_view pattern) {
   return pattern.find_first_not_of('*', p) == std::string_view::npos;
 }
 
-/// Entries of a folder that fit a pattern; hidden ones only where the pattern names the dot.
+/// Lists the folder entries that match a pattern. Hidden entries match only if the pattern begins
+/// with a dot.
+///
 /// @param left  number of entries that may still be visited
 std::vector<fs::path> entries_that_fit(const fs::path& folder, const std::string& pattern,
                                        long& left) {
@@ -61,9 +63,11 @@ std::vector<fs::path> entries_that_fit(const fs::path& folder, const std::string
 
 struct Expansion {
   std::vector<fs::path> files;  ///< sorted by name
-  fs::path searched;            ///< folder in which the first pattern was looked for
+  fs::path searched;            ///< folder in which the first pattern was applied
 };
 
+/// Expands a path whose components may be patterns.
+///
 /// @param root  folders outside it are not visited; empty: no restriction
 /// @param left  number of entries that may still be visited
 Expansion expand(const fs::path& base, const std::string& pattern, const fs::path& root,
@@ -155,7 +159,7 @@ std::vector<RepeatSource> sources_of(const Campaign& campaign, const Condition& 
   return sources;
 }
 
-/// A file that two patterns match would count as two repeats.
+/// Checks that no file matches two patterns, since it would count as two repeats.
 void check_distinct(const Condition& condition, const std::vector<RepeatSource>& sources) {
   std::set<std::pair<fs::path, std::map<Channel, std::string>>> seen;
   for (const RepeatSource& source : sources) {

@@ -48,8 +48,7 @@ const Overrides* level_overrides(const Campaign& campaign, const Condition& cond
   return level == campaign.leak_levels.end() ? nullptr : &level->second;
 }
 
-/// Whether every condition overrides a value of the rig, so that changing it would silently do
-/// nothing.
+/// Whether every condition overrides a value of the rig, so that a change would have no effect.
 bool overridden_everywhere(const Campaign& campaign, int index) {
   return std::all_of(campaign.conditions.begin(), campaign.conditions.end(),
                      [&](const Condition& condition) {

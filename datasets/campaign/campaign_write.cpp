@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A table within a table; made if it is not there.
+/// Returns a table within a table, and creates it if it is missing.
 toml::table& child(toml::table& table, std::string_view key, bool is_inline) {
   if (!table.contains(key)) {
     toml::table added;
@@ -24,7 +24,7 @@ toml::table& child(toml::table& table, std::string_view key, bool is_inline) {
   return *table.get_as<toml::table>(key);
 }
 
-/// Sets a key to a value in the unit of the parameter table, exactly.
+/// Sets a key to an exact value, in the unit of the parameter table.
 void put(toml::table& table, const model::ParameterSpec& spec, std::string_view key, double value) {
   if (spec.unit == "1") {
     table.insert_or_assign(key, value);
@@ -37,7 +37,7 @@ bool of_controller(const model::ParameterSpec& spec) {
   return spec.kind == model::ParameterKind::controller;
 }
 
-/// [rig.parameters] or [rig.controller], depending on the parameter.
+/// Returns the table for a parameter: [rig.parameters] or [rig.controller].
 toml::table& rig_table(toml::table& root, const model::ParameterSpec& spec) {
   return child(child(root, "rig", false), of_controller(spec) ? "controller" : "parameters", false);
 }
@@ -75,8 +75,8 @@ void write_value(toml::table& root, const model::ParameterSpec& spec, const Fitt
   }
 }
 
-/// Whether a condition has a value other than the rig's: a known one of its own or of its leak
-/// level, or a fitted one.
+/// Whether a condition has its own value instead of the rig's: a known value, possibly from its
+/// leak level, or a fitted one.
 bool has_own_value(const Campaign& campaign, const Condition& condition, int index,
                    const std::vector<FittedValue>& values) {
   if (has_entry(condition.overrides, index)) return true;
@@ -92,9 +92,9 @@ bool has_own_value(const Campaign& campaign, const Condition& condition, int ind
   });
 }
 
-/// Writes the start of a parameter with a value per leak level or condition. If all conditions have
-/// their own, the start is removed: a level that the fit never saw is then an error, and no start
-/// is taken for a result.
+/// Writes the start of a parameter that has a value per leak level or condition. Removes the start
+/// if all conditions have their own value. A leak level that was not fitted then causes an error,
+/// and the start cannot be mistaken for a result.
 void write_scoped_start(toml::table& root, const Campaign& campaign,
                         const ParameterSetting& setting, const std::vector<FittedValue>& values) {
   const model::ParameterSpec& spec = spec_of(campaign.rig.plant, setting.index);
@@ -110,7 +110,8 @@ void write_scoped_start(toml::table& root, const Campaign& campaign,
   }
 }
 
-/// Nuisance parameters are estimated again, from the value found where there is a single one.
+/// Writes a new start for a nuisance parameter, which remains fitted, if it has a single value for
+/// the rig.
 void write_nuisance_start(toml::table& root, const model::ParameterSpec& spec,
                           const FittedValue& fitted) {
   if (fitted.scope != Scope::rig) return;
@@ -118,7 +119,7 @@ void write_nuisance_start(toml::table& root, const model::ParameterSpec& spec,
   if (auto* entry = table.get_as<toml::table>(spec.key)) put(*entry, spec, "start", fitted.value);
 }
 
-/// Writes the changes by --set and --free since the file was read.
+/// Writes known values that --set and --free have changed since the file was read.
 void write_changed_values(toml::table& root, const Campaign& campaign) {
   const Campaign original = load_campaign(campaign.file, campaign.data_dir, campaign.root);
   for (const ParameterSetting& setting : campaign.parameters) {
@@ -130,7 +131,8 @@ void write_changed_values(toml::table& root, const Campaign& campaign) {
   }
 }
 
-/// A record path relative to `out`, or absolute if that is empty, from one relative to `data`.
+/// Converts a record path relative to `data` to one relative to `out`, or to an absolute path if
+/// `out` is empty.
 std::string rebased(const std::string& file, const fs::path& data, const fs::path& out) {
   if (fs::path(file).is_absolute()) return file;
   if (out.empty()) return (data / file).lexically_normal().generic_string();
@@ -157,14 +159,14 @@ void rebase_records(toml::table& root, const fs::path& data, const fs::path& out
   }
 }
 
-/// Writes which parameters are fitted, as --free changed that.
+/// Writes parameters that are fitted because of --free, or whose start --set has changed.
 void write_changed_freedom(toml::table& root, const Campaign& campaign) {
   const Campaign original = load_campaign(campaign.file, campaign.data_dir, campaign.root);
   for (const ParameterSetting& setting : campaign.parameters) {
     const ParameterSetting* before = original.setting(setting.index);
     const bool was_free = before != nullptr && before->fit;
     if (setting.fit == was_free && (!setting.fit || before->value == setting.value)) continue;
-    if (!setting.fit) continue;  // write_changed_values() did
+    if (!setting.fit) continue;  // write_changed_values() wrote it
     const model::ParameterSpec& spec = spec_of(campaign.rig.plant, setting.index);
     toml::table& table = rig_table(root, spec);
     if (!table[spec.key].is_table()) {
@@ -180,7 +182,8 @@ void write_changed_freedom(toml::table& root, const Campaign& campaign) {
   }
 }
 
-/// Each channel of a designed test has a column: the campaign's, or one by its key.
+/// Writes the channels of a designed test. Each channel has the campaign's column, or else one
+/// named after its key.
 void write_designed_channels(toml::table& root, const Campaign& campaign,
                              const std::map<Channel, double>& noise_sd) {
   toml::table& channels = child(child(root, "recording", false), "channels", false);
@@ -262,7 +265,7 @@ std::string designed_campaign_text(const Campaign& campaign, const DesignSetting
   write_designed_channels(root, campaign, noise_sd);
   toml::array conditions;
   conditions.push_back(designed_condition(root, design, family));
-  // These name conditions, or say how to make records.
+  // These sections refer to conditions that are removed, or describe synthetic records.
   for (const char* key : {"condition", "design", "diagnosis", "synthetic"}) root.erase(key);
   root.insert("condition", std::move(conditions));
   return fmt::format(

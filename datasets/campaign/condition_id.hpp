@@ -4,11 +4,11 @@
 
 namespace rigcal::datasets {
 
-/// Whether a text may be the id of a condition. Result files are named after it, so it must not
-/// lead to another folder.
+/// Whether a text is allowed as the id of a condition. The id becomes part of file names, so it
+/// must not refer to another folder.
 bool is_condition_id(std::string_view text);
 
-/// The rule for ids, in words.
+/// The rule for ids, in words for messages.
 std::string_view condition_id_rule();
 
 }  // namespace rigcal::datasets

@@ -41,7 +41,7 @@ bool same_drive(const LeakSignal& a, const LeakSignal& b) {
   return a.waveform == b.waveform && a.frequency_hz == b.frequency_hz && a.amplitude == b.amplitude;
 }
 
-/// "0.25" as printed: the number of digits gives its rounding.
+/// Reads a printed number such as "0.25". Its number of digits determines the rounding error.
 PrintedCoefficient read_printed(const TomlNode& node) {
   constexpr const char* kExpected = "a number above zero as it was printed, in quotes: \"0.25\"";
   const std::string text = node.string(kExpected);
@@ -334,7 +334,7 @@ void read_range(const TomlNode& node, LeakTableSettings& settings) {
   }
 }
 
-/// Sines and squares of the conditions, each once.
+/// Lists the periodic signals (sine, square) of the conditions, without duplicates.
 std::vector<LeakSignal> signals_of(const Campaign& campaign) {
   std::vector<LeakSignal> signals;
   for (const Condition& condition : campaign.conditions) {
@@ -609,7 +609,7 @@ void free_assumptions(LeakTableSettings& settings, const Campaign& campaign,
       found = settings.assumptions.insert(settings.assumptions.end(), added);
     }
     found->fit = true;
-    if (found->lower < found->upper) continue;  // bounds of the section
+    if (found->lower < found->upper) continue;  // the section gives bounds
     found->start = found->value;
     found->lower = std::max(spec.lower, std::min(0.1 * found->value, 10.0 * found->value));
     found->upper = std::min(spec.upper, std::max(0.1 * found->value, 10.0 * found->value));

@@ -11,12 +11,12 @@
 
 namespace rigcal::datasets {
 
-class TomlNode;  // toml_reader.hpp, whose package takes long to compile
+class TomlNode;  // not included: toml_reader.hpp takes long to compile
 
-/// A coefficient as a publication prints it.
+/// A coefficient as printed in a publication.
 struct PrintedCoefficient {
   double value = 0.0;
-  double half_digit = 0.0;  ///< half a unit of the last printed digit
+  double half_digit = 0.0;  ///< half a unit in the last printed digit
   std::string note;         ///< remark about this entry; empty: none
 };
 
@@ -24,52 +24,53 @@ struct PrintedCoefficient {
 struct LeakSignal {
   Waveform waveform = Waveform::sine;  ///< sine or square
   double frequency_hz = 0.0;
-  double amplitude = 0.0;                        ///< [m], or [V] where no controller is in the loop
+  double amplitude = 0.0;                        ///< [m], or [V] without a controller
   std::map<double, PrintedCoefficient> printed;  ///< by target share [percent]
-  std::optional<PrintedCoefficient> normal;      ///< coefficient of the rig without a fault
+  std::optional<PrintedCoefficient> normal;      ///< coefficient for the rig without a fault
 
-  /// "sine_0.1Hz"
+  /// Name of the signal: "sine_0.1Hz".
   std::string name() const;
 };
 
-/// Columns of a published table of flows and residual features.
+/// Columns in a published table of flows and residual features.
 enum class Feature { servo_flow, leak_flow, mean, rms, std };
 std::string_view to_string(Feature feature);
 
-/// One row of it. Flows in m3/s, features in the unit that was printed.
+/// One row of a published table of features. Flows in m3/s, features in the printed unit.
 struct PrintedFeatures {
   std::string level;
   double coefficient = 0.0;
   bool leaking = true;  ///< false: the rig without a fault
   std::map<Feature, double> printed;
-  std::vector<Feature> left_out;  ///< left out of a fit, because of `reason`
+  std::vector<Feature> left_out;  ///< features excluded from a fit, for `reason`
   std::string reason;
 };
 
-/// A value that the table rests on, and where it comes from.
+/// A value that the leak table is based on, with its source.
 struct Assumption {
   int index = 0;       ///< row of the parameter table, or kResidualScale
   double value = 0.0;  ///< SI
   std::string source;
-  bool fit = false;    ///< `fit-tables` estimates it, from `start` within the bounds
-  double start = 0.0;  ///< SI, as the bounds
+  bool fit = false;    ///< `fit-tables` estimates the value, from `start`, within the bounds
+  double start = 0.0;  ///< SI, like the bounds
   double lower = 0.0;
   double upper = 0.0;
-  bool fitted = false;  ///< the value is that of an earlier fit to records
+  bool fitted = false;  ///< the value comes from an earlier fit to records
 };
 
-/// Index of the factor from metres to the unit of the printed features [1/m]: no parameter of the
-/// rig, but unstated and so assumed like one.
+/// Index for the factor from metres to the unit of the printed features [1/m]. It is not a
+/// parameter of the rig, but publications do not state it, so it is assumed like one.
 inline constexpr int kResidualScale = -1;
 
-/// Row of an assumption: that of the parameter table, or of the residual scale.
+/// Returns the specification of an assumption: its row in the parameter table, or that of the
+/// residual scale.
 const model::ParameterSpec& assumption_spec(model::PlantKind plant, int index);
 
-/// [leak_table]: settings of `leak-table` and `fit-tables`, and the published numbers.
+/// [leak_table]: settings for `leak-table` and `fit-tables`, and the published numbers.
 struct LeakTableSettings {
-  std::vector<double> targets_percent{10.0, 20.0, 30.0, 50.0};  ///< fractions of the servo flow
-  double lowest_coefficient = 1e-3;                             ///< roots are searched from here
-  double highest_coefficient = 100.0;                           ///< end of the range
+  std::vector<double> targets_percent{10.0, 20.0, 30.0, 50.0};  ///< leak shares
+  double lowest_coefficient = 1e-3;                             ///< lower end of the root search
+  double highest_coefficient = 100.0;                           ///< upper end of the root search
   std::vector<LeakSignal> signals;
   std::optional<LeakSignal> feature_signal;
   std::vector<PrintedFeatures> features;
@@ -83,58 +84,65 @@ struct CampaignKey;
 /// Keys of [leak_table].
 const std::vector<CampaignKey>& leak_table_keys();
 
-/// Reads the section.
+/// Reads the section [leak_table].
 ///
-/// @throws InputError  file:line:column with the key, what was found and what was expected
+/// @throws InputError  if the section is invalid; names file:line:column, the key, what was found
+/// and
+///                     what was expected
 LeakTableSettings read_leak_table(const TomlNode& node, const Campaign& campaign);
 
-/// Reads the section of a campaign's file. Without signals in it: the sines and squares of the
-/// campaign's conditions, each once.
+/// Reads [leak_table] from a campaign's file. If it has no signals, uses the sine and square waves
+/// of the campaign's conditions, without duplicates.
 ///
-/// @throws InputError  the file has disappeared or is invalid, or there are no signals
+/// @throws InputError  if the file has disappeared or is invalid, or there are no signals
 LeakTableSettings leak_table_settings(const Campaign& campaign);
 
-/// Parses "sine@0.1Hz" or "sine@0.1Hz@50mm" as a signal. Published numbers of the same signal in
-/// `settings` are kept. Without an amplitude it takes that of the settings' signals, if they all
-/// have one.
+/// Parses a signal such as "sine@0.1Hz" or "sine@0.1Hz@50mm". Adopts the published numbers for the
+/// same signal in `settings`. Without an amplitude, takes the common amplitude of the signals in
+/// `settings`.
 ///
-/// @throws UsageError  what was found and what was expected
+/// @throws UsageError  if the text is not a signal; says what was found and what was expected
 LeakSignal signal_from_text(const Campaign& campaign, const LeakTableSettings& settings,
                             std::string_view text);
 
-/// Applies --set: the assumption of that name takes the campaign's value, or that of the assignment
-/// itself for "residual_scale=39.37 1/m", which is no parameter of the campaign.
+/// Applies --set to the assumption with that name. It takes the value that --set has given the
+/// campaign. "residual_scale=39.37 1/m" is parsed here, since it is not a parameter in the
+/// campaign.
 ///
-/// @throws UsageError  the residual scale is no number per metre above zero
+/// @throws UsageError  if the residual scale is not a positive number in 1/m, or the value is
+/// outside
+///                     the bounds of `fit-tables`
 void override_assumption(LeakTableSettings& settings, const Campaign& campaign,
                          std::string_view assignment);
 
-/// Replaces assumptions by the values that an earlier fit estimated; their source says what they
-/// replace. Values that the fit did not estimate stay. A leakage coefficient is skipped, since the
+/// Replaces assumptions with values from an earlier fit; their source says what they replace.
+/// Assumptions that the fit did not estimate are kept. Skips the leakage coefficient, since the
 /// table varies it.
 ///
-/// @throws InputError  a value was fitted per leak level or condition, so that the rig has no
-///                     single one, and no assumption gives it
+/// @throws InputError  if a value was fitted per leak level or condition, so that there is no
+/// single
+///                     value for the rig, and no assumption gives one
 void take_fitted(LeakTableSettings& settings, const Campaign& campaign,
                  const std::vector<FittedValue>& fitted);
 
-/// Applies --free: `fit-tables` estimates exactly these. Bounds that the section does not give are
-/// value/10 to 10 value.
+/// Applies --free: `fit-tables` estimates exactly these assumptions. Bounds default to value/10 and
+/// 10 value.
 ///
-/// @throws UsageError  unknown name, or one that cannot be estimated
+/// @throws UsageError  if a name is unknown or cannot be estimated
 void free_assumptions(LeakTableSettings& settings, const Campaign& campaign,
                       const std::vector<std::string>& names);
 
-/// Puts the values of the assumptions over those of the rig.
+/// Returns the values of the rig, with those of the assumptions substituted.
 ///
-/// @throws InputError  a parameter of the plant has no value
+/// @throws InputError  if a parameter of the plant has no value
 model::ParameterValues leak_table_values(const Campaign& campaign,
                                          const LeakTableSettings& settings);
 
-/// The campaign file with these assumptions in [leak_table.assumptions]: the `fitted.toml` of
-/// `fit-tables`. Comments are lost; record paths are rewritten to be valid from `out_dir`.
+/// Writes the `fitted.toml` of `fit-tables`: the campaign file with these assumptions in
+/// [leak_table.assumptions]. Comments are lost; record paths are rewritten to be valid from
+/// `out_dir`.
 ///
-/// @throws InputError  the campaign file has disappeared or has become invalid
+/// @throws InputError  if the campaign file has disappeared or become invalid
 std::string fitted_leak_table_text(const Campaign& campaign, const LeakTableSettings& settings,
                                    const std::filesystem::path& out_dir);
 

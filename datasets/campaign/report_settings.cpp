@@ -16,7 +16,7 @@ std::string_view without_blanks(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kBlanks) + 1 - first);
 }
 
-/// Takes a number off the front of a text.
+/// Removes a number from the front of a text, and returns it.
 std::optional<double> take_number(std::string_view& text) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -25,7 +25,8 @@ std::optional<double> take_number(std::string_view& text) {
   return value;
 }
 
-/// Takes a word or sign, and the blanks after it, off the front of a text.
+/// Removes a word or sign, with the blanks around it, from the front of a text. Returns false if
+/// the text does not begin with it.
 bool take(std::string_view& text, std::string_view word) {
   text = without_blanks(text);
   if (!text.starts_with(word)) return false;
@@ -34,7 +35,7 @@ bool take(std::string_view& text, std::string_view word) {
   return true;
 }
 
-/// Takes the coverage factor "(k = 2)" off the end of a text.
+/// Removes the coverage factor "(k = 2)" from the end of a text, and returns it.
 std::optional<double> take_coverage_factor(std::string_view& text) {
   const auto open = text.rfind('(');
   if (open == std::string_view::npos) return std::nullopt;

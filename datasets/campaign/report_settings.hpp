@@ -17,8 +17,8 @@ struct ReportField {
   bool is_date = false;
 };
 
-/// Statements of a test report in addition to its results (ISO/IEC 17025:2017, 7.8.2), in the order
-/// of the page.
+/// What a test report must state in addition to results (ISO/IEC 17025:2017, 7.8.2), in the order
+/// on the page.
 inline constexpr std::array kReportFields{
     ReportField{"number", "Report number", "Number of the report"},
     ReportField{"issued", "Date of issue", "Date on which the report is issued", true},
@@ -33,7 +33,7 @@ inline constexpr std::array kReportFields{
     ReportField{"remarks", "Remarks", "Anything else that a reader has to know"},
 };
 
-/// One [[report.sensor]].
+/// Keys of a [[report.sensor]].
 inline constexpr std::array kSensorFields{
     ReportField{"channel", "Channel",
                 "The channel of `[recording.channels]` that the sensor measures"},
@@ -47,30 +47,30 @@ inline constexpr std::array kSensorFields{
                 "any other text has no effect, and is a reservation"},
 };
 
-/// [report]: texts as the campaign gives them, dates as ISO 8601.
+/// [report]: texts as given in the campaign, dates in ISO 8601.
 struct ReportSettings {
   using Fields = std::vector<std::pair<std::string, std::string>>;  ///< key, text
-  Fields fields;                ///< the given ones, in the order of kReportFields
-  std::vector<Fields> sensors;  ///< the given ones of each sensor
+  Fields fields;                ///< given fields, in the order of kReportFields
+  std::vector<Fields> sensors;  ///< given fields for each sensor
 
   bool empty() const { return fields.empty() && sensors.empty(); }
 };
 
-/// Text of a key; empty if it is not given.
+/// Returns the text for a key; empty if it is not given.
 std::string text_of(const ReportSettings::Fields& fields, std::string_view key);
 
-/// Standard uncertainty of a sensor, as read from a text.
+/// Standard uncertainty of a sensor, read from a text.
 struct StatedUncertainty {
   std::optional<double> gain_sd;    ///< relative
   std::optional<double> offset_sd;  ///< SI
-  std::string problem;  ///< why the text states no uncertainty, in words; empty if it does
+  std::string problem;  ///< in words: why the text states no uncertainty; otherwise empty
 };
 
-/// Reads "0.02 mm (k = 2)", an expanded uncertainty of the offset, or "0.1 % (k = 2)", one of the
-/// gain. Divided by k they are standard uncertainties (JCGM 100:2008, 6.2). Any other text states
-/// none.
+/// Reads an expanded uncertainty: "0.02 mm (k = 2)" applies to the offset, "0.1 % (k = 2)" to the
+/// gain. Division by k gives the standard uncertainty (JCGM 100:2008, 6.2). Any other text states
+/// no uncertainty.
 ///
-/// @param unit  of the sensor's channel, SI
+/// @param unit  SI unit of the sensor's channel
 StatedUncertainty stated_uncertainty(std::string_view text, std::string_view unit);
 
 }  // namespace rigcal::datasets

@@ -8,7 +8,7 @@
 namespace rigcal::datasets {
 namespace {
 
-/// In the order of Waveform; add new rows at the end.
+/// Table of waveforms, in the order of the enumeration. New rows are added at the end.
 constexpr std::array kWaveforms{
     WaveformSpec{"sine", &model::Signal::sine},
     WaveformSpec{"square", &model::Signal::square, 2},

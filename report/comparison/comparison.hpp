@@ -10,8 +10,8 @@
 #include "report/store/stored.hpp"
 #include "report/store/stored/stored_fit.hpp"
 
-// comparison.json, as docs/command-line.md describes it. Of lists with an entry per result, the
-// first, which the others are compared with, has null where an entry is about a difference.
+// comparison.json (docs/command-line.md). Lists of differences have one entry per result. The first
+// entry is null, because the other results are compared with the first.
 
 namespace rigcal::report {
 
@@ -45,7 +45,8 @@ struct StoredComparedParameter {
   RIGCAL_DESCRIBE(name, key, symbol, unit, scope, level, estimates, differences)
 };
 
-/// Number of parameters that were compared with the first result, tested and changed.
+/// Numbers of parameters that were compared with the first result, tested, and found significantly
+/// different.
 struct StoredSignificance {
   int compared = 0, tested = 0, significant = 0;
   std::string text;
@@ -82,7 +83,7 @@ struct StoredComparedMetric {
 /// Which model the records prefer.
 struct StoredModelChoice {
   std::optional<double> delta_aic, delta_bic;
-  std::optional<std::string> smaller, larger;  ///< results, where one contains the other
+  std::optional<std::string> smaller, larger;  ///< the results, if one model contains the other
   std::optional<double> likelihood_ratio;
   std::optional<int> freedom;
   std::optional<double> p_value;
@@ -98,7 +99,7 @@ struct StoredComparedRecord {
   RIGCAL_DESCRIBE(file, sha256, in)
 };
 
-/// An estimate of a series, with its position.
+/// One estimate in a series, with its date and temperature.
 struct StoredTrendPoint {
   std::string result;
   std::optional<std::string> level;
@@ -106,12 +107,12 @@ struct StoredTrendPoint {
   std::optional<double> value, standard_error;
   Later<std::optional<double>> degrees_of_freedom;  ///< for the error
   std::optional<Range> ci95;
-  Omittable<double> between_days_error;  ///< is in the standard error, too
+  Omittable<double> between_days_error;  ///< included in the standard error
   RIGCAL_DESCRIBE(result, level, day, temperature_k, value, standard_error, degrees_of_freedom,
                   ci95, between_days_error)
 };
 
-/// A line through the points, whose slope is called by its unit.
+/// Describes a line through the points. The key of the slope includes its unit.
 template <typename Self, typename Visit>
 void describe_trend(Self& self, const Visit& visit, const char* slope_name) {
   visit("points", self.points);
@@ -139,7 +140,7 @@ struct StoredTrendPerKelvin : calib::EstimateTrend {
   }
 };
 
-/// Estimates of one thing along dates and temperatures.
+/// Estimates of one parameter over dates and temperatures.
 struct StoredSeries {
   std::string of;  ///< "rig" or a leak level
   std::vector<StoredTrendPoint> points;
@@ -203,7 +204,8 @@ StoredComparison compared(const std::vector<Compared>& results, const Provenance
 
 /// Reads the comparison.json in a folder.
 ///
-/// @throws InputError  as for load(), or if a list does not have one entry per result
+/// @throws InputError  if the file is missing or not a comparison.json, or if a list does not have
+///                     one entry per result
 StoredComparison load_comparison(const ReadFile& read, const std::string& where);
 
 }  // namespace rigcal::report

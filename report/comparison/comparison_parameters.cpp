@@ -36,7 +36,7 @@ std::optional<calib::ComparedEstimate> estimate_of(const StoredFit& fit,
   return estimate;
 }
 
-/// What the effects that both models leave out do to the difference of two estimates.
+/// Returns the variance of the difference of two estimates due to effects that both models omit.
 double by_effects(const StoredFit& first, const StoredFit& other,
                   const StoredComparedParameter& wanted) {
   const auto spread_of = [&](const StoredFit& fit) -> std::optional<calib::EffectSpread> {

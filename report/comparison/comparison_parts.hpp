@@ -11,9 +11,9 @@
 
 namespace rigcal::report {
 
-// The parts of a comparison, and the functions that they have in common.
+// The sections of a comparison, and the functions that they share.
 
-/// Converged or stopped: its numbers may be shown.
+/// Whether the numbers of a result may be shown: the fit converged or was stopped.
 inline bool is_usable(const StoredFit& fit) { return fit.status != calib::FitStatus::failed; }
 
 /// Returns the input files of a result by hash, without the campaign file and any earlier fit.
@@ -59,13 +59,15 @@ std::vector<StoredComparedMetric> compared_metrics(
     const std::vector<StoredComparedCondition>& conditions, const std::vector<Compared>& results);
 /// Lists the input files and the results that used them.
 std::vector<StoredComparedRecord> compared_records(const std::vector<Compared>& results);
-/// Estimates of the parameter of a key along dates and temperatures.
+/// Collects the estimates of one parameter over dates and temperatures.
+///
+/// @param key  key of the parameter
 std::vector<StoredSeries> trends(const std::vector<Compared>& results, std::string_view key);
 
-/// A difference from the first result in percent; where that value is zero or not significantly
-/// different from it, in the unit. Empty where one has no value.
+/// Writes a difference from the first result in percent, or in `unit` if the first value is zero or
+/// not significantly different from zero. Returns an empty text if either value is missing.
 std::string change_text(const calib::EstimateDifference& difference, const RowUnit& unit);
-/// Whether a parameter is worth a row: a result estimates it, or known values differ.
+/// Whether a table should list a parameter: a result estimates it, or its known values differ.
 bool worth_a_row(const StoredComparedParameter& parameter);
 /// Chooses the unit in which the largest estimate of a parameter needs few digits.
 RowUnit unit_of_estimates(const StoredComparedParameter& parameter);

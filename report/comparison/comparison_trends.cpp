@@ -35,7 +35,7 @@ std::string series_of(const StoredFit& fit, const StoredParameter& parameter) {
   return condition == nullptr ? "rig" : condition->leak_level.value_or("rig");
 }
 
-/// The line through the points that have an error and a place.
+/// Fits a line through the points that have an error and a position.
 calib::EstimateTrend trend_along(const std::vector<StoredTrendPoint>& points,
                                  std::optional<double> StoredTrendPoint::*place, bool shared) {
   std::vector<calib::PlacedEstimate> placed;
@@ -72,7 +72,7 @@ StoredTrendPoint point_of(const Compared& compared, const StoredParameter& param
                                   });
   point.value = parameter.value;
   if (const auto error = interval_error(parameter)) {
-    const bool dated = point.day.has_value();  // results of other dates have other day effects
+    const bool dated = point.day.has_value();  // other dates have other day effects
     const metrics::EstimateError all =
         dated ? calib::with_days(*error, parameter.between_days_error) : *error;
     if (dated && parameter.between_days_error)

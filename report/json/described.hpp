@@ -18,11 +18,11 @@
 #include "common/describe.hpp"
 #include "report/json/json_node.hpp"
 
-// JSON of a struct that is described: writer, reader and schema.
+// JSON writer, reader and schema for structs with a description (RIGCAL_DESCRIBE).
 
 namespace rigcal::report {
 
-/// The value of a key; null where there is none.
+/// Finds the value of a key; null if the key is missing.
 template <typename T, typename Key>
 const T* find(const Keyed<T, Key>& keyed, const std::type_identity_t<Key>& key) {
   for (const auto& [name, value] : keyed)
@@ -30,8 +30,8 @@ const T* find(const Keyed<T, Key>& keyed, const std::type_identity_t<Key>& key) 
   return nullptr;
 }
 
-/// An enumeration of which results have the keys of a table: a specialisation has text(value), and
-/// from_text(text), which is empty for an unknown one.
+/// Specialised for types that results store as keys from a table. A specialisation has text(value)
+/// and from_text(text); the latter returns std::nullopt for an unknown key.
 template <typename T>
 struct KeysOf;
 template <typename T>
@@ -39,7 +39,8 @@ concept HasKeys = requires(T value) {
   KeysOf<T>::text(value);
 };
 
-/// All values of an enumeration that results name by to_string(). A specialisation lists them.
+/// Returns all values of an enumeration that results store as to_string(). Each enumeration has a
+/// specialisation.
 template <typename Enum>
 std::vector<Enum> every();
 
@@ -67,7 +68,7 @@ inline constexpr bool is_keyed<Keyed<T>> = true;
 template <typename T, HasKeys Key>
 inline constexpr bool is_keyed<Keyed<T, Key>> = true;
 
-/// A key in JSON, and back.
+/// Conversion between keys and their JSON text.
 inline const std::string& key_text(const std::string& key) { return key; }
 template <HasKeys Key>
 std::string key_text(Key key) {
@@ -113,7 +114,8 @@ inline std::optional<double> finite(const std::optional<double>& value) {
   return value ? finite(*value) : std::nullopt;
 }
 
-/// A value as JSON. Numbers that are not finite become null: JSON knows neither NaN nor infinity.
+/// Converts a value to JSON. Numbers that are not finite become null, since JSON has neither NaN
+/// nor infinity.
 template <typename T>
 Json json_of(const T& value) {
   using namespace described;

@@ -20,7 +20,7 @@ struct JsonLimits {
   std::size_t depth = 64;
   /// Limit on the sum, over all objects, of the squared number of keys: the cost of lookup.
   std::size_t key_comparisons = 400'000'000;
-  double number = 1e150;  ///< the square of such a number is still finite
+  double number = 1e150;  ///< largest magnitude; its square is still finite
 };
 
 /// Parses a JSON text and checks it against the limits.

@@ -19,14 +19,14 @@
     const rounded = +value.toPrecision(count);
     return rounded !== 0 && Math.abs(rounded) < 1e-3 ? rounded.toExponential() : String(rounded);
   };
-  /** A score that is not 1 is not shown as 1. */
+  /** Writes a score. A score below 1 is never rounded to 1. */
   const score = (value) => value > 0.99995 && value < 1 ? "> 0.9999" : digits(+value?.toFixed(4));
   const problem = (text) => {
     $("problem").textContent = text;
     $("problem").hidden = !text;
   };
 
-  // State of the page: case, drive and parameter values, all in SI.
+  // State of the page: case, drive and parameter values, in SI.
   const rows = new Map(rig.parameters.map((row) => [row.index, row]));
   const byKey = new Map(rig.parameters.map((row) => [row.key, row]));
   const driven = rig.driven;
@@ -48,7 +48,8 @@
     };
   };
 
-  // State in the address: only the differences from the case. A page with other sections marks it.
+  // The address stores how the state differs from the case. It has a mark on pages with other
+  // sections.
   const marked = rig.embedded ? "live&" : "";
   const driveKeys = ["waveform", "frequency", "amplitude", "duration", "end_frequency"];
   const address = () => {
@@ -67,7 +68,7 @@
     return text ? marked + text : "";
   };
   const isOurs = () => !rig.embedded || location.hash.startsWith("#" + marked);
-  /** Whether the drive is that of the case, so that its record can be compared. */
+  /** Whether the drive is unchanged from the case, so that the case's record can be compared. */
   const asRecorded = () => {
     const chosen = caseOf(state.case);
     return Boolean(chosen.times) && state.waveform === chosen.waveform &&
@@ -99,7 +100,7 @@
     }, 250);
   };
 
-  // A control: a number in a readable unit, with a slider if it has a range.
+  // A control is a number in a readable unit, with a slider if it has a range.
   const toSlider = ({lower, upper, scale}, value) => {
     const v = Math.min(Math.max(value, lower), upper);
     if (scale === "log") return Math.log(v / lower) / Math.log(upper / lower);
@@ -110,7 +111,7 @@
     const value = scale === "log" ? lower * (upper / lower) ** s : lower + (upper - lower) * (scale === "cubic" ? s ** 3 : s);
     return +value.toPrecision(4);
   };
-  /** Where the middle of the thumb is, which is 16 pixels wide. */
+  /** Position of the centre of the thumb, which is 16 pixels wide. */
   const place = (part) => `calc(8px + (100% - 16px) * ${part})`;
   const controls = new Map();
   /** @param about  {key, label, symbol, unit, si, slider, lowest, highest, get, set, begun} */
@@ -157,7 +158,7 @@
   };
   const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
   const begunValue = (index) => new Map(caseOf(state.case).values).get(index);
-  /** The 95 % interval of an estimate in this case. */
+  /** Returns the 95 % interval of an estimate in this case. */
   const intervalOf = (row) => {
     const chosen = caseOf(state.case);
     const found = rig.intervals?.find((each) => each.index === row.index && (each.scope === "rig" || each.level === (each.scope === "condition" ? chosen.id : chosen.level)));
@@ -224,13 +225,13 @@
     document.getElementById("live-waveform").value = state.waveform;
   };
 
-  // Request to the worker.
+  // Requests to the worker.
   const kMostSamples = 20000;
   const sampleRate = () => {
     const chosen = caseOf(state.case);
     const wanted = Math.max(chosen.rate ?? 0, 40 * state.frequency, state.waveform === "chirp" ? 40 * state.end_frequency : 0);
     const most = Math.min(wanted || 1000, Math.max(5000, 40 * state.frequency * state.duration) / state.duration, kMostSamples / state.duration);
-    // The rate has few digits, so that it can be typed in the equivalent command.
+    // The rate has few digits, so that the equivalent command is short.
     const step = 10 ** Math.floor(Math.log10(most));
     return [8, 5, 4, 2.5, 2, 1].map((times) => times * step).find((rate) => rate <= most * (1 + 1e-12));
   };
@@ -282,13 +283,13 @@
     running = message;
     worker.postMessage({...message.data, id: message.id, leak: rig.leak, order: rig.outputs, motion: rig.turns ? "angle_rad" : "position_m"});
   };
-  /** Does something with the state as the case begins. */
+  /** Runs `work` with the initial state of the case, then restores the state. */
   const asBegun = (work) => {
     const was = state;
     begin(caseOf(state.case));
     try { return work(); } finally { state = was; }
   };
-  /** Counts the changes of the page, so that what was asked for before ends. */
+  /** Counts the changes of the page, so that runs for an earlier state can be stopped. */
   let changes = 0;
   const simulate = () => {
     ++changes;
@@ -321,10 +322,11 @@
     : [{name: "chamber A", output: "pressure_a_pa", style: "model"}, {name: "chamber B", output: "pressure_b_pa", style: "residual"}];
   const measures = (name) => rig.cases.some((each) => each.measured?.some((channel) => channel.output === name));
   const recorded = (name, label = "") => measures(name) ? [{name: "measured" + label, style: "ink", measured: name, width: 1}, {name: "calibrated" + label, style: "soft", calibrated: name}] : [];
-  // A joint turns; every other rig moves along a line.
+  // A rig with a joint rotates; all other rigs move along a line.
   const motion = rig.turns ? {name: "angle", output: "angle_rad", unit: "deg", si: Math.PI / 180}
     : {name: "position", output: "position_m", unit: "mm", si: 1e-3};
-  // Leak levels of the published table, else those of the campaign; a page of a fit has no table of them.
+  // Leak levels from the published table, otherwise from the campaign. The page of a fit has no
+  // table of levels.
   const levels = document.getElementById("live-levels") && rig.leak >= 0 ? rig.levels ?? (rig.presets.length > 1 ? rig.presets : []) : [];
   const styleOf = (k) => `level-${k % 5}`;
   const ofLevels = levels.length ? [
@@ -367,7 +369,10 @@
     return Float64Array.from(times, at);
   };
   const scaled = (values, si) => values ? Float64Array.from(values, (v) => v / si) : null;
-  /** Measured samples of an output in this case, at the times of the request; null where there are none. */
+  /**
+   * Returns the measured samples of an output in this case, at the times of the request; null if
+   * there are none.
+   */
   const measuredOf = (name) => {
     const chosen = caseOf(state.case);
     const channel = chosen.measured?.find((each) => each.output === name);
@@ -395,7 +400,9 @@
     }
     return scaled(answer.outputs[output(line.output)], plot.si);
   })];
-  /** What the levels lead to under the drive and with the values of the page, in the order of `levels`. */
+  /**
+   * Results for each leak level with the drive and values of the page, in the order of `levels`.
+   */
   let levelRuns = [];
   let charts = null;
   const sync = "live";
@@ -427,7 +434,7 @@
     }
   };
 
-  /** The metrics of metrics/metric_table.hpp. */
+  /** Computes the metrics defined in metrics/metric_table.hpp. */
   const scoresOf = (measured, simulated, every, windows) => {
     const pairs = [];
     for (const [first, last] of windows)
@@ -444,7 +451,7 @@
             nrmse_fit_percent: 100 * (1 - Math.sqrt(square / vy)), maximum_error: pairs.reduce((most, [y, s]) => Math.max(most, Math.abs(y - s)), 0)};
   };
   const short = {rho2: "rho2", r: "R", ccc: "CCC", absolute_error_percent: "error"};
-  /** Scores of the live curves against the record, and which limits they keep. */
+  /** Shows the scores of the live curves against the record, and whether they keep their limits. */
   const showScores = (request, answer) => {
     const chosen = caseOf(state.case);
     const place = $("scores");
@@ -497,7 +504,10 @@
     clearTimeout(saying);
     saying = setTimeout(() => { $("said").textContent = items.map(([name, text, of]) => `${name} ${text} ${of}`).join("; "); }, 700);
   };
-  /** The table of leak levels: what the page computes, and below it what was published for the first drive. */
+  /**
+   * The table of leak levels: computed values, and below each the value published for the first
+   * drive.
+   */
   const features = [["servo_flow", "Servo flow", "L/min", 1e-3 / 60], ["leak_flow", "Leak flow", "L/min", 1e-3 / 60], ["mean", "mean", "", 1], ["rms", "rms", "", 1], ["std", "std", "", 1]];
   const residualFeatures = (run, healthy, from) => {
     const position = run.outputs[output(motion.output)];
@@ -542,7 +552,7 @@
     document.getElementById("live-table-notes").textContent = printed && levels.some((level) => Object.values(level.printed ?? {}).some((each) => each.left_out))
       ? "* does not agree with the other published numbers; a pointer on it shows why." : "";
   };
-  /** Runs one level after the other, unless the page changes meanwhile. */
+  /** Runs the levels one after the other. Stops if the page changes meanwhile. */
   const runLevels = (request, healthy) => {
     const begun = changes;
     const runs = [];
@@ -562,7 +572,7 @@
   };
   let levelsLater = 0;
   const show = (request, answer) => {
-    if (request.of !== state.case) return;  // another case was chosen meanwhile: its answer follows
+    if (request.of !== state.case) return;  // another case was chosen meanwhile, and its answer will follow
     const curves = document.querySelector(".live-curves");
     curves.classList.toggle("stale", answer.status !== "ok");
     if (answer.status !== "ok") {
@@ -582,7 +592,7 @@
     window.rigcalLive = {request, answer, scores, rig, of: request.of, drawn: (window.rigcalLive?.drawn ?? 0) + 1};
   };
 
-  // Command of `rigcal simulate` with the same result.
+  // The `rigcal simulate` command that gives the same result.
   const quoted = (text) => /^[A-Za-z0-9_./-]+$/.test(text) ? text : `'${text.replaceAll("'", `'\\''`)}'`;
   const commands = () => {
     const was = new Map(rig.campaign);
@@ -658,7 +668,7 @@
   const begun = () => start().catch((error) => {
     problem(`The live model does not run in this browser: ${error.message}`);
   });
-  // A page with other sections starts the model when it is looked at.
+  // A page with other sections starts the model when this section is scrolled into view.
   if (rig.embedded) {
     const seen = new IntersectionObserver((entries) => {
       if (!entries.some((entry) => entry.isIntersecting)) return;
@@ -679,7 +689,8 @@
     if (rig.embedded) document.getElementById("try").scrollIntoView();
     if (worker && location.hash.slice(1) !== address()) { readAddress(); drawControls(); changed(); }
   });
-  // A page with a title of its own asks for the rig alone by the name of the frame, and is told how high it is.
+  // A page may embed only the rig in a frame with this name. It then receives the height of the
+  // content.
   if (window.parent !== window && window.name === "rigcal-part") {
     document.documentElement.classList.add("framed");
     new ResizeObserver(() => window.parent.postMessage({rigcalHeight: document.body.scrollHeight}, "*")).observe(document.body);

@@ -1,10 +1,11 @@
-// Simulates the rig of a page in a worker, by the model as a WebAssembly module (model/wasm/module.cpp).
+// Simulates the rig of a page in a worker. The model is a WebAssembly module
+// (model/wasm/module.cpp).
 "use strict";
 
 const INPUT_KINDS = {constant: 0, sine: 1, square: 2, chirp: 3, held: 4, linear: 5};
 const STATUS = ["ok", "bad parameters", "not finite", "step too small", "too many steps", "out of time", "cancelled"];
 
-/** The module and its memory. After a failure of the module itself it is made anew. */
+/** The module and its memory. If the module itself fails, it is instantiated again. */
 class Model {
   constructor(compiled) { this.compiled = compiled; }
 
@@ -15,7 +16,8 @@ class Model {
     };
     this.text = text;
     const system = new Proxy({
-      // The solver's limit of time asks for the clock, nothing else of the system is there.
+      // Only the clock is provided, for the solver's time limit. No other system calls are
+      // available.
       clock_time_get: (_clock, _precision, address) => {
         new DataView(this.exports.memory.buffer).setBigUint64(address, BigInt(Math.round(performance.now() * 1e6)), true);
         return 0;
@@ -89,7 +91,7 @@ class Model {
   }
 }
 
-/** Mean of |y| over the time from sample `from` to the last, y joined by straight lines. */
+/** Time average of |y| from sample `from` to the last sample, with linear interpolation of y. */
 const meanAbsolute = (times, y, from = 0) => {
   let sum = 0;
   for (let i = from + 1; i < y.length; ++i) {
@@ -101,7 +103,9 @@ const meanAbsolute = (times, y, from = 0) => {
   return sum / (times[times.length - 1] - times[from]);
 };
 
-/** The first sample of the last whole period, or of the record where the drive has none. */
+/**
+ * Returns the first sample of the last whole period, or of the record if the drive is not periodic.
+ */
 const lastPeriod = (request) => {
   const {times, drive} = request;
   const period = drive.kind === "sine" || drive.kind === "square" ? 1 / drive.frequency : Infinity;
@@ -109,7 +113,7 @@ const lastPeriod = (request) => {
   return start < times[0] ? 0 : times.findIndex((t) => t >= start);
 };
 
-/** Mean flows in SI, and the fraction of the servo flow that leaks. */
+/** Returns the mean flows in SI, and leak flow over servo flow. */
 const flowsOf = (request, outputs, order) => {
   const from = lastPeriod(request);
   const mean = (name) => meanAbsolute(request.times, outputs[order.indexOf(name)], from);
@@ -120,7 +124,10 @@ const flowsOf = (request, outputs, order) => {
 const withValue = (request, index, value) =>
   ({...request, values: [...request.values.filter(([i]) => i !== index), [index, value]]});
 
-/** The least coefficient at which so much of the servo flow leaks; null where none up to 100 does. */
+/**
+ * Returns the smallest coefficient at which this fraction of the servo flow leaks; null if there is
+ * none up to 100.
+ */
 const coefficientOf = (model, request, leak, fraction, order) => {
   const excess = (logarithm) => {
     const tried = withValue(request, leak, Math.exp(logarithm));
@@ -134,7 +141,8 @@ const coefficientOf = (model, request, leak, fraction, order) => {
   for (let high = low + Math.LN2; high < Math.log(100); high += Math.LN2) {
     let above = excess(high);
     if (!(above > 0)) { low = high; below = above; continue; }
-    // The regula falsi, with the end that stays counted half as much (Illinois).
+    // Regula falsi with the Illinois modification: the function value at the retained end is
+    // halved.
     for (let k = 0; k < 40 && high - low > 1e-6; ++k) {
       const middle = low + (high - low) * (Number.isFinite(below / above) ? below / (below - above) : 0.5);
       const at = excess(middle);
@@ -146,7 +154,10 @@ const coefficientOf = (model, request, leak, fraction, order) => {
   return null;
 };
 
-/** The run, the rig without a leak under the same drive (not for a level of the table), and what both amount to. */
+/**
+ * Returns the run with its mean flows, and the motion without a leak under the same drive (not for
+ * leak levels).
+ */
 const answer = (model, message) => {
   const {request, leak, order} = message;
   const begun = performance.now();

@@ -1,11 +1,12 @@
-// Replaces the static pictures of the time plots by ones that zoom; all else works without it.
+// Replaces the static pictures of the time plots by zoomable ones. The page also works without this
+// script.
 "use strict";
 (() => {
   const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
   const bytes = (base64) => Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
 
-  /** 16-bit steps above `low`; 65535 is a gap. */
+  /** Unpacks values stored as 16-bit numbers of steps above `low`; 65535 is a gap. */
   const unpack = ({low, step, data}) => {
     const view = new DataView(bytes(data).buffer);
     return Array.from({length: view.byteLength / 2}, (_, i) => {
@@ -31,7 +32,7 @@
     link.click();
   };
 
-  /** The picture as a file of its own: the colours of the page go with it. */
+  /** Saves the picture as a separate file, with the colours of the page included. */
   const savePicture = (figure) => {
     const svg = figure.querySelector("svg.static").cloneNode(true);
     const shown = figure.querySelectorAll("svg.static *");
@@ -55,9 +56,9 @@
     save(figure.dataset.file + ".png", canvas.toDataURL("image/png"));
   };
 
-  /** The plots of one condition: they share their time axis and cursor. */
+  /** The plots of one condition, which share time axis and cursor. */
   class Group {
-    /** @param data  its series; without it they are in the article */
+    /** @param data  the series; if missing, they are read from the article */
     constructor(article, data) {
       this.figures = [...article.querySelectorAll("figure.plot")];
       this.source = () => data ?? JSON.parse(article.querySelector("script.series").textContent);
@@ -90,7 +91,7 @@
 
     reset() { this.zoom(this.whole[0], this.whole[1]); }
 
-    /** Zooms or moves by the name of a key; false for any other. */
+    /** Zooms or moves according to the name of a key. Returns false for any other key. */
     move(key) {
       const [from, to] = this.range ?? this.whole;
       const span = to - from;
@@ -117,7 +118,10 @@
       const series = [{label: "time", value: (_, v) => v == null ? "–" : digits(v) + " s"}];
       const values = [this.time];
       const bands = [];
-      /** `middle` plus and minus `half`; `names` of its upper and lower edge in the legend. */
+      /**
+       * Adds the band `middle` plus and minus `half`; `names` are its upper and lower edge in the
+       * legend.
+       */
       const addBand = (middle, half, names, fill, stroke = "transparent") => {
         bands.push({series: [series.length, series.length + 1], fill});
         for (const sign of [1, -1]) {
@@ -126,7 +130,7 @@
         }
       };
       if (plot.sd != null) addBand(this.column(plot.lines[0].column), this.column(plot.sd), ["+ sd", "- sd"], css("--measured") + "38");
-      // The last is drawn on top: what was measured.
+      // The measured line comes last, so that it is drawn on top.
       for (const line of [...plot.lines].reverse()) {
         series.push({
           label: line.name, stroke: css("--" + line.style), width: widths[line.style] ?? 1.2, dash: dashes[line.style],
@@ -134,7 +138,7 @@
         });
         values.push(this.column(line.column));
       }
-      // Its edges lie on top of a residual, which would hide them.
+      // The band comes after the lines, because a residual would hide its edges.
       if (plot.prediction != null) {
         const {sd, middle, factor} = plot.prediction;
         addBand(middle == null ? null : this.column(middle), this.column(sd).map((s) => s == null ? null : factor * s),
@@ -150,7 +154,8 @@
         hooks: {setScale: [(u, key) => { if (key === "x" && u.status === 1) this.zoom(u.scales.x.min, u.scales.x.max, u); }]},
       }, values, figure);
       if (this.range) chart.setScale("x", {min: this.range[0], max: this.range[1]});
-      // The label of the figure says what is in it; a canvas and its legend tell a screen reader nothing.
+      // Screen readers use the label of the figure, since a canvas and its legend mean nothing to
+      // them.
       chart.root.setAttribute("aria-hidden", "true");
       chart.over.addEventListener("dblclick", () => this.reset());
       this.charts.set(figure, chart);
@@ -169,7 +174,7 @@
         button.addEventListener("click", action);
         tools.append(button);
       };
-      // A finger has neither keys nor a drag of its own: it scrolls the page.
+      // Touch screens need buttons: they have no keys, and dragging scrolls the page.
       add("+", "Zoom in", () => this.move("+"));
       add("−", "Zoom out", () => this.move("-"));
       add("←", "Earlier", () => this.move("ArrowLeft"));
@@ -197,7 +202,7 @@
   const element = (name, className, text = "") => Object.assign(document.createElement(name), {className, textContent: text});
 
   const streams = new Map();
-  /** The sketches of a packed script, unpacked once. */
+  /** Returns the sketches in a packed script, which is unpacked only once. */
   const unpacked = (script) => {
     if (!streams.has(script)) {
       const stream = new Blob([bytes(script.textContent)]).stream().pipeThrough(new DecompressionStream("deflate"));
@@ -206,7 +211,7 @@
     return streams.get(script);
   };
 
-  /** Fills the line of a condition when a reader opens it. */
+  /** Fills in the line of a condition when a reader opens it. */
   const fill = async (line) => {
     const list = line.parentElement;
     const index = [...list.querySelectorAll("details.sketch")].indexOf(line);
@@ -230,13 +235,13 @@
 
   const groups = [...document.querySelectorAll("article.condition")].filter((a) => a.querySelector("script.series")).map((a) => new Group(a));
   const owner = new Map(groups.flatMap((group) => group.figures.map((figure) => [figure, group])));
-  // The event does not bubble.
+  // The event does not bubble, so the listener captures it.
   document.querySelector(".sketches")?.addEventListener("toggle", ({target}) => {
     if (!target.open || target.dataset.filled) return;
     target.dataset.filled = "yes";
     fill(target);
   }, true);
-  /** A link to a condition, or to what is within, opens what hides it. */
+  /** Opens the section that hides the target of a link to a condition. */
   const reveal = () => {
     const target = document.getElementById(decodeURIComponent(location.hash.slice(1)));
     (target?.matches("details.sketch") ? target : target?.querySelector(":scope > details.curves"))?.setAttribute("open", "");
@@ -258,6 +263,6 @@
     waiting = setTimeout(() => groups.forEach((group) => group.resize()), 100);
   });
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => groups.forEach((group) => group.redraw()));
-  // On paper nothing can be opened.
+  // Sections cannot be opened on paper, so all are opened before printing.
   addEventListener("beforeprint", () => document.querySelectorAll("details:not(.sketch)").forEach((d) => { d.open = true; }));
 })();

@@ -7,14 +7,15 @@
 
 namespace rigcal::report {
 
-/// A term that the model lacks, in the form of a line for a campaign file.
+/// A term that the model lacks, as a line for a campaign file.
 struct MissingTerm {
   bool of_controller = false;  ///< belongs in [rig.controller]; otherwise [rig.parameters]
   std::string line;            ///< "valve_time_constant = { start = ..., fit = true }"
 };
 
-/// Lines of campaign files that estimate the terms that the residuals of a fit ask for, from their
-/// sizes. What no parameter describes has none.
+/// Makes lines for a campaign file that estimate the terms which the residuals of a fit call for.
+/// The start values follow from the sizes of the effects. Effects that no parameter describes are
+/// skipped.
 std::vector<MissingTerm> missing_terms(model::PlantKind plant, const calib::Considered& considered);
 
 /// Inserts the lines for missing terms at the beginning of their tables in the text of a campaign

@@ -27,8 +27,8 @@ using calib::FitStatus;
 
 constexpr const char* kDrawsFile = "posterior.csv";
 
-/// posterior.csv: a row for each draw, with its chain and its number there, both from 1, and a
-/// column for each unknown in SI, by its name.
+/// Writes posterior.csv: one row per draw, with the number of the chain and of the draw in the
+/// chain (both from 1), and one column per unknown, in SI.
 std::string draws_csv(const calib::Posterior& posterior) {
   const auto draws = static_cast<std::size_t>(posterior.draws);
   const std::size_t rows = static_cast<std::size_t>(posterior.chains) * draws;
@@ -40,7 +40,7 @@ std::string draws_csv(const calib::Posterior& posterior) {
   return csv_of(table);
 }
 
-/// The terms that the residuals ask for, as a next campaign may have them, in comments.
+/// Writes the terms that the residuals call for as comments, ready to be used in the next campaign.
 std::string terms_in_comments(const Result& result) {
   if (!result.fit.considered) return {};
   std::string text;

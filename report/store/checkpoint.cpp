@@ -19,7 +19,7 @@ namespace {
 constexpr const char* kSchema = "rigcal.checkpoint/1";
 constexpr const char* kKind = "checkpoint of rigcal fit";
 
-/// Data that must be equal for a fit to continue.
+/// Returns the data that must be unchanged for a fit to resume.
 Json identity(const Provenance& provenance) {
   Json json;
   json["version"] = std::string(version());
@@ -32,12 +32,15 @@ Json identity(const Provenance& provenance) {
   return json;
 }
 
-/// Invalid content of a checkpoint; what() describes it.
+/// Thrown for invalid content of a checkpoint, which what() describes.
 class NoCheckpoint : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A whole number of a range. (Conversion of any other number is undefined, or another value.)
+/// Reads an integer within a range. Values out of range are rejected before the conversion, which
+/// would change them or be undefined.
+///
+/// @throws NoCheckpoint  if the value is not an integer or is out of range
 template <typename Integer>
 Integer whole(const Json& json, const std::string& key, Integer lowest, Integer highest) {
   const Json& value = json.at(key);
@@ -60,7 +63,7 @@ Json counters_json(const calib::EvaluationCounters& counters) {
           {"kept", kept}};
 }
 
-/// @param file  for messages
+/// @param file  name for messages
 calib::EvaluationCounters counters_from(const Json& json, const std::string& file) {
   calib::EvaluationCounters counters;
   constexpr long kMostEvaluations = long{1} << 53;
@@ -68,7 +71,7 @@ calib::EvaluationCounters counters_from(const Json& json, const std::string& fil
   counters.failure_count = whole(json, "failure_count", 0L, kMostEvaluations);
   read_into(JsonNode(json.at("failures"), file, "ledger.failures", kKind), counters.failures);
   for (const Json& each : json.at("kept")) {
-    // [condition, status, count]
+    // Each entry is [condition, status, count].
     const Json entry{{"condition", each.at(0)}, {"status", each.at(1)}, {"count", each.at(2)}};
     const auto status = static_cast<model::SimulationStatus>(
         whole(entry, "status", 0, static_cast<int>(model::SimulationStatus::no_equilibrium)));
@@ -88,7 +91,9 @@ void require_same_fit(const std::string& file, const Json& found, const Json& ex
   }
 }
 
-/// Numbers that are possible may still be others than were written.
+/// Checks the hash of a checkpoint, since plausible numbers may still have been edited.
+///
+/// @throws NoCheckpoint  if the content was changed since it was written
 void require_own_hash(Json json) {
   const std::string hash = json.at("sha256").get<std::string>();
   json.erase("sha256");
@@ -133,7 +138,7 @@ calib::Checkpoint read_checkpoint(const std::filesystem::path& file, const Prove
     require_same_fit(file.string(), json.at("fit"), identity(provenance));
     calib::Checkpoint checkpoint;
     read_into(JsonNode(json.at("starts"), file.string(), "starts", kKind), checkpoint.starts);
-    // They are kept in the order in which they were made.
+    // Starts are kept in the order in which they ran.
     for (std::size_t i = 0; i < checkpoint.starts.size(); ++i) {
       if (checkpoint.starts[i].number != static_cast<int>(i) + 1)
         throw NoCheckpoint("key 'starts': expected them numbered from 1");

@@ -40,7 +40,7 @@ double at(std::span<const double> values, std::size_t i) {
   return i < values.size() ? values[i] : std::nan("");
 }
 
-/// Standard deviation of the repeats, shape (samples); empty for a single one.
+/// Standard deviation of the repeats, shape (samples); empty for a single repeat.
 std::span<const double> sd_of(const Result& result, const std::string& condition,
                               datasets::Channel channel) {
   for (const datasets::Record& record : result.records) {
@@ -55,7 +55,7 @@ std::span<const double> sd_of(const Result& result, const std::string& condition
 
 std::string scorecard_csv(const Result& result) {
   const datasets::ChannelInfo& drive = info(drive_channel(result.campaign));
-  const std::string_view suffix = drive.name.substr(drive.key.size());  // "_m" of "reference_m"
+  const std::string_view suffix = drive.name.substr(drive.key.size());  // "reference_m" gives "_m"
   std::vector<std::string> titles{
       "condition",  "use",     "waveform", "frequency_hz", fmt::format("amplitude{}", suffix),
       "leak_level", "samples", "verdict",  "channel",      "unit"};
@@ -116,7 +116,7 @@ Table residual_table(const Result& result, const calib::ConditionScore& score) {
   };
   add_values("time_s", score.time_s);
   for (const auto& [channel, series] : score.series) {
-    // A condition that could not be simulated has a measured side alone.
+    // Without a simulation there are only measured values.
     const std::vector<double>& measured = series.first;
     const std::vector<double>& simulated = series.second;
     const auto name = [of = info(channel).name](const char* what) {

@@ -11,7 +11,8 @@
 namespace rigcal::report {
 namespace {
 
-/// A spreadsheet takes a text with such a beginning for a formula and runs it. A number is none.
+/// Whether a spreadsheet would run a text as a formula because of its first character. Numbers are
+/// not formulas.
 bool is_formula(const std::string& text) {
   if (text.empty() || std::string_view("=+-@\t\r").find(text.front()) == std::string_view::npos)
     return false;

@@ -9,7 +9,7 @@
 #include "datasets/campaign/diagnosis_settings.hpp"
 #include "report/json/described.hpp"
 
-// The enumerations of a campaign, as results name them.
+// Names of campaign enumerations in result files.
 
 namespace rigcal::report {
 

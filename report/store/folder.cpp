@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The folders of `path`, itself included, that are not there yet: outermost last.
+/// Lists `path` and its parents that do not exist yet, innermost first.
 std::vector<fs::path> missing_folders(const fs::path& path) {
   std::vector<fs::path> missing;
   std::error_code error;
@@ -41,7 +41,7 @@ std::atomic<const std::vector<fs::path>*> made_now{nullptr};
 
 constexpr const char* kProbeFile = ".rigcal-probe";
 
-/// Limit of files that a message names.
+/// Maximum number of files that a message names.
 constexpr std::size_t kMostFilesNamed = 8;
 
 std::string listed(const std::vector<std::string>& names) {
@@ -51,7 +51,7 @@ std::string listed(const std::vector<std::string>& names) {
   return text;
 }
 
-/// First folder on the way from `out` to a file that is a link; nothing if none is.
+/// Finds the first folder between `out` and a file that is a link; std::nullopt if there is none.
 std::optional<fs::path> link_within(const fs::path& out, const fs::path& file) {
   fs::path inner;
   for (const fs::path& part : file.parent_path()) {
@@ -62,7 +62,7 @@ std::optional<fs::path> link_within(const fs::path& out, const fs::path& file) {
   return std::nullopt;
 }
 
-/// Whether a file is readable, is no link, and has this hash.
+/// Whether a file is readable, is not a link, and has this hash.
 bool has_hash(const fs::path& file, const std::string& hash) {
   std::error_code unknown;
   try {
@@ -72,14 +72,15 @@ bool has_hash(const fs::path& file, const std::string& hash) {
   }
 }
 
-/// Refuses, before any work, to write a file where a folder is.
+/// Checks, before any work, that no folder has the name of a file to be written.
 void require_no_folder(const fs::path& file) {
   std::error_code unknown;
   if (fs::is_directory(fs::symlink_status(file, unknown)))
     throw WriteError(fmt::format("{}: cannot be written: is a folder", file.string()));
 }
 
-/// Text of the current manifest; nothing if it cannot be read, which only --force allows.
+/// Reads the text of the current manifest; std::nullopt if it cannot be read, a case that gets here
+/// only with --force.
 std::optional<std::string> manifest_there(const fs::path& out) {
   try {
     return files_in(out)(kManifestFile);
@@ -88,8 +89,8 @@ std::optional<std::string> manifest_there(const fs::path& out) {
   }
 }
 
-/// Whether a file keeps the state of a fit for --resume. It changes during a fit, so no manifest
-/// lists it.
+/// Whether a file stores the state of a fit for --resume. No manifest lists such a file, because it
+/// changes during the fit.
 bool is_kept_state(const std::string& path, const fs::path& file) {
   if (path == kCheckpointFile) return is_checkpoint(file);
   return path == kKeptTasksFile && is_kept_tasks(file);
@@ -106,14 +107,14 @@ void HeldFolder::remove_if_empty() {
 HeldFolder::Made::~Made() {
   const Uninterrupted whole;
   made_now = nullptr;
-  std::error_code ignored;  // one that is not empty stays
+  std::error_code ignored;  // folders that are not empty cannot be removed, and are kept
   for (const fs::path& folder : folders) fs::remove(folder, ignored);
 }
 
 HeldFolder::HeldFolder(const fs::path& out, Holding holding)
     : out_(out), holding_(std::move(holding)) {
   const fs::path folder = fs::absolute(out).lexically_normal();
-  std::error_code unknown;  // the probe reports an error
+  std::error_code unknown;  // writing the probe reports the error
   if (fs::exists(folder, unknown) && !fs::is_directory(folder, unknown))
     throw WriteError(fmt::format("--out {}: is a file; expected a folder", out.string()));
   {
@@ -122,7 +123,7 @@ HeldFolder::HeldFolder(const fs::path& out, Holding holding)
     made_now = &made_.folders;
     const fs::path probe = folder / kProbeFile;
     write_file_atomically(probe, "");
-    std::error_code ignored;  // a remaining probe does no harm
+    std::error_code ignored;  // a leftover probe does no harm
     fs::remove(probe, ignored);
   }
   descriptor_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -277,17 +278,18 @@ void ResultsInWriting::move_into_place() {
     left.push_back(file);
     if (std::find(going.begin(), going.end(), file.path) == going.end()) staying.push_back(file);
   }
-  // If the process ends between two renames, the manifest still lists every file that exists then.
+  // Renaming starts with a manifest of all old and new files, so that it lists every existing file
+  // even if the process ends between two renames.
   const fs::path manifest = held_.out_ / kManifestFile;
   const auto earlier = manifest_there(held_.out_);
-  // Every text is made before the work that nothing may cut short: without memory a process ends
-  // there by an exception, and freeing a JSON value takes memory.
+  // All texts are made before the uninterruptible section. Out of memory, an exception there would
+  // end the process, and even freeing a JSON value takes memory.
   const std::string text_of_left = manifest_text(left);
   const std::string text_of_all = manifest_text(all);
   const std::string text_of_staying = manifest_text(staying);
   const Uninterrupted whole;
   writing_.add(manifest, text_of_left);
-  FilesInWriting back;  // written before anything is renamed: without memory nothing could be
+  FilesInWriting back;  // written before any rename, since memory may have run out afterwards
   if (earlier) back.add(manifest, *earlier);
   write_file_atomically(manifest, text_of_all);
   try {
@@ -295,7 +297,7 @@ void ResultsInWriting::move_into_place() {
   } catch (...) {
     try {
       back.rename_into_place();
-    } catch (const WriteError&) {  // the longer one stays, which is true as well
+    } catch (const WriteError&) {  // the longer manifest is kept, and is valid as well
     }
     if (!earlier) ::unlink(manifest.c_str());
     throw;

@@ -13,7 +13,7 @@
 
 namespace rigcal::report {
 
-/// A result file that is complete but not yet written.
+/// Complete content of a result file that is not written yet.
 struct ResultFile {
   std::filesystem::path path;  ///< relative to the result folder
   std::string content;
@@ -22,31 +22,33 @@ struct ResultFile {
 
 /// Files that a run may write into its folder.
 struct PlannedFiles {
-  std::vector<std::filesystem::path> files;  ///< relative to the folder; some may not be written
+  std::vector<std::filesystem::path> files;  ///< relative to the folder; the run may omit some
   /// Folders from which all files of an earlier run are removed: "residuals".
   std::vector<std::filesystem::path> folders;
 };
 
-/// Verb that takes a folder of results, and how.
+/// How a verb takes over a result folder.
 struct Holding {
   std::string verb;
-  bool force = false;  ///< also replace files that are not rigcal's, or that were changed
-  std::string forced_by = "--force";                  ///< what the user types for that, in messages
+  bool force = false;  ///< also replace files that rigcal did not write or that were changed
+  std::string forced_by = "--force";                  ///< how a user sets `force`, for messages
   std::function<void(const std::string&)> warn = {};  ///< may be empty
 };
 
-/// Folder of a run's results, locked for this run while the object lives. The constructor makes the
-/// folder and tests whether it is writable, before any long work. A folder that it made is removed
-/// again if it is still empty at the end. A warning says if the file system has no locks.
+/// Result folder of a run, locked for this run during the object's lifetime. The constructor
+/// creates the folder and tests whether it is writable, before any long work. The destructor
+/// removes a folder that the constructor created, if it is still empty. A warning is given if the
+/// file system does not support locks.
 ///
-/// The folder's manifest lists the files that rigcal wrote. Any other file, and any listed file
-/// that was changed, is not replaced. Links to folders inside the folder are not followed; the
-/// folder itself may be a link.
+/// The folder's manifest lists the files that rigcal wrote. Other files, and listed files that were
+/// changed, are not replaced. Links to folders inside the folder are not followed; the folder
+/// itself may be a link.
 class HeldFolder {
  public:
-  /// @throws WriteError  with path and reason
-  /// @throws UsageError  another run has taken it
-  /// @throws InputError  the file in the place of its manifest is none
+  /// @throws WriteError  if the folder cannot be created or written; names path and reason
+  /// @throws UsageError  if another run has locked the folder, or its manifest is invalid and
+  /// `force`
+  ///                     is not set
   HeldFolder(const std::filesystem::path& out, Holding holding);
   HeldFolder(const HeldFolder&) = delete;
   HeldFolder& operator=(const HeldFolder&) = delete;
@@ -55,28 +57,29 @@ class HeldFolder {
   /// The path as the user gave it.
   const std::filesystem::path& path() const { return out_; }
 
-  /// Announces, before the work, the files that the run may write. Files of earlier runs with these
-  /// names or in these folders are removed together with the run's results, if the run does not
-  /// replace them and they are unchanged.
+  /// Announces, before any work, the files that the run may write. When the results are moved into
+  /// place, unchanged files from earlier runs are removed if they have these names or are in these
+  /// folders, and the run did not replace them.
   ///
-  /// @throws UsageError, WriteError  as require_replaceable()
+  /// @throws UsageError, WriteError  under the conditions of require_replaceable()
   void plan(PlannedFiles planned);
 
-  /// Refuses to replace files that are not rigcal's or that were changed, unless forced. A file
+  /// Refuses to replace files that rigcal did not write or that were changed, unless forced. A file
   /// with the same content as the new one may be replaced.
   ///
-  /// @throws UsageError  names the files; or a folder on the way to one is a link
-  /// @throws WriteError  a folder has the name of a file
+  /// @throws UsageError  if a file must not be replaced, or a folder on its path is a link; names
+  /// it
+  /// @throws WriteError  if a folder has the name of a file
   void require_replaceable(const std::vector<ResultFile>& files);
 
-  /// Removes the folders that the living object has made, if they are empty. For a signal handler,
-  /// which ends the process before the destructor can run; safe within one.
+  /// Removes the folders that the existing object created, if they are empty. Made for signal
+  /// handlers, which end the process before the destructor can run; async-signal-safe.
   static void remove_if_empty();
 
  private:
   friend class ResultsInWriting;
 
-  /// Folders that go again where they are empty, innermost first.
+  /// Folders to remove at the end if they are empty, innermost first.
   struct Made {
     std::vector<std::filesystem::path> folders;
     ~Made();
@@ -93,34 +96,37 @@ class HeldFolder {
   int descriptor_ = -1;
   bool locked_ = false;
   std::vector<ManifestFile> listed_;
-  std::map<std::string, FileState> checked_;  ///< state of the files that may be replaced
+  std::map<std::string, FileState> checked_;  ///< states of files that were found replaceable
   std::set<std::string> swept_;
   PlannedFiles planned_;
 };
 
-/// Refuses a result that would replace one of the files it was made from.
+/// Checks that no result replaces one of the files that it is made from.
 ///
-/// @throws UsageError  naming the file
+/// @throws UsageError  if a result would replace an input; names the file
 void require_inputs_kept(const std::filesystem::path& out,
                          const std::vector<std::filesystem::path>& results,
                          const std::vector<InputFile>& inputs);
 
-/// Writes result files in two steps. add() writes each file next to its target, so that it need not
-/// stay in memory. Then all are moved together with the manifest that lists them, so that a full
-/// disk leaves the files of an earlier run unchanged.
+/// Writes result files in two steps. add() writes each file next to its target, which frees its
+/// memory. move_into_place() then moves all files and the manifest that lists them. A full disk
+/// thus leaves the files from an earlier run unchanged.
 class ResultsInWriting {
  public:
-  /// Both arguments outlive the object.
+  /// Borrows both arguments.
   ResultsInWriting(HeldFolder& held, const std::vector<InputFile>& inputs)
       : held_(held), inputs_(inputs) {}
 
+  /// Writes a file next to its target.
+  ///
   /// @param file  its hash is computed if it is missing
-  /// @throws WriteError  with path and reason
-  /// @throws UsageError  the file would replace one of `inputs`, or a file that must be kept
+  /// @throws WriteError  if the file cannot be written; names path and reason
+  /// @throws UsageError  if the file would replace one of `inputs` or a file that must be kept
   void add(const ResultFile& file);
 
-  /// Moves all files to their targets and removes the remaining planned files of earlier runs.
-  /// @throws WriteError  with path and reason; the earlier files are complete then
+  /// Moves all files to their targets, and removes planned files that remain from earlier runs.
+  ///
+  /// @throws WriteError  if a file cannot be moved; the earlier files are then still complete
   void move_into_place();
 
  private:
@@ -130,19 +136,17 @@ class ResultsInWriting {
   FilesInWriting writing_;
 };
 
-/// Writes every file, each whole or not at all: all are written beside their places before the
-/// first is moved there, so that a full disk leaves the files of an earlier run as they were.
+/// Writes all files with ResultsInWriting: each completely or not at all.
 ///
-/// @throws WriteError  with path and reason
-/// @throws UsageError  a file would replace one of `inputs`, or a file that must be kept; then none
-///                     is written
-///                     written
+/// @throws WriteError  if a file cannot be written; names path and reason
+/// @throws UsageError  if a file would replace one of `inputs` or a file that must be kept; no file
+///                     is written then
 void write_results(HeldFolder& held, const std::vector<ResultFile>& files,
                    const std::vector<InputFile>& inputs);
 
-/// Removes a file of an earlier run that would contradict this one.
+/// Removes a file from an earlier run that would contradict the results of this one.
 ///
-/// @throws WriteError  it is there and cannot be removed
+/// @throws WriteError  if the file exists and cannot be removed
 void remove_stale(const std::filesystem::path& file);
 
 }  // namespace rigcal::report

@@ -17,7 +17,7 @@ Json identity_json(const datasets::Campaign& campaign) {
   std::string first;
   std::string last;
   for (const datasets::Condition& condition : campaign.conditions) {
-    // ISO 8601 sorts as text.
+    // ISO 8601 dates can be compared as text.
     if (condition.use == datasets::Use::ignore || !condition.date) continue;
     first = first.empty() ? *condition.date : std::min(first, *condition.date);
     last = std::max(last, *condition.date);

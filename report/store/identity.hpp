@@ -5,8 +5,8 @@
 
 namespace rigcal::report {
 
-/// `report` of a result: the statements of the campaign's [report] about the test, and the first
-/// and last date of its records; null if nothing is known.
+/// Makes the `report` member of a result: what [report] in the campaign states about the test, and
+/// the first and last date of the records; null if neither is given.
 Json identity_json(const datasets::Campaign& campaign);
 
 }  // namespace rigcal::report

@@ -14,53 +14,54 @@
 
 namespace rigcal::report {
 
-/// Keeps the order in which keys are put in.
+/// Keeps keys in the order of insertion.
 using Json = nlohmann::ordered_json;
 
-/// Text of a JSON file: two blanks of indentation, final newline, numbers that read back to the
-/// same bits. Bytes that are not UTF-8 are replaced.
+/// Writes the text of a JSON file, indented by two spaces, with a final newline. Numbers round-trip
+/// exactly. Bytes that are not valid UTF-8 are replaced.
 std::string json_text(const Json& json);
-/// The same on one line.
+/// Writes JSON on one line.
 std::string json_line(const Json& json);
 
-/// The parameter table of a plant.
+/// Returns the parameter table of a plant as JSON.
 Json parameters_json(model::PlantKind plant);
 
-/// Data of an earlier fit for `validate`.
+/// Data from an earlier fit, for `validate`.
 struct EarlierFit {
   calib::FitStatus status = calib::FitStatus::failed;
   std::optional<calib::Verdict> verdict;
   std::string message;
-  std::vector<datasets::FittedValue> values;  ///< fitted parameters, without nuisance
-  std::vector<datasets::FittedValue> known;   ///< the others, scope rig
-  std::vector<std::pair<std::string, datasets::Use>> conditions;  ///< id and use of each scored
+  std::vector<datasets::FittedValue> values;  ///< fitted parameters, nuisance parameters excluded
+  std::vector<datasets::FittedValue> known;   ///< known parameters with scope rig
+  std::vector<std::pair<std::string, datasets::Use>> conditions;  ///< id and use
   std::vector<std::string> input_hashes;                          ///< SHA-256
-  /// As the fit judged them; not assessed if its file says nothing.
+  /// Judgements by the fit; not assessed if its file contains none.
   calib::Aspect adequacy;
   calib::Aspect parameters;
   calib::Validity validity;
   std::optional<calib::Validity> validated;     ///< ranges of the validation
-  std::optional<calib::EstimateSpread> spread;  ///< for `values`; none if the fit did not converge
-  std::vector<int> indices;  ///< table rows of the fitted values of scope rig that have an error
-  /// Covariance of these, SI, shape (indices)^2: the larger of standard and robust error, and the
-  /// correlation.
+  std::optional<calib::EstimateSpread> spread;  ///< for `values`; absent without convergence
+  std::vector<int> indices;                     ///< table rows of the fitted values with scope rig
+  /// Covariance of the values in `indices`, SI, shape (indices)^2; from the larger of standard and
+  /// robust error, and the correlations.
   Eigen::MatrixXd covariance;
 };
 
-/// Reads fit.json strictly.
+/// Reads a fit.json strictly.
 ///
-/// @throws InputError  file (and line:column if it is not JSON, or the key if it is no fit.json),
-///                     what was found and what was expected; a fit that failed
+/// @throws InputError  if the file is not JSON, is not a fit.json, or contains a fit that failed;
+///                     names the file, the line and column or the key, and the expected content
 EarlierFit read_fit(const std::filesystem::path& file, model::PlantKind plant);
 
-/// The same for JSON that is already parsed.
+/// Reads a fit.json that is already parsed.
 ///
-/// @param name  for messages
+/// @param name  file name for messages
+/// @throws InputError  under the conditions of read_fit()
 EarlierFit earlier_fit(const Json& json, const std::string& name, model::PlantKind plant);
 
-/// Values of the truth.json that `synthesize` wrote.
+/// Reads the parameter values from a truth.json, which `synthesize` writes.
 ///
-/// @throws InputError  as read_fit()
+/// @throws InputError  if the file is not JSON or not a truth.json
 std::vector<datasets::FittedValue> read_truth(const std::filesystem::path& file,
                                               model::PlantKind plant);
 

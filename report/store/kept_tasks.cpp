@@ -16,22 +16,22 @@ namespace {
 
 constexpr std::size_t kMostBytes = std::size_t{1} << 30U;
 
-/// Name that identifies one job of one fit.
+/// Returns a hash that identifies one job in one fit.
 std::string name_of(const std::string& fit, const FarmJob& job) {
   return sha256_of_text(to_bytes(fit, job.name, job.state, job.count));
 }
 
-/// An entry: its length and its hash, then its content.
+/// Makes an entry: length and hash of the content, then the content.
 std::string entry_of(const std::string& job, std::size_t index, const std::string& bytes) {
   const std::string content = to_bytes(job, static_cast<std::uint64_t>(index), bytes);
   return fmt::format("{:016x}{}", content.size(), sha256_of_text(content)) + content;
 }
 
-// Number of digits at the beginning of an entry.
+// Numbers of hexadecimal digits for length and hash at the beginning of an entry.
 constexpr std::size_t kLength = 16;
 constexpr std::size_t kHash = 64;
 
-/// Takes the next whole entry off the front; empty where there is none.
+/// Removes the next complete entry from the front and returns its content; empty if there is none.
 std::string_view take_entry(std::string_view& rest) {
   if (rest.size() < kLength + kHash) return {};
   std::size_t length = 0;

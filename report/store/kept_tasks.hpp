@@ -10,33 +10,33 @@
 
 namespace rigcal::report {
 
-/// File in which a fit keeps the results of replicates, profiles, folds, and of starts in several
-/// processes.
+/// File in which a fit keeps the results of replicates, profiles and folds; also of starts if they
+/// run in several processes.
 inline constexpr const char* kKeptTasksFile = "checkpoint.tasks";
 
 /// Whether a file contains kept tasks, complete or truncated.
 bool is_kept_tasks(const std::filesystem::path& file);
 
-/// A farm that writes every result to a file at once, so that a killed run loses only its
-/// unfinished tasks. Each entry has its hash: an incomplete entry, and everything after it, is
+/// A task farm that writes each result to a file immediately, so that a killed run loses only its
+/// unfinished tasks. Each entry contains a hash; an incomplete entry and everything after it are
 /// ignored. A result is identified by the hash of its inputs (files, options, seed, version, and
-/// the state of its job), so that results of another fit have no effect.
+/// the state of its job), so that results from another fit are not used.
 class KeptTasks final : public TaskFarm {
  public:
   /// @param farm        runs the tasks; borrowed
-  /// @param provenance  of the fit
-  /// @param resume      false: begins anew
-  /// @throws InputError  the file cannot be read
+  /// @param provenance  provenance of the fit
+  /// @param resume      whether to use results in the file; otherwise the file is removed
+  /// @throws InputError  if the file cannot be read
   KeptTasks(TaskFarm& farm, std::filesystem::path file, const Provenance& provenance, bool resume);
 
-  /// @throws WriteError  a result cannot be kept
+  /// @throws WriteError  if a result cannot be written
   std::vector<TaskResult> run(const FarmJob& job, const Task& task, const Done& done) override;
   int rank() const override { return farm_.rank(); }
   int processes() const override { return farm_.processes(); }
 
-  /// Number of results of an earlier run.
+  /// Number of results found from an earlier run.
   std::size_t found() const { return found_; }
-  /// Removes the file, once the results of the fit are written.
+  /// Removes the file; to be called once the results of the fit are written.
   void remove();
 
  private:

@@ -25,20 +25,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Limit of files in a folder without a manifest; a folder with more is not searched further.
+/// Maximum number of files that are examined in a folder without a manifest.
 constexpr std::size_t kMostFiles = 10'000;
-/// Size of the part of a file that is searched.
+/// Number of bytes at the beginning of a file that are searched.
 constexpr std::size_t kHeadBytes = std::size_t{1} << 16;
 
 constexpr std::array kResults{"fit",        "validation", "leak_table", "diagnosis", "parity",
                               "comparison", "batch",      "average",    "plan"};
 
-/// Recognises result files by their content; `name` may be an extension alone.
+/// Recognises a kind of result file by its content. `name` may be only an extension.
 struct Look {
   std::string_view folder;
   std::string_view name;
   std::string_view has;   ///< must occur in the head
-  std::string_view also;  ///< must occur in the head; in pages and archives anywhere
+  std::string_view also;  ///< must occur in the head; for pages and archives anywhere
 };
 
 constexpr std::array kLooks{
@@ -68,13 +68,14 @@ constexpr std::array kLooks{
     Look{"figures", ".pdf", "%PDF-", "Haru"},
 };
 
-/// Whether a path is a regular file, and not a link to one.
+/// Whether a path is a regular file and not a link.
 bool is_plain_file(const fs::path& path) {
   std::error_code unknown;
   return fs::is_regular_file(fs::symlink_status(path, unknown));
 }
 
-/// Sorted names of the plain files of a folder; none if the folder is a link.
+/// Lists the plain files in a folder, sorted by name. A folder that is a link counts as empty
+/// unless `link_taken` is set.
 std::vector<std::string> plain_files(const fs::path& folder, bool link_taken) {
   std::error_code error;
   std::vector<std::string> names;
@@ -97,7 +98,7 @@ std::string head_of(const fs::path& file, std::size_t bytes) {
 
 bool looks_like(const Look& look, const fs::path& file) {
   const std::string head = head_of(file, kHeadBytes);
-  // A page begins with its styles, so the text may be far from its head.
+  // A page begins with its styles, so its text may come after the head.
   const bool far = look.name == "report.html" || look.name == ".fmu" || look.name == ".pdf";
   const std::string whole =
       far && !look.also.empty() ? read_file(file, JsonLimits().bytes, "a result") : head;
@@ -112,7 +113,7 @@ bool has_a_result_look(const fs::path& folder, const fs::path& path) {
   });
 }
 
-/// Provenance of a result in JSON; nothing if the file is missing or is no such result.
+/// Reads the provenance of a JSON result; std::nullopt if the file is missing or not such a result.
 std::optional<StoredProvenance> provenance_in(const fs::path& folder, const std::string& kind) {
   const fs::path file = folder / (kind + ".json");
   if (!is_plain_file(file)) return std::nullopt;
@@ -141,7 +142,7 @@ std::string manifest_text(const std::vector<ManifestFile>& files) {
   StoredManifest manifest;
   manifest.version = version();
   manifest.files = files;
-  // Threads write in any order.
+  // Threads add files in any order.
   std::stable_sort(manifest.files.begin(), manifest.files.end(),
                    [](const auto& a, const auto& b) { return a.path < b.path; });
   return json_text(json_of(manifest));
@@ -191,7 +192,7 @@ std::vector<ManifestFile> rigcal_files(const fs::path& folder) {
         if (hashes == named.end() || hashes->second.contains(hash))
           files.push_back({path, hash, ""});
       } catch (const InputError&) {
-        // A file that cannot be read is not listed; whoever would replace it gets an error.
+        // A file that cannot be read is not listed, so an attempt to replace it is refused.
       }
     }
   }

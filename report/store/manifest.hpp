@@ -15,12 +15,12 @@ inline constexpr const char* kManifestSchema = "rigcal.manifest/1";
 struct ManifestFile {
   std::string path;  ///< relative to the folder, with "/" as separator
   std::string sha256;
-  std::string verb;  ///< verb that wrote it; empty: a version without manifests
+  std::string verb;  ///< verb that wrote it; empty if an older version wrote it
   RIGCAL_DESCRIBE(path, sha256, verb)
 };
 
-/// rigcal-manifest.json: the files of a folder that rigcal wrote, with their hashes. While a run
-/// moves its files, a path is listed twice: with the old hash and with the new one.
+/// rigcal-manifest.json: the files in a folder that rigcal wrote, with their hashes. While a run
+/// moves its files into place, a path is listed twice, with its old and its new hash.
 struct StoredManifest {
   std::string schema = kManifestSchema;
   std::string version;  ///< version of rigcal
@@ -28,17 +28,18 @@ struct StoredManifest {
   RIGCAL_DESCRIBE(schema, version, files)
 };
 
-/// Text of a manifest with its files sorted by path.
+/// Writes the text of a manifest, with the files sorted by path.
 std::string manifest_text(const std::vector<ManifestFile>& files);
 
-/// Files in the manifest of a folder, or those of rigcal_files() if there is no manifest.
+/// Reads the files from the manifest of a folder. Without a manifest, calls rigcal_files().
 ///
-/// @throws InputError  not a manifest of this version, or one that names a file outside the folder
+/// @throws InputError  if the manifest does not have this version's schema, or names a file outside
+///                     the folder
 std::vector<ManifestFile> manifest_files(const std::filesystem::path& folder);
 
-/// Finds results of versions that wrote no manifest. A file that the `provenance.files` of a result
-/// names counts if it has the stated hash. Any other file counts if both its name and its content
-/// are those of a rigcal result. A campaign.toml never counts, since users edit it.
+/// Finds results that older versions wrote without a manifest. A file that a result lists in
+/// `provenance.files` counts if it has the stated hash. Any other file counts if both its name and
+/// its content match a rigcal result. A campaign.toml never counts, since users edit it.
 std::vector<ManifestFile> rigcal_files(const std::filesystem::path& folder);
 
 }  // namespace rigcal::report

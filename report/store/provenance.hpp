@@ -13,9 +13,9 @@
 
 namespace rigcal::report {
 
-/// "0.1.0"
+/// Version of rigcal, such as "0.1.0".
 std::string_view version();
-/// Git revision of the sources, or "unknown" where they were no git checkout.
+/// Git revision of the sources; "unknown" if they were not built in a git checkout.
 std::string_view revision();
 
 /// Operating system, processor family and number of processors.
@@ -28,17 +28,18 @@ struct InputFile {
   RIGCAL_DESCRIBE(path, sha256)
 };
 
-/// Origin of a result: enough to make it again.
+/// Origin of a result, with all that is needed to reproduce it.
 struct Provenance {
   std::string command;  ///< the command line
   std::uint64_t seed = 1;
-  std::vector<std::pair<std::string, std::string>> options;  ///< those that change numbers
+  std::vector<std::pair<std::string, std::string>> options;  ///< options that change numbers
   std::vector<InputFile> inputs;
 };
 
-/// Hashes of the campaign file, of every record file once, in the order of reading, and of `more`.
+/// Hashes the campaign file, every record file (once, in the order of reading), and the files in
+/// `more`.
 ///
-/// @throws InputError  a file cannot be read
+/// @throws InputError  if a file cannot be read
 std::vector<InputFile> hash_inputs(const datasets::Campaign& campaign,
                                    const std::vector<datasets::Record>& records,
                                    const std::vector<std::filesystem::path>& more = {});

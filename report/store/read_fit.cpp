@@ -21,32 +21,32 @@ using datasets::Scope;
 
 constexpr const char* kTruthSchema = "rigcal.truth/1";
 
-/// Error of a parameter that the fit could not determine, from its whole interval, or from its
-/// bounds; otherwise its uncertainty would be left out.
+/// Computes an error for a parameter that the fit could not determine, from its interval or its
+/// bounds. Otherwise its uncertainty would be omitted.
 double undetermined_error(const StoredParameter& p, const JsonNode& node) {
   if (!p.lower) node["lower"].fail("a number");
   if (!p.upper) node["upper"].fail("a number");
   return calib::undetermined_sd(p.ci95, *p.lower, *p.upper);
 }
 
-/// The estimates of a fit, nuisance parameters aside, with their covariance.
+/// The estimates of a fit, except nuisance parameters, with their covariance.
 struct Estimates {
   std::vector<calib::EstimateSpread::Estimate> list;
-  Eigen::MatrixXd covariance;  ///< SI, by the larger of standard and robust error
-  /// Those of conditions whose correlations are not stored, with their errors.
+  Eigen::MatrixXd covariance;  ///< SI, from the larger of standard and robust error
+  /// Estimates for single conditions whose correlations are not stored, with their errors.
   std::map<std::string, std::vector<std::pair<calib::EstimateSpread::Estimate, double>>> own;
-  std::vector<const calib::Budget95*> budgets;  ///< parallel to `list`; null: none
-  double widened = 1.0;  ///< the most by which an interval is wider than by its error
+  std::vector<const calib::Budget95*> budgets;  ///< parallel to `list`; null without a budget
+  double widened = 1.0;  ///< largest ratio of an interval to the normal one with its error
 };
 
-/// Half of a 95 % interval in standard errors.
+/// Half width of ci95_if_exact in units of the standard error; 0 without a finite interval.
 double half_in_errors(const StoredParameter& p, double error) {
   const auto& ci95 = p.ci95_if_exact;
   if (!ci95 || !std::isfinite(ci95->high - ci95->low)) return 0.0;
   return 0.5 * (ci95->high - ci95->low) / error;
 }
 
-/// Refuses a matrix that is no correlation matrix.
+/// Refuses a matrix that is not a correlation matrix.
 void require_correlations(const calib::Correlation& stored, const JsonNode& matrix) {
   const auto size = static_cast<Eigen::Index>(stored.names.size());
   if (stored.matrix.rows() != size || stored.matrix.cols() != size)
@@ -63,7 +63,7 @@ Estimates estimates_of(const StoredFit& stored, const JsonNode& root, model::Pla
   const std::vector<JsonNode> nodes = root["parameters"].items();
   Estimates result;
   require_correlations(stored.correlation, matrix);
-  std::vector<std::optional<Eigen::Index>> places;  // in the matrix
+  std::vector<std::optional<Eigen::Index>> places;  // rows in the correlation matrix
   std::vector<double> errors;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const StoredParameter& p = stored.parameters[i];
@@ -95,7 +95,7 @@ Estimates estimates_of(const StoredFit& stored, const JsonNode& root, model::Pla
   return result;
 }
 
-/// Dates of the conditions that a result was fitted to, each once; none where one has no date.
+/// Lists the dates of the fitted conditions without duplicates; empty if one of them has no date.
 std::vector<std::string> dates_of_fit(const StoredFit& stored) {
   std::vector<std::string> dates;
   for (const StoredCondition& condition : stored.conditions) {
@@ -134,7 +134,8 @@ void read_covariance(const StoredFit& stored, const JsonNode& root, model::Plant
   }
 }
 
-/// @param member  of the assessment, which a fit of before there were any does not have
+/// Returns an aspect of the stored assessment. Fits by older versions have no assessment; for them
+/// the aspect is not assessed.
 calib::Aspect judged(const StoredFit& stored, calib::Aspect calib::Assessment::*member) {
   if (stored.assessment) return (*stored.assessment).*member;
   calib::Aspect aspect;
@@ -144,7 +145,7 @@ calib::Aspect judged(const StoredFit& stored, calib::Aspect calib::Assessment::*
   return aspect;
 }
 
-/// Values of the fit, and known ones of the rig.
+/// Reads the fitted values, and the known values with scope rig.
 void read_values(const StoredFit& stored, const JsonNode& root, model::PlantKind plant,
                  EarlierFit& fit) {
   const std::vector<JsonNode> nodes = root["parameters"].items();
@@ -157,7 +158,7 @@ void read_values(const StoredFit& stored, const JsonNode& root, model::PlantKind
       if (!p.level) nodes[i]["level"].fail("a text");
       value.level = *p.level;
     }
-    // A nuisance parameter belongs to the records of its fit.
+    // A nuisance parameter applies only to the records of its own fit.
     if (p.nuisance || (!p.fitted && !p.value)) continue;
     if (!p.value) nodes[i]["value"].fail("a number");
     value.value = *p.value;

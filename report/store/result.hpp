@@ -13,7 +13,7 @@ namespace rigcal::report {
 
 enum class ResultKind { fit, validation };
 
-/// A fit or validation with all that its files are made from. Borrows everything.
+/// A fit or validation with all data for its result files. Borrows everything.
 struct Result {
   ResultKind kind = ResultKind::fit;
   const datasets::Campaign& campaign;
@@ -22,8 +22,8 @@ struct Result {
   const Provenance& provenance;
 };
 
-/// Status of a result in its files. A fit that claims to have converged but has a value that is not
-/// finite has failed.
+/// Status of a result in its files. A converged fit with a value that is not finite counts as
+/// failed.
 inline calib::FitStatus status_of(const calib::Fit& fit) {
   if (fit.status == calib::FitStatus::converged && !fit.usable()) return calib::FitStatus::failed;
   return fit.status;

@@ -6,25 +6,27 @@
 #include "report/store/folder.hpp"
 #include "report/store/stored.hpp"
 
-// The files of one run belong together. The result in JSON lists the others with their SHA-256, and
-// readers refuse files of another run in their place.
+// The files from one run belong together. The JSON result lists the others with their SHA-256, so
+// that readers can refuse files from another run.
 
 namespace rigcal::report {
 
-/// Fills `provenance.files` with path and SHA-256 of each of `files`, in their order, and stores
-/// the hashes in `files`, too.
+/// Fills `provenance.files` with the path and SHA-256 of each of `files`, in order, and also stores
+/// the hashes in `files`.
 void name_files(std::vector<ResultFile>& files, StoredProvenance& provenance);
-/// @param named  of files that are written already, which come first
+/// @param named  files that are already written; they come first in `provenance.files`
 void name_files(std::vector<InputFile> named, std::vector<ResultFile>& files,
                 StoredProvenance& provenance);
 
-/// Reads the files of a result's own run.
+/// Returns a reader that accepts only files from the same run as the result.
 ///
-/// @param read    the folder, borrowed
-/// @param provenance  of the result; one that names no files, of an earlier version, takes any
+/// @param read    reads from the folder; borrowed
+/// @param provenance  provenance of the result; if an older version wrote it, it lists no files,
+/// and
+///                    the reader accepts any file
 /// @param where   the folder, for messages
-/// @param file    of the result, for messages
-/// @return        throws InputError where a file is not the one that the result names
+/// @param file    name of the result, for messages
+/// @return        reader that throws InputError if the hash of a file is not the listed one
 ReadFile files_of_run(const ReadFile& read, const StoredProvenance& provenance,
                       const std::string& where, const std::string& file);
 

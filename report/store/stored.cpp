@@ -15,7 +15,7 @@
 namespace rigcal::report {
 namespace {
 
-/// Limit of a table; one of 20 columns then has two million rows.
+/// Maximum size of a table, enough for about two million rows of 20 columns.
 constexpr std::size_t kMostTableBytes = std::size_t{512} << 20;
 
 std::string path_in(const std::string& where, const std::string& name) {
@@ -29,8 +29,8 @@ Json parsed(const ReadFile& read, const std::string& where, const std::string& n
   return parse_json(*text, path_in(where, name));
 }
 
-/// The id of a condition is the name of its file, so it must not lead to another folder, whoever
-/// made the result.
+/// Checks the id of a condition. It is part of a file name, and a result from an unknown source
+/// must not make it refer to another folder.
 void require_id(const std::string& id, const char* key, const std::string& file) {
   if (datasets::is_condition_id(id)) return;
   throw InputError({file}, fmt::format("key '{}' of a condition: found \"{}\", expected {}", key,
@@ -43,7 +43,7 @@ void require_length(std::size_t found, std::size_t expected, const char* list,
   throw InputError({file}, fmt::format("{}: found {} entries, expected {}", list, found, expected));
 }
 
-/// Requires equal lengths of curves that a page draws over each other.
+/// Checks that the two coordinates of each curve have equal lengths, since pages draw them.
 void require_matching(const StoredCurves& curves, const std::string& file) {
   for (const auto& [condition, channels] : curves.conditions) {
     for (const auto& [channel, found] : channels) {
@@ -184,7 +184,7 @@ PlanFiles load_plan(const ReadFile& read, const std::string& where) {
   for (calib::PlannedRecord& record : plan.records) {
     for (auto* list : {&record.sd_alone, &record.sd_without}) {
       if (list->empty())
-        list->resize(plan.parameters.size());  // as 0.1.0 wrote a record that cannot be simulated
+        list->resize(plan.parameters.size());  // 0.1.0: a record that could not be simulated
       require_length(list->size(), plan.parameters.size(), "sd_alone or sd_without of a record",
                      path_in(where, "plan.json"));
     }

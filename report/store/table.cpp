@@ -15,7 +15,7 @@ namespace rigcal::report {
 namespace {
 
 constexpr std::size_t kMostColumns = 10'000;
-/// Longest shortest text of a double, such as -2.2250738585072014e-308.
+/// Maximum length of a double's shortest text, such as -2.2250738585072014e-308.
 constexpr std::size_t kLongestNumber = 24;
 
 std::vector<std::string> split(std::string_view line) {
@@ -38,8 +38,8 @@ const std::vector<double>* Table::find(std::string_view name) const {
 std::string csv_of(const Table& table) {
   std::string text = fmt::format("{}\n", fmt::join(table.names, ","));
   const std::size_t rows = table.columns.empty() ? 0 : table.columns.front().size();
-  // Writing tables takes most of the time for a result's files, so a row is written in place, and
-  // the format is compiled.
+  // Writing tables dominates the time to write results, so each row is formatted in place with a
+  // compiled format.
   std::vector<char> row(table.columns.size() * (kLongestNumber + 1));
   for (std::size_t i = 0; i < rows; ++i) {
     char* at = row.data();

@@ -7,12 +7,12 @@
 
 namespace rigcal::report {
 
-/// A numeric table of a result folder, read back.
+/// A numeric table from a result folder.
 struct Table {
   std::vector<std::string> names;
   std::vector<std::vector<double>> columns;  ///< shape (names)(rows); NaN where a field is empty
 
-  /// @param value  of each row
+  /// @param value  called with the index of each row
   template <typename Value>
   void add(std::string name, std::size_t rows, const Value& value) {
     names.push_back(std::move(name));
@@ -24,20 +24,21 @@ struct Table {
     columns.push_back(std::move(values));
   }
 
-  /// A column by its name; null if the table does not have it.
+  /// Finds a column by its name; null if there is none.
   const std::vector<double>* find(std::string_view name) const;
 };
 
-/// A header and a row for each sample. Numbers read back to the same bits; a missing number is
-/// empty.
+/// Writes a table as CSV: a header, then one line per row. Numbers round-trip exactly; a
+/// value that is not finite becomes an empty field.
 std::string csv_of(const Table& table);
 
-/// Reads a CSV file as the result writers of this project make them: lines of comment (#), one line
-/// of names, then numbers.
+/// Reads a CSV file in the format of the result writers: comment lines (#), a line of names, then
+/// rows of numbers.
 ///
-/// @param file  named in errors
-/// @throws InputError  a field is no number, a time (time_s) does not increase, or a row has
-///                     another number of fields: names file, line and column
+/// @param file  file name for messages
+/// @throws InputError  if a field is not a number, the time (time_s) does not increase, or a row
+/// has
+///                     a wrong number of fields; names file, line and column
 Table parse_table(std::string_view text, const std::string& file);
 
 }  // namespace rigcal::report

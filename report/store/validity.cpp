@@ -9,7 +9,7 @@
 namespace rigcal::report {
 namespace {
 
-/// How far a range may exceed the covered one before it matters, as a fraction of the bound.
+/// Fraction of a bound by which a range may exceed the covered range before it is reported.
 constexpr double kSlack = 0.1;
 
 void compare(std::vector<std::string>& result, std::string_view what, std::string_view unit,

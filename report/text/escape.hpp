@@ -8,7 +8,7 @@
 
 namespace rigcal::report {
 
-/// Text with some characters replaced, each by a row of the table.
+/// Replaces each character in the table with its text.
 template <std::size_t N>
 std::string replaced(std::string_view text,
                      const std::array<std::pair<char, std::string_view>, N>& table) {
@@ -22,7 +22,7 @@ std::string replaced(std::string_view text,
   return result;
 }
 
-/// Text as HTML and SVG show it, also inside quoted attributes.
+/// Escapes a text for HTML and SVG, also for use in quoted attributes.
 inline std::string escaped(std::string_view text) {
   using Row = std::pair<char, std::string_view>;
   return replaced(text, std::array{Row{'&', "&amp;"}, Row{'<', "&lt;"}, Row{'>', "&gt;"},

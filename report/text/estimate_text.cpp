@@ -14,7 +14,7 @@ namespace {
 constexpr int kLeastDigits = 2;
 constexpr int kMostDigits = 7;
 constexpr int kUnknownDigits = 6;
-/// Numbers with a leading digit between these powers of ten are written without an exponent.
+/// Numbers whose leading digit is between these powers of ten are written without an exponent.
 constexpr int kWrittenFrom = -3;
 constexpr int kWrittenTo = 5;
 
@@ -66,7 +66,7 @@ std::string matched(double value, double uncertainty, const Range& allowed) {
     found = rounded(value, digits);
     if (holds(allowed, number_of(found.text))) return found.text;
   }
-  // With any number of digits the rounded value is beyond a bound. Takes the next number inside.
+  // No number of digits keeps the rounded value inside the range. Uses the next number inside.
   for (const double side : {-0.5, 0.5}) {
     const double inward = value + side * found.step;
     if (inward == 0.0) continue;

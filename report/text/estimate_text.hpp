@@ -6,23 +6,24 @@
 
 #include "common/range.hpp"
 
-// The one rule for writing estimates on pages, terminals and in tables.
+// Common rule for writing estimates on pages, on terminals and in tables.
 
 namespace rigcal::report {
 
 inline constexpr Range kAnywhere{-std::numeric_limits<double>::infinity(),
                                  std::numeric_limits<double>::infinity()};
 
-/// Significant digits of a standard error.
+/// Number of significant digits in a standard error.
 inline constexpr int kErrorDigits = 2;
 
-/// Rounds a value to the last of the two significant digits of its uncertainty (GUM, 7.2.6), with
-/// two to seven digits of its own: 85.0114 with 0.051 is "85.011", 66.9 with 500 is "67", 3.8e-13
-/// with 1.2e-13 is "3.8e-13". It gets more digits if rounding would take it out of `allowed`. Only
-/// zero is "0"; a value that is not finite is "-". Without an uncertainty it has six digits.
+/// Rounds a value to the decimal place of the second significant digit of its uncertainty (GUM,
+/// 7.2.6), but keeps two to seven significant digits: 85.0114 with 0.051 gives "85.011", 66.9 with
+/// 500 gives "67", 3.8e-13 with 1.2e-13 gives "3.8e-13". Adds digits if rounding would move the
+/// value out of `allowed`. Only zero gives "0"; a value that is not finite gives "-". A value
+/// without an uncertainty has six digits.
 ///
-/// @param uncertainty  half width of its interval, in the unit of the value
-/// @param allowed      range of the value, in its unit
+/// @param uncertainty  half width of the interval, in the unit of the value
+/// @param allowed      allowed range, in the unit of the value
 std::string matched(double value, double uncertainty, const Range& allowed = kAnywhere);
 
 /// A value and the ends of its interval.
@@ -30,8 +31,8 @@ struct EstimateText {
   std::string value, low, high;  ///< both ends are empty if there is no interval
 };
 
-/// Writes an estimate with the digits that its interval supports. Rounding takes neither the value
-/// out of its interval or bounds, nor an end of the interval out of the bounds.
+/// Writes an estimate with the digits that its interval supports. Rounding never moves the value
+/// out of its interval or bounds, or an end of the interval out of the bounds.
 ///
 /// @param ci95    in the unit of the value
 /// @param bounds  in the unit of the value

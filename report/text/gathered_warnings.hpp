@@ -6,10 +6,10 @@
 
 namespace rigcal::report {
 
-/// Each warning once, in the order of its first appearance, with its records: their names if they
-/// are few, else their number and the first ones.
+/// Lists each warning once, in order of first appearance, with the records concerned. Names all
+/// records if they are few, otherwise gives their number and names the first ones.
 ///
-/// @param warnings  name of a record, and a warning about it
+/// @param warnings  pairs of a record's name and a warning about it
 std::vector<std::string> gathered_by_text(
     const std::vector<std::pair<std::string, std::string>>& warnings);
 

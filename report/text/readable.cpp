@@ -16,7 +16,7 @@ struct Relative {
   double si;
 };
 
-/// Largest first within an SI unit; the last one also serves smaller values.
+/// Sorted by decreasing size within each SI unit. The last unit also applies to smaller values.
 constexpr std::array kRelatives{
     Relative{"Pa", "GPa", 1e9},    Relative{"Pa", "MPa", 1e6},
     Relative{"Pa", "kPa", 1e3},    Relative{"Pa", "Pa", 1.0},
@@ -56,7 +56,7 @@ ReadableUnit readable_unit(double value_si, std::string_view si_unit) {
   ReadableUnit found{si_unit == "1" ? std::string() : typographic(si_unit), 1.0};
   for (const Relative& relative : kRelatives) {
     if (relative.si_unit != si_unit) continue;
-    // Zero has no size.
+    // Zero has no magnitude to choose a prefix for.
     if (value_si == 0.0) return {typographic(si_unit), 1.0};
     found = {typographic(relative.name), relative.si};
     if (std::abs(value_si) >= 0.9999999 * found.si) break;
@@ -73,7 +73,7 @@ std::string readable(double value_si, std::string_view si_unit, int digits) {
 }
 
 std::string to_uncertainty(double value, double uncertainty) {
-  constexpr double kRounding = 1e-9;  // 0.1 may have become 0.0999999999
+  constexpr double kRounding = 1e-9;  // 0.1 may be stored as 0.0999999999
   const int decimals = 1 - static_cast<int>(std::floor(std::log10(uncertainty) + kRounding));
   if (decimals >= 0) return fixed(value, decimals);
   const double step = std::pow(10.0, -decimals);

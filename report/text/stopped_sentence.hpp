@@ -9,7 +9,7 @@ namespace rigcal::report {
 inline constexpr const char* kNoUsableResult =
     "There is no usable result: no number below may be used.";
 
-/// Explains how far a stopped result can be used, by the stage at which it was stopped.
+/// Explains how far a stopped result can be used, which depends on the stage at which it stopped.
 inline std::string stopped_sentence(calib::StoppedIn stage) {
   using calib::StoppedIn;
   if (stage == StoppedIn::starts || stage == StoppedIn::nothing)

@@ -4,15 +4,15 @@
 
 namespace rigcal::report {
 
-/// How text is shown.
+/// Style of text output.
 struct Style {
   bool colour = false;
-  std::size_t columns = 0;  ///< columns of the terminal; 0: tables as wide as they are
-  std::size_t lines = 0;    ///< that a result may take; 0: as many as it has
-  bool everything = false;  ///< also what follows the first page, and what is folded
+  std::size_t columns = 0;  ///< width of the terminal; 0: no limit on the width of tables
+  std::size_t lines = 0;    ///< maximum number of lines for a result; 0: no limit
+  bool everything = false;  ///< also show what follows the first page, and folded sections
 };
 
-/// Lines of a result on a terminal, unless --verbose asks for all.
+/// Number of lines that a result may take on a terminal without --verbose.
 inline constexpr std::size_t kTerminalLines = 60;
 
 }  // namespace rigcal::report

@@ -40,7 +40,7 @@ std::string wrapped(std::string_view line, std::size_t columns, std::size_t inde
   std::string result;
   std::size_t width = 0;
   for (std::size_t begin = 0; begin < line.size();) {
-    // A word with the blanks before it, so that an indented line stays indented.
+    // A word includes the blanks before it, so that the indentation is kept.
     const std::size_t letters = std::min(line.find_first_not_of(' ', begin), line.size());
     const std::size_t end = std::min(line.find(' ', letters), line.size());
     std::string_view word = line.substr(begin, end - begin);

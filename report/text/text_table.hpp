@@ -6,27 +6,28 @@
 
 namespace rigcal::report {
 
-/// Number of characters that a terminal shows of a UTF-8 text: sequences that colour it take none.
+/// Number of columns that a UTF-8 text takes on a terminal. Colour sequences take none.
 std::size_t text_width(std::string_view text);
 
-/// Control characters as blanks, but for sequences that colour: names of files may hold any.
+/// Replaces control characters with blanks, since file names may contain any. Keeps colour
+/// sequences.
 std::string on_one_line(std::string text);
 
-/// A line broken between words where it is wider than `columns`, every further line after `indent`
-/// blanks; a word that is wider alone stays whole. 0 columns: not broken.
+/// Breaks a line between words so that it fits into `columns`. Continuation lines begin with
+/// `indent` blanks. A single word that is too wide is not broken; with 0 columns nothing is.
 std::string wrapped(std::string_view line, std::size_t columns, std::size_t indent);
 
-/// Every line of a text wrapped, further lines two blanks deeper than its own.
+/// Wraps every line of a text. Continuation lines are indented by two more blanks than the line.
 std::string wrapped_lines(std::string_view text, std::size_t columns);
 
-/// Rows of texts as aligned columns: texts to the left, numbers to the right.
+/// Formats rows of texts as aligned columns.
 class TextTable {
  public:
   enum class Align { left, right };
   struct Column {
     std::string title;
     Align align = Align::left;
-    int spare = 0;  ///< the highest is left out first where there is no room; 0: never
+    int spare = 0;  ///< without room, the highest is omitted first; 0: never omitted
   };
 
   /// @param keys  number of leading columns that identify a row
@@ -34,16 +35,16 @@ class TextTable {
       : columns_(std::move(columns)), keys_(keys) {}
   /// @param row  shape (columns); line ends and other control characters become blanks
   void add(std::vector<std::string> row);
-  /// @param row  shape (columns), each cell as lines one below the other
+  /// @param row  shape (columns); each cell is a list of lines
   void add_lines(std::vector<std::vector<std::string>> row);
   bool empty() const { return rows_.empty(); }
   std::size_t rows() const { return rows_.size(); }
-  /// Title line, unless no column has a title, and rows; two blanks between columns, without blanks
-  /// at line ends.
+  /// Writes the title line, if any column has a title, and the rows. Columns are separated by two
+  /// blanks; lines have no trailing blanks.
   ///
-  /// @param columns  of the terminal: columns that can be spared are omitted until the lines fit;
-  ///                 if they are still too wide, further blocks follow, each with the keys; 0: no
-  ///                 limit
+  /// @param columns  width of the terminal. Spare columns are omitted until the lines fit; if the
+  ///                 lines are still too wide, the table is split into blocks that all begin with
+  ///                 the keys. 0: no limit
   std::string text(std::size_t columns = 0) const;
   /// Width of the widest line.
   std::size_t width() const;
@@ -54,7 +55,7 @@ class TextTable {
   std::vector<std::size_t> widths() const;
   /// Whether each column is shown.
   std::vector<bool> shown(std::size_t columns) const;
-  /// The shown columns in blocks, the keys in each.
+  /// Splits the shown columns into blocks, each with the keys.
   std::vector<std::vector<std::size_t>> blocks(std::size_t columns) const;
 
   std::vector<Column> columns_;

@@ -8,7 +8,7 @@
 namespace rigcal::report {
 namespace {
 
-constexpr double kLeastShare = 0.05;  ///< fraction of all work before there is an estimate
+constexpr double kLeastShare = 0.05;  ///< fraction of the work needed for a first estimate
 constexpr double kMostOfStart = 0.95;
 
 }  // namespace
@@ -19,11 +19,11 @@ void TimeLeft::note(int start, double relative_change) {
   if (first_ == 0) first_ = start;
   if (start > latest_) {
     latest_ = start;
-    starts_ = std::max(starts_, start);  // further ones than were planned
+    starts_ = std::max(starts_, start);  // there may be more starts than planned
     share_ = 0.0;
   }
   const double change = std::abs(relative_change);
-  // The first iteration of a start has no change yet.
+  // The first iteration of a start has no previous cost, so there is no change yet.
   if (!(change > 0.0) || !std::isfinite(change)) return;
   const double share = std::log(std::min(1.0, change)) / std::log(tolerance_);
   share_ = std::max(share_, std::min(share, kMostOfStart));

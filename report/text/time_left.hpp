@@ -5,19 +5,20 @@
 
 namespace rigcal::report {
 
-/// Estimates the time that the starts of a fit still need. They run one after the other. Within a
-/// start the relative change of the cost, on a logarithmic scale, shows how close it is to the
-/// tolerance. It is a guess: a start may end earlier, or jump to a new valley.
+/// Estimates the remaining time for the starts of a fit, which run one after the other. The
+/// progress within a start follows from the relative change of the cost, compared with the
+/// tolerance on a logarithmic scale. The estimate is rough, since a start may end earlier or move
+/// to a new valley.
 class TimeLeft {
  public:
-  /// @param starts     in all
+  /// @param starts     total number of starts
   /// @param tolerance  relative change of the cost at which a start ends, below 1
   TimeLeft(int starts, double tolerance);
 
-  /// An iteration of this start (from 1).
+  /// Records an iteration of a start; starts are numbered from 1.
   void note(int start, double relative_change);
 
-  /// Seconds left; nothing while too little is done to estimate.
+  /// Remaining seconds; std::nullopt while too little work is done for an estimate.
   std::optional<double> seconds(double elapsed_s) const;
 
  private:
@@ -25,10 +26,10 @@ class TimeLeft {
   double tolerance_;
   int first_ = 0;  ///< the first start reported; earlier ones were resumed
   int latest_ = 0;
-  double share_ = 0.0;  ///< fraction of the latest start that is done
+  double share_ = 0.0;  ///< completed fraction of the latest start
 };
 
-/// A duration as text: "12 s", "3.5 min", "1.2 h".
+/// Writes a duration as text: "12 s", "3.5 min", "1.2 h".
 std::string duration_text(double seconds);
 
 }  // namespace rigcal::report

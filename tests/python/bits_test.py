@@ -1,4 +1,4 @@
-"""What the module computes and writes are the bits of the command."""
+"""Checks that the module computes and writes exactly the same results as the command."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from conftest import SOURCE, command
 
 import rigcal
 
-# All that a fit can be asked for: of the command, of load(), of fit().
+# All options of a fit: for the command, for load(), for fit().
 OPTIONS = ["--starts", 3, "--seed", 7, "--bootstrap", 20, "--profiles", "--posterior", 100, "--cross-validate", "--set", "mass=90 kg",
            "--free", "mass,bulk_modulus,damping"]
 CHANGED = {"set": {"mass": "90 kg"}, "free": ["mass", "bulk_modulus", "damping"]}
@@ -24,7 +24,7 @@ ASKED = {"starts": 3, "seed": 7, "bootstrap": 20, "profiles": True, "posterior":
 
 
 class Pair:
-    """The same results of both, in the folders `theirs` and `ours`, which see the same relative paths."""
+    """Runs command and module in the folders `theirs` and `ours`, with equal relative paths."""
 
     def __init__(self, folder: pathlib.Path, data: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
         self.theirs, self.ours = folder / "theirs", folder / "ours"
@@ -44,7 +44,7 @@ class Pair:
 
 
 def files_in(folder: pathlib.Path) -> dict[str, str]:
-    """Returns the texts of all files without the call and the run time, in which two equal runs differ."""
+    """Returns the texts of all files, without call and run time, which differ between equal runs."""
     files = {str(file.relative_to(folder)): file.read_text() for file in folder.rglob("*") if file.is_file()}
     manifest = json.loads(files["rigcal-manifest.json"])  # its hashes differ for the same reasons
     files["rigcal-manifest.json"] = str([(each["path"], each["verb"]) for each in manifest["files"]])
@@ -96,7 +96,7 @@ def test_files_of_a_fit_with_all_that_can_be_asked_for(pair: Pair) -> None:
 
 def test_files_of_a_validation(pair: Pair) -> None:
     pair.command("fit", "../data/campaign.toml", "--out", "out")
-    # The values of one fit.json, whose hash is in the result.
+    # Both validate the same fit.json, since its hash is in the result.
     fit = pair.theirs / "out" / "fit.json"
     pair.command("validate", "../data/campaign.toml", "--fit", fit, "--out", "validated")
     rigcal.load("../data/campaign.toml").validate(fit).write("validated")
@@ -145,18 +145,18 @@ def test_what_is_printed(pair: Pair) -> None:
     assert str(campaign.fit()).splitlines() == [line for line in printed if not line.startswith("files: ")]
 
 
-# ---- numbers, one by one, against the files of the command
+# ---- single numbers, compared with the files that the command writes
 
 
 def same(ours: float | None, theirs: float | None) -> bool:
-    """Equal in every bit; JSON has null for a number that is not finite."""
+    """Whether two numbers are exactly equal. JSON has null for a number that is not finite."""
     if theirs is None:
         return ours is None or not math.isfinite(ours)
     return ours == theirs
 
 
 def table(file: pathlib.Path) -> dict[str, np.ndarray[Any, Any]]:
-    """Columns of a CSV file; NaN where a field is empty."""
+    """Returns the columns of a CSV file, with NaN for empty fields."""
     with file.open(newline="") as lines:
         rows = list(csv.reader(line for line in lines if not line.startswith("#")))
     return {title: np.array([float(row[i]) if row[i] else math.nan for row in rows[1:]])

@@ -1,4 +1,4 @@
-"""The module against the command. RIGCAL names the command; PYTHONPATH leads to the module."""
+"""Fixtures for module tests. RIGCAL is the path of the command; PYTHONPATH contains the module."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ RIGCAL = os.environ["RIGCAL"]
 
 
 def command(*arguments: object, cwd: pathlib.Path | None = None) -> str:
-    """Runs the command, whatever its verdict, and returns its output."""
+    """Runs the command and returns its output. Any verdict is accepted."""
     done = subprocess.run([RIGCAL, *map(str, arguments)], cwd=cwd, capture_output=True, text=True, check=False)
     assert done.returncode in (0, 1), done.stderr
     return done.stdout
@@ -23,7 +23,7 @@ def command(*arguments: object, cwd: pathlib.Path | None = None) -> str:
 
 @pytest.fixture(scope="session")
 def data(tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
-    """Folder of the synthetic records of a known rig, made by the command: campaign.toml, records/, truth.json."""
+    """Folder with synthetic records from a known rig: campaign.toml, records/, truth.json."""
     folder = tmp_path_factory.mktemp("rig") / "data"
     command("synthesize", SOURCE / "docs" / "tutorial" / "known_rig.toml", "--seed", 1, "--out", folder)
     return folder

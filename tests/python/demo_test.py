@@ -1,4 +1,4 @@
-"""The demo by the module is the demo by the command."""
+"""Checks that the demo script for the module gives the same results as the commands of the demo."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
 
 @pytest.fixture(scope="module")
 def printed(folder: pathlib.Path) -> str:
-    """What the script prints; its results are in ours/, those of the commands of scripts/demo in theirs/."""
+    """Output of the script. Its results are in ours/, those of the commands are in theirs/."""
     done = subprocess.run([sys.executable, SOURCE / "python" / "examples" / "demo.py", folder / "ours"],
                           capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr

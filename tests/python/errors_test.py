@@ -1,4 +1,4 @@
-"""Bad input causes an exception that names the error and its place, never a crash."""
+"""Checks that bad input never causes a crash, but an exception that names the error and its place."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ import rigcal
 
 
 def changed(data: pathlib.Path, folder: pathlib.Path, old: str, new: str) -> pathlib.Path:
-    """The campaign with other text; its records are where they were."""
+    """Writes a copy of the campaign with a changed text, without the records."""
     text = (data / "campaign.toml").read_text()
     assert old in text
     file = folder / "campaign.toml"
@@ -45,7 +45,7 @@ def test_names_of_files_may_be_any_bytes(data: pathlib.Path, tmp_path: pathlib.P
 
 def test_a_typo_in_a_key(data: pathlib.Path, tmp_path: pathlib.Path) -> None:
     file = changed(data, tmp_path, "bulk_modulus", "bulk_modulos")
-    with pytest.raises(rigcal.InputError, match="bulk_modulus") as caught:  # the nearest that there is
+    with pytest.raises(rigcal.InputError, match="bulk_modulus") as caught:  # the nearest known key
         rigcal.load(file, data)
     line = next(i for i, text in enumerate(file.read_text().splitlines(), 1) if "bulk_modulos" in text)
     assert (caught.value.file, caught.value.line) == (str(file), line)
@@ -53,7 +53,7 @@ def test_a_typo_in_a_key(data: pathlib.Path, tmp_path: pathlib.Path) -> None:
     assert str(caught.value).startswith(f"{file}:{line}:{caught.value.column}: ")
 
 
-def test_an_error_survives_pickling(tmp_path: pathlib.Path) -> None:  # as multiprocessing hands it on
+def test_an_error_survives_pickling(tmp_path: pathlib.Path) -> None:  # multiprocessing pickles errors
     with pytest.raises(rigcal.InputError) as caught:
         rigcal.load(tmp_path / "no_such.toml")
     copy = pickle.loads(pickle.dumps(caught.value))
@@ -111,7 +111,7 @@ def test_values_that_do_not_fit_the_campaign(data: pathlib.Path, changes: dict[s
     with pytest.raises(rigcal.UsageError, match=told) as caught:
         rigcal.load(data / "campaign.toml", **changes)
     assert isinstance(caught.value, ValueError)
-    assert not str(caught.value).startswith("-")  # there are no options here
+    assert not str(caught.value).startswith("-")  # names no command-line option
 
 
 @pytest.mark.parametrize("changes", [{"set": {"mass": None}}, {"set": {1: "60 kg"}}, {"set": ["mass=60 kg"]},
@@ -178,7 +178,7 @@ def test_a_validation_of_what_is_no_fit(campaign: rigcal.Campaign, data: pathlib
     with pytest.raises(TypeError):
         campaign.validate(3)  # type: ignore[arg-type]
     with pytest.raises(rigcal.InputError, match="schema"):
-        campaign.validate(campaign.validate())  # from a validation, which estimated nothing
+        campaign.validate(campaign.validate())  # a validation has no estimates
 
 
 def test_a_parameter_that_is_not_there(fit: rigcal.Fit) -> None:

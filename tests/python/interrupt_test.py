@@ -1,4 +1,4 @@
-"""A fit lets other Python threads run, reports its progress, and ends on Ctrl-C with the best result so far."""
+"""Checks that a fit lets other threads run, reports progress, and keeps its best result on Ctrl-C."""
 
 from __future__ import annotations
 
@@ -55,10 +55,10 @@ def test_ctrl_c_keeps_what_was_found(campaign: rigcal.Campaign, tmp_path: pathli
     assert isinstance(caught.value, KeyboardInterrupt)
     fit = caught.value.fit
     assert fit.status == "stopped"
-    assert fit.parameter("mass").value == pytest.approx(85.0, abs=1.0)  # the search was done by then
+    assert fit.parameter("mass").value == pytest.approx(85.0, abs=1.0)  # the search had ended before
     fit.write(tmp_path)
     assert "stopped" in (tmp_path / "fit.json").read_text()
-    assert campaign.fit().status == "converged"  # nothing of it is left
+    assert campaign.fit().status == "converged"  # the interrupt has no later effect
 
 
 def test_a_signal_of_the_system_ends_a_script(data: pathlib.Path) -> None:

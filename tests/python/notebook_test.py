@@ -1,4 +1,4 @@
-"""Verbs beside fit and validate, and what a notebook shows of results."""
+"""Tests the verbs other than fit and validate, and how a notebook displays results."""
 
 from __future__ import annotations
 
@@ -115,7 +115,7 @@ def test_a_fit_is_pickled_as_its_files(fit: rigcal.Fit, written: pathlib.Path, t
     assert result.json()["parameters"] == fit.json()["parameters"]
     for name in ("scorecard.csv", "parameters.csv", "residual_tests.json"):
         assert (tmp_path / "again" / name).read_bytes() == (written / name).read_bytes(), name
-    again = rigcal.load(tmp_path / "again" / "fitted.toml")  # its records are found from any folder
+    again = rigcal.load(tmp_path / "again" / "fitted.toml")  # finds its records from any folder
     assert again.check().records
     assert "Calibration of" in fit._repr_html_()
 
@@ -214,7 +214,7 @@ def test_ctrl_c_ends_a_diagnosis(campaign: rigcal.Campaign, fit: rigcal.Fit) -> 
 
     with pytest.raises(KeyboardInterrupt):
         campaign.diagnose(fit, progress=told)
-    threading.Event().wait(0.01)  # nothing of the interrupt is left over
+    threading.Event().wait(0.01)  # the interrupt has no later effect
     assert campaign.plan(fit).kind == "plan"
 
 

@@ -1,4 +1,4 @@
-"""Runs a test file by pytest, or skips it where Python has none. usage: run.py FILE"""
+"""Runs a test file with pytest, or skips it if pytest is not installed. usage: run.py FILE"""
 import sys
 
 try:

@@ -1,4 +1,4 @@
-"""The stubs match the module: names, arguments, defaults, and types of returned values."""
+"""Checks that the stubs match the module: names, arguments, defaults, types of returned values."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ FUNCTIONS = {node.name: node for node in TREE.body if isinstance(node, ast.Funct
 
 
 def members(node: ast.ClassDef) -> dict[str, ast.FunctionDef]:
-    """Of several overloads the one that gives every argument its default."""
+    """Returns the methods of a class; of several overloads, the one with the most defaults."""
     found: dict[str, ast.FunctionDef] = {}
     for each in node.body:
         if isinstance(each, ast.FunctionDef):
@@ -40,7 +40,7 @@ def is_property(node: ast.FunctionDef) -> bool:
 
 
 def arguments(node: ast.FunctionDef) -> list[tuple[str, str, str | None]]:
-    """Name, kind and default of each."""
+    """Returns name, kind and default of each argument."""
     plain = node.args.args
     defaults: list[ast.expr | None] = [None] * (len(plain) - len(node.args.defaults)) + list(node.args.defaults)
     rows = [(each.arg, "positional", default) for each, default in zip(plain, defaults)]
@@ -49,7 +49,7 @@ def arguments(node: ast.FunctionDef) -> list[tuple[str, str, str | None]]:
 
 
 def declared(function: Any) -> ast.FunctionDef:
-    """What pybind11 writes of a function into the first line of its docstring."""
+    """Parses the signature that pybind11 writes into the first line of a docstring."""
     tree = ast.parse("def " + function.__doc__.splitlines()[0] + ": ...").body[0]
     assert isinstance(tree, ast.FunctionDef)
     return tree
@@ -90,7 +90,7 @@ def test_everything_has_a_docstring(name: str) -> None:
         assert doc and len(doc.strip()) > 2, f"{name}.{member}"
 
 
-# ---- types of values. The stub is no module that could be imported: its annotations are evaluated here.
+# ---- types of values. The stub cannot be imported, so its annotations are evaluated here.
 
 
 def namespace() -> dict[str, Any]:
@@ -105,7 +105,7 @@ NAMES = namespace()
 
 
 def assert_is(value: Any, annotation: Any, place: str) -> None:
-    """That a value is of the annotated type, all the way down."""
+    """Checks that a value has the annotated type, including all nested values."""
     origin, inner = typing.get_origin(annotation), typing.get_args(annotation)
     if annotation is Any:
         return
@@ -154,7 +154,7 @@ def assert_has_its_types(value: Any, place: str) -> None:
 
 
 def seen_by(walk: collections.abc.Callable[[], None], monkeypatch: pytest.MonkeyPatch) -> set[str]:
-    """Names of the classes whose values the walk has looked at."""
+    """Returns the names of the classes whose values the walk has checked."""
     seen: set[str] = set()
     original = assert_has_its_types
 
@@ -182,7 +182,8 @@ def test_values_have_the_types_of_the_stub(campaign: rigcal.Campaign, monkeypatc
         assert_has_its_types(campaign.plan(fit), "Result")
 
     seen = seen_by(walk, monkeypatch)
-    # Not every build has a live page (notebook_test.py). This campaign has no limits; those of the demo have (demo_test.py).
+    # Not every build has a live page (see notebook_test.py). This campaign has no limits; those are
+    # tested in demo_test.py.
     assert seen == CLASSES.keys() - {"LimitCheck", "Page"}
 
 

@@ -13,14 +13,14 @@ namespace {
 constexpr int kMostDesignRepeats = 1000;
 constexpr int kMostTrials = 100'000;
 constexpr std::size_t kFewestDriveSamples = 100;
-/// Each drive that is tried is simulated with a step at every sample.
+/// Limits the computing time, because every drive tried is simulated with a step at each sample.
 constexpr std::size_t kMostDriveSamples = 500'000;
 
 constexpr QuantityRange kPositions_m{-1e3, 1e3};
 constexpr QuantityRange kSpeeds_m_per_s{1e-9, 1e3};
 constexpr QuantityRange kAccelerations_m_per_s2{1e-6, 1e6};
 constexpr QuantityRange kCommands_v{1e-6, 1e3};
-/// Amplitudes of references: metres, volts, newtons, pascals.
+/// Amplitudes of references in metres, volts, newtons or pascals.
 constexpr QuantityRange kDriveAmplitudes{1e-9, 1e9};
 
 template <typename Value, std::size_t N>
@@ -115,7 +115,7 @@ std::string_view to_string(DriveFamily family) {
 }
 
 std::size_t DesignSettings::samples() const {
-  // A duration of a whole number of samples must not lose the last one to rounding.
+  // If the duration is a whole number of intervals, rounding must not drop the last sample.
   constexpr double kSlack = 1e-9;
   return static_cast<std::size_t>(std::floor(duration_s * sample_rate_hz * (1.0 + kSlack))) + 1;
 }

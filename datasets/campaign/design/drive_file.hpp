@@ -8,22 +8,22 @@
 
 namespace rigcal::datasets {
 
-/// The unit in which the controller gets a drive.
+/// The unit in which a drive is given to the controller.
 struct DriveUnit {
-  std::string name;      ///< that of the drive's channel in the campaign, else its SI unit
-  UnitConversion to_si;  ///< without the gain of the recording
+  std::string name;      ///< unit of the drive's channel in the campaign, otherwise its SI unit
+  UnitConversion to_si;  ///< does not include the gain of the recording
 };
 DriveUnit drive_unit(const Campaign& campaign);
 
-/// The drive of a designed test as CSV for the controller: time_s, and the drive with its unit,
-/// such as reference_mm. Numbers have ten digits.
+/// Writes the drive of a designed test as CSV for the controller. The columns are time_s and the
+/// drive, whose name includes its unit, such as reference_mm. Numbers have ten digits.
 std::string drive_csv(const Campaign& campaign, const std::vector<double>& time_s,
                       const std::vector<double>& drive_si);
 
-/// A value of the drive as drive_csv() writes it and a controller reads it, SI.
+/// Returns a value of the drive, SI, after the rounding in drive_csv().
 double written_drive(const DriveUnit& unit, double value_si);
 
-/// Name of the condition of a designed test.
+/// Returns the id of the condition for a designed test.
 std::string designed_condition_id(DriveFamily family);
 
 }  // namespace rigcal::datasets

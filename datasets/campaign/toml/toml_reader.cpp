@@ -23,7 +23,7 @@ bool starts_with_at(std::string_view text, std::size_t position, std::string_vie
   return text.compare(position, wanted.size(), wanted) == 0;
 }
 
-/// End of the string that opens at `begin` (one past its closing quotes).
+/// Finds the end (one past the closing quotes) of the string that opens at `begin`.
 std::size_t end_of_string(std::string_view text, std::size_t begin) {
   const char quote = text[begin];
   const std::string three(3, quote);
@@ -37,8 +37,9 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
   return text.size();
 }
 
-/// toml++ nests a table per part of a dotted key and takes it apart recursively: a key of a hundred
-/// thousand parts would exhaust the stack. It limits the depth of arrays and inline tables itself.
+/// Limits the number of parts in a dotted key. toml++ nests one table per part and destroys the
+/// tables recursively, so that a key with a hundred thousand parts would exhaust the stack. toml++
+/// itself limits the depth of arrays and inline tables.
 void check_key_depth(std::string_view text, const std::string& file) {
   int parts = 1;
   long line = 1;
@@ -70,7 +71,7 @@ void check_key_depth(std::string_view text, const std::string& file) {
 std::string quoted_start(std::string_view text) {
   if (text.size() <= kLongestShown) return toml_quoted(text);
   std::size_t end = kLongestShown;
-  // Never cut a UTF-8 character in two.
+  // The cut must not split a UTF-8 character.
   while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) --end;
   return toml_quoted(text.substr(0, end)) + "...";
 }
@@ -87,7 +88,8 @@ std::string described(const toml::node& node) {
   return "a date or time";
 }
 
-/// "6.2 MPa" -> "MPa"; empty if there is no number in front.
+/// Returns the text after the number: "MPa" for "6.2 MPa"; empty if the text does not begin with a
+/// number.
 std::string_view unit_part(std::string_view text) {
   const auto begin = std::min(text.find_first_not_of(" \t+"), text.size());
   double number = 0.0;
@@ -222,7 +224,7 @@ double TomlNode::difference(std::string_view unit) const {
   if (unit == "1") return value;
   const double zero = parse_quantity(
       fmt::format("0 {}", unit_part(node_->value<std::string_view>().value_or(""))), unit);
-  // Only scales with an origin of their own (degC) lose digits here; others must not.
+  // The subtraction loses digits, so it is done only for scales with an offset (degC).
   return zero == 0.0 ? value : value - zero;
 }
 

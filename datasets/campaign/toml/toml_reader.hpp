@@ -14,29 +14,30 @@
 
 namespace rigcal::datasets {
 
-/// Larger campaign files are refused: no campaign written by hand comes near.
+/// Maximum size of a campaign file, much larger than any that is written by hand.
 inline constexpr std::uintmax_t kMaxCampaignBytes = std::uintmax_t{16} << 20;
 
 /// Parses a TOML file.
 ///
-/// @throws InputError  not a regular file, unreadable, too large, keys nested without end, or a
-///                     syntax error, with line and column
+/// @throws InputError  if the file is not a regular file, cannot be read, is too large, has keys
+/// with
+///                     too many parts, or has a syntax error (names line and column)
 toml::table parse_toml_file(const std::filesystem::path& path);
 
-/// `text` as a TOML basic string in one line, quotes included. Control characters are escaped.
+/// Writes a text as a TOML basic string on one line, including quotes. Escapes control characters.
 std::string toml_quoted(std::string_view text);
 
-/// A key as TOML needs it: bare where it may be, quoted otherwise.
+/// Writes a TOML key, with quotes only if it needs them.
 std::string toml_key(std::string_view key);
 
-/// A number as an exact TOML float or a part of a quantity: reading it again gives the same bits.
+/// Writes a number as a TOML float, or for use in a quantity. It round-trips exactly.
 std::string toml_number(double value);
 
-/// One value of a TOML file with its place. It converts itself; an error says what is wrong and
-/// where. Borrows the parsed file.
+/// One value in a TOML file, with its place for error messages. Has functions to convert the value.
+/// Borrows the parsed file.
 class TomlNode {
  public:
-  /// @param path  full key as the user would write it: "rig.parameters.mass"
+  /// @param path  full key as a user would write it: "rig.parameters.mass"
   TomlNode(const toml::node& node, std::string file, std::string path)
       : node_(&node), file_(std::move(file)), path_(std::move(path)) {}
 
@@ -53,30 +54,30 @@ class TomlNode {
   bool is_string() const { return node_->is_string(); }
   bool is_boolean() const { return node_->is_boolean(); }
 
-  // Conversions; each throws InputError where the value is of another type.
+  // Conversions. Each throws InputError if the value has another type.
 
   std::string string(const std::string& expected = "a text in quotes") const;
-  /// Text that is not empty.
+  /// Returns a non-empty text.
   std::string name(const std::string& expected = "a text in quotes") const;
   bool boolean() const;
-  /// Finite plain number, integer or not.
+  /// Returns a finite number without a unit, integer or not.
   double number() const;
   int integer(int lowest, int highest) const;
-  /// Text "number unit" in `unit` ("1": a plain number instead).
+  /// Reads a text "number unit" and converts it to `unit`. For unit "1", reads a plain number.
   double quantity(std::string_view unit) const;
-  /// Quantity within a range.
+  /// Reads a quantity within a range.
   double quantity(std::string_view unit, QuantityRange range) const;
-  /// Like quantity(), of a difference: "2 degC" is 2 K.
+  /// Reads a difference of two quantities: "2 degC" is 2 K.
   double difference(std::string_view unit) const;
-  /// Difference within a range: standard deviations, steps.
+  /// Reads a difference within a range, such as a standard deviation or a step.
   double difference(std::string_view unit, QuantityRange range) const;
-  /// Plain number within a range.
+  /// Returns a plain number within a range.
   double number(QuantityRange range) const;
-  /// TOML date, or date and time, as text.
+  /// Returns a TOML date, or date and time, as text.
   std::string date() const;
   std::vector<TomlNode> items() const;
 
-  /// One of the names of a table {name, value}.
+  /// Returns the value for the name that this text gives.
   template <typename Value>
   Value choice(const std::vector<std::pair<std::string, Value>>& choices) const {
     const std::string found = string(choice_list(choices));
@@ -86,21 +87,26 @@ class TomlNode {
     fail_choice(found, names_of(choices));
   }
 
-  // Tables.
+  // Access to tables.
 
   std::optional<TomlNode> find(std::string_view key) const;
-  /// @throws InputError  the key is missing; `expected` describes its value
+  /// @param expected  describes the value, for the message
+  /// @throws InputError  if the key is missing
   TomlNode require(std::string_view key, const std::string& expected) const;
-  /// Keys and values in the order of the file.
+  /// Returns keys and values in the order of the file.
   std::vector<std::pair<std::string, TomlNode>> entries() const;
-  /// @throws InputError  not a table, or it has a key that is not among `known`, naming the nearest
+  /// Checks the keys of a table.
+  ///
+  /// @throws InputError  if this is not a table, or has a key that is not in `known`; names the
+  ///                     nearest known key
   void allow_only(const std::vector<std::string>& known) const;
-  /// Like allow_only() for one key; `what` names its kind ("channel").
+  /// Reports an unknown key with the nearest known one. `what` is the kind of key, such as
+  /// "channel".
   [[noreturn]] void fail_unknown(std::string_view key, std::string_view what,
                                  const std::vector<std::string>& known) const;
-  /// The same value under another name in messages.
+  /// Returns the value with another name for messages.
   TomlNode renamed(std::string path) const { return {*node_, file_, std::move(path)}; }
-  /// The same value with a remark after every message about it.
+  /// Returns the value with a remark that is appended to every message about it.
   TomlNode noted(const std::string& note) const {
     TomlNode result = *this;
     result.note_ = " (" + note + ")";

@@ -18,7 +18,8 @@ struct Entry {
   const toml::node* node;
 };
 
-/// Line and column of a key; a key that is not from the file has line 0 and comes last.
+/// Returns line and column of a key, for sorting. An added key has no line in the file, and sorts
+/// last.
 std::pair<std::size_t, std::size_t> place(const toml::key& key) {
   const auto begin = key.source().begin;
   return {begin.line == 0 ? std::numeric_limits<std::size_t>::max() : begin.line, begin.column};
@@ -62,7 +63,7 @@ std::string value_text(const toml::node& node) {
   return out.str();
 }
 
-/// [[path]] or a list in the line: as a list of tables it was written with headers.
+/// Whether a node is written in sections with headers, [path] or [[path]], and not on one line.
 bool has_own_headers(const toml::node& node) {
   if (const auto* table = node.as_table()) return !table->is_inline();
   const auto* array = node.as_array();

@@ -6,8 +6,8 @@
 
 namespace rigcal::datasets {
 
-/// A TOML document in the order of the file from which the table was read; added keys come last.
-/// toml++'s own formatter sorts keys by name and breaks keys with a line break.
+/// Writes a TOML document in the order of the file from which the table was read; added keys come
+/// last. The formatter in toml++ sorts keys by name, and writes keys with line breaks incorrectly.
 std::string toml_text(const toml::table& root);
 
 }  // namespace rigcal::datasets

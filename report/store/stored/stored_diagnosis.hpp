@@ -10,36 +10,36 @@
 #include "report/store/stored/stored_leak.hpp"
 #include "report/store/stored/stored_provenance.hpp"
 
-// diagnosis.json, as docs/diagnosis.md describes it.
+// diagnosis.json (docs/diagnosis.md).
 
 namespace rigcal::report {
 
 inline constexpr const char* kDiagnosisSchema = "rigcal.diagnosis/1";
 
 struct StoredDiagnosisSettings {
-  Keyed<double> limits_percent;  ///< upper limit of every class but the last
+  Keyed<double> limits_percent;  ///< upper limit of every class except the last
   double least_probability = 0.0, false_alarms = 0.0, detection = 0.0;
   RIGCAL_DESCRIBE(limits_percent, least_probability, false_alarms, detection)
 };
 
-/// A row of a leak table as the limit of a class.
+/// A row of a leak table that serves as a class limit.
 struct StoredClassLimit {
   std::string signal;
   double share_percent = 0.0;
-  std::optional<datasets::LeakClass> class_;  ///< class that ends there
+  std::optional<datasets::LeakClass> class_;  ///< class whose upper limit this is
   std::vector<double> coefficients;
-  std::vector<std::optional<Range>> coefficients_ci95;  ///< intervals of each
+  std::vector<std::optional<Range>> coefficients_ci95;  ///< one per coefficient
   RIGCAL_DESCRIBE(signal, share_percent, class_, coefficients, coefficients_ci95)
 };
 
 struct StoredNearestLimit {
-  datasets::LeakClass class_ = datasets::LeakClass::normal;  ///< class that begins there
+  datasets::LeakClass class_ = datasets::LeakClass::normal;  ///< class whose lower limit this is
   double percent = 0.0, distance_percentage_points = 0.0;
   bool on_limit = false;
   RIGCAL_DESCRIBE(class_, percent, distance_percentage_points, on_limit)
 };
 
-/// Whether the signals of a state give the same leak.
+/// Test of whether the signals recorded in one state give the same leak.
 struct StoredSignalsAgreement {
   double p = 1.0, chi_squared = 0.0, freedom = 0.0, widened = 1.0;
   bool agree = true;
@@ -54,23 +54,23 @@ struct StoredState {
   std::optional<std::string> failure;
   bool is_reference = false;
   std::vector<std::string> conditions;
-  std::vector<std::string> left_out;  ///< condition and why
+  std::vector<std::string> left_out;  ///< condition and reason
   Inlined<StoredLeak> leak;
   std::optional<double> leak_area_m2;
   std::optional<Range> leak_area_ci95_m2;
-  std::optional<std::string> duty;  ///< signal whose share is stated
+  std::optional<std::string> duty;  ///< signal to which the leak share refers
   std::optional<StoredNearestLimit> nearest_limit;
-  std::optional<StoredSignalsAgreement> agreement;  ///< nothing: a single signal
+  std::optional<StoredSignalsAgreement> agreement;  ///< absent for a single signal
   RIGCAL_DESCRIBE(state, leak_level, specimen, date, sentence, failure, is_reference, conditions,
                   left_out, leak, leak_area_m2, leak_area_ci95_m2, duty, nearest_limit, agreement)
 };
 
-/// When a leak that rises reaches its next limit.
+/// Predicted dates at which a growing leak reaches the next class limit.
 struct StoredNextLimit {
   datasets::LeakClass class_ = datasets::LeakClass::normal;
   double percent = 0.0;
   std::string reached, earliest;
-  std::optional<std::string> latest;  ///< nothing: never, as far as is known
+  std::optional<std::string> latest;  ///< absent if it may never be reached
   RIGCAL_DESCRIBE(class_, percent, reached, earliest, latest)
 };
 
@@ -93,7 +93,7 @@ struct StoredLeakTrend {
 /// Diagnosis of one record.
 struct StoredDiagnosedRecord {
   std::string condition;
-  std::optional<int> repeat;  ///< from 1; nothing: the average
+  std::optional<int> repeat;  ///< from 1; absent for the average
   int repeats_averaged = 1;
   std::string signal;
   int reference_repeats = 0;
@@ -131,8 +131,8 @@ struct StoredSmallestLeak {
   std::optional<double> averaged, single;
   std::optional<double> averaged_share_percent;
   std::optional<double> repeat_sd_m, healthy_leak_m;
-  std::optional<std::string> reason;  ///< why there is none
-  /// The limits above are those of a record of another day than its reference; nothing: of its day.
+  std::optional<std::string> reason;  ///< why there is no such leak
+  /// Present if `averaged` and `single` apply to records from another day than their reference.
   Omittable<bool> of_another_day;
   Omittable<double> averaged_same_day, single_same_day;
   RIGCAL_DESCRIBE(signal, repeats_averaged, averaged, single, averaged_share_percent, repeat_sd_m,
@@ -147,12 +147,12 @@ struct StoredDayQuantity {
   RIGCAL_DESCRIBE(quantity, meaning, unit, sd, sd_from)
 };
 
-/// What was taken of the variation between days.
+/// How the variation between days was taken into account.
 struct StoredBetweenDays {
-  std::vector<std::string> other_days;  ///< dates of records that differ from their reference's
+  std::vector<std::string> other_days;  ///< dates of records with a reference from another day
   std::string source;                   ///< "usual", "stated", "estimated"
-  double factor = 1.0;                  ///< on the usual sizes, where it is estimated
-  std::optional<double> freedom;  ///< degrees of freedom of the factor; nothing: none is estimated
+  double factor = 1.0;                  ///< estimated factor on the usual sizes
+  std::optional<double> freedom;  ///< degrees of freedom of the factor; absent if not estimated
   int healthy_dates = 0;
   std::vector<StoredDayQuantity> quantities;
   std::optional<std::string> sentence;
@@ -167,15 +167,15 @@ struct StoredDiagnosis {
   bool synthetic = false;
   Json report;  ///< identity_json()
   StoredDiagnosisSettings settings;
-  std::vector<StoredClassLimit> class_limits;  ///< empty where no leak table gave them
+  std::vector<StoredClassLimit> class_limits;  ///< empty without a leak table
   std::vector<StoredState> states;
   std::vector<StoredLeakTrend> trends;
   std::vector<StoredDiagnosedRecord> records;
-  diagnosis::Confusion confusion;  ///< for the fitted leak in single repeats, like the two below
+  diagnosis::Confusion confusion;  ///< this and the accuracies: fitted leak, single repeats
   std::optional<double> accuracy;
   std::optional<Range> accuracy_ci95;
   StoredMethods methods;
-  std::vector<StoredSmallestLeak> smallest_leak_l_per_min;  ///< per signal
+  std::vector<StoredSmallestLeak> smallest_leak_l_per_min;  ///< one per signal
   Omittable<StoredBetweenDays> between_days;
   std::vector<std::string> warnings;
   StoredProvenance provenance;

@@ -119,7 +119,7 @@ void add_stated(const Result& result, const calib::ConditionScore& score, Stored
   if (!condition->not_judged.empty()) stated.not_judged = keys_of(condition->not_judged);
 }
 
-/// Hashes, from the provenance, of the files that a record is made from.
+/// Returns the hashes of a record's files from the provenance.
 std::vector<std::string> hashes_of(const Result& result, const datasets::Record& record) {
   std::vector<std::string> hashes;
   for (const FileState& file : record.files) {
@@ -199,8 +199,8 @@ void add_search(const calib::Fit& fit, StoredFit& result) {
   result.failures = fit.failures;
 }
 
-/// Degrees of freedom for which Student's t gives the half width of ci95 at this error. A bound may
-/// cut the interval at one end, so the longer side counts.
+/// Finds the degrees of freedom for which Student's t times this error gives the half width of
+/// ci95_if_exact. A bound may cut off one end of the interval, so the longer side is used.
 double freedom_of_interval(const StoredParameter& parameter, double error) {
   const auto& interval = parameter.ci95_if_exact;
   if (!interval || !parameter.value) return metrics::kManyDegrees;
@@ -281,7 +281,7 @@ StoredFit stored(const Result& result) {
   json.synthetic = result.campaign.synthetic;
   json.report = identity_json(result.campaign);
   json.model = std::optional(result.campaign.rig.plant);
-  // Without a start nothing was estimated, and a cost of zero would look like a perfect fit.
+  // Without any start nothing was estimated, and a cost of zero would look like a perfect fit.
   if (json.status != calib::FitStatus::failed && !fit.starts.empty()) json.cost = finite(fit.cost);
   json.residual_count = fit.residual_count;
   json.evaluations = fit.evaluations;

@@ -17,8 +17,9 @@
 #include "report/store/stored/stored_record.hpp"
 #include "report/store/stored/stored_residual_tests.hpp"
 
-// fit.json and validation.json, as docs/command-line.md describes them. SI; a name ends in its
-// unit. A value that does not exist is null, and a reason, problem or message beside it says why.
+// fit.json and validation.json (docs/command-line.md). Values are in SI units, and names end in the
+// unit. A value that does not exist is null, and the reason, problem or message next to it says
+// why.
 
 namespace rigcal::report {
 
@@ -55,13 +56,13 @@ inline std::vector<calib::Identifiability> every() {
           Identifiability::not_identifiable};
 }
 template <>
-inline std::vector<calib::IntervalSource> every() {  // but for `none`, which is null
+inline std::vector<calib::IntervalSource> every() {  // except `none`, which is null
   return {calib::IntervalSource::standard_error, calib::IntervalSource::robust_standard_error};
 }
 
 /// A parameter, fitted or known.
 struct StoredParameter {
-  std::string name;  ///< that of results: "mass_kg"
+  std::string name;  ///< name in result files: "mass_kg"
   std::string key;   ///< key in campaign files
   std::string symbol, unit;
   datasets::Scope scope = datasets::Scope::rig;
@@ -70,13 +71,13 @@ struct StoredParameter {
   bool fitted = false;
   bool nuisance = false;
   std::optional<double> standard_error, robust_standard_error;
-  std::optional<Range> ci95;                              ///< interval of the rig
-  Later<std::optional<Range>> ci95_if_exact;              ///< if the model were exact
+  std::optional<Range> ci95;                              ///< interval for the rig
+  Later<std::optional<Range>> ci95_if_exact;              ///< assumes an exact model
   Later<std::optional<calib::IntervalSource>> ci95_from;  ///< basis of ci95_if_exact
-  Later<std::optional<double>> degrees_of_freedom;  ///< those of the error behind ci95_if_exact
+  Later<std::optional<double>> degrees_of_freedom;        ///< for that error
   Omittable<calib::Budget95> budget;
-  Omittable<calib::AveragedEstimate> averaged;  ///< where the residuals ask for an effect
-  Omittable<double> between_days_error;         ///< standard error by what differs between days
+  Omittable<calib::AveragedEstimate> averaged;  ///< if the residuals call for an effect
+  Omittable<double> between_days_error;         ///< standard error due to differences between days
   Omittable<calib::BootstrapSpread> bootstrap;
   Omittable<calib::Profile> profile;
   Omittable<calib::PosteriorSpread> posterior;
@@ -89,15 +90,17 @@ struct StoredParameter {
                   posterior, at_bound, identifiability, reason)
 };
 
-/// What the parameters of a result of an earlier schema say today.
+/// Converts parameters from an earlier schema to the current one: the earlier `ci95` becomes
+/// `ci95_if_exact`.
 void as_of_now(std::string_view schema, std::vector<StoredParameter>& parameters);
 
-/// Returns the error behind ci95_if_exact and its degrees of freedom. If a file of an earlier
-/// version lacks these, they follow from the half width of that interval in errors, else many.
+/// Returns the error behind ci95_if_exact with its degrees of freedom. If an older file lacks the
+/// latter, they are computed from the interval's half width in units of the error; without an
+/// interval they are many.
 std::optional<metrics::EstimateError> interval_error(const StoredParameter& parameter);
-/// The larger of standard and robust error.
+/// Returns the larger of standard and robust error.
 std::optional<double> error_of(const StoredParameter& parameter);
-/// "leakage_coefficient (leak level 33 %)": a parameter with whose it is.
+/// Text for a parameter with its level: "leakage_coefficient (leak level 33 %)".
 std::string parameter_label(const std::string& key, datasets::Scope scope,
                             const std::optional<std::string>& level);
 inline std::string parameter_label(const StoredParameter& p) {
@@ -116,7 +119,7 @@ struct StoredBootstrapRun {
   RIGCAL_DESCRIBE(replicates, message)
 };
 
-/// Divisor of the residuals of a channel.
+/// Divisor that weights the residuals of a channel.
 struct StoredWeight {
   std::string condition, channel;
   long samples = 0;
@@ -124,8 +127,8 @@ struct StoredWeight {
   RIGCAL_DESCRIBE(condition, channel, samples, sd, rms)
 };
 
-/// Scores of one channel of a condition, NaN where one does not exist, and the response at its
-/// fundamental.
+/// Scores of one channel in a condition, NaN for a score that does not exist, with the response at
+/// the fundamental frequency.
 struct StoredScore : metrics::Agreement {
   std::optional<double> gain_ratio, phase_deg, delay_s;
   std::optional<std::string> problem;
@@ -154,16 +157,16 @@ struct StoredCondition {
   Omittable<std::vector<Range>> windows_s;        ///< empty: the whole record
   Omittable<std::vector<std::string>> notes;
   Omittable<std::vector<datasets::AcceptanceLimit>>
-      acceptance;                                  ///< its own, in place of the campaign's
+      acceptance;                                  ///< limits that replace the campaign's
   Omittable<std::vector<std::string>> not_judged;  ///< in addition to those of the campaign
   Later<std::vector<std::string>> warnings;
   Later<std::optional<std::string>> not_scored;
   std::optional<std::string> failure;
-  Keyed<StoredScore> metrics;  ///< by channel, like the three below
+  Keyed<StoredScore> metrics;  ///< by channel, as are the next four
   Keyed<std::optional<metrics::NoiseFloor>> noise_floor;
-  /// Per score, one-sided: the guard band of its limit.
+  /// One-sided, for each score; used as the guard band of its limit.
   Omittable<Keyed<std::optional<metrics::Agreement>>> expanded_uncertainty;
-  Omittable<Keyed<std::optional<metrics::Agreement>>> two_sided_uncertainty;  ///< per score, of +-
+  Omittable<Keyed<std::optional<metrics::Agreement>>> two_sided_uncertainty;  ///< printed after +-
   Keyed<std::optional<StoredResidualTests>> residual_tests;
   Later<std::vector<calib::LimitCheck>> limit_checks;
   Later<Keyed<calib::Verdict>> channel_verdicts;
@@ -175,7 +178,7 @@ struct StoredCondition {
                   noise_floor, expanded_uncertainty, two_sided_uncertainty, residual_tests,
                   limit_checks, channel_verdicts, verdict, reasons)
 
-  /// Verdict on a channel; nothing without a limit.
+  /// Verdict on a channel; absent without a limit.
   std::optional<calib::Verdict> verdict_of(const std::string& channel) const;
 };
 
@@ -189,7 +192,7 @@ struct StoredFit {
   bool synthetic = false;
   Json report;  ///< identity_json()
   Later<std::optional<model::PlantKind>> model;
-  std::optional<double> cost;  ///< null if nothing was estimated, or the fit failed
+  std::optional<double> cost;  ///< null if nothing was estimated or the fit failed
   long residual_count = 0;
   long evaluations = 0;
   std::optional<double> wall_seconds, simulation_tolerance;
@@ -198,7 +201,7 @@ struct StoredFit {
   int rank = 0;
   std::vector<double> singular_values;
   std::optional<double> reduced_chi_square;
-  Omittable<std::optional<double>> independent_residuals;  ///< null: not known
+  Omittable<std::optional<double>> independent_residuals;  ///< null if unknown
   Later<std::string> interval_advice;
   Later<std::vector<std::string>> combinations;
   Later<std::optional<StoredLackOfFit>> lack_of_fit;
@@ -237,7 +240,7 @@ struct StoredFit {
   const StoredCondition* find(const std::string& condition) const;
 };
 
-/// Stored form of a fit or validation.
+/// Converts a fit or validation to its stored form.
 StoredFit stored(const Result& result);
 
 }  // namespace rigcal::report

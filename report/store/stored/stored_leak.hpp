@@ -7,12 +7,12 @@
 #include "report/json/described.hpp"
 #include "report/store/described_campaign.hpp"
 
-// Parts that results of leak searches have in common.
+// Members that the results of leak searches have in common.
 
 namespace rigcal::report {
 
-/// End of such a search: `declined` if the records cannot answer, `failed` if no record gave a
-/// result.
+/// How a leak search ended: `declined` if the records cannot answer the question, `failed` if no
+/// record gave a result.
 enum class LeakStatus { done, declined, failed };
 
 inline std::string_view to_string(LeakStatus status) {
@@ -42,9 +42,9 @@ struct StoredLeak {
   std::optional<double> leak_share_upper_limit_percent;
   std::optional<double> leak_flow_l_per_min;
   std::optional<bool> leak_detected;
-  /// False: the coefficient is negative beyond its error, so no leak is reported.
+  /// False if the coefficient is significantly negative; then no leak is reported.
   Later<std::optional<bool>> compatible_with_model;
-  std::optional<datasets::LeakClass> class_;  ///< nothing: undecided
+  std::optional<datasets::LeakClass> class_;  ///< absent if undecided
   Keyed<std::optional<double>> class_probabilities;
   RIGCAL_DESCRIBE(leakage_coefficient, ci95, standard_error, leak_share_percent,
                   leak_share_ci95_percent, leak_share_upper_limit_percent, leak_flow_l_per_min,

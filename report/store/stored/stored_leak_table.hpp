@@ -9,7 +9,7 @@
 #include "report/store/described_campaign.hpp"
 #include "report/store/stored/stored_provenance.hpp"
 
-// leak_table.json, as docs/command-line.md describes it.
+// leak_table.json (docs/command-line.md).
 
 namespace rigcal::report {
 
@@ -28,7 +28,7 @@ inline constexpr const char* kLeakTableSchema = "rigcal.leak_table/1";
 
 /// A value that the computation used.
 struct StoredAssumption {
-  std::string name;  ///< that of results: "piston_area_m2"
+  std::string name;  ///< name in result files: "piston_area_m2"
   std::string key;   ///< key in campaign files
   double value = 0.0;
   std::string unit;
@@ -41,7 +41,7 @@ struct StoredLeakEntry {
   datasets::Waveform waveform = datasets::Waveform::sine;
   double frequency_hz = 0.0;
   Omittable<double> amplitude_m;  ///< in a closed loop
-  Omittable<double> amplitude_v;  ///< in an open one
+  Omittable<double> amplitude_v;  ///< in an open loop
   double target_percent = 0.0;
   std::vector<double> coefficients;  ///< all roots, increasing
   Omittable<std::vector<std::optional<Range>>> coefficients_ci95;
@@ -60,7 +60,7 @@ struct StoredLeakEntry {
                   grade, note)
 };
 
-/// The published coefficient of the rig without a fault.
+/// The published coefficient for the rig without a fault.
 struct StoredNormal {
   datasets::Waveform waveform = datasets::Waveform::sine;
   double frequency_hz = 0.0;
@@ -72,7 +72,7 @@ struct StoredNormal {
                   share_at_published_percent)
 };
 
-/// Flows and features of a published level.
+/// Flows and features at a published leak level.
 struct StoredFeatures {
   std::string level;
   double coefficient = 0.0;

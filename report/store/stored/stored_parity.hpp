@@ -8,7 +8,7 @@
 #include "report/store/stored/stored_leak.hpp"
 #include "report/store/stored/stored_provenance.hpp"
 
-// parity.json, as docs/parity.md describes it.
+// parity.json (docs/parity.md).
 
 namespace rigcal::report {
 
@@ -16,7 +16,7 @@ inline constexpr const char* kParitySchema = "rigcal.parity/1";
 
 struct StoredParityRecord {
   std::string condition;
-  std::optional<int> repeat;  ///< from 1; nothing: an averaged file
+  std::optional<int> repeat;  ///< from 1; absent for an averaged file
   std::string signal;
   std::optional<std::string> leak_level;
   bool healthy = false;
@@ -24,11 +24,11 @@ struct StoredParityRecord {
   int reference_records = 0;
   std::optional<std::string> failure;
   std::optional<double> peak_m;
-  std::optional<bool> alarm;  ///< nothing: not judged
+  std::optional<bool> alarm;  ///< absent if not judged
   std::optional<double> time_to_alarm_s;
   metrics::ByFeature<std::optional<double>> features;
-  metrics::ByFeature<std::optional<bool>> exceeds;  ///< nothing: no threshold
-  Omittable<double> threshold_m;                    ///< threshold for records of its day
+  metrics::ByFeature<std::optional<bool>> exceeds;  ///< absent without a threshold
+  Omittable<double> threshold_m;                    ///< threshold for records from that day
   RIGCAL_DESCRIBE(condition, repeat, signal, leak_level, healthy, sets_threshold, reference_records,
                   failure, peak_m, alarm, time_to_alarm_s, features, exceeds, threshold_m)
 };

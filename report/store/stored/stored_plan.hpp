@@ -16,7 +16,7 @@ namespace rigcal::report {
 
 inline constexpr const char* kPlanSchema = "rigcal.plan/1";
 
-// Files of a design beside plan.json.
+// Files of a design, next to plan.json.
 inline constexpr const char* kDriveFile = "design.csv";
 inline constexpr const char* kResponseFile = "design_response.csv";
 inline constexpr const char* kDesignedCampaignFile = "design.toml";
@@ -25,12 +25,12 @@ struct StoredDesignLimit {
   std::string key, words, unit;
   double limit = 0.0;
   double reached = 0.0;
-  double share_percent = 0.0;  ///< used part; at most 100
+  double share_percent = 0.0;  ///< used fraction of the limit; at most 100
   RIGCAL_DESCRIBE(key, words, unit, limit, reached, share_percent)
 };
 
 struct StoredDesign {
-  std::string status;  ///< "done", or "stopped": the best drive until a signal
+  std::string status;  ///< "done", or "stopped" by a signal with the best drive so far
   datasets::DriveFamily family = datasets::DriveFamily::multisine;
   datasets::DesignCriterion criterion = datasets::DesignCriterion::determinant;
   std::string channel;  ///< channel of the drive, as in the campaign file
@@ -46,8 +46,8 @@ struct StoredDesign {
   std::vector<StoredDesignLimit> limits;
   std::vector<calib::DrivePart> drive;
   std::vector<calib::FamilyTrial> families;
-  std::vector<std::string> own_signals;  ///< conditions that are compared with
-  double own_signals_duration_s = 0.0;   ///< all of them together
+  std::vector<std::string> own_signals;  ///< conditions to compare with
+  double own_signals_duration_s = 0.0;   ///< total duration of these conditions
   std::vector<std::string> messages;
   RIGCAL_DESCRIBE(status, family, criterion, channel, unit, amplitude, duration_s, sample_rate_hz,
                   repeats, seed, leak_level, noise_sd, parameters, limits, drive, families,

@@ -9,7 +9,7 @@
 
 namespace rigcal::report {
 
-/// Origin of a result, as in every result file.
+/// Origin of a result, stored in every result file.
 struct StoredProvenance {
   std::string version;
   std::string revision;

@@ -10,16 +10,16 @@
 #include "report/store/described_campaign.hpp"
 #include "report/store/stored/stored_provenance.hpp"
 
-// A record in the output of `check` and `average`, and average.json.
+// A record in the output of `check` and `average`, and in average.json.
 
 namespace rigcal::report {
 
 inline constexpr const char* kAverageSchema = "rigcal.average/1";
 
-/// Agreement of the repeats in one channel, in its unit.
+/// Agreement of the repeats in one channel, in the unit of the channel.
 struct StoredRepeatability {
   std::string unit;
-  int repeats = 1;  ///< number of repeats with the channel
+  int repeats = 1;  ///< number of repeats that recorded the channel
   std::optional<double> pooled_sd, sd_of_mean;
   std::optional<metrics::NoiseFloor> noise_floor;
   RIGCAL_DESCRIBE(unit, repeats, pooled_sd, sd_of_mean, noise_floor)
@@ -35,7 +35,7 @@ struct StoredRecord {
   Keyed<StoredRepeatability> channels;
   std::optional<double> offset_range_s;
   std::vector<datasets::RepeatReport> repeat_reports;
-  std::vector<Range> windows_s;  ///< parts that count; empty: the whole record
+  std::vector<Range> windows_s;  ///< intervals that count; empty: the whole record
   std::vector<std::string> notes, warnings;
   RIGCAL_DESCRIBE(condition, use, samples, sample_rate_hz, duration_s, repeats, files, channels,
                   offset_range_s, repeat_reports, windows_s, notes, warnings)
@@ -43,7 +43,7 @@ struct StoredRecord {
   long outliers() const;
 };
 
-/// Agreement of the repeats of every condition.
+/// Agreement of the repeats in every condition.
 struct StoredAverage {
   std::string schema = kAverageSchema;
   std::string campaign;

@@ -67,7 +67,7 @@ std::string normality_words(const metrics::Normality& test) {
   return text;
 }
 
-/// @param unit  of the residual, SI
+/// @param unit  SI unit of the residual
 std::string drift_words(const ResidualTests& tests, std::string_view unit) {
   const auto& test = tests.drift;
   if (test.passed()) return "no significant offset or trend";
@@ -88,9 +88,9 @@ Worded<Test> worded(const Test& test, std::string words) {
   return result;
 }
 
-/// Every k-th value, so that at most about 200 are left, that of lag zero among them.
+/// Keeps every k-th value, so that about 200 values or fewer remain. The value at lag zero is kept.
 ///
-/// @param centre  the value of lag zero
+/// @param centre  index of lag zero
 StoredCorrelogram thinned(const std::vector<double>& values, std::size_t centre, double band,
                           double sample_interval_s) {
   constexpr std::size_t kMost = 200;

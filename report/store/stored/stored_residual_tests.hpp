@@ -10,14 +10,14 @@
 #include "report/json/described.hpp"
 #include "report/store/result.hpp"
 
-// Results of the residual tests, as in `residual_tests` of fit.json and in residual_tests.json.
+// Results of the residual tests, in `residual_tests` of fit.json and in residual_tests.json.
 
 namespace rigcal::report {
 
 inline constexpr const char* kFitSchema = "rigcal.fit/2";
-/// Whose `ci95` is what is `ci95_if_exact` today.
+/// Earlier schema, whose `ci95` corresponds to `ci95_if_exact` today.
 inline constexpr const char* kEarlierFitSchema = "rigcal.fit/1";
-/// Whether a result is a fit, of this or of an earlier version.
+/// Whether a schema is that of a fit, written by this or an older version.
 inline bool is_fit_schema(std::string_view schema) {
   return schema == kFitSchema || schema == kEarlierFitSchema;
 }
@@ -34,11 +34,11 @@ inline std::vector<metrics::TestOutcome> every() {
   return {TestOutcome::passed, TestOutcome::failed, TestOutcome::not_judged};
 }
 
-/// A test of residuals with its outcome, in words too: the last keys of each.
+/// A residual test with its verdict in words. Verdict and outcome are the last keys in JSON.
 template <typename Test>
 struct Worded : Test {
   std::string verdict;
-  std::optional<bool> has_passed;  ///< absent: not judged
+  std::optional<bool> has_passed;  ///< absent if not judged
   template <typename Self, typename Visit>
   static void describe(Self& self, const Visit& visit) {
     Test::describe(self, visit);
@@ -61,10 +61,10 @@ struct StoredResidualTests {
                   cross_correlation, periodogram, normality, drift)
 };
 
-/// An autocorrelation or cross-correlation over equally spaced lags, thinned.
+/// An autocorrelation or cross-correlation at equally spaced lags, thinned.
 struct StoredCorrelogram {
   double first_lag_s = 0.0, lag_step_s = 0.0;
-  double band = 0.0;  ///< 95 % for one lag
+  double band = 0.0;  ///< 95 % band for a single lag
   Omittable<double> band_of_peak;
   std::vector<double> values;
   RIGCAL_DESCRIBE(first_lag_s, lag_step_s, band, band_of_peak, values)
@@ -80,7 +80,7 @@ struct StoredQuantiles {
   RIGCAL_DESCRIBE(normal_quantile, residual_quantile)
 };
 
-/// The curves behind the tests of one channel.
+/// The curves on which the tests of one channel are based.
 struct StoredResidualCurves {
   StoredCorrelogram autocorrelation;
   std::optional<StoredCorrelogram> cross_correlation;
@@ -89,10 +89,10 @@ struct StoredResidualCurves {
   RIGCAL_DESCRIBE(autocorrelation, cross_correlation, periodogram, normality)
 };
 
-/// By channel; null if the residual was not tested.
+/// Curves by channel; null if the residual was not tested.
 using StoredChannelCurves = Keyed<std::optional<StoredResidualCurves>>;
 
-/// residual_tests.json
+/// Content of residual_tests.json.
 struct StoredCurves {
   calib::FitStatus status = calib::FitStatus::failed;
   std::string schema = "rigcal.residual_tests/1";
@@ -101,7 +101,9 @@ struct StoredCurves {
   RIGCAL_DESCRIBE(status, schema, of, conditions)
 };
 
-/// @param unit  of the residual, SI
+/// Converts residual tests to their stored form.
+///
+/// @param unit  SI unit of the residual
 StoredResidualTests stored(const metrics::ResidualTests& tests, std::string_view unit);
 
 StoredCurves stored_curves(const Result& result);

@@ -7,7 +7,7 @@
 #include "calib/published/fit_tables.hpp"
 #include "report/store/stored/stored_fit.hpp"
 
-// fit.json of a fit to published tables, which has no records.
+// fit.json from a fit to published tables, which has no records.
 
 namespace rigcal::report {
 
@@ -35,10 +35,10 @@ struct StoredTablesFit {
                   left_out, provenance)
 };
 
-/// Whether a fit.json is one of these.
+/// Whether a fit.json comes from a fit to published tables.
 inline bool is_of_tables(const Json& fit) { return fit.is_object() && fit.contains("of"); }
 
-/// The part that it has in common with a fit to records.
+/// Converts a fit to tables to a fit to records, with the members that both have.
 StoredFit as_fit(const StoredTablesFit& tables);
 
 }  // namespace rigcal::report

@@ -35,7 +35,7 @@ TEST_CASE("adequacy: lack of fit counts where it is significant and larger than 
   test.outcome = metrics::TestOutcome::passed;
   test.ratio = 0.2;
   CHECK(scene.assessed().adequacy.state == AspectState::pass);
-  test.against = "sd";  // a stated noise that is far too large hides a lack of fit
+  test.against = "sd";  // a stated noise that is much too large hides a lack of fit
   CHECK(find(scene.assessed().adequacy, "noise_overstated") != nullptr);
   test.ratio = 0.3;  // the residual is more than half of the noise
   CHECK(find(scene.assessed().adequacy, "noise_overstated") == nullptr);

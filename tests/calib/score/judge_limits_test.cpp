@@ -11,7 +11,7 @@ namespace {
 
 using Catch::Contains;
 
-/// The result of a check: verdict, and used fraction of the tolerance.
+/// Result of a check: its verdict and the used fraction of the tolerance.
 struct Checked {
   Verdict verdict = Verdict::pass;
   double used = 0.0;

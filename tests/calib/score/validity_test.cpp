@@ -38,7 +38,8 @@ TEST_CASE("coverage: what conditions and the narrower scope of a fit tell", "[ca
     return p;
   };
   Fit fit;
-  // Whatever the order, a condition's own value beats its leak level's, and that the rig's.
+  // In any order, the value of the condition takes precedence over that of its leak level, which
+  // takes precedence over that of the rig.
   fit.parameters = {parameter("leakage_coefficient", Scope::condition, "sine", 0.7),
                     parameter("leakage_coefficient", Scope::condition, "other", 9.0),
                     parameter("leakage_coefficient", Scope::leak_level, "none", 5.0),

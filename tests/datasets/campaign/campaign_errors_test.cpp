@@ -27,11 +27,11 @@ Failure failure_of(const std::string& text) {
   return {-1, "(loaded)"};
 }
 
-/// A change that makes the example wrong.
+/// A change that makes the example campaign invalid.
 struct Mistake {
   std::string from;
   std::string to;
-  std::string at;  ///< text in the line that the message gives
+  std::string at;  ///< text in the line that the message refers to
   std::vector<std::string> says;
 };
 

@@ -49,7 +49,7 @@ LeakTableSettings settings_of(const std::string& section) {
   return leak_table_settings(campaign_with(section, folder));
 }
 
-/// Message about a section in which `from` was replaced with `to`.
+/// Returns the error message for a section in which `from` was replaced with `to`.
 std::string complaint(const std::string& from, const std::string& to) {
   try {
     settings_of(test::replaced(kSection, from, to));

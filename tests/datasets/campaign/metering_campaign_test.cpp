@@ -1,5 +1,5 @@
-// A cylinder that slides behind a pilot-operated or shaped valve and a pump: what drives it, and
-// what does not go together.
+// Tests campaigns for a cylinder with a pilot-operated or shaped valve and a pump: the drive, and
+// parameters that cannot be combined.
 
 #include <catch2/catch.hpp>
 
@@ -56,7 +56,7 @@ repeats = ["out.csv"]
 
 const std::string kGain = "pilot_gain = \"0.1 mm/bar\"\n";
 
-/// The same behind an electric valve.
+/// Returns the campaign with an electric instead of a pilot-operated valve.
 std::string electric() {
   return replaced(replaced(kSlide, kGain, "valve_gain = \"0.1 mm/V\"\n"),
                   "pilot_pressure = { column = \"out_bar\", minus = \"in_bar\", unit = \"bar\" }",

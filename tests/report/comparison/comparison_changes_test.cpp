@@ -15,7 +15,7 @@
 #include "tests/report/stored_fixture.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-// Which differences a comparison reports, with their size and order.
+// Tests which differences a comparison reports, their size and their order.
 
 using Catch::Contains;
 using Catch::WithinRel;

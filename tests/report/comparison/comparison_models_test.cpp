@@ -36,7 +36,7 @@ ComparedJson mass_alone(const std::string& name, double cost) {
   return {name, name + "/fit.json", result};
 }
 
-/// The same fit with an additional free parameter, a friction that the other fit does not have.
+/// The fit from mass_alone() with friction as an additional free parameter.
 ComparedJson with_friction(const std::string& name, double cost) {
   ComparedJson compared = mass_alone(name, cost);
   Json friction = compared.result["parameters"][0];

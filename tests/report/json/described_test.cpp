@@ -24,7 +24,7 @@ struct Part {
 struct Whole {
   int count = 0;
   double value = 0.0;
-  bool class_ = false;  ///< a keyword in C++: its key is "class"
+  bool class_ = false;  ///< its key is "class", a keyword in C++
   std::optional<double> maybe;
   std::optional<Range> range;
   Omittable<double> amplitude_m;
@@ -62,7 +62,7 @@ std::vector<Colour> every() {
 
 namespace {
 
-/// A struct with an inlined part.
+/// A struct with an inlined member.
 struct Holder {
   int number = 0;
   Inlined<Part> part;

@@ -24,7 +24,7 @@ Checkpoint two_starts() {
     start.number = number;
     start.start_values = {2000.0, 2e-5};
     start.end_values = {1000.0 + number, 3e-5};
-    if (number == 2) start.final_cost = 0.1 * number;  // the other could not be simulated
+    if (number == 2) start.final_cost = 0.1 * number;  // the first start could not be simulated
     start.iterations = 7;
     start.status = rigcal::calib::FitStatus::converged;
     checkpoint.starts.push_back(start);

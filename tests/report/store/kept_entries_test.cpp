@@ -10,7 +10,7 @@
 #include "report/store/kept_tasks.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-// Which task results are written, and which are read back.
+// Tests which task results are written and which are read back.
 
 using rigcal::FarmJob;
 using rigcal::TaskResult;
