@@ -59,7 +59,8 @@ TEST_CASE("prediction_sd: estimates and noise add up as variances", "[calib]") {
 }
 
 TEST_CASE("prediction band: holds 95 % of the samples of fitted and new records", "[calib]") {
-  const Twin twin = predicting_twin();
+  Twin twin = predicting_twin();
+  twin.campaign.considered.none = true;  // what the model lacks widens the band of another record
   for (const char* id : {"fitted", "predicted"}) {
     int within = 0;
     int all = 0;
