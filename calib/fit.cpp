@@ -13,6 +13,7 @@
 #include "calib/posterior/posterior.hpp"
 #include "calib/problem/initial_state.hpp"
 #include "calib/problem/known_values.hpp"
+#include "calib/problem/measured_tolerance.hpp"
 #include "calib/score/scorecard.hpp"
 #include "calib/solve.hpp"
 #include "calib/trust/bootstrap.hpp"
@@ -147,6 +148,7 @@ Fit score_at(const Campaign& campaign, const std::vector<Record>& records,
   once.checkpoint = nullptr;
   std::vector<double> z = problem.start();
   if (problem.map.unknowns().empty()) {
+    measure_tolerances(problem, z, options.threads, options.cancel);
     fit.status = FitStatus::converged;
     fit.message = "scored at known values; nothing was estimated";
     fit.residual_count = problem.residual_count();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "calib/problem/measured_tolerance.hpp"
 #include "calib/search/checkpoint.hpp"
 #include "calib/search/verify.hpp"
 #include "calib/search/weights.hpp"
@@ -32,10 +33,17 @@ void budget_steps(Problem& problem, const Evaluation& start) {
 Solved solve_problem(Problem& problem, Evaluator& evaluator, const FitOptions& options, Fit& fit) {
   evaluator.set_fidelity(problem.of_starts());
   budget_steps(problem, evaluator.evaluate(problem.start()));
+  const std::atomic<bool>* cancel = evaluator.budget().cancel();
+  measure_tolerances(problem, problem.start(), options.threads, cancel);
   MultiStart found = multi_start(problem, evaluator, options);
   go_on_with_best(problem, evaluator, options, found);
-  if (found.optimum.ok && problem.has_estimated_sd())
+  if (found.optimum.ok && problem.has_estimated_sd()) {
     estimate_weights(problem, evaluator, options, found, fit.warnings);
+  } else if (found.optimum.ok &&
+             refine_tolerances(problem, found.optimum.z, options.threads, cancel) &&
+             search_on(problem, evaluator, options, found)) {
+    report_best(problem, found);
+  }
   std::vector<ConditionRows> rows = verify_optimum(problem, evaluator, options, found);
   fit.status = found.result.status;
   fit.message = found.result.message;

@@ -56,6 +56,10 @@ constexpr double kMostLag_s = 0.5e-3;
 /// An effect moves an output by a ten-thousandth of its peak or more: this resolves a hundredth of
 /// it.
 constexpr double kSecantTolerance = 1e-6;
+/// The same for a recorded drive, as a multiple of the measured tolerance, and its limit: of a
+/// difference between two runs that are alike only the difference of their errors counts.
+constexpr double kRecordedShare = 30.0;
+constexpr double kLargestSecantTolerance = 3e-5;
 
 double lag_of(double intervals, const RigScale& rig) {
   return std::clamp(intervals * rig.sample_s, kLeastLag_s, kMostLag_s);
@@ -420,6 +424,10 @@ model::SimulationOptions effect_options(const Problem& problem, std::size_t cond
                                         const std::atomic<bool>* cancel) {
   auto options = problem.simulation_options(cancel);
   options.tolerance = std::max(problem.tolerance_of(condition), kSecantTolerance);
+  const double measured = problem.conditions[condition].measured_tolerance;
+  if (measured > 0.0)
+    options.tolerance =
+        std::max(options.tolerance, std::min(kRecordedShare * measured, kLargestSecantTolerance));
   options.max_steps = problem.conditions[condition].max_steps;
   return options;
 }
@@ -476,9 +484,9 @@ OutputsWith outputs_with(const Problem& problem, std::size_t condition, std::spa
       derivatives == Derivatives::of_unknowns ? data.free : std::vector<int>();
   model::ParameterValues values = problem.values_at(condition, z);
   model::SimulationInputs inputs = data.inputs;
-  const auto run = [&](const std::vector<int>& rows) {
-    return model::simulate(data.rig, values, rows, inputs, data.fit_times(), outputs_and_flow(data),
-                           options);
+  const auto run = [&](const std::vector<int>& rows, bool with_flow) {
+    return model::simulate(data.rig, values, rows, inputs, data.fit_times(),
+                           with_flow ? outputs_and_flow(data) : data.outputs, options);
   };
   const auto size_of = [&](std::size_t e) {
     return effects[e].about.size * sizes(static_cast<Eigen::Index>(e));
@@ -490,26 +498,33 @@ OutputsWith outputs_with(const Problem& problem, std::size_t condition, std::spa
       values.set(index, values.value[static_cast<std::size_t>(index)] + size_of(e));
     sags = sags || (effects[e].kind == EffectKind::supply_sag && size_of(e) != 0.0);
   }
-  model::Simulation simulation = run(sags ? std::vector<int>() : free);
+  model::Simulation simulation = run(sags ? std::vector<int>() : free, sags);
   for (std::size_t e = 0; e < effects.size() && simulation.ok(); ++e) {
     if (effects[e].kind != EffectKind::supply_sag || size_of(e) == 0.0) continue;
     inputs.supply_pressure_pa = sagging_supply(effects[e], values, data.fit_times(),
                                                simulation.outputs.col(channels), size_of(e));
-    simulation = run(free);
+    simulation = run(free, false);
   }
   if (!simulation.ok()) return {};
   OutputsWith result;
   result.outputs.resize(samples * channels);
   result.jacobian.resize(samples * channels, static_cast<Eigen::Index>(free.size()));
+  result.by_sensor = Eigen::MatrixXd::Zero(samples * channels,
+                                           derivatives == Derivatives::none ? 0 : sizes.size());
   const std::vector<Eigen::Index> counted(data.rows.begin(), data.rows.end());
   for (Eigen::Index k = 0; k < channels; ++k) {
     const ProblemChannel& channel = data.channels[static_cast<std::size_t>(k)];
-    Eigen::VectorXd reading = simulation.outputs.col(k);
-    for (std::size_t e = 0; e < effects.size(); ++e) {
-      if (effects[e].is_of_sensor() && channel.channel == sensor_channel(effects[e].about.key) &&
-          size_of(e) != 0.0)
-        reading += reading_error(effects[e], reading, size_of(e));
-    }
+    const auto reading_with = [&](const Eigen::VectorXd& of_each) {
+      Eigen::VectorXd reading = simulation.outputs.col(k);
+      for (std::size_t e = 0; e < effects.size(); ++e) {
+        const double size = effects[e].about.size * of_each(static_cast<Eigen::Index>(e));
+        if (effects[e].is_of_sensor() && channel.channel == sensor_channel(effects[e].about.key) &&
+            size != 0.0)
+          reading += reading_error(effects[e], reading, size);
+      }
+      return reading;
+    };
+    const Eigen::VectorXd reading = reading_with(sizes);
     const auto own = Eigen::seqN(k * samples, samples);
     result.outputs(own) = reading(counted) / channel.sd;
     if (!free.empty()) {
@@ -517,6 +532,13 @@ OutputsWith outputs_with(const Problem& problem, std::size_t condition, std::spa
           simulation.sensitivities[static_cast<std::size_t>(k)].leftCols(result.jacobian.cols())(
               counted, Eigen::all) /
           channel.sd;
+      for (Eigen::Index e = 0; e < sizes.size(); ++e) {
+        if (!effects[static_cast<std::size_t>(e)].is_of_sensor()) continue;
+        Eigen::VectorXd further = sizes;
+        further(e) += kEffectStep;
+        result.by_sensor(own, e) =
+            (reading_with(further) - reading)(counted) / (channel.sd * kEffectStep);
+      }
     }
   }
   return result;

@@ -82,9 +82,14 @@ std::vector<Eigen::MatrixXd> effect_changes(const Problem& problem, std::size_t 
 struct OutputsWith {
   Eigen::VectorXd outputs;   ///< shape (channels * samples that count); empty: not simulated
   Eigen::MatrixXd jacobian;  ///< by the acting unknowns, SI; without columns if not asked for
+  /// By the effects that are of a sensor, in plausible sizes, other columns zero; likewise.
+  Eigen::MatrixXd by_sensor;
   bool ok() const { return outputs.size() > 0; }
 };
 enum class Derivatives { none, of_unknowns };
+
+/// Step of the finite difference by an effect, as a multiple of its plausible size.
+inline constexpr double kEffectStep = 0.1;
 
 /// Weighted outputs of one condition with all effects at once. Derivatives take the errors of the
 /// position sensor and the supply's fall as given.

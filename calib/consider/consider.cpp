@@ -55,18 +55,22 @@ struct Seen {
   MatrixXd left;   ///< M
   VectorXd score;  ///< s
   MatrixXd basis;  ///< T: left = T^-T T^-1 on the directions that the records determine
-  /// Columns Q with Q^T Q = 1 that span what is left, and the residual without its effects.
+  /// EffectColumns Q with Q^T Q = 1 that span what is left, and the residual without its effects.
   std::vector<ScoreRows> rows;
 };
 
+/// What each effect does to the rows of a condition, shape (channels * samples, effects). Those of
+/// all conditions are the most memory that a fit holds, hence seven digits.
+using EffectColumns = Eigen::MatrixXf;
+
 /// Takes out the effects that cannot be simulated, with the reason.
-void drop_failed(std::vector<Effect>& effects, std::vector<MatrixXd>& columns,
+void drop_failed(std::vector<Effect>& effects, std::vector<EffectColumns>& columns,
                  std::vector<ConsideredEffect>& dropped) {
   std::vector<Index> kept;
   std::vector<Effect> remaining;
   for (std::size_t e = 0; e < effects.size(); ++e) {
     const auto column = static_cast<Index>(e);
-    const bool finite = std::all_of(columns.begin(), columns.end(), [&](const MatrixXd& each) {
+    const bool finite = std::all_of(columns.begin(), columns.end(), [&](const EffectColumns& each) {
       return each.col(column).allFinite();
     });
     if (finite) {
@@ -78,7 +82,7 @@ void drop_failed(std::vector<Effect>& effects, std::vector<MatrixXd>& columns,
     }
   }
   effects = std::move(remaining);
-  for (MatrixXd& each : columns) each = MatrixXd(each(Eigen::all, kept));
+  for (EffectColumns& each : columns) each = EffectColumns(each(Eigen::all, kept));
 }
 
 /// What the fit takes for a change in the directions of a condition.
@@ -87,7 +91,7 @@ MatrixXd taken_in(std::size_t condition, const Uncertainty& found, const Seen& s
 }
 
 /// What fit and residuals see of the effects, whose columns are used up.
-Seen look_at(std::vector<Effect> effects, std::vector<MatrixXd>& columns,
+Seen look_at(std::vector<Effect> effects, std::vector<EffectColumns>& columns,
              const Uncertainty& found) {
   const std::vector<ScoreRows>& scores = found.scores;
   Seen seen;
@@ -95,13 +99,16 @@ Seen look_at(std::vector<Effect> effects, std::vector<MatrixXd>& columns,
   seen.effects = std::move(effects);
   seen.taken = MatrixXd::Zero(found.root.directions(), count);
   for (std::size_t i = 0; i < scores.size(); ++i)
-    seen.taken(found.root.directions(i), Eigen::all) += scores[i].jacobian.transpose() * columns[i];
+    seen.taken(found.root.directions(i), Eigen::all) +=
+        scores[i].all_rows().transpose() * columns[i].cast<double>();
   seen.left = MatrixXd::Zero(count, count);
   seen.score = VectorXd::Zero(count);
   for (std::size_t i = 0; i < scores.size(); ++i) {
-    columns[i] -= scores[i].jacobian * taken_in(i, found, seen);
-    seen.left += columns[i].transpose() * columns[i];
-    seen.score -= columns[i].transpose() * scores[i].residual;
+    const MatrixXd left =
+        columns[i].cast<double>() - scores[i].all_rows() * taken_in(i, found, seen);
+    seen.left += left.transpose() * left;
+    seen.score -= left.transpose() * scores[i].residual;
+    columns[i] = left.cast<float>();
   }
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(seen.left);
   const VectorXd& values = solver.eigenvalues();
@@ -116,10 +123,12 @@ Seen look_at(std::vector<Effect> effects, std::vector<MatrixXd>& columns,
       size.array() * values.tail(determined).array() / (1.0 + values.tail(determined).array());
   seen.rows.resize(scores.size());
   for (std::size_t i = 0; i < scores.size(); ++i) {
-    seen.rows[i].jacobian = columns[i] * seen.basis;
+    ScoreRows& rows = seen.rows[i];
+    rows.jacobian = columns[i].cast<double>() * seen.basis;
     columns[i].resize(0, 0);
-    seen.rows[i].residual = scores[i].residual + seen.rows[i].jacobian * first_guess;
-    seen.rows[i].channels = scores[i].channels;
+    rows.residual = scores[i].residual + rows.jacobian * first_guess;
+    rows.channels = scores[i].channels;
+    rows.make_narrow();
   }
   return seen;
 }
@@ -242,7 +251,7 @@ MatrixXd correlation_of(const MatrixXd& covariance) {
 ///          memory
 bool take_again(const Problem& problem, std::span<const double> z, const Uncertainty& found,
                 const Sizes& sizes, int threads, const std::atomic<bool>* cancel, Seen& seen,
-                std::vector<MatrixXd>& columns) {
+                std::vector<EffectColumns>& columns) {
   std::vector<Effect> again;
   std::vector<Index> which;
   for (std::size_t e = 0; e < seen.effects.size(); ++e) {
@@ -257,13 +266,14 @@ bool take_again(const Problem& problem, std::span<const double> z, const Uncerta
   if (again.empty()) return false;
   const MatrixXd felt = seen.left * seen.basis;
   parallel_for(columns.size(), threads, [&](std::size_t i) {
-    columns[i] = seen.rows[i].jacobian * felt.transpose() +
-                 found.scores[i].jacobian * taken_in(i, found, seen);
-    seen.rows[i].jacobian.resize(0, 0);
+    columns[i] = MatrixXd(seen.rows[i].all_rows() * felt.transpose() +
+                          found.scores[i].all_rows() * taken_in(i, found, seen))
+                     .cast<float>();
+    seen.rows[i].narrow.resize(0, 0);
     const MatrixXd anew = effect_rows(problem, i, z, again, cancel);
     for (std::size_t a = 0; a < which.size(); ++a) {
       const auto column = static_cast<Index>(a);
-      if (anew.col(column).allFinite()) columns[i].col(which[a]) = anew.col(column);
+      if (anew.col(column).allFinite()) columns[i].col(which[a]) = anew.col(column).cast<float>();
     }
   });
   return true;
@@ -307,12 +317,14 @@ bool follow_curvature(const Problem& problem, std::span<const double> z, const U
       }
       const ScoreRows& rows = found.scores[i];
       residuals[i] = rows.residual + outputs - base[i];
+      const MatrixXd left = seen.rows[i].all_rows();
+      const MatrixXd jacobian = rows.all_rows();
       const VectorXd linear =
-          seen.rows[i].jacobian * (felt.transpose() * at.mean) +
-          rows.jacobian * (taken_in(i, found, seen) * at.mean + move(found.root.directions(i))) -
+          left * (felt.transpose() * at.mean) +
+          jacobian * (taken_in(i, found, seen) * at.mean + move(found.root.directions(i))) -
           residuals[i];
-      scores[i] = seen.rows[i].jacobian.transpose() * linear;
-      taken[i] = rows.jacobian.transpose() * linear;
+      scores[i] = left.transpose() * linear;
+      taken[i] = jacobian.transpose() * linear;
     });
     if (failed) return false;
     VectorXd score = VectorXd::Zero(felt.cols());
@@ -644,7 +656,7 @@ VectorXd unexplained_moves(const Problem& problem, const std::vector<ScoreRows>&
       if (!test) continue;
       tests.push_back(*test);
       whose.push_back(&acting);
-      const MatrixXd felt = scores[i].jacobian.middleRows(k * samples, samples) * by_direction;
+      const MatrixXd felt = scores[i].rows(k * samples, samples) * by_direction;
       const double error = std::sqrt(std::max(0.0, test->ratio - 1.0));
       moves.push_back(error * std::sqrt(static_cast<double>(samples)) *
                       felt.colwise().norm().transpose());
@@ -690,9 +702,10 @@ void consider_effects(const Problem& problem, std::span<const double> z, const U
   Considered considered;
   considered.left_out = left_out_effects(problem, z);
   std::vector<Effect> effects = effects_of(problem, z);
-  std::vector<MatrixXd> columns(problem.conditions.size());
-  parallel_for(columns.size(), threads,
-               [&](std::size_t i) { columns[i] = effect_rows(problem, i, z, effects, cancel); });
+  std::vector<EffectColumns> columns(problem.conditions.size());
+  parallel_for(columns.size(), threads, [&](std::size_t i) {
+    columns[i] = effect_rows(problem, i, z, effects, cancel).cast<float>();
+  });
   if (cancel != nullptr && cancel->load()) return;
   std::vector<ConsideredEffect> dropped;
   drop_failed(effects, columns, dropped);
@@ -724,6 +737,8 @@ void consider_effects(const Problem& problem, std::span<const double> z, const U
       test_alone(*seen, scores, considered.effects);
       considered.missing = missing_effects(*seen, scores, considered.effects);
     }
+    // Of what was seen only the residual is still needed, and a refit needs as much memory.
+    for (ScoreRows& each : seen->rows) each.narrow.resize(0, 0);
     models = refit_best(problem, z, found, *seen, scores, threads, cancel, considered);
     if (cancel != nullptr && cancel->load()) return;
     describe_refits(*seen, scores, models, considered);

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "calib/problem/evaluation.hpp"
 #include "common/parallel.hpp"
@@ -19,8 +20,11 @@ constexpr int kMostStepHalvings = 5;
 /// The search ends with a step that lowers the squares by less, in variances of a weighted
 /// residual.
 constexpr double kSettledFall = 0.02;
-/// Step of the finite difference by an effect, as a multiple of its plausible size.
-constexpr double kEffectStep = 0.1;
+/// Fraction of what it promises that a step must at least fall: beside a kink the derivatives
+/// promise what no step keeps, and steps that hardly fall would go on to the last one.
+constexpr double kLeastFall = 0.01;
+/// Fall that the simulations resolve, in the same unit.
+constexpr double kResolvedFall = 1.0;
 /// As a multiple of the plausible size. A shorter lag is stiff, and counts as none.
 constexpr double kLeastSize = 0.02;
 /// Added to the scaled J^T J, so that directions that the records do not determine stay where they
@@ -63,38 +67,54 @@ Refitter::Refitter(const Problem& problem, std::span<const double> z,
   });
 }
 
-Refitter::Part Refitter::part_at(std::size_t condition, const std::vector<Effect>& effects,
-                                 std::span<const double> z, const VectorXd& sizes) const {
+Refitter::Part Refitter::squares_at(std::size_t condition, const std::vector<Effect>& effects,
+                                    std::span<const double> z, const VectorXd& sizes) const {
   Part part;
-  const auto unknowns = static_cast<Index>(z.size());
   const OutputsWith with =
       outputs_with(problem_, condition, z, effects, sizes, Derivatives::of_unknowns, cancel_);
   if (!with.ok() || base_[condition].size() == 0) return part;
-  const VectorXd residual = scores_[condition].residual + with.outputs - base_[condition];
+  part.residual = scores_[condition].residual + with.outputs - base_[condition];
   const VectorXd slopes = acting_slopes(problem_, condition, z);
-  const std::vector<int>& acting = problem_.map.acting(condition);
-  MatrixXd jacobian = MatrixXd::Zero(residual.size(), unknowns + sizes.size());
-  for (std::size_t j = 0; j < acting.size(); ++j) {
-    const auto column = static_cast<Index>(j);
-    jacobian.col(acting[j]) = with.jacobian.col(column) * slopes(column);
+  part.jacobian.resize(part.residual.size(), slopes.size() + sizes.size());
+  part.jacobian.leftCols(slopes.size()) = with.jacobian * slopes.asDiagonal();
+  for (Index e = 0; e < sizes.size(); ++e) {
+    if (effects[static_cast<std::size_t>(e)].is_of_sensor())
+      part.jacobian.col(slopes.size() + e) = with.by_sensor.col(e);
   }
+  part.squares = part.residual.squaredNorm();
+  part.ok = std::isfinite(part.squares);
+  return part;
+}
+
+void Refitter::complete(std::size_t condition, const std::vector<Effect>& effects,
+                        std::span<const double> z, const VectorXd& sizes, Part& part) const {
+  const std::vector<int>& acting = problem_.map.acting(condition);
+  const Index unknowns = part.jacobian.cols() - sizes.size();
   // The difference is taken between runs that are alike: derivatives change the error control.
   const auto plain = [&](const VectorXd& at) {
     return outputs_with(problem_, condition, z, effects, at, Derivatives::none, cancel_);
   };
-  const OutputsWith here = sizes.size() > 0 ? plain(sizes) : OutputsWith{};
+  std::optional<OutputsWith> here;
   for (Index e = 0; e < sizes.size(); ++e) {
+    if (effects[static_cast<std::size_t>(e)].is_of_sensor()) continue;
+    if (!here) here = plain(sizes);
     VectorXd further = sizes;
     further(e) += kEffectStep;
     const OutputsWith there = plain(further);
-    if (!here.ok() || !there.ok()) return part;
-    jacobian.col(unknowns + e) = (there.outputs - here.outputs) / kEffectStep;
+    part.ok = here->ok() && there.ok();
+    if (!part.ok) return;
+    part.jacobian.col(unknowns + e) = (there.outputs - here->outputs) / kEffectStep;
   }
-  part.squares = residual.squaredNorm();
-  part.gradient = jacobian.transpose() * residual;
-  part.normal = jacobian.transpose() * jacobian;
+  std::vector<Index> columns(acting.begin(), acting.end());
+  const auto all = static_cast<Index>(z.size());
+  for (Index e = 0; e < sizes.size(); ++e) columns.push_back(all + e);
+  part.gradient = VectorXd::Zero(all + sizes.size());
+  part.normal = MatrixXd::Zero(all + sizes.size(), all + sizes.size());
+  part.gradient(columns) = part.jacobian.transpose() * part.residual;
+  part.normal(columns, columns) = part.jacobian.transpose() * part.jacobian;
   part.ok = part.normal.allFinite() && part.gradient.allFinite();
-  return part;
+  part.residual.resize(0);
+  part.jacobian.resize(0, 0);
 }
 
 Refitter::Part Refitter::priors_at(std::span<const double> z, Index unknowns) const {
@@ -123,23 +143,36 @@ std::optional<Refit> Refitter::fit(const std::vector<Effect>& effects, std::vect
   best.sizes = within_signs(effects, std::move(sizes));
   std::vector<Part> parts;
   Part sum;
-  const auto evaluate = [&](std::span<const double> z, const VectorXd& at, std::vector<Part>& own) {
+  // What a rejected point would need for the next step is not simulated.
+  const auto evaluate = [&](std::span<const double> z, const VectorXd& at, double below,
+                            std::vector<Part>& own) {
     own.assign(conditions, {});
-    parallel_for(conditions, threads_, [&](std::size_t i) { own[i] = part_at(i, effects, z, at); });
+    parallel_for(conditions, threads_,
+                 [&](std::size_t i) { own[i] = squares_at(i, effects, z, at); });
     Part total = priors_at(z, all);
     for (const Part& each : own) {
       total.ok = total.ok && each.ok;
-      if (!total.ok) return total;
       total.squares += each.squares;
+    }
+    total.ok = total.ok && total.squares < below;
+    if (!total.ok) return total;
+    parallel_for(conditions, threads_, [&](std::size_t i) { complete(i, effects, z, at, own[i]); });
+    for (const Part& each : own) {
+      total.ok = total.ok && each.ok;
+      if (!total.ok) return total;
       total.gradient += each.gradient;
       total.normal += each.normal;
     }
     return total;
   };
-  sum = evaluate(best.z, best.sizes, parts);
+  sum = evaluate(best.z, best.sizes, HUGE_VAL, parts);
   if (!sum.ok) return std::nullopt;
   double count = 0.0;
   for (const VectorXd& each : base_) count += static_cast<double>(each.size());
+  // Where effects are simulated more coarsely, shorter steps are not worth trying below what is
+  // resolved.
+  const bool recorded = std::any_of(problem_.conditions.begin(), problem_.conditions.end(),
+                                    [](const auto& each) { return each.measured_tolerance > 0.0; });
   bool settled = false;
   for (int step = 0; step < kMostRefitSteps && !settled; ++step) {
     if (cancel_ != nullptr && cancel_->load()) return std::nullopt;
@@ -164,7 +197,9 @@ std::optional<Refit> Refitter::fit(const std::vector<Effect>& effects, std::vect
     }
     double part_of_step = 1.0;
     bool lower = false;
-    for (int halving = 0; halving < kMostStepHalvings && !lower; ++halving, part_of_step *= 0.5) {
+    const bool resolved = promised >= kResolvedFall * sum.squares / count;
+    const int halvings = resolved || !recorded ? kMostStepHalvings : 1;
+    for (int halving = 0; halving < halvings && !lower; ++halving, part_of_step *= 0.5) {
       std::vector<double> z = best.z;
       VectorXd next = best.sizes;
       for (std::size_t m = 0; m < moving.size(); ++m) {
@@ -178,16 +213,16 @@ std::optional<Refit> Refitter::fit(const std::vector<Effect>& effects, std::vect
       }
       next = within_signs(effects, next);
       std::vector<Part> own;
-      Part there = evaluate(z, next, own);
-      if (!there.ok || !(there.squares < sum.squares)) continue;
+      const double least_fall = kLeastFall * part_of_step * promised;
+      Part there = evaluate(z, next, sum.squares - least_fall, own);
+      if (!there.ok) continue;
       best.z = std::move(z);
       best.sizes = std::move(next);
       parts = std::move(own);
       sum = std::move(there);
       lower = true;
     }
-    // The step promises less than the simulations resolve.
-    if (!lower) settled = promised < 1.0 * sum.squares / count;
+    if (!lower) settled = !resolved;
     if (!lower && !settled) return std::nullopt;
   }
   if (!settled) return std::nullopt;

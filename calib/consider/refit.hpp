@@ -47,9 +47,15 @@ class Refitter {
     double squares = 0.0;
     Eigen::VectorXd gradient;
     Eigen::MatrixXd normal;
+    Eigen::VectorXd residual;  ///< until complete() has made gradient and J^T J of it
+    Eigen::MatrixXd jacobian;  ///< likewise; columns: the acting unknowns, then the effects
   };
-  Part part_at(std::size_t condition, const std::vector<Effect>& effects, std::span<const double> z,
-               const Eigen::VectorXd& sizes) const;
+  /// The squares, and what a simulation with the derivatives by the unknowns gives besides.
+  Part squares_at(std::size_t condition, const std::vector<Effect>& effects,
+                  std::span<const double> z, const Eigen::VectorXd& sizes) const;
+  /// Simulates the derivatives by the effects, and makes gradient and J^T J.
+  void complete(std::size_t condition, const std::vector<Effect>& effects,
+                std::span<const double> z, const Eigen::VectorXd& sizes, Part& part) const;
   Part priors_at(std::span<const double> z, Eigen::Index unknowns) const;
 
   const Problem& problem_;

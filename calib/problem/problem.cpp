@@ -196,6 +196,8 @@ double Problem::coarse_tolerance() const { return std::max(kCoarseTolerance, tol
 double Problem::tolerance_of(std::size_t condition, const Fidelity& fidelity) const {
   if (!fidelity.exact) return coarse_tolerance();
   if (tolerance_fixed) return tolerance;
+  const double measured = conditions[condition].measured_tolerance;
+  if (measured > 0.0) return std::max(tolerance, measured);
   double least = std::numeric_limits<double>::infinity();
   for (const ProblemCondition& each : conditions) least = std::min(least, relative_noise(each));
   const double own = relative_noise(conditions[condition]);

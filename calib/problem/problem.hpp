@@ -56,6 +56,8 @@ struct ProblemCondition {
   std::vector<int> free;               ///< table indices of the acting unknowns
   std::size_t first_period_rows = 0;   ///< number of `rows` that are in the first period
   long max_steps = 0;                  ///< budget of one simulation
+  /// Tolerance of a recorded drive, as measured (measured_tolerance.hpp); 0: it was not.
+  double measured_tolerance = 0.0;
 
   /// Number of `rows` within the horizon of a fidelity.
   std::size_t rows_at(const Fidelity& fidelity) const;
@@ -73,8 +75,8 @@ struct Problem {
   double tolerance = 0.0;  ///< tolerance of the simulations: the smallest that a condition requires
   bool tolerance_fixed = false;  ///< the campaign fixes it
 
-  /// Tolerance of the simulations of a condition: as much above the least as its noise is, in
-  /// shares of the motion, where that is known of all.
+  /// Tolerance of the simulations of a condition: the measured one, else as much above the least as
+  /// its noise is, in shares of the motion, where that is known of all.
   double tolerance_of(std::size_t condition, const Fidelity& fidelity = Fidelity::full) const;
   /// Tolerance far from an optimum.
   double coarse_tolerance() const;

@@ -147,9 +147,10 @@ ConditionScore score_condition(const Problem& problem, std::size_t i, std::span<
   std::vector<model::Output> outputs = condition.outputs;
   outputs.push_back(model::Output::servo_flow);
   outputs.push_back(model::Output::leakage_flow);
-  const model::Simulation run =
-      model::simulate(condition.rig, problem.values_at(i, z), {}, condition.inputs, score.time_s,
-                      outputs, problem.simulation_options());
+  model::SimulationOptions options = problem.simulation_options();
+  if (condition.measured_tolerance > 0.0) options.tolerance = problem.tolerance_of(i);
+  const model::Simulation run = model::simulate(condition.rig, problem.values_at(i, z), {},
+                                                condition.inputs, score.time_s, outputs, options);
   if (!run.ok()) {
     score.failure =
         fmt::format("{} at {:g} s ({})", run.reason, run.failed_at_s, model::to_string(run.status));

@@ -8,6 +8,8 @@
 #include <map>
 #include <set>
 
+#include "calib/problem/measured_tolerance.hpp"
+
 namespace rigcal::calib {
 namespace {
 
@@ -50,7 +52,8 @@ std::map<datasets::Channel, double> pooled_rms(Problem& problem, const Evaluatio
 /// Sets every estimated standard deviation to the pooled residual of its channel, and derives the
 /// tolerance of the simulations from it. Returns the largest relative change of a standard
 /// deviation.
-double update(Problem& problem, const Evaluation& optimum) {
+double update(Problem& problem, const Evaluation& optimum, int threads,
+              const std::atomic<bool>* cancel) {
   const auto pooled = pooled_rms(problem, optimum);
   double largest = 0.0;
   const auto set = [&](ProblemChannel& channel, double) {
@@ -63,6 +66,7 @@ double update(Problem& problem, const Evaluation& optimum) {
     // Never coarser again: each change is another cost, which has its minimum elsewhere.
     problem.tolerance = std::min(problem.tolerance, tolerance_from_noise(problem.conditions, true));
     for_each_estimated(problem, optimum, set);  // a finer simulation resolves more
+    refine_tolerances(problem, optimum.z, threads, cancel);
   }
   return largest;
 }
@@ -109,7 +113,9 @@ void estimate_weights(Problem& problem, Evaluator& evaluator, const FitOptions& 
   bool settled = false;
   for (int round = 0; round < kMaxRounds && !settled; ++round) {
     if (found.result.status != FitStatus::converged || evaluator.budget().spent()) break;
-    settled = update(problem, found.optimum) <= kSettled;
+    const double change =
+        update(problem, found.optimum, options.threads, evaluator.budget().cancel());
+    settled = change <= kSettled;
     if (!search_on(problem, evaluator, options, found)) break;
   }
   if (!settled && evaluator.budget().spent() && found.result.status == FitStatus::converged) {

@@ -213,7 +213,7 @@ std::optional<LikelyDifference> likely_difference(CauseEffects& effects,
   double all = 0.0;
   for (std::size_t i = 0; i < scores.size(); ++i) {
     if (scores[i].cols() == 0) continue;
-    const MatrixXd unit = cause_scores(effects, i, rows[i].jacobian);
+    const MatrixXd unit = cause_scores(effects, i, rows[i].all_rows());
     all += scores[i].squaredNorm();
     for (Index c = 0; c < count; ++c) {
       const double square = unit.col(c).squaredNorm();

@@ -242,6 +242,7 @@ Problem with_known(const Problem& problem, const std::vector<datasets::Record>& 
   fixed.tolerance_fixed = problem.tolerance_fixed;
   for (std::size_t i = 0; i < fixed.conditions.size(); ++i) {
     fixed.conditions[i].max_steps = problem.conditions[i].max_steps;
+    fixed.conditions[i].measured_tolerance = problem.conditions[i].measured_tolerance;
     for (std::size_t k = 0; k < fixed.conditions[i].channels.size(); ++k)
       fixed.conditions[i].channels[k].sd = problem.conditions[i].channels[k].sd;
   }

@@ -31,8 +31,7 @@ struct ChannelRows {
 
 ChannelRows channel_rows(const ScoreRows& rows, Index channel) {
   const Index samples = rows.residual.size() / rows.channels;
-  return {rows.jacobian.middleRows(channel * samples, samples),
-          rows.residual.segment(channel * samples, samples)};
+  return {rows.rows(channel * samples, samples), rows.residual.segment(channel * samples, samples)};
 }
 
 /// L^T J: y[t] = x[t] + sum_k phi[k] y[t + 1 + k].
@@ -267,6 +266,16 @@ double own_in(const ScoreScatter& scatter, const ArrowRoot& combinations, Index 
 }
 
 }  // namespace
+
+void ScoreRows::make_narrow() {
+  narrow = jacobian.cast<float>();
+  jacobian.resize(0, 0);
+}
+
+MatrixXd ScoreRows::rows(Index first, Index count) const {
+  if (narrow.rows() > 0) return narrow.middleRows(first, count).cast<double>();
+  return jacobian.middleRows(first, count);
+}
 
 std::vector<ScoreScatter> score_scatter(const std::vector<ScoreRows>& rows,
                                         const ArrowMatrix& priors, const ArrowRoot& combinations,

@@ -69,7 +69,7 @@ std::vector<Eigen::MatrixXd> scores_of_repeats(const Problem& problem, std::span
         repeat_deviations(problem.conditions[i], explained_by_inputs(problem, i, z));
     const Eigen::MatrixXd declared = explained_by_declared(problem, i, z, deviations);
     if (declared.size() > 0) deviations -= declared;
-    result[i] = repeat_scores(rows[i].jacobian, deviations);
+    result[i] = repeat_scores(rows[i].all_rows(), deviations);
   });
   return result;
 }
@@ -211,6 +211,7 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
   if (difference) difference->p = difference_by_noise(effects, difference->cause);
   if (difference && (difference->p < kDifferenceLevel || result.repeats_differ()))
     result.difference = difference;
+  for (ScoreRows& each : scores) each.make_narrow();
   result.scores = std::move(scores);
   return result;
 }

@@ -135,5 +135,34 @@ TEST_CASE("refit: unknowns and effect end at the truth of noiseless records", "[
   CHECK(*found->held_out >= found->squares);
 }
 
+TEST_CASE("refit: the derivative by the error of a sensor takes no simulation", "[calib]") {
+  Twin twin;
+  twin.free("mass", 85.0, 20.0, 400.0);
+  twin.add("sine", datasets::Waveform::sine, 3.0, 0.02);
+  const auto records = twin.records(400, 1000.0, 1);
+  const Problem problem =
+      make_problem(twin.campaign, records, {&twin.campaign.conditions[0]}, false, nullptr);
+  const std::vector<double> z = problem.start();
+  std::vector<Effect> effects = effects_of(problem, z);
+  std::erase_if(effects, [](const Effect& each) {
+    return each.about.key != "position_bow" && each.about.key != "coulomb_friction";
+  });
+  REQUIRE(effects.size() == 2);
+  const Eigen::Index bow = effects[0].is_of_sensor() ? 0 : 1;
+  const Eigen::VectorXd sizes = Eigen::VectorXd::Constant(2, 0.7);
+  const auto with = outputs_with(problem, 0, z, effects, sizes, Derivatives::of_unknowns, nullptr);
+  Eigen::VectorXd further = sizes;
+  further(bow) += kEffectStep;
+  const auto there =
+      outputs_with(problem, 0, z, effects, further, Derivatives::of_unknowns, nullptr);
+  REQUIRE(with.by_sensor.cols() == 2);
+  const Eigen::VectorXd difference = (there.outputs - with.outputs) / kEffectStep;
+  CHECK(difference.norm() > 0.1);
+  CHECK((with.by_sensor.col(bow) - difference).norm() < 1e-9 * difference.norm());
+  CHECK(with.by_sensor.col(1 - bow).norm() == 0.0);
+  CHECK(outputs_with(problem, 0, z, effects, sizes, Derivatives::none, nullptr).by_sensor.cols() ==
+        0);
+}
+
 }  // namespace
 }  // namespace rigcal::calib

@@ -117,6 +117,24 @@ TEST_CASE("sandwich: white noise gives the plain covariance", "[calib]") {
   CHECK(scatter[0].freedom.minCoeff() > 500.0);
 }
 
+TEST_CASE("sandwich: rows of seven digits give the same covariance", "[calib]") {
+  constexpr Index kSamples = 400;
+  Noise noise(3);
+  ScoreRows wide;
+  wide.jacobian = slow_model(kSamples);
+  wide.residual = noise.draw(kSamples, 0.5);
+  wide.channels = 2;
+  ScoreRows narrow = wide;
+  narrow.make_narrow();
+  CHECK(narrow.jacobian.size() == 0);
+  CHECK((narrow.all_rows() - wide.jacobian).norm() < 1e-6 * wide.jacobian.norm());
+  CHECK((narrow.rows(200, 50) - wide.jacobian.middleRows(200, 50)).norm() < 1e-6);
+  const MatrixXd unit = MatrixXd::Identity(3, 3);
+  const auto exact = score_scatter({wide}, MatrixXd::Zero(3, 3), unit);
+  const auto found = score_scatter({narrow}, MatrixXd::Zero(3, 3), unit);
+  CHECK((found[0].covariance - exact[0].covariance).norm() < 1e-5 * exact[0].covariance.norm());
+}
+
 TEST_CASE("sandwich: intervals cover under white, correlated and uneven noise", "[calib]") {
   const MatrixXd model = slow_model(1500);
   // Binomial, the three directions of a draw independent: 600 at 95 % scatter by 0.9 %; 3.5 times.

@@ -1,0 +1,98 @@
+#include "calib/problem/measured_tolerance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "calib/problem/evaluation.hpp"
+#include "common/parallel.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+/// Tolerances of the two simulations that are compared. Errors grow about as the tolerance, so the
+/// difference is nearly the error of the coarser one. Beyond that the derivatives would be too
+/// coarse.
+constexpr double kCoarserRun = 1e-5;
+constexpr double kFinerRun = 1e-6;
+/// Norm of the errors of all residuals, each over its standard deviation. At worst the estimates
+/// move by so many standard errors; errors that change their sign move them less.
+constexpr double kHarmless = 0.005;
+/// Factor by which a tolerance must be too coarse before it is changed.
+constexpr double kMuchFiner = 2.0;
+
+/// Root mean square of the difference between both simulations over the standard deviation; NaN if
+/// one fails.
+double simulation_error(const Problem& problem, std::size_t i, std::span<const double> z,
+                        const std::atomic<bool>* cancel) {
+  const ProblemCondition& data = problem.conditions[i];
+  const auto run = [&](double tolerance) {
+    return model::simulate(data.rig, problem.values_at(i, z), std::vector<int>(), data.inputs,
+                           data.fit_times(), data.outputs,
+                           simulation_options(problem, i, tolerance, cancel));
+  };
+  const model::Simulation coarser = run(kCoarserRun);
+  if (!coarser.ok()) return std::nan("");
+  const model::Simulation finer = run(kFinerRun);
+  if (!finer.ok()) return std::nan("");
+  double squares = 0.0;
+  for (std::size_t k = 0; k < data.channels.size(); ++k) {
+    const auto column = static_cast<Eigen::Index>(k);
+    for (const std::size_t row : data.rows) {
+      const auto sample = static_cast<Eigen::Index>(row);
+      const double error = coarser.outputs(sample, column) - finer.outputs(sample, column);
+      squares += error * error / (data.channels[k].sd * data.channels[k].sd);
+    }
+  }
+  return std::sqrt(squares / static_cast<double>(data.rows.size() * data.channels.size()));
+}
+
+/// Whether the samples of the record drive the rig.
+bool has_recorded_drive(const ProblemCondition& condition) {
+  return condition.condition->waveform == datasets::Waveform::recorded &&
+         !condition.record->generated_drive;
+}
+
+/// The measured tolerance of each condition; 0 where there is none.
+std::vector<double> measure_all(const Problem& problem, std::span<const double> z, int threads,
+                                const std::atomic<bool>* cancel) {
+  const double harmless = kHarmless / std::sqrt(static_cast<double>(problem.residual_count()));
+  std::vector<double> result(problem.conditions.size(), 0.0);
+  const auto& unknowns = problem.map.unknowns();
+  const bool nuisance_alone =
+      !unknowns.empty() &&
+      std::all_of(unknowns.begin(), unknowns.end(), [](const auto& each) { return each.nuisance; });
+  if (problem.tolerance_fixed || nuisance_alone) return result;
+  parallel_for(result.size(), threads, [&](std::size_t i) {
+    if (!has_recorded_drive(problem.conditions[i])) return;
+    const double error = simulation_error(problem, i, z, cancel);
+    if (std::isnan(error)) return;
+    result[i] = error > harmless ? kCoarserRun * harmless / error : kCoarserRun;
+  });
+  return result;
+}
+
+}  // namespace
+
+void measure_tolerances(Problem& problem, std::span<const double> z, int threads,
+                        const std::atomic<bool>* cancel) {
+  const std::vector<double> found = measure_all(problem, z, threads, cancel);
+  for (std::size_t i = 0; i < found.size(); ++i)
+    problem.conditions[i].measured_tolerance = found[i];
+}
+
+bool refine_tolerances(Problem& problem, std::span<const double> z, int threads,
+                       const std::atomic<bool>* cancel) {
+  const std::vector<double> found = measure_all(problem, z, threads, cancel);
+  bool changed = false;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    double& own = problem.conditions[i].measured_tolerance;
+    const double least = std::max(found[i], problem.tolerance);
+    if (!(found[i] > 0.0) || !(own > kMuchFiner * least)) continue;
+    own = least;
+    changed = true;
+  }
+  return changed;
+}
+
+}  // namespace rigcal::calib
