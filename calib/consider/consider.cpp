@@ -67,7 +67,7 @@ struct Seen {
 };
 
 /// What each effect does to the rows of a condition, shape (channels * samples, effects). Those of
-/// all conditions are the most memory that a fit holds, hence seven digits.
+/// all conditions take the most memory of a fit, hence seven digits.
 using EffectColumns = Eigen::MatrixXf;
 
 /// Removes effects that cannot be simulated, and records the reason.
@@ -765,7 +765,7 @@ void consider_effects(const Problem& problem, std::span<const double> z, const U
       test_alone(*seen, scores, considered.effects);
       missing = missing_effects(*seen, scores, considered.effects);
     }
-    // Of what was seen only the residual is still needed, and a refit needs as much memory.
+    // Only the residual is still needed, and a refit needs as much memory.
     for (ScoreRows& each : seen->rows) each.narrow.resize(0, 0);
     models =
         refit_best(problem, z, found, *seen, scores, threads, cancel, considered.effects, missing);

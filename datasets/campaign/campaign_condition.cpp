@@ -79,7 +79,7 @@ const KeyTable<RepeatPattern>& repeat_keys() {
             pattern.numbers = read_numbers(node);
           },
           {.doc =
-               "What `{n}` stands for: `\"01..10\"` (zeros in front are kept) or a list of texts",
+               "Text in place of `{n}`: `\"01..10\"` (zeros in front are kept) or a list of texts",
            .otherwise = "none",
            .example = "\"01..10\""}),
       Row::described("columns", columns,
@@ -307,7 +307,7 @@ const KeyTable<Condition>& condition_keys() {
                  .otherwise = "none",
                  .example = "\"averaged/sine.csv\""}),
       Row::whole("repeats_averaged", &Condition::repeats_averaged, 1, 1'000'000,
-                 {.doc = "How many repeats `averaged` holds"}),
+                 {.doc = "Number of repeats behind `averaged`"}),
       Row::whole("planned_repeats", &Condition::planned_repeats, 1, 1'000'000,
                  {.doc = "How many repeats `plan` plans of a condition without a record",
                   .otherwise = "as the campaign's noise is stated",
@@ -325,7 +325,7 @@ const KeyTable<Condition>& condition_keys() {
           "windows", &Condition::moving_windows, {{"moving", true}},
           {.doc = "Found from the record (below), in place of `window`", .otherwise = "none"}),
       Row::quantity("duration", &Condition::duration_s, "s", kDurations_s,
-                    {.doc = "How long, where there is no record; a record that is shorter is told",
+                    {.doc = "Duration without a record; a shorter record causes a warning",
                      .otherwise = "that of `[synthetic]`"}),
       Row::quantity(
           "sample_rate", &Condition::sample_rate_hz, "Hz", kSampleRates_hz,

@@ -84,7 +84,7 @@ const KeyTable<DiagnosisSettings>& diagnosis_keys() {
       Row::number("false_alarms", &DiagnosisSettings::false_alarms, probability,
                   {.doc = "How often a healthy record may be taken for a leaking one"}),
       Row::number("detection", &DiagnosisSettings::detection, probability,
-                  {.doc = "Share of leaks of the smallest told size that are found"}),
+                  {.doc = "Fraction of leaks of the smallest detectable size that are found"}),
       Row::text("duty", &DiagnosisSettings::duty, "the id of a condition",
                 {.doc = "Id of the condition at whose signal the share of a machine's state is "
                         "stated",

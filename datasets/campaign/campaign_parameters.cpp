@@ -105,7 +105,7 @@ KeyTable<ParameterSetting> setting_keys(const KeyForm& value) {
           {.doc = "The value differs at random from one repeat to the next about `start`, with "
                   "this standard deviation: it is estimated for every condition, as a nuisance "
                   "parameter whose prior has this standard deviation over the root of the number "
-                  "of repeats. Stands without `fit`, `scope`, `prior` and `nuisance`; bounds are "
+                  "of repeats. Not with `fit`, `scope`, `prior` or `nuisance`; bounds are "
                   "eight standard deviations unless given",
            .otherwise = "none"}),
   });

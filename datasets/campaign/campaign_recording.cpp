@@ -93,12 +93,13 @@ std::vector<KeyRow<ChannelSetting>> column_rows() {
   using Row = KeyRow<ChannelSetting>;
   const auto text = plain_form(KeyForm::Kind::text);
   return {
-      Row::described("column", text,
-                     {.doc = "Name in the header, without its unit; in other files what stands "
-                             "below. Channels without one are read only where `columns` of a "
-                             "repeat names it; `time` needs one",
-                      .otherwise = "none",
-                      .example = "\"x_mm\""}),
+      Row::described(
+          "column", text,
+          {.doc = "Name in the header, without its unit; in other files as "
+                  "described below. Channels without one are read only where `columns` of a "
+                  "repeat names it; `time` needs one",
+           .otherwise = "none",
+           .example = "\"x_mm\""}),
       Row::described("unit", text,
                      {.doc = "Unit of the column; compared with the one in the file (below)",
                       .example = "\"mm\"",
@@ -286,7 +287,7 @@ const KeyTable<Campaign>& recording_keys() {
                     {.doc = "Only with `initial = \"record\"` or `\"fit\"`"}),
       Row::word<char>("separator", &Campaign::separator,
                       {{",", ','}, {";", ';'}, {"\t", '\t'}, {" ", ' '}},
-                      {.doc = "Between the columns of a CSV file; a blank stands for any number "
+                      {.doc = "Between the columns of a CSV file; a blank means any number "
                               "of them",
                        .otherwise = "detected"}),
       Row::quantity("decimate_to", &Campaign::decimate_to_hz, "Hz", kSampleRates_hz,

@@ -203,8 +203,8 @@ const KeyTable<AcceptanceBounds>& bound_keys() {
                   {.doc = "Lack of fit that is accepted without reservation: standard deviation of "
                           "the model's error over that of the noise of a record's mean"}),
       Row::described(kNegligible, known_values_form(ParameterGroup::any),
-                     {.doc = "Up to which size a parameter does not matter that cannot be told "
-                             "from zero, `leakage_coefficient = 0.01`",
+                     {.doc = "Size up to which a parameter does not matter if it is not "
+                             "significantly different from zero, `leakage_coefficient = 0.01`",
                       .otherwise = "a fifth of what the same parameter is at another leak level or "
                                    "condition"}),
       Row::described(

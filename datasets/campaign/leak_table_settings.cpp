@@ -190,9 +190,9 @@ KeyTable<Assumption> assumption_keys(const KeyForm& value) {
   const std::string with_fit = "needed with `fit = true`";
   return KeyTable<Assumption>({
       Row::described("value", quantity, {.doc = "The assumed value", .needed = "a value"}),
-      Row::text("source", &Assumption::source, "a text in quotes",
-                {.doc = "Where it comes from; stands in the results",
-                 .needed = "where the value comes from"}),
+      Row::text(
+          "source", &Assumption::source, "a text in quotes",
+          {.doc = "Where it comes from, for the results", .needed = "where the value comes from"}),
       Row::flag("fit", &Assumption::fit, {.doc = "Whether `fit-tables` estimates it"}),
       Row::described("start", quantity,
                      {.doc = "Where `fit-tables` starts", .otherwise = with_fit}),

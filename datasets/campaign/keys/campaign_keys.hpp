@@ -14,8 +14,8 @@ inline constexpr const char* kSchemaFile = "campaign.schema.json";
 /// The keys of a campaign file, from its first table down. The reader reads by them.
 const std::vector<CampaignKey>& campaign_keys();
 
-/// The keys of a table by its path, such as "fit" or "rig.parameters.mass"; a list of tables stands
-/// for one of them. Null if there is no such table.
+/// The keys of a table by its path, such as "fit" or "rig.parameters.mass"; for a list of tables,
+/// those of one of them. Null if there is no such table.
 const std::vector<CampaignKey>* find_campaign_table(std::string_view path);
 
 /// A JSON schema (draft 2020-12) of a campaign file, for editors. What it refuses the reader

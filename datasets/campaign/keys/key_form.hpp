@@ -22,7 +22,7 @@ struct KeyForm {
     text,
     word,  ///< one of `words`
     date,
-    list,     ///< of items like forms[0]
+    list,     ///< items like forms[0]
     entries,  ///< a table whose keys the user chooses, with values like forms[0]
     table,    ///< a table with `keys`
     either,   ///< one of `forms`

@@ -234,7 +234,7 @@ const std::vector<Place>& key_places() {
   return all;
 }
 
-/// The table in which a key stands; of a list of tables the first. Made if it is not there.
+/// Returns the table of a key, the first one of a list of tables. Makes it if it is absent.
 json& table_in(json& campaign, const std::vector<std::string>& tables) {
   json* table = &campaign;
   std::string path;
@@ -260,7 +260,7 @@ json& table_in(json& campaign, const std::vector<std::string>& tables) {
   return *table;
 }
 
-/// Applies a patch, in which an object stands for the first of a list of tables.
+/// Applies a patch. An object in it means the first of a list of tables.
 void patch(json& value, const json& change) {
   for (const auto& [key, each] : change.items()) {
     if (each.is_null()) {
@@ -342,7 +342,7 @@ TEST_CASE("campaign keys: reader and schema accept each", "[datasets]") {
     const json campaign = with_key(place, place.row->key, value_at(place));
     CAPTURE(place.path, campaign.dump());
     CHECK_FALSE(place.row->doc.empty());
-    // Of a table there is a campaign for each of its keys. A position is no drive.
+    // A table has a campaign for each of its keys. A position is no drive.
     if (find_campaign_table(place.path) != nullptr) continue;
     if (place.path == "recording.channels.position.recognise") continue;
     CHECK(refusal_of(campaign) == "");

@@ -15,7 +15,7 @@ namespace {
 model::ParameterValues complete_values(model::PlantKind plant) {
   auto values = model::ParameterValues::defaults(plant);
   for (const std::string& key : values.missing()) values.set(key, 1.0);
-  values.set("valve_gain", 1.0);  // of an electric valve
+  values.set("valve_gain", 1.0);  // the valve is electric
   return values;
 }
 
