@@ -287,9 +287,10 @@ int main(int argc, char** argv) {
     return 2;
   }
   std::cout << fmt::format(
-      "| {} campaigns each | holds the truth, % ({}) | warned, % | of those not warned, % | plain "
-      "interval, % | median half width, % of the truth |\n| --- | --- | --- | --- | --- | --- |\n",
-      campaigns, fmt::join(rigcal::bench::kFree, ", "));
+      "| {} campaigns each | includes the truth, % (`{}`) | warned, % | of those not warned, % | "
+      "plain interval, % | median half width, % of the truth |\n"
+      "| --- | --- | --- | --- | --- | --- |\n",
+      campaigns, fmt::join(rigcal::bench::kFree, "`, `"));
   for (const auto& scenario : rigcal::bench::scenarios()) {
     if (scenario.name.find(only) == std::string::npos) continue;
     rigcal::bench::study(scenario, static_cast<std::size_t>(campaigns), threads);

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Do the intervals of fits to another simulator's records hold the values that it used?
+"""Do the intervals of fits to another simulator's records include the values that it used?
 
     docs/hopsan/truths.py RESULT_DIR...
 """
@@ -24,10 +24,10 @@ def main(*folders):
             held += inside
             factor, unit = scaled(high, each["unit"])
             texts = in_steps_of(factor * (high - low) / 4.0, *(factor * x for x in (each["value"], low, high)))
-            rows.append([pathlib.Path(folder).name, f"`{each['key']}`", f"{factor * truth:g} {unit}".strip(), texts[0],
+            rows.append([f"`{pathlib.Path(folder).name}`", f"`{each['key']}`", f"{factor * truth:g} {unit}".strip(), texts[0],
                          f"{texts[1]} to {texts[2]}", "yes" if inside else "no"])
-    print_table(["fit", "parameter", "truth", "estimate", "95 % interval", "holds the truth"], rows)
-    print(f"\n{held} of {len(rows)} intervals hold the truth.")
+    print_table(["fit", "parameter", "truth", "estimate", "95 % interval", "includes the truth"], rows)
+    print(f"\n{held} of {len(rows)} intervals include the truth.")
 
 
 if __name__ == "__main__":

@@ -45,6 +45,7 @@ class Documents(unittest.TestCase):
 
     def test_names_and_units(self):
         self.assertEqual(self.places("The `bulk_modulus` is 3 m³/Pa or 5 µm.\n"), [])
+        self.assertEqual(self.places("The mass m<sub>2</sub> adds to m.\n"), [])
         for words in ("The bulk_modulus rises.", "It is 3 m3/Pa.", "It is 5 um thick.", "It is 2 cm2."):
             self.assertEqual(self.places(f"{words}\n"), [1], words)
 
