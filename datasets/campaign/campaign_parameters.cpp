@@ -102,10 +102,10 @@ KeyTable<ParameterSetting> setting_keys(const KeyForm& value) {
                 {.doc = "Estimated again in validation, and named there"}),
       Row::described(
           "between_repeats", difference,
-          {.doc = "The value differs at random from one repeat to the next about `start`, with "
-                  "this standard deviation: it is estimated for every condition, as a nuisance "
-                  "parameter whose prior has this standard deviation over the root of the number "
-                  "of repeats. Not with `fit`, `scope`, `prior` or `nuisance`; bounds are "
+          {.doc = "Standard deviation with which the value varies at random from repeat to repeat "
+                  "about `start`. It is estimated for every condition, as a nuisance parameter. "
+                  "The standard deviation of its prior is this one over the root of the number of "
+                  "repeats. Not with `fit`, `scope`, `prior` or `nuisance`; bounds are "
                   "eight standard deviations unless given",
            .otherwise = "none"}),
   });

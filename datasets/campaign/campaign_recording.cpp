@@ -271,9 +271,9 @@ const KeyTable<Campaign>& recording_keys() {
           "initial", &Campaign::initial,
           {{"rest", InitialMode::rest}, {"record", InitialMode::record}, {"fit", InitialMode::fit}},
           {.doc = "State at the first sample. `\"rest\"`: all states zero (two chambers: the "
-                  "pressures hold the load, at half the supply); `\"record\"`: mean over "
+                  "pressures balance the load, at half the supply). `\"record\"`: mean over "
                   "`initial_window`, within which the piston has to rest (a warning says where it "
-                  "moves); `\"fit\"`: estimated per condition"}),
+                  "moves). `\"fit\"`: estimated per condition"}),
       Row::word<model::Before>(
           "before", before,
           {{"hold", model::Before::hold},
