@@ -161,7 +161,7 @@ TEST_CASE("diagnose: classes end where the rows of a leak table of the same rig 
   const Outcome other = diagnosed({"--table", "other/leak_table.json"});
   CHECK(other.exit_code == 2);
   CHECK_THAT(other.err,
-             Contains("another rig: ") && Contains("valve_gain is 20 um/V in the table"));
+             Contains("another rig: ") && Contains("valve_gain is 20 µm/V in the table"));
   const Outcome none = diagnosed({"--table", "fit/fit.json"});
   CHECK(none.exit_code == 2);
   CHECK_THAT(none.err, Contains("rigcal.leak_table/1"));

@@ -173,7 +173,7 @@ TEST_CASE("recordings: a NUL in a quantity is refused", "[apps]") {
   const Outcome outcome = folder.run({"check", "campaign.toml"});
   CHECK(outcome.exit_code == 2);
   CHECK_THAT(outcome.err, Contains("campaign.toml:7:") && Contains("mass") &&
-                              Contains("'60 kg?x' holds a control character"));
+                              Contains("'60 kg?x' contains a control character"));
 }
 
 TEST_CASE("recordings: a text that a spreadsheet would run stays text", "[apps]") {

@@ -60,10 +60,10 @@ time = { column = "sample", unit = "counts" }
 position = { column = "x", unit = "counts" }
 )" + condition("a", ""));
   const std::string reasons = all(diagnosis::obstacles(campaign, true));
-  CHECK_THAT(reasons, Contains("nothing tells damping"));
+  CHECK_THAT(reasons, Contains("damping, stiffness") && Contains("of the rig is unknown"));
   CHECK_THAT(reasons, Contains("no channel command"));
   CHECK_THAT(reasons, Contains("sampling rate"));
-  CHECK_THAT(reasons, Contains("position holds raw counts"));
+  CHECK_THAT(reasons, Contains("position has raw counts"));
   CHECK_THAT(reasons, !Contains("mass,"));
 }
 

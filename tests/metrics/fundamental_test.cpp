@@ -177,7 +177,7 @@ TEST_CASE("fundamental: records that cannot tell are refused", "[metrics]") {
   refuses({0.0, nan, 1.0, 2.0}, {0.0, 1.0, 0.0, 1.0}, 1.0, "time_s[1] is nan");
   refuses({0.0, 0.5, 1.0, 2.0}, {0.0, 1.0, nan, 1.0}, 1.0, "given[2] is nan");
   refuses(times(100, 0.5), sine(times(100, 0.5), 1.0, 1.0, 0.5), 1.0,
-          "cannot tell this frequency from an offset");
+          "cannot separate this frequency from an offset");
   refuses({0.0, 0.1, 0.2, 9.0, 9.5, 10.0}, {0.0, 1.0, 0.0, 1.0, 2.0, 0.0}, 0.3,
           "3 samples of the given signal lie in whole periods");
 }

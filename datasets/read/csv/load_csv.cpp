@@ -137,7 +137,7 @@ Header read_header(HeadedLines& lines, const std::string& file, char separator) 
     throw InputError({file},
                      lines.number() == 0
                          ? "is empty; expected a header line with the names of the columns"
-                         : "contains comments only;  expected a header line with the names of "
+                         : "contains comments only; expected a header line with the names of "
                            "the columns");
   const std::string_view line = text;
   const auto fail = [&](const std::string& message) {

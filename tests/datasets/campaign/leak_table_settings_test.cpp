@@ -106,7 +106,7 @@ TEST_CASE("leak_table_settings: errors name the key and what was expected", "[da
   CHECK_THAT(complaint("[0.01, 20]", "[20, 0.01]"), Contains("0 < lowest < highest"));
   CHECK_THAT(complaint("[0.01, 20]", "[1]"), Contains("lowest and the highest"));
   CHECK_THAT(complaint("[\"0.25\", \"1.4\"]", "[\"0.25\"]"),
-             Contains("holds 1 coefficients, but there are 2 targets"));
+             Contains("has 1 coefficients, but there are 2 targets"));
   CHECK_THAT(complaint("\"0.25\"", "0.25"), Contains("in quotes"));
   CHECK_THAT(complaint("\"0.25\"", "\"0,25\""), Contains("in quotes"));
   CHECK_THAT(complaint("\"50\" =", "\"40\" ="), Contains("names no target"));
@@ -131,7 +131,7 @@ TEST_CASE("leak_table_settings: a signal stands once", "[datasets]") {
       "amplitude = \"50.8 mm\"\n";
   CHECK_THROWS_WITH(settings_of(test::replaced(kSection, "[leak_table.features]\n",
                                                again + "[leak_table.features]\n")),
-                    Contains("stands here twice"));
+                    Contains("appears twice"));
 }
 
 TEST_CASE("leak_table_values: assumptions count over the rig's values, --set over both",

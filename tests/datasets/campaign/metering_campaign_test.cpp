@@ -95,14 +95,14 @@ TEST_CASE("load_campaign: what does not go together behind a valve of two chambe
     const char* message;
   };
   for (const Row& row : {
-           Row{"valve_gain = \"0.1 mm/V\"", "pilot_gain stands together with valve_gain"},
+           Row{"valve_gain = \"0.1 mm/V\"", "pilot_gain and valve_gain are both given"},
            Row{"overlap_a_to_tank = \"0.1 V\"",
                "overlap_a_to_tank is in volts, and pilot_gain makes the pilot pressure the drive: "
                "expected overlap_a_to_tank out, or return_dead_band"},
            Row{"valve_exponent = 2", "or pilot_exponent for a power law"},
            Row{"valve_null_opening = \"0.1 V\"", "or valve_null_leakage for a leak"},
            Row{"pilot_exponent = 2\nopening_40 = 0.3",
-               "opening_40 (an opening by a table) stands together with pilot_exponent"},
+               "opening_40 (an opening by a table) is combined with pilot_exponent"},
            Row{"opening_40 = 0.9", "opening_60 = 0.6 is below opening_40 = 0.9"},
            Row{"accumulator_volume = \"1 L\"", "expected accumulator_precharge as well"},
            Row{"accumulator_precharge = \"80 bar\"", "expected accumulator_volume"},
@@ -118,7 +118,7 @@ TEST_CASE("load_campaign: what does not go together behind a valve of two chambe
                       Catch::Contains(row.message));
   }
   CHECK_THROWS_WITH(load_text(replaced(kSlide, kGain, "")),
-                    Catch::Contains("nothing tells the gain of the valve"));
+                    Catch::Contains("the gain of the valve is unknown"));
   CHECK_THROWS_WITH(
       load_text(replaced(replaced(kSlide, "type = \"none\"", "type = \"pid\"\nkp = \"10 V/m\""),
                          "pilot_pressure = { column = \"out_bar\", minus = \"in_bar\", unit = "

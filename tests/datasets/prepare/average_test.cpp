@@ -177,7 +177,8 @@ TEST_CASE("average: of two repeats that disagree neither is named the wrong one"
   for (double& value : repeats[1].values[Channel::position]) value += 0.3;
   const Record record = average("c", repeats, {});
   REQUIRE(record.warnings.size() == 1);
-  CHECK_THAT(record.warnings[0], Contains("r0.csv and r1.csv") && Contains("cannot be told"));
+  CHECK_THAT(record.warnings[0],
+             Contains("r0.csv and r1.csv") && Contains("unknown which one is wrong"));
   CHECK_FALSE(record.repeat_reports[0].outlier);
   CHECK_FALSE(record.repeat_reports[1].outlier);
 }
@@ -198,7 +199,7 @@ TEST_CASE("average: hum and coarse steps are named", "[datasets]") {
     for (double& x : repeats[r].values[Channel::position]) x = std::round(x / 0.04) * 0.04;
   }
   CHECK_THAT(average("steps", repeats, {}).warnings.front(),
-             Contains("position: readings come in steps of 0.04 m, and the repeats scatter by"));
+             Contains("position: readings come in steps of 0.04 m, and the repeats differ by"));
 }
 
 TEST_CASE("average: a single repeat has no false standard deviation", "[datasets]") {

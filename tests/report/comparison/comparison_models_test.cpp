@@ -111,7 +111,7 @@ TEST_CASE("models: what is not nested is told by the criteria alone", "[report]"
   friction["value"] = 2000.0;
   known.result["parameters"].push_back(friction);
   CHECK_THAT(models_json({known, bounded})[1]["reason"].get<std::string>(),
-             Contains("coulomb_friction lies outside the bounds"));
+             Contains("coulomb_friction is outside the bounds"));
   // The model with the additional term fits worse, so its fit is not at a minimum.
   const Json worse = models_json({mass_alone("plain", 520.0), with_friction("friction", 900.0)});
   CHECK_THAT(worse[1]["reason"].get<std::string>(),

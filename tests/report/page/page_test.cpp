@@ -247,9 +247,10 @@ TEST_CASE("page: says at its top what cannot be trusted", "[report]") {
     json["message"] = "the bootstrap was stopped by the time limit";
     const std::string html = page(json);
     CHECK_THAT(word_of(html), Contains("STOPPED"));
-    CHECK_THAT(html, Contains("The fit converged and was scored; not all that was asked for") &&
-                         Contains("the bootstrap was stopped by the time limit") &&
-                         !Contains("not of a calibration"));
+    CHECK_THAT(html,
+               Contains("The fit converged and was scored; further work that was requested") &&
+                   Contains("the bootstrap was stopped by the time limit") &&
+                   !Contains("not of a calibration"));
     json["verdict"] = "FAIL";
     CHECK_THAT(word_of(page(json)), Contains("FAIL"));
   }
@@ -400,9 +401,9 @@ TEST_CASE("page: what a fit holds beyond is drawn, what it lacks is left out", "
   CHECK_THAT(html, Contains("mass: lower end 84.9 kg, open at its upper end: followed to 500 kg"));
   CHECK_THAT(html, Contains("only valve_gain / &lt;mass&gt; is fixed"));
   CHECK_THAT(html, Contains("Significant lack of fit."));
-  CHECK_THAT(html, !Contains("is missing or holds no rows"));
+  CHECK_THAT(html, !Contains("is missing or has no rows"));
   json["conditions"][0]["id"] = "lost";
-  CHECK_THAT(page(json), Contains("residuals/lost.csv is missing or holds no rows"));
+  CHECK_THAT(page(json), Contains("residuals/lost.csv is missing or has no rows"));
 }
 
 TEST_CASE("page: long lists are folded, with their number", "[report]") {

@@ -53,7 +53,8 @@ TEST_CASE("fit on a terminal: what was stopped says so first and grades nothing"
                                 !Contains("identified") && !Contains("WARN"));
   // After the search the estimates are shown, and the missing steps are named.
   scene.fit.stopped_in = calib::StoppedIn::bootstrap;
-  CHECK_THAT(scene.shown(), StartsWith("STOPPED: ") && Contains("not all that was asked for") &&
+  CHECK_THAT(scene.shown(), StartsWith("STOPPED: ") &&
+                                Contains("further work that was requested") &&
                                 Contains("identified") && Contains("± 0.20"));
   scene.fit.status = calib::FitStatus::converged;
   CHECK_THAT(scene.shown(), StartsWith("WARN: "));

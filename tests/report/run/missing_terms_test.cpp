@@ -14,6 +14,7 @@ TEST_CASE("missing_terms: a line for each term that a campaign may estimate", "[
            {"kp", 0.3},
            {"total_volume", 1e-6},
            {"position_wave", 1e-4},
+           {"sample_time", 1e-3},
            {"coulomb_friction", std::nullopt}}) {
     calib::ConsideredEffect& effect = considered.effects.emplace_back();
     effect.key = key;
@@ -22,7 +23,7 @@ TEST_CASE("missing_terms: a line for each term that a campaign may estimate", "[
   }
   considered.missing.emplace_back("kd");  // that no effect has
   const auto terms = missing_terms(model::PlantKind::load_pressure, considered);
-  REQUIRE(terms.size() == 3);
+  REQUIRE(terms.size() == 4);
   CHECK(terms[0].line ==
         "valve_time_constant = { start = \"0.0002 s\", lower = \"1e-06 s\", upper = \"0.0022 s\", "
         "fit = true }");

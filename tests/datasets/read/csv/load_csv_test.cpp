@@ -261,7 +261,7 @@ TEST_CASE("load_csv: empty lines inside", "[datasets]") {
 TEST_CASE("load_csv: nothing to read", "[datasets]") {
   CHECK_THAT(refusal(""), StartsWith("a.csv: is empty; expected a header line"));
   CHECK_THAT(refusal("\xEF\xBB\xBF"), StartsWith("a.csv:1:1: is an empty line"));
-  CHECK_THAT(refusal("# only\n# comments\n"), StartsWith("a.csv: holds comments only"));
+  CHECK_THAT(refusal("# only\n# comments\n"), StartsWith("a.csv: contains comments only"));
   CHECK_THAT(refusal("t,x\n"), StartsWith("a.csv:1: no rows after the header"));
   CHECK_THAT(refusal("t,x\n\n\n"), StartsWith("a.csv:1: no rows after the header"));
 }

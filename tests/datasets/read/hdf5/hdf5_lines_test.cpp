@@ -337,7 +337,7 @@ TEST_CASE("load_hdf5: 12 million numbers of one file, those of other columns cou
   CHECK_THAT(read_refusal(path, columns),
              Contains("'/x' has 100000 rows, which with the 12000000 numbers of other columns"));
   CHECK_THAT(read_refusal(path, {"/wide(:,1)"}),
-             Contains("'/wide(:,1)' stands in arrays of 2000 numbers each, 7000 of them: more than "
+             Contains("'/wide(:,1)' has arrays of 2000 numbers each, 7000 of them: more than "
                       "12000000 in all"));
 }
 

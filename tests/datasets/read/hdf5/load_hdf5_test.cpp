@@ -318,8 +318,8 @@ TEST_CASE("load_hdf5: numbers are unpacked, and missing ones refused", "[dataset
   CHECK_THAT(read_refusal(path, {"/text"}),
              Contains("the attribute 'scale_factor' of '/text' is not one finite number"));
   CHECK_THAT(read_refusal(path, {"/gone"}),
-             Contains("row 3 of '/gone' is 3, which stands for a missing value"));
-  CHECK_THAT(read_refusal(path, {"/lost"}), Contains("row 4 of '/lost' is 4, which stands for"));
+             Contains("row 3 of '/gone' is 3, which means a missing value"));
+  CHECK_THAT(read_refusal(path, {"/lost"}), Contains("row 4 of '/lost' is 4, which means"));
   CHECK_THAT(read_refusal(path, {"/single"}), Contains("row 2 of '/single' is -999.9"));
 }
 
@@ -336,7 +336,7 @@ TEST_CASE("load_hdf5: what was written in part only is refused", "[datasets]") {
   }
   CHECK(read_columns(path, {"/whole"}) == Table{{1, 2, 3, 4, 5}});
   CHECK_THAT(read_refusal(path, {"/half"}), Contains("rows 5 to 6 of '/half' were never written"));
-  CHECK_THAT(read_refusal(path, {"/torn"}), Contains("row 4 of '/torn' is 3.25, which stands for"));
+  CHECK_THAT(read_refusal(path, {"/torn"}), Contains("row 4 of '/torn' is 3.25, which means"));
   // A zero may be a real value.
   CHECK(read_columns(path, {"/zero"}) == Table{{1, 2, 3, 0}});
 }

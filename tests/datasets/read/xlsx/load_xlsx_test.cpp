@@ -145,7 +145,7 @@ TEST_CASE("load_xlsx: what is no number is named with its cell", "[datasets]") {
   }
   CHECK_THAT(refusal_of_sheet(third(no_cell()),
                               "<mergeCells count=\"1\"><mergeCell ref=\"B2:B3\"/></mergeCells>"),
-             Contains("Log!B3 belongs to the merged cells B2:B3, of which the first alone"));
+             Contains("Log!B3 belongs to the merged cells B2:B3, of which only the first"));
 }
 
 TEST_CASE("load_xlsx: rows and headers that do not fit", "[datasets]") {

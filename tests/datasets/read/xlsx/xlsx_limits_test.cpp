@@ -392,7 +392,7 @@ TEST_CASE("load_xlsx: parts by their references, whatever these look like", "[da
     CHECK(with_target(target).read() == Table{{0}, {1}});
   }
   CHECK_THAT(with_target("worksheets/sheet1.xml", "chartsheet").refusal(),
-             Contains("holds no worksheet"));
+             Contains("contains no worksheet"));
   CHECK_THAT(with_target("sheet1.xml").refusal(), Contains("lacks its part 'xl/sheet1.xml'"));
   CHECK_THAT(with_target("../sheet1.xml").refusal(), Contains("lacks its part 'sheet1.xml'"));
 }
