@@ -24,8 +24,10 @@ TEST_CASE("printable: what a terminal would obey is shown", "[common]") {
                "\\u202A\\u2066\\u2069\\u200E\\u200F\\u061C"},
            Row{"\u2028", "\\u2028"},
            Row{"\xff\xc0\xaf\xed\xa0\x80", "\\xFF\\xC0\\xAF\\xED\\xA0\\x80"},  // not UTF-8
-           Row{"\xe2\x82", "\\xE2\\x82"},                                      // truncated
-           Row{"\xf4\x90\x80\x80", "\\xF4\\x90\\x80\\x80"},                    // beyond Unicode
+           Row{"\xe0\x80\xaf\xf0\x80\x80\xaf",
+               "\\xE0\\x80\\xAF\\xF0\\x80\\x80\\xAF"},       // more bytes than needed
+           Row{"\xe2\x82", "\\xE2\\x82"},                    // truncated
+           Row{"\xf4\x90\x80\x80", "\\xF4\\x90\\x80\\x80"},  // beyond Unicode
        })
     CHECK(printable(row.text) == row.shown);
 }
