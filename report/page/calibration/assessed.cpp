@@ -42,7 +42,7 @@ std::string rule_words(datasets::DecisionRule rule) {
   switch (rule) {
     case datasets::DecisionRule::simple:
       return "Scores are compared with the campaign's limits as they are; their own uncertainty is "
-             "not taken off.";
+             "not considered.";
     case datasets::DecisionRule::guard_band:
       return "PASS where a score keeps its limit by more than its expanded uncertainty (95 %, from "
              "the repeats and the stated uncertainty of the sensors); WARN where by less; FAIL "
@@ -56,6 +56,18 @@ double correlation_at(const calib::Correlation& correlation, std::size_t i, std:
   const auto column = static_cast<Eigen::Index>(j);
   const Eigen::MatrixXd& matrix = correlation.matrix;
   return row < matrix.rows() && column < matrix.cols() ? matrix(row, column) : std::nan("");
+}
+
+calib::Correlation correlation_by_key(calib::Correlation correlation,
+                                      const std::vector<StoredParameter>& parameters) {
+  for (std::string& name : correlation.names) {
+    const auto same =
+        std::find_if(parameters.begin(), parameters.end(), [&name](const StoredParameter& p) {
+          return name == p.name || name.starts_with(p.name + " (");
+        });
+    if (same != parameters.end()) name.replace(0, same->name.size(), same->key);
+  }
+  return correlation;
 }
 
 std::string correlation_words(const calib::Correlation& correlation) {

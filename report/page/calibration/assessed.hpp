@@ -42,6 +42,11 @@ std::string rule_words(datasets::DecisionRule rule);
 /// Correlation of two estimates; NaN where it is not known.
 double correlation_at(const calib::Correlation& correlation, std::size_t i, std::size_t j);
 
+/// Returns the correlations with the keys of the campaign as names, as in "valve_gain" and
+/// "leakage_coefficient (leak level 100 %)".
+calib::Correlation correlation_by_key(calib::Correlation correlation,
+                                      const std::vector<StoredParameter>& parameters);
+
 /// Describes how strongly the estimates are correlated. Leaves out estimates without a correlation.
 std::string correlation_words(const calib::Correlation& correlation);
 

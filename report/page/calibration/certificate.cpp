@@ -343,7 +343,8 @@ void add_values(const StoredFit& fit, bool judged, doc::Blocks& blocks) {
     for (const calib::Reason& reason : fit.assessment->parameters.reasons)
       if (reason.code == "exact_values") notes.emplace_back(capitalised(reason.words) + ". ");
   }
-  const std::string correlated = correlation_words(fit.correlation);
+  const std::string correlated =
+      correlation_words(correlation_by_key(fit.correlation, fit.parameters));
   if (!correlated.empty()) notes.emplace_back(correlated);
   if (!notes.empty())
     blocks.emplace_back(doc::Paragraph{std::move(notes), doc::Paragraph::Tone::small});

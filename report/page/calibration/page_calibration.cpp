@@ -40,8 +40,9 @@ doc::Verdict tables_verdict(const StoredTablesFit& fit) {
 Part tables_fit_part(const StoredTablesFit& fit) {
   Part part = part_of(fit, "parameters", "Calibration from published tables", "fit.json");
   part.verdict = tables_verdict(fit);
-  part.sections = {
-      parameters_section(fit.parameters, fit.correlation, fit.status != calib::FitStatus::stopped)};
+  part.sections = {parameters_section(fit.parameters,
+                                      correlation_by_key(fit.correlation, fit.parameters),
+                                      fit.status != calib::FitStatus::stopped)};
   if (!fit.left_out.empty()) {
     doc::Blocks& blocks = part.sections.front().blocks;
     blocks.emplace_back(doc::Heading{{"Published numbers that are left out"}});
@@ -62,7 +63,8 @@ Part fit_part(const Calibration& stored, const ResultFolder& folder) {
   part.sections.push_back(assessment_section(fit));
   if (auto overview = overview_section(stored)) part.sections.push_back(std::move(*overview));
   part.sections.push_back(scores_section(fit, unfinished));
-  part.sections.push_back(parameters_section(fit.parameters, fit.correlation, !unfinished));
+  part.sections.push_back(parameters_section(
+      fit.parameters, correlation_by_key(fit.correlation, fit.parameters), !unfinished));
   part.sections.push_back(conditions_section(stored, folder.threads, folder.curves));
   part.sections.push_back(identifiability_section(fit));
   part.sections.push_back(starts_section(fit));
