@@ -5,9 +5,9 @@
 
 namespace rigcal {
 
-/// Makes a text safe for a terminal. Names of files, columns and campaigns may contain characters
-/// that move the cursor, set the title or reverse the order of the text. Control characters (C0
-/// except line ends, DEL, C1), direction marks, line separators, and bytes that are not UTF-8
+/// Makes text safe to print on a terminal. File, column and campaign names may contain characters
+/// that move the cursor, set the title or reverse the text direction. Control characters (C0
+/// except newlines, DEL, C1), direction marks, line separators, and bytes that are not UTF-8
 /// become "\u001B" or "\xFF". Other text is unchanged. Valid JSON remains valid, with the same
 /// strings.
 ///

@@ -7,8 +7,8 @@
 
 namespace rigcal {
 
-/// Thrown if a text is not a quantity, or not one of the expected dimension. what() gives the text
-/// and what was expected; code that reads a file adds the location.
+/// Thrown if a string is not a quantity, or not one of the expected dimension. what() gives the
+/// string and what was expected; code that reads a file adds the location.
 class QuantityError : public std::invalid_argument {
  public:
   using std::invalid_argument::invalid_argument;

@@ -15,7 +15,7 @@ struct MeasuredMean {
   std::vector<std::vector<double>> deviations;
   double gain_sd = 0.0;    ///< standard uncertainty of the sensor's gain, relative
   double offset_sd = 0.0;  ///< standard uncertainty of the sensor's offset, unit of the mean
-  /// Change of the mean due to one standard uncertainty of each other cause; shape (causes, n)
+  /// Change in the mean due to one standard uncertainty of each other cause; shape (causes, n)
   std::vector<std::vector<double>> changes = {};
 };
 

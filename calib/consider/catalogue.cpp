@@ -63,8 +63,8 @@ constexpr int kPlayRounds = 2;
 /// An effect changes an output by at least a ten-thousandth of its peak. This tolerance resolves a
 /// hundredth of that.
 constexpr double kSecantTolerance = 1e-6;
-/// The same for a recorded drive, as a multiple of the measured tolerance, and its limit: of a
-/// difference between two runs that are alike only the difference of their errors counts.
+/// The same for a recorded drive, as a multiple of the measured tolerance, and its upper limit. It
+/// can be larger, because most of the error cancels in the difference between two similar runs.
 constexpr double kRecordedShare = 30.0;
 constexpr double kLargestSecantTolerance = 3e-5;
 

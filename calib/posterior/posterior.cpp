@@ -22,9 +22,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Standard deviations of the normal approximation around the optimum from which a chain starts. It
-/// is wider than the posterior, so that R-hat can detect chains that have not forgotten their
-/// start.
+/// Chains start from the normal approximation around the optimum, widened by this factor. That is
+/// wider than the posterior, so that R-hat can detect chains that have not forgotten their start.
 constexpr double kScattered = 2.0;
 /// Maximum number of attempts to draw a start point that can be simulated. Each attempt is half as
 /// far from the optimum.

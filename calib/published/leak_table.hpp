@@ -113,9 +113,8 @@ struct LeakTableOptions {
 /// that share of the servo flow leaks, and the published value.
 ///
 /// If the rig's values p are estimates with covariance S, the coefficients C at a share s are
-/// uncertain, too. From s(C, p) = const follows d ln C / dp = -(d ln s / dp) / (d ln s / d ln C) =
-/// g. To first order the variance of ln C is g^T S g, to which the numerical error of the share is
-/// added.
+/// uncertain as well. With s(C, p) constant, d ln C / dp = -(d ln s / dp) / (d ln s / d ln C) = g.
+/// To first order the variance of ln C is g^T S g, plus that of the numerical error of the share.
 ///
 /// @param settings  signals, targets, published numbers, assumptions
 /// @throws NoResultError  if a simulation fails or takes too long to become periodic; says which

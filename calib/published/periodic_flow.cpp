@@ -112,7 +112,7 @@ double sampling_error(const Run& run) {
 }
 
 /// Returns the remaining transient of one flow, relative to the flow (see the header). `noise` is
-/// the difference between two equal periods that the simulation tolerance causes.
+/// the difference that the simulation tolerance causes between two otherwise identical periods.
 double transient_left(const Run& run, FlowColumn column, double noise) {
   const double last = run.mean(column, kEarlyStride);
   const double scale = std::max(last, kNoFlow * run.mean(kServo, kEarlyStride));

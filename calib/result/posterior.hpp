@@ -16,7 +16,7 @@ namespace rigcal::calib {
 struct PosteriorSpread {
   double median = 0.0;
   double sd = 0.0;
-  std::optional<Range> ci95;  ///< quantiles of 2.5 and 97.5 %
+  std::optional<Range> ci95;  ///< 2.5 % and 97.5 % quantiles
   double r_hat = 0.0;         ///< rank-normalised, split
   double bulk_draws = 0.0;    ///< effective sample size for the middle
   double tail_draws = 0.0;    ///< effective sample size for the tails

@@ -19,10 +19,10 @@ struct RecognisedDrive {
 };
 
 /// Recognises a sine (with offset and phase), a square wave or a chirp. Every sample of the
-/// recorded drive must equal the generated signal within the rounding of the record: three quarters
-/// of a step of its converter or digits. If the campaign states the noise of the channel (`sd`),
-/// the tolerance increases by five times `sd`, and the rms deviation may be up to 1.2 times `sd`.
-/// Noise that is not stated is not estimated, because it may be a real motion of the rig.
+/// recorded drive must match the generated signal within the rounding of the record: three quarters
+/// of a step of its converter or of its last digit. If the campaign states the noise of the channel
+/// (`sd`), the tolerance increases by five times `sd`, and the rms deviation may be up to 1.2 times
+/// `sd`. Noise that is not stated is not estimated, because it may be real motion of the rig.
 ///
 /// @param time_s  shape (n), increasing
 /// @param drive   shape (n), SI

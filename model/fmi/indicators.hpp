@@ -103,7 +103,7 @@ void plant_indicators(const LinkagePlant::Coefficients<double>& p, const Present
   chamber_indicators(p, terms, x, spool, indicators);
 }
 
-/// Appends the velocity, at whose zero the bristles reverse.
+/// Appends the velocity; the bristles reverse where it crosses zero.
 template <typename Plant, std::size_t N>
 void friction_indicators(const PresentTerms& terms, const std::array<double, N>& x,
                          std::vector<double>& indicators) {

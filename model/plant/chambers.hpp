@@ -256,7 +256,7 @@ struct Chambers {
     return value_of(asked) > value_of(largest) ? largest : asked;
   }
 
-  /// Rate of the supply pressure at the valve [Pa/s].
+  /// Rate of change of the supply pressure at the valve [Pa/s].
   ///
   /// @param limit_pa  pressure to which the pump is limited
   /// @param taken     flow that the valve takes from the supply [m3/s]

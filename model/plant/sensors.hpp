@@ -35,9 +35,9 @@ std::optional<SensorTimes> sensor_times(std::span<const Output> outputs,
                                         const ParameterValues& values,
                                         std::span<const double> samples_s);
 
-/// Converts quantities at the times of `at` into readings at its samples, with the sensitivities to
-/// those parameters of the sensors that are in `free`. Between two times a quantity is interpolated
-/// linearly. A reading at its maximum has no sensitivities, so a saturated record is not fitted.
+/// Converts quantities at the times in `at` into readings at its samples, with sensitivities to the
+/// sensor parameters in `free`. Quantities are interpolated linearly between times. A saturated
+/// reading has no sensitivities, so saturated samples are not fitted.
 ///
 /// @param at   sensor_times() of the samples
 /// @param run  a successful run with one matrix row per time; on return it has one row per sample

@@ -128,7 +128,7 @@ X series_opening(const X& y, const C& l) {
 /// 2 G P / (G R + sqrt((G R)^2 + 4 |P|)).
 ///
 /// @param head_pa      P, across orifice and line together
-/// @param conductance  G, flow of the orifice per root of pressure, >= 0
+/// @param conductance  G, orifice flow per square root of pressure, >= 0
 /// @param resistance   R of the line [Pa s/m3], >= 0
 template <typename X, typename C>
 X flow_before_line(const X& head_pa, const X& conductance, const C& resistance,

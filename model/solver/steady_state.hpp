@@ -135,7 +135,7 @@ class SteadyState {
 
   std::array<X, static_cast<std::size_t>(kLooks)> seen_{};  ///< next() of each phase
   std::array<X, static_cast<std::size_t>(kLooks)>
-      change_{};  ///< next() of the change since one period earlier
+      change_{};  ///< next() of the change over the last period
   C ratio_{0.0};  ///< ratio of the changes in the last complete period to those in the one before
   C along_{0.0};  ///< sum over this period, for the next ratio
   C square_{0.0};

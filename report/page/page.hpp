@@ -36,8 +36,8 @@ ResultPage result_page(const ReadFile& read, const std::string& where, int threa
 std::vector<ResultDocument> result_documents(const ReadFile& read, const std::string& where,
                                              const ReadTable& made = {});
 
-/// Draws a short page for a notebook, without scripts, folds, articles about single conditions,
-/// provenance and formulas.
+/// Draws a short page for a notebook, without scripts, collapsible sections, articles on individual
+/// conditions, provenance or formulas.
 std::string brief_page(const ReadFile& read, const std::string& where, const ReadTable& made = {});
 
 /// Returns every picture as a separate file in figures/, as SVG and as PDF: <condition>_<plot>,

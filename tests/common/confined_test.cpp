@@ -75,7 +75,7 @@ TEST_CASE("confined: a crash ends the child alone", "[common]") {
 }
 
 TEST_CASE("confined: what the work throws unwinds nothing of the parent", "[common]") {
-  // Shared with the child. In its copy of any other variable, a change would not be visible here.
+  // Shared with the child. A change that it made to any other variable would not be visible here.
   auto* const unwound = static_cast<std::atomic<int>*>(
       ::mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
   REQUIRE(unwound != MAP_FAILED);

@@ -25,7 +25,7 @@ inline ParameterValues paper_rig() {
   return values;
 }
 
-/// Returns `count` equidistant times from `first` to `last`, both included.
+/// Returns `count` equally spaced times from `first` to `last`, inclusive.
 inline std::vector<double> grid(double first, double last, int count) {
   std::vector<double> times(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {

@@ -55,7 +55,7 @@ TEST_CASE("find_motions: from the command step to the stop, and back", "[dataset
   const double level = GENERATE(1.5, 2.0, 4.0);
   const auto motions = motions_of(steps(level));
   REQUIRE(motions.size() == 2);
-  // A motion counts as arrived when 1 % of the travel is left.
+  // A motion counts as complete when 1 % of the travel is left.
   const double travel_s = 0.99 * kStroke_m / (0.05 * level);
   CHECK_THAT(motions[0].window.start_s, WithinAbs(0.1, 1e-9));
   CHECK_THAT(motions[0].window.end_s, WithinAbs(0.13 + travel_s, 3e-3));

@@ -88,7 +88,7 @@ TEST_CASE("curve_about: records of a condition that do not leak share their simu
   }
   CHECK(std::set<double>(simulated.begin(), simulated.end()).size() == simulated.size());
   CHECK(simulated.size() == 2);
-  // A leak has three points of its own; the same leak once more has none.
+  // A new leak adds three points; the same leak again adds none.
   for (int i = 0; i < 2; ++i) curve_about(remembered, 1.0, 0.25);
   CHECK(simulated.size() == 5);
 }

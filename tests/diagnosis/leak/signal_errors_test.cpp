@@ -144,8 +144,7 @@ TEST_CASE("unexplained_share: powers beyond noise and beyond what healthy record
   // A leak that removes nothing explains nothing, nor does one that increases the residual.
   CHECK_THAT(unexplained_share(rms_of(5.0, 5.0, 3.0), 1.0), WithinRel(1.0, 1e-12));
   CHECK_THAT(unexplained_share(rms_of(4.0, 5.0, 3.0), 1.0), WithinRel(1.0, 1e-12));
-  // What is left, 4, does not exceed twice the 2.1 of healthy records, but it does exceed twice
-  // 1.9.
+  // The remainder, 4, is less than twice the healthy 2.1 but more than twice 1.9.
   CHECK(unexplained_share(rms_of(5.0, 5.0, 3.0), 2.1) == 0.0);
   CHECK(unexplained_share(rms_of(5.0, 5.0, 3.0), 1.9) > 0.0);
   // It does not exceed the noise either: the structured part is 3, the noise 4.
