@@ -40,7 +40,7 @@ struct ForeignRig {
   double oil_drift = 0.0;             ///< relative change of the bulk modulus over a record
   double supply_drift = 0.0;          ///< relative fall of the supply pressure over a record
   double volume_bow =
-      0.0;  ///< fraction by which the oil volume is smaller at either end of the stroke
+      0.0;  ///< relative decrease of the oil volume towards either end of the stroke
   double reference_lag_s = 0.0;  ///< a filter ahead of the controller
   double quantum_m = 0.0;        ///< step of the converter; the noise includes its quantisation
 };

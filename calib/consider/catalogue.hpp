@@ -93,7 +93,7 @@ struct OutputsWith {
 };
 enum class Derivatives { none, of_unknowns };
 
-/// Step of the finite difference by an effect, as a multiple of its plausible size.
+/// Finite-difference step of an effect, as a multiple of its plausible size.
 inline constexpr double kEffectStep = 0.1;
 
 /// Weighted outputs of one condition with all effects active at once. The derivatives neglect the
