@@ -144,7 +144,7 @@ std::vector<HeldOut> cross_validate(const Campaign& campaign,
     long evaluations = 0;
     const HeldOut held = leave_out(campaign, records, ids[i], whole, fold, evaluations);
     left.count(evaluations);
-    return {to_bytes(evaluations, held), !left.cancelled() && !left.out_of_time()};
+    return {to_bytes(evaluations, held), !left.interrupted()};
   };
   const auto tell = [&](std::size_t /*i*/, const TaskResult& made) {
     if (options.beside && made.whole)

@@ -274,6 +274,7 @@ bool warm_up(const LogDensityOf& density, int draws, const NutsOptions& options,
   for (int window = 0; window < 4; ++window) {
     const Whitened whitened(density, state.covariance);
     Phase phase = phase_at(whitened, whitened.coordinates(state.position));
+    if (options.stop && options.stop()) return false;  // the density may have been cut short
     if (phase.log_density == -HUGE_VAL)
       throw std::invalid_argument("nuts: the density is zero where the chain begins");
     // Long steps are tried first. Later windows already know the step, which hardly changes in

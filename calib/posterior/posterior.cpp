@@ -211,7 +211,7 @@ void sample_posterior(const Problem& problem, const Evaluation& optimum, const U
   const PosteriorDensity posterior(problem, with_rows, found, fit.parameters, left.cancel());
   result.noise_variance = posterior.noise();
 
-  const auto stop = [&left] { return left.cancelled() || left.out_of_time(); };
+  const auto stop = [&left] { return left.interrupted(); };
   ThreadFarm threads;
   TaskFarm& farm = options.farm != nullptr ? *options.farm : threads;
   std::atomic<int> done = 0;
@@ -248,7 +248,7 @@ void sample_posterior(const Problem& problem, const Evaluation& optimum, const U
         }
       }
       next.take(state);
-      return {to_bytes(next), true};
+      return {to_bytes(next), !stop()};
     };
     const auto tell = [&](std::size_t /*chain*/, const TaskResult& made) {
       if (options.beside && made.whole)

@@ -34,11 +34,14 @@ class Budget {
 
   bool cancelled() const;
   bool out_of_time() const { return deadline_ && Clock::now() >= *deadline_; }
+  /// Returns true if the job must end now, at a moment that the clock or the user decides. What a
+  /// task computes after that may be wrong: simulations end early. It must not be kept.
+  bool interrupted() const { return cancelled() || out_of_time(); }
   bool out_of_evaluations() const {
     return max_evaluations_ && evaluations_.load() >= *max_evaluations_;
   }
   /// Returns true if no further work may begin.
-  bool spent() const { return cancelled() || out_of_time() || out_of_evaluations(); }
+  bool spent() const { return interrupted() || out_of_evaluations(); }
   /// Explains why the budget is spent: "stopped on request", "stopped by the time limit", ...
   std::string reason() const;
 

@@ -275,7 +275,7 @@ void bootstrap(const Problem& problem, const Evaluation& optimum, const Uncertai
         evaluate_at(drawn, optimum.z, 1, {evaluator.fidelity(), nullptr, false, &runs}));
     const auto solved = Search(drawn, evaluator, quiet, static_cast<int>(b) + 1).polish(optimum.z);
     left.count(evaluator.counters().evaluations);
-    if (solved.status == FitStatus::stopped && evaluator.budget().spent()) return {{}, false};
+    if (left.interrupted()) return {{}, false};
     return {to_bytes(evaluator.counters().evaluations, solved.status == FitStatus::converged
                                                            ? drawn.to_physical(evaluator.best().z)
                                                            : std::vector<double>())};

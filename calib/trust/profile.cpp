@@ -106,7 +106,7 @@ class Follower {
     return found;
   }
 
-  bool cancelled() const { return budget_.cancelled() || budget_.out_of_time(); }
+  bool interrupted() const { return budget_.interrupted(); }
   long evaluations() const { return evaluations_; }
 
   Profile table() const {
@@ -161,7 +161,7 @@ ProfileEnd follow(Follower& follower, const Problem& problem, std::size_t unknow
     outside_rise = follower.rise(outside);
     // The step may have been too long to fit from the previous point, for example if the interval
     // includes more than the records determine.
-    for (int k = 0; k < kMostShortened && !outside_rise && !follower.cancelled(); ++k) {
+    for (int k = 0; k < kMostShortened && !outside_rise && !follower.interrupted(); ++k) {
       step /= kShorter;
       outside = std::clamp(inside + side * step, 0.0, 1.0);
       outside_rise = follower.rise(outside);
@@ -271,7 +271,7 @@ void profiles(const Problem& problem, const std::vector<datasets::Record>& recor
     profile.low = low;
     profile.high = high;
     left.count(follower.evaluations());
-    return {to_bytes(follower.evaluations(), profile), !follower.cancelled()};
+    return {to_bytes(follower.evaluations(), profile), !follower.interrupted()};
   };
   const auto tell = [&](std::size_t j, const TaskResult& result) {
     if (options.beside && result.whole && !unknowns[j].nuisance)
