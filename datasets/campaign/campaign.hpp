@@ -272,8 +272,15 @@ Campaign load_campaign(const std::filesystem::path& file,
 ///
 /// @throws UsageError  if the name is unknown, the unit is wrong, the value is outside the limits
 /// or
-///                     bounds, or has no effect because every condition has its own value
+///                     the bounds, or has no effect because every condition has its own value
 void set_value(Campaign& campaign, std::string_view assignment);
+
+/// Applies `--set name="value unit"` of a simulation, where there is nothing to fit: every
+/// condition gets this value, also where its leak level or the condition states another one. Bounds
+/// of a fit do not apply.
+///
+/// @throws UsageError  if the name is unknown, the unit is wrong or the value is outside the limits
+void set_everywhere(Campaign& campaign, std::string_view assignment);
 
 /// Applies `--free a,b`: exactly these parameters are fitted. Missing bounds default to value/10
 /// and 10 value within the parameter's limits, or to the limits if the value is 0.

@@ -58,6 +58,35 @@ bool overridden_everywhere(const Campaign& campaign, int index) {
                      });
 }
 
+/// `--set name="value unit"`, as read.
+struct Assignment {
+  std::string option;  ///< as given, for messages
+  std::string name;
+  int index = 0;       ///< of the parameter
+  double value = 0.0;  ///< SI
+};
+
+/// @throws UsageError  if the name is unknown, the unit is wrong or the value is outside the limits
+Assignment read_assignment(const Campaign& campaign, std::string_view assignment) {
+  Assignment read{fmt::format("--set {}", assignment), "", 0, 0.0};
+  const std::size_t equals = assignment.find('=');
+  if (equals == std::string_view::npos || equals == 0) {
+    throw UsageError(read.option + ": expected name=\"value unit\", such as mass=\"60 kg\"");
+  }
+  read.name = assignment.substr(0, equals);
+  read.index = index_of(campaign, read.option, read.name);
+  const model::ParameterSpec& spec = spec_of(campaign.rig.plant, read.index);
+  try {
+    read.value = parse_quantity(assignment.substr(equals + 1), spec.unit);
+  } catch (const QuantityError& error) {
+    throw UsageError(fmt::format("{}: {}", read.option, error.what()));
+  }
+  if (const auto problem = outside_limits(spec, read.value)) {
+    throw UsageError(fmt::format("{}: {}", read.option, *problem));
+  }
+  return read;
+}
+
 }  // namespace
 
 std::string_view to_string(Scope scope) {
@@ -121,23 +150,7 @@ const ParameterSetting* Campaign::setting(int index) const {
 }
 
 void set_value(Campaign& campaign, std::string_view assignment) {
-  const std::string option = fmt::format("--set {}", assignment);
-  const std::size_t equals = assignment.find('=');
-  if (equals == std::string_view::npos || equals == 0) {
-    throw UsageError(option + ": expected name=\"value unit\", such as mass=\"60 kg\"");
-  }
-  const std::string_view name = assignment.substr(0, equals);
-  const int index = index_of(campaign, option, name);
-  const model::ParameterSpec& spec = spec_of(campaign.rig.plant, index);
-  double value = 0.0;
-  try {
-    value = parse_quantity(assignment.substr(equals + 1), spec.unit);
-  } catch (const QuantityError& error) {
-    throw UsageError(fmt::format("{}: {}", option, error.what()));
-  }
-  if (const auto problem = outside_limits(spec, value)) {
-    throw UsageError(fmt::format("{}: {}", option, *problem));
-  }
+  const auto [option, name, index, value] = read_assignment(campaign, assignment);
   if (overridden_everywhere(campaign, index)) {
     throw UsageError(
         fmt::format("{}: every condition has a value of its own for {}, so a value "
@@ -148,11 +161,26 @@ void set_value(Campaign& campaign, std::string_view assignment) {
   changed.value = value;
   if (changed.between_repeats) changed.prior->mean = value;
   if (changed.fit) {
-    if (const auto problem = complete_bounds(spec, changed)) {
+    if (const auto problem = complete_bounds(spec_of(campaign.rig.plant, index), changed)) {
       throw UsageError(fmt::format("{}: {}", option, *problem));
     }
   }
   setting_or_new(campaign, index, value) = changed;
+}
+
+void set_everywhere(Campaign& campaign, std::string_view assignment) {
+  const Assignment read = read_assignment(campaign, assignment);
+  const auto forget = [&](Overrides& overrides) {
+    overrides.erase(std::remove_if(overrides.begin(), overrides.end(),
+                                   [&](const auto& entry) { return entry.first == read.index; }),
+                    overrides.end());
+  };
+  for (auto& [name, overrides] : campaign.leak_levels) forget(overrides);
+  for (Condition& condition : campaign.conditions) forget(condition.overrides);
+  ParameterSetting& changed = setting_or_new(campaign, read.index, read.value);
+  changed.value = read.value;
+  changed.fit = false;
+  if (changed.between_repeats) changed.prior->mean = read.value;
 }
 
 void set_free(Campaign& campaign, const std::vector<std::string>& names) {

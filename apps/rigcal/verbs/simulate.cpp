@@ -63,8 +63,18 @@ report::Json json_of(const SimulationTask& task, const model::Simulation& simula
   return json;
 }
 
+/// Loads the campaign with the values to simulate.
+Campaign load_to_simulate(const CampaignOptions& options) {
+  CampaignOptions unchanged = options;
+  unchanged.set.clear();
+  Campaign campaign = load(unchanged);
+  for (const std::string& assignment : options.set) datasets::set_everywhere(campaign, assignment);
+  if (!options.set.empty()) datasets::check_values(campaign);
+  return campaign;
+}
+
 ExitCode run_simulate(const SimulateRequest& options) {
-  const Campaign campaign = load(options.common);
+  const Campaign campaign = load_to_simulate(options.common);
   std::vector<SimulationTask> tasks;
   std::vector<Record> records;
   for (const Condition* condition : wanted(campaign, options.conditions)) {

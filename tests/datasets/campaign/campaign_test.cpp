@@ -325,6 +325,18 @@ TEST_CASE("set_value: changes values, starts and optional terms", "[datasets]") 
   CHECK_NOTHROW(check_values(campaign));
 }
 
+TEST_CASE("set_everywhere: before leak levels, conditions and bounds", "[datasets]") {
+  Campaign campaign =
+      load_text(replaced(kExample, "parameters = { }",
+                         "parameters = { leakage_coefficient = 0.7, mass = \"90 kg\" }"));
+  set_everywhere(campaign, "leakage_coefficient=9");  // the bounds of the fit end at 5
+  for (const Condition& condition : campaign.conditions)
+    CHECK(values_in(campaign, condition)["leakage_coefficient"] == 9.0);
+  CHECK_FALSE(setting_of(campaign, "leakage_coefficient").fit);
+  CHECK(values_in(campaign, campaign.conditions[0])["mass"] == 90.0);
+  CHECK_THROWS_WITH(set_everywhere(campaign, "mass=-70 kg"), Catch::Contains("makes no sense"));
+}
+
 TEST_CASE("set_value: refuses what makes no sense", "[datasets]") {
   const Campaign campaign = load_text(kExample);
   const auto message = [&](const std::string& assignment) -> std::string {
