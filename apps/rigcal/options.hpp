@@ -38,11 +38,9 @@ CLI::Validator not_empty();
 /// into the largest one.
 CLI::Validator whole_number(std::uint64_t lowest, std::uint64_t highest);
 
-/// Returns the number of hardware threads on this machine.
 int hardware_threads();
 
 void add_print_options(CLI::App& verb, PrintOptions& options);
-/// Adds --force.
 void add_force_option(CLI::App& verb, bool& force);
 void add_campaign_options(CLI::App& verb, CampaignOptions& options);
 

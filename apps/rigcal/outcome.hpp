@@ -10,7 +10,6 @@
 
 namespace rigcal::app {
 
-/// Adds --strict.
 void add_strict_option(CLI::App& verb, bool& strict);
 
 /// Loads the campaign. The pointer is shared because a fit keeps its campaign alive.
@@ -25,7 +24,7 @@ enum class OnSignal { end, keep_result };
 /// Runs a job for the folder of --out, writes its files with the page, and prints its document.
 ///
 /// @param verb  name of the verb for messages
-/// @throws WriteError, UsageError, InputError
+/// @throws WriteError, UsageError, InputError  if the job, or writing its files or output, fails
 ExitCode run_job(const char* verb, const CampaignOptions& options, const Invocation& invocation,
                  const Job& job, OnSignal on_signal = OnSignal::end);
 ExitCode run_job(const char* verb, const JobOptions& options, const Invocation& invocation,

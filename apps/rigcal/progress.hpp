@@ -23,7 +23,7 @@ class StatusLine {
 
   /// Shows a text if it is time for an update.
   ///
-  /// @param text  called only then, with the seconds since the beginning
+  /// @param text  called only in that case, with the seconds since the start
   void show(const std::function<std::string(double)>& text);
 
  private:
@@ -55,7 +55,7 @@ class FitProgress {
   std::optional<double> max_seconds_;
 };
 
-/// Shows how many of several equal tasks are done.
+/// Shows how many tasks of the same kind are done.
 class CountProgress {
  public:
   /// @param pieces  what the tasks are called: "records"
@@ -70,7 +70,7 @@ class CountProgress {
   std::string pieces_;
 };
 
-/// Shows the progress of bootstrap, profiles and cross-validation, one after the other.
+/// Shows the progress of the bootstrap, then of the profiles, then of cross-validation.
 class BesideProgress {
  public:
   explicit BesideProgress(bool quiet) : quiet_(quiet) {}

@@ -50,9 +50,9 @@ struct ParameterSetting {
   Scope scope = Scope::rig;
   std::optional<Prior> prior;
   bool nuisance = false;  ///< estimated again in validation
-  /// Whether the parameter varies randomly between repeats. It is then one unknown per condition.
-  /// The prior applies to a single repeat; for the mean of R repeats its standard deviation is
-  /// divided by sqrt(R).
+  /// Whether the parameter varies randomly between repeats. The fit then has one unknown per
+  /// condition for it. The prior applies to a single repeat; for the mean of R repeats its standard
+  /// deviation is divided by sqrt(R).
   bool between_repeats = false;
   Location where;
 };
@@ -86,7 +86,7 @@ struct ChannelSetting {
   double offset_sd = 0.0;                 ///< standard uncertainty of the sensor's offset, SI
   ChannelRole role = ChannelRole::output;
   Interpolation interpolation = Interpolation::hold;
-  bool recognise = true;   ///< simulate a recorded drive as a generated one if they are equal
+  bool recognise = true;   ///< simulate a recorded drive as a generated waveform if the two agree
   bool in_counts = false;  ///< raw converter counts in an unknown unit
 };
 
@@ -119,10 +119,11 @@ std::string_view to_string(DecisionRule rule);
 /// Requirements for acceptance without reservation, in addition to the limits on metrics.
 struct AcceptanceBounds {
   DecisionRule decision = DecisionRule::simple;
-  /// Largest ratio of the model error to the noise in a record's mean, as standard deviations.
+  /// Largest accepted ratio of the model error to the noise in a record's mean. Both are standard
+  /// deviations.
   double model_error_to_noise = 0.5;
-  /// Largest negligible size, SI, by table index; for estimates that are indistinguishable from
-  /// zero.
+  /// Largest size that counts as negligible, SI, by table index. Used for estimates that are
+  /// indistinguishable from zero.
   std::map<int, double> negligible;
   std::vector<Channel> not_judged;  ///< output channels that need no limit
 };
@@ -162,7 +163,7 @@ enum class SpikeTreatment { report, exclude };
 
 enum class Loss { squared, huber, cauchy, soft_l1 };
 
-/// Range for the number of draws per chain of the posterior. Fewer draws give no useful quantiles.
+/// Accepted numbers of posterior draws per chain. Fewer draws give no useful quantiles.
 inline constexpr int kLeastPosteriorDraws = 100;
 inline constexpr int kMostPosteriorDraws = 100'000;
 
@@ -224,10 +225,11 @@ struct Campaign {
   std::string time_column;
   UnitConversion time_to_s;
   StatedUnit stated_time;
-  bool time_in_counts = false;  ///< samples are numbered; their interval is unknown
+  bool time_in_counts = false;  ///< the time column only numbers the samples; their interval is
+                                ///< unknown
   std::map<Channel, ChannelSetting> channels;
   Alignment alignment = Alignment::correlate;
-  bool leave_out_outliers = false;  ///< exclude repeats far from the others from the mean
+  bool leave_out_outliers = false;  ///< exclude repeats that are far from the others when averaging
   std::vector<AcceptanceLimit> acceptance;
   AcceptanceBounds acceptance_bounds;
   FitSettings fit;

@@ -88,7 +88,7 @@ void check_role(const TomlNode& node, Channel channel, ChannelRole role, Channel
   }
 }
 
-/// Keys that `time` has, too.
+/// Keys that a channel has in common with `time`.
 std::vector<KeyRow<ChannelSetting>> column_rows() {
   using Row = KeyRow<ChannelSetting>;
   const auto text = plain_form(KeyForm::Kind::text);
@@ -117,7 +117,7 @@ std::vector<KeyRow<ChannelSetting>> column_rows() {
   };
 }
 
-/// @param unit  of the channel, SI; empty: any
+/// @param unit  SI unit of the channel; empty: any unit
 KeyTable<ChannelSetting> channel_keys(std::string_view unit) {
   using Row = KeyRow<ChannelSetting>;
   const KeyForm quantity = unit.empty() ? plain_form(KeyForm::Kind::quantity) : quantity_form(unit);
@@ -243,7 +243,7 @@ void check_before(const TomlNode& node, const Campaign& campaign) {
         "`initial`, or before = \"rest\" or \"hold\" with it");
 }
 
-/// Choices of `holes`: whether they are bridged.
+/// Accepted values of `holes`: true bridges the gaps.
 const Words<bool>& hole_words() {
   static const Words<bool> words{{"refuse", false}, {"bridge", true}};
   return words;

@@ -62,8 +62,8 @@ struct Assumption {
 /// parameter of the rig, but publications do not state it, so it is assumed like one.
 inline constexpr int kResidualScale = -1;
 
-/// Returns the specification of an assumption: its row in the parameter table, or that of the
-/// residual scale.
+/// Returns the specification of an assumption: a row of the parameter table, or the specification
+/// of the residual scale.
 const model::ParameterSpec& assumption_spec(model::PlantKind plant, int index);
 
 /// [leak_table]: settings for `leak-table` and `fit-tables`, and the published numbers.

@@ -44,9 +44,9 @@ class TomlNode {
   const std::string& path() const { return path_; }
   Location where() const { return location(node_->source()); }
 
-  /// @throws InputError  "file:line:column: key 'path': message", always
+  /// @throws InputError  always: "file:line:column: key 'path': message"
   [[noreturn]] void fail(const std::string& message) const;
-  /// @throws InputError  "... found X, expected Y", always
+  /// @throws InputError  always: "... found X, expected Y"
   [[noreturn]] void fail_type(const std::string& expected) const;
 
   bool is_table() const { return node_->is_table(); }
@@ -77,7 +77,7 @@ class TomlNode {
   std::string date() const;
   std::vector<TomlNode> items() const;
 
-  /// Returns the value for the name that this text gives.
+  /// Looks up this text among the names of the choices, and returns the value of the match.
   template <typename Value>
   Value choice(const std::vector<std::pair<std::string, Value>>& choices) const {
     const std::string found = string(choice_list(choices));
