@@ -179,7 +179,7 @@ std::optional<Offsets> correlate_offsets(const std::vector<Repeat>& repeats) {
                                 repeats[centre].time_s.front());
       offsets.sd_s.push_back((*lags)[r].sd_samples * dt);
     }
-    // The offset of the central repeat is known no better than the others.
+    // The offset of the central repeat is known no better than those of the other repeats.
     offsets.sd_s[centre] = *std::max_element(offsets.sd_s.begin(), offsets.sd_s.end());
     const double common = common_offset(offsets.seconds, dt);
     for (double& offset : offsets.seconds) offset -= common;

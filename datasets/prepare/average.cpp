@@ -160,7 +160,7 @@ bool any_differs(const std::vector<std::vector<double>>& deviations) {
   });
 }
 
-/// Sets the standard deviations by which a fit divides.
+/// Sets the standard deviations by which a fit divides the residuals.
 void conclude_sd(Series& series, Channel channel, const AverageOptions& options,
                  std::vector<std::string>& warnings) {
   const auto known = options.known_sd.find(channel);

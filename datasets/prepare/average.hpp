@@ -10,7 +10,7 @@
 
 namespace rigcal::datasets {
 
-/// How a record's warning about an outlier ends.
+/// Words with which a warning about an outlier ends.
 inline constexpr std::string_view kStaysInMean = "it stays in the mean";
 
 struct AverageOptions {
@@ -38,7 +38,7 @@ struct AverageOptions {
 /// deviation of white noise (resample.hpp).
 ///
 /// @throws std::invalid_argument  if there is no repeat, or if the repeats have incompatible
-///                                sampling; the message says which
+///                         sampling; the message names them
 Record average(const std::string& condition, const std::vector<Repeat>& repeats,
                const AverageOptions& options);
 

@@ -41,7 +41,7 @@ std::vector<std::size_t> missing_before(const std::vector<double>& time_s, doubl
     const double own_s = time_s[i] - time_s[i - 1];
     if (own_s <= kLostSample * step_s || own_s > longest_s * (1.0 + kRounding)) continue;
     const double lost = std::round(own_s / step_s) - 1.0;
-    // Capped, since the caller refuses more missing samples than the record has.
+    // Capped, because the caller refuses a record with more missing samples than samples.
     missing[i] = static_cast<std::size_t>(std::min(lost, static_cast<double>(time_s.size()) + 1.0));
   }
   return missing;

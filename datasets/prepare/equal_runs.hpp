@@ -39,9 +39,9 @@ bool cuts_a_motion(std::span<const double> x, const EqualRun& run, double least)
 /// Whether the noise of the signal is well above its resolution, so that a working sensor never
 /// gives the same value many times. The steps between values then go up and down: at least 5 % of
 /// the values, and at least 30 of them, are larger or smaller than both neighbours, by four steps
-/// of the resolution and by 1e-6 of the range (more than simulations round). In white noise at
-/// least half of the values are, even on top of slow motion; in a smooth signal only a few. The
-/// rounding of a converter by itself causes differences of only two steps.
+/// of the resolution and by 1e-6 of the range (more than simulations round). In white noise, even
+/// on top of slow motion, this applies to at least half of the values; in a smooth signal, only to
+/// a few. The rounding of a converter by itself causes differences of only two steps.
 ///
 /// @param low, high  runs at or beyond these values are ignored
 bool shows_noise(const std::vector<EqualRun>& runs, double low, double high);

@@ -170,8 +170,8 @@ Trace smooth(const Trace& trace, double sd_samples) {
   return Trace(weighted_sums(trace.x, {kernel.data(), static_cast<std::size_t>(kernel.size())}));
 }
 
-/// Slope and curvature of the correlation between samples, interpolated by a Gaussian of one sample
-/// (its aliasing is exp(-2 pi^2), 3e-9).
+/// Slope and curvature of the correlation between samples. The interpolation uses a Gaussian with a
+/// standard deviation of one sample (its aliasing is exp(-2 pi^2), 3e-9).
 struct Shape {
   double slope = 0.0;
   double curvature = 0.0;
@@ -190,7 +190,7 @@ Shape shape_at(const Correlation& c, double lag) {
   return shape;
 }
 
-/// The significant peak from which the search is refined.
+/// The significant peak at which the refinement starts.
 struct Coarse {
   int peak = 0;       ///< lag of the peak
   int hill = 0;       ///< half width of the peak, in lags
@@ -218,7 +218,7 @@ std::optional<Lag> refine(const Trace& x, const Trace& y, const Coarse& coarse, 
   const double samples = 0.5 * (low + high);
   const double curvature = -shape_at(c, samples).curvature;
   if (!(curvature > 0.0)) return std::nullopt;
-  // Contributions of noise times signal, and of noise times noise, which smoothing reduces.
+  // The variance has a noise-signal term and a noise-noise term. Smoothing reduces the second.
   const double noise_per_sample = std::max(0.0, 1.0 - coarse.height) / curvature;
   const auto n = static_cast<double>(coarse.shorter);
   const double width = std::sqrt(2.0 * smoothing * smoothing + 1.0);

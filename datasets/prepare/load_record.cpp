@@ -54,8 +54,8 @@ bool may_be_shown(const Campaign& campaign, const std::filesystem::path& path) {
          (!campaign.root.empty() && lies_within(campaign.root, path));
 }
 
-/// Reads columns from a file of any format, the time first. Adds doubts about the file to the
-/// repeat.
+/// Reads columns from a file of any format; the first one is the time. Adds doubts about the file
+/// to the repeat.
 RecordTable read_columns(const Campaign& campaign, const std::filesystem::path& path,
                          const std::vector<std::string>& names, Repeat& repeat) {
   try {

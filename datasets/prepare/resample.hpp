@@ -11,7 +11,7 @@ enum class Interpolator {
 };
 
 /// y[i] = x(i + shift) for i = 0..samples-1; NaN outside x. If the shift is within 1e-6 of a whole
-/// number of samples, they are copied.
+/// number of samples, the samples are copied.
 ///
 /// The band-limited interpolator preserves amplitudes within 0.3 % up to 0.42 of the sample rate.
 /// For a shift of half a sample, it preserves 97 % of the standard deviation of white noise

@@ -11,7 +11,7 @@
 
 namespace rigcal::datasets {
 
-/// Where a text with columns has its names, units and numbers.
+/// Positions of names, units and numbers in a text with columns.
 struct CsvLayout {
   std::size_t header = 0;  ///< line that contains the names, from 0
   std::size_t data = 0;    ///< first line that contains numbers

@@ -192,8 +192,8 @@ Hdf5Id number_type(hid_t dataset, const Hdf5Series& series) {
   return type;
 }
 
-/// Returns the type in memory for a cell of the series: numbers of a native type, within an array
-/// or a table with one member if the file has one.
+/// Returns the memory type for a cell of the series: numbers of a native type, wrapped in an array
+/// or in a table with one member if the file stores them that way.
 Hdf5Id type_in_memory(const Hdf5Series& series, hid_t native, std::size_t bytes) {
   const std::vector<hsize_t> shape(
       series.dims.begin() + static_cast<std::ptrdiff_t>(dims_of_dataset(series)),
