@@ -84,7 +84,7 @@ py::dict sensitivities_of(const SimulatedPtr& self) {
   return all;
 }
 
-/// The arguments of a call, besides the campaign.
+/// Arguments of a call, except for the campaign.
 struct Wanted {
   std::optional<std::string> condition;
   std::map<std::string, double> values;  ///< in SI units
