@@ -43,7 +43,7 @@ struct ChannelInfo {
   bool is_output;         ///< compared with the model unless its role says otherwise
 };
 
-/// All channels, in the order of the enumeration.
+/// Returns all channels, in the order of the enumeration.
 const std::vector<ChannelInfo>& channel_table();
 const ChannelInfo& info(Channel channel);
 std::optional<Channel> channel_from_key(std::string_view key);

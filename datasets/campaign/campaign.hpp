@@ -34,7 +34,7 @@ struct Prior {
   double mean = 0.0;
   double sd = 0.0;
 
-  /// Distance of a value from the mean, in standard deviations.
+  /// Returns the distance of a value from the mean, in standard deviations.
   double residual(double value) const { return (value - mean) / sd; }
 };
 
@@ -250,11 +250,12 @@ struct Campaign {
   bool may_lack_limits(const Condition& condition, Channel channel) const;
 };
 
-/// Channel of the drive: the command, the pilot pressure, or the reference in closed loop.
+/// Returns the channel of the drive: the command, the pilot pressure, or the reference in closed
+/// loop.
 Channel drive_channel(const model::Rig& rig);
 inline Channel drive_channel(const Campaign& campaign) { return drive_channel(campaign.rig); }
 
-/// Channel of the motion: the position, or the angle of a joint.
+/// Returns the channel of the motion: the position, or the angle of a joint.
 Channel motion_channel(const model::Rig& rig);
 inline Channel motion_channel(const Campaign& campaign) { return motion_channel(campaign.rig); }
 

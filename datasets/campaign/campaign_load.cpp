@@ -190,7 +190,8 @@ const KeyTable<Campaign>& averaging_keys() {
   return keys;
 }
 
-/// The whole file. The order matters: later sections are checked against earlier ones.
+/// Returns the keys of the root table with their readers. Their order matters, because later
+/// sections are checked against earlier ones.
 const KeyTable<Campaign>& root_keys() {
   using Row = KeyRow<Campaign>;
   const auto section = [](std::string_view key, KeyForm form, Row::Read read, std::string doc) {

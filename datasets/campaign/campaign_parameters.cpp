@@ -111,7 +111,7 @@ KeyTable<ParameterSetting> setting_keys(const KeyForm& value) {
   });
 }
 
-/// { start = ..., lower = ..., ... }
+/// Reads a table such as { start = ..., lower = ..., ... }.
 void read_setting_table(const TomlNode& node, const model::ParameterSpec& spec,
                         ParameterSetting& setting) {
   static const KeyTable<ParameterSetting> keys = setting_keys(plain_form(KeyForm::Kind::quantity));

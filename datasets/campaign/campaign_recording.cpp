@@ -234,7 +234,8 @@ KeyForm recorded_channels_form() {
   return table_form(std::move(keys));
 }
 
-/// In a settled loop the reference fixes the initial position, so "steady" excludes `initial`.
+/// Rejects `before = "steady"` together with `initial` in a closed loop: in a settled loop the
+/// reference fixes the initial position.
 void check_before(const TomlNode& node, const Campaign& campaign) {
   if (campaign.rig.before == model::Before::steady && campaign.initial != InitialMode::rest &&
       campaign.rig.controller == model::ControllerKind::pid)

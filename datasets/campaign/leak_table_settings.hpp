@@ -28,7 +28,7 @@ struct LeakSignal {
   std::map<double, PrintedCoefficient> printed;  ///< by target share [percent]
   std::optional<PrintedCoefficient> normal;      ///< coefficient for the rig without a fault
 
-  /// Name of the signal: "sine_0.1Hz".
+  /// Returns the name of the signal, such as "sine_0.1Hz".
   std::string name() const;
 };
 

@@ -21,8 +21,8 @@ constexpr std::size_t kFewestDips = 10;
 constexpr double kShareOfStep = 0.5;
 constexpr double kFallSteps = 2.0;  // a single step may be converter rounding
 
-/// Mean length of the runs between the extremes, in samples: above 1 if a converter repeats its
-/// samples.
+/// Returns the mean length of the runs between the extremes, in samples. It is above 1 if a
+/// converter repeats its samples.
 double typical_length(const std::vector<EqualRun>& runs, double low, double high) {
   std::size_t count = 0;
   std::size_t samples = 0;
@@ -54,9 +54,9 @@ bool noise_is_cut(const std::vector<EqualRun>& runs, double extreme, double smal
   return dips >= kFewestDips;
 }
 
-/// Fall of a parabola beside its flat top, in steps of the resolution. If n samples at the top look
-/// equal, the parabola falls by one step within n/2 samples of the top, and by another (12/n +
-/// 36/n^2) steps within the next three samples.
+/// Returns how far a parabola falls beside its flat top, in steps of the resolution. If n samples
+/// at the top look equal, the parabola falls by one step within n/2 samples of the top, and by
+/// another (12/n + 36/n^2) steps within the next three samples.
 double flat_top_fall(std::size_t length) {
   const auto n = static_cast<double>(length);
   return 12.0 / n + 36.0 / (n * n);

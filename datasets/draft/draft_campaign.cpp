@@ -230,7 +230,8 @@ const ChannelColumns* find(const FileColumns& columns, Channel channel) {
   return found == columns.channels.end() ? nullptr : &*found;
 }
 
-/// Column with the motion of the rig: the angle of a joint, or else the position of a piston.
+/// Returns the columns with the motion of the rig: the angle of a joint, or else the position of a
+/// piston.
 const ChannelColumns* motion_of(const FileColumns& columns) {
   const ChannelColumns* angle = find(columns, Channel::angle);
   return angle != nullptr ? angle : find(columns, Channel::position);
@@ -252,8 +253,8 @@ bool has_pilot(const FileColumns& columns) {
   return find(columns, Channel::pilot_pressure) != nullptr && !loop_of(columns);
 }
 
-/// Direction in which a drive column moves the machine, according to a word in its name: 1 out or
-/// up, -1 in or down, 0 unknown.
+/// Returns the direction in which a drive column moves the machine, according to a word in its
+/// name: 1 out or up, -1 in or down, 0 unknown.
 int direction_of(const std::string& name) {
   using Words = std::array<std::string_view, 9>;
   constexpr Words kOut{"up", "out", "extend", "raise", "open", "forward", "fwd", "auf", "aus"};
@@ -343,7 +344,7 @@ std::string unknown_columns_text(const fs::path& file, const FileColumns& column
   return fmt::format("# not used: {}{}\n", fmt::join(names, ", "), more);
 }
 
-/// Text for a file in which no channel, or not even a time, is recognised.
+/// Returns the text for a file in which no channel, or not even a time, is recognised.
 std::string blank_channels_text(const fs::path& file, const FileColumns& columns) {
   std::string text = "[recording.channels]\n# No column was recognised: see those below.\n";
   text += columns.time.empty()
@@ -609,7 +610,7 @@ std::string limits_of_others(const FileColumns& columns) {
   return text;
 }
 
-/// Drive of the rig, if it is recorded.
+/// Returns the columns with the drive of the rig, or null if it was not recorded.
 const ChannelColumns* drive_of(const FileColumns& columns) {
   const auto loop = loop_of(columns);
   if (!loop) return find(columns, has_pilot(columns) ? Channel::pilot_pressure : Channel::command);

@@ -123,7 +123,7 @@ std::size_t central_repeat(const std::vector<Repeat>& repeats, Channel channel) 
   return static_cast<std::size_t>(std::min_element(total.begin(), total.end()) - total.begin());
 }
 
-/// Mean of the offsets, excluding those out of all proportion.
+/// Returns the mean of the offsets, excluding those that are far larger than the others.
 double common_offset(const std::vector<double>& offsets, double smallest) {
   const double centre = median(offsets);
   std::vector<double> distance;
@@ -140,8 +140,8 @@ double common_offset(const std::vector<double>& offsets, double smallest) {
   return sum / count;
 }
 
-/// Delay of each repeat relative to one of them, in samples; empty if any of them cannot be
-/// determined.
+/// Returns the delay of each repeat relative to one of them, in samples; std::nullopt if any of
+/// them cannot be determined.
 std::optional<std::vector<Lag>> lags_against(std::size_t centre, const std::vector<Repeat>& repeats,
                                              Channel channel) {
   std::vector<const std::vector<double>*> others;
@@ -188,8 +188,8 @@ std::optional<Offsets> correlate_offsets(const std::vector<Repeat>& repeats) {
   return std::nullopt;
 }
 
-/// Whether any offset is significant. Repeats are shifted all or none, because shifting only a few
-/// of them would shift their mean.
+/// Whether any offset is significant. Either all repeats are shifted or none, because shifting only
+/// a few of them would shift their mean.
 bool any_significant(const Offsets& offsets, double smallest_s) {
   for (std::size_t r = 0; r < offsets.seconds.size(); ++r) {
     if (std::abs(offsets.seconds[r]) > std::max(smallest_s, kSignificance * offsets.sd_s[r]))

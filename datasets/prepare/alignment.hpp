@@ -28,7 +28,7 @@ struct AlignedRepeats {
 /// Offsets are relative to their mean, since the repeats cannot reveal a delay that is common to
 /// all of them. An aligned average therefore has the same delay relative to a generated reference
 /// as the plain average: alignment neither adds nor removes a delay. With three or more repeats,
-/// offsets out of all proportion (ten times the median distance from the median, and more than a
+/// extreme offsets (more than ten times the median distance from the median, and more than a
 /// sample) are excluded from that mean, so that one false start does not shift the others.
 ///
 /// Offsets are always reported. Because interpolation has a cost, they are corrected only if one of

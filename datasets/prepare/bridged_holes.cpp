@@ -33,7 +33,7 @@ bool is_held_input(const Campaign& campaign, Channel channel) {
          setting->second.interpolation == Interpolation::hold;
 }
 
-/// Number of samples that are missing before each sample.
+/// Returns the number of samples that are missing before each sample.
 std::vector<std::size_t> missing_before(const std::vector<double>& time_s, double longest_s) {
   const double step_s = median_step(time_s);
   std::vector<std::size_t> missing(time_s.size(), 0);

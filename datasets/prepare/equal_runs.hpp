@@ -23,11 +23,11 @@ std::vector<EqualRun> equal_runs(std::span<const double> x);
 /// Whether all samples are equal; true for an empty signal.
 bool is_constant(std::span<const double> x);
 
-/// Step of the converter or of the printed digits: the smallest nonzero difference between
-/// neighbours; 0 if all samples are equal.
+/// Returns the step of the converter or of the printed digits: the smallest nonzero difference
+/// between neighbours; 0 if all samples are equal.
 double resolution(const std::vector<EqualRun>& runs);
 
-/// Median step from one value to the next; 0 if all samples are equal.
+/// Returns the median step from one value to the next; 0 if all samples are equal.
 double typical_step(const std::vector<EqualRun>& runs);
 
 /// Whether the signal moves before and after a run, as far as the record shows: the third sample

@@ -53,7 +53,7 @@ struct Correlation {
   double at(int lag) const { return r[static_cast<std::size_t>(lag - first_lag)]; }
 };
 
-/// Sum of products over the overlap, at each lag in a range.
+/// Returns the sum of products over the overlap, at each lag in a range.
 std::vector<double> products(const Trace& a, const Trace& b, int first_lag, int last_lag) {
   std::vector<double> result;
   if (first_lag < 0) {
@@ -93,7 +93,7 @@ Correlation correlate(const Trace& a, const Trace& b, int first_lag, int last_la
   return result;
 }
 
-/// Cosine of the phase advance per sample of a sinusoid with this correlation.
+/// Returns the cosine of the phase advance per sample of a sinusoid with this correlation.
 double cosine_at(const Correlation& c, int lag) {
   return (c.at(lag - 1) + c.at(lag + 1)) / (2.0 * c.at(lag));
 }
@@ -148,8 +148,8 @@ int peak_lag(const Correlation& c, int samples) {
   return *nearest;
 }
 
-/// Number of lags from the peak to where the correlation has fallen by 0.1, or to the end of the
-/// search range.
+/// Returns the number of lags from the peak to where the correlation has fallen by 0.1, or to the
+/// end of the search range.
 int half_width(const Correlation& c, int peak) {
   int width = 0;
   while (peak - width > c.first_lag && peak + width < c.last_lag() &&

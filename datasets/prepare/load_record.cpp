@@ -91,7 +91,7 @@ void require_measurable(const RepeatSource& source, const std::string& column,
                     bad - values.begin() + 1, column, *bad, kLargest));
 }
 
-/// Drive of the rig at each sample of the record.
+/// Returns the drive of the rig at each sample of the record.
 std::vector<double> drive_at_samples(const Campaign& campaign, const Condition& condition,
                                      const Record& record) {
   const auto drive = inputs_of(campaign, condition, values_in(campaign, condition), &record).drive;

@@ -40,7 +40,8 @@ bool may_be_recording(const std::filesystem::path& path);
 /// Whether the name is that of a recording in a format that rigcal does not read.
 bool has_other_format_name(const std::filesystem::path& path);
 
-/// Names and extensions of all formats, for messages: "CSV, MAT or ...", ".csv, .mat or ...".
+/// Return the names and extensions of all formats, for messages: "CSV, MAT or ...", ".csv, .mat or
+/// ...".
 std::string record_format_names();
 std::string record_extensions();
 

@@ -73,7 +73,7 @@ bool is_one(const std::string& unit) {
   }
 }
 
-/// Index of the bracket that closes the one at `open`.
+/// Returns the index of the bracket that closes the one at `open`.
 std::size_t closing(std::string_view name, std::size_t open) {
   const char left = name[open];
   const char right = left == '[' ? ']' : ')';
@@ -140,8 +140,8 @@ std::size_t begin_of_last(std::string_view path) {
   return begin;
 }
 
-/// Priority among several units in one name. Units that may also be words or names come last, as in
-/// "position in mm".
+/// Returns the priority of a unit among several in one name. Units that may also be words or names
+/// have the lowest priority, as in "position in mm".
 int weight_of(std::string_view unit) {
   if (unit == "pa" || is_among(kWords, unit)) return 0;
   return unit.size() == 1 ? 1 : 2;

@@ -27,8 +27,8 @@ struct SyntheticRepeat {
 /// [synthetic].
 Campaign true_campaign(const Campaign& campaign);
 
-/// Channels that can be synthesised: all declared ones, except a reference that no controller
-/// follows.
+/// Returns the channels that can be synthesised: all declared ones, except a reference that no
+/// controller follows.
 std::vector<Channel> made_channels(const Campaign& campaign);
 
 /// Simulates repeats 1..n of a condition with a tolerance of 1e-8. If the repeats differ only in

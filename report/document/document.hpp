@@ -251,7 +251,7 @@ struct Article {
   Blocks blocks;
 };
 /// Blocks that are already rendered for the page, and the blocks that a terminal shows instead.
-/// Rendering early saves memory: the blocks of a long page would need most of the memory.
+/// Rendering early saves memory, because the blocks of a long page would otherwise take most of it.
 struct Rendered {
   std::string html;
   Blocks blocks;

@@ -6,7 +6,7 @@
 
 namespace rigcal::report {
 
-/// Number of columns that a UTF-8 text takes on a terminal. Colour sequences take none.
+/// Returns the number of columns that a UTF-8 text takes on a terminal. Colour sequences take none.
 std::size_t text_width(std::string_view text);
 
 /// Replaces control characters with blanks, since file names may contain any. Keeps colour
@@ -46,14 +46,13 @@ class TextTable {
   ///                 lines are still too wide, the table is split into blocks that all begin with
   ///                 the keys. 0: no limit
   std::string text(std::size_t columns = 0) const;
-  /// Width of the widest line.
   std::size_t width() const;
-  /// Titles of the columns that text() omits.
+  /// Returns the titles of the columns that text() omits.
   std::vector<std::string> left_out(std::size_t columns) const;
 
  private:
   std::vector<std::size_t> widths() const;
-  /// Whether each column is shown.
+  /// Returns whether each column is shown.
   std::vector<bool> shown(std::size_t columns) const;
   /// Splits the shown columns into blocks, each with the keys.
   std::vector<std::vector<std::size_t>> blocks(std::size_t columns) const;

@@ -40,7 +40,7 @@ struct CsvName {
 /// Extracts the name from a field of a header.
 CsvName header_name(std::string_view field);
 
-/// Names by which columns can be requested: without the unit where that is unambiguous.
+/// Returns names by which columns can be requested. They omit the unit where that is unambiguous.
 std::vector<std::string> short_names(const std::vector<CsvName>& names);
 
 /// The column that matches a name, given with or without its unit. If the name is ambiguous,
@@ -55,7 +55,7 @@ std::optional<FoundColumn> find_column(const std::vector<CsvName>& names,
 /// Finds the separator used in a header: tab, else ';', else ','.
 char find_separator(std::string_view header);
 
-/// Names of all columns in a header.
+/// Returns the names of all columns in a header.
 std::vector<CsvName> header_names(std::string_view header, char separator);
 
 /// Returns the number in a field, or nullopt for any other text. Independent of the locale. Rejects

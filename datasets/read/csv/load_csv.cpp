@@ -68,7 +68,7 @@ class HeadedLines {
     if (text != nullptr) ++number_;
     return text;
   }
-  /// Number of the line that next() last returned, from 1.
+  /// Returns the number of the line that next() last returned, from 1.
   long number() const { return number_; }
 
  private:
@@ -421,8 +421,8 @@ class RowReader {
   std::size_t shortest_length_ = std::numeric_limits<std::size_t>::max();
 };
 
-/// Upper bound on the number of rows in a file: a field takes at least two bytes, including its
-/// separator.
+/// Returns an upper bound on the number of rows in a file: a field takes at least two bytes,
+/// including its separator.
 std::size_t most_rows(const std::filesystem::path& path, const Header& header) {
   std::error_code error;
   const std::uintmax_t bytes = std::filesystem::file_size(path, error);

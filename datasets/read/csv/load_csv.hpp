@@ -44,13 +44,13 @@ struct CsvTable {
 /// @throws std::invalid_argument  if time_column is not among the columns
 CsvTable load_csv(const std::filesystem::path& path, const CsvRequest& request);
 
-/// Header names of a CSV file, for messages: without units, unless only the unit distinguishes two
-/// columns.
+/// Returns the header names of a CSV file, for messages. They omit the unit unless only the unit
+/// distinguishes two columns.
 ///
 /// @throws InputError  under the conditions of load_csv()
 std::vector<std::string> csv_header(const std::filesystem::path& path, char separator = 0);
 
-/// Header names as they are in the file, with their units.
+/// Returns the header names as they are in the file, with their units.
 ///
 /// @throws InputError  under the conditions of load_csv()
 std::vector<std::string> csv_full_header(const std::filesystem::path& path, char separator = 0);

@@ -217,8 +217,8 @@ struct Packing {
   std::vector<double> missing;  ///< numbers that mark a missing value
 };
 
-/// Value that HDF5 returns for elements that were never written, if the file sets one. Zero is
-/// ignored, because it may be a real value.
+/// Returns the value that HDF5 gives for elements that were never written, if the file sets one.
+/// Zero is ignored, because it may be a real value.
 std::optional<double> own_fill_value(hid_t dataset) {
   const Hdf5Id plan(H5Dget_create_plist(dataset), H5Pclose);
   H5D_fill_value_t kind = H5D_FILL_VALUE_UNDEFINED;

@@ -31,7 +31,7 @@ struct XlsxMerged {
   }
 };
 
-/// Address of a cell, such as "C17". Rows and columns count from 1.
+/// Returns the address of a cell, such as "C17". Rows and columns count from 1.
 std::string xlsx_address(std::size_t row, std::size_t column);
 
 /// An .xlsx workbook (ECMA-376, SpreadsheetML), read strictly, whatever the locale. Use it only

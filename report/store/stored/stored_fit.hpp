@@ -100,7 +100,7 @@ void as_of_now(std::string_view schema, std::vector<StoredParameter>& parameters
 std::optional<metrics::EstimateError> interval_error(const StoredParameter& parameter);
 /// Returns the larger of standard and robust error.
 std::optional<double> error_of(const StoredParameter& parameter);
-/// Text for a parameter with its level: "leakage_coefficient (leak level 33 %)".
+/// Returns the text for a parameter with its level: "leakage_coefficient (leak level 33 %)".
 std::string parameter_label(const std::string& key, datasets::Scope scope,
                             const std::optional<std::string>& level);
 inline std::string parameter_label(const StoredParameter& p) {
@@ -178,7 +178,7 @@ struct StoredCondition {
                   noise_floor, expanded_uncertainty, two_sided_uncertainty, residual_tests,
                   limit_checks, channel_verdicts, verdict, reasons)
 
-  /// Verdict on a channel; absent without a limit.
+  /// Returns the verdict on a channel; std::nullopt without a limit.
   std::optional<calib::Verdict> verdict_of(const std::string& channel) const;
 };
 
