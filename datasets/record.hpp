@@ -105,7 +105,7 @@ struct TimeWindow {
   double end_s = 0.0;
 };
 
-/// The averaged record of one condition, with which the model is compared.
+/// The averaged record of one condition, for comparison with the model.
 struct Record {
   std::string condition;
   std::vector<double> time_s;  ///< shape (samples), increasing

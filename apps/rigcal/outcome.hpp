@@ -17,8 +17,8 @@ std::shared_ptr<const datasets::Campaign> loaded(const CampaignOptions& options)
 
 using Job = std::function<report::JobResult(const report::JobTerms&)>;
 
-/// What a signal ends during the main computation of a job: the whole process, or only the
-/// computation, in which case the result so far is written.
+/// What a signal ends if it arrives during the main computation of a job: the whole process, or
+/// only the computation. In the second case the result so far is written.
 enum class OnSignal { end, keep_result };
 
 /// Runs a job for the folder of --out, writes its files with the page, and prints its document.

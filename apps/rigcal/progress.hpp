@@ -58,7 +58,7 @@ class FitProgress {
 /// Shows how many tasks of the same kind are done.
 class CountProgress {
  public:
-  /// @param pieces  what the tasks are called: "records"
+  /// @param pieces  name for the tasks, such as "records"
   CountProgress(bool quiet, std::string pieces);
 
   /// May be called from any thread.

@@ -290,9 +290,9 @@ void set_free(Campaign& campaign, const std::vector<std::string>& names);
 /// @throws UsageError  if values are missing or contradictory; names the condition
 void check_values(const Campaign& campaign);
 
-/// Lists, in words, what a condition lacks for a comparison with the model: parameters without a
-/// value, an unknown drive, time or unit, no output channel. load_campaign() already refuses
-/// conditions with use `fit` or `validate` that lack anything except a unit.
+/// Lists, in words, what is missing for a comparison of a condition with the model: parameters
+/// without a value, an unknown drive, time or unit, no output channel. load_campaign() already
+/// refuses conditions with use `fit` or `validate` that lack anything except a unit.
 std::vector<std::string> lacks_for_model(const Campaign& campaign, const Condition& condition);
 
 /// Returns the parameter values in a condition. Values of its leak level replace those of the rig,
@@ -318,8 +318,8 @@ std::vector<RepeatSource> repeat_sources(const Campaign& campaign, const Conditi
 model::SimulationInputs inputs_of(const Campaign& campaign, const Condition& condition,
                                   const model::ParameterValues& values, const Record* record);
 
-/// Returns the sample times of a condition: those of its record, or else from its duration and
-/// sample rate.
+/// Returns the sample times of a condition. They come from its record, or otherwise from its
+/// duration and sample rate.
 ///
 /// @throws InputError  if there is neither a record nor a duration and sample rate
 std::vector<double> sample_times(const Condition& condition, const Record* record);

@@ -25,7 +25,7 @@ std::vector<Channel> read_not_judged(const TomlNode& node, const Campaign& campa
 /// Reads [acceptance] into the campaign: limits and further requirements; needs rig and channels.
 void read_acceptance(const TomlNode& node, Campaign& campaign);
 
-/// Keys of [acceptance], and those of `acceptance` in a condition.
+/// Keys of [acceptance], and of `acceptance` in a condition.
 std::vector<CampaignKey> acceptance_keys();
 std::vector<CampaignKey> limit_keys();
 

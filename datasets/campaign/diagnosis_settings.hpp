@@ -26,7 +26,7 @@ struct DiagnosisSettings {
   /// Condition whose signal defines the leak share of a machine's state; empty: see
   /// diagnosis::machine_states().
   std::string duty;
-  /// True classes of leak levels, with which the diagnosis is compared.
+  /// True classes of leak levels, for comparison with the diagnosis.
   std::map<std::string, LeakClass> level_class;
 };
 

@@ -115,13 +115,12 @@ LeakSignal signal_from_text(const Campaign& campaign, const LeakTableSettings& s
 void override_assumption(LeakTableSettings& settings, const Campaign& campaign,
                          std::string_view assignment);
 
-/// Replaces assumptions with values from an earlier fit; their source says what they replace.
-/// Assumptions that the fit did not estimate are kept. Skips the leakage coefficient, since the
-/// table varies it.
+/// Replaces assumptions with values from an earlier fit. The `source` of each says what it
+/// replaces. Assumptions that the fit did not estimate are kept. Skips the leakage coefficient,
+/// since the table varies it.
 ///
 /// @throws InputError  if a value was fitted per leak level or condition, so that there is no
-/// single
-///                     value for the rig, and no assumption gives one
+///                     single value for the rig, and no assumption gives one
 void take_fitted(LeakTableSettings& settings, const Campaign& campaign,
                  const std::vector<FittedValue>& fitted);
 
@@ -132,7 +131,7 @@ void take_fitted(LeakTableSettings& settings, const Campaign& campaign,
 void free_assumptions(LeakTableSettings& settings, const Campaign& campaign,
                       const std::vector<std::string>& names);
 
-/// Returns the values of the rig, with those of the assumptions substituted.
+/// Returns the values of the rig after applying the assumptions.
 ///
 /// @throws InputError  if a parameter of the plant has no value
 model::ParameterValues leak_table_values(const Campaign& campaign,

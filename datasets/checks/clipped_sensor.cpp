@@ -35,7 +35,8 @@ double typical_length(const std::vector<EqualRun>& runs, double low, double high
 }
 
 /// Whether the signal leaves its extreme value by at least three steps of the resolution and
-/// returns within three samples, at least ten times. Noise that is cut off on one side does this.
+/// returns within three samples, at least ten times. This is how noise behaves that is cut off on
+/// one side.
 bool noise_is_cut(const std::vector<EqualRun>& runs, double extreme, double smallest) {
   std::size_t dips = 0;
   std::size_t last = runs.size();  // index of the last run at the extreme
@@ -46,7 +47,7 @@ bool noise_is_cut(const std::vector<EqualRun>& runs, double extreme, double smal
       continue;
     }
     if (last < runs.size() && runs[k].begin - runs[last].end() <= kBesideDip &&
-        depth > 0.97 * kDepth * smallest)  // the step is known only to within rounding
+        depth > 0.97 * kDepth * smallest)  // allows for rounding of the resolution
       ++dips;
     last = k;
     depth = 0.0;

@@ -8,8 +8,7 @@
 namespace rigcal::datasets {
 namespace {
 
-/// Whether all values are a whole number of steps apart, within rounding, like those of a
-/// converter.
+/// Whether the values differ only by whole steps, within rounding, as those of a converter do.
 bool on_a_grid(const std::vector<double>& values, double step) {
   constexpr double kOffGrid = 0.05;  // fraction of a step
   return std::all_of(values.begin(), values.end(), [&](double value) {

@@ -47,7 +47,7 @@ std::vector<std::vector<double>> read(const fs::path& file, const std::string& t
 
 // ---- Columns -------------------------------------------------------------------------------
 
-/// Columns of one channel in a file: a single one, or numbered ones that are repeats.
+/// Columns of one channel in a file: a single column, or several numbered ones that are repeats.
 struct ChannelColumns {
   Channel channel = Channel::position;
   std::string stem;                  ///< name, without its number if there are several columns
@@ -60,7 +60,7 @@ struct FileColumns {
   std::string time_unit;
   std::vector<ChannelColumns> channels;
   std::vector<std::string> unknown;
-  std::map<std::string, std::string> units;  ///< units of `unknown`, where the file gives them
+  std::map<std::string, std::string> units;  ///< units of `unknown`, if the file gives them
   /// Unnamed lines of a matrix after its time: rows of an array from Simulink's "To File", or
   /// columns.
   std::vector<std::string> rows;
@@ -177,7 +177,7 @@ FileColumns columns_of(const fs::path& file) {
   return found;
 }
 
-/// Groups the columns that belong to the same repeats. A new set begins where a channel occurs
+/// Groups the columns that belong to the same repeats. A new set begins when a channel occurs
 /// again.
 std::vector<std::vector<ChannelColumns>> column_sets(const FileColumns& columns) {
   std::vector<std::vector<ChannelColumns>> sets;

@@ -76,7 +76,7 @@ void require_compatible(const Repeat& first, const Repeat& other) {
         other.time_s.back()));
 }
 
-/// Whether a signal has an edge within one sample, which hides where within the sample it occurred.
+/// Whether a signal jumps within one sample. The exact time of such an edge is unknown.
 bool jumps(const std::vector<double>& x) {
   const auto [low, high] = std::minmax_element(x.begin(), x.end());
   double step = 0.0;
@@ -84,7 +84,7 @@ bool jumps(const std::vector<double>& x) {
   return step > 0.25 * (*high - *low);
 }
 
-/// Channels that every repeat has, the best ones for alignment first.
+/// Returns the channels that every repeat has, with the best ones for alignment first.
 std::vector<Channel> alignment_channels(const std::vector<Repeat>& repeats) {
   std::vector<Channel> smooth;
   std::vector<Channel> jumping;

@@ -10,7 +10,7 @@
 
 namespace rigcal::datasets {
 
-/// Words with which a warning about an outlier ends.
+/// End of every warning about an outlier.
 inline constexpr std::string_view kStaysInMean = "it stays in the mean";
 
 struct AverageOptions {
@@ -26,8 +26,8 @@ struct AverageOptions {
   bool keep_deviations = false;        ///< fill Series::deviations, for the errors of the repeats
 };
 
-/// Averages any number of repeats of one condition: aligned mean, sd and count. Repeats may have
-/// different channels; each channel is averaged over the repeats that have it. Repeats are
+/// Aligns any number of repeats of one condition, and computes their mean, sd and count. Repeats
+/// may have different channels; each channel is averaged over the repeats that have it. Repeats are
 /// resampled to the time base of the first one by the fractional shift found (alignment.hpp:
 /// offsets are relative to their mean). Samples at the ends that not every repeat covers have a
 /// smaller count. Samples that a channel does not cover at all are cut off.

@@ -44,7 +44,7 @@ Trace without_mean(const std::vector<double>& x) {
   return Trace(std::move(centred));
 }
 
-/// Pearson's correlation of the overlap at each lag in a range; 0 where one side is constant.
+/// Pearson's correlation of the overlap at each lag in a range; 0 if one of the two is constant.
 struct Correlation {
   int first_lag = 0;
   std::vector<double> r;
@@ -266,7 +266,7 @@ std::vector<std::optional<Lag>> find_lags(const std::vector<double>& a,
     coarse.push_back(coarse_peak(x, y.back(), a.empty() ? 0.0 : a.front(),
                                  b->empty() ? 0.0 : b->front(), max_lag));
   }
-  // Smoothing removes noise, but where the record has edges it also removes signal.
+  // Smoothing removes noise, but it also removes signal at any edges in the record.
   for (const double smoothing : {0.7, 1.5, 3.0, 6.0, 12.0, 24.0}) {
     std::optional<Trace> smooth_x;
     for (std::size_t k = 0; k < others.size(); ++k) {

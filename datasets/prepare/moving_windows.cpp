@@ -16,7 +16,7 @@ constexpr double kLeastTravelShare = 0.05;  // fraction of the range of position
 constexpr double kArrivedShare = 0.01;      // fraction of the travel
 constexpr double kNoiseFactor = 6.0;        // in standard deviations of the noise
 constexpr double kSpreadFactor = 2.0;       // in standard deviations over the repeats
-constexpr double kTailShare = 0.05;     // final fraction of a level that shows where motion ends
+constexpr double kTailShare = 0.05;     // final fraction of a level, used to find where motion ends
 constexpr std::size_t kFewestHeld = 5;  // samples at one level
 
 /// Samples [begin, end).

@@ -86,7 +86,7 @@ std::string obstacle(const Compared& a, const Compared& b) {
   return {};
 }
 
-/// The parameters of a fit, sorted into free and known ones.
+/// The parameters of a fit, grouped into free and known ones.
 struct Terms {
   std::map<std::string, Scope> free;  ///< by key
   std::map<std::string, std::pair<double, double>> bounds;

@@ -37,7 +37,7 @@ struct Header {
   bool last_may_lack = false;  ///< the last column is a comment that rows may omit
 };
 
-/// Lines of a file, the first of which can be viewed in advance.
+/// Lines of a file. The first lines can be inspected before they are read.
 class HeadedLines {
  public:
   explicit HeadedLines(CsvLines& lines) : lines_(lines) {}
@@ -108,7 +108,7 @@ bool header_comes_first(const std::vector<std::string>& lines, char separator) {
   return is_row_of_numbers(*row, by, names) && !is_row_of_numbers(*header, by, names);
 }
 
-/// Finds a header below lines of text, with blanks as separators, or above a row of units; nullopt
+/// Finds a header below lines of text, with spaces as separators, or above a row of units; nullopt
 /// for other files.
 std::optional<Header> unusual_header(HeadedLines& lines, const std::string& file, char separator) {
   if (header_comes_first(lines.look_ahead(10), separator)) return std::nullopt;

@@ -30,7 +30,7 @@ struct CsvTable {
 /// Reads the wanted columns of a CSV file, strictly.
 ///
 /// The header is the first line that is not a comment ("#..."), or is found by find_layout(): below
-/// lines of text, with blanks as separators, or above a row of units. A unit may follow the name
+/// lines of text, with spaces as separators, or above a row of units. A unit may follow the name
 /// ("x [mm]", "x (mm)") and is not part of it. CRLF, a byte-order mark and a missing final newline
 /// are accepted, as is a decimal comma if the separator is ';' or tab. Anything else in a wanted
 /// column that is not a finite number is an error. Other errors are a wrong number of columns, an

@@ -413,7 +413,8 @@ std::vector<double> Hdf5File::unpacked(hid_t dataset, std::vector<double> values
   if (const auto fill = own_fill_value(dataset)) packing.missing.push_back(*fill);
   const Hdf5Id type(H5Dget_type(dataset), H5Tclose);
   if (H5Tget_class(type.get()) == H5T_FLOAT && H5Tget_size(type.get()) == sizeof(float)) {
-    // A dataset of floats stores -999.9 rounded, so the attribute is rounded, too.
+    // A dataset of floats stores -999.9 in single precision, so the attribute is rounded to it as
+    // well.
     for (double& each : packing.missing)
       if (std::abs(each) <= static_cast<double>(std::numeric_limits<float>::max()))
         each = static_cast<double>(static_cast<float>(each));

@@ -94,9 +94,9 @@ struct StoredParameter {
 /// `ci95_if_exact`.
 void as_of_now(std::string_view schema, std::vector<StoredParameter>& parameters);
 
-/// Returns the error behind ci95_if_exact with its degrees of freedom. If an older file lacks the
-/// latter, they are computed from the interval's half width in units of the error; without an
-/// interval they are many.
+/// Returns the error behind ci95_if_exact with its degrees of freedom. If an older file lacks them,
+/// they are computed from the interval's half width in units of the error. Without an interval a
+/// large number is assumed.
 std::optional<metrics::EstimateError> interval_error(const StoredParameter& parameter);
 /// Returns the larger of standard and robust error.
 std::optional<double> error_of(const StoredParameter& parameter);
