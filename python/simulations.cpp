@@ -30,7 +30,6 @@ namespace {
 namespace py = pybind11;
 namespace fs = std::filesystem;
 
-/// A simulated condition.
 struct Simulated {
   std::string condition;
   std::vector<double> time_s;

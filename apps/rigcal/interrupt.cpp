@@ -13,7 +13,7 @@
 namespace rigcal::app {
 namespace {
 
-// Globals, because a signal handler cannot access anything else.
+// These are globals, because a signal handler cannot access anything else.
 std::atomic<bool> interrupted{false};
 std::atomic<int> keeping{0};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler must not lock");

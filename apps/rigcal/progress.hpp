@@ -36,7 +36,6 @@ class StatusLine {
   Clock::time_point last_shown_ = begin_;
 };
 
-/// Shows the progress of a fit.
 class FitProgress {
  public:
   /// @param work      name of the work, such as "start {} of 3"; the braces are replaced by the

@@ -167,7 +167,7 @@ enum class Loss { squared, huber, cauchy, soft_l1 };
 inline constexpr int kLeastPosteriorDraws = 100;
 inline constexpr int kMostPosteriorDraws = 100'000;
 
-/// [fit], all optional.
+/// Settings in [fit]; all are optional.
 struct FitSettings {
   Loss loss = Loss::squared;
   double loss_scale = 3.0;  ///< in standard deviations of a residual
@@ -204,7 +204,7 @@ struct SimulationSettings {
   double max_seconds = 120.0;
 };
 
-/// A campaign file, checked and in SI.
+/// A campaign file after checking, with values in SI units.
 struct Campaign {
   std::filesystem::path file;
   FileState file_state;            ///< taken before the file was read

@@ -93,7 +93,6 @@ AcceptanceLimit& limit_of(Limits& limits, Channel channel, std::string_view metr
   return limits.back();
 }
 
-/// Reads one limit of a channel.
 void read_limit_into(Limits& limits, const TomlNode& node, std::string_view key, Channel channel) {
   const bool warns = key.starts_with(kWarnPrefix);
   const MetricSpec& metric = *metric_named(warns ? key.substr(kWarnPrefix.size()) : key);

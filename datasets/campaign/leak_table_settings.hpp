@@ -81,7 +81,6 @@ struct LeakTableSettings {
 
 struct CampaignKey;
 
-/// Keys of [leak_table].
 const std::vector<CampaignKey>& leak_table_keys();
 
 /// Reads the section [leak_table].

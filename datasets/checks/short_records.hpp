@@ -8,7 +8,6 @@
 
 namespace rigcal::datasets {
 
-/// Length of a condition's record.
 struct RecordLength {
   const Condition* condition = nullptr;
   double seconds = 0.0;

@@ -52,7 +52,7 @@ class TextTable {
 
  private:
   std::vector<std::size_t> widths() const;
-  /// Returns whether each column is shown.
+  /// Returns, for each column, whether it is shown.
   std::vector<bool> shown(std::size_t columns) const;
   /// Splits the shown columns into blocks, each with the keys.
   std::vector<std::vector<std::size_t>> blocks(std::size_t columns) const;

@@ -56,7 +56,6 @@ struct DesignSettings {
   std::optional<std::string> like;
   Location where;
 
-  /// Returns the number of samples in the drive.
   std::size_t samples() const;
 };
 

@@ -52,7 +52,6 @@ std::string kind_text(const MatArray& array) {
   return "a number";
 }
 
-/// Reads one column.
 class ColumnOfMat {
  public:
   ColumnOfMat(MatSource& source, const std::string& column) : source_(source), column_(column) {}

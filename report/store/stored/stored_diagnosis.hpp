@@ -91,7 +91,6 @@ struct StoredLeakTrend {
                   significant, chi_squared, freedom, widened, next_limit)
 };
 
-/// Diagnosis of one record.
 struct StoredDiagnosedRecord {
   std::string condition;
   std::optional<int> repeat;  ///< from 1; absent for the average

@@ -127,8 +127,8 @@ struct StoredWeight {
   RIGCAL_DESCRIBE(condition, channel, samples, sd, rms)
 };
 
-/// Scores of one channel in a condition, NaN for a score that does not exist, with the response at
-/// the fundamental frequency.
+/// Scores of one channel in a condition, and the response at the fundamental frequency. A score
+/// that does not exist is NaN.
 struct StoredScore : metrics::Agreement {
   std::optional<double> gain_ratio, phase_deg, delay_s;
   std::optional<std::string> problem;
