@@ -274,8 +274,7 @@ Campaign load_campaign(const std::filesystem::path& file,
 /// Applies `--set name="value unit"`. For a fitted parameter this changes the start value.
 ///
 /// @throws UsageError  if the name is unknown, the unit is wrong, the value is outside the limits
-/// or
-///                     bounds, or has no effect because every condition has its own value
+///                     or bounds, or has no effect because every condition has its own value
 void set_value(Campaign& campaign, std::string_view assignment);
 
 /// Applies `--free a,b`: exactly these parameters are fitted. Missing bounds default to value/10

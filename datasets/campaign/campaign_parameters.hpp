@@ -47,8 +47,7 @@ std::optional<std::string> outside_limits(const model::ParameterSpec& spec, doub
 /// limits themselves if the value is 0.
 ///
 /// @return  the problem if a bound is still not finite or the value is outside the bounds,
-/// otherwise
-///          std::nullopt
+///          otherwise std::nullopt
 std::optional<std::string> complete_bounds(const model::ParameterSpec& spec,
                                            ParameterSetting& setting);
 

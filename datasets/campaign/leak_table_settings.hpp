@@ -86,8 +86,7 @@ const std::vector<CampaignKey>& leak_table_keys();
 /// Reads the section [leak_table].
 ///
 /// @throws InputError  if the section is invalid; names file:line:column, the key, what was found
-/// and
-///                     what was expected
+///                     and what was expected
 LeakTableSettings read_leak_table(const TomlNode& node, const Campaign& campaign);
 
 /// Reads [leak_table] from a campaign's file. If it has no signals, uses the sine and square waves
@@ -109,8 +108,7 @@ LeakSignal signal_from_text(const Campaign& campaign, const LeakTableSettings& s
 /// campaign.
 ///
 /// @throws UsageError  if the residual scale is not a positive number in 1/m, or the value is
-/// outside
-///                     the bounds of `fit-tables`
+///                     outside the bounds of `fit-tables`
 void override_assumption(LeakTableSettings& settings, const Campaign& campaign,
                          std::string_view assignment);
 

@@ -20,8 +20,7 @@ inline constexpr std::uintmax_t kMaxCampaignBytes = std::uintmax_t{16} << 20;
 /// Parses a TOML file.
 ///
 /// @throws InputError  if the file is not a regular file, cannot be read, is too large, has keys
-/// with
-///                     too many parts, or has a syntax error (names line and column)
+///                     with too many parts, or has a syntax error (names line and column)
 toml::table parse_toml_file(const std::filesystem::path& path);
 
 /// Writes a text as a TOML basic string on one line, including quotes. Escapes control characters.
