@@ -20,7 +20,7 @@ struct DayQuantityName {
 /// Key for the start time of a record relative to its drive. No parameter of the rig describes it.
 inline constexpr const char* kTriggerKey = "trigger";
 
-/// Returns the quantities that the plant has, out of supply, oil, zero of the position sensor, and
+/// Returns the quantities that the plant has among supply, oil, zero of the position sensor, and
 /// trigger.
 std::vector<DayQuantityName> day_quantity_names(model::PlantKind plant);
 

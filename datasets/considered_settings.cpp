@@ -58,7 +58,7 @@ std::vector<EffectName> effect_names(model::PlantKind plant) {
   for (const std::string_view key : keys) {
     const int index = model::parameter_index(plant, key);
     if (index < 0) continue;
-    // There it is the same term as a laminar leak.
+    // In this plant, null leakage is the same term as a laminar leak.
     if (plant == model::PlantKind::load_pressure && key == "valve_null_leakage") continue;
     const auto& spec = model::parameter_table(plant)[static_cast<std::size_t>(index)];
     names.push_back({std::string(key), std::string(spec.unit)});

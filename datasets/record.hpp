@@ -43,7 +43,7 @@ struct ChannelInfo {
   bool is_output;         ///< compared with the model unless its role says otherwise
 };
 
-/// All channels, in the order of the enumeration.
+/// Returns all channels, in the order of the enumeration.
 const std::vector<ChannelInfo>& channel_table();
 const ChannelInfo& info(Channel channel);
 std::optional<Channel> channel_from_key(std::string_view key);
@@ -105,7 +105,7 @@ struct TimeWindow {
   double end_s = 0.0;
 };
 
-/// The averaged record of one condition, with which the model is compared.
+/// The averaged record of one condition, for comparison with the model.
 struct Record {
   std::string condition;
   std::vector<double> time_s;  ///< shape (samples), increasing

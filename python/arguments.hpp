@@ -59,7 +59,7 @@ auto field(std::shared_ptr<const Member> Self::*member, Value Member::*value) {
   return [=](const Self& self) { return (*(self.*member)).*value; };
 }
 
-/// Returns a getter for an enumerator, which Python sees as its name.
+/// Returns a getter for an enumerator, which Python receives as text: the enumerator's name.
 template <typename Self, typename Value>
 auto named(Value Self::*value) {
   return [=](const Self& self) { return to_string(self.*value); };

@@ -11,7 +11,7 @@ namespace rigcal::python {
 ///
 /// @return  the exception of the signal handler, usually KeyboardInterrupt; null if there was no
 ///          signal
-/// @throws the  exception of the work, unless a signal came first
+/// @throws std::exception  any exception that the work throws, unless a signal came first
 std::exception_ptr run_interruptibly(std::atomic<bool>& cancel, const std::function<void()>& work);
 
 }  // namespace rigcal::python

@@ -19,7 +19,7 @@ struct Iteration {
   double relative_change = 0.0;
 };
 
-/// Progress of the other work in a fit.
+/// Progress of the other parts of a fit, such as the bootstrap.
 struct Pieces {
   std::string work;
   int done = 0;

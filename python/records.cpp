@@ -33,7 +33,7 @@ struct RecordedChannel {
   datasets::ChannelInfo about;
 };
 
-/// What `check` found.
+/// Findings of `check`.
 struct Checked {
   std::vector<RecordPtr> records;
   std::vector<std::string> without_record;

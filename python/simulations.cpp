@@ -30,7 +30,6 @@ namespace {
 namespace py = pybind11;
 namespace fs = std::filesystem;
 
-/// A simulated condition.
 struct Simulated {
   std::string condition;
   std::vector<double> time_s;
@@ -84,7 +83,7 @@ py::dict sensitivities_of(const SimulatedPtr& self) {
   return all;
 }
 
-/// The arguments of a call, besides the campaign.
+/// Arguments of a call, except for the campaign.
 struct Wanted {
   std::optional<std::string> condition;
   std::map<std::string, double> values;  ///< in SI units

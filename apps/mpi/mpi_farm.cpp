@@ -94,7 +94,7 @@ Slot make(const TaskFarm::Task& task, std::size_t index) {
   return slot;
 }
 
-/// Queue of tasks for the threads of this process, and of their results.
+/// Passes tasks to the threads of this process and collects their results.
 class Lanes {
  public:
   Lanes(int count, const TaskFarm::Task& task) : idle_(count) {
@@ -149,7 +149,8 @@ class Lanes {
   std::vector<std::pair<std::size_t, Slot>> made_;
   int idle_;
   bool ended_ = false;
-  std::vector<std::jthread> threads_;  // last, so that threads end before what they use
+  std::vector<std::jthread> threads_;  // last, so that the threads end before the members they use
+                                       // are destroyed
 };
 
 class MpiFarm final : public TaskFarm {
@@ -191,7 +192,7 @@ class MpiFarm final : public TaskFarm {
     std::string name;
     std::vector<Slot> slots;
     std::size_t next = 0;        ///< the first task that has not been started
-    std::size_t missing = 0;     ///< number of results still missing
+    std::size_t missing = 0;     ///< number of results that have not arrived
     std::vector<int> waiting{};  ///< processes waiting for a task
     const Done* done = nullptr;
     const FarmJob* job = nullptr;

@@ -1,7 +1,7 @@
-// Eigen allocates with malloc(). After std::bad_alloc its matrices are inconsistent: they free
-// memory twice if they could not enlarge it. Code linked into the program (--wrap in
-// apps/CMakeLists.txt) therefore handles lack of memory like operator new, by calling the new
-// handler, which ends the program.
+// Eigen allocates with malloc(). If that fails while a matrix is being enlarged, the matrix is left
+// inconsistent and frees its memory twice. The functions below replace malloc() and realloc()
+// (--wrap in apps/CMakeLists.txt). Like operator new, they call the new handler when memory runs
+// out, and the handler ends the program.
 
 #include <cstddef>
 #include <new>

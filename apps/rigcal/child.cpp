@@ -22,7 +22,7 @@ namespace {
 constexpr std::size_t kMostKept = 16'384;
 constexpr int kLookEvery_ms = 50;
 
-/// Returns true for environment variables with which a launcher marks a process as one of several.
+/// Returns true for environment variables that a launcher sets to mark a process as one of several.
 bool is_of_launcher(std::string_view variable) {
   constexpr std::array kPrefixes{"OMPI_", "PMIX_", "PMI_", "PRTE_", "MPI_"};
   return std::any_of(kPrefixes.begin(), kPrefixes.end(),

@@ -6,7 +6,7 @@
 
 namespace rigcal::app {
 
-/// Options for a fit in addition to those in its campaign. `batch` passes them on for every rig.
+/// Options for a fit that are not in its campaign. `batch` passes them on for every rig.
 struct FitChoices : report::FitChoices {
   bool strict = false;
 };

@@ -13,12 +13,13 @@
 namespace rigcal::app {
 namespace {
 
-// Globals, because a signal handler cannot access anything else.
+// These are globals, because a signal handler cannot access anything else.
 std::atomic<bool> interrupted{false};
 std::atomic<int> keeping{0};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler must not lock");
 
-/// Ends the process. It must not lock or allocate, because the signal may have interrupted either.
+/// Ends the process. It must not lock or allocate, because the signal may have interrupted code
+/// that was doing so.
 [[noreturn]] void end_at_once() {
   constexpr std::string_view kWords = "rigcal: stopped by a signal before its end\n";
   FilesInWriting::remove_all();

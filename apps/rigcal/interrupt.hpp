@@ -10,8 +10,9 @@ namespace rigcal::app {
 /// but does not end the process.
 const std::atomic<bool>& watch_signals();
 
-/// Protects the results of a computation from signals. While an object exists, a signal does not
-/// discard the work. The computation must check the flag, and its results so far are written.
+/// Protects the results of a computation from signals. While an object exists, the first signal
+/// does not end the process. The computation must check the flag and write the results it has so
+/// far.
 class Kept {
  public:
   Kept();

@@ -8,7 +8,8 @@
 
 namespace rigcal::app {
 
-// The manual is generated from the output of --help, so that the two cannot differ.
+// The manual is generated from the same definitions as the output of --help, so that the two cannot
+// differ.
 
 /// Returns the manual page rigcal(1) in roff.
 std::string man_page(const CLI::App& app);

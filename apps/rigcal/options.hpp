@@ -38,18 +38,16 @@ CLI::Validator not_empty();
 /// into the largest one.
 CLI::Validator whole_number(std::uint64_t lowest, std::uint64_t highest);
 
-/// Returns the number of hardware threads on this machine.
 int hardware_threads();
 
 void add_print_options(CLI::App& verb, PrintOptions& options);
-/// Adds --force.
 void add_force_option(CLI::App& verb, bool& force);
 void add_campaign_options(CLI::App& verb, CampaignOptions& options);
 
 /// Describes how a verb may use its results folder.
 report::Holding holding(std::string verb, bool force, const PrintOptions& print);
 
-/// Returns the width of the terminal behind a stream, or 0 if the stream is redirected.
+/// Returns the width of the terminal that a stream writes to, or 0 if the stream is redirected.
 std::size_t terminal_columns(int stream);
 
 /// Returns the style for the terminal: in colour unless NO_COLOR is set, with tables as wide as the

@@ -14,7 +14,7 @@
 namespace rigcal::app {
 namespace {
 
-/// Prints the documents of a result or its JSON on stdout, and where its files are.
+/// Prints the documents of a result, or its JSON, on stdout, followed by the location of its files.
 ///
 /// @param files  the files in the folder that the user should open first
 /// @throws WriteError  if writing to stdout fails

@@ -35,8 +35,8 @@ bool is_one_of_several() {
          (std::getenv("PMIX_RANK") != nullptr && number_in("SLURM_NTASKS") > 1);
 }
 
-/// Returns the path of the MPI module: beside the program in the build tree, or in its installed
-/// location.
+/// Returns the path of the MPI module: next to the program in the build tree, otherwise where it is
+/// installed.
 fs::path module_file() {
   std::error_code unknown;
   const fs::path program = fs::read_symlink("/proc/self/exe", unknown).parent_path();

@@ -23,7 +23,7 @@ class StatusLine {
 
   /// Shows a text if it is time for an update.
   ///
-  /// @param text  called only then, with the seconds since the beginning
+  /// @param text  called only in that case, with the seconds since the start
   void show(const std::function<std::string(double)>& text);
 
  private:
@@ -36,7 +36,6 @@ class StatusLine {
   Clock::time_point last_shown_ = begin_;
 };
 
-/// Shows the progress of a fit.
 class FitProgress {
  public:
   /// @param work      name of the work, such as "start {} of 3"; the braces are replaced by the
@@ -55,10 +54,10 @@ class FitProgress {
   std::optional<double> max_seconds_;
 };
 
-/// Shows how many of several equal tasks are done.
+/// Shows how many tasks of the same kind are done.
 class CountProgress {
  public:
-  /// @param pieces  what the tasks are called: "records"
+  /// @param pieces  name for the tasks, such as "records"
   CountProgress(bool quiet, std::string pieces);
 
   /// May be called from any thread.
@@ -70,7 +69,7 @@ class CountProgress {
   std::string pieces_;
 };
 
-/// Shows the progress of bootstrap, profiles and cross-validation, one after the other.
+/// Shows the progress of the bootstrap, then of the profiles, then of cross-validation.
 class BesideProgress {
  public:
   explicit BesideProgress(bool quiet) : quiet_(quiet) {}

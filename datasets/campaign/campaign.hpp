@@ -34,7 +34,7 @@ struct Prior {
   double mean = 0.0;
   double sd = 0.0;
 
-  /// Distance of a value from the mean, in standard deviations.
+  /// Returns the distance of a value from the mean, in standard deviations.
   double residual(double value) const { return (value - mean) / sd; }
 };
 
@@ -50,9 +50,9 @@ struct ParameterSetting {
   Scope scope = Scope::rig;
   std::optional<Prior> prior;
   bool nuisance = false;  ///< estimated again in validation
-  /// Whether the parameter varies randomly between repeats. It is then one unknown per condition.
-  /// The prior applies to a single repeat; for the mean of R repeats its standard deviation is
-  /// divided by sqrt(R).
+  /// Whether the parameter varies randomly between repeats. The fit then has one unknown per
+  /// condition for it. The prior applies to a single repeat; for the mean of R repeats its standard
+  /// deviation is divided by sqrt(R).
   bool between_repeats = false;
   Location where;
 };
@@ -86,7 +86,7 @@ struct ChannelSetting {
   double offset_sd = 0.0;                 ///< standard uncertainty of the sensor's offset, SI
   ChannelRole role = ChannelRole::output;
   Interpolation interpolation = Interpolation::hold;
-  bool recognise = true;   ///< simulate a recorded drive as a generated one if they are equal
+  bool recognise = true;   ///< simulate a recorded drive as a generated waveform if the two agree
   bool in_counts = false;  ///< raw converter counts in an unknown unit
 };
 
@@ -119,10 +119,11 @@ std::string_view to_string(DecisionRule rule);
 /// Requirements for acceptance without reservation, in addition to the limits on metrics.
 struct AcceptanceBounds {
   DecisionRule decision = DecisionRule::simple;
-  /// Largest ratio of the model error to the noise in a record's mean, as standard deviations.
+  /// Largest accepted ratio of the model error to the noise in a record's mean. Both are standard
+  /// deviations.
   double model_error_to_noise = 0.5;
-  /// Largest negligible size, SI, by table index; for estimates that are indistinguishable from
-  /// zero.
+  /// Largest size that counts as negligible, SI, by table index. Used for estimates that are
+  /// indistinguishable from zero.
   std::map<int, double> negligible;
   std::vector<Channel> not_judged;  ///< output channels that need no limit
 };
@@ -162,11 +163,11 @@ enum class SpikeTreatment { report, exclude };
 
 enum class Loss { squared, huber, cauchy, soft_l1 };
 
-/// Range for the number of draws per chain of the posterior. Fewer draws give no useful quantiles.
+/// Accepted numbers of posterior draws per chain. Fewer draws give no useful quantiles.
 inline constexpr int kLeastPosteriorDraws = 100;
 inline constexpr int kMostPosteriorDraws = 100'000;
 
-/// [fit], all optional.
+/// Settings in [fit]; all are optional.
 struct FitSettings {
   Loss loss = Loss::squared;
   double loss_scale = 3.0;  ///< in standard deviations of a residual
@@ -203,7 +204,7 @@ struct SimulationSettings {
   double max_seconds = 120.0;
 };
 
-/// A campaign file, checked and in SI.
+/// A campaign file after checking, with values in SI units.
 struct Campaign {
   std::filesystem::path file;
   FileState file_state;            ///< taken before the file was read
@@ -224,10 +225,11 @@ struct Campaign {
   std::string time_column;
   UnitConversion time_to_s;
   StatedUnit stated_time;
-  bool time_in_counts = false;  ///< samples are numbered; their interval is unknown
+  bool time_in_counts = false;  ///< the time column only numbers the samples; their interval is
+                                ///< unknown
   std::map<Channel, ChannelSetting> channels;
   Alignment alignment = Alignment::correlate;
-  bool leave_out_outliers = false;  ///< exclude repeats far from the others from the mean
+  bool leave_out_outliers = false;  ///< exclude repeats that are far from the others when averaging
   std::vector<AcceptanceLimit> acceptance;
   AcceptanceBounds acceptance_bounds;
   FitSettings fit;
@@ -248,11 +250,12 @@ struct Campaign {
   bool may_lack_limits(const Condition& condition, Channel channel) const;
 };
 
-/// Channel of the drive: the command, the pilot pressure, or the reference in closed loop.
+/// Returns the channel of the drive: the command, the pilot pressure, or the reference in closed
+/// loop.
 Channel drive_channel(const model::Rig& rig);
 inline Channel drive_channel(const Campaign& campaign) { return drive_channel(campaign.rig); }
 
-/// Channel of the motion: the position, or the angle of a joint.
+/// Returns the channel of the motion: the position, or the angle of a joint.
 Channel motion_channel(const model::Rig& rig);
 inline Channel motion_channel(const Campaign& campaign) { return motion_channel(campaign.rig); }
 
@@ -271,8 +274,7 @@ Campaign load_campaign(const std::filesystem::path& file,
 /// Applies `--set name="value unit"`. For a fitted parameter this changes the start value.
 ///
 /// @throws UsageError  if the name is unknown, the unit is wrong, the value is outside the limits
-/// or
-///                     the bounds, or has no effect because every condition has its own value
+///                     or bounds, or has no effect because every condition has its own value
 void set_value(Campaign& campaign, std::string_view assignment);
 
 /// Applies `--set name="value unit"` of a simulation, where there is nothing to fit: every
@@ -294,9 +296,9 @@ void set_free(Campaign& campaign, const std::vector<std::string>& names);
 /// @throws UsageError  if values are missing or contradictory; names the condition
 void check_values(const Campaign& campaign);
 
-/// Lists, in words, what a condition lacks for a comparison with the model: parameters without a
-/// value, an unknown drive, time or unit, no output channel. load_campaign() already refuses
-/// conditions with use `fit` or `validate` that lack anything except a unit.
+/// Lists, in words, what is missing for a comparison of a condition with the model: parameters
+/// without a value, an unknown drive, time or unit, no output channel. load_campaign() already
+/// refuses conditions with use `fit` or `validate` that lack anything except a unit.
 std::vector<std::string> lacks_for_model(const Campaign& campaign, const Condition& condition);
 
 /// Returns the parameter values in a condition. Values of its leak level replace those of the rig,
@@ -322,8 +324,8 @@ std::vector<RepeatSource> repeat_sources(const Campaign& campaign, const Conditi
 model::SimulationInputs inputs_of(const Campaign& campaign, const Condition& condition,
                                   const model::ParameterValues& values, const Record* record);
 
-/// Returns the sample times of a condition: those of its record, or else from its duration and
-/// sample rate.
+/// Returns the sample times of a condition. They come from its record, or otherwise from its
+/// duration and sample rate.
 ///
 /// @throws InputError  if there is neither a record nor a duration and sample rate
 std::vector<double> sample_times(const Condition& condition, const Record* record);

@@ -71,7 +71,7 @@ void check_tank(const Campaign& campaign) {
 }
 
 /// Checks that the channels suit the plant: angle for a linkage; position, acceleration and force
-/// for all other plants.
+/// for every other plant.
 void check_motion(const Campaign& campaign) {
   const bool turns = campaign.rig.plant == model::PlantKind::linkage;
   for (const auto& [channel, setting] : campaign.channels) {

@@ -35,7 +35,7 @@ Words<model::Feedback> feedback_words() {
   return words;
 }
 
-/// Keys of [rig.controller] that are no parameters.
+/// Keys of [rig.controller] that are not parameters.
 const KeyTable<model::Rig>& controller_keys() {
   using Row = KeyRow<model::Rig>;
   using Kind = model::ControllerKind;
@@ -101,7 +101,6 @@ void read_rig(const TomlNode& node, Campaign& campaign) {
   if (const auto controller = node.find("controller")) read_controller(*controller, campaign);
 }
 
-/// Keys of a leak level.
 const std::vector<CampaignKey>& level_rows() {
   static const std::vector<CampaignKey> keys{{"parameters",
                                               known_values_form(ParameterGroup::rig),
@@ -191,7 +190,8 @@ const KeyTable<Campaign>& averaging_keys() {
   return keys;
 }
 
-/// The whole file. The order matters: later sections are checked against earlier ones.
+/// Returns the keys of the root table with their readers. Their order matters, because later
+/// sections are checked against earlier ones.
 const KeyTable<Campaign>& root_keys() {
   using Row = KeyRow<Campaign>;
   const auto section = [](std::string_view key, KeyForm form, Row::Read read, std::string doc) {
@@ -264,7 +264,7 @@ const KeyTable<Campaign>& root_keys() {
             campaign.design = read_design(node, campaign);
           },
           "The test that `rigcal plan --design` looks for"),
-      // Only its own verbs use this section, but a check of the campaign must cover it.
+      // Only a few verbs use this section, but a check of the campaign must cover it.
       section(
           "leak_table", table_form(leak_table_keys()),
           [](const TomlNode& node, Campaign& campaign) { read_leak_table(node, campaign); },

@@ -111,7 +111,7 @@ KeyTable<ParameterSetting> setting_keys(const KeyForm& value) {
   });
 }
 
-/// { start = ..., lower = ..., ... }
+/// Reads a table such as { start = ..., lower = ..., ... }.
 void read_setting_table(const TomlNode& node, const model::ParameterSpec& spec,
                         ParameterSetting& setting) {
   static const KeyTable<ParameterSetting> keys = setting_keys(plain_form(KeyForm::Kind::quantity));
@@ -187,7 +187,7 @@ std::vector<CampaignKey> parameter_rows(ParameterGroup group, bool fitted) {
       if (find_key(rows, spec.key) == nullptr)
         rows.push_back(
             {std::string(spec.key), quantity_form(spec.unit), std::string(spec.meaning)});
-      // A parameter of several plants may differ in unit and limits.
+      // A parameter that several plants share may differ between them in unit and limits.
       KeyForm& form = std::find_if(rows.begin(), rows.end(), [&](const CampaignKey& row) {
                         return row.key == spec.key;
                       })->form;
@@ -201,7 +201,8 @@ std::vector<CampaignKey> parameter_rows(ParameterGroup group, bool fitted) {
   }
   if (!fitted) return rows;
   for (CampaignKey& row : rows) {
-    // The table has no limits of numbers, so that parameters of a unit share one.
+    // The nested table omits the numeric limits, so that all parameters with the same unit share
+    // one.
     KeyForm value = plain_form(row.form.kind);
     value.units = row.form.units;
     row.form = either_form({row.form, table_form(setting_keys(value).keys())}, "quantity or table");
@@ -282,7 +283,7 @@ Overrides read_overrides(const TomlNode& table, model::PlantKind plant, Paramete
 
 namespace {
 
-/// Whether the plant has a parameter with this key and its value was given.
+/// Returns true if the plant has a parameter with this key and its value was given.
 bool has_key(const model::ParameterValues& values, std::string_view key) {
   return model::parameter_index(values.plant, key) >= 0 && values.is_given(key);
 }
@@ -429,7 +430,7 @@ std::optional<ParameterConflict> find_pump_conflict(const model::ParameterValues
   return std::nullopt;
 }
 
-/// Checks valve and pump of a cylinder with two chambers.
+/// Checks the valve and pump parameters of a two-chamber cylinder.
 std::optional<ParameterConflict> find_metering_conflict(const model::Rig& rig,
                                                         const model::ParameterValues& values) {
   if (model::parameter_index(values.plant, "pilot_gain") < 0) return std::nullopt;

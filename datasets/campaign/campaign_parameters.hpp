@@ -27,12 +27,13 @@ const model::ParameterSpec& spec_of(model::PlantKind plant, int index);
 /// Lists the keys in a group, in the order of the parameter table.
 std::vector<std::string> parameter_keys(model::PlantKind plant, ParameterGroup group);
 
-/// Rows of the parameters of all plants: what one of them has is a key.
+/// Returns rows for the parameters of all plants. A parameter of any plant is an accepted key.
 ///
-/// @param fitted  an entry may be a table with start, bounds and prior; else it is a known value
+/// @param fitted  true: an entry may be a table with start, bounds and prior; false: it is a known
+///                value
 std::vector<CampaignKey> parameter_rows(ParameterGroup group, bool fitted);
 
-/// A table of known values, as `parameters` of a condition.
+/// Describes a table of known values, such as `parameters` in a condition.
 inline KeyForm known_values_form(ParameterGroup group) {
   KeyForm form = table_form(parameter_rows(group, false));
   form.name = "table of known values";
@@ -46,8 +47,7 @@ std::optional<std::string> outside_limits(const model::ParameterSpec& spec, doub
 /// limits themselves if the value is 0.
 ///
 /// @return  the problem if a bound is still not finite or the value is outside the bounds,
-/// otherwise
-///          std::nullopt
+///          otherwise std::nullopt
 std::optional<std::string> complete_bounds(const model::ParameterSpec& spec,
                                            ParameterSetting& setting);
 

@@ -88,7 +88,7 @@ void check_role(const TomlNode& node, Channel channel, ChannelRole role, Channel
   }
 }
 
-/// Keys that `time` has, too.
+/// Keys that a channel has in common with `time`.
 std::vector<KeyRow<ChannelSetting>> column_rows() {
   using Row = KeyRow<ChannelSetting>;
   const auto text = plain_form(KeyForm::Kind::text);
@@ -117,7 +117,7 @@ std::vector<KeyRow<ChannelSetting>> column_rows() {
   };
 }
 
-/// @param unit  of the channel, SI; empty: any
+/// @param unit  SI unit of the channel; empty: any unit
 KeyTable<ChannelSetting> channel_keys(std::string_view unit) {
   using Row = KeyRow<ChannelSetting>;
   const KeyForm quantity = unit.empty() ? plain_form(KeyForm::Kind::quantity) : quantity_form(unit);
@@ -234,7 +234,8 @@ KeyForm recorded_channels_form() {
   return table_form(std::move(keys));
 }
 
-/// In a settled loop the reference fixes the initial position, so "steady" excludes `initial`.
+/// Rejects `before = "steady"` together with `initial` in a closed loop: in a settled loop the
+/// reference fixes the initial position.
 void check_before(const TomlNode& node, const Campaign& campaign) {
   if (campaign.rig.before == model::Before::steady && campaign.initial != InitialMode::rest &&
       campaign.rig.controller == model::ControllerKind::pid)
@@ -243,7 +244,7 @@ void check_before(const TomlNode& node, const Campaign& campaign) {
         "`initial`, or before = \"rest\" or \"hold\" with it");
 }
 
-/// Choices of `holes`: whether they are bridged.
+/// Accepted values of `holes`: true bridges the gaps.
 const Words<bool>& hole_words() {
   static const Words<bool> words{{"refuse", false}, {"bridge", true}};
   return words;

@@ -7,12 +7,12 @@
 #include "datasets/campaign/keys/key_table.hpp"
 #include "datasets/campaign/toml/toml_reader.hpp"
 
-/// The sections of a campaign file: the keys of each, and its reader. All readers throw InputError
-/// with the key and its place.
+/// The sections of a campaign file: their keys and readers. Every reader throws InputError, naming
+/// the key and its place.
 namespace rigcal::datasets {
 
 const KeyTable<Campaign>& recording_keys();
-/// [recording] into the campaign, whose controller is known already.
+/// Reads [recording] into the campaign; needs the controller.
 void read_recording(const TomlNode& node, Campaign& campaign);
 
 /// Reads the limits from the `acceptance` table of a condition; needs the channels.
@@ -25,23 +25,22 @@ std::vector<Channel> read_not_judged(const TomlNode& node, const Campaign& campa
 /// Reads [acceptance] into the campaign: limits and further requirements; needs rig and channels.
 void read_acceptance(const TomlNode& node, Campaign& campaign);
 
-/// Keys of [acceptance], and those of `acceptance` in a condition.
+/// Keys of [acceptance], and of `acceptance` in a condition.
 std::vector<CampaignKey> acceptance_keys();
 std::vector<CampaignKey> limit_keys();
 
-/// [fit]; needs the channels.
+/// The reader of [fit] needs the channels.
 const KeyTable<FitSettings>& fit_keys();
 FitSettings read_fit(const TomlNode& node, const Campaign& campaign);
 
 KeyForm considered_form();
-/// [considered]; needs the rig.
+/// Reads [considered]; needs the rig.
 ConsideredSettings read_considered(const TomlNode& node, const Campaign& campaign);
 
 KeyForm between_days_form();
-/// [between_days]; needs the rig.
+/// Reads [between_days]; needs the rig.
 BetweenDaysSettings read_between_days(const TomlNode& node, const Campaign& campaign);
 
-/// [diagnosis]
 const KeyTable<DiagnosisSettings>& diagnosis_keys();
 DiagnosisSettings read_diagnosis(const TomlNode& node);
 /// Checks that `duty` names a condition in the campaign.
@@ -49,7 +48,6 @@ DiagnosisSettings read_diagnosis(const TomlNode& node);
 /// @throws InputError  if it does not
 void check_duty(const TomlNode& node, const Campaign& campaign);
 
-/// [report]
 const std::vector<CampaignKey>& report_keys();
 ReportSettings read_report(const TomlNode& node);
 /// Copies the uncertainties stated for the sensors in [report] to the channels.
@@ -59,31 +57,29 @@ ReportSettings read_report(const TomlNode& node);
 void apply_sensors(const TomlNode& root, Campaign& campaign);
 
 const KeyTable<DesignSettings>& design_keys();
-/// [design]; needs the rig, the channels and the conditions.
+/// Reads [design]; needs the rig, the channels and the conditions.
 DesignSettings read_design(const TomlNode& node, const Campaign& campaign);
 
-/// [simulation]
 const KeyTable<SimulationSettings>& simulation_keys();
 SimulationSettings read_simulation(const TomlNode& node);
 
-/// [synthetic]
 const KeyTable<SyntheticSettings>& synthetic_keys();
 SyntheticSettings read_synthetic(const TomlNode& node, model::PlantKind plant);
 
 const KeyTable<Condition>& condition_keys();
-/// One [[condition]]; needs the rig and the channels.
+/// Reads one [[condition]]; needs the rig and the channels.
 Condition read_condition(const TomlNode& node, const Campaign& campaign);
 
-/// Converts a table key to a channel; an error lists the known channels.
+/// Converts a table key to a channel. The error for an unknown key lists the known channels.
 Channel read_channel_key(const TomlNode& table, const std::string& key);
 
-/// Keys of the channels that a model may be compared with.
+/// Returns the keys of the channels that can be compared with a model.
 std::vector<std::string> output_channel_names();
 
-/// A table of quantities by channel; its values are in the unit of the channel.
+/// Describes a table of quantities by channel. Each value is in the unit of its channel.
 KeyForm channels_form(std::string name);
 
-/// Output channels of the records, in the order of the channel table.
+/// Returns the output channels of the records, in the order of the channel table.
 std::vector<Channel> output_channels(const Campaign& campaign);
 
 /// Makes the checks that involve several sections: parameters without a value, contradictions,

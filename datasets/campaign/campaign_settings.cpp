@@ -35,7 +35,7 @@ std::vector<std::string> known_limits() {
   return names;
 }
 
-/// SI units of the channels that may be outputs.
+/// Returns the SI units of all channels that can be outputs.
 std::vector<std::string> output_units() {
   std::vector<std::string> units;
   for (const std::string& key : output_channel_names()) {
@@ -45,7 +45,7 @@ std::vector<std::string> output_units() {
   return units;
 }
 
-/// @param units  of the channels that the limits may be of, SI
+/// @param units  SI units of the channels to which the limits may apply
 std::vector<CampaignKey> limit_keys(const std::vector<std::string>& units) {
   std::vector<CampaignKey> keys;
   std::vector<CampaignKey> warnings;
@@ -93,7 +93,6 @@ AcceptanceLimit& limit_of(Limits& limits, Channel channel, std::string_view metr
   return limits.back();
 }
 
-/// Reads one limit of a channel.
 void read_limit_into(Limits& limits, const TomlNode& node, std::string_view key, Channel channel) {
   const bool warns = key.starts_with(kWarnPrefix);
   const MetricSpec& metric = *metric_named(warns ? key.substr(kWarnPrefix.size()) : key);
@@ -187,7 +186,7 @@ Limits limits_but(const TomlNode& node, const Campaign& campaign,
   return limits;
 }
 
-/// Keys of [acceptance] that are no limits.
+/// Keys of [acceptance] that are not limits.
 const KeyTable<AcceptanceBounds>& bound_keys() {
   using Row = KeyRow<AcceptanceBounds>;
   static const KeyTable<AcceptanceBounds> keys({
@@ -238,7 +237,7 @@ std::vector<CampaignKey> limit_keys() {
 
 std::vector<CampaignKey> acceptance_keys() {
   std::vector<CampaignKey> keys = limit_keys();
-  keys.pop_back();  // `not_judged` is among those below
+  keys.pop_back();  // bound_keys() has `not_judged`, too
   keys.insert(keys.end(), bound_keys().keys().begin(), bound_keys().keys().end());
   return keys;
 }

@@ -182,8 +182,8 @@ void write_changed_freedom(toml::table& root, const Campaign& campaign) {
   }
 }
 
-/// Writes the channels of a designed test. Each channel has the campaign's column, or else one
-/// named after its key.
+/// Writes the channels of a designed test. Each channel keeps the column from the campaign, or gets
+/// one named after its key.
 void write_designed_channels(toml::table& root, const Campaign& campaign,
                              const std::map<Channel, double>& noise_sd) {
   toml::table& channels = child(child(root, "recording", false), "channels", false);

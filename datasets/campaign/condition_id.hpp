@@ -8,7 +8,7 @@ namespace rigcal::datasets {
 /// must not refer to another folder.
 bool is_condition_id(std::string_view text);
 
-/// The rule for ids, in words for messages.
+/// Returns the rule for ids in words, for messages.
 std::string_view condition_id_rule();
 
 }  // namespace rigcal::datasets

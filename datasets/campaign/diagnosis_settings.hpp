@@ -14,7 +14,7 @@ inline constexpr std::array kLeakClasses{LeakClass::normal, LeakClass::slight, L
                                          LeakClass::critical, LeakClass::supercritical};
 std::string_view to_string(LeakClass leak_class);
 
-/// [diagnosis], all optional.
+/// Settings in [diagnosis]; all are optional.
 struct DiagnosisSettings {
   /// Upper limit of every class except the last, as a fraction of the servo flow. 10, 20 and 30 %
   /// are from the paper; 1 % for a machine without a leak is our choice.
@@ -26,7 +26,7 @@ struct DiagnosisSettings {
   /// Condition whose signal defines the leak share of a machine's state; empty: see
   /// diagnosis::machine_states().
   std::string duty;
-  /// True classes of leak levels, with which the diagnosis is compared.
+  /// True classes of leak levels, for comparison with the diagnosis.
   std::map<std::string, LeakClass> level_class;
 };
 

@@ -86,7 +86,6 @@ void read_drive(const TomlNode& node, const Campaign& campaign, LeakSignal& sign
                          .quantity(amplitude_unit(campaign), kAmplitudes);
 }
 
-/// Keys of a periodic drive.
 std::vector<CampaignKey> drive_keys() {
   using Row = KeyRow<LeakSignal>;
   const std::vector<Row> rows{

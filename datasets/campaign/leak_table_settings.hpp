@@ -28,7 +28,7 @@ struct LeakSignal {
   std::map<double, PrintedCoefficient> printed;  ///< by target share [percent]
   std::optional<PrintedCoefficient> normal;      ///< coefficient for the rig without a fault
 
-  /// Name of the signal: "sine_0.1Hz".
+  /// Returns the name of the signal, such as "sine_0.1Hz".
   std::string name() const;
 };
 
@@ -62,8 +62,8 @@ struct Assumption {
 /// parameter of the rig, but publications do not state it, so it is assumed like one.
 inline constexpr int kResidualScale = -1;
 
-/// Returns the specification of an assumption: its row in the parameter table, or that of the
-/// residual scale.
+/// Returns the specification of an assumption: a row of the parameter table, or the specification
+/// of the residual scale.
 const model::ParameterSpec& assumption_spec(model::PlantKind plant, int index);
 
 /// [leak_table]: settings for `leak-table` and `fit-tables`, and the published numbers.
@@ -81,14 +81,12 @@ struct LeakTableSettings {
 
 struct CampaignKey;
 
-/// Keys of [leak_table].
 const std::vector<CampaignKey>& leak_table_keys();
 
 /// Reads the section [leak_table].
 ///
 /// @throws InputError  if the section is invalid; names file:line:column, the key, what was found
-/// and
-///                     what was expected
+///                     and what was expected
 LeakTableSettings read_leak_table(const TomlNode& node, const Campaign& campaign);
 
 /// Reads [leak_table] from a campaign's file. If it has no signals, uses the sine and square waves
@@ -110,18 +108,16 @@ LeakSignal signal_from_text(const Campaign& campaign, const LeakTableSettings& s
 /// campaign.
 ///
 /// @throws UsageError  if the residual scale is not a positive number in 1/m, or the value is
-/// outside
-///                     the bounds of `fit-tables`
+///                     outside the bounds of `fit-tables`
 void override_assumption(LeakTableSettings& settings, const Campaign& campaign,
                          std::string_view assignment);
 
-/// Replaces assumptions with values from an earlier fit; their source says what they replace.
-/// Assumptions that the fit did not estimate are kept. Skips the leakage coefficient, since the
-/// table varies it.
+/// Replaces assumptions with values from an earlier fit. The `source` of each says what it
+/// replaces. Assumptions that the fit did not estimate are kept. Skips the leakage coefficient,
+/// since the table varies it.
 ///
 /// @throws InputError  if a value was fitted per leak level or condition, so that there is no
-/// single
-///                     value for the rig, and no assumption gives one
+///                     single value for the rig, and no assumption gives one
 void take_fitted(LeakTableSettings& settings, const Campaign& campaign,
                  const std::vector<FittedValue>& fitted);
 
@@ -132,7 +128,7 @@ void take_fitted(LeakTableSettings& settings, const Campaign& campaign,
 void free_assumptions(LeakTableSettings& settings, const Campaign& campaign,
                       const std::vector<std::string>& names);
 
-/// Returns the values of the rig, with those of the assumptions substituted.
+/// Returns the values of the rig after applying the assumptions.
 ///
 /// @throws InputError  if a parameter of the plant has no value
 model::ParameterValues leak_table_values(const Campaign& campaign,

@@ -25,7 +25,7 @@ std::optional<double> take_number(std::string_view& text) {
   return value;
 }
 
-/// Removes a word or sign, with the blanks around it, from the front of a text. Returns false if
+/// Removes a word or sign, with the spaces around it, from the front of a text. Returns false if
 /// the text does not begin with it.
 bool take(std::string_view& text, std::string_view word) {
   text = without_blanks(text);

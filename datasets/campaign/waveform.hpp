@@ -9,11 +9,12 @@
 
 namespace rigcal::datasets {
 
-/// Index in the table of waveforms, for the waveforms that the code refers to by name.
+/// Index into the table of waveforms, for waveforms that the code refers to by name.
 enum class Waveform { sine, square, chirp, recorded };
 
-/// Describes one waveform. Only this row decides whether plots show a period, whether periods are
-/// averaged, whether the periodic state is solved for, and whether there is a leak table.
+/// Describes one waveform. This row is the only place that decides whether plots show a period,
+/// whether periods are averaged, whether the periodic state is solved for, and whether there is a
+/// leak table.
 struct WaveformSpec {
   std::string_view name;  ///< name in campaign files and results
   /// Makes a signal from amplitude and frequency [Hz]. Null if these do not describe the waveform

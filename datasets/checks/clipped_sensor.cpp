@@ -21,8 +21,8 @@ constexpr std::size_t kFewestDips = 10;
 constexpr double kShareOfStep = 0.5;
 constexpr double kFallSteps = 2.0;  // a single step may be converter rounding
 
-/// Mean length of the runs between the extremes, in samples: above 1 if a converter repeats its
-/// samples.
+/// Returns the mean length of the runs between the extremes, in samples. It is above 1 if a
+/// converter repeats its samples.
 double typical_length(const std::vector<EqualRun>& runs, double low, double high) {
   std::size_t count = 0;
   std::size_t samples = 0;
@@ -35,7 +35,8 @@ double typical_length(const std::vector<EqualRun>& runs, double low, double high
 }
 
 /// Whether the signal leaves its extreme value by at least three steps of the resolution and
-/// returns within three samples, at least ten times. Noise that is cut off on one side does this.
+/// returns within three samples, at least ten times. This is how noise behaves that is cut off on
+/// one side.
 bool noise_is_cut(const std::vector<EqualRun>& runs, double extreme, double smallest) {
   std::size_t dips = 0;
   std::size_t last = runs.size();  // index of the last run at the extreme
@@ -46,7 +47,7 @@ bool noise_is_cut(const std::vector<EqualRun>& runs, double extreme, double smal
       continue;
     }
     if (last < runs.size() && runs[k].begin - runs[last].end() <= kBesideDip &&
-        depth > 0.97 * kDepth * smallest)  // the step is known only to within rounding
+        depth > 0.97 * kDepth * smallest)  // allows for rounding of the resolution
       ++dips;
     last = k;
     depth = 0.0;
@@ -54,9 +55,9 @@ bool noise_is_cut(const std::vector<EqualRun>& runs, double extreme, double smal
   return dips >= kFewestDips;
 }
 
-/// Fall of a parabola beside its flat top, in steps of the resolution. If n samples at the top look
-/// equal, the parabola falls by one step within n/2 samples of the top, and by another (12/n +
-/// 36/n^2) steps within the next three samples.
+/// Returns how far a parabola falls beside its flat top, in steps of the resolution. If n samples
+/// at the top look equal, the parabola falls by one step within n/2 samples of the top, and by
+/// another (12/n + 36/n^2) steps within the next three samples.
 double flat_top_fall(std::size_t length) {
   const auto n = static_cast<double>(length);
   return 12.0 / n + 36.0 / (n * n);

@@ -8,8 +8,7 @@
 namespace rigcal::datasets {
 namespace {
 
-/// Whether all values are a whole number of steps apart, within rounding, like those of a
-/// converter.
+/// Whether the values differ only by whole steps, within rounding, as those of a converter do.
 bool on_a_grid(const std::vector<double>& values, double step) {
   constexpr double kOffGrid = 0.05;  // fraction of a step
   return std::all_of(values.begin(), values.end(), [&](double value) {
@@ -22,7 +21,7 @@ bool on_a_grid(const std::vector<double>& values, double step) {
 
 std::optional<double> coarse_step(const std::vector<Repeat>& repeats, Channel channel,
                                   double noise_sd) {
-  // Noise of half a step, combined with the rounding error, whose variance is step^2 / 12.
+  // The noise is half a step, and the rounding error adds a variance of step^2 / 12.
   const double enough = std::sqrt(0.25 + 1.0 / 12.0);
   std::optional<double> coarsest;
   for (const Repeat& repeat : repeats) {

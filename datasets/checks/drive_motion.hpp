@@ -6,10 +6,10 @@
 
 namespace rigcal::datasets {
 
-/// How far the drive moves while a signal is constant, as a fraction of the drive's range over the
-/// whole record. The run is divided into four parts, and the range of their medians is used, so
-/// that an edge at the end of the run, which the rig answers later, does not count. In a short run
-/// it is the range of the samples.
+/// Returns how far the drive moves while a signal is constant, as a fraction of the drive's range
+/// over the whole record. The run is divided into four parts, and the range of their medians is
+/// used. A drive edge at the end of the run, to which the rig responds only later, therefore does
+/// not count. For a short run, the range of its samples is used.
 ///
 /// @param drive  shape (n), from the same record as the run
 double drive_motion(std::span<const double> drive, const EqualRun& run);

@@ -15,7 +15,7 @@ constexpr double kFreezeDriveMotion = 0.1;
 constexpr int kFreezePassages = 2;
 constexpr double kStandSteps = 4.0;
 
-/// Mean length of the runs, in samples, without the run in question.
+/// Returns the mean length of the runs in samples, without the run in question.
 double typical_length(std::size_t samples, std::size_t runs, const EqualRun& left_out) {
   return static_cast<double>(samples - left_out.length) / static_cast<double>(runs - 1);
 }

@@ -9,8 +9,8 @@
 namespace rigcal::datasets {
 namespace {
 
-// Thresholds for the row "hum of the mains" in docs/campaign-file.md. The frequency of a grid stays
-// within half a hertz.
+// Thresholds for the row "hum of the mains" in docs/campaign-file.md. The mains frequency varies by
+// less than half a hertz.
 constexpr double kLineHalfWidthHz = 0.5;
 constexpr double kSideShare = 0.45;  ///< neighbours are within this fraction of the frequency
 constexpr double kSideLobes = 3.0;   ///< width of a smeared line, in multiples of 1 / record length
@@ -49,7 +49,7 @@ Spectrum spectrum_of(const std::vector<std::vector<double>>& deviations, double 
   return result;
 }
 
-/// Largest power on either side of a frequency, between two distances from it.
+/// Returns the largest power on either side of a frequency, between two distances from it.
 double largest(const Spectrum& spectrum, double frequency_hz, double from_hz, double to_hz) {
   double most = 0.0;
   for (std::size_t k = 0; k < spectrum.power.size(); ++k) {
@@ -59,7 +59,8 @@ double largest(const Spectrum& spectrum, double frequency_hz, double from_hz, do
   return most;
 }
 
-/// Total power of a line, which may fall between two frequencies of the spectrum.
+/// Returns the total power of a spectral line, which may fall between two frequencies of the
+/// spectrum.
 double total(const Spectrum& spectrum, double frequency_hz, double within_hz) {
   double sum = 0.0;
   for (std::size_t k = 0; k < spectrum.power.size(); ++k) {
@@ -69,8 +70,8 @@ double total(const Spectrum& spectrum, double frequency_hz, double within_hz) {
   return sum;
 }
 
-/// Whether a harmonic of the drive is at this frequency, with its neighbours too far away to show
-/// that it is one.
+/// Whether a harmonic of the drive is at this frequency, and the neighbouring harmonics are too far
+/// away to reveal that it is one.
 bool hidden_by_drive(double frequency_hz, double drive_hz, double line_hz) {
   if (!(drive_hz > 0.0)) return false;
   const double nearest = std::round(frequency_hz / drive_hz) * drive_hz;

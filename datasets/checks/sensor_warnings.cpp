@@ -15,7 +15,7 @@ namespace {
 
 using Kind = SensorFault::Kind;
 
-/// Drive of the rig at each sample; empty if it is unknown.
+/// Returns the drive of the rig at each sample; empty if it is unknown.
 std::vector<double> drive_of(const Campaign& campaign, const Condition& condition,
                              const Repeat& repeat) {
   const auto recorded = repeat.values.find(drive_channel(campaign));

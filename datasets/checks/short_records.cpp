@@ -25,7 +25,7 @@ Signal signal_of(const Condition& condition) {
           condition.amplitude};
 }
 
-/// Usual length of the records of one signal, if enough of them have it.
+/// Usual length of the records of one signal: the longest, provided that enough others are as long.
 struct Usual {
   double seconds = 0.0;
   long as_long = 0;

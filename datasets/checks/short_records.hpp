@@ -8,7 +8,6 @@
 
 namespace rigcal::datasets {
 
-/// Length of a condition's record.
 struct RecordLength {
   const Condition* condition = nullptr;
   double seconds = 0.0;
@@ -16,7 +15,7 @@ struct RecordLength {
 
 double seconds_of(const Record& record);
 
-/// Returns one warning for each record that ended before its run did; empty if none did. If all
+/// Returns one text per record; a text is empty unless the record ended before its run did. If all
 /// repeats of a condition end early, they agree with each other, so only these rules detect it:
 /// - The condition states a `duration`, and the record is shorter than 95 % of it. (A sample or two
 ///   may be missing, but not a period.)

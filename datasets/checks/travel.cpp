@@ -22,7 +22,7 @@ double range(const std::vector<double>& x) {
   return *high - *low;
 }
 
-/// Stroke of the cylinder, if it is known and not to be fitted.
+/// Returns the stroke of the cylinder if it is known and is not fitted.
 std::optional<double> stroke_m(const Campaign& campaign, const Condition& condition) {
   constexpr const char* kStroke = "stroke";
   const int index = model::parameter_index(campaign.rig.plant, kStroke);
@@ -31,7 +31,7 @@ std::optional<double> stroke_m(const Campaign& campaign, const Condition& condit
   return values_in(campaign, condition)[kStroke];
 }
 
-/// Range of the reference in a closed loop.
+/// Returns the range of the reference in a closed loop.
 std::optional<double> reference_range_m(const Campaign& campaign, const Condition& condition,
                                         const Record& record) {
   if (drive_channel(campaign) != Channel::reference) return std::nullopt;

@@ -57,7 +57,7 @@ const std::vector<std::pair<Channel, Words>> kChannelWords{
     {Channel::temperature,
      {"temp", "temperature", "toil", "oiltemperature", "temperatur", "öltemperatur"}}};
 
-/// Splits a name at underscores, blanks, brackets, '-' and '/'.
+/// Splits a name at underscores, spaces, brackets, '-' and '/'.
 std::vector<std::string> parts_of(std::string_view name) {
   std::vector<std::string> parts(1);
   for (const char c : name) {

@@ -28,7 +28,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A text split before the number at its end: "run_03" into "run_" and "03".
+/// A text split at the number that ends it: "run_03" into "run_" and "03".
 struct Numbered {
   std::string stem;
   std::string number;
@@ -47,7 +47,7 @@ std::vector<std::vector<double>> read(const fs::path& file, const std::string& t
 
 // ---- Columns -------------------------------------------------------------------------------
 
-/// Columns of one channel in a file: a single one, or numbered ones that are repeats.
+/// Columns of one channel in a file: a single column, or several numbered ones that are repeats.
 struct ChannelColumns {
   Channel channel = Channel::position;
   std::string stem;                  ///< name, without its number if there are several columns
@@ -60,7 +60,7 @@ struct FileColumns {
   std::string time_unit;
   std::vector<ChannelColumns> channels;
   std::vector<std::string> unknown;
-  std::map<std::string, std::string> units;  ///< units of `unknown`, where the file gives them
+  std::map<std::string, std::string> units;  ///< units of `unknown`, if the file gives them
   /// Unnamed lines of a matrix after its time: rows of an array from Simulink's "To File", or
   /// columns.
   std::vector<std::string> rows;
@@ -177,7 +177,7 @@ FileColumns columns_of(const fs::path& file) {
   return found;
 }
 
-/// Groups the columns that belong to the same repeats. A new set begins where a channel occurs
+/// Groups the columns that belong to the same repeats. A new set begins when a channel occurs
 /// again.
 std::vector<std::vector<ChannelColumns>> column_sets(const FileColumns& columns) {
   std::vector<std::vector<ChannelColumns>> sets;
@@ -230,13 +230,15 @@ const ChannelColumns* find(const FileColumns& columns, Channel channel) {
   return found == columns.channels.end() ? nullptr : &*found;
 }
 
-/// Column with the motion of the rig: the angle of a joint, or else the position of a piston.
+/// Returns the columns with the motion of the rig: the angle of a joint, or else the position of a
+/// piston.
 const ChannelColumns* motion_of(const FileColumns& columns) {
   const ChannelColumns* angle = find(columns, Channel::angle);
   return angle != nullptr ? angle : find(columns, Channel::position);
 }
 
-/// Controlled quantity of the loop whose reference is recorded; none: no reference is recorded.
+/// Returns the controlled quantity of the loop whose reference is recorded; std::nullopt if no
+/// reference is recorded.
 std::optional<model::Feedback> loop_of(const FileColumns& columns) {
   if (find(columns, Channel::angle) != nullptr) return std::nullopt;  // a joint has no controller
   for (std::size_t i = 0; i < model::kFeedbackCount; ++i) {
@@ -246,13 +248,13 @@ std::optional<model::Feedback> loop_of(const FileColumns& columns) {
   return std::nullopt;
 }
 
-/// Whether a pilot pressure drives the rig: no controller does, whose output is a voltage.
+/// Whether a pilot pressure drives the rig. A controller would drive it with a voltage instead.
 bool has_pilot(const FileColumns& columns) {
   return find(columns, Channel::pilot_pressure) != nullptr && !loop_of(columns);
 }
 
-/// Direction in which a drive column moves the machine, according to a word in its name: 1 out or
-/// up, -1 in or down, 0 unknown.
+/// Returns the direction in which a drive column moves the machine, according to a word in its
+/// name: 1 out or up, -1 in or down, 0 unknown.
 int direction_of(const std::string& name) {
   using Words = std::array<std::string_view, 9>;
   constexpr Words kOut{"up", "out", "extend", "raise", "open", "forward", "fwd", "auf", "aus"};
@@ -270,7 +272,7 @@ int direction_of(const std::string& name) {
   return 0;
 }
 
-/// Columns of a drive that has one for each direction.
+/// Columns of a drive that has a separate column for each direction.
 struct OneEachWay {
   std::string out;
   std::string in;
@@ -342,7 +344,7 @@ std::string unknown_columns_text(const fs::path& file, const FileColumns& column
   return fmt::format("# not used: {}{}\n", fmt::join(names, ", "), more);
 }
 
-/// Text for a file in which no channel, or not even a time, is recognised.
+/// Returns the text for a file in which no channel, or not even a time, is recognised.
 std::string blank_channels_text(const fs::path& file, const FileColumns& columns) {
   std::string text = "[recording.channels]\n# No column was recognised: see those below.\n";
   text += columns.time.empty()
@@ -417,7 +419,7 @@ std::string rows_text(const fs::path& file, const FileColumns& columns) {
                                                                     : "one of these columns"));
 }
 
-/// Optional terms that a cylinder with both chambers mostly has.
+/// Optional terms that most two-chamber cylinders have.
 constexpr std::array<std::string_view, 15> kTwoChamberTerms{
     "retracted_position", "valve_dead_band",    "valve_time_constant", "transport_delay",
     "gain_b_to_tank",     "valve_null_leakage", "laminar_leakage",     "gravity",
@@ -437,12 +439,12 @@ constexpr std::array<std::string_view, 15> kLinkageTerms{
     "gain_b_to_tank",  "make_up_conductance", "supply_resistance",
     "supply_capacity", "pump_flow",           "air_fraction"};
 
-/// Terms of pump and check valves of a cylinder that slides behind a pilot-operated valve.
+/// Terms for the pump and check valves of a two-chamber cylinder behind a pilot-operated valve.
 constexpr std::array<std::string_view, 6> kPumpTerms{"relief_pressure",     "supply_resistance",
                                                      "supply_capacity",     "pump_flow",
                                                      "load_sensing_margin", "compensator_pressure"};
 
-/// Terms of a valve that a pilot pressure drives.
+/// Terms for a valve that is driven by a pilot pressure.
 constexpr std::array<std::string_view, 6> kPilotTerms{
     "pilot_dead_band",     "pilot_exponent",         "return_exponent",
     "return_line_opening", "return_line_resistance", "bypass_opening"};
@@ -458,7 +460,7 @@ std::string terms_text(model::PlantKind plant, bool with_payload, bool pilot) {
     terms.assign(kTwoChamberTerms.begin(), kTwoChamberTerms.end());
   if (plant == model::PlantKind::linkage) terms.assign(kLinkageTerms.begin(), kLinkageTerms.end());
   if (pilot && plant == model::PlantKind::two_chamber) {
-    // Those in volts are not of this valve.
+    // A dead band in volts does not apply to this valve.
     terms.erase(std::remove(terms.begin(), terms.end(), "valve_dead_band"), terms.end());
     terms.insert(terms.end(), kPumpTerms.begin(), kPumpTerms.end());
   }
@@ -498,7 +500,7 @@ std::string rig_text(model::PlantKind plant, std::optional<model::Feedback> loop
       "true }\n"
       "[rig.parameters]\n";
   for (const model::ParameterSpec& spec : model::parameter_table(plant)) {
-    // The gain of a valve of four edges is one of two terms, by what drives it.
+    // A valve with four metering edges has one of two gains, depending on what drives it.
     const bool needed = plant != model::PlantKind::load_pressure &&
                         spec.key == std::string_view(pilot ? "pilot_gain" : "valve_gain");
     if (!needed && (spec.kind != model::ParameterKind::plant || spec.default_value)) continue;
@@ -608,14 +610,15 @@ std::string limits_of_others(const FileColumns& columns) {
   return text;
 }
 
-/// Drive of the rig, if it is recorded.
+/// Returns the columns with the drive of the rig, or null if it was not recorded.
 const ChannelColumns* drive_of(const FileColumns& columns) {
   const auto loop = loop_of(columns);
   if (!loop) return find(columns, has_pilot(columns) ? Channel::pilot_pressure : Channel::command);
   return find(columns, drive_channel(model::Rig{{}, model::ControllerKind::pid, {}, *loop}));
 }
 
-/// Reads the time and a channel from a file; if the channel has several columns, the first.
+/// Reads the time and a channel from a file. If the channel has several columns, only the first is
+/// read.
 /// @return  nullopt if there is no time, or if its unit is not a unit of time
 std::optional<std::pair<std::vector<double>, std::vector<double>>> signal_of(
     const fs::path& file, const FileColumns& columns, const ChannelColumns& channel) {
@@ -633,7 +636,7 @@ std::optional<std::pair<std::vector<double>, std::vector<double>>> signal_of(
   return std::pair{std::move(data[0]), std::move(data[1])};
 }
 
-/// Describes the initial state of the runs: that of the record, unless one of them begins in
+/// Describes the initial state of the runs. It is taken from the record unless a run begins in
 /// motion.
 std::string initial_text(const std::vector<FileGroup>& groups) {
   const double window_s = Campaign().initial_window_s;

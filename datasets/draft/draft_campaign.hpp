@@ -21,12 +21,12 @@ struct Draft {
 ///
 /// The plant has two chambers if either chamber pressure is among the columns.
 ///
-/// @param files   recordings in any format; those whose names differ only in their last number are
-///                repeats
+/// @param files  recordings in any format; those whose names differ only in their last number are
+///               repeats
 /// @param folder  record paths are written relative to this folder
-/// @return        the draft. A file without a time or a channel is left out, as is the first file
-///                of a group if it cannot be read; comments in the text name these files, too
-/// @throws InputError  if no file remains; the message gives the problem of the first
+/// @return  the draft. A file without a time or a channel is left out, as is the first file of a
+///          group if it cannot be read; comments in the text name these files, too
+/// @throws InputError  if no file remains; the message describes the problem with the first file
 Draft draft_campaign(const std::vector<std::filesystem::path>& files,
                      const std::filesystem::path& folder);
 

@@ -76,7 +76,7 @@ void require_compatible(const Repeat& first, const Repeat& other) {
         other.time_s.back()));
 }
 
-/// Whether a signal has an edge within one sample, which hides where within the sample it occurred.
+/// Whether a signal jumps within one sample. The exact time of such an edge is unknown.
 bool jumps(const std::vector<double>& x) {
   const auto [low, high] = std::minmax_element(x.begin(), x.end());
   double step = 0.0;
@@ -84,7 +84,7 @@ bool jumps(const std::vector<double>& x) {
   return step > 0.25 * (*high - *low);
 }
 
-/// Channels that every repeat has, the best ones for alignment first.
+/// Returns the channels that every repeat has, with the best ones for alignment first.
 std::vector<Channel> alignment_channels(const std::vector<Repeat>& repeats) {
   std::vector<Channel> smooth;
   std::vector<Channel> jumping;
@@ -123,7 +123,7 @@ std::size_t central_repeat(const std::vector<Repeat>& repeats, Channel channel) 
   return static_cast<std::size_t>(std::min_element(total.begin(), total.end()) - total.begin());
 }
 
-/// Mean of the offsets, excluding those out of all proportion.
+/// Returns the mean of the offsets, excluding those that are far larger than the others.
 double common_offset(const std::vector<double>& offsets, double smallest) {
   const double centre = median(offsets);
   std::vector<double> distance;
@@ -140,8 +140,8 @@ double common_offset(const std::vector<double>& offsets, double smallest) {
   return sum / count;
 }
 
-/// Delay of each repeat relative to one of them, in samples; empty if any of them cannot be
-/// determined.
+/// Returns the delay of each repeat relative to one of them, in samples; std::nullopt if any of
+/// them cannot be determined.
 std::optional<std::vector<Lag>> lags_against(std::size_t centre, const std::vector<Repeat>& repeats,
                                              Channel channel) {
   std::vector<const std::vector<double>*> others;
@@ -179,7 +179,7 @@ std::optional<Offsets> correlate_offsets(const std::vector<Repeat>& repeats) {
                                 repeats[centre].time_s.front());
       offsets.sd_s.push_back((*lags)[r].sd_samples * dt);
     }
-    // The offset of the central repeat is known no better than the others.
+    // The offset of the central repeat is known no better than those of the other repeats.
     offsets.sd_s[centre] = *std::max_element(offsets.sd_s.begin(), offsets.sd_s.end());
     const double common = common_offset(offsets.seconds, dt);
     for (double& offset : offsets.seconds) offset -= common;
@@ -188,8 +188,8 @@ std::optional<Offsets> correlate_offsets(const std::vector<Repeat>& repeats) {
   return std::nullopt;
 }
 
-/// Whether any offset is significant. Repeats are shifted all or none, because shifting only a few
-/// of them would shift their mean.
+/// Whether any offset is significant. Either all repeats are shifted or none, because shifting only
+/// a few of them would shift their mean.
 bool any_significant(const Offsets& offsets, double smallest_s) {
   for (std::size_t r = 0; r < offsets.seconds.size(); ++r) {
     if (std::abs(offsets.seconds[r]) > std::max(smallest_s, kSignificance * offsets.sd_s[r]))

@@ -25,10 +25,10 @@ struct AlignedRepeats {
 /// channel that jumps within a sample gives the offset only to within a sample, so the next one is
 /// used.
 ///
-/// Offsets are relative to their mean, since the repeats do not show a delay that all of them have
-/// in common. An aligned average therefore has the same delay relative to a generated reference as
-/// the plain average: alignment neither adds nor removes a delay. With three or more repeats,
-/// offsets out of all proportion (ten times the median distance from the median, and more than a
+/// Offsets are relative to their mean, since the repeats cannot reveal a delay that is common to
+/// all of them. An aligned average therefore has the same delay relative to a generated reference
+/// as the plain average: alignment neither adds nor removes a delay. With three or more repeats,
+/// extreme offsets (more than ten times the median distance from the median, and more than a
 /// sample) are excluded from that mean, so that one false start does not shift the others.
 ///
 /// Offsets are always reported. Because interpolation has a cost, they are corrected only if one of
@@ -36,8 +36,8 @@ struct AlignedRepeats {
 /// samples are then corrected, because correcting only some would shift the mean.
 ///
 /// @throws std::invalid_argument  if there is no repeat, if one is empty or ragged, or if their
-///                                sampling is incompatible; the message names the file and both
-///                                rates or spans
+///                         sampling is incompatible; the message names the file and both rates or
+///                         spans
 AlignedRepeats align(const std::vector<Repeat>& repeats, bool correlate);
 
 }  // namespace rigcal::datasets

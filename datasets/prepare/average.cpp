@@ -89,7 +89,7 @@ Span covered_span(const std::map<Channel, Stack>& stacks, std::size_t samples) {
   return longest;
 }
 
-/// Value from the first row that has sample i.
+/// Returns the value from the first row that has sample i.
 double value_at(const Stack& stack, std::size_t i) {
   const auto found = std::find_if(stack.rows.begin(), stack.rows.end(),
                                   [i](const auto& row) { return !std::isnan(row[i]); });
@@ -141,7 +141,7 @@ Series moments(const Stack& stack, Span span) {
   return series;
 }
 
-/// Each row minus the mean over the span.
+/// Returns each row minus the mean, over the span.
 std::vector<std::vector<double>> deviations_from(const Stack& stack, const Series& series,
                                                  Span span) {
   std::vector<std::vector<double>> result;
@@ -160,7 +160,7 @@ bool any_differs(const std::vector<std::vector<double>>& deviations) {
   });
 }
 
-/// Sets the standard deviations by which a fit divides.
+/// Sets the standard deviations by which a fit divides the residuals.
 void conclude_sd(Series& series, Channel channel, const AverageOptions& options,
                  std::vector<std::string>& warnings) {
   const auto known = options.known_sd.find(channel);
@@ -187,7 +187,7 @@ double rms_over(Span span, const auto& difference) {
   return count == 0 ? 0.0 : std::sqrt(squares / static_cast<double>(count));
 }
 
-/// Rms distance of each row from the mean of the other rows.
+/// Returns the rms distance of each row from the mean of the other rows.
 std::vector<double> distances_from_others(const Stack& stack, const Series& series, Span span) {
   std::vector<double> distances;
   for (const auto& row : stack.rows)
@@ -200,7 +200,7 @@ std::vector<double> distances_from_others(const Stack& stack, const Series& seri
   return distances;
 }
 
-/// Rms distance of each row from the sample-wise median of all rows.
+/// Returns the rms distance of each row from the sample-wise median of all rows.
 std::vector<double> distances_from_median(const Stack& stack, Span span) {
   std::vector<double> centre(span.end, kNan);
   std::vector<double> values;
@@ -216,8 +216,8 @@ std::vector<double> distances_from_median(const Stack& stack, Span span) {
   return distances;
 }
 
-/// Standard deviation of the noise in one row, from its second differences, in which anything that
-/// is smooth over three samples cancels.
+/// Returns the standard deviation of the noise in one row. Computes it from second differences, in
+/// which anything that is smooth over three samples cancels.
 double noise_sd(const std::vector<double>& row, Span span) {
   if (span.end - span.begin < 3) return 0.0;
   const Span inner{span.begin + 1, span.end - 1};

@@ -10,7 +10,7 @@
 
 namespace rigcal::datasets {
 
-/// How a record's warning about an outlier ends.
+/// End of every warning about an outlier.
 inline constexpr std::string_view kStaysInMean = "it stays in the mean";
 
 struct AverageOptions {
@@ -26,8 +26,8 @@ struct AverageOptions {
   bool keep_deviations = false;        ///< fill Series::deviations, for the errors of the repeats
 };
 
-/// Averages any number of repeats of one condition: aligned mean, sd and count. Repeats may have
-/// different channels; each channel is averaged over the repeats that have it. Repeats are
+/// Aligns any number of repeats of one condition, and computes their mean, sd and count. Repeats
+/// may have different channels; each channel is averaged over the repeats that have it. Repeats are
 /// resampled to the time base of the first one by the fractional shift found (alignment.hpp:
 /// offsets are relative to their mean). Samples at the ends that not every repeat covers have a
 /// smaller count. Samples that a channel does not cover at all are cut off.
@@ -38,13 +38,13 @@ struct AverageOptions {
 /// deviation of white noise (resample.hpp).
 ///
 /// @throws std::invalid_argument  if there is no repeat, or if the repeats have incompatible
-///                                sampling; the message says which
+///                         sampling; the message names them
 Record average(const std::string& condition, const std::vector<Repeat>& repeats,
                const AverageOptions& options);
 
-/// Delay of b relative to a, from sub-sample cross-correlation: the lag (in samples, fractional)
-/// that maximises the normalised cross-correlation; positive if b is late. Empty if either signal
-/// is constant or the maximum is at the edge of the search range.
+/// Returns the delay of b relative to a in samples (fractional), positive if b is late. It is the
+/// lag that maximises the normalised cross-correlation. Returns std::nullopt if either signal is
+/// constant, or if the maximum is at the edge of the search range.
 std::optional<double> lag_in_samples(const std::vector<double>& a, const std::vector<double>& b,
                                      int max_lag);
 

@@ -33,7 +33,7 @@ bool is_held_input(const Campaign& campaign, Channel channel) {
          setting->second.interpolation == Interpolation::hold;
 }
 
-/// Number of samples that are missing before each sample.
+/// Returns the number of samples that are missing before each sample.
 std::vector<std::size_t> missing_before(const std::vector<double>& time_s, double longest_s) {
   const double step_s = median_step(time_s);
   std::vector<std::size_t> missing(time_s.size(), 0);
@@ -41,7 +41,7 @@ std::vector<std::size_t> missing_before(const std::vector<double>& time_s, doubl
     const double own_s = time_s[i] - time_s[i - 1];
     if (own_s <= kLostSample * step_s || own_s > longest_s * (1.0 + kRounding)) continue;
     const double lost = std::round(own_s / step_s) - 1.0;
-    // Capped, since the caller refuses more missing samples than the record has.
+    // Capped, because the caller refuses a record with more missing samples than samples.
     missing[i] = static_cast<std::size_t>(std::min(lost, static_cast<double>(time_s.size()) + 1.0));
   }
   return missing;

@@ -11,15 +11,15 @@ namespace rigcal::datasets {
 /// Inserts the missing samples of a repeat if the campaign bridges holes (`holes = "bridge"`);
 /// otherwise does nothing. A time step between 1.5 times the median and `longest_hole` is filled
 /// with as many evenly spaced samples as are missing. These are marked as `bridged` and are never
-/// compared with the model. Their values, which are interpolated linearly or, for a constant input,
-/// repeated, only keep filters and shifts working.
+/// compared with the model. Their values only keep filters and shifts working. They are
+/// interpolated linearly or, for an input that is constant between samples, repeated.
 ///
 /// @throws InputError  if more samples are missing than the record has
 void bridge_holes(const Campaign& campaign, Repeat& repeat);
 
-/// Sets those values to NaN that shifted() computed from bridged samples.
+/// Sets the values that shifted() computed from bridged samples to NaN.
 ///
-/// @param row    result of shifted(values, shift, ...)
+/// @param row  result of shifted(values, shift, ...)
 void forget_bridged(std::vector<double>& row, const std::vector<bool>& bridged, double shift);
 
 /// Describes the bridged holes, one text per repeat.

@@ -8,9 +8,9 @@
 
 namespace rigcal::datasets {
 
-/// Changes made to the repeats of a condition before averaging, and findings about them.
+/// Changes made to the repeats of a condition before averaging, and what was noticed about them.
 struct Conditioning {
-  double noise_gain = 1.0;  ///< factor of decimation on the sd of white noise
+  double noise_gain = 1.0;  ///< factor by which decimation changes the sd of white noise
   std::vector<std::string> notes;
   std::vector<std::string> warnings;
 };

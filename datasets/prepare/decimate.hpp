@@ -17,26 +17,28 @@ struct AntiAliasFilter {
   std::size_t factor = 1;
   std::vector<double> taps;  ///< symmetric, with a sum of 1
 
-  /// Factor by which the filter changes the standard deviation of white noise: sqrt(sum of squared
-  /// taps).
+  /// Returns the factor by which the filter changes the standard deviation of white noise: sqrt(sum
+  /// of squared taps).
   double noise_gain() const;
 };
 
 /// @param factor  > 1
 AntiAliasFilter anti_alias_filter(std::size_t factor);
 
-/// y[k] = filtered x at sample k * factor. Beyond its ends, a record is extended by reflection
-/// through its end sample, which continues a slope.
+/// Returns y[k] = filtered x at sample k * factor. Beyond its ends, a record is extended by
+/// reflection through its end sample, so that a slope continues.
 std::vector<double> decimated(const std::vector<double>& x, const AntiAliasFilter& filter);
 
-/// Mean of each block of `factor` samples, starting at sample k * factor. A piecewise constant
-/// signal keeps its integral and the position of its edges, without the ringing of a sharp filter.
+/// Returns the mean of each block of `factor` samples, starting at sample k * factor. A piecewise
+/// constant signal keeps its integral and the position of its edges, without the ringing of a sharp
+/// filter.
 std::vector<double> decimated_hold(const std::vector<double>& x, std::size_t factor);
 
-/// Ratio of a record's sample rate to a wanted rate, a whole number; 1 if the record is not faster.
+/// Returns the ratio of a record's sample rate to the wanted rate, a whole number; 1 if the record
+/// is not faster.
 ///
 /// @throws std::invalid_argument  if the sample times are not equidistant, or if the ratio is not a
-///                                whole number; the message says which rates are possible
+///                         whole number; the message says which rates are possible
 std::size_t decimation_factor(const Repeat& repeat, double rate_hz);
 
 }  // namespace rigcal::datasets

@@ -62,7 +62,7 @@ bool shows_noise(const std::vector<EqualRun>& runs, double low, double high) {
   if (runs.size() < 4) return false;
   const auto [smallest, largest] = std::minmax_element(
       runs.begin(), runs.end(), [](const auto& a, const auto& b) { return a.value < b.value; });
-  // The resolution is known only to within rounding.
+  // The factor allows for rounding of the resolution.
   const double least = 0.97 * std::max(kMotionSteps * resolution(runs),
                                        kShareOfRange * (largest->value - smallest->value));
   const auto step = [&](std::size_t k) { return runs[k].value - runs[k - 1].value; };

@@ -23,11 +23,11 @@ std::vector<EqualRun> equal_runs(std::span<const double> x);
 /// Whether all samples are equal; true for an empty signal.
 bool is_constant(std::span<const double> x);
 
-/// Step of the converter or of the printed digits: the smallest nonzero difference between
-/// neighbours; 0 if all samples are equal.
+/// Returns the step of the converter or of the printed digits: the smallest nonzero difference
+/// between neighbours; 0 if all samples are equal.
 double resolution(const std::vector<EqualRun>& runs);
 
-/// Median step from one value to the next; 0 if all samples are equal.
+/// Returns the median step from one value to the next; 0 if all samples are equal.
 double typical_step(const std::vector<EqualRun>& runs);
 
 /// Whether the signal moves before and after a run, as far as the record shows: the third sample
@@ -39,9 +39,9 @@ bool cuts_a_motion(std::span<const double> x, const EqualRun& run, double least)
 /// Whether the noise of the signal is well above its resolution, so that a working sensor never
 /// gives the same value many times. The steps between values then go up and down: at least 5 % of
 /// the values, and at least 30 of them, are larger or smaller than both neighbours, by four steps
-/// of the resolution and by 1e-6 of the range (more than simulations round). In white noise at
-/// least half of the values are, even on top of slow motion; in a smooth signal only a few. The
-/// rounding of a converter by itself causes differences of only two steps.
+/// of the resolution and by 1e-6 of the range (more than simulations round). In white noise, even
+/// on top of slow motion, this applies to at least half of the values; in a smooth signal, only to
+/// a few. The rounding of a converter by itself causes differences of only two steps.
 ///
 /// @param low, high  runs at or beyond these values are ignored
 bool shows_noise(const std::vector<EqualRun>& runs, double low, double high);

@@ -44,7 +44,7 @@ Trace without_mean(const std::vector<double>& x) {
   return Trace(std::move(centred));
 }
 
-/// Pearson's correlation of the overlap at each lag in a range; 0 where one side is constant.
+/// Pearson's correlation of the overlap at each lag in a range; 0 if one of the two is constant.
 struct Correlation {
   int first_lag = 0;
   std::vector<double> r;
@@ -53,7 +53,7 @@ struct Correlation {
   double at(int lag) const { return r[static_cast<std::size_t>(lag - first_lag)]; }
 };
 
-/// Sum of products over the overlap, at each lag in a range.
+/// Returns the sum of products over the overlap, at each lag in a range.
 std::vector<double> products(const Trace& a, const Trace& b, int first_lag, int last_lag) {
   std::vector<double> result;
   if (first_lag < 0) {
@@ -93,7 +93,7 @@ Correlation correlate(const Trace& a, const Trace& b, int first_lag, int last_la
   return result;
 }
 
-/// Cosine of the phase advance per sample of a sinusoid with this correlation.
+/// Returns the cosine of the phase advance per sample of a sinusoid with this correlation.
 double cosine_at(const Correlation& c, int lag) {
   return (c.at(lag - 1) + c.at(lag + 1)) / (2.0 * c.at(lag));
 }
@@ -148,8 +148,8 @@ int peak_lag(const Correlation& c, int samples) {
   return *nearest;
 }
 
-/// Number of lags from the peak to where the correlation has fallen by 0.1, or to the end of the
-/// search range.
+/// Returns the number of lags from the peak to where the correlation has fallen by 0.1, or to the
+/// end of the search range.
 int half_width(const Correlation& c, int peak) {
   int width = 0;
   while (peak - width > c.first_lag && peak + width < c.last_lag() &&
@@ -170,8 +170,8 @@ Trace smooth(const Trace& trace, double sd_samples) {
   return Trace(weighted_sums(trace.x, {kernel.data(), static_cast<std::size_t>(kernel.size())}));
 }
 
-/// Slope and curvature of the correlation between samples, interpolated by a Gaussian of one sample
-/// (its aliasing is exp(-2 pi^2), 3e-9).
+/// Slope and curvature of the correlation between samples. The interpolation uses a Gaussian with a
+/// standard deviation of one sample (its aliasing is exp(-2 pi^2), 3e-9).
 struct Shape {
   double slope = 0.0;
   double curvature = 0.0;
@@ -190,7 +190,7 @@ Shape shape_at(const Correlation& c, double lag) {
   return shape;
 }
 
-/// The significant peak from which the search is refined.
+/// The significant peak at which the refinement starts.
 struct Coarse {
   int peak = 0;       ///< lag of the peak
   int hill = 0;       ///< half width of the peak, in lags
@@ -218,7 +218,7 @@ std::optional<Lag> refine(const Trace& x, const Trace& y, const Coarse& coarse, 
   const double samples = 0.5 * (low + high);
   const double curvature = -shape_at(c, samples).curvature;
   if (!(curvature > 0.0)) return std::nullopt;
-  // Contributions of noise times signal, and of noise times noise, which smoothing reduces.
+  // The variance has a noise-signal term and a noise-noise term. Smoothing reduces the second.
   const double noise_per_sample = std::max(0.0, 1.0 - coarse.height) / curvature;
   const auto n = static_cast<double>(coarse.shorter);
   const double width = std::sqrt(2.0 * smoothing * smoothing + 1.0);
@@ -266,7 +266,7 @@ std::vector<std::optional<Lag>> find_lags(const std::vector<double>& a,
     coarse.push_back(coarse_peak(x, y.back(), a.empty() ? 0.0 : a.front(),
                                  b->empty() ? 0.0 : b->front(), max_lag));
   }
-  // Smoothing removes noise, but where the record has edges it also removes signal.
+  // Smoothing removes noise, but it also removes signal at any edges in the record.
   for (const double smoothing : {0.7, 1.5, 3.0, 6.0, 12.0, 24.0}) {
     std::optional<Trace> smooth_x;
     for (std::size_t k = 0; k < others.size(); ++k) {

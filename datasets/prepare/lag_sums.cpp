@@ -5,7 +5,8 @@
 #include <cstddef>
 #include <cstring>
 
-// Compiled twice, for any x86-64 and for AVX2. Both do without FMA, so that they round alike.
+// The sums are compiled twice: for any x86-64, and for AVX2. Neither version uses FMA, so that both
+// round alike.
 #if defined(__x86_64__) && !defined(__AVX2__)
 #define RIGCAL_SUMS_IN_TWO_WIDTHS
 #endif
@@ -30,7 +31,7 @@ RIGCAL_INLINED void add_product(Lanes& sum, const Lanes& factor, const double* x
   sum += factor * other;
 }
 
-/// Completes one shifted product of `n` terms, `done` of which are in the lanes already.
+/// Completes a shifted product of `n` terms. The lanes already contain the first `done` terms.
 RIGCAL_INLINED double finished(Lanes& lanes, const double* fixed, const double* moving,
                                std::size_t done, std::size_t n) {
   for (; done + kLanes <= n; done += kLanes) {

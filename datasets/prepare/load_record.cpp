@@ -54,8 +54,8 @@ bool may_be_shown(const Campaign& campaign, const std::filesystem::path& path) {
          (!campaign.root.empty() && lies_within(campaign.root, path));
 }
 
-/// Reads columns from a file of any format, the time first. Adds doubts about the file to the
-/// repeat.
+/// Reads columns from a file of any format; the first one is the time. Adds doubts about the file
+/// to the repeat.
 RecordTable read_columns(const Campaign& campaign, const std::filesystem::path& path,
                          const std::vector<std::string>& names, Repeat& repeat) {
   try {
@@ -91,7 +91,7 @@ void require_measurable(const RepeatSource& source, const std::string& column,
                     bad - values.begin() + 1, column, *bad, kLargest));
 }
 
-/// Drive of the rig at each sample of the record.
+/// Returns the drive of the rig at each sample of the record.
 std::vector<double> drive_at_samples(const Campaign& campaign, const Condition& condition,
                                      const Record& record) {
   const auto drive = inputs_of(campaign, condition, values_in(campaign, condition), &record).drive;

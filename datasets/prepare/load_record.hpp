@@ -18,7 +18,8 @@ Repeat load_repeat(const Campaign& campaign, const RepeatSource& source);
 std::vector<Repeat> load_all_repeats(const Campaign& campaign, const Condition& condition);
 
 /// Averages the repeats of a condition with the campaign's settings.
-/// @param repeats          decimated and cleared of spikes first, if the campaign says so
+/// @param repeats  modified in place first: decimated and cleared of spikes, if the campaign asks
+///                 for it
 /// @param keep_deviations  whether to keep the deviation of each repeat from the mean
 /// @throws InputError  if the repeats do not belong together
 Record average_of(const Campaign& campaign, const Condition& condition,

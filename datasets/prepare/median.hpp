@@ -6,7 +6,8 @@
 
 namespace rigcal::datasets {
 
-/// Median of at least one value. For an even number of values, the mean of the middle two.
+/// Returns the median of at least one value. For an even number of values it is the mean of the
+/// middle two.
 inline double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());

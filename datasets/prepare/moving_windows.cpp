@@ -16,7 +16,7 @@ constexpr double kLeastTravelShare = 0.05;  // fraction of the range of position
 constexpr double kArrivedShare = 0.01;      // fraction of the travel
 constexpr double kNoiseFactor = 6.0;        // in standard deviations of the noise
 constexpr double kSpreadFactor = 2.0;       // in standard deviations over the repeats
-constexpr double kTailShare = 0.05;     // final fraction of a level that shows where motion ends
+constexpr double kTailShare = 0.05;     // final fraction of a level, used to find where motion ends
 constexpr std::size_t kFewestHeld = 5;  // samples at one level
 
 /// Samples [begin, end).
@@ -31,7 +31,7 @@ double median_over(std::span<const double> x, SampleSpan span) {
                  x.begin() + static_cast<std::ptrdiff_t>(span.end)});
 }
 
-/// Running median over 2 half + 1 samples, fewer at the ends.
+/// Returns the running median over 2 half + 1 samples, or fewer at the ends.
 std::vector<double> smoothed(std::span<const double> x, std::size_t half) {
   std::vector<double> result(x.size());
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -46,8 +46,8 @@ double range_of(std::span<const double> x) {
   return *high - *low;
 }
 
-/// Standard deviation of white noise, from the median of the second differences. Slopes cancel, and
-/// edges and spikes are too few to affect the median.
+/// Returns the standard deviation of white noise, from the median of the second differences. Slopes
+/// cancel, and edges and spikes are too few to affect the median.
 double noise_sd(std::span<const double> x) {
   if (x.size() < 3) return 0.0;
   std::vector<double> differences;
@@ -57,7 +57,7 @@ double noise_sd(std::span<const double> x) {
   return median(differences) / (kMedianOfNormal * std::sqrt(6.0));
 }
 
-/// Stretches in which the command remains at one level.
+/// Returns the stretches in which the command remains at one level.
 std::vector<SampleSpan> held_levels(std::span<const double> command) {
   const std::vector<double> clean = smoothed(command, 2);  // removes spikes, keeps edges
   const double tolerance = std::max(kHeldShare * range_of(clean), kNoiseFactor * noise_sd(command));
@@ -71,7 +71,8 @@ std::vector<SampleSpan> held_levels(std::span<const double> command) {
   return levels;
 }
 
-/// Constant levels that follow a step, each from the first sample that leaves the previous level.
+/// Returns the constant levels that follow a step. Each begins with the first sample that leaves
+/// the previous level.
 std::vector<SampleSpan> stepped_levels(std::span<const double> time_s,
                                        std::span<const double> command) {
   const double least =

@@ -41,7 +41,7 @@ struct Recorded {
   double tolerance() const { return kOfStep * step + kMostErrors * sd; }
 };
 
-/// Largest deviation of a sample; empty if any sample is outside the tolerance.
+/// Returns the largest deviation of a sample; std::nullopt if any sample is outside the tolerance.
 std::optional<double> farthest_from(const Recorded& record, const model::Signal& signal,
                                     double amplitude) {
   double farthest = 0.0;
@@ -144,8 +144,8 @@ double roundest_between(double low, double high) {
 
 std::optional<RecognisedDrive> as_square(const Recorded& record, double amplitude,
                                          const std::string& unit) {
-  // Edge k of a square wave is at k / (2 f). It comes after the sample before it, and no later than
-  // the sample after it.
+  // Edge k of a square wave is at k / (2 f): after the last sample before it, and no later than the
+  // first sample after it.
   constexpr double kEdgeRounding = 1e-12;
   double low_hz = 0.0;
   double high_hz = std::numeric_limits<double>::infinity();
@@ -166,7 +166,8 @@ std::optional<RecognisedDrive> as_square(const Recorded& record, double amplitud
       fmt::format("a square wave of {:.6g} Hz with an amplitude of {:.6g} {}", f, amplitude, unit));
 }
 
-/// Zero crossings, interpolated between samples. Consecutive crossings are half a cycle apart.
+/// Returns the zero crossings, interpolated between samples. Consecutive crossings are half a cycle
+/// apart.
 std::vector<double> crossings_of(const Recorded& record) {
   std::vector<double> crossings;
   for (std::size_t i = 1; i < record.size(); ++i) {
@@ -203,8 +204,8 @@ std::optional<RecognisedDrive> as_chirp(const Recorded& record, double amplitude
   const auto crossings = crossings_of(record);
   const double end_s = record.time_s.back();
   if (crossings.size() < 8 || std::abs(record.time_s.front()) > 1e-9 * end_s) return std::nullopt;
-  // The number of cycles divided by the time is the mean frequency up to a crossing. Plotted over
-  // time, it is close to a straight line.
+  // The number of cycles up to a crossing, divided by its time, is the mean frequency so far. Over
+  // time it is nearly a straight line.
   double s = 0.0, st = 0.0, stt = 0.0, sy = 0.0, sty = 0.0;
   for (std::size_t k = 0; k < crossings.size(); ++k) {
     const double t = crossings[k];

@@ -25,10 +25,11 @@ struct Repeatability {
 /// whole condition; see `record.repeat_reports`.
 std::vector<Repeatability> repeatability(const Record& record);
 
-/// Difference between the largest and smallest offset of the repeats [s]; 0 for a single repeat.
+/// Returns the difference between the largest and the smallest offset of the repeats [s]; 0 for a
+/// single repeat.
 double offset_range_s(const Record& record);
 
-/// Sources of the repeats that were reported as outliers.
+/// Returns the sources of the repeats that were reported as outliers.
 std::vector<std::string> outliers(const Record& record);
 
 }  // namespace rigcal::datasets

@@ -22,7 +22,7 @@ std::array<double, 2 * kReach> band_limited_weights(double fraction) {
     const double window = 0.5 + 0.5 * std::cos(angle / kReach);
     weights[j] = sinc * window;
   }
-  // Leaves a constant unchanged.
+  // The weights are normalised so that a constant remains unchanged.
   const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
   for (double& weight : weights) weight /= sum;
   return weights;

@@ -17,7 +17,7 @@ struct RepeatRecords {
 };
 
 /// Aligns and averages as average_of() does. Each single repeat is shifted to the common time base
-/// in the same way. Its standard deviation is the pooled one of the repeats.
+/// in the same way. The standard deviation of each single record is the pooled one of the repeats.
 ///
 /// @throws InputError  under the conditions of average_of()
 RepeatRecords repeat_records(const Campaign& campaign, const Condition& condition,

@@ -17,8 +17,8 @@ constexpr double kSteps = 4.0;              // median differences between neighb
 constexpr double kNeighbourFactor = 3.0;    // times the difference between the neighbours
 constexpr double kMedianOfNormal = 0.6745;  // median of |N(0, 1)|
 
-/// Distance of a run of samples from the line between its neighbours, signed: the smallest and the
-/// largest. Both are 0 if the samples are not all on one side.
+/// Signed distance of a run of samples from the line between its neighbours: the smallest and the
+/// largest. Both are 0 if the samples are not all on one side of the line.
 struct Excursion {
   double least = 0.0;
   double farthest = 0.0;
@@ -38,13 +38,13 @@ Excursion excursion(const std::vector<double>& x, std::size_t begin, std::size_t
   return result;
 }
 
-/// Distance of a single sample from the line between its neighbours.
+/// Returns the distance of a single sample from the line between its neighbours.
 double off_line(const std::vector<double>& x, std::size_t i) {
   return std::abs(x[i] - (x[i - 1] + 0.5 * (x[i + 1] - x[i - 1])));
 }
 
-/// Median nonzero difference between neighbours. If a converter is coarser than the noise, this is
-/// its step.
+/// Returns the median nonzero difference between neighbours. If a converter is coarser than the
+/// noise, this is its step.
 double typical_step(const std::vector<double>& x) {
   std::vector<double> steps;
   steps.reserve(x.size());
@@ -53,7 +53,8 @@ double typical_step(const std::vector<double>& x) {
   return steps.empty() ? 0.0 : median(std::move(steps));
 }
 
-/// Excursion above which a run counts, given the median excursion `off` of single samples.
+/// Returns the excursion above which a run counts as a spike, given the median excursion `off` of
+/// single samples.
 double limit_by(double off) { return kDeviations * off / kMedianOfNormal; }
 
 double limit_of(const std::vector<double>& x) {
@@ -64,14 +65,14 @@ double limit_of(const std::vector<double>& x) {
 }
 
 /// Whether the two samples before a run and the two after it agree, compared with their distance
-/// from the run. If they do not, the run is part of an edge or an oscillation.
+/// from the run. Otherwise the run is part of an edge or an oscillation.
 bool stands_alone(const std::vector<double>& x, std::size_t begin, std::size_t length, double off) {
   const std::size_t after = begin + length;
   const auto [low, high] = std::minmax({x[begin - 2], x[begin - 1], x[after], x[after + 1]});
   return std::abs(off) > kNeighbourFactor * (high - low);
 }
 
-/// Largest excursion of any isolated run; 0 if there is none.
+/// Returns the largest excursion of any isolated run; 0 if there is none.
 double largest_alone(const std::vector<double>& x) {
   double largest = 0.0;
   for (std::size_t i = 2; i + 3 < x.size(); ++i) {
@@ -83,9 +84,9 @@ double largest_alone(const std::vector<double>& x) {
   return largest;
 }
 
-/// Whether counting rules out that an excursion up to `largest` is a spike. If more than half of
-/// the samples give a limit of at least `largest`, so does their median. Most records have no
-/// spike, and counting takes a tenth of the time that medians take.
+/// Returns true if an excursion up to `largest` cannot be a spike, judging only by counts. If more
+/// than half of the samples give a limit of at least `largest`, the median gives one as well. Most
+/// records have no spike, and counting takes a tenth of the time of computing medians.
 bool is_usual(const std::vector<double>& x, double largest) {
   std::size_t far = 0;
   for (std::size_t i = 1; i + 1 < x.size(); ++i) far += limit_by(off_line(x, i)) >= largest ? 1 : 0;

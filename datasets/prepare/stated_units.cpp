@@ -31,7 +31,7 @@ std::optional<NamedUnit> named_unit(const ColumnLabel& label) {
   return found ? std::optional(NamedUnit{found->unit, found->is_certain}) : std::nullopt;
 }
 
-/// Conversion between two units; empty if their dimensions differ.
+/// Returns the conversion between two units; std::nullopt if their dimensions differ.
 std::optional<UnitConversion> conversion_between(const std::string& from, const std::string& to) {
   try {
     return unit_conversion(from, to);

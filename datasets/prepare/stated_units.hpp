@@ -11,9 +11,9 @@ namespace rigcal::datasets {
 /// Compares the unit that a file gives for a column with the unit stated in the campaign. A file
 /// gives units in the name of the column (in brackets or after an underscore), in a row of units,
 /// or in an attribute. Two units are equal if they convert with a factor of 1 within 1e-6. There is
-/// no contradiction if a gain performs the conversion within 5 %, or if it connects different
-/// dimensions. Texts that are not units are ignored, and so are names that only look like a unit of
-/// another dimension ("p_in" in bar).
+/// no contradiction if the stated gain performs the conversion within 5 %, or if it relates units
+/// of different dimensions. Texts that are not units are ignored, and so are names that only look
+/// like a unit of another dimension ("p_in" in bar).
 ///
 /// @param key  channel in the campaign file: "position"
 /// @throws InputError  if the units contradict each other; the message names both, with file, place

@@ -32,7 +32,7 @@ Level level_of(std::span<const double> signal) {
   return {0.5 * (*low + *high), 0.5 * (*high - *low)};
 }
 
-/// Times at which the signal crosses the middle upwards, interpolated between samples.
+/// Returns the times at which the signal crosses the middle upwards, interpolated between samples.
 std::vector<double> upward_crossings(std::span<const double> time_s, std::span<const double> signal,
                                      const Level& level) {
   std::vector<double> crossings;

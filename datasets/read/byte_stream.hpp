@@ -23,7 +23,7 @@ class ByteStream {
   ByteStream& operator=(const ByteStream&) = delete;
   virtual ~ByteStream() = default;
 
-  /// Number of bytes that were read or skipped.
+  /// Returns the number of bytes that were read or skipped.
   std::uint64_t position() const { return position_; }
 
   /// @throws DamagedBytes  if fewer bytes are left
@@ -65,7 +65,7 @@ class InflatedBytes : public ByteStream {
   InflatedBytes(std::ifstream& file, std::uint64_t begin, std::uint64_t bytes);
   ~InflatedBytes() override;
   std::size_t next(char* to, std::size_t bytes) override;
-  /// Also verifies the checksum, and that nothing follows the compressed data.
+  /// Also verifies the checksum, and checks that nothing follows the compressed data.
   void finish() override;
 
  private:

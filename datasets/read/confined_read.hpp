@@ -28,7 +28,8 @@ struct ConfinedReader {
 RecordTable load_confined(const std::filesystem::path& path, const ConfinedReader& reader,
                           std::size_t columns, const std::function<RecordTable()>& read);
 
-/// Like load_confined(), but for a function that lists columns.
+/// Calls a function that lists columns in a separate process, with the limits and errors of
+/// load_confined().
 std::vector<RecordColumn> list_confined(const std::filesystem::path& path,
                                         const ConfinedReader& reader,
                                         const std::function<std::vector<RecordColumn>()>& list);

@@ -85,7 +85,7 @@ constexpr std::array kOtherFormats{
                 "the file in it (unxz)"},
 };
 
-/// Extensions of text files that loggers write. Other text files have them, too.
+/// Extensions of text files that loggers write. Other kinds of text files use them, too.
 constexpr std::string_view kTextExtensions = ".txt .dat .lvm .tsv .asc";
 
 constexpr bool is_complete(const RecordReader& reader) {

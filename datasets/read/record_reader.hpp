@@ -30,17 +30,18 @@ struct RecordReader {
 /// @throws InputError  if the file has a known format that rigcal does not read
 const RecordReader& record_reader(const std::filesystem::path& path);
 
-/// Whether the name of a file is that of a recording in a format that rigcal reads.
+/// Whether a file is named like a recording in a format that rigcal reads.
 bool has_record_name(const std::filesystem::path& path);
 
-/// Whether the name may be that of a recording. This includes ".txt" and ".dat", which other text
-/// files have, too.
+/// Whether a file may be a recording, judging by its name. This includes ".txt" and ".dat",
+/// although other text files use these, too.
 bool may_be_recording(const std::filesystem::path& path);
 
-/// Whether the name is that of a recording in a format that rigcal does not read.
+/// Whether a file is named like a recording in a format that rigcal does not read.
 bool has_other_format_name(const std::filesystem::path& path);
 
-/// Names and extensions of all formats, for messages: "CSV, MAT or ...", ".csv, .mat or ...".
+/// Return the names and extensions of all formats, for messages: "CSV, MAT or ...", ".csv, .mat or
+/// ...".
 std::string record_format_names();
 std::string record_extensions();
 

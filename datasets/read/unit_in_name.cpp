@@ -64,7 +64,7 @@ bool is_unit(std::string_view text) {
   }
 }
 
-/// Whether a unit is that of a pure number, such as "1" or "-".
+/// Whether a unit denotes a pure number, such as "1" or "-".
 bool is_one(const std::string& unit) {
   try {
     return unit_conversion(unit, "1").scale == 1.0;
@@ -73,7 +73,7 @@ bool is_one(const std::string& unit) {
   }
 }
 
-/// Index of the bracket that closes the one at `open`.
+/// Returns the index of the bracket that closes the one at `open`.
 std::size_t closing(std::string_view name, std::size_t open) {
   const char left = name[open];
   const char right = left == '[' ? ']' : ')';
@@ -85,7 +85,7 @@ std::size_t closing(std::string_view name, std::size_t open) {
   return std::string_view::npos;
 }
 
-/// Part of a name between underscores, blanks and brackets.
+/// Part of a name between underscores, spaces and brackets.
 struct Part {
   std::size_t begin = 0;
   std::size_t end = 0;
@@ -131,7 +131,8 @@ std::optional<UnitInName> in_brackets(std::string_view name) {
   return found;
 }
 
-/// Returns where the last part of "/run1/x", "Sheet1!x" or "log.signals(2).values" begins.
+/// Returns the position at which the last part of "/run1/x", "Sheet1!x" or "log.signals(2).values"
+/// begins.
 std::size_t begin_of_last(std::string_view path) {
   std::size_t begin = path.starts_with('/') ? path.rfind('/') + 1 : 0;
   for (const char before : {'!', '.'})
@@ -140,8 +141,8 @@ std::size_t begin_of_last(std::string_view path) {
   return begin;
 }
 
-/// Priority among several units in one name. Units that may also be words or names come last, as in
-/// "position in mm".
+/// Returns the priority of a unit among several in one name. Units that may also be words or names
+/// have the lowest priority, as in "position in mm".
 int weight_of(std::string_view unit) {
   if (unit == "pa" || is_among(kWords, unit)) return 0;
   return unit.size() == 1 ? 1 : 2;

@@ -18,17 +18,17 @@ struct UnitInName {
 };
 
 /// Finds the unit in the name of a column: "x [mm]", "q (m3/(s Pa))", "pA_bar_03". Text in brackets
-/// takes priority over text after an underscore or a blank.
+/// takes priority over text after an underscore or a space.
 ///
-/// @return  nullopt if the name contains no unit, or that of a pure number
+/// @return  std::nullopt if the name contains no unit, or only one that denotes a pure number
 std::optional<UnitInName> unit_in_name(std::string_view name);
 
 /// Returns the UDUNITS spelling of a unit: "psi" for "PSI" and "psig", "kgf/cm2" for "kg/cm2", "s"
 /// for "seconds since 2026-01-01". Empty if the text is not a unit.
 std::string unit_of_text(std::string_view text);
 
-/// Returns where the brackets at the end of a name begin, "[mm]" in "x [mm]"; nullopt if it has
-/// none.
+/// Returns the position of the brackets at the end of a name, such as "[mm]" in "x [mm]";
+/// std::nullopt if there are none.
 std::optional<std::size_t> brackets_at_end(std::string_view name);
 
 }  // namespace rigcal::datasets

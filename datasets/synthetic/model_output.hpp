@@ -7,7 +7,8 @@
 
 namespace rigcal::datasets {
 
-/// Model output that a recorded channel measures; empty for channels that only drive the model.
+/// Returns the model output that a recorded channel measures; std::nullopt for channels that only
+/// drive the model.
 std::optional<model::Output> model_output(Channel channel);
 
 }  // namespace rigcal::datasets

@@ -10,8 +10,8 @@
 namespace rigcal::datasets {
 namespace {
 
-/// FNV-1a hash, 64 bits, of the bytes of the names. A zero byte ends each name, so that {"ab", "c"}
-/// and {"a", "bc"} differ.
+/// Computes the FNV-1a hash, 64 bits, of the bytes of the names. A zero byte ends each name, so
+/// that {"ab", "c"} and {"a", "bc"} differ.
 std::uint64_t hash_of(std::initializer_list<std::string_view> names) {
   constexpr std::uint64_t kPrime = 0x100000001b3;
   std::uint64_t hash = 0xcbf29ce484222325;
@@ -25,7 +25,7 @@ std::uint64_t hash_of(std::initializer_list<std::string_view> names) {
   return hash;
 }
 
-/// SplitMix64, which maps neighbouring seeds to unrelated states.
+/// Applies SplitMix64, which maps neighbouring seeds to unrelated states.
 std::uint64_t mixed(std::uint64_t state) {
   state += 0x9e3779b97f4a7c15;
   state = (state ^ (state >> 30U)) * 0xbf58476d1ce4e5b9;

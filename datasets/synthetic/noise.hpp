@@ -26,8 +26,8 @@ double uniform(RandomStream& stream, double low, double high);
 /// Draws independent numbers from N(0, sd^2), shape (samples).
 std::vector<double> white_noise(RandomStream& stream, std::size_t samples, double sd);
 
-/// First-order autoregressive noise n[i] = c n[i-1] + e[i], stationary from its first sample, with
-/// standard deviation `sd` and autocorrelation c^k. Shape (samples).
+/// Draws first-order autoregressive noise n[i] = c n[i-1] + e[i]. It is stationary from its first
+/// sample, with standard deviation `sd` and autocorrelation c^k. Shape (samples).
 ///
 /// @param coefficient  c, in (-1, 1)
 /// @throws std::invalid_argument  if the coefficient is outside (-1, 1)

@@ -35,7 +35,8 @@ SynthesisReport synthesize(const Campaign& campaign, std::uint64_t seed,
                            const std::filesystem::path& out, int threads,
                            const WriteText& write = write_file_atomically);
 
-/// Names of the files that synthesize() writes for a campaign, relative to its output folder.
+/// Returns the names of the files that synthesize() writes for a campaign, relative to its output
+/// folder.
 std::vector<std::filesystem::path> synthetic_file_names(const Campaign& campaign);
 
 }  // namespace rigcal::datasets

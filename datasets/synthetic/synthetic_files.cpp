@@ -46,8 +46,8 @@ std::optional<std::map<std::string, double>> grouped(
   return groups;
 }
 
-/// Finds the widest scope in which a parameter has a single value, but no wider than its scope in
-/// the campaign.
+/// Finds the widest scope in which a parameter has a single value. It is never wider than the scope
+/// in the campaign.
 std::vector<TrueValue> true_values(const Campaign& truth, int index) {
   const ParameterSetting* setting = truth.setting(index);
   const Scope declared = setting == nullptr ? Scope::rig : setting->scope;

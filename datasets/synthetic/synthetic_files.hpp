@@ -9,13 +9,13 @@
 
 namespace rigcal::datasets {
 
-/// Path of a repeat's file, relative to the campaign file.
+/// Returns the path of a repeat's file, relative to the campaign file.
 ///
 /// @param repeat  from 1
 std::string synthetic_record_path(const std::string& condition, int repeat);
 
-/// Column for a channel in a synthetic record: the one named in the campaign, or the channel's key
-/// if the campaign names columns only per repeat.
+/// Returns the column for a channel in a synthetic record: the one named in the campaign, or the
+/// channel's key if the campaign names columns only per repeat.
 std::string synthetic_column(const Campaign& campaign, Channel channel);
 
 /// Returns a record as CSV, with the campaign's columns and units and 10 significant digits. The

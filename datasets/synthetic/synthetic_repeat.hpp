@@ -27,18 +27,18 @@ struct SyntheticRepeat {
 /// [synthetic].
 Campaign true_campaign(const Campaign& campaign);
 
-/// Channels that can be synthesised: all declared ones, except a reference that no controller
-/// follows.
+/// Returns the channels that can be synthesised: all declared ones, except a reference that no
+/// controller follows.
 std::vector<Channel> made_channels(const Campaign& campaign);
 
 /// Simulates repeats 1..n of a condition with a tolerance of 1e-8. If the repeats differ only in
-/// noise, the condition is simulated once. Before a late run starts, the rig is in the state that
-/// it has at the first instant of the run, and the drive is zero. The temperature is that of the
-/// condition, or 293.15 K if it has none.
+/// noise, the condition is simulated once. Before a late run starts, the drive is zero, and the rig
+/// has the state of the first instant of the run. The temperature is that of the condition, or
+/// 293.15 K if it has none.
 ///
-/// @param truth   true_campaign() of a campaign with synthetic settings
+/// @param truth  true_campaign() of a campaign with synthetic settings
 /// @param record  provides the drive if the waveform is recorded; may be null otherwise
-/// @throws InputError     if there are no sample times, or if settings contradict the condition
+/// @throws InputError  if there are no sample times, or if settings contradict the condition
 /// @throws NoResultError  if a run could not be simulated
 std::vector<SyntheticRepeat> synthetic_repeats(const Campaign& truth, const Condition& condition,
                                                const Record* record, std::uint64_t seed);

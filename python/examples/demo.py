@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Does the same as scripts/demo with the Python module: makes records of a known rig, averages, fits and validates.
+"""Does what scripts/demo does, with the Python module: synthesizes records, averages them, fits a model and validates it.
 
     PYTHONPATH=build/release/python python/examples/demo.py [FOLDER]
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     import pandas  # type: ignore[import]
     from matplotlib.figure import Figure  # type: ignore[import]
 
-# The most interesting list in the JSON of each kind of result.
+# The default table for each kind of result: the most interesting list in its JSON.
 _TABLES = {
     "batch": "rigs",
     "comparison": "parameters",
@@ -62,7 +62,7 @@ def _figure(rows: int = 1, **options: Any) -> tuple[Figure, Any]:
     import matplotlib.pyplot as pyplot  # type: ignore[import]
 
     figure, axes = pyplot.subplots(rows, layout="constrained", **options)
-    pyplot.close(figure)  # a notebook already shows the returned figure; without this it would show it twice
+    pyplot.close(figure)  # otherwise the notebook would show the returned figure twice
     return figure, axes
 
 
@@ -189,7 +189,7 @@ def _plot_result(result: Result) -> Figure:
 
 
 def _plot_estimates(rows: list[dict[str, Any]]) -> Figure:
-    """Plots intervals around the values. Only names parameters that are not identified; they would hide the others."""
+    """Plots intervals around the values. Parameters that are not identified are only named, as they would hide the rest."""
     estimated = [row for row in rows if row.get("fitted")]
     shown = [row for row in estimated if row["identifiability"] == "identified" and row["value"] and row["ci95"]]
     ratios = [[100.0 * (end / row["value"] - 1.0) for end in row["ci95"]] for row in shown]
@@ -202,7 +202,7 @@ def _plot_estimates(rows: list[dict[str, Any]]) -> Figure:
 
 
 def loaded(*arguments: Any) -> Campaign:
-    """Restores a pickled campaign by reading its file. In Python, because pickle cannot call a compiled function."""
+    """Restores a pickled campaign by reading its file. Written in Python, since pickle cannot call a compiled function."""
     return load(*arguments)
 
 

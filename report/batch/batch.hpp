@@ -95,7 +95,6 @@ struct RigRun {
   std::vector<std::string> unread;  ///< why some earlier results were left out
 };
 
-/// Builds the row for one rig.
 StoredRig rig_row(const RigRun& run);
 
 /// Writes batch.csv with one line for each rig. Every parameter that any rig estimates gets its own
@@ -105,7 +104,6 @@ std::string batch_csv(const StoredBatch& batch);
 inline std::string parameter_label(const StoredRigEstimate& each) {
   return parameter_label(each.key, each.scope, each.level);
 }
-/// Returns true if the fit converged.
 inline bool has_converged(const StoredRig& rig) {
   return rig.status == calib::FitStatus::converged;
 }

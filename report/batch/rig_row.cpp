@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kWorstScores = 3;
 
-/// Sort key: failed simulations first, then by verdict, then by the lowest rho2.
+/// Returns a sort key: failed simulations first, then by verdict, then by the lowest rho2.
 std::pair<int, double> badness(const StoredRigScore& score) {
   const int rank = !score.failure.empty()                  ? 0
                    : score.verdict == calib::Verdict::fail ? 1

@@ -80,7 +80,7 @@ struct StoredComparedMetric {
   RIGCAL_DESCRIBE(channel, metric, against_first)
 };
 
-/// Which model the records prefer.
+/// Evidence of which model the records prefer.
 struct StoredModelChoice {
   std::optional<double> delta_aic, delta_bic;
   std::optional<std::string> smaller, larger;  ///< the results, if one model contains the other

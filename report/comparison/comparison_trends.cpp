@@ -72,7 +72,8 @@ StoredTrendPoint point_of(const Compared& compared, const StoredParameter& param
                                   });
   point.value = parameter.value;
   if (const auto error = interval_error(parameter)) {
-    const bool dated = point.day.has_value();  // other dates have other day effects
+    const bool dated = point.day.has_value();  // the between-day error applies only to points with
+                                               // a date
     const metrics::EstimateError all =
         dated ? calib::with_days(*error, parameter.between_days_error) : *error;
     if (dated && parameter.between_days_error)

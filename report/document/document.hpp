@@ -108,7 +108,7 @@ struct Table {
   /// A matrix has tiles of equal width. On a narrow screen each row of a cards table becomes a
   /// card.
   enum class Shape { list, cards, matrix };
-  std::string label;  ///< for screen readers; the caption is used if this is empty
+  std::string label;  ///< for screen readers; empty: the caption is used
   Line caption = {};
   Shape shape = Shape::list;
   std::string style = {};   ///< class in the style sheet
@@ -251,7 +251,7 @@ struct Article {
   Blocks blocks;
 };
 /// Blocks that are already rendered for the page, and the blocks that a terminal shows instead.
-/// Rendering early saves memory: the blocks of a long page would need most of the memory.
+/// Rendering early saves memory, because the blocks of a long page would otherwise take most of it.
 struct Rendered {
   std::string html;
   Blocks blocks;

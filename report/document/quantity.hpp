@@ -36,7 +36,7 @@ struct Interval {
   double half_width() const { return 0.5 * (ends->high - ends->low); }
 };
 
-/// Formats a number in a given unit, which a heading names for several numbers.
+/// Formats a number in a given unit, for use below a heading that names the unit.
 Quantity in_unit(const Number& value_si, double si_per_unit, int digits = 5);
 /// Formats a number in a suitable engineering unit: 0.0508 m becomes "50.8" with the unit "mm".
 Quantity readable(const Number& value_si, std::string_view si_unit, int digits = 5);

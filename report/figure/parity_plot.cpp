@@ -29,7 +29,7 @@ struct Extent {
 
 Trace diagonal(const Extent& range, double shift, const std::string& style, std::string name) {
   Trace line = empty_trace(Trace::Kind::line, style, std::move(name));
-  // The line is clipped to the square that both axes span.
+  // The line is clipped to the square in which both axes have this range.
   const double first = std::max(range.low, range.low - shift);
   const double last = std::min(range.high, range.high - shift);
   if (first > last) return line;

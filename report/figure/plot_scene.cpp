@@ -39,8 +39,8 @@ void widen(Axis& axis, const std::vector<double>& values, bool& any) {
 
 void leave_room(Axis& axis, double share) {
   const double span = axis.high - axis.low;
-  // On a logarithmic axis the value 1 maps to zero. A size of at least 1 makes a series constant if
-  // it differs only by rounding there.
+  // On a logarithmic axis the value 1 maps to zero. There, a size of at least 1 ensures that a
+  // series which differs only by rounding counts as constant.
   const double size =
       std::max({std::abs(axis.high), std::abs(axis.low), axis.logarithmic ? 1.0 : 0.0});
   // Even a constant needs an axis with some range.

@@ -18,7 +18,6 @@ struct Trace {
   double cell = 0.0;          ///< side length of the square cells around the points
 };
 
-/// Returns a trace without points.
 inline Trace empty_trace(Trace::Kind kind, std::string style, std::string name = {}) {
   Trace trace;
   trace.kind = kind;

@@ -22,7 +22,8 @@ struct FmuVariable {
   std::optional<double> lower;
   std::optional<double> upper;
   std::optional<double> nominal;
-  std::size_t derivative_of = 0;  ///< index of the variable that this is the derivative of; 0: none
+  std::size_t derivative_of = 0;  ///< index of the variable of which this is the derivative; 0:
+                                  ///< none
   bool is_state = false;
   bool changes_at_ticks = false;  ///< true for a state of the sampled controller
 

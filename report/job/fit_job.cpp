@@ -21,21 +21,23 @@
 namespace rigcal::report {
 namespace {
 
-/// File in the result folder from which a fit can continue after a kill.
+/// File in the result folder from which a fit can resume after its process was killed.
 class CheckpointFile {
  public:
-  /// @param provenance  of the fit; borrowed
+  /// @param provenance  provenance of the fit; borrowed
   CheckpointFile(const std::filesystem::path& out, const Provenance& provenance);
 
-  /// The checkpoint of an earlier run of the same fit; empty where there is none.
+  /// Reads the checkpoint of an earlier run of the same fit; std::nullopt if there is none.
   ///
-  /// @throws InputError  it is one of another fit, or none at all
+  /// @throws InputError  if the file belongs to another fit, or is not a checkpoint
   std::optional<calib::Checkpoint> read() const;
 
-  /// Writes a checkpoint unless that would take more than a twentieth of the time.
+  /// Writes a checkpoint unless writing would take more than a twentieth of the time. A checkpoint
+  /// that is not written is kept in memory.
   void keep(const calib::Checkpoint& checkpoint);
 
-  /// Writes the withheld state if the fit was stopped; else removes the file.
+  /// If the fit was stopped, writes the checkpoint that is still in memory. Otherwise removes the
+  /// file.
   void finish(calib::FitStatus status);
 
  private:
@@ -71,7 +73,7 @@ void CheckpointFile::finish(calib::FitStatus status) {
 }
 
 void CheckpointFile::write() {
-  constexpr int kShare = 20;  // one part of writing to so many of fitting
+  constexpr int kShare = 20;  // pause after a write, as a multiple of the time that the write took
   const auto began = Clock::now();
   write_file_atomically(file_, checkpoint_text(*unwritten_, provenance_));
   const auto ended = Clock::now();
@@ -98,8 +100,8 @@ ExitCode code_of(FitStatus status, std::optional<calib::Verdict> verdict, bool s
 }
 
 /// The state of an unfinished fit, stored in its folder so that the fit can resume after it was
-/// killed. The provenance is that of the starts: bootstrap, profiles and cross-validation do not
-/// change them.
+/// killed. It is identified by the provenance of the starts, because bootstrap, profiles and
+/// cross-validation do not change them.
 struct Unfinished {
   Unfinished(const std::filesystem::path& out, Provenance searched, TaskFarm* processes,
              bool resume)
@@ -140,8 +142,8 @@ JobResult finished(std::shared_ptr<FitRun> run, bool strict) {
   return job;
 }
 
-/// Runs the fit in a process that is not the leader. It works on the leader's tasks and obtains the
-/// same results.
+/// Runs the fit in a process that is not the leader. This process works on the leader's tasks and
+/// obtains the same results.
 void help(const FitRun& run, const Provenance& searched, bool resume, const JobTerms& terms,
           calib::FitOptions settings) {
   settings.farm = terms.processes;
@@ -164,14 +166,15 @@ void search(FitRun& run, Unfinished& kept, bool resume, const JobTerms& terms,
     settings.checkpoint = [&](const calib::Checkpoint& reached) { kept.checkpoint.keep(reached); };
   give_freed_memory_back();  // frees the memory of the single repeats
   run.fit = calib::fit(*run.campaign, run.records, settings);
-  // The deviations are dropped here: the files and the page do not need them, and creating the
+  // The deviations are dropped here. The files and the page do not need them, and creating the
   // files takes as much memory again.
   datasets::drop_deviations(run.records);
   give_freed_memory_back();
   give_large_blocks_back();
 }
 
-/// Whether both were made from the same; paths may differ, as where the folder was moved.
+/// Returns true if two results come from the same version, inputs, seed and options. Input paths
+/// may differ, for example because the folder was moved.
 bool same_making(const StoredProvenance& a, const StoredProvenance& b) {
   return a.version == b.version && a.revision == b.revision && a.seed == b.seed &&
          a.options == b.options &&
@@ -186,9 +189,9 @@ bool files_stand(const std::filesystem::path& folder, const StoredProvenance& pr
          });
 }
 
-/// The fit in a folder, if it is complete and would be the same again: by the same version, from
-/// inputs of the same content, with the same seed and options, not stopped, and with each listed
-/// file present and unchanged.
+/// Returns the fit in a folder if it is complete and a new run would give the same result. It must
+/// not have been stopped. Version, inputs, seed and options must be the same, and every listed file
+/// must be present and unchanged.
 std::optional<StoredFit> whole_fit(const std::filesystem::path& folder,
                                    const Provenance& provenance) {
   const std::filesystem::path file = folder / "fit.json";
@@ -200,7 +203,7 @@ std::optional<StoredFit> whole_fit(const std::filesystem::path& folder,
         files_stand(folder, fit.provenance))
       return fit;
   } catch (const InputError&) {
-    // Unreadable results are made again.
+    // The fit is repeated if its results cannot be read.
   }
   return std::nullopt;
 }

@@ -112,7 +112,7 @@ struct FitRequest {
 /// Estimates the free parameters and scores the conditions. If the result folder is known, the fit
 /// stores there what it needs to resume after it was killed.
 ///
-/// @throws InputError, UsageError
+/// @throws InputError, UsageError  if a record, the campaign or the request is invalid
 JobResult fit_job(std::shared_ptr<const datasets::Campaign> campaign, const FitRequest& request,
                   const JobTerms& terms);
 
@@ -122,7 +122,7 @@ struct ValidationRequest {
 };
 /// Scores the conditions with the values from an earlier fit.
 ///
-/// @throws InputError, UsageError
+/// @throws InputError, UsageError  if a record, the earlier fit or the request is invalid
 JobResult validation_job(std::shared_ptr<const datasets::Campaign> campaign,
                          const ValidationRequest& request, const JobTerms& terms);
 
@@ -134,7 +134,7 @@ struct DiagnosisRequest {
 };
 /// Estimates the leak in every record that can be diagnosed.
 ///
-/// @throws InputError, UsageError
+/// @throws InputError, UsageError  if a file or the request is invalid
 JobResult diagnosis_job(datasets::Campaign campaign, const DiagnosisRequest& request,
                         const JobTerms& terms);
 
@@ -145,7 +145,7 @@ struct ParityRequest {
 };
 /// Computes the parity residuals of every record relative to the healthy rig.
 ///
-/// @throws InputError, UsageError
+/// @throws InputError, UsageError  if a file or the request is invalid
 JobResult parity_job(datasets::Campaign campaign, const ParityRequest& request,
                      const JobTerms& terms);
 
@@ -157,13 +157,13 @@ struct LeakTableRequest {
 /// Estimates the assumptions of a leak table from its published numbers, and computes the table
 /// with them.
 ///
-/// @throws InputError, UsageError
+/// @throws InputError, UsageError  if the campaign or its [leak_table] is invalid
 JobResult fit_tables_job(const CampaignChoice& choice, const JobTerms& terms);
 
 /// Computes the leak table of a rig. Takes the choice instead of a loaded campaign, because --set
 /// also applies to the assumptions.
 ///
-/// @throws InputError, UsageError
+/// @throws InputError, UsageError  if a file or the request is invalid
 JobResult leak_table_job(const CampaignChoice& choice, const LeakTableRequest& request,
                          const JobTerms& terms);
 
@@ -174,7 +174,7 @@ struct PlanRequest {
 /// Predicts how well the records of a campaign will determine the parameters, and designs a test
 /// within the limits in [design].
 ///
-/// @throws InputError, UsageError
+/// @throws InputError, UsageError  if a file or the request is invalid
 JobResult plan_job(const datasets::Campaign& campaign, const PlanRequest& request,
                    const JobTerms& terms);
 
@@ -193,7 +193,7 @@ struct BatchRequest {
 /// each rig are written into a subfolder of `terms.out`.
 ///
 /// @param verbs  how a rig is fitted and diagnosed
-/// @throws UsageError
+/// @throws UsageError  under the conditions of find_rigs(), or if the request is invalid
 JobResult batch_job(const BatchRequest& request, const RigVerbs& verbs, const JobTerms& terms);
 
 /// Returns functions that fit and diagnose the rigs of a batch in this process.
@@ -203,7 +203,8 @@ RigVerbs verbs_in_process(const BatchRequest& request, const JobTerms& terms);
 
 /// Compares the results in two or more folders. The first result is the reference for the others.
 ///
-/// @throws InputError, UsageError
+/// @throws InputError, UsageError  if a result cannot be read, or if the folders are fewer than two
+///                         or not distinct
 JobResult comparison_job(const std::vector<std::filesystem::path>& folders, const JobTerms& terms);
 
 }  // namespace rigcal::report

@@ -19,7 +19,7 @@ struct LeakTableInput {
 
 /// Loads a campaign and its [leak_table], and applies --set.
 ///
-/// @throws InputError, UsageError
+/// @throws InputError, UsageError  if the campaign, its [leak_table] or a --set is invalid
 LeakTableInput load_leak_table(const CampaignChoice& choice);
 
 /// @param cancel  set to true to stop the computation; borrowed

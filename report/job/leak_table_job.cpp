@@ -18,7 +18,7 @@ namespace {
 using datasets::Assumption;
 using datasets::FittedValue;
 
-/// The rig of a leak table as a fit found it.
+/// What a fit contributes to the rig of a leak table.
 struct FittedRig {
   calib::RigUncertainty uncertainty;
   std::vector<std::string> notes;     ///< origin of the values, in words
@@ -29,7 +29,7 @@ const model::ParameterSpec& spec_in(const LeakTableInput& input, int index) {
   return datasets::assumption_spec(input.campaign.rig.plant, index);
 }
 
-/// The rows of the covariance whose values the table has from the fit.
+/// Returns the covariance of those fitted values that the table uses.
 calib::RigUncertainty uncertainty_of(const LeakTableInput& input, const EarlierFit& earlier) {
   calib::RigUncertainty result;
   std::vector<Eigen::Index> rows;
@@ -43,7 +43,7 @@ calib::RigUncertainty uncertainty_of(const LeakTableInput& input, const EarlierF
   return result;
 }
 
-/// Known values that are not those which the fit was made with.
+/// Warns about known values that have changed since the fit.
 void warn_of_changed(const LeakTableInput& input, const EarlierFit& earlier,
                      std::vector<std::string>& warnings) {
   const auto values = datasets::leak_table_values(input.campaign, input.settings);
@@ -80,9 +80,10 @@ void warn_of_fit(const LeakTableInput& input, const EarlierFit& earlier,
         fmt::join(unknown, ", ")));
 }
 
-/// Puts the estimates of a fit over the campaign's values and assumptions, and --set over both.
+/// Replaces values of the campaign and its assumptions with the estimates of a fit, then applies
+/// --set.
 ///
-/// @throws InputError  a value has no single one for the rig
+/// @throws InputError  if a parameter does not have a single value for the rig
 FittedRig take_fit(LeakTableInput& input, const EarlierFit& earlier,
                    const std::vector<std::string>& set) {
   datasets::take_fitted(input.settings, input.campaign, earlier.values);
@@ -113,8 +114,8 @@ FittedRig take_fit(LeakTableInput& input, const EarlierFit& earlier,
   return rig;
 }
 
-/// Values of the campaign's rig that assumptions replace without a fit, such as those that `fit`
-/// wrote into its fitted.toml; empty if there are none.
+/// Describes the values of [rig.parameters] that assumptions replace although no fit is used, such
+/// as values that `fit` wrote into its fitted.toml. Empty if there are none.
 std::vector<std::string> replaced_by_assumptions(const LeakTableInput& input) {
   std::vector<std::string> replaced;
   for (const Assumption& each : input.settings.assumptions) {

@@ -59,7 +59,8 @@ StoredDesign design_file(const datasets::Campaign& campaign, const calib::Design
   return file;
 }
 
-/// The predicted response to a designed drive, a row for each of its samples, SI.
+/// Returns the predicted response to a designed drive in SI units, with one row for each sample of
+/// the drive.
 Table response_of(const datasets::Campaign& campaign, const calib::Design& design) {
   Table table;
   const auto add = [&](std::string_view name, std::vector<double> values) {

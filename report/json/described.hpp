@@ -68,7 +68,7 @@ inline constexpr bool is_keyed<Keyed<T>> = true;
 template <typename T, HasKeys Key>
 inline constexpr bool is_keyed<Keyed<T, Key>> = true;
 
-/// Conversion between keys and their JSON text.
+/// Convert between keys and their JSON text.
 inline const std::string& key_text(const std::string& key) { return key; }
 template <HasKeys Key>
 std::string key_text(Key key) {

@@ -17,8 +17,8 @@ std::string text_of(const Json& json, const std::string& key);
 /// @throws InputError  always
 [[noreturn]] void refuse_json(const std::string& where, const Json::exception& error);
 
-/// Runs `work` on JSON from outside. Converts JSON errors to InputError, because the JSON is then
-/// not a result of this version.
+/// Runs `work` on JSON from an external file. Converts JSON errors to InputError, since they mean
+/// that the file is not a result of this version.
 ///
 /// @param where  the file or folder, for the message
 /// @throws InputError  if a value is missing or has another type

@@ -147,7 +147,8 @@ Value one_of(const JsonNode& node, const std::vector<std::pair<std::string, Valu
   node.fail("one of " + names);
 }
 
-/// Returns the row of the parameter table whose name in results is the text of `name`.
+/// Returns the row of the parameter table for a parameter, given its name in results as the text of
+/// `name`.
 int parameter_row(const JsonNode& name, model::PlantKind plant);
 
 }  // namespace rigcal::report

@@ -73,7 +73,7 @@ std::string state_sentence(const MachineState& state) {
         "delivers at {}.{}",
         name, e.coefficient, state.duty, agreement_of(state));
   }
-  // At most two decimals, because more would be meaningless for percentages that an operator reads.
+  // Percentages have at most two decimals, because an operator has no use for more.
   const double error = std::max(0.1, kInPercent * (e.share_ci95.high - e.share_ci95.low) / 4.0);
   const auto percent = [&](double fraction) {
     return to_uncertainty(kInPercent * fraction, error);

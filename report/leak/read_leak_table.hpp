@@ -52,8 +52,8 @@ std::vector<std::string> rig_differences(const EarlierLeakTable& table,
 void take_limits(datasets::DiagnosisSettings& settings, const std::vector<double>& targets_percent,
                  const std::string& file);
 
-/// Returns the class whose upper limit is a given row according to take_limits(), or std::nullopt
-/// if the row does not limit any class.
+/// Returns the class that has a given row as its upper limit according to take_limits();
+/// std::nullopt if the row does not limit any class.
 std::optional<datasets::LeakClass> class_ending_at(const datasets::DiagnosisSettings& settings,
                                                    double target_percent);
 

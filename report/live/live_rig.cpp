@@ -29,7 +29,7 @@ constexpr double kMostMadeSamples = 5'000.0;
 constexpr double kSamplesOfAPeriod = 500.0;
 /// Slider range of a known value without bounds: from a fifth of the value to five times the value.
 constexpr double kReach = 5.0;
-/// Larger than any leak in the source paper, whose largest coefficient is 2.5.
+/// Larger than any leak in the source paper, where the largest coefficient is 2.5.
 constexpr double kMostLeakage = 5.0;
 
 const char* const kLeak = "leakage_coefficient";

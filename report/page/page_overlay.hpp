@@ -26,7 +26,7 @@ ComparisonFiles load_comparison_files(const ReadFile& read, const std::string& w
 doc::Verdict comparison_headline(const ComparisonFiles& files);
 std::vector<doc::Section> comparison_sections(const ComparisonFiles& files);
 std::vector<Figure> comparison_figures(const ComparisonFiles& files);
-/// Adds a comparison. Its campaigns are those of the compared results.
+/// Adds a comparison. It names the campaigns of the compared results.
 void add_comparison(const ComparisonFiles& files, Part& part);
 
 }  // namespace rigcal::report

@@ -77,7 +77,7 @@ std::vector<double> in_millimetres(const std::vector<double>& metres) {
   return result;
 }
 
-/// Adds, thinned, the columns of all repeats whose name starts with `column`.
+/// Adds the columns of all repeats whose name starts with `column`, thinned for drawing.
 void add_lines(const Table& series, const std::string& column, const char* style, const char* name,
                Plot& plot) {
   const std::vector<double>* time = series.find("time_s");

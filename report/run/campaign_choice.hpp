@@ -20,7 +20,7 @@ struct CampaignChoice {
 
 /// Loads the campaign and applies `set` and `free`.
 ///
-/// @throws InputError, UsageError
+/// @throws InputError, UsageError  if the campaign, or a change to it, is invalid
 datasets::Campaign load(const CampaignChoice& choice);
 
 /// Returns the choices that affect the numbers, for the provenance.

@@ -9,7 +9,7 @@
 
 namespace rigcal::report {
 
-/// What `check` found out about the records of a campaign.
+/// Findings of `check` about the records of a campaign.
 struct Check {
   std::string text;
   Json json;

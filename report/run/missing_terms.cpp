@@ -14,7 +14,7 @@ namespace {
 /// Half-width of the bounds, as a multiple of the size that the residuals suggest.
 constexpr double kWidestTerm = 10.0;
 
-/// Whether a key is that of a gain which a loop has anyway.
+/// Whether a key is one of the gains kp and kd, which every loop has anyway.
 bool is_stated_gain(std::string_view key) {
   return std::any_of(
       model::kFeedbacks.begin(), model::kFeedbacks.end(),

@@ -24,7 +24,7 @@ std::vector<doc::Document> add_page(const std::filesystem::path& out, int thread
 
 /// Returns the results among files in memory.
 ///
-/// @param where  name of the place for messages
+/// @param where  location of the files, for messages
 std::vector<doc::Document> documents_in(const std::vector<ResultFile>& files,
                                         const std::string& where, const ReadTable& made = {});
 

@@ -11,8 +11,8 @@ namespace rigcal::report {
 /// File in the result folder to which `fit` saves its state between two starts.
 inline constexpr const char* kCheckpointFile = "checkpoint.json";
 
-/// Hash of everything that must be unchanged for a fit to resume: inputs, options, seed and
-/// version.
+/// Returns the hash of everything that must be unchanged for a fit to resume: inputs, options, seed
+/// and version.
 std::string fit_identity(const Provenance& provenance);
 
 /// Writes a checkpoint with the provenance of its fit as text. Numbers round-trip exactly.

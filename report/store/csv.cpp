@@ -40,7 +40,7 @@ double at(std::span<const double> values, std::size_t i) {
   return i < values.size() ? values[i] : std::nan("");
 }
 
-/// Standard deviation of the repeats, shape (samples); empty for a single repeat.
+/// Returns the standard deviation of the repeats, shape (samples); empty for a single repeat.
 std::span<const double> sd_of(const Result& result, const std::string& condition,
                               datasets::Channel channel) {
   for (const datasets::Record& record : result.records) {

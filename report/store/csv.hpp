@@ -17,28 +17,31 @@
 
 namespace rigcal::report {
 
-/// scorecard.csv: one row per condition and channel; `unit` applies to rmse and maximum_error.
+/// Writes scorecard.csv: one row per condition and channel. `unit` applies to rmse and
+/// maximum_error.
 std::string scorecard_csv(const Result& result);
 
-/// residuals/<condition>.csv: time_s; for each output channel measured, simulated, residual
-/// (measured minus simulated) and, with repeats, sd (standard deviation of one repeat about the
-/// mean); whether the sample counts; the drive (reference_m or command_v); the simulated flows.
+/// Writes residuals/<condition>.csv. Its columns are time_s; for each output channel measured,
+/// simulated, residual (measured minus simulated) and, with repeats, sd (standard deviation of one
+/// repeat about the mean); whether the sample counts; the drive (reference_m or command_v); and the
+/// simulated flows.
 std::string residuals_csv(const Result& result, const calib::ConditionScore& score);
 
-/// The table that residuals_csv() writes, equal to one read back from the file.
+/// Returns the table that residuals_csv() writes, equal to one read back from the file.
 Table residual_table(const Result& result, const calib::ConditionScore& score);
 
-/// averaged/<condition>.csv: time_s; mean, sd and count for every channel.
+/// Writes averaged/<condition>.csv: time_s, then mean, sd and count for every channel.
 std::string averaged_csv(const datasets::Record& record);
 
-/// repeatability.csv: one row per condition and channel, with the time offset of each repeat.
+/// Writes repeatability.csv: one row per condition and channel, with the time offset of each
+/// repeat.
 std::string repeatability_csv(const std::vector<datasets::Record>& records);
 
-/// <condition>.csv, written by `simulate`: time_s, the reference (closed loop), every output. If
+/// Writes <condition>.csv for `simulate`: time_s, the reference (closed loop), and every output. If
 /// the simulation failed there are no rows, and the first line gives the reason.
 ///
 /// @param reference  shape (samples); empty in open loop
-/// @param outputs    outputs to write; simulation.outputs has a column for each of kAllOutputs
+/// @param outputs  outputs to write; simulation.outputs has a column for each of kAllOutputs
 std::string simulation_csv(std::span<const double> time_s, std::string_view reference_name,
                            std::span<const double> reference,
                            std::span<const model::Output> outputs,

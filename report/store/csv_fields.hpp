@@ -6,7 +6,8 @@
 
 namespace rigcal::report {
 
-/// Shortest text that is read back as the same double; empty if the value is not finite.
+/// Returns the shortest text that is read back as the same double; empty if the value is not
+/// finite.
 std::string csv_number(double value);
 std::string csv_number(const std::optional<double>& value);
 

@@ -282,8 +282,8 @@ void ResultsInWriting::move_into_place() {
   // even if the process ends between two renames.
   const fs::path manifest = held_.out_ / kManifestFile;
   const auto earlier = manifest_there(held_.out_);
-  // All texts are made before the uninterruptible section. Out of memory, an exception there would
-  // end the process, and even freeing a JSON value takes memory.
+  // All texts are made before the uninterruptible section. Running out of memory in that section
+  // would end the process, and even freeing a JSON value takes memory.
   const std::string text_of_left = manifest_text(left);
   const std::string text_of_all = manifest_text(all);
   const std::string text_of_staying = manifest_text(staying);

@@ -47,8 +47,7 @@ class HeldFolder {
  public:
   /// @throws WriteError  if the folder cannot be created or written; names path and reason
   /// @throws UsageError  if another run has locked the folder, or its manifest is invalid and
-  /// `force`
-  ///                     is not set
+  ///                     `force` is not set
   HeldFolder(const std::filesystem::path& out, Holding holding);
   HeldFolder(const HeldFolder&) = delete;
   HeldFolder& operator=(const HeldFolder&) = delete;

@@ -20,7 +20,6 @@ using Json = nlohmann::ordered_json;
 /// Writes the text of a JSON file, indented by two spaces, with a final newline. Numbers round-trip
 /// exactly. Bytes that are not valid UTF-8 are replaced.
 std::string json_text(const Json& json);
-/// Writes JSON on one line.
 std::string json_line(const Json& json);
 
 /// Returns the parameter table of a plant as JSON.

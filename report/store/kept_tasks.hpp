@@ -10,8 +10,8 @@
 
 namespace rigcal::report {
 
-/// File in which a fit keeps the results of replicates, profiles and folds; also of starts if they
-/// run in several processes.
+/// File in which a fit keeps the results of bootstrap replicates, profiles and cross-validation
+/// folds, and of starts if these run in several processes.
 inline constexpr const char* kKeptTasksFile = "checkpoint.tasks";
 
 /// Whether a file contains kept tasks, complete or truncated.
@@ -34,7 +34,7 @@ class KeptTasks final : public TaskFarm {
   int rank() const override { return farm_.rank(); }
   int processes() const override { return farm_.processes(); }
 
-  /// Number of results found from an earlier run.
+  /// Returns the number of results found from an earlier run.
   std::size_t found() const { return found_; }
   /// Removes the file; to be called once the results of the fit are written.
   void remove();

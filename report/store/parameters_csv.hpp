@@ -7,8 +7,8 @@
 
 namespace rigcal::report {
 
-/// parameters.csv, written next to a fit.json or validation.json: one row per parameter, in `unit`.
-/// The format is that of the tables in csv.hpp.
+/// Writes parameters.csv, which belongs to a fit.json or validation.json: one row per parameter, in
+/// `unit`. The format is that of the tables in csv.hpp.
 std::string parameters_csv(calib::FitStatus status, const std::string& message,
                            const std::vector<StoredParameter>& parameters);
 

@@ -13,12 +13,12 @@
 
 namespace rigcal::report {
 
-/// Version of rigcal, such as "0.1.0".
+/// Returns the version of rigcal, such as "0.1.0".
 std::string_view version();
-/// Git revision of the sources; "unknown" if they were not built in a git checkout.
+/// Returns the Git revision of the sources; "unknown" if they were not built in a git checkout.
 std::string_view revision();
 
-/// Operating system, processor family and number of processors.
+/// Returns the operating system, processor family and number of processors.
 std::string machine();
 
 /// A file that a result depends on.

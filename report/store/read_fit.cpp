@@ -39,7 +39,8 @@ struct Estimates {
   double widened = 1.0;  ///< largest ratio of an interval to the normal one with its error
 };
 
-/// Half width of ci95_if_exact in units of the standard error; 0 without a finite interval.
+/// Returns the half width of ci95_if_exact in units of the standard error; 0 without a finite
+/// interval.
 double half_in_errors(const StoredParameter& p, double error) {
   const auto& ci95 = p.ci95_if_exact;
   if (!ci95 || !std::isfinite(ci95->high - ci95->low)) return 0.0;

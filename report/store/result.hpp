@@ -22,8 +22,8 @@ struct Result {
   const Provenance& provenance;
 };
 
-/// Status of a result in its files. A converged fit with a value that is not finite counts as
-/// failed.
+/// Returns the status of a result in its files. A converged fit with a value that is not finite
+/// counts as failed.
 inline calib::FitStatus status_of(const calib::Fit& fit) {
   if (fit.status == calib::FitStatus::converged && !fit.usable()) return calib::FitStatus::failed;
   return fit.status;

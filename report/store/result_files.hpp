@@ -20,13 +20,12 @@ void name_files(std::vector<InputFile> named, std::vector<ResultFile>& files,
 
 /// Returns a reader that accepts only files from the same run as the result.
 ///
-/// @param read    reads from the folder; borrowed
+/// @param read  reads from the folder; borrowed
 /// @param provenance  provenance of the result; if an older version wrote it, it lists no files,
-/// and
-///                    the reader accepts any file
-/// @param where   the folder, for messages
-/// @param file    name of the result, for messages
-/// @return        reader that throws InputError if the hash of a file is not the listed one
+///                    and the reader accepts any file
+/// @param where  the folder, for messages
+/// @param file  name of the result, for messages
+/// @return  reader that throws InputError if the hash of a file is not the listed one
 ReadFile files_of_run(const ReadFile& read, const StoredProvenance& provenance,
                       const std::string& where, const std::string& file);
 

@@ -108,7 +108,7 @@ Stored load(const ReadFile& read, const std::string& where, const std::string& n
 /// character with "_".
 std::string plain_name(const std::string& text);
 
-/// Name of the file in levels/ with the series of a leak level.
+/// Returns the name of the file in levels/ with the series of a leak level.
 std::string level_file(const std::string& level);
 
 }  // namespace rigcal::report

@@ -37,8 +37,7 @@ std::string csv_of(const Table& table);
 ///
 /// @param file  file name for messages
 /// @throws InputError  if a field is not a number, the time (time_s) does not increase, or a row
-/// has
-///                     a wrong number of fields; names file, line and column
+///                     has a wrong number of fields; names file, line and column
 Table parse_table(std::string_view text, const std::string& file);
 
 }  // namespace rigcal::report

@@ -29,7 +29,8 @@ double number_of(const std::string& text) {
   return value;
 }
 
-/// Power of ten of the leading digit, corrected for a 0.1 that is stored as 0.0999999999.
+/// Returns the power of ten of the leading digit, corrected for a 0.1 that is stored as
+/// 0.0999999999.
 int power_of(double value) {
   constexpr double kRounding = 1e-9;
   return static_cast<int>(std::floor(std::log10(std::abs(value)) + kRounding));

@@ -15,7 +15,7 @@ struct ReadableUnit {
 std::string typographic(std::string_view unit);
 
 /// Returns the engineering unit in which a value needs few digits: 6.2e6 Pa -> MPa, 0.0508 m -> mm.
-/// Returns the SI unit if it has no such relatives. The name of unit "1" is empty.
+/// Returns the SI unit itself if it has no such multiples. The name of unit "1" is empty.
 ReadableUnit readable_unit(double value_si, std::string_view si_unit);
 
 /// Writes a value in its readable unit, with `digits` significant digits: "6.2 MPa", "0.35"; "-" if

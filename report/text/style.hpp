@@ -4,7 +4,6 @@
 
 namespace rigcal::report {
 
-/// Style of text output.
 struct Style {
   bool colour = false;
   std::size_t columns = 0;  ///< width of the terminal; 0: no limit on the width of tables

@@ -5,7 +5,7 @@
 namespace rigcal::report {
 namespace {
 
-constexpr std::size_t kGap = 2;  ///< blanks between columns
+constexpr std::size_t kGap = 2;  ///< spaces between columns
 
 }  // namespace
 
@@ -40,7 +40,7 @@ std::string wrapped(std::string_view line, std::size_t columns, std::size_t inde
   std::string result;
   std::size_t width = 0;
   for (std::size_t begin = 0; begin < line.size();) {
-    // A word includes the blanks before it, so that the indentation is kept.
+    // A word includes the spaces before it, so that the indentation is kept.
     const std::size_t letters = std::min(line.find_first_not_of(' ', begin), line.size());
     const std::size_t end = std::min(line.find(' ', letters), line.size());
     std::string_view word = line.substr(begin, end - begin);

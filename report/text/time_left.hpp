@@ -18,7 +18,7 @@ class TimeLeft {
   /// Records an iteration of a start; starts are numbered from 1.
   void note(int start, double relative_change);
 
-  /// Remaining seconds; std::nullopt while too little work is done for an estimate.
+  /// Returns the remaining seconds; std::nullopt while too little work is done for an estimate.
   std::optional<double> seconds(double elapsed_s) const;
 
  private:

@@ -20,7 +20,7 @@ constexpr QuantityRange kPositions_m{-1e3, 1e3};
 constexpr QuantityRange kSpeeds_m_per_s{1e-9, 1e3};
 constexpr QuantityRange kAccelerations_m_per_s2{1e-6, 1e6};
 constexpr QuantityRange kCommands_v{1e-6, 1e3};
-/// Amplitudes of references in metres, volts, newtons or pascals.
+/// Amplitude of a reference or command, in metres, volts, newtons or pascals.
 constexpr QuantityRange kDriveAmplitudes{1e-9, 1e9};
 
 template <typename Value, std::size_t N>
@@ -50,13 +50,13 @@ void read_band(const TomlNode& node, DesignSettings& settings) {
   settings.band_hz = {low.quantity("Hz", kFrequencies_hz), high.quantity("Hz", kFrequencies_hz)};
   if (!(settings.band_hz->second > settings.band_hz->first))
     node.fail("its end is not above its beginning: expected the lower frequency first");
-  // The row of the sample rate comes before that of the band.
+  // The sample rate is known here because its row comes before this one.
   if (settings.band_hz->second > 0.5 * settings.sample_rate_hz)
     node.fail(fmt::format("{:g} Hz is above half the sample rate of {:g} Hz",
                           settings.band_hz->second, settings.sample_rate_hz));
 }
 
-/// A row of a limit, which keeps its place in the file.
+/// Makes the row for a limit, which is stored with its place in the file.
 KeyRow<DesignSettings> limit_row(std::string_view key,
                                  std::optional<StatedLimit> DesignSettings::*limit,
                                  std::string_view unit, QuantityRange range,

@@ -56,7 +56,6 @@ struct DesignSettings {
   std::optional<std::string> like;
   Location where;
 
-  /// Number of samples in the drive.
   std::size_t samples() const;
 };
 

@@ -8,7 +8,7 @@
 
 namespace rigcal::datasets {
 
-/// The unit in which a drive is given to the controller.
+/// Unit of the drive in the file for the controller.
 struct DriveUnit {
   std::string name;      ///< unit of the drive's channel in the campaign, otherwise its SI unit
   UnitConversion to_si;  ///< does not include the gain of the recording

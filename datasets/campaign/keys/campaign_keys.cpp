@@ -19,7 +19,7 @@ namespace {
 using OrderedJson = nlohmann::ordered_json;
 using FormKind = KeyForm::Kind;
 
-/// A number as a quantity begins with it.
+/// Matches the number at the beginning of a quantity.
 constexpr std::string_view kNumberPattern =
     R"([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)";
 
@@ -34,13 +34,13 @@ bool fits_any(const std::string& from, const std::vector<std::string>& to) {
   });
 }
 
-/// Refuses a text without number or unit, and the common units of other dimensions. Units are too
-/// many to list all that fit.
+/// Returns a pattern that refuses text without a number or unit, and the common units of other
+/// dimensions. There are too many suitable units to list them all.
 std::string quantity_pattern(const std::vector<std::string>& units) {
   std::string wrong;
   for (const std::string& unit : common_units())
     if (unit != "1" && !units.empty() && !fits_any(unit, units)) wrong += unit + "|";
-  // The last alternative is empty: no unit.
+  // The last alternative is empty and matches a missing unit.
   return fmt::format(R"(^(?!\s*{0}\s*(?:{1})\s*$)\s*{0}\s*\S)", kNumberPattern, wrong);
 }
 
@@ -69,7 +69,8 @@ class SchemaWriter {
   OrderedJson definitions() const { return definitions_; }
 
  private:
-  /// A form with what an editor shows of the key. Editors ignore what is beside a `$ref`.
+  /// Returns the schema of a key, with the description, default and example that an editor shows.
+  /// Editors ignore members beside a `$ref`.
   OrderedJson entry(const CampaignKey& row) {
     OrderedJson schema = OrderedJson::object();
     std::string about = row.doc;
@@ -159,8 +160,8 @@ bool is_table(const OrderedJson& schema) {
          schema.contains("additionalProperties");
 }
 
-/// Moves the tables that occur several times to the definitions: most parameters and channels of a
-/// unit have the same.
+/// Moves tables that occur several times into the definitions. Most parameters and channels with
+/// the same unit have equal tables.
 class SharedTables {
  public:
   explicit SharedTables(const OrderedJson& schema) { count(schema); }
@@ -212,7 +213,7 @@ class SharedTables {
   OrderedJson definitions_ = OrderedJson::object();
 };
 
-/// JSON with what fits on a line on one.
+/// Formats JSON. A value that fits on one line is written on one line.
 std::string compact(const OrderedJson& json, const std::string& indent = "") {
   constexpr std::size_t kLine = 110;
   const std::string line = json.dump();
@@ -228,7 +229,7 @@ std::string compact(const OrderedJson& json, const std::string& indent = "") {
   return json.is_object() ? "{" + text + "}" : "[" + text + "]";
 }
 
-/// The table of a form, if it has one.
+/// Returns the table within a form, or null if there is none.
 const std::vector<CampaignKey>* table_in(const KeyForm& form) {
   if (form.kind == FormKind::table) return &form.keys;
   if (form.kind != FormKind::list && form.kind != FormKind::entries &&
@@ -239,14 +240,15 @@ const std::vector<CampaignKey>* table_in(const KeyForm& form) {
   return nullptr;
 }
 
-/// A text as a cell of a table in Markdown.
+/// Escapes a text for a cell of a Markdown table.
 std::string escaped(std::string_view text) {
   std::string cell;
   for (const char c : text) cell.append(c == '|' ? "\\" : "").push_back(c);
   return cell;
 }
 
-/// ", 0 to 1"; empty where a number has no limit that anybody meets.
+/// Returns the limits as in ", 0 to 1". Empty if there are none, or if the upper limit is too large
+/// to matter.
 std::string limits_text(const KeyForm& form) {
   constexpr double kLarge = 1e6;
   const bool from = std::isfinite(form.lower);
@@ -259,7 +261,7 @@ std::string limits_text(const KeyForm& form) {
   return fmt::format(", {}{:g} to {}", form.above_lower ? "above " : "", form.lower, upper);
 }
 
-/// Type of a key; words and limits of numbers are part of it.
+/// Returns the type of a key for the documents, including its words or the limits of its number.
 std::string type_text(const KeyForm& form) {
   if (form.kind == FormKind::number || form.kind == FormKind::whole)
     return type_name(form) + limits_text(form);
@@ -312,7 +314,7 @@ std::string markdown_of(const std::vector<CampaignKey>& keys) {
                                                         : fmt::format("`{}`", row.standard);
     const std::string rest =
         fmt::format("{} | {} | {}", type_text(row.form), standard, escaped(row.doc));
-    // Keys of the same meaning share a line.
+    // Consecutive keys with the same meaning share a line.
     if (rest != last) finish();
     names += fmt::format("{}`{}`", names.empty() ? "" : ", ", row.key);
     last = rest;

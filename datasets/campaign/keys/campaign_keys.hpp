@@ -8,26 +8,26 @@
 
 namespace rigcal::datasets {
 
-/// Name of the schema beside a campaign that `init` drafts.
+/// Name of the schema file that `init` writes beside a drafted campaign.
 inline constexpr const char* kSchemaFile = "campaign.schema.json";
 
-/// The keys of a campaign file, from its first table down. The reader reads by them.
+/// Returns the keys of a campaign file, starting at its root table. The reader uses the same rows.
 const std::vector<CampaignKey>& campaign_keys();
 
-/// The keys of a table by its path, such as "fit" or "rig.parameters.mass"; for a list of tables,
-/// those of one of them. Null if there is no such table.
+/// Returns the keys of the table at a path, such as "fit" or "rig.parameters.mass"; for a list of
+/// tables, the keys of one item. Null if there is no such table.
 const std::vector<CampaignKey>* find_campaign_table(std::string_view path);
 
-/// A JSON schema (draft 2020-12) of a campaign file, for editors. What it refuses the reader
-/// refuses, too; the reader refuses more.
+/// Returns a JSON schema (draft 2020-12) for campaign files, for use in editors. The reader refuses
+/// everything that the schema refuses, and more.
 std::string campaign_schema();
 
-/// The keys of a table, as the documents have them: a table in Markdown.
+/// Formats the keys of a table as the Markdown table used in the documents.
 std::string markdown_of(const std::vector<CampaignKey>& keys);
 
-/// The line of a key in the draft of a campaign: its example with its hint as comment.
+/// Returns the line for a key in a drafted campaign: the key's example, with its hint as a comment.
 ///
-/// @throws std::invalid_argument  there is no such key, or it has no example
+/// @throws std::invalid_argument  if there is no such key or it has no example
 std::string draft_line(std::string_view table, std::string_view key);
 
 }  // namespace rigcal::datasets

@@ -8,7 +8,7 @@
 namespace rigcal::datasets {
 namespace {
 
-/// "a pressure" -> "pressure"
+/// Removes the article: "a pressure" becomes "pressure".
 std::string without_article(std::string_view name) {
   return std::string(name.substr(name.find(' ') + 1));
 }

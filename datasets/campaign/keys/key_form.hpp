@@ -12,7 +12,8 @@ namespace rigcal::datasets {
 
 struct CampaignKey;
 
-/// The values that a key of a campaign file takes. Schema and documents are made from it.
+/// Describes the values that a key in a campaign file accepts. The schema and the documents are
+/// generated from it.
 struct KeyForm {
   enum class Kind {
     quantity,  ///< "6.2 MPa"
@@ -29,34 +30,35 @@ struct KeyForm {
   };
 
   Kind kind = Kind::text;
-  std::vector<std::string> units{};  ///< SI; several where the rig decides, none: any unit
-  double lower = -std::numeric_limits<double>::infinity();  ///< least number
-  double upper = std::numeric_limits<double>::infinity();   ///< greatest number
+  std::vector<std::string> units{};  ///< SI; several if the choice depends on the rig; empty: any
+                                     ///< unit
+  double lower = -std::numeric_limits<double>::infinity();  ///< smallest number
+  double upper = std::numeric_limits<double>::infinity();   ///< largest number
   bool above_lower = false;                                 ///< `lower` itself is refused
   bool below_upper = false;                                 ///< `upper` itself is refused
   std::vector<std::string> words{};
   std::vector<KeyForm> forms;
-  std::size_t least = 0;  ///< items of a list
-  std::size_t most = 0;   ///< 0: any number of items
+  std::size_t least = 0;  ///< fewest items in a list
+  std::size_t most = 0;   ///< most items in a list; 0: any number
   std::vector<CampaignKey> keys;
-  std::string name{};  ///< type in the documents; empty: that of the kind
+  std::string name{};  ///< type as shown in the documents; empty: the name of `kind`
 };
 
-/// A row: all that the program knows about one key of a campaign file.
+/// One row of a table of keys: everything that the program knows about a key in a campaign file.
 struct CampaignKey {
   std::string key;
   KeyForm form;
   std::string doc;          ///< meaning, in Markdown
   std::string standard{};   ///< default as TOML
-  std::string otherwise{};  ///< what counts where the key is absent, in words, if it is no value
+  std::string otherwise{};  ///< default in words, if it is not a value
   bool needed = false;
   std::string example{};  ///< a value as TOML
   std::string hint{};     ///< comment in the draft of a campaign
 };
 
-/// A quantity, or a plain number where the unit is "1".
+/// Describes a quantity, or a plain number if the unit is "1".
 KeyForm quantity_form(std::string_view unit);
-/// @param units  SI; the rig decides which of them
+/// @param units  SI; the rig determines which of them applies
 KeyForm quantity_form(std::vector<std::string> units);
 KeyForm number_form(QuantityRange range);
 KeyForm whole_form(double lower, double upper);
@@ -68,12 +70,12 @@ KeyForm entries_form(KeyForm value, std::string name = "table");
 KeyForm table_form(std::vector<CampaignKey> keys);
 KeyForm either_form(std::vector<KeyForm> forms, std::string name);
 
-/// Type of a key in the documents.
+/// Returns the type as shown in the documents.
 std::string type_name(const KeyForm& form);
 
 std::vector<std::string> names_of(const std::vector<CampaignKey>& keys);
 
-/// The row of a key; null if there is none.
+/// Returns the row for a key; null if there is none.
 const CampaignKey* find_key(const std::vector<CampaignKey>& keys, std::string_view key);
 
 }  // namespace rigcal::datasets

@@ -16,7 +16,7 @@
 
 namespace rigcal::datasets {
 
-/// The words of a key, with their values.
+/// Words that a key accepts, with their values.
 template <typename T>
 using Words = std::vector<std::pair<std::string, T>>;
 
@@ -27,25 +27,27 @@ std::vector<std::string> words_of(const Words<T>& words) {
   return texts;
 }
 
-/// What a row says about its key besides its value; see CampaignKey.
+/// Texts about a key; see CampaignKey.
 struct KeyAbout {
   std::string doc{};
   std::string otherwise{};
   std::string example{};
   std::string hint{};
-  std::string needed{};  ///< what a message expects where the key is absent; empty: optional
+  std::string needed{};  ///< what the message about a missing key expects; empty: the key is
+                         ///< optional
 };
 
-/// Limits of a plain number, where a range does not say it.
+/// Limits of a plain number that a QuantityRange cannot express.
 struct NumberLimits {
   QuantityRange range;
-  std::string_view expected;  ///< in messages
+  std::string_view expected;  ///< wording for messages
   bool above_lower = false;
   bool below_upper = false;
 };
 
-/// A row with the function that puts the value into the settings. A row without one describes its
-/// key: the reader of the table takes the value, which depends on the rig or on other keys.
+/// A row with the function that stores the value in the settings. A row without that function only
+/// describes its key. The reader of the table then reads the value, because it depends on the rig
+/// or on other keys.
 template <typename S>
 struct KeyRow {
   using Read = std::function<void(const TomlNode&, S&)>;
@@ -147,7 +149,7 @@ struct KeyRow {
     return row;
   }
 
-  /// Text that is not empty.
+  /// Makes a row for a text that must not be empty.
   template <typename Member>
   static KeyRow text(std::string_view key, Member member, std::string_view expected,
                      const KeyAbout& about) {
@@ -204,7 +206,7 @@ struct KeyRow {
     return row;
   }
 
-  /// Value of a member where no key sets it.
+  /// Returns the default value of a member; std::nullopt if the member is optional.
   template <typename T, typename Member>
   static std::optional<T> default_of(const Member& member) {
     S settings{};
@@ -230,12 +232,12 @@ class KeyTable {
 
   /// Reads the table in the order of its rows.
   ///
-  /// @throws InputError  an unknown key, a key that is missing, or a value that its row refuses
+  /// @throws InputError  if a key is unknown or missing, or a row refuses its value
   void read(const TomlNode& node, S& settings) const {
     node.allow_only(names_);
     read_rows(node, settings);
   }
-  /// Reads a table that has keys of others, too.
+  /// Reads a table that also has keys for other readers.
   void read_rows(const TomlNode& node, S& settings) const {
     for (const KeyRow<S>& row : rows_) {
       const auto value = row.info.needed ? std::optional(node.require(row.info.key, row.expected))

@@ -20,8 +20,7 @@ inline constexpr std::uintmax_t kMaxCampaignBytes = std::uintmax_t{16} << 20;
 /// Parses a TOML file.
 ///
 /// @throws InputError  if the file is not a regular file, cannot be read, is too large, has keys
-/// with
-///                     too many parts, or has a syntax error (names line and column)
+///                     with too many parts, or has a syntax error (names line and column)
 toml::table parse_toml_file(const std::filesystem::path& path);
 
 /// Writes a text as a TOML basic string on one line, including quotes. Escapes control characters.
@@ -44,9 +43,9 @@ class TomlNode {
   const std::string& path() const { return path_; }
   Location where() const { return location(node_->source()); }
 
-  /// @throws InputError  "file:line:column: key 'path': message", always
+  /// @throws InputError  always: "file:line:column: key 'path': message"
   [[noreturn]] void fail(const std::string& message) const;
-  /// @throws InputError  "... found X, expected Y", always
+  /// @throws InputError  always: "... found X, expected Y"
   [[noreturn]] void fail_type(const std::string& expected) const;
 
   bool is_table() const { return node_->is_table(); }
@@ -77,7 +76,7 @@ class TomlNode {
   std::string date() const;
   std::vector<TomlNode> items() const;
 
-  /// Returns the value for the name that this text gives.
+  /// Looks up this text among the names of the choices, and returns the value of the match.
   template <typename Value>
   Value choice(const std::vector<std::pair<std::string, Value>>& choices) const {
     const std::string found = string(choice_list(choices));

@@ -39,8 +39,8 @@ bool is_number(std::string_view text, char separator) {
 /// before the others.
 bool is_label(std::string_view text) { return text.empty() || text == "trace_values"; }
 
-/// Number of fields in a row of numbers; 0 for any other line. The first field may be a label. An
-/// empty last field is an unused comment and does not count.
+/// Returns the number of fields in a row of numbers; 0 for any other line. The first field may be a
+/// label. An empty last field is an unused comment and does not count.
 std::size_t width_of_row(std::string_view line, char separator) {
   if (!is_plain_text(line)) return 0;
   const auto fields = fields_of(line, separator);

@@ -11,7 +11,7 @@
 
 namespace rigcal::datasets {
 
-/// Where a text with columns has its names, units and numbers.
+/// Positions of names, units and numbers in a text with columns.
 struct CsvLayout {
   std::size_t header = 0;  ///< line that contains the names, from 0
   std::size_t data = 0;    ///< first line that contains numbers
@@ -21,15 +21,15 @@ struct CsvLayout {
   std::vector<std::string> units;  ///< one per name; empty without a row of units
 };
 
-/// Finds the layout of a text whose first line is not simply its header. Names may follow lines of
-/// text (loggers, LabVIEW's .lvm, dSPACE), be separated by blanks, have a row of units below them,
+/// Finds the layout of a text that does not simply begin with its header. Names may follow lines of
+/// text (loggers, LabVIEW's .lvm, dSPACE), be separated by spaces, have a row of units below them,
 /// or be in a comment directly above the numbers. The numbers begin at the first of two lines (or
 /// at the last line) that have the same number of fields, all of them numbers. The names are
 /// directly above them, one per field, and none of them is a number.
 ///
-/// @param lines      first lines of the text, without line ends
-/// @param is_whole   whether `lines` is the whole text
-/// @param separator  0: any of tab, ';', ',' and blanks
+/// @param lines  first lines of the text, without line ends
+/// @param is_whole  whether `lines` is the whole text
+/// @param separator  0: any of tab, ';', ',' and spaces
 std::optional<CsvLayout> find_layout(std::span<const std::string> lines, bool is_whole,
                                      char separator);
 

@@ -25,7 +25,7 @@ class CsvLines {
   /// @throws InputError  under the conditions of the constructor, or if the line has 16 MiB or more
   char* next();
 
-  /// Number of the line that next() last returned, from 1.
+  /// Returns the number of the line that next() last returned, from 1.
   long number() const;
 
   /// Whether the file ended without a newline; known once next() has returned null.

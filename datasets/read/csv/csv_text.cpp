@@ -123,7 +123,7 @@ std::vector<CsvName> header_names(std::string_view header, char separator) {
   CsvFields fields(header, separator);
   for (CsvField field; fields.next(field);) {
     std::string full = as_utf8(unquoted(field.text));
-    // With blanks as separators, a unit in brackets is a separate field.
+    // With spaces as separators, a unit in brackets is a separate field.
     const bool is_unit = separator == ' ' && !names.empty() && brackets_at_end(full) == 0;
     if (is_unit) {
       full.insert(0, names.back().full + " ");

@@ -8,14 +8,14 @@
 
 namespace rigcal::datasets {
 
-/// A field of a line: its text without surrounding blanks, and where that text begins.
+/// A field of a line: its text without surrounding spaces, and where that text begins.
 struct CsvField {
   std::string_view text;
   std::size_t begin = 0;  ///< in bytes from the start of the line
 };
 
 /// Iterates over the fields of a line. A separator between double quotes is text, and the quotes
-/// are kept. If the separator is a blank, any number of blanks and tabs separates two fields.
+/// are kept. If the separator is a space, any number of spaces and tabs separates two fields.
 class CsvFields {
  public:
   CsvFields(std::string_view line, char separator) : line_(line), separator_(separator) {}
@@ -40,7 +40,7 @@ struct CsvName {
 /// Extracts the name from a field of a header.
 CsvName header_name(std::string_view field);
 
-/// Names by which columns can be requested: without the unit where that is unambiguous.
+/// Returns names by which columns can be requested. They omit the unit where that is unambiguous.
 std::vector<std::string> short_names(const std::vector<CsvName>& names);
 
 /// The column that matches a name, given with or without its unit. If the name is ambiguous,
@@ -55,11 +55,11 @@ std::optional<FoundColumn> find_column(const std::vector<CsvName>& names,
 /// Finds the separator used in a header: tab, else ';', else ','.
 char find_separator(std::string_view header);
 
-/// Names of all columns in a header.
+/// Returns the names of all columns in a header.
 std::vector<CsvName> header_names(std::string_view header, char separator);
 
-/// Returns the number in a field, or nullopt for any other text. Independent of the locale. Rejects
-/// "inf", "nan", numbers beyond the range of a double, and thousands separators.
+/// Returns the number in a field, or std::nullopt for any other text. The locale has no influence.
+/// Rejects "inf", "nan", numbers beyond the range of a double, and thousands separators.
 ///
 /// @param decimal_comma  whether to accept "1,5", too
 std::optional<double> csv_number(std::string_view text, bool decimal_comma);

@@ -37,7 +37,7 @@ struct Header {
   bool last_may_lack = false;  ///< the last column is a comment that rows may omit
 };
 
-/// Lines of a file, the first of which can be viewed in advance.
+/// Lines of a file. The first lines can be inspected before they are read.
 class HeadedLines {
  public:
   explicit HeadedLines(CsvLines& lines) : lines_(lines) {}
@@ -68,7 +68,7 @@ class HeadedLines {
     if (text != nullptr) ++number_;
     return text;
   }
-  /// Number of the line that next() last returned, from 1.
+  /// Returns the number of the line that next() last returned, from 1.
   long number() const { return number_; }
 
  private:
@@ -108,7 +108,7 @@ bool header_comes_first(const std::vector<std::string>& lines, char separator) {
   return is_row_of_numbers(*row, by, names) && !is_row_of_numbers(*header, by, names);
 }
 
-/// Finds a header below lines of text, with blanks as separators, or above a row of units; nullopt
+/// Finds a header below lines of text, with spaces as separators, or above a row of units; nullopt
 /// for other files.
 std::optional<Header> unusual_header(HeadedLines& lines, const std::string& file, char separator) {
   if (header_comes_first(lines.look_ahead(10), separator)) return std::nullopt;
@@ -421,8 +421,8 @@ class RowReader {
   std::size_t shortest_length_ = std::numeric_limits<std::size_t>::max();
 };
 
-/// Upper bound on the number of rows in a file: a field takes at least two bytes, including its
-/// separator.
+/// Returns an upper bound on the number of rows in a file: a field takes at least two bytes,
+/// including its separator.
 std::size_t most_rows(const std::filesystem::path& path, const Header& header) {
   std::error_code error;
   const std::uintmax_t bytes = std::filesystem::file_size(path, error);

@@ -30,7 +30,7 @@ struct CsvTable {
 /// Reads the wanted columns of a CSV file, strictly.
 ///
 /// The header is the first line that is not a comment ("#..."), or is found by find_layout(): below
-/// lines of text, with blanks as separators, or above a row of units. A unit may follow the name
+/// lines of text, with spaces as separators, or above a row of units. A unit may follow the name
 /// ("x [mm]", "x (mm)") and is not part of it. CRLF, a byte-order mark and a missing final newline
 /// are accepted, as is a decimal comma if the separator is ';' or tab. Anything else in a wanted
 /// column that is not a finite number is an error. Other errors are a wrong number of columns, an
@@ -44,13 +44,13 @@ struct CsvTable {
 /// @throws std::invalid_argument  if time_column is not among the columns
 CsvTable load_csv(const std::filesystem::path& path, const CsvRequest& request);
 
-/// Header names of a CSV file, for messages: without units, unless only the unit distinguishes two
-/// columns.
+/// Returns the header names of a CSV file, for messages. They omit the unit unless only the unit
+/// distinguishes two columns.
 ///
 /// @throws InputError  under the conditions of load_csv()
 std::vector<std::string> csv_header(const std::filesystem::path& path, char separator = 0);
 
-/// Header names as they are in the file, with their units.
+/// Returns the header names as they are in the file, with their units.
 ///
 /// @throws InputError  under the conditions of load_csv()
 std::vector<std::string> csv_full_header(const std::filesystem::path& path, char separator = 0);

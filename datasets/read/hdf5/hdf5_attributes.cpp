@@ -31,7 +31,7 @@ std::optional<Attribute> opened(hid_t object, const char* name) {
   return attribute;
 }
 
-/// Removes blanks and NULs from both ends of a text.
+/// Removes spaces and NULs from both ends of a text.
 std::string text_without_padding(std::string_view text) {
   constexpr std::string_view kAround(" \t\0", 3);
   const std::size_t first = text.find_first_not_of(kAround);

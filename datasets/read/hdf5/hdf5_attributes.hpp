@@ -8,9 +8,9 @@
 
 namespace rigcal::datasets {
 
-/// Returns the texts of an attribute, trimmed: a single text, or those of a vector. Empty if there
-/// is no such attribute, if it is not a text, or if a text has control characters or more than 40
-/// bytes.
+/// Returns the texts of an attribute, trimmed. The attribute may be a single text or a vector of
+/// texts. Empty if there is no such attribute, if it is not a text, or if a text has control
+/// characters or more than 40 bytes.
 std::vector<std::string> hdf5_texts(hid_t object, const char* attribute);
 
 /// Returns the number in an attribute, of any real type; nullopt unless it contains exactly one.

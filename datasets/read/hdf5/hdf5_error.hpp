@@ -6,7 +6,7 @@
 
 namespace rigcal::datasets {
 
-/// Reason that HDF5 gives for its last failure: the outermost entry of its error stack.
+/// Returns the reason that HDF5 gives for its last failure: the outermost entry of its error stack.
 inline std::string hdf5_reason() {
   std::string reason = "no reason given";
   H5Ewalk2(

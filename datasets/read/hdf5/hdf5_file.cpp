@@ -192,8 +192,8 @@ Hdf5Id number_type(hid_t dataset, const Hdf5Series& series) {
   return type;
 }
 
-/// Returns the type in memory for a cell of the series: numbers of a native type, within an array
-/// or a table with one member if the file has one.
+/// Returns the memory type for a cell of the series: numbers of a native type, wrapped in an array
+/// or in a table with one member if the file stores them that way.
 Hdf5Id type_in_memory(const Hdf5Series& series, hid_t native, std::size_t bytes) {
   const std::vector<hsize_t> shape(
       series.dims.begin() + static_cast<std::ptrdiff_t>(dims_of_dataset(series)),
@@ -217,8 +217,8 @@ struct Packing {
   std::vector<double> missing;  ///< numbers that mark a missing value
 };
 
-/// Value that HDF5 returns for elements that were never written, if the file sets one. Zero is
-/// ignored, because it may be a real value.
+/// Returns the value that HDF5 gives for elements that were never written, if the file sets one.
+/// Zero is ignored, because it may be a real value.
 std::optional<double> own_fill_value(hid_t dataset) {
   const Hdf5Id plan(H5Dget_create_plist(dataset), H5Pclose);
   H5D_fill_value_t kind = H5D_FILL_VALUE_UNDEFINED;
@@ -413,7 +413,8 @@ std::vector<double> Hdf5File::unpacked(hid_t dataset, std::vector<double> values
   if (const auto fill = own_fill_value(dataset)) packing.missing.push_back(*fill);
   const Hdf5Id type(H5Dget_type(dataset), H5Tclose);
   if (H5Tget_class(type.get()) == H5T_FLOAT && H5Tget_size(type.get()) == sizeof(float)) {
-    // A dataset of floats stores -999.9 rounded, so the attribute is rounded, too.
+    // A dataset of floats stores -999.9 in single precision, so the attribute is rounded to it as
+    // well.
     for (double& each : packing.missing)
       if (std::abs(each) <= static_cast<double>(std::numeric_limits<float>::max()))
         each = static_cast<double>(static_cast<float>(each));

@@ -40,7 +40,7 @@ RecordTable load_hdf5_record(const std::filesystem::path& path, const RecordRequ
 inline constexpr std::string_view kHowToSaveHdf5 =
     "expected datasets of integers or floating-point numbers, of one or two dimensions, or tables";
 
-/// Like hdf5_record_columns() and load_hdf5_record(), but without a new process, for callers that
+/// Variants of hdf5_record_columns() and load_hdf5_record() that start no process, for callers that
 /// are already confined.
 std::vector<RecordColumn> list_hdf5_here(const std::filesystem::path& path);
 RecordTable read_hdf5_here(const std::filesystem::path& path, const RecordRequest& request);

@@ -20,7 +20,7 @@ struct MatArray {
   /// For a structure, shape (elements x field names). The fields of an element are adjacent.
   std::vector<MatArray> fields;
 
-  /// Where the numbers are; the meaning depends on the reader.
+  /// Location of the numbers; the meaning depends on the reader.
   std::uint64_t place = 0;
   std::uint32_t storage = 0;
   std::size_t variable = 0;

@@ -52,7 +52,6 @@ std::string kind_text(const MatArray& array) {
   return "a number";
 }
 
-/// Reads one column.
 class ColumnOfMat {
  public:
   ColumnOfMat(MatSource& source, const std::string& column) : source_(source), column_(column) {}
@@ -124,8 +123,8 @@ class ColumnOfMat {
     std::size_t stride = 1;
     for (std::size_t k = 0; k < step.subscripts.size(); ++k) {
       const std::size_t subscript = step.subscripts[k].value();
-      // A single subscript counts through all elements; if there are several, each has its
-      // dimension.
+      // A single subscript counts through all elements. Each of several subscripts counts along its
+      // own dimension.
       const std::size_t size = step.subscripts.size() == 1 ? count
                                : k < parent.dims.size()    ? parent.dims[k]
                                                            : 1;

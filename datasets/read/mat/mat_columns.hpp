@@ -9,7 +9,7 @@
 
 namespace rigcal::datasets {
 
-/// Advice on how to save what only MATLAB can read.
+/// Advice on how to save data in a form that programs other than MATLAB can read.
 inline constexpr std::string_view kHowToSaveMat =
     "of a timeseries save its numbers: t = ts.Time; x = squeeze(ts.Data); save file.mat t x; or "
     "log to a \"Structure With Time\"";

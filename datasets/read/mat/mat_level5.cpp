@@ -86,7 +86,7 @@ Number swapped_bytes(Number value) {
   return value;
 }
 
-/// A data element: its type, and where its data are in the stream.
+/// A data element: its type, and the position of its data in the stream.
 struct DataElement {
   std::uint32_t type = 0;
   std::uint64_t begin = 0;
@@ -104,7 +104,7 @@ class Level5Parser {
 
   /// Parses the array whose tag has been read.
   ///
-  /// @param end  where the array ends
+  /// @param end  position at which the array ends
   MatArray array(std::uint64_t end, int depth) {
     if (++arrays_ > kMostArrays)
       throw DamagedBytes(fmt::format("more than {} arrays in the file", kMostArrays));

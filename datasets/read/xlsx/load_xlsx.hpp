@@ -9,7 +9,8 @@
 namespace rigcal::datasets {
 
 /// Whether to read a file as an Excel workbook, judging by its name (.xlsx, .xlsm) or its first
-/// bytes: those of a ZIP archive, or of an older or encrypted workbook, which is then refused.
+/// bytes. These may be those of a ZIP archive, or of an older or encrypted workbook, which is then
+/// refused.
 bool is_xlsx_file(const FileStart& start);
 
 /// Lists every column that has a name. On sheets other than the first, it begins with the name of

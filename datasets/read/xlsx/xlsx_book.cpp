@@ -61,7 +61,7 @@ std::string resolved(const std::string& from, std::string_view target) {
   return path.lexically_normal().generic_string();
 }
 
-/// Path of the file that lists the references of a part.
+/// Returns the path of the file that lists the references of a part.
 std::string relations_of(const std::string& part) {
   const std::filesystem::path path(part);
   return (path.parent_path() / "_rels" / (path.filename().string() + ".rels")).generic_string();

@@ -10,9 +10,9 @@
 
 namespace rigcal::datasets {
 
-/// Kind of content in a cell. A formula counts as its last result. It has none (no_result) if the
-/// program that wrote it did not compute it. The cell then has no value, an empty one (openpyxl),
-/// or 0 in a workbook that is to be computed on opening (`fullCalcOnLoad`; XlsxWriter).
+/// Kind of content in a cell. A formula counts as its last result. Its kind is no_result if the
+/// program that wrote the workbook did not compute it. The cell then has no value, an empty one
+/// (openpyxl), or 0 in a workbook that is to be computed on opening (`fullCalcOnLoad`; XlsxWriter).
 enum class XlsxKind { number, date, text, truth, error, no_result };
 
 struct XlsxCell {
@@ -31,7 +31,7 @@ struct XlsxMerged {
   }
 };
 
-/// Address of a cell, such as "C17". Rows and columns count from 1.
+/// Returns the address of a cell, such as "C17". Rows and columns count from 1.
 std::string xlsx_address(std::size_t row, std::size_t column);
 
 /// An .xlsx workbook (ECMA-376, SpreadsheetML), read strictly, whatever the locale. Use it only

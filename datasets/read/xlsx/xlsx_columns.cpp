@@ -21,7 +21,7 @@ namespace rigcal::datasets {
 namespace {
 
 /// Returns the text of a header cell on one line. Line breaks, which are common there, become
-/// blanks.
+/// spaces.
 std::string on_one_line(std::string_view text) {
   std::string result;
   for (const char c : text) {
@@ -218,7 +218,7 @@ class SheetReader {
     return label;
   }
 
-  /// Prepares for the numbers once the header is known.
+  /// Prepares for reading the numbers once the header is known.
   void begin(HeaderFinder& finder) {
     if (first_row_ != 0) return;
     const SheetHeader& header = finder.header();

@@ -7,9 +7,10 @@
 
 namespace rigcal::datasets {
 
-/// Like xlsx_record_columns() and load_xlsx_record() in load_xlsx.hpp, but without a new process.
+/// Variants of xlsx_record_columns() and load_xlsx_record() in load_xlsx.hpp that start no process,
+/// for callers that are already confined.
 ///
-/// @throws InputError  under the same conditions
+/// @throws InputError  under the conditions of those functions
 std::vector<RecordColumn> list_xlsx_columns(const std::filesystem::path& path);
 RecordTable read_xlsx_columns(const std::filesystem::path& path, const RecordRequest& request);
 

@@ -15,7 +15,7 @@ class XmlAttributes {
  public:
   explicit XmlAttributes(const char** pairs) : pairs_(pairs) {}
   std::optional<std::string_view> find(std::string_view name) const;
-  /// Empty if there is no such attribute.
+  /// Returns an empty text if there is no such attribute.
   std::string_view text(std::string_view name) const { return find(name).value_or(""); }
 
  private:

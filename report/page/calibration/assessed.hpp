@@ -39,7 +39,7 @@ std::string open_aspects(const StoredFit& fit);
 /// Explains a decision rule to the reader of the verdict (ISO/IEC 17025, 7.8.6).
 std::string rule_words(datasets::DecisionRule rule);
 
-/// Correlation of two estimates; NaN where it is not known.
+/// Returns the correlation of two estimates; NaN if it is unknown.
 double correlation_at(const calib::Correlation& correlation, std::size_t i, std::size_t j);
 
 /// Returns the correlations with the keys of the campaign as names, as in "valve_gain" and

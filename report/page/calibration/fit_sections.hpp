@@ -37,7 +37,7 @@ void add_singular_values(const StoredFit& fit, doc::Blocks& blocks);
 void add_posterior(const StoredFit& fit, doc::Blocks& blocks);
 /// Adds the small effects that the model leaves out, and marks those that the residuals call for.
 void add_considered(const StoredFit& fit, doc::Blocks& blocks);
-/// Adds the estimates from the validation records only, beside those of the fit.
+/// Adds the estimates from only the validation records next to those of the fit.
 void add_stability(const StoredFit& fit, doc::Blocks& blocks);
 doc::Section starts_section(const StoredFit& fit);
 /// Lists failures and warnings.

@@ -123,7 +123,7 @@ std::vector<std::string> common_reasons(const std::vector<const StoredParameter*
   return common;
 }
 
-/// Returns the reason for one estimate without the common ones.
+/// Returns the reason for one estimate, without the reasons that it shares with all others.
 std::string own_reason(const StoredParameter& p, const std::vector<std::string>& common) {
   auto parts = parts_of_reason(p.reason);
   std::erase_if(parts, [&](const std::string& part) {

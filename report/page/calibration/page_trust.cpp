@@ -125,7 +125,8 @@ void add_lack_of_fit(const StoredFit& fit, doc::Blocks& blocks) {
                                 {lack_of_fit_table(fit)}});
 }
 
-/// Returns, for each channel, for example "27.05 um (27.01 um where it was fitted)".
+/// Returns the prediction error for each channel, for example "27.05 um (27.01 um where it was
+/// fitted)".
 std::string prediction_words(const calib::HeldOut& held) {
   std::string text;
   for (const auto& [channel, value] : held.rmse) {

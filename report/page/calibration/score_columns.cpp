@@ -11,9 +11,9 @@ constexpr int kDigitsOfUncertainty = 2;
 
 doc::Quantity score_of(const metrics::MetricSpec& metric, double value, std::string_view unit) {
   if (metric.unit == "channel") return doc::readable(value, unit, kDigits);
-  // A score whose best value is 1 is shown with enough digits to see its distance from 1.
+  // If the best value of a score is 1, the score has enough digits to show its distance from 1.
   if (metric.unit == "1" && metric.highest == 1.0) return doc::agreement(value);
-  // A score whose best value is 100 % gets one more digit.
+  // If the best value of a score is 100 %, the score has one more digit.
   return doc::in_unit(value, 1.0, metric.higher_is_better ? kDigits + 1 : kDigits);
 }
 

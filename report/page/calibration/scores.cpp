@@ -43,8 +43,8 @@ std::string limits_text(const std::vector<datasets::AcceptanceLimit>& limits,
   return text;
 }
 
-/// Returns the caption of a channel with its limits, including those of conditions with limits of
-/// their own.
+/// Returns the caption for a channel. It states the limits, including those that single conditions
+/// have instead.
 Line caption_of(const StoredFit& fit, const std::string& channel) {
   const std::string limits = limits_text(fit.acceptance, channel);
   std::string rest =

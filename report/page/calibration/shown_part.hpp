@@ -6,7 +6,7 @@
 
 #include "report/store/stored.hpp"
 
-// What a page shows if there are many conditions or long records.
+// Selects what a page shows if there are many conditions or long records.
 
 namespace rigcal::report {
 

@@ -26,14 +26,15 @@ struct StoredDiagnosisSettings {
 struct StoredClassLimit {
   std::string signal;
   double share_percent = 0.0;
-  std::optional<datasets::LeakClass> class_;  ///< class whose upper limit this is
+  std::optional<datasets::LeakClass> class_;  ///< this is the upper limit of the class
   std::vector<double> coefficients;
   std::vector<std::optional<Range>> coefficients_ci95;  ///< one per coefficient
   RIGCAL_DESCRIBE(signal, share_percent, class_, coefficients, coefficients_ci95)
 };
 
 struct StoredNearestLimit {
-  datasets::LeakClass class_ = datasets::LeakClass::normal;  ///< class whose lower limit this is
+  datasets::LeakClass class_ = datasets::LeakClass::normal;  ///< this is the lower limit of the
+                                                             ///< class
   double percent = 0.0, distance_percentage_points = 0.0;
   bool on_limit = false;
   RIGCAL_DESCRIBE(class_, percent, distance_percentage_points, on_limit)
@@ -90,7 +91,6 @@ struct StoredLeakTrend {
                   significant, chi_squared, freedom, widened, next_limit)
 };
 
-/// Diagnosis of one record.
 struct StoredDiagnosedRecord {
   std::string condition;
   std::optional<int> repeat;  ///< from 1; absent for the average

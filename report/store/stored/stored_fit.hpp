@@ -94,13 +94,13 @@ struct StoredParameter {
 /// `ci95_if_exact`.
 void as_of_now(std::string_view schema, std::vector<StoredParameter>& parameters);
 
-/// Returns the error behind ci95_if_exact with its degrees of freedom. If an older file lacks the
-/// latter, they are computed from the interval's half width in units of the error; without an
-/// interval they are many.
+/// Returns the error behind ci95_if_exact with its degrees of freedom. If an older file lacks them,
+/// they are computed from the interval's half width in units of the error. Without an interval a
+/// large number is assumed.
 std::optional<metrics::EstimateError> interval_error(const StoredParameter& parameter);
 /// Returns the larger of standard and robust error.
 std::optional<double> error_of(const StoredParameter& parameter);
-/// Text for a parameter with its level: "leakage_coefficient (leak level 33 %)".
+/// Returns the text for a parameter with its level: "leakage_coefficient (leak level 33 %)".
 std::string parameter_label(const std::string& key, datasets::Scope scope,
                             const std::optional<std::string>& level);
 inline std::string parameter_label(const StoredParameter& p) {
@@ -127,8 +127,8 @@ struct StoredWeight {
   RIGCAL_DESCRIBE(condition, channel, samples, sd, rms)
 };
 
-/// Scores of one channel in a condition, NaN for a score that does not exist, with the response at
-/// the fundamental frequency.
+/// Scores of one channel in a condition, and the response at the fundamental frequency. A score
+/// that does not exist is NaN.
 struct StoredScore : metrics::Agreement {
   std::optional<double> gain_ratio, phase_deg, delay_s;
   std::optional<std::string> problem;
@@ -178,7 +178,7 @@ struct StoredCondition {
                   noise_floor, expanded_uncertainty, two_sided_uncertainty, residual_tests,
                   limit_checks, channel_verdicts, verdict, reasons)
 
-  /// Verdict on a channel; absent without a limit.
+  /// Returns the verdict on a channel; std::nullopt without a limit.
   std::optional<calib::Verdict> verdict_of(const std::string& channel) const;
 };
 

@@ -15,9 +15,9 @@
 namespace rigcal::report {
 
 inline constexpr const char* kFitSchema = "rigcal.fit/2";
-/// Earlier schema, whose `ci95` corresponds to `ci95_if_exact` today.
+/// Earlier schema. Its `ci95` corresponds to the current `ci95_if_exact`.
 inline constexpr const char* kEarlierFitSchema = "rigcal.fit/1";
-/// Whether a schema is that of a fit, written by this or an older version.
+/// Whether a schema belongs to a fit, written by this or an older version.
 inline bool is_fit_schema(std::string_view schema) {
   return schema == kFitSchema || schema == kEarlierFitSchema;
 }
