@@ -62,7 +62,7 @@ bool overridden_everywhere(const Campaign& campaign, int index) {
 struct Assignment {
   std::string option;  ///< as given, for messages
   std::string name;
-  int index = 0;       ///< of the parameter
+  int index = 0;       ///< the parameter that changes
   double value = 0.0;  ///< SI
 };
 
