@@ -44,7 +44,7 @@ class SizedEquations final : public Equations {
   }
 
   std::vector<double> initial() const override {
-    // The equilibrium of a state depends on the load, which is a parameter here.
+    // The equilibrium depends on the load, which System reads from the parameters.
     ParameterValues values = values_;
     if (parameter_index(values.plant, "external_force") >= 0)
       values.set("external_force", inputs_.external_force_n.value);

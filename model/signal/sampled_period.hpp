@@ -15,7 +15,7 @@ struct SampledPeriod {
   bool reversed =
       false;  ///< an odd number of half periods: the inputs repeat with the opposite sign
 
-  /// Factor from one period to the next of a periodic quantity.
+  /// Factor by which a periodic quantity changes from one period to the next.
   double sign() const { return reversed ? -1.0 : 1.0; }
 };
 
