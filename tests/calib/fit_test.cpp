@@ -173,7 +173,7 @@ TEST_CASE("fit: where the only start finds no minimum others are tried", "[calib
   CHECK(found.status == FitStatus::failed);
   CHECK(mentions(found.warnings, "led to no minimum (" + alone.message + "): 2 further starts"));
   CHECK(found.evaluations > alone.evaluations);
-  // The corresponding multi-start.
+  // Compares with the corresponding multi-start.
   options.starts = 3;
   const Fit several = fit(twin.campaign, records, options);
   REQUIRE(found.starts.size() == several.starts.size());

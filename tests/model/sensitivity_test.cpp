@@ -235,8 +235,8 @@ TEST_CASE("sensitivity: many at once equal one at a time", "[model]") {
     for (std::size_t k = 0; k < e.outputs.size(); ++k) {
       const Eigen::VectorXd expected = alone.sensitivities[k].col(0);
       CAPTURE(all[j], output_name(e.outputs[k]));
-      // The same solution with other steps. The tolerance is 20 times looser than for the states,
-      // over some hundred steps.
+      // The same solution, computed with other steps. The tolerance is 20 times looser than for the
+      // states, and errors add up over some hundred steps.
       CHECK(peak(together.sensitivities[k].col(static_cast<Eigen::Index>(j)) - expected) <=
             6e-4 * peak(expected));
     }

@@ -18,8 +18,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// A system of several conditions with own unknowns placed between the shared ones, and the same
-/// system as a dense one.
+/// A system of several conditions, in which each condition's own unknowns are placed between the
+/// shared ones, and the same system as a dense one.
 struct RandomSystem {
   std::mt19937 random;
   Linearisation arrow;
@@ -232,7 +232,7 @@ TEST_CASE("sandwich: own directions tell the same as dense ones", "[calib]") {
   RandomSystem system(11, {1, 2, 1});
   constexpr Index kSamples = 400;
   const Index n = system.arrow.unknowns();
-  // Records of three conditions; own unknowns and the shared ones act in each.
+  // Each of the three conditions has a record that depends on its own unknowns and the shared ones.
   std::vector<MatrixXd> jacobians;
   MatrixXd normal = MatrixXd::Zero(n, n);
   std::vector<std::vector<int>> acting;

@@ -54,8 +54,8 @@ constexpr int kPart = test::kSanitized ? 4 : 1;
 /// Fewer draws widen the limits on coverage by this factor.
 const double kWider = std::sqrt(kPart);
 
-/// Fraction of draws in which the 95 % interval of a direction includes the true value, 0; also for
-/// an interval that only uses Student's t with the degrees of freedom.
+/// Fraction of draws in which the 95 % interval of a direction includes the true value, 0. The
+/// other fraction is for intervals that use Student's t without any other correction.
 struct Coverage {
   double found = 0.0;
   double by_freedom = 0.0;

@@ -126,7 +126,8 @@ TEST_CASE("fit_leak: the simulation without a leak serves all records that have 
     CHECK(shared.coefficient == alone.coefficient);
     CHECK_THAT(shared.parity_rms_m, WithinRel(alone.parity_rms_m, 1e-5));
   }
-  // Modified outputs show where the run is reused: not for another drive, state, time or value.
+  // Modified outputs reveal a reused run. It must not be reused for another drive, state, time or
+  // value.
   const datasets::Record& single = records.singles.front();
   const double alone = fit(single, nullptr).parity_rms_m;
   runs->healthy.outputs.array() += 0.1;
