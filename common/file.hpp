@@ -41,8 +41,8 @@ class FilesInWriting {
   /// @throws WriteError  if this fails, with path and reason
   void rename_into_place();
 
-  /// Removes all files that have not been renamed, for a process that ends before the destructors
-  /// of its objects can run. Safe within a signal handler as long as no Uninterrupted exists.
+  /// Removes all files that have not been renamed. Meant for a process that ends without running
+  /// destructors. Safe within a signal handler as long as no Uninterrupted exists.
   static void remove_all();
 
  private:
@@ -54,7 +54,7 @@ class FilesInWriting {
   FilesInWriting* next_ = nullptr;
 };
 
-/// Returns the content of a regular file. Never waits for a pipe.
+/// Returns the content of a regular file. Never blocks on a pipe.
 ///
 /// @param expected  what the file should be, in words: "a campaign file (TOML)"
 /// @throws InputError  if there is no such file, or if it is a folder, pipe or device, has more

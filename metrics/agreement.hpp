@@ -36,7 +36,8 @@ double absolute_error_percent(std::span<const double> measured, std::span<const 
 /// sqrt(mean(e^2)), in the unit of y.
 double rmse(std::span<const double> measured, std::span<const double> simulated);
 
-/// MATLAB compare's fit: 100 (1 - ||e|| / ||y - mean y||), in percent. At most 100, no lower limit.
+/// The fit that MATLAB's compare() reports: 100 (1 - ||e|| / ||y - mean y||), in percent. At most
+/// 100, no lower limit.
 double nrmse_fit_percent(std::span<const double> measured, std::span<const double> simulated);
 
 /// max |e|, in the unit of y.

@@ -31,8 +31,9 @@ double freedom_of_quantile(double quantile);
 /// Error of the difference between two independent estimates.
 EstimateError error_of_difference(const EstimateError& a, const EstimateError& b);
 
-/// Two-sided probability of a difference of at least this size if there is none. Uses Student's t
-/// with the degrees of freedom of the error, and the normal distribution from kManyDegrees on.
+/// Two-sided probability of finding a difference of at least this size if there is no true
+/// difference. Uses Student's t with the degrees of freedom of the error, and the normal
+/// distribution from kManyDegrees on.
 ///
 /// @param error  error of the difference, in the same unit; > 0
 /// @throws std::invalid_argument  if the error or its degrees of freedom are not positive, or if a

@@ -6,8 +6,8 @@
 
 namespace rigcal::metrics {
 
-/// Outcome of a significance test. If a test would hardly ever reject, it proves nothing by not
-/// rejecting, and this does not count as a pass.
+/// Outcome of a significance test. A test that would hardly ever reject proves nothing by not
+/// rejecting, so this does not count as a pass.
 enum class TestOutcome { passed, failed, not_judged };
 
 /// Returns "passed", "failed" or "not_judged".

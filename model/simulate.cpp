@@ -81,7 +81,7 @@ int plant_states(PlantKind plant) {
   return with_plant(plant, []<typename Plant>() { return Plant::kStates; });
 }
 
-/// Whether reversed inputs reverse all requested outputs.
+/// Whether reversing the inputs reverses all requested outputs.
 bool reversible(PlantKind plant, const PresentTerms& terms, std::span<const Output> outputs) {
   return with_plant(plant, [&]<typename Plant>() {
     return std::all_of(outputs.begin(), outputs.end(),

@@ -142,7 +142,7 @@ class SizedEquations final : public Equations {
 
   Sys system(ParameterValues values, const RigInputs& inputs, double length_s) const {
     if (parameter_index(values.plant, "external_force") >= 0)
-      values.set("external_force", 0.0);  // the input is the whole force
+      values.set("external_force", 0.0);  // the input replaces it
     return {layout_,
             values,
             {},

@@ -139,7 +139,7 @@ X flow_before_line(const X& head_pa, const X& conductance, const C& resistance,
   return 2.0 * conductance * head_pa / (line + sqrt(X(line * line + 4.0 * size_pa)));
 }
 
-/// Opening that follows a power law, y_r (y / y_r)^n, for example of an edge with notches.
+/// Opening that follows a power law, y_r (y / y_r)^n, for example that of an edge with notches.
 ///
 /// @param y        signal beyond the dead band, > 0
 /// @param range    y_r, signal at which the opening is the same as with n = 1, in the unit of y

@@ -21,9 +21,9 @@ struct SampledPeriod {
 
 /// Finds the shortest whole number of drive periods after which every sample (and every tick of a
 /// controller with `tick_s`) has a counterpart, if that is shorter than the record. Half periods
-/// count if the drive then has the opposite sign and the rig is `reversible`.
+/// also qualify if the drive then has the opposite sign and the rig is `reversible`.
 ///
-/// @param reversible  whether reversed inputs reverse the response of the rig
+/// @param reversible  whether reversing the inputs reverses the response of the rig
 /// @param tick_s      sample time of the controller; std::nullopt if it has none
 /// @return            std::nullopt if an input or the samples are not periodic
 std::optional<SampledPeriod> sampled_period(const SimulationInputs& inputs,

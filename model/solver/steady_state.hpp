@@ -72,7 +72,7 @@ class SteadyState {
     return sum;
   }
   std::size_t samples() const { return samples_; }  ///< samples in one period
-  double sign() const { return sign_; }             ///< sign from one period to the next
+  double sign() const { return sign_; }             ///< factor from one period to the next
   /// State at the end of the run, once the rest of it can be extrapolated.
   [[gnu::cold]] X at_end() const {
     // Counts from the last check at this phase of a period.

@@ -286,7 +286,7 @@ TEST_CASE("sensitivity: exact where the leak is stiff", "[model]") {
     for (std::size_t k = 0; k < 2; ++k) {
       CAPTURE(e.free[j], k);
       const auto exact = run.sensitivities[k].col(static_cast<Eigen::Index>(j));
-      // Truncation of (1e-2)^2, and the noise of runs with an error of 1e-9 per step.
+      // Allows for truncation of (1e-2)^2, and for noise from an error of 1e-9 per step.
       const double noise = 1e-7 * peak(run.outputs.col(static_cast<Eigen::Index>(k))) /
                            (1e-2 * e.values.value[static_cast<std::size_t>(e.free[j])]);
       CHECK(peak(exact - expected.col(static_cast<Eigen::Index>(k))) < 1e-3 * peak(exact) + noise);

@@ -125,7 +125,7 @@ TEST_CASE("arrow: step, rank and covariance are those of the dense system", "[ca
     const MatrixXd inverse = dense.root() * dense.root().transpose();
     CHECK(distance(all_products(arrow.root()), inverse) < 1e-11);
     CHECK(distance(all_products(arrow.spread(2.0, 1e-9)), 4.0 * inverse) < 1e-11);
-    // The volume of the covariance, from the singular values.
+    // Compares the volume of the covariance, computed from the singular values.
     CHECK(arrow.singular_values().array().log().sum() ==
           Approx(dense.singular_values().array().log().sum()));
     CHECK(arrow.undetermined().empty());

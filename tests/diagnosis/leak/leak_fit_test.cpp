@@ -91,8 +91,8 @@ TEST_CASE("fit_leak: a supply that differs between repeats is part of the error"
   const double score = rms_score(0);
   CHECK(score > 0.68);
   CHECK(score < 1.35);
-  // A reference of one repeat adds as much variation again, whereas the record partly determines
-  // its own supply.
+  // A reference with one repeat adds the same variation once more, whereas the record itself partly
+  // determines its supply pressure.
   CHECK(rms_score(1) < score);
 }
 

@@ -171,7 +171,7 @@ TEST_CASE("controller: the filtered derivative is the transfer function's", "[mo
         (n * std::sin(omega * t) - omega * std::cos(omega * t) + omega * std::exp(-n * t));
     const double expected = 78.74 * sine + 5.0 * n * (sine - filtered);
     CAPTURE(t);
-    // Ten times the tolerance relative to the peak of u, 1.3 V (including dense output).
+    // Ten times the tolerance, relative to the peak of u of 1.3 V. This includes the dense output.
     CHECK_THAT(run.outputs(static_cast<Eigen::Index>(i), 0), WithinAbs(expected, 1e-6));
   }
 }
