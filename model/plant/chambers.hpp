@@ -61,8 +61,8 @@ struct Chambers {
     return terms.null_leak ? X(head_pa * p.valve_null_leakage_m3_per_s_pa) : X(0.0);
   }
 
-  /// Opening of an edge in the unit of the signal, for a signal `beyond` the dead band. Both are
-  /// positive.
+  /// Opening of an edge, in the unit of the signal. `beyond` is the signal beyond the dead band.
+  /// Both are positive.
   template <typename X, typename P, typename C>
   static X shaped(const X& beyond, const C& exponent, bool by_power, const P& p,
                   const PresentTerms& terms) {

@@ -29,7 +29,7 @@ struct PresentTerms {
   bool curved_load = false;     ///< the curvature of the load is not zero, or is free
   bool overlaps = false;        ///< the overlap of an edge is not zero, or is free
   bool null_opening = false;    ///< covered edges leak through an orifice
-  bool line_loss = false;       ///< the lines throttle the flow, too
+  bool line_loss = false;       ///< the lines also throttle the flow
   bool air = false;             ///< the bulk modulus falls at low pressure
   bool external_leak = false;   ///< the external leak of a chamber is not zero, or is free
   int hoses = -1;               ///< index of the first state of yielding hoses; -1: rigid hoses
@@ -38,7 +38,7 @@ struct PresentTerms {
   bool power_opening = false;   ///< the spool opens according to a power law
   bool return_band = false;     ///< the edges to the tank have their own dead band
   bool return_power = false;    ///< the edges to the tank have their own power law
-  bool return_line = false;     ///< the line to the tank throttles the flow, too
+  bool return_line = false;     ///< the line to the tank also throttles the flow
   bool return_loss = false;  ///< the line to the tank has a pressure loss proportional to its flow
   bool bypass = false;       ///< a closed valve passes the flow of the pump to the tank
   bool table_opening = false;  ///< the spool opens according to a table

@@ -55,7 +55,7 @@ struct TwoChamberPlant : Chambers {
   /// No output is reversible, because the chambers differ.
   static bool reversible(Output, const PresentTerms&) { return false; }
 
-  /// Spool travel [m], eq. 6, with null shift. The overlap belongs to the edges.
+  /// Spool travel [m], eq. 6, with null shift. The overlaps are applied to the edges.
   template <typename X, typename C>
   static X spool(const PlantInput<X>& in, const Coefficients<C>& p, const PresentTerms& terms) {
     if (terms.shaped_valve) return shaped_spool(in, p, terms);

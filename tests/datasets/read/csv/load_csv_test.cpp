@@ -354,7 +354,7 @@ namespace {
 // needs memory of its own, and keeps freed blocks in quarantine.
 constexpr long kMostMegabytes = rigcal::test::kSanitized ? 700 : 180;
 
-/// Resident memory of this process, with which a child starts, too.
+/// Resident memory of this process. A child process starts with the same amount.
 long resident_megabytes() {
   long pages_of_program = 0;
   long pages_resident = 0;
