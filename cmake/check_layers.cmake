@@ -1,4 +1,4 @@
-# Forbids includes that go up, and rooms that are too large: cmake -DROOT=... -P check_layers.cmake
+# Rejects includes from higher layers, and folders with too many files: cmake -DROOT=... -P check_layers.cmake
 cmake_minimum_required(VERSION 3.25)
 # common <- { model, metrics } <- datasets <- calib <- diagnosis <- report <- { apps, python }
 set(layers common model metrics datasets calib diagnosis report apps python)
@@ -12,8 +12,9 @@ set(allowed_report common model metrics datasets calib diagnosis report)
 set(allowed_apps common model metrics datasets calib diagnosis report apps)
 set(allowed_python common model metrics datasets calib diagnosis report python)
 
-# Rooms of its own layer that a room may include besides itself. Files outside all rooms are open to all of model and
-# datasets, and are above all rooms of calib and diagnosis. A room inside a room has the arrows of the outer one.
+# The folders of the same layer that a folder may include besides itself. In model and datasets, every folder may
+# include the files that are in no folder. In calib and diagnosis, these files are above all folders. A nested folder
+# follows the rules of the outer one.
 set(model_arithmetic)
 set(model_signal .)
 set(model_plant . arithmetic signal)
@@ -51,7 +52,7 @@ set(report_live json store text figure document)
 set(report_run json store text page live document)
 set(report_job json store text page document leak comparison batch fmu run live)
 
-# A header and its source count as one.
+# A header and its source count as one unit.
 set(most_units 20)
 
 set(violations "")
@@ -82,7 +83,7 @@ foreach(layer IN LISTS layers)
       if(NOT target_layer IN_LIST layers)
         continue()
       endif()
-      set(target_room .)  # none
+      set(target_room .)  # no folder
       if(target MATCHES "^[a-z]+/([a-z]+)/")
         set(target_room ${CMAKE_MATCH_1})
       endif()

@@ -1,5 +1,6 @@
-# Writes files into a C++ source as raw strings: cmake -DOUT=... "-DFILES=name=path;..." -P embed.cmake
-# With -DMAP=function -DHEADER=file, the function that the header declares returns all of them by name.
+# Embeds files in a C++ source as raw strings: cmake -DOUT=... "-DFILES=name=path;..." -P embed.cmake
+# With -DMAP=function -DHEADER=file, the source defines a function, declared in the header, that returns all files by
+# name.
 cmake_minimum_required(VERSION 3.25)
 set(rows "")
 foreach(entry IN LISTS FILES)

@@ -1,5 +1,5 @@
-# cmake --install, in two components. `program` is the content of the packages (scripts/package); `development` has the
-# headers, the libraries and the files for find_package(rigcal).
+# Rules for cmake --install, in two components: `program` is the content of the packages (scripts/package);
+# `development` has the headers, the libraries and the files for find_package(rigcal).
 include(CMakePackageConfigHelpers)
 set(config ${CMAKE_INSTALL_LIBDIR}/cmake/rigcal)
 
@@ -23,7 +23,7 @@ add_custom_command(OUTPUT ${notices}
 add_custom_target(rigcal_notice ALL DEPENDS ${notices})
 install(FILES ${notices} DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 
-# The .deb: the program without the libraries that it is linked from.
+# The .deb contains the program without the libraries that it is linked from.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME rigcal)
 set(CPACK_PACKAGE_CONTACT "rigcal maintainers <rigcal@localhost>")

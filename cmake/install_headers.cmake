@@ -1,5 +1,6 @@
-# Installs rigcal.hpp and the headers that it includes, directly or by way of others, into include/rigcal. All others are
-# internal. Includes get the prefix rigcal/, so that a program needs no folder of include paths with names such as common.
+# Installs rigcal.hpp and all headers that it includes, directly or indirectly, into include/rigcal. All other headers
+# are internal. Includes get the prefix rigcal/, so that a program needs no include path to folders with names such as
+# common.
 #
 #   set(ROOT sources) set(INCLUDEDIR include) include(install_headers.cmake)   when cmake --install runs
 set(destination "$ENV{DESTDIR}${CMAKE_INSTALL_PREFIX}/${INCLUDEDIR}/rigcal")
@@ -7,7 +8,7 @@ set(waiting rigcal.hpp)
 set(installed)
 while(waiting)
   list(POP_FRONT waiting header)
-  list(FIND installed "${header}" place)  # IN_LIST needs a policy, which an installing script does not set
+  list(FIND installed "${header}" place)  # IN_LIST needs a policy, which install scripts do not set
   if(NOT place EQUAL -1)
     continue()
   endif()

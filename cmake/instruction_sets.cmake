@@ -1,6 +1,6 @@
-# A second solver, for processors with AVX2, exists beside that for every x86-64 and is chosen at run time. Only
-# releases have it, since it doubles the compile time of the solvers. Sanitizers exclude it: they keep tables of the
-# object files' contents before these were merged.
+# Besides the solver for every x86-64 processor, there is one for processors with AVX2, which is chosen at run time.
+# Only releases have it, because it doubles the compile time of the solvers. Sanitizer builds do not have it, because
+# their tables refer to the object files as they were before merging.
 include(CheckCXXSourceCompiles)
 include(CMakeDependentOption)
 set(CMAKE_REQUIRED_FLAGS "-mavx2 -mfma")
@@ -10,8 +10,9 @@ unset(CMAKE_REQUIRED_FLAGS)
 cmake_dependent_option(RIGCAL_AVX2 "A second solver for processors with AVX2" ON
   "CMAKE_BUILD_TYPE STREQUAL Release;RIGCAL_COMPILER_KNOWS_AVX2;CMAKE_OBJCOPY;CMAKE_LINKER;NOT RIGCAL_SANITIZE" OFF)
 
-# The object file of an object library with one source, with all symbols local except those that match `keep`. Otherwise
-# inline functions compiled for AVX2 could replace those of other objects, whose processors may lack it.
+# Merges an object library with one source into an object file in which all symbols are local, except those that match
+# `keep`. Otherwise, inline functions compiled for AVX2 could replace those of other objects and run on processors
+# without AVX2.
 function(rigcal_private_object library keep result)
   set(merged ${CMAKE_CURRENT_BINARY_DIR}/${library}.merged.o)
   set(private ${CMAKE_CURRENT_BINARY_DIR}/${library}.private.o)

@@ -1,6 +1,6 @@
-# Writes the notices of the parts of others that the program or its output contains, and a copyright file that begins
-# with rigcal's own licence: cmake -DNOTICE=... -DCOPYRIGHT=... -DROOT=... -P notice.cmake
-# The texts come from Debian's packages and from npm's. If a package is not installed, only its licence is named.
+# Writes the notices of third-party parts that the program or its output contains, and a copyright file that begins with
+# rigcal's own licence: cmake -DNOTICE=... -DCOPYRIGHT=... -DROOT=... -P notice.cmake
+# The texts come from Debian and npm packages. If a package is not installed, only its licence is named.
 cmake_minimum_required(VERSION 3.25)
 set(text "rigcal is under the MIT licence. Beside its own it holds parts of others, whose notices follow.
 

@@ -1,4 +1,4 @@
-# Every package is one of Debian's; scripts/setup installs them.
+# All packages are from Debian; scripts/setup installs them.
 find_package(Eigen3 REQUIRED NO_MODULE)
 find_package(Boost 1.74 REQUIRED CONFIG)
 find_package(Ceres 2.1 REQUIRED)

@@ -1,5 +1,5 @@
-# If several objects have the same inline function, the linker keeps the first one. Code that computes must not get that
-# of a test or of a page writer, so its objects come before the others.
+# If several objects define the same inline function, the linker keeps the first. The objects of numerical code come
+# first, so that they do not use a less optimised function from a test or page writer.
 #   rigcal_optimised_first(target layer...)
 function(rigcal_optimised_first target)
   foreach(layer IN LISTS ARGN)
@@ -8,16 +8,17 @@ function(rigcal_optimised_first target)
   endforeach()
 endfunction()
 
-# Code that computes is optimised under the sanitizers, too, or the tests would be far too slow. Code that prepares,
-# judges or writes is not; it compiles in a quarter of the time. A release optimises it less.
+# Numerical code is optimised under the sanitizers, too, because the tests would otherwise be far too slow. Code that
+# prepares, judges or writes is not optimised, so that it compiles in a quarter of the time. Even a release optimises it
+# less.
 set(rigcal_optimised $<$<BOOL:${RIGCAL_SANITIZE}>:-O1>)
 set(rigcal_less_optimised $<$<CONFIG:Release>:-O1>)
 set(rigcal_light diagnosis report)
 
-# The layers that read files report to libFuzzer which code an input reaches.
+# In the layers that read files, libFuzzer tracks which code an input reaches.
 set(rigcal_fuzzed common datasets report)
 
-# Objects of these targets may become part of the command and of a shared module (CMakeLists.txt).
+# Objects of these targets may be linked into the command and into a shared module (CMakeLists.txt).
 function(rigcal_position_independent)
   set_target_properties(${ARGN} PROPERTIES POSITION_INDEPENDENT_CODE ${rigcal_shared})
   if(rigcal_shared)
@@ -25,8 +26,8 @@ function(rigcal_position_independent)
   endif()
 endfunction()
 
-# rigcal_library(name SOURCES ... LIGHT ... LINKS ...): one layer as a static library, alias rigcal::name.
-# LIGHT: sources of a layer that compute little, unlike its others.
+# rigcal_library(name SOURCES ... LIGHT ... LINKS ...) adds one layer as a static library with the alias rigcal::name.
+# LIGHT lists the sources that need little computing time, unlike the others in their layer.
 function(rigcal_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LIGHT;LINKS;PRIVATE_LINKS" ${ARGN})
   add_library(rigcal_${name} STATIC ${ARG_SOURCES})

@@ -3,10 +3,11 @@ add_library(rigcal_warnings INTERFACE)
 target_compile_options(rigcal_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
   -Wold-style-cast -Woverloaded-virtual -Wnull-dereference -Wdouble-promotion -Wimplicit-fallthrough)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  # GCC 12 reports false positives of these for std::string and fixed-size Eigen at -O2.
+  # With -O2, GCC 12 reports false positives of these kinds for std::string and fixed-size Eigen.
   target_compile_options(rigcal_warnings INTERFACE -Wno-restrict -Wno-null-dereference
     -Wno-maybe-uninitialized -Wno-array-bounds -Wno-stringop-overflow)
-  # GCC 13 and 14 warn falsely about functions that take a temporary text and return a reference to something else.
+  # GCC 13 and 14 report a false positive for functions that take a temporary string and return a reference to something
+  # else.
   target_compile_options(rigcal_warnings INTERFACE -Wno-dangling-reference)
 endif()
 if(RIGCAL_WERROR)

@@ -1,21 +1,21 @@
-# The model as a WebAssembly module, for pages that simulate (model/wasm, report/live). It has the sources of the
-# model's library without FMI, with the solvers for every processor and without sensitivities. clang compiles it for a
-# machine without an operating system, which needs three packages of Debian (scripts/setup). If one is missing there is
-# no module, and `rigcal --version` says so.
+# Builds the model as a WebAssembly module for pages that simulate (model/wasm, report/live). The module has the sources
+# of the model library without FMI, with the solvers for every processor and without sensitivities. clang compiles it
+# for a machine without an operating system, which needs three Debian packages (scripts/setup). If one is missing, no
+# module is built, and `rigcal --version` says so.
 option(RIGCAL_WASM "Make the model for pages that simulate, where its compiler is there" ON)
 if(NOT RIGCAL_WASM OR NOT CMAKE_BUILD_TYPE STREQUAL "Release")
   return()
 endif()
 find_program(RIGCAL_WASM_CLANG NAMES clang++ clang++-19 clang++-14)
-# zopfli writes the same format as gzip, 5 % smaller.
+# zopfli writes the gzip format, 5 % smaller than gzip.
 find_program(RIGCAL_GZIP NAMES zopfli gzip)
 set(compress ${RIGCAL_GZIP})
 if(RIGCAL_GZIP MATCHES "gzip$")
   list(APPEND compress -9 -n -k -f)
 endif()
 set(wasm ${CMAKE_CURRENT_BINARY_DIR}/wasm)
-# A folder with the headers of these packages alone: those of the machine's own C library in the same place must not be
-# used.
+# This folder has only the headers of these packages. Their usual folder also has the headers of the machine's own C
+# library, which must not be used.
 foreach(package boost fmt)
   find_path(RIGCAL_WASM_${package} ${package} REQUIRED)
   file(MAKE_DIRECTORY ${wasm}/include)
@@ -28,8 +28,8 @@ set(compile ${RIGCAL_WASM_CLANG} --target=wasm32-wasi -std=c++20 -O2 -DNDEBUG -f
   -DEIGEN_DONT_VECTORIZE)
 set(link ${RIGCAL_WASM_CLANG} --target=wasm32-wasi -mexec-model=reactor -O2 -Wl,--strip-all -Wl,--gc-sections)
 
-# Tests once whether the toolchain is complete, with the headers that the model includes and the stand-in for
-# exceptions.
+# Tests once whether the toolchain is complete: compiles and links the headers that the model includes, together with
+# the replacements for exceptions.
 if(RIGCAL_WASM_CLANG AND RIGCAL_GZIP AND NOT RIGCAL_WASM_COMPILES)
   file(WRITE ${wasm}/try.cpp "#include <fmt/format.h>
 #include <Eigen/LU>
@@ -86,7 +86,7 @@ foreach(plant IN LISTS plants)
   get_property(header GLOBAL PROPERTY RIGCAL_HEADER_OF_${plant})
   get_property(sizes GLOBAL PROPERTY RIGCAL_base_SIZES_OF_${plant})
   foreach(states IN LISTS sizes)
-    # No widths: the module computes no sensitivities.
+    # There are no widths, because the module computes no sensitivities.
     rigcal_wasm_object(${plant}_${states} ${CMAKE_CURRENT_SOURCE_DIR}/solver/simulate_sized.cpp RIGCAL_PLANT=${plant}
       "RIGCAL_PLANT_HEADER=\"${header}\"" RIGCAL_STATES=${states} RIGCAL_INSTRUCTION_SET=base RIGCAL_WIDTHS=0)
   endforeach()

@@ -11,9 +11,8 @@
 #include <string>
 #include <tuple>
 
-// Converts values to bytes that read back to the same bits, for exchange between processes. A
-// struct can be converted if there is a `template <typename Archive> void serialize(Archive&,
-// Struct&)` for it.
+// Converts values to bytes and back without changing a bit, for exchange between processes. A
+// struct needs a function `template <typename Archive> void serialize(Archive&, Struct&)`.
 
 namespace rigcal {
 
@@ -25,7 +24,7 @@ std::string to_bytes(const Values&... values) {
   return stream.str();
 }
 
-/// @throws cereal::Exception  if the bytes do not represent such values
+/// @throws cereal::Exception  if the bytes do not represent values of these types
 template <typename... Values>
 void from_bytes(const std::string& bytes, Values&... values) {
   std::istringstream stream(bytes);

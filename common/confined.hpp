@@ -19,8 +19,8 @@ struct Confinement {
   /// Limits for work on a file of this size: a few seconds, plus the time per MB that a slow reader
   /// takes.
   static Confinement of_file(std::uintmax_t file_bytes);
-  /// Whether this process has less memory left than the confined work may use. Running out of
-  /// memory then says nothing about the file.
+  /// Whether this process has less memory left than the confined work may use. If so, a failure for
+  /// lack of memory does not show that the file is damaged.
   bool memory_is_short() const;
 };
 
@@ -35,8 +35,8 @@ class NoResources : public Error {
   explicit NoResources(const std::string& message) : Error(ExitCode::internal, message) {}
 };
 
-/// Runs `work` in a child process and returns its result. Meant for libraries that damaged input
-/// can crash or hang. All other effects of the work, including its output, are lost with the child.
+/// Runs `work` in a child process and returns its result. Meant for libraries that crash or hang on
+/// damaged input. All other effects of the work, including its output, are lost with the child.
 /// Thread-safe.
 ///
 /// @param work  must not need another thread; an exception counts as a crash; if memory runs out,

@@ -8,9 +8,9 @@
 
 #include "common/range.hpp"
 
-// A struct that a result file contains is described once, where it is made: the names of the
-// members are the keys, in this order. A name that is reserved in C++ has "_" at its end. Writer,
-// reader and schema follow from that (report/json/described.hpp).
+// A struct that is written to result files is described once, in its definition: the names of the
+// members are the keys, in this order. A name that is reserved in C++ gets a trailing "_". Writer,
+// reader and schema are derived from this description (report/json/described.hpp).
 //
 //   struct Leak {
 //     std::string level;
@@ -19,7 +19,7 @@
 //     RIGCAL_DESCRIBE(level, share_percent, reason)
 //   };
 
-// NOLINTBEGIN(cppcoreguidelines-macro-usage): only a macro knows the name of a member
+// NOLINTBEGIN(cppcoreguidelines-macro-usage): only a macro has access to the name of a member
 #define RIGCAL_NOTHING ()
 #define RIGCAL_AGAIN(...) \
   RIGCAL_AGAIN_64(RIGCAL_AGAIN_64(RIGCAL_AGAIN_64(RIGCAL_AGAIN_64(__VA_ARGS__))))
@@ -41,29 +41,31 @@
 
 namespace rigcal {
 
-/// A value whose key is omitted if there is none: rigs differ in what they have.
+/// An optional value whose key is left out of a result if it is absent, because rigs differ in the
+/// quantities that they have.
 template <typename T>
 struct Omittable : std::optional<T> {
   using std::optional<T>::optional;
   Omittable() = default;
-  Omittable(std::optional<T> value)  // NOLINT(google-explicit-constructor): it is one
+  Omittable(std::optional<T> value)  // NOLINT(google-explicit-constructor): as in std::optional
       : std::optional<T>(std::move(value)) {}
 };
 
-/// A member that results of earlier versions lack: the default of T then.
+/// A member that did not exist in results of earlier versions. When such a result is read, the
+/// member has the default of T.
 template <typename T>
 struct Later : T {
   using T::T;
   using T::operator=;
   Later() = default;
-  Later(T value) : T(std::move(value)) {}  // NOLINT(google-explicit-constructor): it is one
+  Later(T value) : T(std::move(value)) {}  // NOLINT(google-explicit-constructor): a T itself
 };
 
-/// Keys and values in their order.
+/// Pairs of key and value, in their order.
 template <typename T, typename Key = std::string>
 using Keyed = std::vector<std::pair<Key, T>>;
 
-/// A text; nothing where it is empty.
+/// Returns the text, or std::nullopt if it is empty.
 inline std::optional<std::string> unless_empty(const std::string& text) {
   return text.empty() ? std::nullopt : std::optional(text);
 }
@@ -72,7 +74,7 @@ inline std::optional<std::string> unless_empty(const std::string& text) {
 template <typename T>
 struct Inlined : T {
   Inlined() = default;
-  Inlined(T value) : T(std::move(value)) {}  // NOLINT(google-explicit-constructor): it is one
+  Inlined(T value) : T(std::move(value)) {}  // NOLINT(google-explicit-constructor): a T itself
 };
 
 namespace described {

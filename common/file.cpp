@@ -140,8 +140,8 @@ class Sha256 {
 class TemporaryFile {
  public:
   TemporaryFile(const fs::path& target, std::string_view content) : target_(target) {
-    // O_EXCL skips files left behind by a killed process with the same number. This happens in
-    // containers, where every process has number 1.
+    // O_EXCL skips files left behind by a killed process with the same ID. This happens in
+    // containers, where every process has ID 1.
     for (int tries = 0; descriptor_ < 0; ++tries) {
       path_ = temporary_name(target);
       descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);

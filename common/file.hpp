@@ -41,8 +41,8 @@ class FilesInWriting {
   /// @throws WriteError  if this fails, with path and reason
   void rename_into_place();
 
-  /// Removes all files that have not been renamed, for a process that ends before the destructors
-  /// of its objects can run. Safe within a signal handler as long as no Uninterrupted exists.
+  /// Removes all files that have not been renamed. Meant for a process that ends without running
+  /// destructors. Safe within a signal handler as long as no Uninterrupted exists.
   static void remove_all();
 
  private:
@@ -54,7 +54,7 @@ class FilesInWriting {
   FilesInWriting* next_ = nullptr;
 };
 
-/// Returns the content of a regular file. Never waits for a pipe.
+/// Returns the content of a regular file. Never blocks on a pipe.
 ///
 /// @param expected  what the file should be, in words: "a campaign file (TOML)"
 /// @throws InputError  if there is no such file, or if it is a folder, pipe or device, has more
@@ -62,7 +62,8 @@ class FilesInWriting {
 std::string read_file(const std::filesystem::path& path, std::size_t most_bytes,
                       const std::string& expected);
 
-/// Rejects a file that is not regular, before other code opens it and waits for a pipe.
+/// Rejects a file that is not regular. Called before other code opens the file, because opening a
+/// pipe could block.
 ///
 /// @throws InputError  under the conditions of read_file()
 void require_regular_file(const std::filesystem::path& path, const std::string& expected);
@@ -79,10 +80,10 @@ struct FileState {
 /// Returns the state of a file; for a missing file, only its path.
 FileState state_of_file(const std::filesystem::path& path);
 
-/// SHA-256 of a file that was read after `before`. The file is unchanged, so this is the hash of
-/// the bytes that were read.
+/// Returns the SHA-256 of a file that has not changed since `before`. If the file was read after
+/// `before`, this is the hash of the bytes that were read.
 ///
-/// @throws InputError  if it cannot be read, or has changed since then
+/// @throws InputError  if the file cannot be read or has changed since `before`
 std::string sha256_of_unchanged(const FileState& before);
 
 /// SHA-256 of a file, 64 lower-case hex digits. Reads in blocks.
@@ -90,7 +91,6 @@ std::string sha256_of_unchanged(const FileState& before);
 /// @throws InputError  if the file cannot be read
 std::string sha256_of_file(const std::filesystem::path& path);
 
-/// SHA-256 of a text.
 std::string sha256_of_text(std::string_view text);
 
 }  // namespace rigcal

@@ -5,8 +5,8 @@
 
 namespace rigcal {
 
-/// Returns a file in `share/`, next to the `bin/` folder of the running program, if it exists. An
-/// archive that is unpacked anywhere can thus find its data.
+/// Returns a file in `share/`, next to the `bin/` folder of the running program, if it exists. A
+/// program that is unpacked into any folder can thus find its data.
 ///
 /// @param path  relative to `share/`
 std::optional<std::filesystem::path> installed_file(const std::filesystem::path& path);

@@ -22,16 +22,16 @@ inline void keep_freed_memory() {
 #endif
 }
 
-/// Returns memory to the system that was kept for one task and is too fragmented for the next:
-/// after the records have been read, or after a search.
+/// Returns freed memory to the system. Called after the records have been read and after a search,
+/// because the freed blocks are then too fragmented for the next task.
 inline void give_freed_memory_back() {
 #ifdef __GLIBC__
   malloc_trim(0);
 #endif
 }
 
-/// From now on, returns the largest blocks to the system immediately. These are rare: the texts of
-/// a result.
+/// From now on, returns blocks of 4 MB and more to the system as soon as they are freed. Only the
+/// texts of a result are that large.
 inline void give_large_blocks_back() {
 #ifdef __GLIBC__
   constexpr int kLarge = 1 << 22;

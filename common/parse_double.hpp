@@ -8,8 +8,8 @@
 
 namespace rigcal {
 
-/// Like std::from_chars(first, last, value), to the last bit, but three times as fast for plain
-/// decimal numbers with few digits, which loggers write most of the time.
+/// Gives the same result as std::from_chars(first, last, value), to the last bit. It is three times
+/// as fast for plain decimal numbers with few digits, which make up most of what loggers write.
 ///
 /// A whole number below 2^53 and a power of ten up to 22 are exact doubles, so their quotient is
 /// rounded only once, and correctly (Clinger, How to read floating point numbers accurately, 1990).
@@ -18,7 +18,7 @@ inline std::from_chars_result parse_double(const char* first, const char* last, 
   constexpr std::array kPowers{1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8, 1e9,
                                1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18};
   constexpr std::uint64_t kExact = std::uint64_t{1} << 53U;
-  constexpr std::ptrdiff_t kMostDigits = 19;  // as many as 64 bits can represent
+  constexpr std::ptrdiff_t kMostDigits = 19;  // more might not fit into 64 bits
 
   const auto digit_of = [](char c) {
     return static_cast<unsigned>(static_cast<unsigned char>(c)) - unsigned{'0'};

@@ -40,7 +40,7 @@ bool acts_on_a_terminal(std::uint32_t code) {
          (code >= 0x2066U && code <= 0x2069U);
 }
 
-/// Length of an escape sequence at the start of a text that sets or ends bold or a colour; else 0.
+/// Length of the escape sequence for bold or a colour at the start of a text; 0 if there is none.
 std::size_t colour_length(std::string_view text) {
   if (!text.starts_with("\x1b[")) return 0;
   const std::size_t end = text.find_first_not_of("0123456789;", 2);

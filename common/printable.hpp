@@ -5,11 +5,11 @@
 
 namespace rigcal {
 
-/// Makes text safe to print on a terminal. File, column and campaign names may contain characters
-/// that move the cursor, set the title or reverse the text direction. Control characters (C0
-/// except newlines, DEL, C1), direction marks, line separators, and bytes that are not UTF-8
-/// become "\u001B" or "\xFF". Other text is unchanged. Valid JSON remains valid, with the same
-/// strings.
+/// Makes text safe to print on a terminal. Names of files, columns and campaigns may contain
+/// characters that move the cursor, set the window title or reverse the text direction. Control
+/// characters (C0 except newlines, DEL, C1), direction marks and line separators are replaced by
+/// escapes such as "\u001B", and bytes that are not UTF-8 by escapes such as "\xFF". Valid JSON
+/// remains valid and keeps its strings.
 ///
 /// @param coloured  whether to keep the escape sequences for bold and colours
 std::string printable(std::string_view text, bool coloured = false);

@@ -50,7 +50,7 @@ class PlainLocale {
  public:
   PlainLocale()
       : plain_(newlocale(LC_ALL_MASK, "C", locale_t{})), previous_(uselocale(plain_.get())) {
-    if (!plain_) throw std::bad_alloc();  // numbers would be read with another decimal sign
+    if (!plain_) throw std::bad_alloc();  // numbers would be read with another decimal separator
   }
   PlainLocale(const PlainLocale&) = delete;
   PlainLocale& operator=(const PlainLocale&) = delete;
@@ -87,7 +87,7 @@ constexpr ut_visitor kTakeApart{
     [](const ut_unit*, double, const ut_unit*, void*) { return UT_VISIT_ERROR; },  // logarithms
 };
 
-/// A name that is added to the database, and its meaning there.
+/// A unit name that is added to the database, and its definition.
 struct Alias {
   const char* name;
   const char* meaning;
@@ -106,7 +106,7 @@ class UnitSystem {
  public:
   UnitSystem() {
     const PlainLocale plain;
-    ut_set_error_message_handler(ut_ignore);  // would write to stderr
+    ut_set_error_message_handler(ut_ignore);  // the default handler writes to stderr
     // Debian's database is where the library expects it. The archive made by scripts/package
     // contains its own.
     const auto own = std::getenv("UDUNITS2_XML_PATH") == nullptr
@@ -302,7 +302,7 @@ struct Split {
   std::string_view unit;
 };
 
-/// @throws QuantityError  if the number is wrong; what() says in what way
+/// @throws QuantityError  if the number is invalid; what() gives the reason
 Split split_number(std::string_view text) {
   if (text.empty()) throw QuantityError("the text is empty");
   const bool plus = text.size() > 1 && text[0] == '+' && (is_digit(text[1]) || text[1] == '.');

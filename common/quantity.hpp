@@ -7,8 +7,8 @@
 
 namespace rigcal {
 
-/// Thrown if a string is not a quantity, or not one of the expected dimension. what() gives the
-/// string and what was expected; code that reads a file adds the location.
+/// Thrown if a string is not a quantity or has the wrong dimension. what() quotes the string and
+/// says what was expected; code that reads a file adds the location.
 class QuantityError : public std::invalid_argument {
  public:
   using std::invalid_argument::invalid_argument;
@@ -21,9 +21,10 @@ struct UnitConversion {
   double operator()(double value) const { return scale * value + offset; }
 };
 
-/// Conversion between units of the same dimension, using UDUNITS-2. Cycles (Hz) and radians (rad/s)
-/// are different kinds here, and differ by a factor of 2 pi. Plain 1/s is neither, and converts to
-/// neither. "lpm" (L/min) and "gpm" (US gallon/min) are accepted; "1" or "" is dimensionless.
+/// Returns the conversion between two units of the same dimension, using UDUNITS-2. Hz counts
+/// cycles, so it converts to rad/s with a factor of 2 pi. Plain 1/s counts neither cycles nor
+/// radians, and converts to neither. "lpm" (L/min) and "gpm" (US gallon/min) are accepted; "1" or
+/// "" is dimensionless.
 ///
 /// @throws QuantityError  if a unit is unknown, or if the dimensions differ
 UnitConversion unit_conversion(std::string_view from, std::string_view to);
@@ -35,12 +36,12 @@ UnitConversion unit_conversion(std::string_view from, std::string_view to);
 ///                        dimension is wrong
 double parse_quantity(std::string_view text, std::string_view unit);
 
-/// Names of common units, which messages propose and the campaign's schema knows.
+/// Names of common units, which error messages suggest and the campaign's schema lists.
 const std::vector<std::string>& common_units();
 
-/// Name of a unit's dimension: "a pressure" for "Pa"; empty if it has none.
+/// Name of a unit's dimension, such as "a pressure" for "Pa"; empty if the dimension has no name.
 ///
-/// @throws QuantityError  unknown unit
+/// @throws QuantityError  if the unit is unknown
 std::string_view dimension_name(std::string_view unit);
 
 }  // namespace rigcal

@@ -2,7 +2,7 @@
 
 namespace rigcal {
 
-/// Two ends of an interval: in results, an array of two numbers.
+/// An interval. In results, it is an array of two numbers.
 struct Range {
   double low = 0.0;
   double high = 0.0;

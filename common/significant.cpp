@@ -11,7 +11,7 @@ std::string significant(double value, int digits) {
   std::string text = fmt::format("{:.{}g}", value, digits);
   const double size = std::abs(value);
   if (text.find('e') == std::string::npos || !(size >= 1.0)) return text;
-  // An exponent here means more digits before the point than requested.
+  // The text has an exponent because the value has more digits before the point than requested.
   const double step = std::pow(10.0, std::floor(std::log10(size)) + 1.0 - digits);
   const double rounded = std::round(value / step) * step;
   return std::abs(rounded) < kExponentFrom ? fmt::format("{:.0f}", rounded) : text;

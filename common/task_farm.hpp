@@ -13,8 +13,8 @@ namespace rigcal {
 
 /// Independent tasks whose results are bytes.
 struct FarmJob {
-  std::string name;       ///< "profiles"; the same job runs at most once
-  std::string state;      ///< serialised inputs of its tasks; another state gives other results
+  std::string name;       ///< such as "profiles"; the same job runs at most once
+  std::string state;      ///< serialised inputs of the tasks, which determine the results
   std::size_t count = 0;  ///< number of tasks
   int lanes = 1;          ///< number of tasks that run at a time in each process
   std::map<std::size_t, std::string> known = {};  ///< results that exist already
@@ -52,7 +52,7 @@ class TaskFarm {
   /// @throws  the exception of the task with the lowest index, or FarmEnded
   virtual std::vector<TaskResult> run(const FarmJob& job, const Task& task, const Done& done) = 0;
 
-  /// Number of this process, from 0, and number of all processes.
+  /// Number of this process, counted from 0, and the total number of processes.
   virtual int rank() const { return 0; }
   virtual int processes() const { return 1; }
 };

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Target name and process number in a name made by temporary_name().
+/// Target name and process ID in a name made by temporary_name().
 struct Temporary {
   std::string_view name;
   pid_t process = 0;
@@ -49,7 +49,7 @@ std::optional<Temporary> temporary(std::string_view name) {
   return Temporary{name, static_cast<pid_t>(*process)};
 }
 
-/// Whether another process with this number is running.
+/// Whether another process with this ID is running.
 bool lives(pid_t process) {
   return process != ::getpid() && (::kill(process, 0) == 0 || errno == EPERM);
 }

@@ -16,9 +16,9 @@ class Uninterrupted {
   /// Whether any object exists.
   static bool any();
 
-  /// For use within a signal handler, where it is safe. Returns whether `signal` must wait, and if
-  /// so, postpones it. If not, no other thread can begin such work, and the handler must end the
-  /// process.
+  /// Returns whether `signal` must wait, and if so, postpones it. Otherwise no other thread can
+  /// begin such work any more, and the handler must end the process. Safe to call within a signal
+  /// handler.
   static bool postpones(int signal);
 };
 

@@ -36,13 +36,14 @@ double absolute_error_percent(std::span<const double> measured, std::span<const 
 /// sqrt(mean(e^2)), in the unit of y.
 double rmse(std::span<const double> measured, std::span<const double> simulated);
 
-/// MATLAB compare's fit: 100 (1 - ||e|| / ||y - mean y||), in percent. At most 100, no lower limit.
+/// The fit that MATLAB's compare() reports: 100 (1 - ||e|| / ||y - mean y||), in percent. At most
+/// 100, no lower limit.
 double nrmse_fit_percent(std::span<const double> measured, std::span<const double> simulated);
 
 /// max |e|, in the unit of y.
 double maximum_error(std::span<const double> measured, std::span<const double> simulated);
 
-/// Every metric in the table in metrics/metric_table.hpp.
+/// A value for every metric in metrics/metric_table.hpp.
 struct Agreement {
   double rho2 = 0.0;
   double r = 0.0;
@@ -52,7 +53,7 @@ struct Agreement {
   double nrmse_fit_percent = 0.0;
   double maximum_error = 0.0;
 
-  /// Every metric by its name (metrics/metric_table.hpp).
+  /// Visits every metric under its name in metrics/metric_table.hpp.
   template <typename Self, typename Visit>
   static void describe(Self& self, const Visit& visit);
 };

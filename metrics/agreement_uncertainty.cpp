@@ -45,7 +45,7 @@ double jackknife_variance(const std::vector<Agreement>& without, double Agreemen
   return squares * (repeats - 1.0) / repeats;
 }
 
-/// Largest noise in the mean, estimated from the largest deviation of a repeat from it.
+/// Largest noise in the mean, estimated from the largest deviation of a repeat from the mean.
 double largest_noise(const MeasuredMean& measured) {
   double largest = 0.0;
   for (const auto& own : measured.deviations)

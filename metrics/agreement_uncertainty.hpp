@@ -8,14 +8,14 @@
 
 namespace rigcal::metrics {
 
-/// The measured side of a score, with its sources of uncertainty.
+/// The measured signal with which a score compares a model, and its sources of uncertainty.
 struct MeasuredMean {
   std::span<const double> mean;  ///< shape (n)
-  /// Each repeat minus the mean, NaN where it has no sample; shape (repeats, n)
+  /// Each repeat minus the mean, NaN where the repeat has no sample; shape (repeats, n)
   std::vector<std::vector<double>> deviations;
   double gain_sd = 0.0;    ///< standard uncertainty of the sensor's gain, relative
   double offset_sd = 0.0;  ///< standard uncertainty of the sensor's offset, unit of the mean
-  /// Change in the mean due to one standard uncertainty of each other cause; shape (causes, n)
+  /// For each further cause, the change in the mean at one standard uncertainty; shape (causes, n)
   std::vector<std::vector<double>> changes = {};
 };
 

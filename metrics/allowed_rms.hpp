@@ -4,8 +4,8 @@
 
 namespace rigcal::metrics {
 
-/// Root mean square of an error without offset at which rho2 is equal to its limit: sqrt((1 -
-/// limit) var(y)), in the unit of y.
+/// Rms of a zero-mean error for which rho2 is exactly at its limit: sqrt((1 - limit) var(y)), in
+/// the unit of y.
 ///
 /// @param measured  shape (n)
 /// @return          0 for n < 2, and for a limit of 1 or more

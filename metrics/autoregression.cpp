@@ -105,9 +105,9 @@ Autoregression fit_autoregression(std::span<const double> gamma, double samples)
   double least = samples * std::log(model.variance);
   while (model.phi.size() + 1 < gamma.size()) {
     const double partial = next_partial(model, gamma);
-    // This does not happen for real series, but for a series that repeats exactly, after a partial
-    // autocorrelation has been limited. Further ones would be limited, too, and would give a model
-    // whose response grows without bound.
+    // Real series do not get here. A series that repeats exactly does, after a partial
+    // autocorrelation has been limited. All further ones would be limited, too, and would give a
+    // model whose response grows without bound.
     if (!model.phi.empty() && !(std::abs(partial) < 1.0)) break;
     extend(model, std::clamp(partial, -most, most));
     const double criterion = samples * std::log(model.variance) +

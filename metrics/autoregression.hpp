@@ -18,22 +18,22 @@ struct Autoregression {
 /// Autocovariances about zero, sum_t x[t] x[t + h] / n for h = 0..lags (0 beyond the series).
 std::vector<double> autocovariance(std::span<const double> series, int lags);
 
-/// Maximum number of lags to be summed for a model, which limits the computing time for a slow
-/// drift.
+/// Maximum number of lags that are summed for a model. It limits the computing time if the series
+/// drifts slowly.
 inline constexpr int kLongestMemory = 5000;
 
-/// Whether a series can have these autocovariances, starting at lag 0: gamma[0] > 0, and all
-/// partial autocorrelations are within (-1, 1). False for a series of zeros.
+/// Whether these values, from lag 0 on, can be the autocovariances of a series: gamma[0] > 0, and
+/// all partial autocorrelations are within (-1, 1). False for a series of zeros.
 bool is_autocovariance(std::span<const double> gamma);
 
-/// Autocovariances of the model itself for lags 0..lags.
+/// Theoretical autocovariances of a model for lags 0..lags.
 std::vector<double> autocovariance(const Autoregression& model, int lags);
 
 /// Fits the model of order up to gamma.size() - 1 that has the lowest Bayesian information
 /// criterion, n ln(variance) + order ln(n), using the Levinson-Durbin recursion (Brockwell and
 /// Davis, Time Series, 1991, 5.2 and 9.2). Partial autocorrelations are limited to 1 - 10 / n, so
 /// that no model has a longer memory than the series can show. Once one has been limited, the
-/// recursion ends at the next one of 1 or more.
+/// recursion ends at the next one whose magnitude is 1 or more.
 ///
 /// @param gamma    autocovariances starting at lag 0, gamma[0] >= 0; if it is 0, the result is
 ///                 white noise with variance 0

@@ -7,7 +7,7 @@ namespace rigcal::metrics {
 
 /// Half width of a 95 % interval, in standard errors, for many degrees of freedom.
 inline constexpr double kNormal95 = 1.96;
-/// Significance level for a test whose result causes a warning: one false alarm in twenty.
+/// Significance level of the tests that cause warnings: one false alarm in twenty.
 inline constexpr double kWarningLevel = 0.05;
 
 /// Quantile of the standard normal distribution.

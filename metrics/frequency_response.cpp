@@ -266,7 +266,7 @@ std::vector<ResponsePoint> broadband_response(double sample_interval_s,
   const std::vector<double> taper = split_cosine_bell(length);
   const std::vector<Amplitude> u = tapered_lines(input, length, taper);
   const std::vector<Amplitude> y = tapered_lines(output, length, taper);
-  // Neighbouring lines of a tapered record have part of their noise in common.
+  // Neighbouring lines of a tapered record share part of their noise.
   double second = 0.0;
   double fourth = 0.0;
   for (const double w : taper) {

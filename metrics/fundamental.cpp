@@ -114,7 +114,7 @@ Fundamental fit(std::span<const double> time_s, std::span<const double> signal,
                     n, name, 1.0 / frequency_hz));
   const Vector3 solution = basis->normal.ldlt().solve(right);
   const Extended amplitude = std::hypot(solution[0], solution[1]);
-  // This is only rounding, but its phase would look real.
+  // Such an amplitude is only rounding, but its phase would look real.
   if (amplitude < 1e-12L * range.peak_to_peak()) return {};
   return {.amplitude = to_double(amplitude, "fundamental"),
           .phase_rad = static_cast<double>(std::atan2(solution[1], solution[0]))};

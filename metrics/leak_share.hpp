@@ -4,9 +4,9 @@
 
 namespace rigcal::metrics {
 
-/// Mean of |y| over the time from the first sample to the last, with y joined by straight lines.
-/// Where y keeps its sign, this is the trapezoidal rule; where y changes sign, it is exact for the
-/// lines.
+/// Mean of |y| from the first sample to the last, with y interpolated linearly. Where y keeps its
+/// sign, this is the trapezoidal rule. Where y changes sign, the integral is exact for the straight
+/// line.
 ///
 /// @param time_s  shape (n), n >= 2, increasing, need not be equidistant
 /// @param signal  shape (n), any unit
@@ -15,10 +15,10 @@ namespace rigcal::metrics {
 /// @throws std::domain_error      if the mean exceeds the largest double
 double mean_absolute(std::span<const double> time_s, std::span<const double> signal);
 
-/// Derivative of mean_absolute() when the signal changes along `slope`. Exact for the lines,
-/// including changes of sign.
+/// Derivative of mean_absolute() with respect to a parameter of the signal. Exact for the
+/// interpolated signal, including its changes of sign.
 ///
-/// @param slope  shape (n): d signal / d (some parameter)
+/// @param slope  shape (n): derivative of the signal with respect to the parameter
 /// @throws std::invalid_argument, std::domain_error  under the conditions of mean_absolute()
 double mean_absolute_slope(std::span<const double> time_s, std::span<const double> signal,
                            std::span<const double> slope);
@@ -32,7 +32,7 @@ double mean_absolute_slope(std::span<const double> time_s, std::span<const doubl
 /// @param leakage_flow          shape (n), same unit
 /// @return                      dimensionless, >= 0
 /// @throws std::invalid_argument  under the conditions of mean_absolute()
-/// @throws std::domain_error      if there is no servo flow at all, so that there is no share
+/// @throws std::domain_error      if there is no servo flow, so that the share is undefined
 double leak_share(std::span<const double> time_s, std::span<const double> servo_flow,
                   std::span<const double> leakage_flow);
 

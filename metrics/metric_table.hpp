@@ -17,7 +17,7 @@ struct MetricSpec {
   std::string_view name;     ///< name in the results
   std::string_view title;    ///< title of its column on the page
   std::string_view formula;  ///< one line; y measured, s simulated, e = y - s
-  std::string_view unit;     ///< "1", "%", or "channel" for that of the compared channel
+  std::string_view unit;     ///< "1", "%", or "channel" for the unit of the compared channel
   double Agreement::*value = nullptr;
   double (*compute)(std::span<const double> measured, std::span<const double> simulated) = nullptr;
   bool higher_is_better = true;

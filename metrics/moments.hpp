@@ -41,13 +41,13 @@ constexpr Value square(Value value) {
 struct Range {
   double low = 0.0;
   double high = 0.0;
-  bool constant() const { return low == high; }  ///< exactly, whatever the offset
+  bool constant() const { return low == high; }  ///< an offset makes no difference
   Extended peak_to_peak() const { return wide(high) - wide(low); }
 };
 
 /// Finds the range of a signal of shape (n).
 ///
-/// @param function, name  the caller and the signal, for the message
+/// @param function, name  names of the caller and of the signal, for the message
 /// @throws std::invalid_argument  if n < 2, or if a value is not finite; the message says which
 Range finite_range(std::span<const double> signal, std::string_view function,
                    std::string_view name);

@@ -6,7 +6,7 @@
 
 namespace rigcal::metrics {
 
-/// Scores that a model equal to the true signal reaches against a measured one.
+/// Scores of a perfect model, which is equal to the true signal, against the measured one.
 struct NoiseFloor {
   double rho2 = 0.0;
   double ccc = 0.0;

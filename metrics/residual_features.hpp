@@ -14,7 +14,7 @@ struct ResidualFeatures {
   double std = 0.0;   ///< population standard deviation of |r|: sqrt(rms^2 - mean^2)
 };
 
-/// Something for each of these features of a position residual.
+/// One T for each of these features of a position residual.
 template <typename T>
 struct ByFeature {
   T mean_m{}, rms_m{}, std_m{};

@@ -30,10 +30,10 @@ struct Autocorrelation : Judged {
 /// Correlation of the residual with the input of the rig.
 struct CrossCorrelation : Judged {
   std::vector<double> values;  ///< shape (2 lags + 1), from -lags: corr(e(t), u(t - lag))
-  double band = 0.0;           ///< 95 % for one lag, using the effective sample size
-  double limit = 0.0;          ///< 95 % for the largest of all lags (Bonferroni)
+  double band = 0.0;           ///< 95 % bound for a single lag, from the effective sample size
+  double limit = 0.0;          ///< 95 % bound for the largest of all lags (Bonferroni)
   double peak = 0.0;           ///< value with the largest magnitude
-  double peak_lag_s = 0.0;     ///< > 0: the residual follows the input
+  double peak_lag_s = 0.0;     ///< > 0 if the residual lags behind the input
   RIGCAL_DESCRIBE(peak, peak_lag_s, limit)
 };
 
@@ -60,7 +60,7 @@ struct Normality : Judged {
   RIGCAL_DESCRIBE(skewness, excess_kurtosis, jarque_bera, p_value)
 };
 
-/// Whether the residual has a mean or a trend that differs from zero.
+/// Tests whether the residual has a mean or a trend that differs from zero.
 struct Drift : Judged {
   double mean = 0.0;  ///< in the unit of e
   double mean_p_value = 0.0;

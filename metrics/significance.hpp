@@ -24,14 +24,16 @@ struct ErrorPart {
 /// Welch, Biometrika 34, 1947), at least 1 and at most kManyDegrees.
 double effective_freedom(std::span<const ErrorPart> parts);
 
-/// Degrees of freedom for which Student's t has this quantile of 97.5 %: from 1 to kManyDegrees.
+/// Degrees of freedom, from 1 to kManyDegrees, for which the 97.5 % quantile of Student's t has
+/// this value.
 double freedom_of_quantile(double quantile);
 
 /// Error of the difference between two independent estimates.
 EstimateError error_of_difference(const EstimateError& a, const EstimateError& b);
 
-/// Two-sided probability of a difference of at least this size if there is none. Uses Student's t
-/// with the degrees of freedom of the error, and the normal distribution from kManyDegrees on.
+/// Two-sided probability of finding a difference of at least this size if there is no true
+/// difference. Uses Student's t with the degrees of freedom of the error, and the normal
+/// distribution from kManyDegrees on.
 ///
 /// @param error  error of the difference, in the same unit; > 0
 /// @throws std::invalid_argument  if the error or its degrees of freedom are not positive, or if a
@@ -45,14 +47,15 @@ double difference_p_value(double difference, const EstimateError& error);
 /// @return shape (n), in the same order
 std::vector<double> holm(std::span<const double> p_values);
 
-/// Two-sided exact sign test: the probability that, among `better` + `worse` pairs, at least as
-/// many fall on one side if both sides are equally likely. Ties must be left out. Returns 1 if
-/// there are no pairs.
+/// Two-sided exact sign test: the probability of a split at least this uneven among `better` +
+/// `worse` pairs if both outcomes are equally likely. Ties must be left out. Returns 1 if there are
+/// no pairs.
 ///
 /// @throws std::invalid_argument  if a count is negative
 double sign_test_p_value(int better, int worse);
 
-/// Minimum number of pairs for a sign test at the 5 % level: 2 / 2^6 = 0.031, 2 / 2^5 = 0.063.
+/// Minimum number of pairs for a sign test at the 5 % level. Six pairs can reach
+/// p = 2 / 2^6 = 0.031, five only 2 / 2^5 = 0.063.
 inline constexpr int kLeastSignPairs = 6;
 
 }  // namespace rigcal::metrics

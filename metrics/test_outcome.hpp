@@ -6,8 +6,8 @@
 
 namespace rigcal::metrics {
 
-/// Outcome of a significance test. If a test would hardly ever reject, it proves nothing by not
-/// rejecting, and this does not count as a pass.
+/// Outcome of a significance test. A test that would hardly ever reject proves nothing by not
+/// rejecting, so this does not count as a pass.
 enum class TestOutcome { passed, failed, not_judged };
 
 /// Returns "passed", "failed" or "not_judged".
@@ -15,7 +15,7 @@ std::string_view to_string(TestOutcome outcome);
 
 struct Judged {
   TestOutcome outcome = TestOutcome::not_judged;
-  std::optional<std::string> reason;  ///< why it cannot be judged
+  std::optional<std::string> reason;  ///< why the test cannot be judged
 
   bool passed() const { return outcome == TestOutcome::passed; }
   bool failed() const { return outcome == TestOutcome::failed; }
@@ -28,8 +28,8 @@ struct Judged {
 inline constexpr double kLeastEffectiveSamples = 10.0;
 
 /// Largest useful bound for a correlation or a cumulative fraction of power, both of which are at
-/// most 1. A correlation of 0.5 is a large effect (Cohen, Statistical Power Analysis, 1988). A test
-/// that accepts it, a quarter of the variance explained, proves nothing by passing.
+/// most 1. A correlation of 0.5 is a large effect, which explains a quarter of the variance (Cohen,
+/// Statistical Power Analysis, 1988). A test that would accept it proves nothing by passing.
 inline constexpr double kLargestUsefulBound = 0.5;
 
 /// Largest useful bound for an excess kurtosis. A sine wave, the most common residual that is not
@@ -41,7 +41,7 @@ struct Power {
   double effective_samples = 0.0;
   double bound = 0.0;           ///< smallest effect that is rejected
   double largest_useful = 0.0;  ///< bound above which passing proves nothing
-  std::string_view effect{};    ///< used in the reason: "a correlation with the input"
+  std::string_view effect{};    ///< for the reason, such as "a correlation with the input"
 };
 
 /// Applies the same rule to all tests. A test fails if it rejects and its level is valid. It passes

@@ -11,7 +11,7 @@
 namespace rigcal::metrics {
 namespace {
 
-/// Scatter around the line that is less probable than this is more than the errors explain.
+/// If chi-square is less probable than this, the points scatter by more than their errors explain.
 constexpr double kUpperQuartile = 0.25;
 /// A larger chi-square means that the errors cannot belong to these points.
 constexpr double kMostChiSquare = 1e100;

@@ -16,14 +16,14 @@ struct Trend {
   double freedom = 0.0;               ///< degrees of freedom of that error
   double ci95_low = 0.0;              ///< ends of the slope's 95 % interval
   double ci95_high = 0.0;
-  double p_value = 1.0;             ///< two-sided, for no slope
+  double p_value = 1.0;             ///< two-sided, for the hypothesis of no slope
   double chi_square = 0.0;          ///< scatter of the points around the line
   double reduced_chi_square = 0.0;  ///< chi-square divided by n - 2
   double widened = 1.0;             ///< factor on the error of the slope, at least 1
 };
 
-/// Fits the line y = intercept + slope x by generalised least squares and tests its slope. It is
-/// the only test for a trend.
+/// Fits the line y = intercept + slope x by generalised least squares and tests its slope. All
+/// trends are tested with this function.
 ///
 /// The errors of the points are known, so they decide the test: with the normal distribution, or
 /// with Student's t if they have few degrees of freedom (Welch and Satterthwaite). If the points
@@ -35,7 +35,8 @@ struct Trend {
 ///
 /// @param x, y     shape (n), n >= 3
 /// @param errors   error of each y, independent of the others, shape (n); above 0
-/// @param common   covariance of y due to causes that affect all points, shape (n)^2; empty: none
+/// @param common   covariance of y due to causes that affect all points, shape (n, n); empty if
+///                 there are no such causes
 /// @throws std::invalid_argument  if there are fewer points, shapes differ, an error is not
 ///                                positive, or a value is not finite
 /// @throws std::domain_error      if all x are equal, or if the errors differ so much from each

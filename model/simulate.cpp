@@ -81,7 +81,7 @@ int plant_states(PlantKind plant) {
   return with_plant(plant, []<typename Plant>() { return Plant::kStates; });
 }
 
-/// Whether reversed inputs reverse all requested outputs.
+/// Whether reversing the inputs reverses all requested outputs.
 bool reversible(PlantKind plant, const PresentTerms& terms, std::span<const Output> outputs) {
   return with_plant(plant, [&]<typename Plant>() {
     return std::all_of(outputs.begin(), outputs.end(),
@@ -100,7 +100,7 @@ using BaseSolvers = Solvers<RIGCAL_base_SOLVERS>;
 using Avx2Solvers = Solvers<RIGCAL_avx2_SOLVERS>;
 #endif
 
-/// Finds the sizes compiled for a plant. It does not compile for a plant without any.
+/// Finds the sizes compiled for a plant. A call for a plant without any does not compile.
 template <typename Plant, int... States>
 std::integer_sequence<int, States...> sizes_of(const Sized<Plant, States...>& solvers);
 
@@ -284,7 +284,7 @@ Simulation simulate_either(const Eigen::VectorXd* state, const Rig& rig,
   const std::optional<SensorTimes> at = sensor_times(outputs, parameters, times_s);
   const std::span<const double> at_s = at ? std::span<const double>(at->times_s) : times_s;
   const auto samples = static_cast<Eigen::Index>(at_s.size());
-  // left uninitialised: a successful simulation writes all elements
+  // Left uninitialised, because a successful simulation writes all elements.
   result.outputs.resize(samples, static_cast<Eigen::Index>(outputs.size()));
   result.sensitivities.resize(outputs.size());
   const Eigen::Index columns =
@@ -304,8 +304,8 @@ Simulation simulate_either(const Eigen::VectorXd* state, const Rig& rig,
     // square of their number.
     constexpr std::size_t kMostPeriods = 20'000;
     if (period && at_s.size() / period->samples > kMostPeriods) period.reset();
-    // While the rig still waits for its drive it does not change, but this is not its periodic
-    // state.
+    // While the rig still waits for its drive, it does not change, but it is not yet in its
+    // periodic steady state.
     if (period && rig.before != Before::hold &&
         parameters["transport_delay"] > 0.5 * period->duration_s)
       period.reset();

@@ -15,8 +15,8 @@
 
 namespace rigcal::model {
 
-/// Quantities that a simulation returns at each sample. Those that a sensor records include its
-/// offset.
+/// Quantities that a simulation returns at each sample. If a quantity has a sensor, its reading is
+/// returned.
 enum class Output {
   position,              ///< reading of the position sensor [m]
   velocity,              ///< [m/s]
@@ -176,12 +176,12 @@ StateCount count_states(const Rig& rig, const ParameterValues& parameters);
 
 /// Simulates the rig from the first to the last of `times_s`.
 ///
-/// @param parameters  SI values, and which of them were given: this decides on the optional terms
+/// @param parameters  SI values, and which of them were given, which decides on the optional terms
 /// @param free        table indices of the parameters with sensitivities; may be empty
 /// @param times_s     shape (samples), increasing, at least one
 /// @param outputs     what to return, in this order
 /// @return            a run that cannot be simulated is reported in `status`, not thrown
-/// @throws std::invalid_argument  if sizes, order or options break the contract
+/// @throws std::invalid_argument  if a size, the order of the times or an option is invalid
 Simulation simulate(const Rig& rig, const ParameterValues& parameters, std::span<const int> free,
                     const SimulationInputs& inputs, std::span<const double> times_s,
                     std::span<const Output> outputs, const SimulationOptions& options = {});
@@ -192,8 +192,8 @@ Simulation simulate(const Rig& rig, const ParameterValues& parameters, std::span
 ///
 /// @param state  shape (states), at the first of `times_s`. All sensitivities have one column per
 ///               state after the columns of `free`.
-/// @throws std::invalid_argument  as simulate(), and if the controller has a `sample_time`, because
-///                                the phase of its ticks is unknown
+/// @throws std::invalid_argument  under the conditions of simulate(), and if the controller has a
+///                                `sample_time`, because the phase of its ticks is unknown
 Simulation simulate_from(const Eigen::VectorXd& state, const Rig& rig,
                          const ParameterValues& parameters, std::span<const int> free,
                          const SimulationInputs& inputs, std::span<const double> times_s,

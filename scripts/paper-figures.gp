@@ -1,4 +1,4 @@
-# Drawings of scripts/paper-figures, from the CSV files in the present folder. Colours: Okabe and Ito.
+# Draws the figures for scripts/paper-figures from the CSV files in the present folder. Colours: Okabe and Ito.
 set datafile separator ","
 set grid lc rgb "#dddddd"
 set border lc rgb "#444444"

@@ -1,7 +1,7 @@
 """Prints the contents of rigcal's packages as SPDX 2.3 in JSON. usage: spdx_list.py VERSION DATE PACKAGE...
 
 PACKAGE: Debian packages of the shared libraries; cmake/parts.txt lists the parts that are compiled in. DATE: date of the
-commit, in UTC or with its offset, so that the same commit gives the same list.
+commit, in UTC or with a UTC offset, so that the same commit gives the same list.
 """
 import datetime
 import json

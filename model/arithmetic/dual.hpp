@@ -25,7 +25,7 @@ struct Dual {
     return *this;
   }
 
-  /// Returns the independent variable of direction `index`.
+  /// Returns an independent variable, whose derivative is one in direction `index`.
   static Dual variable(double v, int index) {
     return {v, Pack<N>::unit(static_cast<std::size_t>(index))};
   }

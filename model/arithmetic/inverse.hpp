@@ -5,9 +5,9 @@
 
 namespace rigcal::model {
 
-/// Inverse of a small matrix; not finite if the matrix is singular. Above four rows Eigen uses
-/// its large-matrix routines; Gauss-Jordan elimination with row pivoting takes at most half as
-/// long.
+/// Inverts a small matrix. If the matrix is singular, the elements of the result are not finite.
+/// For more than four rows, Eigen would call its routines for large matrices; Gauss-Jordan
+/// elimination with row pivoting takes at most half as long.
 template <int N>
 Eigen::Matrix<double, N, N> inverse_of(const Eigen::Matrix<double, N, N>& matrix) {
   if constexpr (N <= 4) {

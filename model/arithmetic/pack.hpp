@@ -39,7 +39,7 @@ struct Pack {
   }
 };
 
-/// Replaces one block of a pack. The size of the pack is a multiple of the block's.
+/// Replaces one block of a pack, whose size is a multiple of the block's.
 template <int N, int M>
 void put(const Pack<N>& block, std::size_t index, Pack<M>& whole) {
   static_assert(M % N == 0 && N % Pack<N>::kLanes == 0);
@@ -65,7 +65,6 @@ Pack<N> operator-(const Pack<N>& a, const Pack<N>& b) {
   for (std::size_t k = 0; k < r.kParts; ++k) r.part[k] = a.part[k] - b.part[k];
   return r;
 }
-/// Multiplies every element by a scalar.
 template <int N>
 Pack<N> operator*(const Pack<N>& a, double s) {
   Pack<N> r;

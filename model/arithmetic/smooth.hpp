@@ -13,8 +13,8 @@ namespace rigcal::model {
 /// sgn(P) sqrt(|P|) for |P| >> eps, and P / sqrt(eps) at zero.
 ///
 /// @param pressure_pa   any sign [Pa]
-/// @param smoothing_pa  eps > 0 [Pa]; with eps = 100 Pa the paper's leak shares change by < 0.1
-///                      point
+/// @param smoothing_pa  eps > 0 [Pa]; eps = 100 Pa changes the paper's leak shares by less than 0.1
+///                      percentage points
 /// @return              [Pa^(1/2)]
 template <typename X, typename C>
 X signed_sqrt(const X& pressure_pa, const C& smoothing_pa) {
@@ -36,7 +36,7 @@ X clamp_symmetric(const X& x, const C& limit) {
   return x;
 }
 
-/// Removes the band [-width, width] from x: opening of an overlapped spool.
+/// Removes the band [-width, width] from x, as the overlap of a spool does.
 template <typename X, typename C>
 X dead_band(const X& x, const C& width) {
   if (value_of(x) > value_of(width)) return x - width;
@@ -44,7 +44,8 @@ X dead_band(const X& x, const C& width) {
   return x * 0.0;
 }
 
-/// Returns x if it is positive, else zero: travel into a contact, or opening of an edge.
+/// Returns x if it is positive, else zero. Used for the travel into a contact and the opening of an
+/// edge.
 template <typename X>
 X positive_part(const X& x) {
   return value_of(x) > 0.0 ? x : X(x * 0.0);

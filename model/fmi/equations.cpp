@@ -44,7 +44,7 @@ class SizedEquations final : public Equations {
   }
 
   std::vector<double> initial() const override {
-    // The equilibrium of a state depends on the load, which is a parameter here.
+    // The equilibrium depends on the load, which System reads from the parameters.
     ParameterValues values = values_;
     if (parameter_index(values.plant, "external_force") >= 0)
       values.set("external_force", inputs_.external_force_n.value);
@@ -142,7 +142,7 @@ class SizedEquations final : public Equations {
 
   Sys system(ParameterValues values, const RigInputs& inputs, double length_s) const {
     if (parameter_index(values.plant, "external_force") >= 0)
-      values.set("external_force", 0.0);  // the input is the whole force
+      values.set("external_force", 0.0);  // the input replaces it
     return {layout_,
             values,
             {},

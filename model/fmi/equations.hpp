@@ -10,7 +10,7 @@
 
 namespace rigcal::model {
 
-/// An input during one step: a straight line from its value at the beginning.
+/// An input during one step: a straight line that starts at `value`.
 struct Ramp {
   double value = 0.0;
   double slope_per_s = 0.0;
@@ -18,7 +18,7 @@ struct Ramp {
 
 /// External inputs of a rig. The tank pressure is used only if the plant has a tank.
 struct RigInputs {
-  Ramp drive;  ///< reference [m], or command of the valve [V]
+  Ramp drive;  ///< reference [m] or valve command [V]
   Ramp external_force_n;
   Ramp supply_pressure_pa;
   Ramp tank_pressure_pa;

@@ -8,12 +8,12 @@
 
 namespace rigcal::model {
 
-/// A rig for other simulators, as an FMU reads it from its resources.
+/// A rig for use in other simulators, in the form in which an FMU reads it from its resources.
 struct ExportedRig {
   std::string guid;  ///< GUID of the model description
   Rig rig;
   ParameterValues values = ParameterValues::defaults(PlantKind::load_pressure);
-  double tolerance = 1e-6;  ///< for co-simulation, if the importer gives none
+  double tolerance = 1e-6;  ///< for co-simulation, unless the importer sets one
 };
 
 /// Table indices of the parameters that an importer may change, in the order of the table: those of
@@ -31,10 +31,11 @@ bool is_input(const ParameterSpec& spec);
 /// Name of the rig's file in the resources of an FMU.
 inline constexpr const char* kRigFile = "rig.txt";
 
-/// Returns the contents of that file. read_exported_rig() restores every value bit by bit.
+/// Returns the contents of this file, from which read_exported_rig() restores every bit of each
+/// value.
 std::string exported_rig_text(const ExportedRig& rig);
 
-/// @throws std::runtime_error  if the file is invalid; the message has file and line, what was
+/// @throws std::runtime_error  if the file is invalid; the message gives file and line, what was
 ///                             found and what was expected
 ExportedRig read_exported_rig(const std::filesystem::path& file);
 

@@ -34,9 +34,9 @@ struct InstanceState {
   StepMemory memory;
 };
 
-/// Checks the length of an importer's array.
+/// Checks the length of an array from the importer.
 ///
-/// @throws std::runtime_error  if the array has another length than expected
+/// @throws std::runtime_error  if the length is not the expected one
 void require_size(std::size_t count, std::size_t expected);
 
 /// One instance of an FMU, for either interface. A method that cannot do what the importer requests
@@ -94,7 +94,7 @@ class FmuInstance {
   std::unique_ptr<Equations> equations_;
   std::vector<int> parameters_;
   InstanceState state_;
-  bool stale_ = true;  ///< equations_ do not have the present parameters and inputs yet
+  bool stale_ = true;  ///< equations_ lacks the present parameters and inputs
 };
 
 }  // namespace rigcal::model

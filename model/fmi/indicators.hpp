@@ -85,7 +85,7 @@ void plant_indicators(const TwoChamberPlant::Coefficients<double>& p, const Pres
   indicators.push_back(extended_m);
   indicators.push_back(p.stroke_m - extended_m);
   chamber_indicators(p, terms, x, spool_v, indicators);
-  if (terms.hoses < 0) return;  // each hose yields in the direction in which its pressure changes
+  if (terms.hoses < 0) return;  // a hose behaves differently while its pressure rises or falls
   indicators.push_back(dx[Plant::pressure_a]);
   indicators.push_back(dx[Plant::pressure_b]);
 }
@@ -103,7 +103,7 @@ void plant_indicators(const LinkagePlant::Coefficients<double>& p, const Present
   chamber_indicators(p, terms, x, spool, indicators);
 }
 
-/// Appends the velocity; the bristles reverse where it crosses zero.
+/// Appends the velocity, because the bristle force has a kink where the velocity changes sign.
 template <typename Plant, std::size_t N>
 void friction_indicators(const PresentTerms& terms, const std::array<double, N>& x,
                          std::vector<double>& indicators) {

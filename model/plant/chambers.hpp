@@ -17,11 +17,11 @@ namespace rigcal::model {
 template <typename Parameters>
 struct ChamberCoefficients : Parameters {
   using C = decltype(Parameters::area_a_m2);
-  C gain{};       ///< spool travel per signal, for the kind of valve that the rig has [m/V or m/Pa]
-  C dead_band{};  ///< [V or Pa]
-  C conductance{};       ///< flow of an edge per spool travel and root of pressure
-  C edge_conductance{};  ///< flow of an edge per signal and root of pressure
-  C leak_conductance{};  ///< orifice leakage per root of pressure
+  C gain{};  ///< spool travel per signal, of an electric or a pilot-operated valve [m/V or m/Pa]
+  C dead_band{};         ///< [V or Pa]
+  C conductance{};       ///< flow through an edge per spool travel and square root of pressure
+  C edge_conductance{};  ///< flow through an edge per signal and square root of pressure
+  C leak_conductance{};  ///< orifice leakage per square root of pressure
 
   ChamberCoefficients() = default;
   explicit ChamberCoefficients(const Parameters& p)
@@ -41,7 +41,8 @@ struct Chambers {
   static constexpr int kStates = 4;  ///< position and velocity of the load, then both pressures
   enum Pressure { pressure_a = 2, pressure_b = 3 };
 
-  /// Index of the state that an output reads apart from its sensor; std::nullopt if the output is
+  /// Index of the state that an output equals, apart from sensor errors; std::nullopt if the output
+  /// is not a pressure.
   /// not a pressure.
   static constexpr std::optional<int> pressure_of(Output output) {
     if (output == Output::pressure_a) return pressure_a;
@@ -60,8 +61,8 @@ struct Chambers {
     return terms.null_leak ? X(head_pa * p.valve_null_leakage_m3_per_s_pa) : X(0.0);
   }
 
-  /// Opening of an edge in the unit of the signal, for a signal `beyond` the dead band. Both are
-  /// positive.
+  /// Opening of an edge, in the unit of the signal. `beyond` is the signal beyond the dead band.
+  /// Both are positive.
   template <typename X, typename P, typename C>
   static X shaped(const X& beyond, const C& exponent, bool by_power, const P& p,
                   const PresentTerms& terms) {
@@ -72,7 +73,7 @@ struct Chambers {
                          std::array<C, 4>{p.opening_20, p.opening_40, p.opening_60, p.opening_80});
   }
 
-  /// Spool travel that opens an edge [m]. A positive signal opens it.
+  /// Opening of an edge, as spool travel [m]. A positive signal opens it.
   template <typename X, typename P, typename C>
   static X opening(bool to_tank, const X& signal, const C& overlap_v, const P& p,
                    const PresentTerms& terms) {
@@ -195,7 +196,7 @@ struct Chambers {
     return (value_of(out) < 0.0 ? X(-out) : out) - p.dead_band;
   }
 
-  /// How much flow the valve demands of the pump, from 0 to 1.
+  /// Flow that the valve demands from the pump, as a fraction from 0 to 1.
   template <typename X, typename P>
   static X demand(const PlantInput<X>& in, const P& p, const PresentTerms& terms) {
     using std::tanh;
@@ -203,8 +204,8 @@ struct Chambers {
     return tanh(X(positive_part(beyond_dead_band(in, p)) / whole));
   }
 
-  /// Rate of the time for which the pump has been asked for flow [1]. Without a demand, that time
-  /// decays.
+  /// Time derivative of the demand time [1], which counts how long the valve has demanded flow from
+  /// the pump. Without a demand, the demand time decays.
   template <typename X, std::size_t M, typename P>
   [[gnu::noinline]] static X demand_rate(const std::array<X, M>& x, const PlantInput<X>& in,
                                          const P& p, const PresentTerms& terms) {
@@ -245,7 +246,7 @@ struct Chambers {
     return value_of(kept_pa) < value_of(limit_pa) ? kept_pa : limit_pa;
   }
 
-  /// Flow of the pump [m3/s]: what its pressure demands, up to its largest flow.
+  /// Flow of the pump [m3/s]: as much as it needs to maintain its pressure, up to its largest flow.
   template <typename X, std::size_t M, typename P>
   static X pump_flow(const X& limit_pa, const std::array<X, M>& x, const PlantInput<X>& in,
                      const P& p, const PresentTerms& terms) {
@@ -256,7 +257,7 @@ struct Chambers {
     return value_of(asked) > value_of(largest) ? largest : asked;
   }
 
-  /// Rate of change of the supply pressure at the valve [Pa/s].
+  /// Time derivative of the supply pressure at the valve [Pa/s].
   ///
   /// @param limit_pa  pressure to which the pump is limited
   /// @param taken     flow that the valve takes from the supply [m3/s]

@@ -101,7 +101,7 @@ X integral_rate(const X& error, const ControllerOutput<X>& u, const P& p) {
 
 /// One tick of the sampled controller. The filters advance by backward Euler, the integral by
 /// forward Euler with the same back-calculation, and the output is constant until the next tick.
-/// Back-calculation takes at least one period to reach the limit, so it cannot overshoot it.
+/// Back-calculation takes at least one period to reach the limit, so the integral cannot overshoot.
 template <typename X, typename State, typename P>
 void controller_tick(const LoopError<X>& loop, State& state, const P& p, const Layout& layout) {
   const X& error = loop.error;

@@ -11,7 +11,7 @@
 
 namespace rigcal::model {
 
-/// Optional terms of a rig. An absent term costs no time.
+/// Optional terms of a rig's model. An absent term costs no computing time.
 struct PresentTerms {
   bool friction = false;         ///< Coulomb or breakaway friction was given
   bool stribeck = false;         ///< breakaway friction was given
@@ -29,7 +29,7 @@ struct PresentTerms {
   bool curved_load = false;     ///< the curvature of the load is not zero, or is free
   bool overlaps = false;        ///< the overlap of an edge is not zero, or is free
   bool null_opening = false;    ///< covered edges leak through an orifice
-  bool line_loss = false;       ///< the lines throttle the flow, too
+  bool line_loss = false;       ///< the lines also throttle the flow
   bool air = false;             ///< the bulk modulus falls at low pressure
   bool external_leak = false;   ///< the external leak of a chamber is not zero, or is free
   int hoses = -1;               ///< index of the first state of yielding hoses; -1: rigid hoses
@@ -38,7 +38,7 @@ struct PresentTerms {
   bool power_opening = false;   ///< the spool opens according to a power law
   bool return_band = false;     ///< the edges to the tank have their own dead band
   bool return_power = false;    ///< the edges to the tank have their own power law
-  bool return_line = false;     ///< the line to the tank throttles the flow, too
+  bool return_line = false;     ///< the line to the tank also throttles the flow
   bool return_loss = false;  ///< the line to the tank has a pressure loss proportional to its flow
   bool bypass = false;       ///< a closed valve passes the flow of the pump to the tank
   bool table_opening = false;  ///< the spool opens according to a table
@@ -54,9 +54,9 @@ struct PresentTerms {
   int supply =
       -1;  ///< index of the supply pressure at the valve; -1: equal to the pressure of the source
   bool valve_rate_limit = false;
-  bool retracted_position = false;     ///< otherwise half a stroke below zero
-  bool initial_load_pressure = false;  ///< otherwise the load pressure starts in equilibrium
-  bool initial_pressure_a = false;     ///< otherwise from the other pressure and the load
+  bool retracted_position = false;     ///< was given; otherwise half a stroke below zero
+  bool initial_load_pressure = false;  ///< was given; otherwise in equilibrium
+  bool initial_pressure_a = false;  ///< was given; otherwise from the other pressure and the load
   bool initial_pressure_b = false;
 };
 
@@ -73,7 +73,7 @@ struct StateRow {
   double nominal = 0.0;
 };
 
-// States of every plant.
+// States of the plants.
 inline constexpr StateRow kPistonPosition{"position", "m", "position of the piston", 1e-6, 0.01};
 inline constexpr StateRow kPistonVelocity{"velocity", "m/s", "velocity of the piston", 1e-5, 0.1};
 inline constexpr StateRow kPressureA{"pressure_a", "Pa", "pressure of chamber A", 100.0, 0.1};
@@ -120,7 +120,7 @@ struct Layout {
   int plant_states = 0;
   int hoses = -1;       ///< strain memory of both hoses [1]
   int supply = -1;      ///< supply pressure at the valve [Pa]
-  int pump = -1;        ///< time for which the pump has been asked for flow [s]
+  int pump = -1;        ///< demand time: how long the valve has demanded flow from the pump [s]
   int payload = -1;     ///< position [m] and velocity [m/s] of the second mass
   int bristles = -1;    ///< force of the bristles [N]
   int valve_order = 0;  ///< 0: the spool follows the command; 1, 2: order of its lag
@@ -140,7 +140,7 @@ struct Layout {
   std::array<const StateRow*, kMostAdded> added{};  ///< the states after those of the plant
 
   bool sampled() const { return held >= 0; }
-  /// Whether the loop feeds back only the position of the piston, and feeds nothing forward.
+  /// Whether the loop feeds back only the position of the piston and has no feed-forward.
   bool position_alone() const {
     return feedback == Feedback::position && !pressure_feedback && reference < 0;
   }
@@ -177,7 +177,7 @@ inline Layout layout_of(const Rig& rig, const ParameterValues& values, std::span
   Layout layout;
   layout.plant_states = plant_states;
   layout.states = plant_states;
-  // A term of another plant is not in the table of this plant.
+  // The table of this plant lacks terms that only other plants have.
   const auto given = [&values](std::string_view key) {
     return parameter_index(values.plant, key) >= 0 && values.is_given(key);
   };

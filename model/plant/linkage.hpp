@@ -19,14 +19,14 @@ namespace rigcal::model {
 ///   p_A'     = beta(p_A) / V_A (Q_A - Q_leak - G_A (p_A - P_t) + Q_mA - A_A D omega)
 ///   p_B'     = beta(p_B) / V_B (Q_leak - Q_B - G_B (p_B - P_t) + Q_mB + A_B D omega)
 ///
-/// D is the lever: piston travel per angle, and so moment per force. Positive angle and piston
-/// travel correspond: pressure in chamber A increases the angle.
+/// D is the lever arm: piston travel per angle, and therefore moment per force. Pressure in chamber
+/// A increases both the piston travel and the angle.
 struct LinkagePlant : Chambers {
   static constexpr std::string_view kName = "linkage";  ///< in campaign files
   enum Motion {
     angle,
     angular_velocity,
-    position = angle,  ///< the names that System uses for the first two
+    position = angle,  ///< System uses these names for the first two states
     velocity = angular_velocity
   };
   template <typename T>
@@ -54,7 +54,7 @@ struct LinkagePlant : Chambers {
       StateRow{"angular_velocity", "rad/s", "angular velocity of the joint", 1e-5, 0.1}, kPressureA,
       kPressureB};
 
-  /// Index of the state that an output reads apart from its sensor; std::nullopt if the output
+  /// Index of the state that an output equals, apart from sensor errors; std::nullopt if the output
   /// depends on more than one state.
   static constexpr std::optional<int> state_of(Output output) {
     if (output == Output::angle) return angle;
@@ -116,8 +116,8 @@ struct LinkagePlant : Chambers {
                       p.angle_stop_damping_s_per_rad);
   }
 
-  /// Oil volumes of the chambers [m3], limited below to a thousandth of the swept volume for an arm
-  /// that is pressed into its stop.
+  /// Oil volumes of the chambers [m3]. They are at least a thousandth of the swept volume, even if
+  /// the arm is pressed into a stop.
   template <typename X, typename C>
   static std::array<X, 2> volumes(const X& theta, const Coefficients<C>& p) {
     const X x = travel(theta, p);

@@ -24,8 +24,8 @@ struct LoadPressurePlant {
   /// Parameters and quantities that depend only on them.
   template <typename C>
   struct Coefficients : Parameters<C> {
-    C valve_conductance{};  ///< servo flow per spool travel and root of pressure
-    C leak_conductance{};   ///< orifice leakage per root of pressure
+    C valve_conductance{};  ///< servo flow per spool travel and square root of pressure
+    C leak_conductance{};   ///< orifice leakage per square root of pressure
     C inverse_mass{};       ///< [1/kg]
     C inverse_capacity{};   ///< pressure rate per flow, 4 beta / V_t [Pa/m3]
 
@@ -47,7 +47,7 @@ struct LoadPressurePlant {
       kPistonPosition, kPistonVelocity,
       StateRow{"load_pressure", "Pa", "pressure of chamber A less that of B", 100.0, 0.1}};
 
-  /// Index of the state that an output reads apart from its sensor; std::nullopt if the output
+  /// Index of the state that an output equals, apart from sensor errors; std::nullopt if the output
   /// depends on more than one state.
   static constexpr std::optional<int> state_of(Output output) {
     switch (output) {
@@ -62,8 +62,9 @@ struct LoadPressurePlant {
     }
   }
 
-  /// Whether reversed inputs reverse the states and an output. All terms are odd functions, except
-  /// those that act in one direction only. The chamber pressures swap instead of changing sign.
+  /// Whether reversing the inputs reverses the states and this output. All terms are odd functions,
+  /// except those that act in one direction only. The chamber pressures swap instead of changing
+  /// sign.
   static bool reversible(Output output, const PresentTerms& terms) {
     return !terms.external_force && !terms.curved_load && !terms.valve_offset &&
            output != Output::pressure_a && output != Output::pressure_b;

@@ -30,7 +30,7 @@ X friction(const X& v, const CommonParameters<C>& p, const PresentTerms& terms) 
 /// Internal leakage across the piston from A to B [m3/s]: an orifice (eq. 11), in series with a
 /// laminar resistance if that was given, and a laminar path in parallel.
 ///
-/// @param p  with leak_conductance: orifice_conductance() of the leak
+/// @param p  parameters of the plant, with orifice_conductance() of the leak as leak_conductance
 template <typename X, typename P>
 X internal_leak(const X& load_pressure_pa, const P& p, const PresentTerms& terms) {
   const X laminar = load_pressure_pa * p.laminar_leakage_m3_per_s_pa;
@@ -42,7 +42,7 @@ X internal_leak(const X& load_pressure_pa, const P& p, const PresentTerms& terms
 }
 
 /// Magnitude of the dry friction in steady sliding [N]. Seal friction grows with the pressure that
-/// presses the seals on.
+/// energises the seals.
 ///
 /// @tparam Plant  provides the velocity and the pressure across the piston
 template <typename Plant, typename X, std::size_t M, typename C>
@@ -58,7 +58,7 @@ X sliding_friction_of(const std::array<X, M>& x, const CommonParameters<C>& p,
   return sliding_n + (value_of(P_L) < 0.0 ? X(-P_L) : P_L) * p.seal_friction_m2;
 }
 
-/// Rate of the force of the bristles [N/s].
+/// Time derivative of the bristle force [N/s].
 template <typename Plant, typename X, std::size_t M, typename C>
 X bristle_rate_of(const std::array<X, M>& x, const CommonParameters<C>& p,
                   const PresentTerms& terms) {
@@ -67,8 +67,8 @@ X bristle_rate_of(const std::array<X, M>& x, const CommonParameters<C>& p,
                       sliding_friction_of<Plant>(x, p, terms), p.bristle_stiffness_n_per_m);
 }
 
-/// Dry friction of seals or with pre-sliding [N]. Not inlined, to keep the code of rigs without it
-/// short.
+/// Dry friction with seal friction or pre-sliding [N]. Not inlined, to keep the code of rigs
+/// without these terms short.
 template <typename Plant, typename X, std::size_t M, typename C>
 [[gnu::noinline]] X shaped_friction(const std::array<X, M>& x, const CommonParameters<C>& p,
                                     const PresentTerms& terms) {

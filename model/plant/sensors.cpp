@@ -7,8 +7,8 @@
 namespace rigcal::model {
 namespace {
 
-/// Minimum number of times per lag. Linear interpolation between them is then accurate to 1e-3 of a
-/// signal that passes the sensor.
+/// Minimum number of times per lag. Linear interpolation between them is then accurate to 1e-3 of
+/// any signal that the sensor can follow.
 constexpr double kTimesPerLag = 8.0;
 /// Maximum number of pieces of a sample interval. A lag that would need more has no noticeable
 /// effect.

@@ -35,9 +35,10 @@ std::optional<SensorTimes> sensor_times(std::span<const Output> outputs,
                                         const ParameterValues& values,
                                         std::span<const double> samples_s);
 
-/// Converts quantities at the times in `at` into readings at its samples, with sensitivities to the
-/// sensor parameters in `free`. Quantities are interpolated linearly between times. A saturated
-/// reading has no sensitivities, so saturated samples are not fitted.
+/// Converts the physical quantities of a run into sensor readings, with sensitivities to the sensor
+/// parameters in `free`. The quantities are interpolated linearly between the times in `at` and
+/// read at its samples. A saturated reading has no sensitivities, so saturated samples are not
+/// fitted.
 ///
 /// @param at   sensor_times() of the samples
 /// @param run  a successful run with one matrix row per time; on return it has one row per sample

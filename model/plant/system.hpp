@@ -59,7 +59,7 @@ class System {
   std::optional<InputTrack>& supply_pressure() { return supply_pressure_; }
   std::optional<InputTrack>& tank_pressure() { return tank_pressure_; }
   std::optional<InputTrack>& spool_error() { return spool_error_; }
-  /// Sensitivity column of the transport delay among the P directions; -1 if it has none.
+  /// Sensitivity column of the transport delay, among the P directions; -1 if there is none.
   int delay_direction() const { return delay_direction_; }
 
   /// Derivative of the states and, by the chain rule, of their sensitivities.
@@ -86,7 +86,8 @@ class System {
   bool drive_stops_at_valve() const { return N > Plant::kStates && layout_.valve_order > 0; }
 
   /// Updates a linearisation at (x, t) after a jump of a drive that acts only on controller and
-  /// valve. Recomputes the rows of controller and valve. A recorded command jumps at every sample.
+  /// valve, by recomputing only their rows. This helps because a recorded command jumps at every
+  /// sample.
   void follow_drive(const Values<N>& x, double t, Linearisation<N, P>& lin) const {
     if constexpr (N > Plant::kStates) {
       Numbers<ByStates> rates{};
@@ -174,8 +175,8 @@ class System {
     }
   }
 
-  /// State at the first sample. For Before::steady it is the point from which the rig settles. Call
-  /// forget_hoses() afterwards.
+  /// State at the first sample. For Before::steady, it is the state from which settle() starts.
+  /// Call forget_hoses() afterwards.
   X initial(InitialState mode, Before before, double t) {
     const Coefficients<C>& p = parameters_of(ByParameters{});
     X states;
@@ -209,8 +210,8 @@ class System {
     if (layout_.reference >= 0)  // the filtered rate begins at zero
       states[static_cast<std::size_t>(layout_.reference)] = states[Plant::position];
     if (given || before == Before::steady) {
-      // The loop was closed before the record began: the derivative gives no kick, and the spool is
-      // at rest.
+      // The loop was closed before the record began: the derivative action gives no kick, and the
+      // spool is at rest.
       const C drive =
           before == Before::hold ? input_value(ByParameters{}, drive_, t, true) : while_it_waits_;
       const LoopError<C> loop = loop_error(ByParameters{}, states, drive, t);
@@ -309,7 +310,7 @@ class System {
     }
   }
 
-  /// Direction of the transport delay among those of a number; -1 if it is not one of them.
+  /// Index of the transport delay among the directions of a number; -1 if it is not one of them.
   int direction_of_delay(ByParameters /*by*/) const { return delay_direction_; }
   int direction_of_delay(ByBlock by) const {
     const int direction = delay_direction_ - kBlock * static_cast<int>(by.block);
@@ -404,8 +405,8 @@ class System {
     return lin;
   }
 
-  /// Inlining everything saves an eighth of a simulation with sensitivities. With more states it
-  /// would take long to compile.
+  /// Inlining everything saves an eighth of the time of a simulation with sensitivities. With more
+  /// states, it would take too long to compile.
   [[gnu::flatten]] Linearisation<N, P> linearise_inlined(const Values<N>& x, double t) const {
     return linearise_by_calls(x, t);
   }

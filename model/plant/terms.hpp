@@ -9,7 +9,7 @@
 
 namespace rigcal::model {
 
-/// Flow of a servo valve per spool travel and root of pressure: C_d w / sqrt(rho).
+/// Flow through a servo valve per spool travel and square root of pressure: C_d w / sqrt(rho).
 template <typename C>
 C valve_conductance(const C& discharge_coefficient, const C& area_gradient_m,
                     const C& density_kg_per_m3) {
@@ -34,7 +34,7 @@ X servo_flow(const X& spool_m, const X& load_pressure_pa, const S& supply_pressu
   return spool_m * conductance * signed_sqrt(head, smoothing_pa);
 }
 
-/// Flow of the leak per root of pressure: C_leak w_leak sqrt(2 / rho).
+/// Leakage flow per square root of pressure: C_leak w_leak sqrt(2 / rho).
 template <typename C>
 C orifice_conductance(const C& coefficient, const C& area_m2, const C& density_kg_per_m3) {
   using std::sqrt;
@@ -66,8 +66,8 @@ X dry_friction(const X& velocity_m_per_s, const C& coulomb_n, const C& stribeck_
          smooth_sign(velocity_m_per_s, smoothing_m_per_s);
 }
 
-/// Rate of the force of the bristles, F_b' = sigma_0 (v - |v| F_b / g(v)): they bend until their
-/// force reaches g(v) and they slide.
+/// Time derivative of the bristle force, F_b' = sigma_0 (v - |v| F_b / g(v)). The bristles bend
+/// until their force reaches g(v), and then slide.
 ///
 /// @param sliding_n  g(v), sliding_friction()
 /// @source   C. Canudas de Wit, H. Olsson, K. J. Astrom and P. Lischinsky, A new model for control
@@ -139,7 +139,7 @@ X flow_before_line(const X& head_pa, const X& conductance, const C& resistance,
   return 2.0 * conductance * head_pa / (line + sqrt(X(line * line + 4.0 * size_pa)));
 }
 
-/// Opening that follows a power law, y_r (y / y_r)^n, for example of an edge with notches.
+/// Opening that follows a power law, y_r (y / y_r)^n, for example that of an edge with notches.
 ///
 /// @param y        signal beyond the dead band, > 0
 /// @param range    y_r, signal at which the opening is the same as with n = 1, in the unit of y
@@ -177,10 +177,10 @@ X compensated_head(const X& head_pa, const C& spring_pa) {
   return value_of(head_pa) > value_of(spring_pa) ? X(spring_pa) : head_pa;
 }
 
-/// Largest flow of a pump, which rises from a first value to a second [m3/s]:
+/// Largest flow of a pump, which changes smoothly from one value to another [m3/s]:
 /// Q_1 + (Q_2 - Q_1) (1 + tanh((t - T_2) / tau_2)) / 2.
 ///
-/// @param demand_s  t, time for which the pump has been asked for flow
+/// @param demand_s  t, how long the valve has demanded flow from the pump
 template <typename X, typename C>
 X two_stages(const X& demand_s, const X& first, const C& second, const C& delay_s,
              const C& rise_s) {
@@ -211,9 +211,10 @@ X absolute_pressure(const X& pressure_pa) {
   return at_least(X(pressure_pa + kAtmosphere_pa), kLeast_pa);
 }
 
-/// Oil that an accumulator takes up per pressure [m3/Pa]. Above the precharge its gas follows
-/// p V^n = constant: V_0 / (n p) (p_g / p)^(1/n). Below the precharge the bladder fills its shell.
-/// It lifts off over a few hundredths of the pressure, which keeps the derivative continuous.
+/// Oil that an accumulator takes up per pressure [m3/Pa]. Above the precharge, its gas follows
+/// p V^n = constant: V_0 / (n p) (p_g / p)^(1/n). Below the precharge, the bladder fills its shell.
+/// The transition extends over a few per cent of the precharge, which keeps the derivative
+/// continuous.
 ///
 /// @param pressure_pa   above atmosphere
 /// @param volume_m3     V_0, volume of the gas at the precharge

@@ -44,7 +44,7 @@ struct TwoChamberPlant : Chambers {
   static constexpr std::array<StateRow, kStates> kStateRows{kPistonPosition, kPistonVelocity,
                                                             kPressureA, kPressureB};
 
-  /// Index of the state that an output reads apart from its sensor; std::nullopt if the output
+  /// Index of the state that an output equals, apart from sensor errors; std::nullopt if the output
   /// depends on more than one state.
   static constexpr std::optional<int> state_of(Output output) {
     if (output == Output::position) return position;
@@ -55,7 +55,7 @@ struct TwoChamberPlant : Chambers {
   /// No output is reversible, because the chambers differ.
   static bool reversible(Output, const PresentTerms&) { return false; }
 
-  /// Spool travel [m], eq. 6, with null shift. The overlap belongs to the edges.
+  /// Spool travel [m], eq. 6, with null shift. The overlaps are applied to the edges.
   template <typename X, typename C>
   static X spool(const PlantInput<X>& in, const Coefficients<C>& p, const PresentTerms& terms) {
     if (terms.shaped_valve) return shaped_spool(in, p, terms);
@@ -130,8 +130,8 @@ struct TwoChamberPlant : Chambers {
     return terms.retracted_position ? p.retracted_position_m : C(-0.5 * p.stroke_m);
   }
 
-  /// Oil volumes of the chambers [m3], limited below to a thousandth of the swept volume for a
-  /// piston that is pressed into its stop.
+  /// Oil volumes of the chambers [m3]. They are at least a thousandth of the swept volume, even if
+  /// the piston is pressed into a stop.
   template <typename X, typename C>
   static std::array<X, 2> volumes(const X& x, const Coefficients<C>& p, const PresentTerms& terms) {
     const X extended = x - retracted_stop(p, terms);
@@ -165,8 +165,8 @@ struct TwoChamberPlant : Chambers {
             flow[1] / (take_b + yields[1] * p.hose_capacity_b_m3_per_pa)};
   }
 
-  /// Fraction of each hose that yields. A pressure changes in the direction of the flow into its
-  /// chamber.
+  /// Fraction of each hose that yields. The sign of the flow into a chamber gives the direction in
+  /// which its pressure changes.
   template <typename X, std::size_t M>
   static std::array<X, 2> hose_shares(const std::array<X, M>& x, const X& toward_a,
                                       const X& toward_b, const PresentTerms& terms) {
@@ -192,8 +192,8 @@ struct TwoChamberPlant : Chambers {
             (1.0 - yields[1]) * dx[pressure_b] / yield_b};
   }
 
-  /// Memory of a hose that came to its pressure in one monotonic change, from the tank's or the
-  /// supply's.
+  /// Memory of a hose after a single monotonic change of pressure: a rise from tank pressure or a
+  /// fall from supply pressure.
   template <typename X, typename C>
   static X hose_memory(const X& pressure_pa, const PlantInput<C>& in) {
     return clamp_symmetric(X((2.0 * pressure_pa - in.supply_pressure_pa - in.tank_pressure_pa) /
@@ -258,7 +258,7 @@ struct TwoChamberPlant : Chambers {
 
  private:
   /// Fills in the pressures that are not given. If the reading puts the piston beyond a stop, moves
-  /// it onto the stop, because a sensor's error exceeds the elastic travel of a stop.
+  /// it onto the stop, because a sensor's error can exceed the elastic travel of a stop.
   template <typename C>
   static std::array<C, kStates> settled(std::array<C, kStates> x, const PlantInput<C>& in,
                                         const Coefficients<C>& p, const PresentTerms& terms,

@@ -5,8 +5,8 @@
 
 namespace rigcal::model {
 
-/// Samples of a periodic run. All before `end` are known: the last period, which is `samples` long,
-/// and also the period before it if any multiple is not zero.
+/// The known samples of a periodic run are those before `end`. They include the last period, which
+/// has `samples` samples, and also the period before it if a change is to be extrapolated.
 struct KnownPeriods {
   std::size_t end;
   std::size_t samples;
@@ -15,7 +15,7 @@ struct KnownPeriods {
 
 /// Extrapolates a column of samples. Each further period is the last known one plus a multiple of
 /// its change since the previous one. Every other period is multiplied by the sign of `known`.
-///
+/// @param share  the multiples, shape (further periods); if one is zero, the change is not read
 /// @param share  the multiples, shape (further periods); for zero, the change is not read
 void continue_periods(const KnownPeriods& known, std::span<const double> share,
                       std::span<double> column);

@@ -15,15 +15,15 @@ struct SampledPeriod {
   bool reversed =
       false;  ///< an odd number of half periods: the inputs repeat with the opposite sign
 
-  /// Factor from one period to the next of a periodic quantity.
+  /// Factor by which a periodic quantity changes from one period to the next.
   double sign() const { return reversed ? -1.0 : 1.0; }
 };
 
 /// Finds the shortest whole number of drive periods after which every sample (and every tick of a
 /// controller with `tick_s`) has a counterpart, if that is shorter than the record. Half periods
-/// count if the drive then has the opposite sign and the rig is `reversible`.
+/// also qualify if the drive then has the opposite sign and the rig is `reversible`.
 ///
-/// @param reversible  whether reversed inputs reverse the response of the rig
+/// @param reversible  whether reversing the inputs reverses the response of the rig
 /// @param tick_s      sample time of the controller; std::nullopt if it has none
 /// @return            std::nullopt if an input or the samples are not periodic
 std::optional<SampledPeriod> sampled_period(const SimulationInputs& inputs,

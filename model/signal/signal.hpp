@@ -13,11 +13,11 @@ struct SignalSample {
   double slope = 0.0;
 };
 
-/// What the drive was before its first sample.
+/// Value of the drive before its first sample.
 enum class Before {
   hold,    ///< equal to its first value; the rig starts from its initial state
   rest,    ///< neutral: no command, or the reference at which the piston rests
-  steady,  ///< equal to its first value, and the rig had settled at that
+  steady,  ///< equal to its first value, at which the rig had settled
 };
 
 /// One period of a signal with amplitude 1, in pieces of equal length. The signal is smooth within
@@ -25,8 +25,8 @@ enum class Before {
 struct PeriodicShape {
   int pieces = 1;  ///< number of pieces; a simulation ends a step at the end of each
   /// @param piece  index within the period, from 0
-  /// @param phase  within the period, in periods; before t = 0 it is negative, and in the first
-  ///               piece
+  /// @param phase  within the period, in periods; negative before t = 0, where the piece is the
+  ///               first
   /// @return       value, and slope per period
   SignalSample (*at)(int piece, double phase) = nullptr;
   bool reverses = false;  ///< after half a period the signal repeats with the opposite sign
@@ -70,7 +70,8 @@ class Signal {
   std::optional<double> period_s() const;
   /// Whether the signal changes its sign after half a period.
   bool reverses() const;
-  /// Longest step that cannot skip an oscillation; infinity if the breakpoints ensure that.
+  /// Longest step that cannot skip an oscillation; infinity if the breakpoints prevent this
+  /// already.
   double max_step() const;
 
  private:

@@ -12,10 +12,10 @@ namespace rigcal::model {
 
 /// Moves a state to the point at which the rig settles while the inputs keep their values at the
 /// first sample. Implicit Euler steps grow until they are Newton steps (pseudo-transient
-/// continuation; Kelley and Keyes, 1998). In an open loop the piston keeps its position and takes
-/// the speed that its command causes. A quantity that nothing restores keeps its value, too, such
-/// as the mean pressure behind edges that do not leak. The sensitivities follow from the implicit
-/// function theorem.
+/// continuation; Kelley and Keyes, 1998). In an open loop, the piston keeps its position and takes
+/// the speed that its command causes. A quantity without a restoring effect, such as the mean
+/// pressure behind edges that do not leak, also keeps its value. The sensitivities follow from the
+/// implicit function theorem.
 ///
 /// @param floor  size below which each state counts as zero
 /// @return       false if the rig does not settle

@@ -6,8 +6,8 @@ namespace rigcal::model {
 namespace {
 
 // Limits relative to the planned step, whose expected error is two thirds of the allowed one. A
-// longer step would be rejected, and a shorter one wasteful. After a rejection, a much shorter step
-// is accepted, because the planned one would be rejected again.
+// longer step would be rejected, and a shorter one would be wasteful. After a rejection, a much
+// shorter step is accepted, because the planned one would be rejected again.
 constexpr double kLongest = 1.1;
 constexpr double kShortest = 0.7;
 constexpr double kShortestForced = 0.05;

@@ -11,8 +11,8 @@
 namespace rigcal::model {
 
 /// With periodic inputs, makes a step end at the same phase as a step one period earlier, if that
-/// is close to the choice of the error control. Steps that were rejected one period earlier are not
-/// tried again, and two periods differ only in their states, not in their steps.
+/// is close to the end that error control would choose. Steps that were rejected one period earlier
+/// are not tried again, and two periods differ only in their states, not in their steps.
 class RepeatedSteps {
  public:
   explicit RepeatedSteps(const std::optional<SampledPeriod>& period) {

@@ -50,8 +50,8 @@ struct Rodas4P {
 
 /// RODAS4P as an error stepper with dense output.
 ///
-/// Odeint's own rosenbrock4 (RODAS) has a wrong sign in its d4, which costs it order on systems
-/// that depend on time; it works on heap-allocated uBLAS matrices, has no sensitivities, and needs
+/// Odeint's own rosenbrock4 (RODAS) has a wrong sign in its d4, which lowers its order for systems
+/// that depend on time. It works on heap-allocated uBLAS matrices, has no sensitivities, and needs
 /// three times as many steps at a tolerance of 1e-6 with a stiff valve (docs/decisions/0002).
 ///
 /// The sensitivities S follow the states: the method integrates their own equations

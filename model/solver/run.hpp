@@ -93,8 +93,8 @@ class Run {
   /// At a kink, the Dormand-Prince formula underestimates its error more than the Rosenbrock
   /// formula. At a fifth of the tolerance, both are equally accurate on the six signals in bench/.
   static constexpr double kCare = 5.0;
-  /// A forced step is no longer forced if its error is below this: it could then be half as long
-  /// again.
+  /// A step stops being forced if its error is below this value, because a step half as long again
+  /// would then be accepted.
   static constexpr double kStillForced = 0.1;
   static constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
@@ -219,7 +219,7 @@ class Run {
   }
 
   /// Emits the samples strictly between the present and the end of the completed step. A sample at
-  /// t_new itself waits, because an event there may change its value.
+  /// t_new itself is left for later, because an event there may change its value.
   void emit_until(double t_new, const X& x_new) {
     const double last = t_new - same_instant_s_;
     std::size_t end = next_sample_;
@@ -243,8 +243,8 @@ class Run {
     }
   }
 
-  /// Stores samples [begin, end) of an output that is a state, from its polynomial in the fraction
-  /// of the step.
+  /// Stores samples [begin, end) of an output that is a state, given its polynomial over the step.
+  /// The polynomial's variable is the fraction of the step.
   void store_polynomial(std::size_t begin, std::size_t end, std::size_t output,
                         const std::array<C, 5> polynomial, double rate) {
     const double origin = times_s_.front() + t_;
@@ -322,8 +322,8 @@ class Run {
     }
     for (std::size_t k = 0; k < outputs_.size(); ++k) {
       const std::span values = column(result_->outputs, static_cast<int>(k));
-      // The sensitivities come first, because they follow from the values, of which all but the
-      // last known periods change.
+      // The sensitivities need only the known values, so it does not matter that a later pass finds
+      // the values already extrapolated.
       for (int j = 0; j < columns_; ++j) {
         const std::span by = column(result_->sensitivities[k], first_column_ + j);
         continue_periods(known, share, by);
@@ -412,7 +412,7 @@ class Run {
   Linearisation<N, P> lin_;      ///< at the present point, if known
   Linearisation<N, P> lin_end_;  ///< at the end of the step just tried
   bool lin_known_ = false;
-  X slope_{};  ///< derivative at the present point, for the explicit method and if known
+  X slope_{};  ///< derivative at the present point, for the explicit method, if known
   bool slope_known_ = false;
   Simulation* result_ = nullptr;  ///< owned by the caller; set during one run
   int first_column_ = 0;

@@ -24,13 +24,13 @@ struct SizedRequest {
   std::span<const Output> outputs;
   const SimulationOptions& options;
   std::optional<SampledPeriod> period;  ///< period of the inputs, with which a steady state repeats
-  std::chrono::steady_clock::time_point started;  ///< start of the time limit max_seconds
+  std::chrono::steady_clock::time_point started;  ///< when the time limit max_seconds began to run
 };
 
 /// Instruction set of a compiled solver. `base` runs on every processor.
 enum class InstructionSet { base, avx2 };
 
-/// @return  the best instruction set that this processor has and the solver is compiled for
+/// Returns the best instruction set that the processor supports and the solver was compiled for.
 InstructionSet best_instruction_set();
 
 /// @tparam N  room for states, at least as many as the layout has

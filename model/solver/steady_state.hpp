@@ -62,8 +62,8 @@ class SteadyState {
     return looks_ > 2 * looks_a_period_ && follows(change, before, norm, phase == 0);
   }
 
-  /// Whether the run is in its steady state. If not, it approaches it by a fixed fraction per
-  /// period.
+  /// Whether the run is in its steady state. If not, it approaches the steady state by a fixed
+  /// fraction per period.
   bool reached() const { return reached_; }
   /// Change over the next `periods`, as a multiple of the last change.
   [[gnu::cold]] C growth(long periods) const {
@@ -72,7 +72,7 @@ class SteadyState {
     return sum;
   }
   std::size_t samples() const { return samples_; }  ///< samples in one period
-  double sign() const { return sign_; }             ///< sign from one period to the next
+  double sign() const { return sign_; }             ///< factor from one period to the next
   /// State at the end of the run, once the rest of it can be extrapolated.
   [[gnu::cold]] X at_end() const {
     // Counts from the last check at this phase of a period.
@@ -133,9 +133,10 @@ class SteadyState {
     return result;
   }
 
-  std::array<X, static_cast<std::size_t>(kLooks)> seen_{};  ///< next() of each phase
-  std::array<X, static_cast<std::size_t>(kLooks)>
-      change_{};  ///< next() of the change over the last period
+  /// next() of the latest state at each phase.
+  std::array<X, static_cast<std::size_t>(kLooks)> seen_{};
+  /// next() of the latest change over a period at each phase.
+  std::array<X, static_cast<std::size_t>(kLooks)> change_{};
   C ratio_{0.0};  ///< ratio of the changes in the last complete period to those in the one before
   C along_{0.0};  ///< sum over this period, for the next ratio
   C square_{0.0};
@@ -148,7 +149,7 @@ class SteadyState {
   double interval_s_ = 0.0;
   double end_s_ = 0.0;
   long looks_ = 0;
-  long looks_left_ = 0;  ///< before the end
+  long looks_left_ = 0;  ///< checks that remain before the end
 };
 
 }  // namespace rigcal::model

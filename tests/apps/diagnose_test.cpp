@@ -89,8 +89,8 @@ TEST_CASE("diagnose: from synthetic records to classes", "[apps]") {
   CHECK(smallest["averaged_same_day"].get<double>() < smallest["averaged"].get<double>());
   CHECK_THAT(folder.read("diagnosis/diagnosis.csv"), StartsWith("condition,repeat,signal,"));
   CHECK(violations(result, "diagnosis") == "");
-  // The page needs the rig with the leak found in each average, largest first; the result names
-  // this file.
+  // This file contains the rig for the page, with the leak found in each average, largest leak
+  // first. The result refers to the file by name.
   const json live = json::parse(folder.read("diagnosis/diagnosis_live.json"));
   REQUIRE(!live["cases"].empty());
   CHECK(live["cases"][0]["name"] == "leaking");

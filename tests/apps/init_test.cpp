@@ -145,7 +145,7 @@ TEST_CASE("init: a folder with a file that is no record", "[apps]") {
   const CommandFolder folder;
   const Outcome all = folder.run({"init", records.string(), "--out", "new"});
   CHECK(all.exit_code == 0);
-  // A file with several records, one below the other, and a table of speeds.
+  // One file has several records below each other, and another is a table of speeds.
   CHECK_THAT(all.out,
              Contains("warning: left out: transients_10kHz_mean_of_10_repeats.csv:8002:7: time") &&
                  Contains("warning: left out: run_summary.csv (no column looks like a time"));

@@ -12,7 +12,7 @@ import time
 import unittest
 
 RIGCAL = SOURCE = ""  # set from the command line
-# A container may only have the root user, and has fewer processors than this test has processes.
+# A container may have only the root user, and fewer processors than this test has processes.
 ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
                "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
                "OMPI_MCA_plm_rsh_agent": "/bin/false"}
@@ -66,14 +66,14 @@ class Processes(unittest.TestCase):
     def test_a_lost_process_costs_what_it_was_at(self):
         out = self.folder / "lost"
         arguments = [*self.fit, "--out", out]
-        arguments[arguments.index("--bootstrap") + 1] = 1500  # seconds of work
+        arguments[arguments.index("--bootstrap") + 1] = 1500  # takes several seconds
         whole = run(0, *arguments[:-1], self.folder / "many")
         self.assertEqual(whole.returncode, self.code, whole.stderr)
         with subprocess.Popen(command(2, *arguments), env=ENVIRONMENT, stdout=subprocess.DEVNULL,
                               stderr=subprocess.DEVNULL) as group:
             kept = out / "checkpoint.tasks"
             deadline = time.monotonic() + 60
-            ranks = []  # found before there is work to lose: the search may take longer on a busy machine than the work
+            ranks = []  # found before there is work to lose, because the search may take long
             while len(ranks) < 2 or not (kept.exists() and kept.stat().st_size > 20_000):
                 self.assertLess(time.monotonic(), deadline, "nothing was kept")
                 self.assertIsNone(group.poll(), "it ended before anything was kept")

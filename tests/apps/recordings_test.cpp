@@ -192,7 +192,7 @@ TEST_CASE("recordings: a text that a spreadsheet would run stays text", "[apps]"
 
 TEST_CASE("recordings: samples that are missing in one repeat", "[apps]") {
   const Twin twin;
-  // In all repeats, because repeats with different times would be rejected first.
+  // Changes all repeats, because repeats with different times would be rejected first.
   for (const int repeat : {1, 2, 3}) {
     Rows rows = rows_of(twin.read("sine", repeat));
     rows.erase(rows.begin() + 150, rows.begin() + 250);

@@ -1,6 +1,6 @@
 // Records of a known rig, corrupted by errors in a sensor or a data sheet, or by an assistant's
-// mistake. The controlled model follows the position almost whatever is wrong, so that scores alone
-// show little. The other checks must notice the error.
+// mistake. In closed loop, the model follows the position almost regardless of the error, so the
+// scores reveal little. The other checks must notice it.
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>

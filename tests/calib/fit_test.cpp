@@ -125,8 +125,8 @@ TEST_CASE("fit: a prior pulls as its standard deviation says", "[calib]") {
   twin.setting("mass").prior = datasets::Prior{alone.value + 2.0 * se, se};
   const Fit pulled = fit(twin.campaign, records, {});
   REQUIRE(pulled.status == FitStatus::converged);
-  // 15 % for curvature over one error, chi-square different from 1, and an optimum found to a
-  // hundredth of an error.
+  // Allows 15 % for curvature over one standard error, a chi-square other than 1, and an optimum
+  // located to a hundredth of a standard error.
   CHECK_THAT(parameter(pulled, "mass").value - alone.value, WithinRel(se, 0.15));
   CHECK_THAT(parameter(pulled, "mass").standard_error.value(), WithinRel(se / std::sqrt(2.0), 0.1));
   CHECK(pulled.residual_count == free.residual_count + 1);
@@ -173,7 +173,7 @@ TEST_CASE("fit: where the only start finds no minimum others are tried", "[calib
   CHECK(found.status == FitStatus::failed);
   CHECK(mentions(found.warnings, "led to no minimum (" + alone.message + "): 2 further starts"));
   CHECK(found.evaluations > alone.evaluations);
-  // The corresponding multi-start.
+  // Compares with the corresponding multi-start.
   options.starts = 3;
   const Fit several = fit(twin.campaign, records, options);
   REQUIRE(found.starts.size() == several.starts.size());

@@ -13,7 +13,7 @@
 namespace rigcal::calib {
 namespace {
 
-/// Runs tasks in this thread, and notes what each of them would leave to a later run.
+/// Runs tasks in this thread, and records the results that each would leave for a later run.
 class NotingFarm final : public TaskFarm {
  public:
   /// Results of complete tasks, by job, state and index.

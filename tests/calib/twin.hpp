@@ -26,7 +26,7 @@ inline datasets::ParameterSetting known(int index, double value) {
 }
 
 /// A rig with known parameters: the paper's rig with a servo loop that settles within a second. The
-/// campaign starts from other values than the true ones. The records are simulated with the true
+/// start values in the campaign differ from the true ones. The records are simulated with the true
 /// values, with noise added.
 struct Twin {
   datasets::Campaign campaign;

@@ -75,7 +75,7 @@ TEST_CASE("confined: a crash ends the child alone", "[common]") {
 }
 
 TEST_CASE("confined: what the work throws unwinds nothing of the parent", "[common]") {
-  // Shared with the child. A change that it made to any other variable would not be visible here.
+  // In shared memory, so that changes made by the child are visible here.
   auto* const unwound = static_cast<std::atomic<int>*>(
       ::mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
   REQUIRE(unwound != MAP_FAILED);
@@ -89,7 +89,7 @@ TEST_CASE("confined: what the work throws unwinds nothing of the parent", "[comm
   };
   CHECK_THROWS_WITH(parent_frame([]() -> std::string { throw std::length_error("too long"); }),
                     Contains("it crashed"));
-  CHECK(*unwound == 1);  // in the parent and not in the child
+  CHECK(*unwound == 1);  // in the parent only
   const auto before = std::set_new_handler([] { ::_exit(0); });
   CHECK(run_confined([] { return std::get_new_handler() == nullptr ? "none" : "the parent's"; },
                      {}) == "none");
@@ -134,7 +134,7 @@ TEST_CASE("confined: what ends the process ends the work", "[common]") {
   CHECK(::read(ends[0], &byte, 1) == 1);
   ::kill(process, SIGKILL);
   ::waitpid(process, nullptr, 0);
-  // The other end of the pipe was open in that process.
+  // The last process that had the other end of the pipe open has ended.
   pollfd closed{ends[0], POLLIN, 0};
   REQUIRE(::poll(&closed, 1, 60'000) == 1);
   CHECK(::read(ends[0], &byte, 1) == 0);

@@ -228,7 +228,7 @@ TEST_CASE("parse_quantity: threads do not disturb each other", "[common]") {
 }
 
 TEST_CASE("parse_quantity: a locale with decimal comma changes nothing", "[common]") {
-  // If no such locale is installed, the plain one is tested again.
+  // If no such locale is installed, the default one is tested again.
   const std::string before = std::setlocale(LC_ALL, nullptr);
   for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "pt_PT.UTF-8"})
     if (std::setlocale(LC_ALL, name) != nullptr) break;

@@ -19,7 +19,8 @@ TEST_CASE("remove_left_behind: a file of a process that is no more goes, all oth
   constexpr int kNoProcess = 2'147'483'646;
   const std::string dead = fmt::format(".fit.json.{}.0.tmp", kNoProcess);
   const std::string living = fmt::format(".fit.json.{}.0.tmp", ::getppid());
-  const std::string own = fmt::format(".fit.json.{}.0.tmp", ::getpid());  // an earlier process's
+  // Left by an earlier process with the same ID.
+  const std::string own = fmt::format(".fit.json.{}.0.tmp", ::getpid());
   const std::string foreign = fmt::format(".notes.txt.{}.0.tmp", kNoProcess);
   for (const std::string& name : {dead, living, own, foreign})
     write_file_atomically(folder.path() / name, "text");

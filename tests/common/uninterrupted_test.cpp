@@ -18,7 +18,7 @@ extern "C" void end_unless_postponed(int signal) {
   postponed_count = postponed_count + 1;
 }
 
-/// Exit code of a process that does this work; 99 if it reaches the end of it.
+/// Runs `work` in a child process and returns the exit code; 99 if the work is completed.
 template <typename Work>
 int exit_code_of(Work work) {
   const pid_t child = ::fork();

@@ -16,7 +16,7 @@ namespace rigcal::test {
 using Numbers = std::vector<double>;
 using Table = std::vector<Numbers>;
 
-/// Message with which `read` refuses a file; "no error" if it does not.
+/// Returns the error message of `read`, or "no error" if it accepts the file.
 template <typename Read>
 std::string message_when(const Read& read) {
   try {

@@ -13,7 +13,8 @@ using diagnosis::alarm_threshold;
 using diagnosis::moving_rms;
 
 TEST_CASE("alarm_threshold: the prediction bound of a logarithm", "[diagnosis]") {
-  // The logarithms 1, 2, 3 have mean 2 and sd 1. t(2; 0.95) = 2.9199856 (tables), times sqrt(4/3).
+  // The logarithms 1, 2, 3 have mean 2 and sd 1. The bound is t(2; 0.95) = 2.9199856 (tables) times
+  // sqrt(4/3).
   const std::vector<double> healthy{std::exp(1.0), std::exp(2.0), std::exp(3.0)};
   CHECK_THAT(*alarm_threshold(healthy, 0.05),
              Catch::WithinRel(std::exp(2.0 + 2.91998558 * std::sqrt(4.0 / 3.0)), 1e-7));

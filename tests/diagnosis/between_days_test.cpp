@@ -80,7 +80,7 @@ TEST_CASE("estimate_days: healthy records of four dates tell how days differ", "
   stated.source = DaySource::stated;
   diagnosis::estimate_days(healthy, stated);
   CHECK(stated.variance == 1.0);
-  // The records vary no more than by their own errors.
+  // The records vary by no more than their own errors.
   BetweenDays alike = days({});
   alike.dates = 5;
   diagnosis::estimate_days({{0.1, 1.0, 2.0}}, alike);
@@ -168,7 +168,7 @@ TEST_CASE("fit_leak: a supply of another day moves the coefficient as it says", 
   const auto fit = fitted(6.2e6);
   REQUIRE(fit.ok());
   REQUIRE(fit.day_effects.size() == 4);
-  // An error in the model's supply has the opposite effect of one in the record's.
+  // An error in the model's supply pressure has the opposite effect to one in the record's.
   const double step = 3.1e3;
   const double moved =
       (fitted(6.2e6 - step).coefficient - fitted(6.2e6 + step).coefficient) / (2.0 * step);

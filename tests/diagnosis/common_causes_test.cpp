@@ -42,13 +42,14 @@ TEST_CASE("common_causes: noise has none, a sine that differs is one", "[diagnos
     found += causes.patterns.cols() == 1 ? 1 : 0;
     if (causes.patterns.cols() > 0)
       power += causes.patterns.col(0).squaredNorm() / kSamples / 100.0;
-    // The rest is as large as noise minus the mean of the others: 1 + 1/4.
+    // The rest has the variance of noise minus the mean of the others: 1 + 1/4.
     CHECK(causes.rest.squaredNorm() / (kSamples * kRecords) > 0.9);
     CHECK(causes.rest.squaredNorm() / (kSamples * kRecords) < 1.7);
   }
   CHECK(in_noise <= 12);
   CHECK(found >= 90);
-  // 1.5^2 / 2, within what four degrees of freedom in a hundred trials allow.
+  // The power is 1.5^2 / 2. The limits allow for four degrees of freedom in each of a hundred
+  // trials.
   CHECK(power > 0.85);
   CHECK(power < 1.45);
 }

@@ -191,7 +191,7 @@ TEST_CASE("diagnose: a supply half a percent lower on another day is no leak", "
     REQUIRE(found.records.at(4).fit.ok());
     return found;
   };
-  // If both are from one day, as their dates say, the lower supply passes for a leak.
+  // If both are from one day, as their dates say, the lower supply pressure is mistaken for a leak.
   const Diagnosis same = diagnosed();
   CHECK(same.records.at(4).estimate.leak_detected);
   CHECK(same.other_days.empty());

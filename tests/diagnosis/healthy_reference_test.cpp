@@ -13,8 +13,8 @@ TEST_CASE("take_off: the mean of the healthy residuals goes, at the nearest samp
   record.time_s = {0.0, 1.0, 2.0, 3.0};
   record.channels[Channel::position].mean = {10.0, 20.0, 30.0, 40.0};
   record.channels[Channel::pressure_a].mean = {1.0, 2.0, 3.0, 4.0};
-  // The samples of the first reference are 0.4 s late. The one nearest to record time t is at t +
-  // 0.4, not at t - 0.6, and there is none beyond the last.
+  // The samples of the first reference are 0.4 s late. The one nearest to record time t is at
+  // t + 0.4, not at t - 0.6, and there is none beyond the last.
   const std::map<Channel, std::vector<double>> late{{Channel::position, {1.0, 2.0, 3.0, 4.0}}};
   const std::vector<double> late_s{0.4, 1.4, 2.4, 3.4};
   // The samples of the second one are 0.4 s early, so the nearest is the one below.

@@ -115,7 +115,7 @@ TEST_CASE("judge: a plateau is told of by the relative slope", "[diagnosis]") {
   CHECK_THAT(told(judged(flat)), Contains("d ln C = 0.05"));
   flat.fit.coefficient = 0.06;  // relative slope 0.15
   CHECK(told(judged(flat)).empty());
-  // A share that falls as fast is not a plateau, and a share of zero is not judged.
+  // A share that falls equally fast is not a plateau, and a share of zero is not judged.
   flat.estimate.share_slope = -0.375;
   CHECK(told(judged(flat)).empty());
   flat.estimate.share = 0.0;

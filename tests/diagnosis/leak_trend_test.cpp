@@ -57,8 +57,8 @@ TEST_CASE("leak_trends: the line through three dates, in their order", "[diagnos
   CHECK(trend.last_day - trend.first_day == 10);
   CHECK_THAT(trend.coefficient_per_day, WithinRel(0.02, 1e-9));
   CHECK_THAT(trend.share_per_day, WithinRel(0.004, 1e-9));
-  // The error is 0.03 sqrt(2) / 10 per day. The quantile is the 97.5 % one of t with 8 degrees of
-  // freedom.
+  // The error is 0.03 sqrt(2) / 10 per day. The factor is the 97.5 % quantile of t with 8 degrees
+  // of freedom.
   CHECK_THAT(trend.share_per_day_ci95.high - trend.share_per_day,
              WithinRel(0.2 * 0.003 * std::sqrt(2.0) * 2.306004135, 1e-6));
   CHECK(trend.significant);

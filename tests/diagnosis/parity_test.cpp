@@ -100,7 +100,8 @@ TEST_CASE("parity: a leak raises an alarm within a period, healthy records do no
   CHECK(signal.healthy_records == 5);
   CHECK(signal.window_s == 1.0);
   REQUIRE(signal.threshold_m);
-  // White noise of 0.05 mm minus the mean of five other records; the largest of several windows.
+  // White noise of 0.05 mm minus the mean of five other records. The threshold is for the largest
+  // of several windows.
   CHECK(*signal.threshold_m > 0.05e-3 * std::sqrt(1.2));
   CHECK(*signal.threshold_m < 0.07e-3);
   for (const auto& condition : found.conditions) {
@@ -156,7 +157,7 @@ TEST_CASE("parity: false alarms on another day are as many as stated", "[diagnos
   CAPTURE(alarms);
   CHECK(records == 300);
   // Five records share one threshold, so their alarms vary more than those of 300 independent
-  // records: 0.1 +- 0.05 is three standard errors.
+  // records. The limits of 0.1 +- 0.05 are three standard errors away.
   CHECK(alarms > 15);
   CHECK(alarms < 45);
 }
@@ -165,7 +166,7 @@ TEST_CASE("parity: the stated rate holds where repeats differ by their supply", 
   const AlarmCounts found = alarms_of_healthy(0.05, 0.02, 1, 60);
   CAPTURE(found.alarms, found.with_cause);
   CHECK(found.records == 300);
-  // 0.05 +- 0.033 is two standard errors for campaigns with one threshold each.
+  // The limits of 0.05 +- 0.033 are two standard errors away, if each campaign has one threshold.
   CHECK(found.alarms > 4);
   CHECK(found.alarms < 26);
   CHECK(found.with_cause > 50);

@@ -1,4 +1,5 @@
-"""Every name in the last column of docs/glossary.md occurs in the sources, so that the glossary stays up to date."""
+"""Checks that every name in the last column of docs/glossary.md occurs in the sources, so that
+the glossary stays up to date."""
 import pathlib
 import re
 import sys
@@ -9,7 +10,7 @@ FOLDERS = ["common", "model", "metrics", "datasets", "calib", "diagnosis", "repo
 
 
 def names():
-    """(line number, name) of each `name` in the last column."""
+    """Yields (line number, name) for each `name` in the last column."""
     for number, line in enumerate((ROOT / "docs" / "glossary.md").read_text().splitlines(), 1):
         cells = [cell.strip() for cell in line.strip("|").split("|")]
         if line.startswith("|") and len(cells) == 3:

@@ -1,4 +1,4 @@
-"""scripts/docs-numbers compares, writes and skips. usage: numbers_test.py"""
+"""Checks that scripts/docs-numbers compares, writes and skips blocks. usage: numbers_test.py"""
 import os
 import pathlib
 import subprocess
@@ -21,7 +21,7 @@ class Numbers(unittest.TestCase):
         self.document = self.folder / "document.md"
 
     def numbers(self, text, *options, **environment):
-        """Exit code, standard output and error, and the document afterwards."""
+        """Returns exit code, standard output and error, and the document afterwards."""
         self.document.write_text(text)
         done = subprocess.run([ROOT / "scripts" / "docs-numbers", *options, self.document], capture_output=True, text=True,
                               check=False, env={**os.environ, "RIGCAL_DATA": str(self.folder), **environment})
@@ -79,7 +79,8 @@ class Numbers(unittest.TestCase):
             self.assertIn(words, told)
 
     def program(self, exit_code):
-        """Stands for rigcal: makes its --out folder and ends."""
+        """Makes a substitute for rigcal, which creates the --out folder and exits with this
+        code."""
         program = self.folder / f"program_{exit_code}"
         program.write_text(f'#!/bin/sh\nwhile [ "$1" != --out ]; do shift; done\nmkdir "$2"\nexit {exit_code}\n')
         program.chmod(0o755)

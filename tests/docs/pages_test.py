@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Builds the site of the documents and looks at it in headless Chromium. usage: pages_test.py RIGCAL. Exit code 77: no MkDocs with
-its theme, no Doxygen, no browser, or a program without the model for pages."""
+"""Builds the documentation site and checks it in headless Chromium. usage: pages_test.py RIGCAL
+Exit code 77: no MkDocs with its theme, no Doxygen, no browser, or a program without the model for
+pages."""
 
 import json
 import os
@@ -15,7 +16,7 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, str(ROOT / "tests" / "report"))
 from browser import Browser, chromium  # noqa: E402
 
-# Reports that take seconds; that with recordings is there only where these are.
+# Reports that take only seconds. The one that needs recordings is made only if these are available.
 NAMES = ["uis_leak_table", "martensson", "moog", "karpenko"]
 PAGES = ["index.html", "gallery.html", "tutorial.html", "paper.html", "campaign-file.html", "reference/python.html",
          "reference/cpp-calib.html", "decisions/index.html"]
@@ -27,7 +28,7 @@ def check(holds, what):
 
 
 def missing(rigcal):
-    """What this test cannot do without and does not find; None if all is there."""
+    """Returns what this test needs but does not find; None if nothing is missing."""
     for program, package in (("mkdocs", "mkdocs-material"), ("doxygen", "doxygen")):
         if not shutil.which(program):
             return f"no {package}"
@@ -82,7 +83,7 @@ def front_page(site):
     with Browser(1440, 1000) as browser:
         browser.size(1440, 1000)
         browser.open(site / "index.html")
-        # The rig runs in it, below nothing but the title and what the page is about.
+        # The live rig is directly below the title and the introduction.
         browser.wait_for("window.rigcalLive?.levels !== undefined", "the live rig", frame="paper-rig.html")
         levels = browser.run("window.rigcalLive.levels.map(({name}) => name)", frame="paper-rig.html")
         check(levels == ["Normal", "Slight", "Medium", "Critical", "Super"], levels)
@@ -93,7 +94,7 @@ def front_page(site):
         browser.wait_for(f"Math.abs(document.querySelector('iframe.live-rig').clientHeight - {inside}) < 4", "the frame is as high as the rig")
         check(browser.run("document.querySelectorAll('figure.drawing svg').length") == 2, "two drawings")
         check(browser.run("[...document.images].every((each) => each.complete || each.loading === 'lazy')"), "an image is not there")
-        # The reader's choice of colours is that of the rig and of the drawings.
+        # The colour scheme that the reader chooses also applies to the rig and the drawings.
         check(browser.run(SCHEME) == "default" and not browser.run(DARK, frame="paper-rig.html"), "light at first")
         ink = "getComputedStyle(document.querySelector('svg.drawing text')).fill"
         light = browser.run(ink)
@@ -130,7 +131,7 @@ def search(site):
 def code(site):
     with Browser(1440, 1000) as browser:
         browser.open(site / "tutorial.html")
-        # The theme copies by a text area of its own.
+        # The theme copies text by means of a temporary text area.
         browser.run("window.copied = []; document.execCommand = () => { copied.push(document.querySelector('body > textarea').value); return true; }")
         button = ("[...document.querySelectorAll('[data-clipboard-target]')].find((each) => "
                   "document.querySelector(each.dataset.clipboardTarget).textContent.includes('synthesize'))")
@@ -182,7 +183,7 @@ def pages(site):
 
 
 def references(site):
-    """What the public names are comes from the sources, and each is on its page."""
+    """Checks that every public name in the sources is on its reference page."""
     python = (site / "reference" / "python.html").read_text(encoding="utf-8")
     for name in ("id=\"campaignfit\"", "id=\"rigcalerror\"", "Estimates the free parameters", "parameters"):
         check(name in python, f"the reference of Python lacks {name}")

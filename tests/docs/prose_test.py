@@ -1,11 +1,12 @@
-"""scripts/prose finds what it says it finds, and nothing else. usage: prose_test.py"""
+"""Checks that scripts/prose finds what it is meant to find, and nothing else. usage:
+prose_test.py"""
 import importlib.machinery
 import importlib.util
 import pathlib
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-WORDS = "one two three four five six seven eight nine ten " * 3  # the most that a sentence may have
+WORDS = "one two three four five six seven eight nine ten " * 3  # the maximum length of a sentence
 
 
 def prose():
@@ -17,7 +18,7 @@ def prose():
 
 class Documents(unittest.TestCase):
     def places(self, text):
-        """The lines with a problem."""
+        """Returns the numbers of the lines with a violation."""
         return [line for line, _ in prose().problems_of_document(text)]
 
     def test_a_sentence_has_thirty_words_at_most(self):

@@ -1,4 +1,5 @@
-"""scripts/docs runs the commands of a document, and finds broken links. usage: site_test.py"""
+"""Checks that scripts/docs runs the commands in a document, and finds broken links. usage:
+site_test.py"""
 import importlib.machinery
 import importlib.util
 import os
@@ -22,7 +23,7 @@ class Folder(unittest.TestCase):
         self.folder = pathlib.Path(folder.name)
 
     def docs(self, *arguments):
-        """Exit code, standard output and error."""
+        """Returns exit code, standard output and error."""
         done = subprocess.run([ROOT / "scripts" / "docs", *arguments], capture_output=True, text=True, check=False,
                               env={**os.environ, "RIGCAL": "/bin/true"})
         return done.returncode, done.stdout, done.stderr
@@ -89,7 +90,7 @@ class Links(Folder):
 class Navigation(unittest.TestCase):
     def test_every_document_is_in_it(self):
         navigation = (ROOT / "mkdocs.yml").read_text()
-        for path in (ROOT / "docs").glob("*.md"):  # decisions are on a page of their own
+        for path in (ROOT / "docs").glob("*.md"):  # decisions have a page of their own
             self.assertIn(f": {path.relative_to(ROOT / 'docs')}\n", navigation)
 
 

@@ -1,5 +1,6 @@
-# Lays an example of docs/extending over the sources: cmake -DROOT=... -DEXAMPLE=... -DTREE=... -DGIT=... -P apply.cmake
-# TREE then has the example's own files and changed copies of those that its patches touch, of which there may be two.
+# Applies an example from docs/extending to the sources:
+# cmake -DROOT=... -DEXAMPLE=... -DTREE=... -DGIT=... -P apply.cmake
+# TREE then has the example's own files, and modified copies of the files (at most two) that its patch changes.
 file(REMOVE_RECURSE ${TREE})
 file(GLOB_RECURSE own RELATIVE ${EXAMPLE} ${EXAMPLE}/*.hpp ${EXAMPLE}/*.cpp ${EXAMPLE}/*.html)
 foreach(file IN LISTS own)
@@ -17,7 +18,7 @@ endif()
 foreach(file IN LISTS touched)
   configure_file(${ROOT}/${file} ${TREE}/${file} COPYONLY)
 endforeach()
-# Not as a part of a repository around it.
+# Git must not take TREE for part of an enclosing repository.
 execute_process(COMMAND ${CMAKE_COMMAND} -E env GIT_CEILING_DIRECTORIES=${TREE}/.. ${GIT} apply -C1 ${EXAMPLE}/change.patch
   WORKING_DIRECTORY ${TREE} RESULT_VARIABLE failed ERROR_VARIABLE why)
 if(failed)

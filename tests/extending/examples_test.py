@@ -1,4 +1,5 @@
-"""What the examples of docs/extending add is there and right. usage: examples_test.py RIGCAL EXAMPLES EXAMPLE"""
+"""Checks that what each example in docs/extending adds is present and correct.
+usage: examples_test.py RIGCAL EXAMPLES EXAMPLE"""
 import csv
 import json
 import math
@@ -24,7 +25,7 @@ class Example(unittest.TestCase):
         return subprocess.run([RIGCAL, *arguments], cwd=self.folder, capture_output=True, text=True, check=False)
 
     def simulated(self, condition):
-        """Columns of the simulated signals."""
+        """Returns the columns of the simulated signals."""
         done = self.run_rigcal("simulate", "campaign.toml", "--out", "out")
         self.assertEqual(done.returncode, 0, done.stderr)
         with open(self.folder / "out" / f"{condition}.csv", encoding="utf-8", newline="") as file:
@@ -39,7 +40,8 @@ class Triangle(Example):
         for time, reference in zip(signals["time_s"], signals["reference_m"]):
             triangle = 0.02 * 2 / math.pi * math.asin(math.sin(2 * math.pi * 0.5 * time))
             self.assertAlmostEqual(reference, triangle, delta=1e-9)
-        # The piston follows, behind it and less far; half a period later it is where it was, on the other side.
+        # The piston follows with a delay and a smaller amplitude. Half a period later, it is at the
+        # opposite position.
         position = dict(zip((round(time, 3) for time in signals["time_s"]), signals["position_m"]))
         self.assertTrue(0.01 < max(position.values()) < 0.02)
         for hundredths in range(300, 400):
@@ -58,10 +60,10 @@ class FirstOrder(Example):
     def test_moves_as_its_equation_says(self):
         signals = self.simulated("square")
         for time, position in zip(signals["time_s"], signals["position_m"]):
-            if time < 1.0:  # +2 V, times 0.1 m/(s V), behind 0.05 s
+            if time < 1.0:  # 2 V times 0.1 m/(s V), with a lag of 0.05 s
                 exact = 0.2 * (time - 0.05 * (1 - math.exp(-time / 0.05)))
                 self.assertAlmostEqual(position, exact, delta=1e-5)
-        self.assertLess(signals["velocity_m_per_s"][-1], -0.19)  # -2 V since 1 s
+        self.assertLess(signals["velocity_m_per_s"][-1], -0.19)  # the command has been -2 V since 1 s
 
     def test_has_its_parameters_and_no_others(self):
         text = (self.folder / "campaign.toml").read_text(encoding="utf-8")
@@ -122,7 +124,7 @@ class MeanError(Example):
     def test_is_computed_stored_and_shown(self):
         told = json.loads(self.run_rigcal().stdout)
         self.assertEqual(told["scores"]["mean_error_percent"], 5.0)
-        self.assertEqual(told["scores"]["rho2"], 1.0)  # which is blind to it
+        self.assertEqual(told["scores"]["rho2"], 1.0)  # insensitive to a constant error
         self.assertIn("mean_error_percent", told["schema"]["required"])
         self.assertEqual(told["titles"][-1], "Mean error %")
         self.assertEqual(told["cells"][-1], '<data value="5">5</data>')

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Writes metrics.txt beside this file: signals and their metrics in exact rational arithmetic.
+"""Writes metrics.txt next to this file: signals and their metrics, computed in exact rational arithmetic.
 
-Every double is a fraction, so sums, variances and quotients are exact; only the square roots
-round, at 80 digits. Run it again after changing a case:  python3 make_metrics_golden.py
+Every double is a fraction, so sums, variances and quotients are exact. Only square roots are rounded, to
+80 digits. Run this again after changing a case:  python3 make_metrics_golden.py
 """
 
 import decimal

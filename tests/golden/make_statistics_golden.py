@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Writes statistics.txt beside this file: the statistics of metrics/ by SciPy and statsmodels.
+"""Writes statistics.txt next to this file: the statistics in metrics/, computed with SciPy and statsmodels.
 
-Debian: python3-scipy, python3-statsmodels; the tests themselves need neither. Run it again after
+Needs Debian's python3-scipy and python3-statsmodels; the tests themselves need neither. Run this again after
 changing a case:  /usr/bin/python3 make_statistics_golden.py
 
-Each line is a name and its numbers; of a function, its arguments and then its value. Series are rounded to six decimals, so that both sides read
-the same doubles.
+Each line has a name and its numbers; for a function, these are its arguments and then its value. Series are
+rounded to six decimals, so that both sides read the same doubles.
 """
 
 import pathlib
@@ -88,7 +88,7 @@ def residual_tests(name, e, u):
     at = numpy.argmax(power)
     yield f"{name}.periodogram_peak", [hz[1 + at], power[max(at - 1, 0) : at + 2].sum() / power.sum()]
 
-    # For correlated samples the statistic counts the effective ones.
+    # For correlated samples, the statistic uses the effective sample size.
     skewness, kurtosis = stats.skew(e), stats.kurtosis(e)
     bera = stats.jarque_bera(e).statistic * effective / n
     yield f"{name}.skewness", skewness
@@ -157,7 +157,8 @@ def fundamental(generator):
     time_s = rounded(numpy.cumsum(generator.uniform(0.008, 0.012, n)))
     measured = rounded(2 + 3 * numpy.sin(2 * numpy.pi * hz * time_s + 0.4) + 0.3 * generator.standard_normal(n))
     simulated = rounded(2.4 * numpy.sin(2 * numpy.pi * hz * time_s - 0.3) + 0.3 * generator.standard_normal(n))
-    # Whole periods at the end; of three or more the first is left out as transient.
+    # Uses whole periods at the end. If there are three or more, the first is left out as a
+    # transient.
     periods = numpy.floor((time_s[-1] - time_s[0]) * hz) - 1
     counts = time_s > time_s[-1] - periods / hz
     angle = 2 * numpy.pi * hz * time_s[counts]
@@ -202,23 +203,23 @@ def parzen(x):
 
 
 def score_scatter(generator):
-    """calib/trust/sandwich.hpp of one channel, by dense matrices of the samples."""
+    """Computes the covariance in calib/trust/sandwich.hpp for one channel, using dense matrices."""
     n = 150
     phase = numpy.linspace(0, 9, n)
     J = rounded(numpy.linalg.qr(numpy.c_[numpy.sin(phase), numpy.exp(-0.5 * phase)])[0])
-    J = J @ numpy.linalg.inv(numpy.linalg.cholesky(J.T @ J)).T  # orthonormal but for what is rounded below
+    J = J @ numpy.linalg.inv(numpy.linalg.cholesky(J.T @ J)).T  # orthonormal except for the rounding below
     J = numpy.round(J, 12)
     noise = lfilter([1], [1, -0.7], generator.standard_normal(n))
     r = numpy.round(noise - J @ (J.T @ noise), 12)
 
     def root(phi):
-        """L of r = L u."""
+        """Returns L in r = L u."""
         inverse = numpy.eye(n) - sum(c * numpy.eye(n, k=-1 - k) for k, c in enumerate(phi))
         return numpy.linalg.inv(inverse)
 
     gamma = acovf(r, demean=False, fft=False, nlag=n // 10)
     variance, phi = fitted_autoregression(gamma, n)
-    # The fit has left (I - H) Sigma (I - H) of Sigma.
+    # After the fit, (I - H) Sigma (I - H) is left of Sigma.
     sigma = variance * root(phi) @ root(phi).T
     left = (numpy.eye(n) - J @ J.T) @ sigma @ (numpy.eye(n) - J @ J.T)
     gamma = gamma[: len(phi) + 1] + [numpy.trace(sigma - left, offset=h) / n for h in range(len(phi) + 1)]
@@ -267,7 +268,8 @@ def r_hat(draws):
 
 
 def effective_draws(draws):
-    """Vehtari et al. 2021, (10) to (13): autocovariances by statsmodels, Geyer's pairs as an array."""
+    """Vehtari et al. 2021, equations (10) to (13), with autocovariances from statsmodels and
+    Geyer's pairs as an array."""
     m, n = draws.shape
     covariance = numpy.mean([acovf(chain, fft=False) for chain in draws], axis=0) * n / (n - 1)
     within = draws.var(axis=1, ddof=1).mean()
@@ -304,7 +306,8 @@ def several_chains(generator):
 def cases():
     generator = numpy.random.default_rng(20260301)
     yield from distributions()
-    # 120 and 125 samples: their transforms have no length to be cut to.
+    # The transforms of 120 and 125 samples use all samples, because these lengths have small prime
+    # factors.
     white = generator.standard_normal(120)
     yield from residual_tests("white", rounded(white), rounded(generator.standard_normal(120)))
     coloured = lfilter([1], [1, -0.7], generator.standard_normal(125))

@@ -22,7 +22,7 @@ namespace {
 
 using Values = std::vector<double>;
 
-// The metrics promise 1e-12 of the value, wherever the value itself is well conditioned.
+// The metrics promise a relative error of 1e-12 wherever the value is well conditioned.
 constexpr double kRelative = 1e-12;
 
 // Uses 113 bits and the textbook formulas, which have nothing in common with the code under test.
@@ -143,7 +143,7 @@ TEST_CASE("agreement: tiny and huge scales lose nothing", "[metrics]") {
   check_against(quad_metrics(measured, simulated), measured, simulated);
 }
 
-// Integers in a power-of-two unit have exact sums in 128 bits, for any number of samples needed.
+// Integer samples, in a unit that is a power of two, have exact sums in 128 bits.
 TEST_CASE("agreement: 1e7 samples on an offset of 1e9 as in integer arithmetic", "[metrics]") {
   __extension__ using Integer = __int128;
   constexpr std::size_t kCount = 10'000'000;

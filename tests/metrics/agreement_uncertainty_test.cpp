@@ -134,7 +134,7 @@ TEST_CASE("agreement_uncertainty: the score of unlimited repeats is seldom worse
   for (std::size_t m = 0; m < kMetrics.size(); ++m) {
     CAPTURE(kMetrics[m].name, worse[m], widths[m], std::sqrt(scatter[m]));
     CHECK(worse[m] <= kDraws * 0.04);                // 2.5 % plus statistical variation
-    CHECK(widths[m] < 6.0 * std::sqrt(scatter[m]));  // but not because it is unlimited
+    CHECK(widths[m] < 6.0 * std::sqrt(scatter[m]));  // and the interval is not simply huge
   }
 }
 
@@ -167,8 +167,8 @@ TEST_CASE("agreement_uncertainty: a sensor's gain and offset", "[metrics]") {
 TEST_CASE("agreement_uncertainty: a sensor's gain may be too low as well as too high",
           "[metrics]") {
   const std::vector<double> truth = sine(300, 1.0);
-  // The mean reads 0.5 % too high, or too low: the gain that moves it away counts, the other moves
-  // it through the truth.
+  // The mean reads 0.5 % too high or too low. A gain that moves it further from the truth counts; a
+  // gain in the other direction moves it through the truth.
   for (const double reading : {1.005, 0.995}) {
     CAPTURE(reading);
     Repeats repeats{truth, {}};

@@ -55,8 +55,8 @@ TEST_CASE("autoregression: order and coefficient from a series", "[metrics]") {
   REQUIRE(found.phi.size() == 1);
   // The standard error is sqrt((1 - 0.95^2) / 2000) = 0.007; the tolerance is four times that.
   CHECK_THAT(found.phi[0], WithinAbs(0.95, 0.028));
-  // A fraction (1 - 0.95) / (1 + 0.95) of the samples is 51. Four errors of the coefficient halve
-  // or double it.
+  // (1 - 0.95) / (1 + 0.95) of the samples are 51. Four standard errors of the coefficient halve or
+  // double this number.
   CHECK(found.effective_samples(2000.0) > 20.0);
   CHECK(found.effective_samples(2000.0) < 120.0);
 }
@@ -97,8 +97,8 @@ TEST_CASE("autoregression: which sequences are autocovariances", "[metrics]") {
   CHECK(is_autocovariance(autocovariance(Autoregression{{0.5, -0.3}, 1.0}, 10)));
   CHECK(is_autocovariance(autocovariance(series({0.95}, 500, 3), 20)));
   CHECK_FALSE(is_autocovariance(std::vector{1.0, 1.01}));
-  // Each lag by itself would be possible: cos(acos(0.9) + acos(0.9)) = 0.62 is the minimum after
-  // 0.9.
+  // Each lag by itself would be possible, but after 0.9 the minimum is cos(acos(0.9) + acos(0.9)) =
+  // 0.62.
   CHECK(is_autocovariance(std::vector{1.0, 0.9, 0.63}));
   CHECK_FALSE(is_autocovariance(std::vector{1.0, 0.9, 0.61}));
   CHECK_FALSE(is_autocovariance(std::vector{0.0, 0.0}));

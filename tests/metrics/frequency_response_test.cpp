@@ -258,7 +258,7 @@ TEST_CASE("broadband_response: intervals widen as coherence falls", "[metrics]")
     }
     CHECK(width > 3.0 * before);
     before = width;
-    // 95 % of about 25 bins. Five are outside by chance once in a hundred records.
+    // 95 % of about 25 bins. By chance, five are outside once in a hundred records.
     CHECK(held >= static_cast<int>(points.size()) - 5);
   }
   const auto points = broadband_response(step_s, u, with_noise(u, 1.0, 4));

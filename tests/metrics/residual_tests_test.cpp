@@ -50,8 +50,8 @@ TEST_CASE("residual_tests: each is passed by white noise about as often as its l
     shape += tests.normality.passed() ? 0 : 1;
     drift += tests.drift.passed() ? 0 : 1;
   }
-  // 5 % of 200 are 10, with a standard deviation of 3.1. The cross test is below this because of
-  // Bonferroni's correction.
+  // 5 % of 200 are 10, with a standard deviation of 3.1. The cross-correlation test rejects less
+  // often because of Bonferroni's correction.
   CHECK(colour <= 22);
   CHECK(colour >= 2);
   CHECK(cross <= 22);

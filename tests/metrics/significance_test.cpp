@@ -32,7 +32,7 @@ TEST_CASE("significance: Holm's steps, in the order of the input", "[metrics]") 
 }
 
 TEST_CASE("significance: the degrees of freedom of a quantile", "[metrics]") {
-  // Printed tables of Student's t, 97.5 %.
+  // 97.5 % quantiles of Student's t from printed tables.
   CHECK_THAT(freedom_of_quantile(2.776445), WithinRel(4.0, 1e-5));
   CHECK_THAT(freedom_of_quantile(2.042272), WithinRel(30.0, 1e-4));
   CHECK(freedom_of_quantile(1.96) > 5e4);

@@ -60,7 +60,7 @@ TEST_CASE("trend: the exact line where the points lie on one", "[metrics]") {
 
 TEST_CASE("trend: few false alarms where the errors tell the scatter", "[metrics]") {
   const std::size_t points = GENERATE(3U, 4U, 5U);
-  // Some of these are widened unnecessarily, so slightly fewer than 5 % are found.
+  // Some errors are widened unnecessarily, so slightly fewer than 5 % are found.
   const double found = share_found(points, 0.0, 0.0);
   CAPTURE(points, found);
   CHECK(found > 0.02);

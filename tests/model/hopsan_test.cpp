@@ -108,8 +108,8 @@ TEST_CASE("hopsan: the position of every case follows with the true parameters",
     Experiment e = experiment(c);
     const auto [position, pressure] = unexplained(e, kFolder + c.at("file"));
     CHECK(position < 1e-6);
-    // e5 is the value for an independent integration of the same equations. If it is tiny, the
-    // default tolerance of this run remains: (3e-6)^2 for x, (2e-4)^2 for a ringing P_L.
+    // e5 is the error of an independent integration of the same equations. If it is tiny, the
+    // default tolerance of this run dominates: (3e-6)^2 for x, (2e-4)^2 for a ringing P_L.
     CHECK(position < 2.0 * std::stod(c.at("e5_x")) + 1e-11);
     CHECK(pressure < 2.0 * std::stod(c.at("e5_pl")) + 5e-8);
   }
@@ -135,8 +135,8 @@ TEST_CASE("hopsan: both chambers of every case follow with the true parameters",
     const auto [position, pressure] = unexplained(e, kFolder + c.at("file"));
     CHECK(position < 1e-6);
     CHECK(pressure < 1e-5);
-    // e6 is the value for an independent integration of the same equations. In addition there is
-    // the tolerance of this run: (3e-6)^2 for x and (4e-4)^2 for P_L.
+    // e6 is the error of an independent integration of the same equations. The tolerance of this
+    // run adds (3e-6)^2 for x and (4e-4)^2 for P_L.
     CHECK(position < 2.0 * std::stod(c.at("e6_x")) + 1e-11);
     CHECK(pressure < 2.0 * std::stod(c.at("e6_pl")) + 2e-7);
   }

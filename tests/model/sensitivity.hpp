@@ -49,8 +49,8 @@ inline Experiment experiment(const Scenario& s, const Experiment& rig = {}) {
   e.inputs.drive_begins_s = e.times_s.front();
   e.outputs.assign(kAllOutputs.begin(), kAllOutputs.end());
   e.options.tolerance = 1e-9;
-  // Uses a single method. With two that take turns, the errors of the two runs of a difference
-  // would not be alike.
+  // If the solver could switch methods, the errors of the two runs would differ more and would not
+  // cancel in the difference.
   e.options.method = Method::rosenbrock;
   return e;
 }
@@ -80,15 +80,16 @@ inline Eigen::MatrixXd difference_by(Experiment e, int index, double relative_st
   return (above.outputs - below.outputs) / (2.0 * step);
 }
 
-/// Steps of the differences. Truncation in the ringing is (587 rad/s 0.13 s / 2 1e-4)^2 / 6 = 2e-6
-/// with the first. The second is for where errors of the two runs are less alike; a kink within it
-/// would disturb it. A wrong sensitivity disagrees with both.
+/// Relative steps of the differences. With the first step, truncation in the ringing is (587 rad/s
+/// 0.13 s / 2 1e-4)^2 / 6 = 2e-6. The second step is for cases in which the errors of the two runs
+/// are less alike, although a kink within it would disturb the difference. A wrong sensitivity
+/// disagrees with both.
 inline constexpr std::array kRelativeSteps{1e-4, 1e-3};
 
 /// Compares all sensitivities of an experiment with differences. Adds the parameters that have an
 /// effect to `seen`.
 ///
-/// @param parts  for an output that is a difference: peak of its terms, whose noise it has
+/// @param parts  for an output that is a difference: peak of its terms, which determines its noise
 inline void check_sensitivities(Experiment e, std::set<int>& seen,
                                 const std::map<Output, double>& parts = {}) {
   e.free = fittable(e);
@@ -111,7 +112,7 @@ inline void check_sensitivities(Experiment e, std::set<int>& seen,
       const double least = part == parts.end() ? 0.0 : part->second;
       const double output_peak = std::max(least, peak(run.outputs.col(column)));
       // Noise of the difference: errors of 1e-9 per step, mostly alike in both runs, divided by the
-      // step. There is more at zero pressure, where the leak's root is steep.
+      // step. The noise is larger at zero pressure, where the leak's root is steep.
       const auto noise_of = [&](double step) { return 5e-8 * output_peak / (step * value); };
       const auto agrees = [&](const Eigen::VectorXd& difference, double step) {
         return peak(exact - difference) <= 2e-3 * peak(difference) + noise_of(step);

@@ -235,8 +235,8 @@ TEST_CASE("sensitivity: many at once equal one at a time", "[model]") {
     for (std::size_t k = 0; k < e.outputs.size(); ++k) {
       const Eigen::VectorXd expected = alone.sensitivities[k].col(0);
       CAPTURE(all[j], output_name(e.outputs[k]));
-      // The same solution with other steps. The tolerance is 20 times looser than for the states,
-      // over some hundred steps.
+      // The same solution, computed with other steps. The tolerance is 20 times looser than for the
+      // states, and errors add up over some hundred steps.
       CHECK(peak(together.sensitivities[k].col(static_cast<Eigen::Index>(j)) - expected) <=
             6e-4 * peak(expected));
     }
@@ -286,7 +286,7 @@ TEST_CASE("sensitivity: exact where the leak is stiff", "[model]") {
     for (std::size_t k = 0; k < 2; ++k) {
       CAPTURE(e.free[j], k);
       const auto exact = run.sensitivities[k].col(static_cast<Eigen::Index>(j));
-      // Truncation of (1e-2)^2, and the noise of runs with an error of 1e-9 per step.
+      // Allows for truncation of (1e-2)^2, and for noise from an error of 1e-9 per step.
       const double noise = 1e-7 * peak(run.outputs.col(static_cast<Eigen::Index>(k))) /
                            (1e-2 * e.values.value[static_cast<std::size_t>(e.free[j])]);
       CHECK(peak(exact - expected.col(static_cast<Eigen::Index>(k))) < 1e-3 * peak(exact) + noise);

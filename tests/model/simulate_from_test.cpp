@@ -66,7 +66,7 @@ TEST_CASE("simulate_from: two halves are the whole", "[model]") {
     const auto floor = whole.state_floor.array();
     CHECK(peak(((whole.end_state - second.end_state).array() / floor).matrix()) < 1.0);
 
-    // Chain rule: the second half passes on how the first half changes its end state.
+    // Chain rule: the first half changes the state from which the second half starts.
     const Eigen::Index states = first.end_state.size();
     REQUIRE(second.end_sensitivities.cols() == parameters + states);
     const Eigen::MatrixXd passed_on =
@@ -101,7 +101,7 @@ TEST_CASE("simulate_from: sensitivities to the state against differences", "[mod
       const Eigen::ArrayXd end_error =
           (run.end_sensitivities.col(parameters + i) - by_end).array() / run.state_floor.array();
       const Eigen::ArrayXd end_size = by_end.array() / run.state_floor.array();
-      // Errors of 1e-9 for a state of some 1e4 floors, with a step of 3.
+      // Allows for errors of 1e-9 in states of some 1e4 floors, with differences over 3 floors.
       CHECK((end_error * run.state_floor(i)).abs().maxCoeff() <
             1e-3 * (end_size * run.state_floor(i)).abs().maxCoeff() + 1e-4);
       for (std::size_t k = 0; k < e.outputs.size(); ++k) {

@@ -67,7 +67,8 @@ TEST_CASE("simulate: two methods agree on every waveform", "[model]") {
     e.options.tolerance = 1e-8;
     const Simulation implicit = ok(e);
     e.options.method = Method::dopri5;
-    // Each has an error of some hundred local errors of 1e-8, relative to the peak of each state.
+    // The error of each run is some hundred local errors of 1e-8, relative to the peak of each
+    // state.
     CHECK(difference(implicit.outputs, ok(e).outputs) < 2e-5);
     e.options.method = Method::rosenbrock;
     e.options.tolerance = 1e-5;
@@ -80,7 +81,7 @@ namespace {
 struct Term {
   const char* name;
   std::vector<std::pair<const char*, double>> values;
-  std::vector<std::pair<const char*, double>> neutral;  ///< values at which the plain model remains
+  std::vector<std::pair<const char*, double>> neutral;  ///< values for which the term vanishes
 };
 
 const std::vector<Term>& terms() {
@@ -147,7 +148,7 @@ TEST_CASE("simulate: an optional term at its neutral value leaves the plain mode
       {"second order", {{"valve_frequency", 1e6}, {"valve_damping_ratio", 1.0}}, {}}};
   for (const Term& term : fast) {
     CAPTURE(term.name);
-    // A lag of 2 us on a mode of 587 rad/s is 1.2e-3 rad of the ringing pressure.
+    // A lag of 2 us shifts the phase of the ringing pressure, at 587 rad/s, by 1.2e-3 rad.
     CHECK(difference(plain.outputs, ok(with(base, term.values)).outputs) < 5e-3);
   }
 }
@@ -366,7 +367,7 @@ TEST_CASE("simulate: sensor offsets shift their output and nothing else", "[mode
 
 TEST_CASE("simulate: equilibria stay put", "[model]") {
   CHECK(peak(ok(paper(Signal::constant(0.0))).outputs) == 0.0);
-  // At rest under pressure, force and spring, at the recorded position minus its offset.
+  // The rig is at rest under pressure, force and spring, at the recorded position minus its offset.
   Experiment e = paper(Signal::constant(0.0));
   e.rig.initial = InitialState::given;
   e.inputs.drive = Signal::constant(0.02);
@@ -534,7 +535,7 @@ TEST_CASE("simulate: a command that changes sooner than the step would end costs
 TEST_CASE("simulate: a sample's value does not depend on the samples beside it", "[model]") {
   for (const Signal& drive : {Signal::square(0.01, 2.0), Signal::sine(0.02, 2.0)}) {
     Experiment e = paper(drive);
-    e.times_s = grid(0.0, 1.0, 21);  // half a period is sampled here, too
+    e.times_s = grid(0.0, 1.0, 21);  // half a period is a whole number of samples
     const Simulation few = ok(e);
     e.times_s = grid(0.0, 1.0, 1001);
     const Simulation many = ok(e);

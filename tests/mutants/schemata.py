@@ -63,7 +63,7 @@ class Mutant:
     function: str = ""  # every function of this name in the file; empty: the whole file
     original: str = ""
     mutated: str | None = None
-    equivalent: str = ""  # why no test can notice, if none can
+    equivalent: str = ""  # why no test can detect it; empty if one can
     type: str = ""  # common type of the expressions, where the compiler needs it
 
     @property
@@ -72,12 +72,13 @@ class Mutant:
 
     @property
     def number(self):
-        """That of a name does not change with its neighbours: sources that did not change stay as they are."""
+        """Depends only on the name, so that sources do not change if other mutants do, and need
+        not be compiled again."""
         return zlib.crc32(self.id.encode()) % SLOTS
 
 
 def read_table(path):
-    """The mutants of tests/mutants/<layer>.txt."""
+    """Returns the mutants in tests/mutants/<layer>.txt."""
     mutants, file = [], None
     for number, line in enumerate(path.read_text().splitlines(), 1):
         where = f"{path.name}:{number}"
@@ -104,7 +105,8 @@ def read_table(path):
 
 
 def blanked(source, literals):
-    """The source with comments as blanks, and strings and characters too if asked for; of the same length."""
+    """Returns the source, at the same length, with blanks instead of comments and, if
+    `literals`, of strings and characters."""
     pattern = re.compile(r'//[^\n]*|/\*.*?\*/|R"\((?:.*?)\)"|"(?:\\.|[^"\\\n])*"|(?<![0-9a-zA-Z])\'(?:\\.|[^\'\\])+\'', re.S)
 
     def blank(match):
@@ -321,7 +323,8 @@ def expression_around(text, begin, end):
 
 
 def statement_around(text, begin, end):
-    """From after the statement before to the semicolon or brace that ends this one."""
+    """Returns the range from the end of the previous statement to the semicolon or brace that
+    ends this one."""
     left, right = balanced(text, begin, end)
     depth = 0
     while depth or text[left - 1] not in ";{}":
@@ -331,7 +334,7 @@ def statement_around(text, begin, end):
     while depth or text[right - 1] not in ";}":
         depth += (text[right] in OPEN) - (text[right] in CLOSE)
         right += 1
-    of_initialiser = re.compile(r"\s*;").match(text, right)  # what ends in its brace, ends after it
+    of_initialiser = re.compile(r"\s*;").match(text, right)  # an initialiser has a semicolon after its brace
     if text[right - 1] == "}" and of_initialiser:
         right = of_initialiser.end()
     left += len(text[left:right]) - len(text[left:right].lstrip())
@@ -347,7 +350,7 @@ class Place:
 
 
 def places_of(mutants, source):
-    """Where the mutants of one file go; those of one expression together."""
+    """Finds the places of the mutants of one file. Mutants of the same expression share a place."""
     code, shape = blanked(source, literals=False), blanked(source, literals=True)
     tokens = tokens_of(code)
     functions = functions_of(tokens)
@@ -382,7 +385,8 @@ def places_of(mutants, source):
 
 
 def rendered(code, places, begin, end):
-    """code[begin:end] with the places, which lie within it and are ordered, mutated."""
+    """Returns code[begin:end] with the mutants inserted at the places, which are in order and
+    within this range."""
     out, at, i = [], begin, 0
     while i < len(places):
         place = places[i]
@@ -404,7 +408,8 @@ def rendered(code, places, begin, end):
 
 
 def without_constexpr(code, places):
-    """Turns a constant with a mutated value into one of run time: (begin, end, replacement), the last first."""
+    """Returns edits (begin, end, replacement), last first, that turn constants with mutated
+    values into run-time constants."""
     edits = set()
     for place in places:
         match = re.search(r"\b(inline |static |)constexpr (?=[^;()]*$)", code[:place.begin])
@@ -415,7 +420,7 @@ def without_constexpr(code, places):
 
 
 def with_mutants(source, mutants):
-    """The source with all of its mutants."""
+    """Returns the source with all its mutants."""
     code, places = places_of(mutants, source)
     text = rendered(code, places, 0, len(code))
     for left, right, replacement in without_constexpr(code, places):
@@ -426,7 +431,7 @@ def with_mutants(source, mutants):
 
 
 def check(mutants, root):
-    """TableError where a table no longer fits the sources below root."""
+    """Raises TableError if a table does not match the sources in `root`."""
     numbers = {}
     for mutant in mutants:
         other = numbers.setdefault(mutant.number, mutant)

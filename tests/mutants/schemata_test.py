@@ -1,4 +1,5 @@
-"""What becomes of a mutated place: the meaning without the mutant must stay."""
+"""Tests how mutants are inserted. If no mutant is active, the meaning of the code must not
+change."""
 
 import re
 import unittest
@@ -7,7 +8,8 @@ import schemata
 
 
 def inserted(source, *pairs, function=""):
-    """The source with mutants (original, mutated), each test as its name M0, M1, .."""
+    """Returns the source with mutants (original, mutated), in which their tests are named M0,
+    M1, ..."""
     mutants = [schemata.Mutant("layer", f"m{i}", "", "file", function, a, b) for i, (a, b) in enumerate(pairs)]
     text = schemata.with_mutants(source, mutants).partition("\n")[2]
     for i, mutant in enumerate(mutants):

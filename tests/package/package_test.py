@@ -1,4 +1,5 @@
-"""`cmake --install` installs everything for projects and readers. usage: package_test.py BUILD COMPILER"""
+"""Checks that `cmake --install` installs all that projects and readers need. usage:
+package_test.py BUILD COMPILER"""
 import json
 import os
 import pathlib
@@ -54,7 +55,7 @@ class Installed(unittest.TestCase):
             "-DCMAKE_EXE_LINKER_FLAGS=-fuse-ld=lld")
         run("cmake", "--build", build)
         printed = run(build / "consumer", made / "campaign.toml", self.folder / "results")
-        self.assertRegex(printed, r"(?m)^mass 8[45]\.\d+ kg$")  # 85 kg is the truth
+        self.assertRegex(printed, r"(?m)^mass 8[45]\.\d+ kg$")  # the true value is 85 kg
         self.assertTrue((self.folder / "results" / "report.html").is_file())
         source = (ROOT / "tests" / "package" / "consumer" / "consumer.cpp").read_text()
         self.assertIn(f"```cpp\n{source}```\n", (ROOT / "docs" / "install.md").read_text())
@@ -135,7 +136,7 @@ class Installed(unittest.TestCase):
                       f"fit = rigcal.load(rig.synthesize({str(made)!r}, seed=1)).fit()\n"
                       "print(rigcal.__version__, fit.status, fit.parameter('mass').value)",
                       env={"PYTHONPATH": str(modules[0])})
-        self.assertRegex(printed, r"^[\d.]+ converged 8[45]\.")  # 85 kg is the truth
+        self.assertRegex(printed, r"^[\d.]+ converged 8[45]\.")  # the true value is 85 kg
 
     def test_the_manual_tells_every_verb_and_option(self):
         page = (self.prefix / "share" / "man" / "man1" / "rigcal.1").read_text().replace("\\-", "-")

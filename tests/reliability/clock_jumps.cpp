@@ -1,5 +1,5 @@
-// Preloaded into rigcal by tests/reliability/environment.py: the clock of the day jumps by hours,
-// forwards and backwards, each time that it is read. Clocks that only go forwards are left alone.
+// Preloaded into rigcal by tests/reliability/environment.py. The wall clock jumps by hours,
+// forwards and backwards, each time it is read. Monotonic clocks are not affected.
 
 #include <dlfcn.h>
 #include <sys/time.h>
@@ -11,7 +11,7 @@ namespace {
 
 constexpr long kJump_s = 5 * 3600;
 
-/// Seconds by which the clock is wrong now.
+/// Present error of the clock in seconds.
 long jump_s() {
   static std::atomic<int> reads{0};
   constexpr long kJumps[]{0, kJump_s, -kJump_s, 20 * kJump_s};

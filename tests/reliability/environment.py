@@ -1,5 +1,6 @@
-"""The same results whatever the surroundings are: another language, no home, no folder for temporary files, a clock that
-jumps. And where results cannot be written, a word about it and the results of the earlier run."""
+"""Checks that results do not depend on the environment: another language, no home, no folder for
+temporary files, a clock that jumps. If results cannot be written, a message must say so, and
+the earlier results must remain."""
 import os
 import resource
 import shutil
@@ -27,12 +28,12 @@ def work(campaign, earlier):
 
 
 def csv_files(folder):
-    """Their hashes: a decimal comma would show in them."""
+    """Returns the hashes of the CSV files, which a decimal comma would change."""
     return {name: hash_ for name, hash_ in content(folder).items() if name.endswith(".csv")}
 
 
 def decimal_comma(folder):
-    """The variables of a locale with a decimal comma, made here; none where its sources are not installed."""
+    """Compiles a locale with a decimal comma. Returns its variables, or None and the reason."""
     place = folder / "locales"
     place.mkdir()
     made = subprocess.run(["localedef", "-i", "de_DE", "-f", "UTF-8", place / "de_DE.UTF-8"], capture_output=True,
@@ -43,7 +44,7 @@ def decimal_comma(folder):
 
 
 def surroundings(rigcal, folder):
-    """(name, variables, or none and why)"""
+    """Yields (name, environment variables or None, reason if None)."""
     plain = {key: value for key, value in os.environ.items() if key not in ("HOME", "XDG_CACHE_HOME")}
     comma, reason = decimal_comma(folder)
     yield "decimal comma", comma and {**os.environ, **comma}, reason
@@ -94,7 +95,7 @@ def small_files(limit):
 
 
 def as_nobody(out):
-    """Root writes anywhere."""
+    """Returns options to run as another user if this is root, who can write anywhere."""
     if os.geteuid() != 0:
         return {}
     for path in (out, *out.rglob("*")):
@@ -147,7 +148,8 @@ def read_only(rigcal, folder, arguments, verb, before):
 
 
 def full_disk(rigcal, folder, arguments, verb, before):
-    """A file system without bytes, then one without inodes, left; only root can make one."""
+    """Tries a file system with no bytes left, then one with no inodes left. Only root can mount
+    one."""
     row = Count(f"places: {verb}, full disk")
     size = sum(path.stat().st_size for path in before.rglob("*") if path.is_file())
     files = sum(1 for _ in before.rglob("*"))
@@ -176,14 +178,14 @@ def full_disk(rigcal, folder, arguments, verb, before):
 
 
 def fill(disk):
-    """Until nothing more can be written, or no file made."""
+    """Writes until there is no space left, or creates files until there are no inodes left."""
     try:
         with (disk / "filler").open("wb") as filler:
             while True:
                 filler.write(bytes(4096))
                 filler.flush()
                 if os.statvfs(disk).f_bavail > 1 << 16:
-                    break  # it is the inodes that are few
+                    break  # there is space left, so inodes are scarce
     except OSError:
         return
     k = 0

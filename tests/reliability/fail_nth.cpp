@@ -1,18 +1,20 @@
-// Preloaded into rigcal by tests/reliability/faults.py: one call of a kind fails, as if memory or
-// disk had run out.
+// Preloaded into rigcal by tests/reliability/faults.py. Makes one call of a given kind fail, as if
+// memory or disk had run out.
 //
-// RIGCAL_FAIL=KIND:N  the N-th call of a kind fails; 0: none does
+// RIGCAL_FAIL=KIND:N  the N-th call of this kind fails; 0: none fails
 //   memory            operator new
-//   malloc            malloc() and its kin, called by the program itself (Eigen) or a library in C
+//   malloc            malloc() and related functions, called by the program itself (Eigen) or
+//                     by a C library
 //   locks             every flock(), without a number: as on NFS without its lock daemon
-//   files             opening to write, writing, syncing, closing, renaming, linking, making a
-// folder
-// RIGCAL_COUNT=FILE   where they are counted at the end, in this order
+//   files             opening for writing, writing, syncing, closing, renaming, linking, making a
+//                     folder
+// RIGCAL_COUNT=FILE   file to which the numbers of calls are written at the end, in this order
 //
-// Counting begins with main(), whose first call is mallopt(): failures before that are not the
-// program's. UDUNITS-2 is exempt: it does not check its allocations, and crashes or loses units. So
-// is OpenSSL: version 3.5 deadlocks if memory runs out during its initialisation. So are glibc,
-// libstdc++ and the loader, which recover or end the program.
+// Counting begins with main(), whose first call is mallopt(), because earlier failures are not the
+// program's. UDUNITS-2 is exempt, because it does not check its allocations, and crashes or loses
+// units. OpenSSL is exempt, because version 3.5 deadlocks if memory runs out during its
+// initialisation. glibc, libstdc++ and the loader are exempt, because they recover or end the
+// program.
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -39,7 +41,7 @@ long failing_allocation = 0;
 long failing_malloc = 0;
 long failing_file_call = 0;
 
-// glibc's own, which need no looking up: that would allocate.
+// glibc's own functions. They need no lookup, which would allocate memory.
 extern "C" void* __libc_malloc(std::size_t);
 extern "C" void* __libc_calloc(std::size_t, std::size_t);
 extern "C" void* __libc_realloc(void*, std::size_t);
@@ -64,7 +66,7 @@ bool counts(const void* address) {
   return true;
 }
 
-/// Whether the malloc() that is called from an address fails.
+/// Whether a malloc() called from this address fails.
 bool malloc_fails(const void* caller) {
   return counting && counts(caller) && ++mallocs == failing_malloc;
 }
@@ -172,7 +174,7 @@ int rename(const char* from, const char* to) {
   return file_call_fails(EIO) ? -1 : real(from, to);
 }
 
-// Under another name, since <fcntl.h> has a struct of that name.
+// The function has another name here, because <fcntl.h> has a struct called flock.
 int lock_file(int descriptor, int operation) asm("flock");
 int lock_file(int descriptor, int operation) {
   static const auto real = next<int(int, int)>("flock");
@@ -187,7 +189,7 @@ int link(const char* from, const char* to) {
   return file_call_fails(ENOSPC) ? -1 : real(from, to);
 }
 
-// Opened to be written; mode is there where a file may be made.
+// Only files opened for writing count. `mode` is passed only if a file may be created.
 int open(const char* path, int flags, ...) {
   static const auto real = next<int(const char*, int, ...)>("open");
   mode_t mode = 0;
@@ -201,7 +203,7 @@ int open(const char* path, int flags, ...) {
   return writes && file_call_fails(ENOSPC) ? -1 : real(path, flags, mode);
 }
 
-// It is closed all the same.
+// The file is closed even if the call fails.
 int close(int descriptor) {
   static const auto real = next<int(int)>("close");
   const int result = real(descriptor);

@@ -1,11 +1,11 @@
-"""Every allocation and every write fails once, in turn: the program says so with exit code 5 and leaves the results of
-the earlier run as they were, or gets over it and writes what it writes without."""
+"""Makes every allocation and every write fail once, in turn. The program must either end with
+exit code 5 and leave the earlier results unchanged, or recover and write the same results."""
 import os
 import shutil
 
 from runs import SMALL_RIG, Count, comparable, content, left_behind, must, run
 
-# What fails, in the order in which fail_nth.cpp counts it, and in words.
+# What fails, in the order in which fail_nth.cpp counts it, and the name of its row.
 KINDS = {
     "memory": "faults: {}, allocations",
     "malloc": "malloc: {}, calls by Eigen and libraries in C",
@@ -14,8 +14,8 @@ KINDS = {
 
 
 def places(count, most):
-    """Which of `count` calls fail: all, or the first and the last of them one by one, and others evenly between. The last ones
-    put the files into their places."""
+    """Chooses which of `count` calls fail: all, or the first and last ones and others at even
+    intervals in between. The last ones move the files into place."""
     if most is None or count <= most:
         return list(range(1, count + 1))
     ends = most // 3
@@ -24,7 +24,8 @@ def places(count, most):
 
 
 def repeatable(folder):
-    """Returns the hashes of the files that two runs write alike: not those with the time that a fit took, or with its hash."""
+    """Returns the hashes of the files that are equal in two runs. Other files contain the time
+    that a fit took, or its hash."""
     return {path: hash_ for path, hash_ in content(folder).items()
             if path not in ("fit.json", "report.html", "rigcal-manifest.json")}
 
@@ -68,7 +69,7 @@ def study(rigcal, folder, size, kinds=("memory", "files")):
                 if code == 0 and not is_new:
                     row.is_wrong(f"exit 0 with other results: {where}")
                 elif code == 5:
-                    # The new ones are in their places when what is printed runs out of memory.
+                    # The new results are already in place if memory runs out during printing.
                     if not is_new and content(out) != before:
                         row.is_wrong(f"neither the results of the earlier run nor the new ones: {where}")
                     if "bug" in err:

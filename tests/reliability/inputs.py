@@ -9,7 +9,7 @@ from runs import ROOT, SMALL_RIG, Count, must, run
 
 
 def damaged(data, rounds):
-    """Contents of a file that was damaged, evenly over its length."""
+    """Yields damaged versions of a file; the damage is spread evenly over its length."""
     random.seed(len(data))
     for k in range(rounds):
         at = (2 * k + 1) * len(data) // (2 * rounds)

@@ -1,5 +1,6 @@
-"""A fit that is killed again and again, in its starts, bootstrap, profiles and cross-validation, and resumed each time
-ends with the bits of one that was not; and report refuses the files of different runs."""
+"""Kills a fit again and again, during its starts, bootstrap, profiles and cross-validation, and
+resumes it each time. The result must have the same bits as without kills. Also checks that
+`report` refuses files from different runs."""
 import json
 import random
 import signal
@@ -23,10 +24,10 @@ def killed_fits(rigcal, folder, kills):
         time.sleep(random.uniform(0.0, whole_s))
         process.kill()
         code, _, err = finish(process)
-        row.ended(None if code is None else abs(code) % 9, "a killed fit")  # SIGKILL is what was sent
+        row.ended(None if code is None else abs(code) % 9, "a killed fit")  # SIGKILL is expected, so it does not count as a crash
         if code not in (0, -signal.SIGKILL):
             row.is_wrong(f"exit {code}: {err.decode()[-200:]}")
-        if code == 0:  # it was faster: begin again
+        if code == 0:  # it ended before it was killed, so start again
             shutil.rmtree(parts)
     must(rigcal, [*fit, "--out", parts, "--resume"])
     if comparable(parts / "fit.json") != comparable(folder / "whole" / "fit.json"):
@@ -55,7 +56,7 @@ def foreign_checkpoints(rigcal, folder):
     text = checkpoint.read_text()
     digits = [i for i, c in enumerate(text) if c.isdigit()]
     tried = [text[:i] + str((int(text[i]) + 1) % 10) + text[i + 1:] for i in digits[:: max(1, len(digits) // 40)]]
-    # The seventeenth digit of a number may be another without the number being another.
+    # A change of the seventeenth digit does not always change the number.
     tried = [forged for forged in tried if not is_same(forged, text)]
     for forged in [*tried, "", "{}", text[: len(text) // 2]]:
         checkpoint.write_text(forged)
@@ -64,7 +65,7 @@ def foreign_checkpoints(rigcal, folder):
         if code != 2 or b"checkpoint.json" not in err:
             row.is_wrong(f"exit {code}: {err.decode()[-200:]}")
             if code == 0:
-                break  # it removed the checkpoint
+                break  # the run removed the checkpoint
     checkpoint.write_text(text)
     for change in (["--seed", "2"], ["--starts", "6"]):
         code, _, _ = run(rigcal, [*fit, *change, "--resume"])
@@ -82,7 +83,7 @@ def mixed_results(rigcal, folder):
     for path in sorted((*one.rglob("*.csv"), one / "residual_tests.json")):
         name = path.relative_to(one)
         if str(name) in ("scorecard.csv", "parameters.csv"):
-            continue  # nothing reads them back
+            continue  # these files are never read back
         mixed = folder / "mixed"
         shutil.rmtree(mixed, ignore_errors=True)
         shutil.copytree(one, mixed)

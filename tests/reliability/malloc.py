@@ -1,4 +1,5 @@
-"""Every malloc() by Eigen and by libraries in C fails once, in turn: as in faults.py, where operator new does."""
+"""Makes every malloc() by Eigen and C libraries fail once, in turn, as faults.py does for
+operator new."""
 import faults
 
 

@@ -1,4 +1,5 @@
-"""What the parts of scripts/reliability share: running the program, and counting how it ends."""
+"""Functions that the parts of scripts/reliability share: they run the program and count how it
+ends."""
 import hashlib
 import json
 import os
@@ -13,7 +14,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 SMALL_RIG = ROOT / "tests" / "golden" / "resume_study.toml"
 DEMO = ROOT / "datasets" / "rigs" / "uis_shake_table" / "campaign.toml"
 HANGS_S = 60.0
-DOCUMENTED = (1, 2, 3, 4, 5)  # exit codes of a refusal, docs/command-line.md
+DOCUMENTED = (1, 2, 3, 4, 5)  # exit codes of a refusal (docs/command-line.md)
 
 
 class Count:
@@ -24,7 +25,7 @@ class Count:
         self.remarks = []
 
     def ended(self, code, text):
-        """How one run ended; None: it did not."""
+        """Counts how one run ended; None if it did not end."""
         self.tried += 1
         if code is None:
             self.hung += 1
@@ -49,7 +50,7 @@ def start(rigcal, arguments, **more):
 
 
 def finish(process, limit_s=HANGS_S):
-    """(exit code or None, stdout, stderr)"""
+    """Waits for a process. Returns (exit code or None, stdout, stderr)."""
     try:
         out, err = process.communicate(timeout=limit_s)
         return process.returncode, out, err
@@ -78,13 +79,14 @@ def comparable(file):
 
 
 def content(folder):
-    """The hashes of all files of a folder by their names."""
+    """Returns the hashes of all files in a folder, by name."""
     return {str(path.relative_to(folder)): hashlib.sha256(path.read_bytes()).hexdigest()
             for path in sorted(folder.rglob("*")) if path.is_file()}
 
 
 def left_behind(folder):
-    """What no run may leave: files that are not in their places yet, and results that are no JSON."""
+    """Returns what no run may leave behind: temporary files, and results that are not valid
+    JSON."""
     found = []
     for path in folder.rglob("*"):
         if path.name.endswith(".tmp") or path.name == ".rigcal-probe":

@@ -1,4 +1,5 @@
-"""SIGINT and SIGTERM at any moment of every verb: it ends, with exit code 4 and nothing half-written."""
+"""Sends SIGINT and SIGTERM at any moment of every verb. It must end with exit code 4 and leave
+nothing half-written."""
 import shutil
 import signal
 import time
@@ -59,7 +60,7 @@ def study(rigcal, folder, size):
             process.send_signal(sent_signal)
             code, _, err = finish(process, 30.0)
             if code == -sent_signal:
-                code = 4  # it came before the program had begun
+                code = 4  # the signal arrived before the program had started
             waited_s = time.monotonic() - sent
             slowest_s = max(slowest_s, waited_s)
             where = f"{arguments[0]} after {(k + 0.5) / moments:.0%} of {whole_s:.1f} s"

@@ -1,7 +1,7 @@
-"""Every script of scripts/ and docs/ is run by a test. usage: scripts_test.py RIGCAL
+"""Runs every script in scripts/ and docs/, unless another test does. usage: scripts_test.py RIGCAL
 
-The scripts run in a tree of their own, with the program that is tested; what installs and builds only tells what it was
-asked for there, and the programs that measure for hours only repeat their arguments.
+The scripts run in a copy of the tree, with the tested program. Programs that install, build or measure for hours are
+replaced by ones that only print their arguments.
 """
 import os
 import pathlib
@@ -51,11 +51,11 @@ class Scripts(unittest.TestCase):
         for name in ("speed", "coverage_study", "days_study", "design_study", "diagnosis_study", "posterior_study"):
             make_program(release / "bench" / f"rigcal_{name}")
         (release / "rigcal").symlink_to(RIGCAL)
-        self.programs = self.tree / "programs"  # before all others
+        self.programs = self.tree / "programs"  # comes first in PATH
         self.programs.mkdir()
 
     def run_script(self, name, *arguments, fails=False):
-        """Returns its output; if it has to fail, its standard error."""
+        """Returns the output of a script, or its standard error if it must fail."""
         path = f"{self.programs}:{os.environ['PATH']}"
         environment = {key: value for key, value in os.environ.items() if key != "RIGCAL"} | {"PATH": path}
         done = subprocess.run([self.tree / "scripts" / name, *arguments], cwd=self.tree, capture_output=True, text=True,
@@ -79,7 +79,7 @@ class Scripts(unittest.TestCase):
         if "no live pages" in subprocess.run([RIGCAL, "--version"], capture_output=True, text=True, check=True).stdout:
             self.skipTest("this program was built without the model for pages")
         make_program(self.programs / "xdg-open", "#!/bin/sh\necho \"$1\" >opened\n")
-        os.environ["DISPLAY"] = ":7"  # nobody's
+        os.environ["DISPLAY"] = ":7"  # a display that does not exist
         self.addCleanup(os.environ.pop, "DISPLAY", None)
         page = self.tree / "live" / "explore.html"
         for arguments in ((), ("datasets/rigs/karpenko_sepehri/campaign.toml",)):
@@ -155,7 +155,7 @@ class Scripts(unittest.TestCase):
         self.assertTrue(self.run_script("resume-study", "2", "3").endswith("killed 2 times: the same\n"))
 
     def test_setup(self):
-        # On an unknown system.
+        # Runs on an unknown system.
         shutil.copy(ROOT / "scripts" / "setup", self.tree / "scripts" / "setup")
         system = self.tree / "os-release"
         system.write_text("ID=fedora\nVERSION_CODENAME=\n")

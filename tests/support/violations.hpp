@@ -18,7 +18,7 @@ class Rules {
                                             schema_);
   }
 
-  /// What a document lacks, in words; empty if it is as the schema says.
+  /// Describes how a document violates the schema; empty if it conforms.
   std::string violations(const nlohmann::json& document) const {
     valijson::ValidationResults results;
     valijson::Validator().validate(schema_, valijson::adapters::NlohmannJsonAdapter(document),

@@ -14,7 +14,7 @@ namespace {
 using Catch::Contains;
 using Catch::StartsWith;
 
-/// A twin in which one record has another format. That file is damaged.
+/// A twin with one record in another format, whose file is damaged.
 struct Scene {
   Scene(const CommandFolder& of, const RecordFormat& format)
       : folder(of), file("twin/records/sine_bad" + format.extension) {

@@ -211,7 +211,7 @@ TEST_CASE("rigcal: a limit of the size of files is an error of writing", "[apps]
 TEST_CASE("rigcal: two runs into one folder", "[apps]") {
   const CommandFolder folder;
   write_fitted_twin(folder);
-  // A run locks its folder like this for as long as it lasts.
+  // A run locks its folder in this way until it ends.
   const int other = ::open((folder.work() / "fit").c_str(), O_RDONLY | O_DIRECTORY);
   REQUIRE(::flock(other, LOCK_EX | LOCK_NB) == 0);
   const std::string before = folder.read("fit/fit.json");

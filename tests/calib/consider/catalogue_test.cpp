@@ -15,7 +15,7 @@ namespace {
 
 using Catch::WithinRel;
 
-/// What a foreign rig reads in one condition, and the problem of its user at the true values.
+/// Readings of a foreign rig in one condition, and the fit problem for them at the true values.
 struct ForeignProblem {
   bench::ForeignRig rig;
   datasets::Campaign campaign;
@@ -29,7 +29,7 @@ struct ForeignProblem {
           std::pair{"valve_gain", rig.valve_gain_m_per_v},
           std::pair{"leakage_coefficient", rig.leak_coefficient}})
       campaign.parameters.push_back(known(Twin::index(key), value));
-    // One unknown, since a problem without any is none.
+    // One unknown, because a problem must have at least one.
     datasets::ParameterSetting& mass =
         *std::find_if(campaign.parameters.begin(), campaign.parameters.end(),
                       [](const auto& each) { return each.index == Twin::index("mass"); });
@@ -53,7 +53,7 @@ struct ForeignProblem {
     record.channels[datasets::Channel::position] = series;
   }
 
-  /// Change of the reading by an effect that the foreign rig has.
+  /// Change of the readings due to an effect of the foreign rig.
   Eigen::VectorXd change(void (*apply)(bench::ForeignRig&, double), double size) const {
     bench::ForeignRig with = rig;
     apply(with, size);
@@ -69,12 +69,12 @@ struct ForeignProblem {
   bench::Reference reference_;
 };
 
-/// An effect with its counterpart in the other integrator.
+/// An effect, with its counterpart in the foreign rig.
 struct CounterpartRow {
   const char* key;
   void (*apply)(bench::ForeignRig&, double size);
   double size;     ///< plausible size on this rig
-  double allowed;  ///< largest distance of the two changes, over their size
+  double allowed;  ///< largest difference between the two changes, relative to their size
 };
 
 const std::vector<CounterpartRow> kCounterparts{
@@ -113,7 +113,7 @@ TEST_CASE("catalogue: what an effect does to a record is what another integrator
       const Eigen::VectorXd ours = rows.col(found - effects.begin());
       const Eigen::VectorXd theirs = foreign.change(row.apply, row.size);
       CHECK((ours - theirs).norm() < row.allowed * theirs.norm());
-      // All at once is what a refit simulates.
+      // A refit simulates all effects at once.
       Eigen::VectorXd sizes = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(effects.size()));
       const Eigen::VectorXd none =
           outputs_with(problem, 0, z, effects, sizes, Derivatives::none, nullptr).outputs;

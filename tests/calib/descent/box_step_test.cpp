@@ -52,8 +52,8 @@ TEST_CASE("box_step: negative curvature is followed, with a gradient along it or
   const BoxStep found = box_step(model, wide(2, 1.0));
   CHECK(found.at_radius);
   CHECK(found.step.norm() == Approx(1.0).epsilon(1e-6));
-  // Without a gradient along the negative curvature, the fall on the unit circle is 1 - 3 y^2 - y.
-  // It is largest at y = -1 / 6, where both components have the multiplier 2.
+  // Without a gradient along the negative curvature, the decrease on the unit circle is 1 - 3 y^2 -
+  // y. It is largest at y = -1 / 6, where both components have the multiplier 2.
   if (slope < 0.01) CHECK(found.fall == Approx(1.0 + 1.0 / 12.0).epsilon(1e-6));
   for (int k = 0; k < 3600; ++k) {
     const double angle = k * M_PI / 1800.0;

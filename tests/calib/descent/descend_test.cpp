@@ -8,8 +8,8 @@ using namespace rigcal::calib;
 
 namespace {
 
-/// Rosenbrock's valley over [-2, 2]^2 with residuals 10 (y - x^2) and 1 - x; the minimum is at (1,
-/// 1).
+/// Rosenbrock's valley over [-2, 2]^2 with residuals 10 (y - x^2) and 1 - x; the minimum is at
+/// (1, 1).
 DescentOptions valley() {
   DescentOptions options;
   options.linearise = [](std::span<const double> z, bool) -> std::optional<Linearisation> {

@@ -121,7 +121,7 @@ TEST_CASE("design: own signals count by their time, whatever their length and ra
   twin.campaign.design->evaluations = 6;
   const double sd = designed(twin.campaign, {"mass"}).parameters[0].sd_own_signals.value();
   datasets::Condition& own = twin.campaign.conditions.back();
-  own.duration_s = 20.0;  // ten times as long; a 2 Hz square wave repeats
+  own.duration_s = 20.0;  // ten times as long; the 2 Hz square wave repeats itself
   const double longer = designed(twin.campaign, {"mass"}).parameters[0].sd_own_signals.value();
   CHECK(longer == Approx(sd).epsilon(0.06));
   own.sample_rate_hz = 1000.0;

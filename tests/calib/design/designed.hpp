@@ -8,8 +8,8 @@
 
 namespace rigcal::calib {
 
-/// The twin with unknown mass and valve gain, one square wave of its own, and a test of two seconds
-/// to be designed.
+/// The twin with unknown mass and valve gain, one square wave, and the settings for a test of two
+/// seconds to be designed.
 inline Twin designed_twin() {
   Twin twin = one_square();
   datasets::Condition& own = twin.campaign.conditions.back();

@@ -18,8 +18,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// A system of several conditions with own unknowns placed between the shared ones, and the same
-/// system as a dense one.
+/// A system of several conditions, in which each condition's own unknowns are placed between the
+/// shared ones, and the same system as a dense one.
 struct RandomSystem {
   std::mt19937 random;
   Linearisation arrow;
@@ -125,7 +125,7 @@ TEST_CASE("arrow: step, rank and covariance are those of the dense system", "[ca
     const MatrixXd inverse = dense.root() * dense.root().transpose();
     CHECK(distance(all_products(arrow.root()), inverse) < 1e-11);
     CHECK(distance(all_products(arrow.spread(2.0, 1e-9)), 4.0 * inverse) < 1e-11);
-    // The volume of the covariance, from the singular values.
+    // Compares the volume of the covariance, computed from the singular values.
     CHECK(arrow.singular_values().array().log().sum() ==
           Approx(dense.singular_values().array().log().sum()));
     CHECK(arrow.undetermined().empty());
@@ -232,7 +232,7 @@ TEST_CASE("sandwich: own directions tell the same as dense ones", "[calib]") {
   RandomSystem system(11, {1, 2, 1});
   constexpr Index kSamples = 400;
   const Index n = system.arrow.unknowns();
-  // Records of three conditions; own unknowns and the shared ones act in each.
+  // Each of the three conditions has a record that depends on its own unknowns and the shared ones.
   std::vector<MatrixXd> jacobians;
   MatrixXd normal = MatrixXd::Zero(n, n);
   std::vector<std::vector<int>> acting;

@@ -11,7 +11,7 @@ using Catch::WithinRel;
 
 namespace {
 
-/// A rig with unknown valve gain and the record of one sine for each date.
+/// A rig with unknown valve gain, and one record of a sine per date.
 calib::Twin dated_twin(const std::vector<std::string>& dates) {
   calib::Twin twin;
   twin.free("valve_gain", 4.5e-5, 1e-5, 1e-4);

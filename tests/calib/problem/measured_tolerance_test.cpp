@@ -13,7 +13,7 @@ namespace {
 using datasets::Channel;
 using datasets::Waveform;
 
-/// A sine, and the same with the reference as it was recorded, with noise.
+/// A sine, and the same sine with a noisy recorded reference.
 struct RecordedTwin {
   Twin twin;
   std::vector<datasets::Record> records;
@@ -35,10 +35,10 @@ struct RecordedTwin {
   }
 };
 
-/// Part of its noise of a record whose residuals ask for more.
+/// Factor on the noise of a record, which makes it require a smaller tolerance.
 constexpr double kQuiet = 0.01;
 
-/// Norm of the errors of a condition's residuals, by a simulation at 1e-10.
+/// Norm of the simulation errors in a condition's residuals, compared with a tolerance of 1e-10.
 double error_at(const Problem& problem, std::size_t condition, std::span<const double> z) {
   Problem exact = problem;
   exact.tolerance = 1e-10;
@@ -64,12 +64,12 @@ TEST_CASE("measured tolerance: a recorded drive is simulated as exactly as its r
   CHECK(problem.tolerance_of(1) > 3.0 * before[1]);
   CHECK(problem.tolerance_of(1) <= 1e-5);
   CHECK(problem.tolerance_of(1, Fidelity::coarse) == problem.coarse_tolerance());
-  // A hundredth of a standard error, if all of it went into one estimate.
+  // Even if the whole error went into one estimate, it would be a hundredth of a standard error.
   const double error = error_at(problem, 1, z);
   CHECK(error > 0.0);
   CHECK(error < 0.01);
 
-  // Less noise asks for more.
+  // Less noise requires a smaller tolerance.
   Problem quiet = problem_of(rig.twin, rig.records);
   quiet.conditions[1].channels[0].sd *= kQuiet;
   quiet.tolerance = 1e-8;

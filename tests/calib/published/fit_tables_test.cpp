@@ -78,7 +78,8 @@ TEST_CASE("table_residuals: derivatives are those of differences", "[calib]") {
         (2.0 * h);
     for (Eigen::Index i = 0; i < difference.size(); ++i) {
       CAPTURE(residuals.name(static_cast<std::size_t>(i)), j);
-      // Derivative with respect to the logarithm of the value: noise of 1e-4 over a step of 2e-2.
+      // The derivative with respect to the logarithm of the value has noise of 1e-4 over a step of
+      // 2e-2.
       CHECK_THAT(values[j] * at.jacobian(i, static_cast<Eigen::Index>(j)),
                  WithinAbs(values[j] * difference(i), 0.01));
     }

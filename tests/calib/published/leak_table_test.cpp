@@ -136,7 +136,7 @@ TEST_CASE("leak_table: intervals are those by which coefficients move with the r
   rig.settings.features.clear();
   const int gain = model::parameter_index(rig.campaign.rig.plant, "valve_gain");
   const int damping = model::parameter_index(rig.campaign.rig.plant, "damping");
-  // Errors of 2 % and 4 %, correlated.
+  // The errors are 2 % and 4 %, and correlated.
   const double gain_error = 0.02 * rig.values()["valve_gain"];
   const double damping_error = 0.04 * rig.values()["damping"];
   constexpr double kCorrelation = -0.6;
@@ -152,7 +152,7 @@ TEST_CASE("leak_table: intervals are those by which coefficients move with the r
       kCorrelation * gain_error * damping_error, damping_error * damping_error;
   const auto table = calib::leak_table(rig.campaign, rig.settings, options);
 
-  // Tables for rigs that are one standard error off in either direction.
+  // Makes tables for rigs that are one standard error off in either direction.
   const auto table_with = [&](int index, double change) {
     test::LeakRig moved = rig;
     for (datasets::Assumption& each : moved.settings.assumptions)
@@ -308,7 +308,7 @@ TEST_CASE("flow_curve: finds every root, a close pair on a flat top too", "[cali
   CHECK_THAT(hump(curve.at(two[0])), WithinRel(0.3, 1e-3));
   CHECK_THAT(hump(curve.at(two[1])), WithinRel(0.3, 1e-3));
   CHECK(two[0] < two[1]);
-  // Shares of 0.584 and 0.616, between two points of the scan.
+  // The shares are 0.584 and 0.616, between two points of the scan.
   REQUIRE(curve.roots(hump, 0.3598).size() == 2);
   CHECK(curve.roots(hump, 0.37).empty());
 }
@@ -323,6 +323,6 @@ TEST_CASE("flow_curve: the local slope is that of differences", "[calib]") {
   const double difference =
       std::log(curve.at(0.5 * std::exp(h)).share() / curve.at(0.5 * std::exp(-h)).share()) /
       (2.0 * h);
-  // Noise of 2e-5 over a step of 0.02.
+  // The difference has noise of 2e-5 over a step of 0.02.
   CHECK_THAT(curve.log_slope(0.5), WithinAbs(difference, 3e-3));
 }

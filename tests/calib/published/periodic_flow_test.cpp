@@ -74,7 +74,7 @@ TEST_CASE("periodic_flow: agrees with a long run of its own", "[calib]") {
     REQUIRE(flow.ok());
     const double share =
         long_run_share(rig, c.waveform, c.frequency_hz, 0.25, c.periods, c.samples);
-    // 2e-4 each from transient and sampling, in both flows.
+    // Transient and sampling each cause an error of 2e-4 in both flows.
     CHECK_THAT(flow.share(), WithinRel(share, 6e-4));
   }
 }

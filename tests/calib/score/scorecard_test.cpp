@@ -19,7 +19,8 @@ TEST_CASE("scorecard: the residual is measured minus simulated, of the longest s
   const auto& tests = scores.at(0).channels.at(0).residual_tests;
   REQUIRE(tests.has_value());
   CHECK(tests->samples == 600);
-  // 5e-5 of noise divided by the root of 600 samples; the limit is about four times that.
+  // The standard error is the noise, 5e-5, divided by the square root of 600; the limit is about
+  // four times that.
   CHECK_THAT(tests->drift.mean, Catch::WithinAbs(1e-4, 1e-5));
 }
 

@@ -31,7 +31,7 @@ TEST_CASE("basins: starts that ended at one point, and those that did not", "[ca
   CHECK_THAT(words, Contains("2 of 4 starts") && Contains("1 other minimum") &&
                         Contains("1 did not converge"));
   CHECK(agreement_of({starts[0]}, found, 1.0).empty());
-  // A start that did not converge has a lower cost, so none of the converged starts is the best.
+  // A start that did not converge has a lower cost, so no converged start is the best.
   std::vector<StartReport> beneath = starts;
   beneath[3].final_cost = 9.0;
   const std::string told = agreement_of(beneath, found, 1.0);
@@ -40,7 +40,7 @@ TEST_CASE("basins: starts that ended at one point, and those that did not", "[ca
   beneath[3].final_cost = 0.0;
   beneath[3].end_values.clear();
   CHECK(agreement_of(beneath, found, 1.0) == words);
-  // Equal cost at two points: a tenth of the interval width is 0.02.
+  // The two points have equal cost. A tenth of the interval width is 0.02.
   const auto apart = [&](double distance) {
     return basins({start(1, 10.0, 1.0, FitStatus::converged),
                    start(2, 10.0, 1.0 + distance, FitStatus::converged)},

@@ -59,8 +59,8 @@ TEST_CASE("between repeats: variance of the mean, freedom by Satterthwaite", "[c
 }
 
 TEST_CASE("between repeats: a known random effect of a linear model", "[calib]") {
-  // Repeat r measures an additional a_r g, so that the estimate from the mean is off by mean(a) g .
-  // j.
+  // Repeat r measures an additional a_r g, so that the estimate from the mean is off by
+  // mean(a) g . j.
   const VectorXd j = VectorXd::LinSpaced(50, 0.0, 1.0).normalized();
   const VectorXd g = VectorXd::Constant(50, 2.0);
   const std::vector<double> a{3.0, -1.0, 0.5, 1.5};

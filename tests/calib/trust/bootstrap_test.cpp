@@ -13,7 +13,7 @@ using Catch::WithinAbs;
 using Catch::WithinRel;
 
 /// A rig whose only unknown, the offset of its position sensor, is the mean of measured minus
-/// simulated. What the replicates estimate is therefore exactly what was drawn.
+/// simulated. The replicates therefore estimate exactly what was drawn.
 struct OffsetAlone {
   Twin twin;
   std::vector<datasets::Record> records;

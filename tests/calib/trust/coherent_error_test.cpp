@@ -57,7 +57,7 @@ TEST_CASE("coherent error: which residuals are no noise", "[calib]") {
 }
 
 TEST_CASE("coherent error: the interval of a fit without noise holds the truth", "[calib]") {
-  // The rig that made the records is stiffer by 0.3 % than the fitted model.
+  // The rig that made the records is 0.3 % stiffer than the fitted model.
   Twin twin = free_gain();
   twin.noise_sd_m = 0.0;
   twin.truth = twin.campaign;

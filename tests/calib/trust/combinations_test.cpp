@@ -69,7 +69,7 @@ TEST_CASE("combinations: the scaling symmetry is named, with mass and supply pre
   const Fit followed = fit(twin.campaign, records, more);
   CHECK_FALSE(parameter(followed, "mass").profile);
   CHECK_FALSE(parameter(followed, "mass").bootstrap);
-  // A known stiffness determines the scale, so the scale depends on it.
+  // A known stiffness fixes the scale, so errors of the stiffness affect it.
   twin.setting("stiffness").fit = false;
   twin.setting("stiffness").value = 2e4;
   const Fit resting = fit(twin.campaign, records, {});

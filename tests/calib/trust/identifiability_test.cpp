@@ -10,7 +10,7 @@ namespace {
 
 using Catch::WithinRel;
 
-/// A mass of 100 kg whose standard error a test sets.
+/// A mass of 100 kg. Each test sets its standard error.
 struct Graded {
   Twin twin;
   std::vector<datasets::Record> records;

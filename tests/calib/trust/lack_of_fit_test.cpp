@@ -91,7 +91,7 @@ TEST_CASE("lack of fit: closed forms of a first-order process", "[calib]") {
   };
   CHECK_FALSE(misfit(tests_of(ratio_of(0.04), 1.0)).value());
   CHECK(misfit(tests_of(ratio_of(0.02), 1.0)).value());
-  // A larger residual is always less likely; the test never passes again at a larger size.
+  // The p-value must decrease monotonically as the residual grows.
   double last = 1.0;
   for (const double ratio : {0.5, 0.9, 1.1, 1.5, 3.0}) {
     const double p = tests_of(ratio, 1.0)[0].p;
@@ -197,8 +197,8 @@ TEST_CASE("known values: their uncertainty is carried into the errors", "[calib]
   const double alone =
       parameter(fit(twin.campaign, records, {}), "valve_gain").standard_error.value();
   // The servo flow is proportional to the valve gain times the square root of the supply pressure.
-  // An error of 10 % in the pressure corresponds to 5 % in the gain, far more than the noise
-  // leaves.
+  // An error of 10 % in the pressure corresponds to 5 % in the gain, far more than the error due to
+  // noise.
   twin.setting("supply_pressure").prior = datasets::Prior{6.2e6, 0.62e6};
   const Fit carried = fit(twin.campaign, records, {});
   const FittedParameter& gain = parameter(carried, "valve_gain");

@@ -36,7 +36,7 @@ const std::vector<double>& band_of(const Fit& fit, const std::string& id) {
   return score_of(fit, id).prediction_sd.at(Channel::position);
 }
 
-/// Returns what the estimates alone add to the band, root mean square over the record.
+/// Returns the contribution of the estimates to the band, as the rms over the record.
 double from_estimates(const Fit& fit, const std::string& id, double noise_sd) {
   double sum = 0.0;
   for (const double sd : band_of(fit, id)) sum += sd * sd - noise_sd * noise_sd;
@@ -60,7 +60,7 @@ TEST_CASE("prediction_sd: estimates and noise add up as variances", "[calib]") {
 
 TEST_CASE("prediction band: holds 95 % of the samples of fitted and new records", "[calib]") {
   Twin twin = predicting_twin();
-  twin.campaign.considered.none = true;  // what the model lacks widens the band of another record
+  twin.campaign.considered.none = true;  // effects would widen the band of a record not fitted
   for (const char* id : {"fitted", "predicted"}) {
     int within = 0;
     int all = 0;
@@ -159,7 +159,7 @@ TEST_CASE("prediction band: an estimate of another leak level does not count", "
   spread.estimates = {{Twin::index("leakage_coefficient"), datasets::Scope::leak_level, "small"},
                       {Twin::index("leakage_coefficient"), datasets::Scope::leak_level, "large"}};
   spread.root = Eigen::MatrixXd::Zero(2, 2);
-  spread.root(1, 1) = 0.1;  // only for the large one
+  spread.root(1, 1) = 0.1;  // only for the leak level "large"
   std::vector<ConditionScore> scores(2);
   for (std::size_t i = 0; i < 2; ++i) scores[i].time_s = records[i].time_s;
   add_prediction_sd(problem, z, spread, {}, 1, scores);

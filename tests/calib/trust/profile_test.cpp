@@ -33,7 +33,7 @@ TEST_CASE("profile: where the cost is all but quadratic it ends where the interv
     CAPTURE(key, p.reason);
     REQUIRE(p.profile.has_value());
     const auto interval = p.ci95_if_exact.value();
-    // 10 % for curvature, the quantile of t, and a crossing located to 2 %.
+    // Allows 10 % for curvature, the quantile of t, and a crossing that is located to 2 %.
     CHECK_THAT(p.profile->high.value.value() - p.value, WithinRel(interval.high - p.value, 0.1));
     CHECK_THAT(p.value - p.profile->low.value.value(), WithinRel(p.value - interval.low, 0.1));
     CHECK_FALSE(p.profile->lower_cost_found);
@@ -96,7 +96,7 @@ TEST_CASE("profile: what a prior alone tells ends where the prior does", "[calib
   CAPTURE(p.reason);
   CHECK_THAT(p.standard_error.value(), WithinRel(0.02, 0.02));
   REQUIRE(p.profile.has_value());
-  // 1.96 standard deviations of the prior; a crossing is located to 2 % of the rise.
+  // The prior gives 1.96 standard deviations; a crossing is located to 2 % of the rise.
   CHECK_THAT(p.profile->high.value.value() - p.value, WithinRel(1.96 * 0.02, 0.03));
   CHECK_THAT(p.value - p.profile->low.value.value(), WithinRel(1.96 * 0.02, 0.03));
 }

@@ -54,8 +54,8 @@ constexpr int kPart = test::kSanitized ? 4 : 1;
 /// Fewer draws widen the limits on coverage by this factor.
 const double kWider = std::sqrt(kPart);
 
-/// Fraction of draws in which the 95 % interval of a direction includes the true value, 0; also for
-/// an interval that only uses Student's t with the degrees of freedom.
+/// Fraction of draws in which the 95 % interval of a direction includes the true value, 0. The
+/// other fraction is for intervals that use Student's t without any other correction.
 struct Coverage {
   double found = 0.0;
   double by_freedom = 0.0;
@@ -138,10 +138,11 @@ TEST_CASE("sandwich: rows of seven digits give the same covariance", "[calib]") 
 
 TEST_CASE("sandwich: intervals cover under white, correlated and uneven noise", "[calib]") {
   const MatrixXd model = slow_model(1500);
-  // Binomial, with independent directions in each draw: 600 intervals at 95 % have a standard
-  // deviation of 0.9 %; the limit is 3.5 times that.
+  // If the directions are independent, the coverage of 600 intervals at 95 % has a binomial
+  // standard deviation of 0.9 %; the limit is 3.5 times that.
   CHECK_THAT(coverage(model, 0.0, 200 / kPart), WithinAbs(0.95, 0.031 * kWider));
-  // 38 effective samples determine their own correlation to a fifth, so that t is not exact.
+  // 38 effective samples determine their own correlation only to within a fifth, so that t is not
+  // exact.
   CHECK_THAT(coverage(model, 0.95, 200 / kPart), WithinAbs(0.95, 0.035 * kWider));
   CHECK_THAT(coverage(model, 0.0, 200 / kPart, 0.8), WithinAbs(0.95, 0.031 * kWider));
 }
@@ -149,9 +150,9 @@ TEST_CASE("sandwich: intervals cover under white, correlated and uneven noise", 
 TEST_CASE("sandwich: what a few correlated samples tell is covered no more than it should be",
           "[calib]") {
   const auto covered = coverage_of_each(brief_model(1500), 0.95, 1000 / kPart);
-  // Binomial: 1000 draws at 95 % have a standard deviation of 0.7 %; the limit is 3.5 times that.
-  // If few samples matter, their residuals contain their own error, so that Student's t alone
-  // covers more.
+  // With 1000 draws, a coverage of 95 % has a binomial standard deviation of 0.7 %; the limit is
+  // 3.5 times that. If few samples matter, their residuals contain their own error, so that
+  // Student's t alone covers more.
   CHECK_THAT(covered[0].found, WithinAbs(0.95, 0.025 * kWider));
   CHECK(covered[0].by_freedom > 0.98);
   CHECK_THAT(covered[1].found, WithinAbs(0.95, 0.035 * kWider));
@@ -188,8 +189,8 @@ TEST_CASE("sandwich: two channels with the same noise count once", "[calib]") {
   const MatrixXd each = MatrixXd::Identity(3, 3);
   const auto shared = score_scatter({{model, residual, 2}}, none, each);
   const auto single = score_scatter({{slow_model(2000), residual.head(2000), 1}}, none, each);
-  // Twice the variance of one channel in these coordinates. The limit is 5 % because the
-  // small-sample corrections differ.
+  // The result is twice the variance of one channel in these coordinates. The limit is 5 % because
+  // the small-sample corrections differ.
   CHECK_THAT(robust_variance(shared, none, each, 0).variance,
              WithinRel(2.0 * robust_variance(single, none, each, 0).variance, 0.05));
 }

@@ -15,8 +15,8 @@ using Catch::Contains;
 using datasets::Waveform;
 using model::Experiment;
 
-/// A rig with every term that involves a force, a pressure or a flow. Air is left out, because it
-/// compares pressures with atmospheric pressure.
+/// A rig with every term that involves a force, a pressure or a flow. Air is left out, because its
+/// law depends on the atmospheric pressure.
 Experiment everything(model::PlantKind plant) {
   const bool chambers = plant == model::PlantKind::two_chamber;
   Experiment e = chambers ? model::two_chamber_rig() : Experiment();
@@ -45,14 +45,14 @@ Experiment everything(model::PlantKind plant) {
   return e;
 }
 
-/// The terms of valve and pump that everything() lacks, which has an electric valve.
+/// Terms of valve and pump that everything() lacks, because its valve is electric.
 constexpr std::array<std::string_view, 10> kMetering{
     "pilot_gain",          "bypass_opening",       "return_line_opening", "return_line_resistance",
     "make_up_conductance", "compensator_pressure", "load_sensing_margin", "relief_pressure",
     "relief_conductance",  "accumulator_precharge"};
 
-/// A pilot-operated valve and a pump with all of them but an accumulator, whose gas compares
-/// pressures with that of the atmosphere.
+/// A rig with a pilot-operated valve, a pump and all of these terms except the accumulator, whose
+/// gas law depends on the atmospheric pressure.
 Experiment metered() {
   Experiment e = model::pilot_rig();
   e.set("pilot_gain", 8e-11).set("pilot_exponent", 1.6).set("return_dead_band", 0.8e6);

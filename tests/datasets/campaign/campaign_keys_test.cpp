@@ -38,14 +38,14 @@ const Rules& rules() {
   return schema;
 }
 
-/// A TOML table as an editor validates it: dates are texts.
+/// A TOML table as an editor validates it, with dates as texts.
 json as_json(const toml::table& table) {
   std::ostringstream text;
   text << toml::json_formatter{table};
   return json::parse(text.str());
 }
 
-/// A value as TOML in one line. Texts that look like dates are dates.
+/// A value as TOML in one line. Texts that look like dates are written as dates.
 std::string as_toml(const json& value) {
   if (value.is_object()) {
     std::string text;
@@ -86,8 +86,9 @@ json small_campaign() {
   })");
 }
 
-/// What else a campaign has to say where it has a key: a merge patch (RFC 7396). In `condition`,
-/// `report.sensor`, `leak_table.signal` and `leak_table.features.row` it is one of the tables.
+/// For a key, the other keys that a campaign then needs, as a merge patch (RFC 7396). In
+/// `condition`, `report.sensor`, `leak_table.signal` and `leak_table.features.row`, it applies to
+/// one table.
 const std::map<std::string, json>& companions() {
   static const std::map<std::string, json> patches = [] {
     const json chirp = {{"condition", {{"waveform", "chirp"}, {"end_frequency", "2 Hz"}}}};
@@ -132,7 +133,7 @@ const std::map<std::string, json>& companions() {
   return patches;
 }
 
-/// A value that a form takes.
+/// Returns a valid value for a form.
 json example_of(const KeyForm& form) {
   switch (form.kind) {
     case FormKind::quantity:
@@ -175,14 +176,15 @@ json example_of(const CampaignKey& row) {
   return as_json(toml::parse("x = " + known)).at("x");
 }
 
-/// A table of the campaign with the place of a key in it.
+/// A key, and where it is in the campaign.
 struct Place {
   std::string path;  ///< "recording.initial"
   const CampaignKey* row;
   std::vector<std::string> tables;  ///< "recording"
 };
 
-/// Tables whose keys are channels or parameters: those named stand for all of them.
+/// Whether the test visits a key. Of the tables whose keys are channels or parameters, it visits
+/// only a few representative keys.
 bool is_walked(const Place& place) {
   static const std::set<std::string> kOne{"mass", "type",      "feedback",
                                           "time", "reference", "position"};
@@ -234,7 +236,7 @@ const std::vector<Place>& key_places() {
   return all;
 }
 
-/// Returns the table of a key, the first one of a list of tables. Makes it if it is absent.
+/// Returns the table of a key, the first one if there is a list of tables. Creates missing tables.
 json& table_in(json& campaign, const std::vector<std::string>& tables) {
   json* table = &campaign;
   std::string path;
@@ -251,7 +253,7 @@ json& table_in(json& campaign, const std::vector<std::string>& tables) {
       if (!next.is_object()) next = json::object();
       table = &next;
     }
-    // A table that is new has what it needs.
+    // A new table gets the keys that it needs.
     if (const auto* keys = find_campaign_table(path); keys != nullptr && path != "rig") {
       for (const CampaignKey& row : *keys)
         if (row.needed && !table->contains(row.key)) (*table)[row.key] = example_of(row);
@@ -260,7 +262,7 @@ json& table_in(json& campaign, const std::vector<std::string>& tables) {
   return *table;
 }
 
-/// Applies a patch. An object in it means the first of a list of tables.
+/// Applies a patch. Objects in it apply to the first table if the campaign has a list of tables.
 void patch(json& value, const json& change) {
   for (const auto& [key, each] : change.items()) {
     if (each.is_null()) {
@@ -274,7 +276,7 @@ void patch(json& value, const json& change) {
   }
 }
 
-/// A campaign that has a key.
+/// Returns a campaign with this key.
 json with_key(const Place& place, const std::string& key, const json& value) {
   json campaign = small_campaign();
   table_in(campaign, place.tables);
@@ -284,7 +286,7 @@ json with_key(const Place& place, const std::string& key, const json& value) {
   return campaign;
 }
 
-/// What the reader says of a campaign; empty if it accepts it.
+/// Returns the reader's error message for a campaign; empty if it is accepted.
 std::string refusal_of(const json& campaign) {
   std::string text;
   for (const auto& [key, value] : campaign.items())
@@ -311,7 +313,8 @@ json value_at(const Place& place) {
 
 }  // namespace
 
-// RIGCAL_WRITE_SCHEMAS=1 build/release/tests/datasets_tests "campaign schema: *" writes it anew.
+// To update the file: RIGCAL_WRITE_SCHEMAS=1 build/release/tests/datasets_tests "campaign schema:
+// *"
 TEST_CASE("campaign schema: the file in docs/schema is that of the rows", "[datasets]") {
   const std::string file = std::string(RIGCAL_SOURCE_DIR) + "/docs/schema/campaign.schema.json";
   if (std::getenv("RIGCAL_WRITE_SCHEMAS") != nullptr) std::ofstream(file) << campaign_schema();
@@ -342,7 +345,7 @@ TEST_CASE("campaign keys: reader and schema accept each", "[datasets]") {
     const json campaign = with_key(place, place.row->key, value_at(place));
     CAPTURE(place.path, campaign.dump());
     CHECK_FALSE(place.row->doc.empty());
-    // A table has a campaign for each of its keys. A position is no drive.
+    // Tables are covered by the campaigns for their keys. A position cannot be a drive.
     if (find_campaign_table(place.path) != nullptr) continue;
     if (place.path == "recording.channels.position.recognise") continue;
     CHECK(refusal_of(campaign) == "");

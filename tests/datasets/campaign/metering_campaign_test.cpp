@@ -169,7 +169,7 @@ TEST_CASE("load_campaign: a rig with more states than its solver has room for is
       "pump_flow = \"20 L/min\"\npump_second_flow = \"40 L/min\"\npump_delay = \"1 s\"\n"
       "payload_mass = \"100 kg\"\npayload_frequency = \"50 rad/s\"\npayload_damping_ratio = 0.1\n"
       "coulomb_friction = \"1 kN\"\nbristle_stiffness = \"10 N/um\"\n");
-  load_text(text);  // eleven
+  load_text(text);  // has eleven states
   text = replaced(text, "payload_damping_ratio = 0.1\n",
                   "payload_damping_ratio = 0.1\nhose_capacity_a = \"1e-12 m3/Pa\"\n"
                   "hose_yield = \"2 bar\"\n");

@@ -14,7 +14,8 @@ TEST_CASE("drive_motion: share of the drive's range that it passes in a run", "[
   CHECK_THAT(drive_motion(ramp, {10, 40, 0.0}), WithinAbs(0.30, 1e-12));
   CHECK_THAT(drive_motion(ramp, {10, 5, 0.0}), WithinAbs(0.04, 1e-12));  // too short to be divided
   CHECK(drive_motion(Samples(50, 2.0), {10, 20, 0.0}) == 0.0);
-  // A constant drive does not move. An edge in its last tenth has not been answered yet.
+  // A constant drive does not move. The piston has had no time to respond to an edge in the last
+  // tenth.
   const Samples held = square_signal(200, 100.0);
   CHECK(drive_motion(held, {50, 50, 0.0}) == 0.0);
   CHECK(drive_motion(held, {55, 50, 0.0}) == 0.0);

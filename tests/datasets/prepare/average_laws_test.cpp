@@ -156,8 +156,8 @@ TEST_CASE("average: identical inputs are as they should be", "[datasets]") {
 TEST_CASE(
     "average: two repeats are named where they differ by more than noise and 1 % of the range",
     "[datasets]") {
-  // Each repeat has noise of +-noise, which second differences see as 2 noise / sqrt(6). The range
-  // is 1.
+  // Each repeat has noise of +-noise, which the second differences estimate as 2 noise / sqrt(6).
+  // The range is 1.
   const auto named = [](double noise, double apart, double ratio) {
     std::vector<Repeat> repeats;
     for (const int r : {0, 1})

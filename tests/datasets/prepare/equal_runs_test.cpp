@@ -45,7 +45,7 @@ TEST_CASE("cuts_a_motion: three samples before and after a run lie far enough fr
   const Samples x{0.0, 2.0, 3.0, 3.5, 3.5, 3.5, 3.4, 3.3, 3.2};
   const EqualRun top{3, 3, 3.5};
   CHECK(cuts_a_motion(x, top, 0.29));
-  CHECK_FALSE(cuts_a_motion(x, top, 0.31));  // it leaves by 0.3
+  CHECK_FALSE(cuts_a_motion(x, top, 0.31));  // the signal leaves the run by 0.3
   // At one end of the record, only the other side decides. If the run fills the record, nothing
   // does.
   CHECK(cuts_a_motion(Samples(x.begin(), x.begin() + 6), top, 3.5));

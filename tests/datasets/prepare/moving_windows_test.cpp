@@ -55,7 +55,7 @@ TEST_CASE("find_motions: from the command step to the stop, and back", "[dataset
   const double level = GENERATE(1.5, 2.0, 4.0);
   const auto motions = motions_of(steps(level));
   REQUIRE(motions.size() == 2);
-  // A motion counts as complete when 1 % of the travel is left.
+  // A motion ends when it has covered 99 % of its travel.
   const double travel_s = 0.99 * kStroke_m / (0.05 * level);
   CHECK_THAT(motions[0].window.start_s, WithinAbs(0.1, 1e-9));
   CHECK_THAT(motions[0].window.end_s, WithinAbs(0.13 + travel_s, 3e-3));
@@ -129,7 +129,7 @@ TEST_CASE("find_motions: a rise that takes some samples, and too short records",
   for (int i = 0; i < 20; ++i) test.command[static_cast<std::size_t>(100 + i)] = 0.1 * i;
   const auto motions = motions_of(test);
   REQUIRE(motions.size() == 2);
-  // The window starts where the command has left its level by more than 2 % of its range.
+  // The window starts when the command has changed by more than 2 % of its range.
   CHECK_THAT(motions[0].window.start_s, WithinAbs(0.101, 1.1e-3));
   CHECK(find_motions({}, {}, {}, {}).empty());
   const std::vector<double> two{0.0, 1.0};

@@ -45,7 +45,8 @@ TEST_CASE("time_holes: steps above three times the median", "[datasets]") {
   CHECK(holes[0].row == 22);
   CHECK(holes[0].from_s == 2.0);
   CHECK(holes[0].to_s == 4.0);
-  // Jitter of a third, one missing sample out of three, and too few samples to judge.
+  // Jitter of a third of the interval, one missing sample out of three, and too few samples to
+  // judge.
   CHECK(time_holes({0.0, 1.3, 2.0, 3.0, 4.3, 5.0}).empty());
   CHECK(time_holes({0.0, 1.0, 2.0, 5.0, 6.0, 7.0}).empty());
   CHECK(time_holes({0.0, 1.0, 2.0, 5.1, 6.0, 7.0}).size() == 1);

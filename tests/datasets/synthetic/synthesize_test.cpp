@@ -143,7 +143,7 @@ TEST_CASE("synthesize: a record read back is the simulation in SI", "[datasets]"
     REQUIRE(run.ok());
     REQUIRE(record.time_s.size() == 501);
     CHECK_THAT(record.time_s.back(), WithinAbs(0.5, 1e-12));
-    // Numbers have ten digits: about 3 mm, and some bar.
+    // Numbers are written with ten digits. Positions are about 3 mm, pressures some bar.
     for (Eigen::Index i = 0; i < 501; ++i) {
       const auto at = static_cast<std::size_t>(i);
       CHECK_THAT(position_of(record).mean[at], WithinAbs(run.outputs(i, 0), 1e-11));

@@ -88,7 +88,7 @@ TEST_CASE("curve_about: records of a condition that do not leak share their simu
   }
   CHECK(std::set<double>(simulated.begin(), simulated.end()).size() == simulated.size());
   CHECK(simulated.size() == 2);
-  // A new leak adds three points; the same leak again adds none.
+  // A new leak requires three more simulations, a repeated request none.
   for (int i = 0; i < 2; ++i) curve_about(remembered, 1.0, 0.25);
   CHECK(simulated.size() == 5);
 }

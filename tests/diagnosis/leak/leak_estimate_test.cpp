@@ -50,8 +50,8 @@ TEST_CASE("estimate_leak: class probabilities follow the interval", "[diagnosis]
   CHECK_THAT(sure.ci95.high, WithinAbs(1.5 + 0.0392, 1e-5));
 
   const auto torn = estimated(fit_of(1.0, 0.1));
-  // Half the distribution is below the limit, and the prior makes this half more probable:
-  // integrals of exp(-(s - 0.1)^2 / (2 0.01^2)) / (0.00125 + s).
+  // Half the distribution is below the limit, and the prior makes this half more probable. The
+  // values are integrals of exp(-(s - 0.1)^2 / (2 0.01^2)) / (0.00125 + s).
   CHECK_THAT(probability(torn, LeakClass::slight), WithinAbs(0.5398, 2e-3));
   CHECK_THAT(probability(torn, LeakClass::medium), WithinAbs(0.4602, 2e-3));
   CHECK_THAT(std::accumulate(torn.probability.begin(), torn.probability.end(), 0.0),
@@ -77,7 +77,7 @@ TEST_CASE("estimate_leak: beforehand normal is as probable as slight, without a 
 }
 
 TEST_CASE("estimate_leak: given that a leak is not negative", "[diagnosis]") {
-  // Integrals of exp(-s^2 / (2 0.01^2)) / (0.00125 + s) from 0 to 1 %, and beyond.
+  // The values are integrals of exp(-s^2 / (2 0.01^2)) / (0.00125 + s), from 0 to 1 % and beyond.
   const auto none = estimated(fit_of(0.0, 0.1));
   CHECK_THAT(probability(none, LeakClass::normal), WithinAbs(0.8873, 4e-3));
   CHECK(none.ci95.low == 0.0);
@@ -150,14 +150,14 @@ TEST_CASE("estimate_leak: a leak is detected from the level of false alarms on",
 
 TEST_CASE("estimate_leak: the rig's error blurs the share", "[diagnosis]") {
   const auto found = estimated(fit_of(1.5, 1e-9), {}, 1, 0, 0.01);
-  // 1.96 standard errors. The search stops at 1e-15 of the range.
+  // The interval ends at 1.96 standard errors. The search stops at 1e-15 of the range.
   CHECK_THAT(found.share_ci95.low, WithinAbs(0.15 - 0.0195996, 1e-6));
   CHECK_THAT(found.share_ci95.high, WithinAbs(0.15 + 0.0195996, 1e-6));
 }
 
 TEST_CASE("estimate_leak: an upper limit where no leak is detected", "[diagnosis]") {
-  // Half a normal distribution with sd 0.1: 95 % of it are below 1.959964 sd, and the share is a
-  // tenth of the coefficient.
+  // For half a normal distribution with sd 0.1, 95 % is below 1.959964 sd, and the share is a tenth
+  // of the coefficient.
   const auto none = estimated(fit_of(0.0, 0.1));
   REQUIRE(none.share_upper_limit);
   CHECK_THAT(*none.share_upper_limit, WithinAbs(0.0196, 1e-4));
@@ -170,12 +170,12 @@ TEST_CASE("estimate_leak: an upper limit where no leak is detected", "[diagnosis
 
 TEST_CASE("estimate_leak: no interval ends at zero, however far below it the estimate lies",
           "[diagnosis]") {
-  // Without a leak, 95 % of half a normal distribution are below 1.959964 sd.
+  // Without a leak, 95 % of half a normal distribution is below 1.959964 sd.
   const auto none = estimated(fit_of(0.0, 0.1));
   CHECK(none.ci95.low == 0.0);
   CHECK_THAT(none.ci95.high, WithinRel(0.1959964, 1e-5));
-  // At two errors below zero, P(Z > 2) = 0.0227501 is left above zero, and a twentieth of it is
-  // beyond 3.05176 errors.
+  // Two standard errors below zero, P(Z > 2) = 0.0227501 is left above zero, and a twentieth of
+  // this is beyond 3.05176 standard errors.
   const auto below = estimated(fit_of(-0.2, 0.1));
   CHECK_FALSE(below.incompatible);
   CHECK_THAT(below.ci95.high, WithinAbs(0.1 * (3.05176 - 2.0), 1e-5));

@@ -91,8 +91,8 @@ TEST_CASE("fit_leak: a supply that differs between repeats is part of the error"
   const double score = rms_score(0);
   CHECK(score > 0.68);
   CHECK(score < 1.35);
-  // A reference of one repeat adds as much variation again, whereas the record partly determines
-  // its own supply.
+  // A reference with one repeat adds the same variation once more, whereas the record itself partly
+  // determines its supply pressure.
   CHECK(rms_score(1) < score);
 }
 
@@ -126,7 +126,8 @@ TEST_CASE("fit_leak: the simulation without a leak serves all records that have 
     CHECK(shared.coefficient == alone.coefficient);
     CHECK_THAT(shared.parity_rms_m, WithinRel(alone.parity_rms_m, 1e-5));
   }
-  // Modified outputs show where the run is reused: not for another drive, state, time or value.
+  // Modified outputs reveal a reused run. It must not be reused for another drive, state, time or
+  // value.
   const datasets::Record& single = records.singles.front();
   const double alone = fit(single, nullptr).parity_rms_m;
   runs->healthy.outputs.array() += 0.1;

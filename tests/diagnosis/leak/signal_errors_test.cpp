@@ -138,15 +138,16 @@ TEST_CASE("signal_errors: healthy repeats that correct each other lie farther ap
 
 TEST_CASE("unexplained_share: powers beyond noise and beyond what healthy records leave",
           "[diagnosis]") {
-  // What is left is 25 - 9 = 16, of which healthy records explain 1, and a leak removed 50 - 25: 15
-  // / (15 + 25).
+  // What is left is 25 - 9 = 16, of which healthy records explain 1, and a leak removed 50 - 25:
+  // 15 / (15 + 25).
   CHECK_THAT(unexplained_share(rms_of(std::sqrt(50.0), 5.0, 3.0), 1.0), WithinRel(0.375, 1e-12));
   // A leak that removes nothing explains nothing, nor does one that increases the residual.
   CHECK_THAT(unexplained_share(rms_of(5.0, 5.0, 3.0), 1.0), WithinRel(1.0, 1e-12));
   CHECK_THAT(unexplained_share(rms_of(4.0, 5.0, 3.0), 1.0), WithinRel(1.0, 1e-12));
-  // The remainder, 4, is less than twice the healthy 2.1 but more than twice 1.9.
+  // Without the noise, the residual is 4. It counts if it is more than twice that of healthy
+  // records: at 1.9, but not at 2.1.
   CHECK(unexplained_share(rms_of(5.0, 5.0, 3.0), 2.1) == 0.0);
   CHECK(unexplained_share(rms_of(5.0, 5.0, 3.0), 1.9) > 0.0);
-  // It does not exceed the noise either: the structured part is 3, the noise 4.
+  // It must also exceed the noise: here the structured part is 3 and the noise is 4.
   CHECK(unexplained_share(rms_of(9.0, 5.0, 4.0), 0.0) == 0.0);
 }

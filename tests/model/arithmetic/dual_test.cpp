@@ -74,8 +74,8 @@ std::vector<Operation> operations() {
 constexpr double kX = 0.7;
 constexpr double kY = 0.4;
 constexpr double kStep = 1e-5;
-// Errors of a central difference: kStep^2 / 6 times a third derivative, which is below 170 here (6
-// x / y^4 for x / y), and rounding divided by kStep, which is 1e-11.
+// Errors of a central difference: kStep^2 / 6 times a third derivative, which is below 170 here
+// (6 x / y^4 for x / y), and rounding divided by kStep, which is 1e-11.
 constexpr double kDifference = 5e-9;
 
 }  // namespace

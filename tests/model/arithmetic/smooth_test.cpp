@@ -16,8 +16,8 @@ TEST_CASE("signed_sqrt: odd, straight at zero, a root far away", "[model]") {
   for (const double p : {0.1, 30.0, 100.0, 5e3, 6.2e6}) {
     CAPTURE(p);
     CHECK(signed_sqrt(-p, kRootEps) == -signed_sqrt(p, kRootEps));
-    // Expansion of (1 + (eps/P)^2)^(-1/4): the relative difference from a root is at most (eps/P)^2
-    // / 4.
+    // The expansion of (1 + (eps/P)^2)^(-1/4) gives a relative difference from a root of at most
+    // (eps/P)^2 / 4.
     const double below = 0.25 * (kRootEps / p) * (kRootEps / p);
     CHECK(signed_sqrt(p, kRootEps) <= std::sqrt(p));
     CHECK(signed_sqrt(p, kRootEps) >= std::sqrt(p) * (1.0 - below - 1e-15));

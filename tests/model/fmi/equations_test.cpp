@@ -120,8 +120,8 @@ TEST_CASE("equations: an arm moves as it is simulated, and its kinks have indica
   CHECK(x[0] == Approx(run.outputs(1, 0)).epsilon(1e-6));
   CHECK(x[1] == Approx(run.outputs(1, 1)).epsilon(1e-5));
   CHECK(equations->output(Output::pilot_pressure, x) == 3e6);
-  // Both directions of the spool, both directions of its bypass, both stops, both make-up valves,
-  // and the limit of the pump.
+  // One indicator each for both directions of the spool, both directions of its bypass, both stops,
+  // both make-up valves, and the limit of the pump.
   const std::vector<double> indicators = equations->indicators(x);
   REQUIRE(indicators.size() == 9);
   CHECK(indicators[0] == Approx(x[6] - 1e6));
@@ -162,8 +162,8 @@ TEST_CASE("equations: a cylinder with a load-sensing pump and friction with pre-
   CHECK(x[2] == Approx(run.outputs(1, 2)).epsilon(1e-5));
   CHECK(equations->output(Output::pilot_pressure, x) == 2e6);
   CHECK(equations->output(Output::command, x) == 0.0);
-  // Four edges, both stops, compensators on both sides, both relief valves, the pressure limit of
-  // the pump, and the reversal of the bristles.
+  // One indicator each for four edges, both stops, compensators on both sides, both relief valves,
+  // the pressure limit of the pump, and the reversal of the bristles.
   const std::vector<double> indicators = equations->indicators(x);
   REQUIRE(indicators.size() == 12);
   CHECK(indicators[0] == Approx(1e6));

@@ -323,7 +323,7 @@ TEST_CASE("fmu instance: however a ramp is cut into steps, it leads to the same 
   CHECK(std::abs(whole) > 1e-4);
   CHECK(position_after({0.1, 0.1}, 1e-9) == Approx(whole).epsilon(1e-6));
   CHECK(position_after({0.05, 0.15}, 1e-9) == Approx(whole).epsilon(1e-6));
-  // the tolerance is a millionth of the peak per step
+  // The tolerance allows a millionth of the peak per step.
   CHECK(position_after({0.2}, 1e-6) == Approx(whole).epsilon(1e-4));
 }
 
@@ -357,7 +357,7 @@ TEST_CASE("fmu instance: ticks of a sampled controller, a period apart from the 
   CHECK(instance.real(command) == Approx(kp * 0.001));  // the output keeps its value
   instance.set_time(2.01 - 0.01 * 1e-4);
   CHECK_FALSE(instance.new_discrete_states());
-  instance.set_time(2.01 - 0.01 * 1e-7);  // importers add up times, so they are rounded
+  instance.set_time(2.01 - 0.01 * 1e-7);  // importers add up times, which rounds them
   CHECK(instance.new_discrete_states());
   CHECK(instance.real(command) == Approx(kp * 0.002));
   CHECK(instance.state().ticks == 2);
@@ -377,7 +377,7 @@ TEST_CASE("fmu instance: a step takes the ticks within it, the one at its end wi
   const double kp = exported().values["kp"];
   const unsigned command = kOutputReference + static_cast<unsigned>(Output::command);
   instance.set_real(kReference, 0.001);
-  // Before the first step, the importer reads the controller's output for the inputs.
+  // Before the first step, the controller's output is already that for the present inputs.
   CHECK(instance.real(command) == Approx(kp * 0.001));
   CHECK(instance.state().ticks == 0);
   instance.step(0.0, 0.03);

@@ -34,8 +34,8 @@ Experiment pushed_piston(const Signal& load, std::vector<double> times_s) {
 
 constexpr double kBreakaway_n = 280.0;  // g at rest
 
-/// Force of bristles after a travel that started with the force `from_n`:
-/// dF/dx = sigma_0 (1 -+ F / g).
+/// Force of the bristles after a travel that began at the force `from_n`: dF/dx = sigma_0 (1 -+ F /
+/// g).
 double bent(double travel_m, double from_n) {
   const double limit = travel_m < 0.0 ? -kBreakaway_n : kBreakaway_n;
   return limit + (from_n - limit) * std::exp(-1e6 * std::abs(travel_m) / kBreakaway_n);

@@ -33,7 +33,7 @@ Layout layout_with(int integral, int filter, int held) {
   return layout;
 }
 
-/// A loop that saturates: the reference steps by twice what the limit allows.
+/// A loop that saturates: the reference steps by twice as much as the limit allows.
 Experiment step_of(double amplitude_m) {
   Experiment e;
   e.inputs.drive = Signal::square(amplitude_m, 0.1);
@@ -82,8 +82,8 @@ TEST_CASE("controller: a sampled PID does what a loop written by hand does", "[m
   for (int k = 0; k < 200; ++k) {
     const double error = 0.05 * std::sin(0.1 * k) + 0.01;
     controller_tick(LoopError<double>{error}, state, gains, layout);
-    // Backward Euler for e_f, then u, then forward Euler for the integral with tracking time K_p /
-    // K_i.
+    // Backward Euler for e_f, then u, then forward Euler for the integral with the tracking time
+    // K_p / K_i.
     filtered += 0.004 * 80.0 * (error - filtered) / (1.0 + 0.004 * 80.0);
     const double wanted = 100.0 * error + integral + 1.5 * 80.0 * (error - filtered);
     const double u = std::min(4.0, std::max(-4.0, wanted));
@@ -171,7 +171,7 @@ TEST_CASE("controller: the filtered derivative is the transfer function's", "[mo
         (n * std::sin(omega * t) - omega * std::cos(omega * t) + omega * std::exp(-n * t));
     const double expected = 78.74 * sine + 5.0 * n * (sine - filtered);
     CAPTURE(t);
-    // Ten times the tolerance relative to the peak of u, 1.3 V (including dense output).
+    // Ten times the tolerance, relative to the peak of u of 1.3 V. This includes the dense output.
     CHECK_THAT(run.outputs(static_cast<Eigen::Index>(i), 0), WithinAbs(expected, 1e-6));
   }
 }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kPistonArea_m2 = 1.62e-3;
 
-/// Extended by 20 mm, at rest, with a closed valve and no leakage.
+/// A piston at rest at this position, with a closed valve and no leakage.
 Experiment held_at(double position_m, Experiment e) {
   e.rig.controller = ControllerKind::none;
   e.rig.initial = InitialState::given;

@@ -211,7 +211,7 @@ TEST_CASE("metering: behind a compensator the speed does not depend on the load"
     const auto end = last_of_slide(e);
     CHECK_THAT(end(1), WithinRel(edge_flow_of(1e-5, 6e5) / 4e-3, 1e-6));
   }
-  // If the supply leaves less, it acts as a plain edge.
+  // Below the spring pressure, the edge acts as if it had no compensator.
   CHECK(compensated_head(3e5, 6e5) == 3e5);
   CHECK(compensated_head(-3e5, 6e5) == -3e5);
   CHECK(compensated_head(7e5, 6e5) == 6e5);
@@ -302,9 +302,9 @@ TEST_CASE("metering: an accumulator gives oil by the gas law", "[model]") {
   const double supply_pa = valve_supply_pa(e);
   REQUIRE(supply_pa > 1e7);
   REQUIRE(supply_pa < 1.9e7);
-  // The oil that left it went into chamber A, where the oil is practically rigid in this test.
+  // The oil that left the accumulator went into chamber A. In this test, oil is almost rigid.
   CHECK_THAT(gas_m3(supply_pa) - gas_m3(2e7), WithinRel(4e-3 * end(0), 2e-3));
-  // Below the precharge it contains no oil.
+  // Below the precharge, the accumulator contains no oil.
   CHECK(accumulator_capacity(6e6, 4e-3, 8e6, 1.25) <
         1e-9 * accumulator_capacity(9e6, 4e-3, 8e6, 1.25));
 }

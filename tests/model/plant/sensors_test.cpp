@@ -37,7 +37,7 @@ TEST_CASE("sensors: a lag follows a ramp one time constant late", "[model]") {
   REQUIRE(y.size() == 21);
   for (Eigen::Index i = 0; i < y.size(); ++i) {
     const double t = times[static_cast<std::size_t>(i)];
-    // Straight pieces are exact in this case.
+    // Linear interpolation is exact for a ramp.
     CHECK_THAT(y(i), WithinAbs(3.0 * (t - kLag_s * (1.0 - std::exp(-t / kLag_s))), 1e-12));
   }
 }

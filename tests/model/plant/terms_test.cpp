@@ -98,7 +98,7 @@ TEST_CASE("aerated_bulk_modulus: oil at high pressure, the air's at low", "[mode
   const double oil = 1.4e9;
   CHECK_THAT(aerated_bulk_modulus(1e6, oil, 0.0, 1.4), WithinRel(oil, 1e-14));
   CHECK_THAT(aerated_bulk_modulus(5e8, oil, 0.01, 1.4), WithinRel(oil, 1e-2));
-  // All air: the modulus of a gas, n p.
+  // With rigid oil, only the air yields: n p divided by its volume fraction of 0.5.
   CHECK_THAT(aerated_bulk_modulus(0.0, 1e15, 0.5, 1.4), WithinRel(2.0 * 1.4 * 101325.0, 1e-6));
   double before = 0.0;
   for (const double p : {-1e5, 0.0, 1e5, 1e6, 1e7}) {
@@ -106,7 +106,7 @@ TEST_CASE("aerated_bulk_modulus: oil at high pressure, the air's at low", "[mode
     CHECK(beta > before);
     before = beta;
   }
-  // beta = -V dp/dV for oil and air that are compressed independently.
+  // beta = -V dp/dV, with oil and air compressed independently.
   const double p = 8e5;
   const auto volume = [&](double at) {
     return 0.99 * std::exp(-at / oil) + 0.01 * std::pow(101325.0 / (at + 101325.0), 1.0 / 1.4);

@@ -274,8 +274,8 @@ TEST_CASE("two_chamber: the derivative with volumes, air, stops and hoses, by ha
     const double flow_b = kB_m2 * row.v - 3e-12 * (row.p_B - kTank_pa);
     const double volume_a = std::max(2e-5 + kA_m2 * (row.x + 0.08), 1e-3 * kA_m2 * 0.2);
     const double volume_b = std::max(3e-5 + kB_m2 * (0.2 - row.x - 0.08), 1e-3 * kB_m2 * 0.2);
-    // The fraction that yields in the direction of the pressure change: ((1 + z) / 2)^2 up, ((1 -
-    // z) / 2)^2 down.
+    // The fraction that yields in the direction of the pressure change:
+    // ((1 + z) / 2)^2 up, ((1 - z) / 2)^2 down.
     const auto yields = [](double z, double flow) {
       return std::pow(0.5 * (1.0 + (flow > 0.0 ? z : -z)), 2);
     };
@@ -318,7 +318,7 @@ TEST_CASE("two_chamber: without a given place zero lies half way between the sto
       const Simulation run = e();
       REQUIRE(run.ok());
       const double push = kA_m2 * run.outputs(0, 1) - kB_m2 * run.outputs(0, 2);
-      // Pressed into the stop by force over stiffness, or just touching it.
+      // Pressed into the stop by the force divided by its stiffness, or just touching it.
       const double depth = push * side > 0.0 ? push / 1e8 : 0.0;
       CAPTURE(side, push);
       CHECK_THAT(run.outputs(0, 0), WithinAbs(0.1 * side + depth, 1e-12));

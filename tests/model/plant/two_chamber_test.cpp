@@ -221,7 +221,7 @@ TEST_CASE("two_chamber: what hoses take in they give back or turn into heat", "[
   e.set("hose_capacity_a", 3e-13).set("hose_capacity_b", 2e-13).set("hose_yield", 6e5);
   e.set("supply_resistance", 2e10).set("supply_capacity", 5e-12);
   e.options.tolerance = 1e-9;
-  // Where a pressure reverses, the power jumps, and the rule is of first order.
+  // Where a pressure reverses, the power jumps, and the trapezoidal rule is of first order.
   e.times_s = energy_grid(8000);
   const Powers total = energies(e);
   CHECK_THAT(gap(total), WithinAbs(0.0, 1e-5));
@@ -280,7 +280,7 @@ TEST_CASE("two_chamber: a stop holds the piston and gives way by force over stif
   CHECK_THAT(run.outputs(3000, 2), WithinRel(4.4e6, 1e-3));
   CHECK_THAT(run.outputs(3000, 3), WithinRel(1e5, 1e-2));
   CHECK_THAT(run.outputs(3000, 1), WithinAbs(0.0, 1e-6));
-  // Steps are not limited by the stop: the arrival and 2 s at rest cost a few hundred.
+  // The stop does not limit the steps: the arrival and 2 s at rest take only a few hundred.
   CHECK(run.steps + run.rejected_steps < 3000);
 }
 
@@ -370,7 +370,7 @@ TEST_CASE("two_chamber: hoses that yield damp the ringing of a piston", "[model]
   e.outputs = {Output::velocity};
   const Simulation rigid = e();
   e.set("hose_capacity_a", 3e-13).set("hose_capacity_b", 3e-13);
-  // Only the component that is proportional to the pressure: 3 bar at 25 bar absolute.
+  // Has only the component that is proportional to the pressure: 3 bar at 25 bar absolute.
   Experiment braided = e;
   const Simulation braid = braided.set("hose_yield_ratio", 0.12)();
   const Simulation soft = e.set("hose_yield", 3e5)();

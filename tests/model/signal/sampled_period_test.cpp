@@ -77,7 +77,7 @@ TEST_CASE("sampled_period: half periods of a reversible rig", "[model]") {
   CHECK_FALSE(odd->reversed);
   CHECK(odd->samples == 25);
   const auto raised = reversible_period_of(Signal::ripple(0.1, 0.01, 10.0, 0.0), times_s);
-  REQUIRE(raised);  // half a period later it is not its own negative
+  REQUIRE(raised);  // half a period later, its sign is not reversed
   CHECK_FALSE(raised->reversed);
   CHECK(raised->samples == 100);
   CHECK(reversible_period_of(Signal::sine(0.01, 10.0), times_s, 2e-3)->samples == 50);

@@ -125,13 +125,13 @@ TEST_CASE("chirp: phase and frequency are continuous where the sweep ends", "[mo
     CHECK_THAT(chirp.sample(0, 0.0).slope, WithinRel(2.0 * kPi * 0.5, 1e-14));
     CHECK_THAT(chirp.value(3.0 + 1.0 / 8.0), WithinAbs(chirp.value(3.0), 1e-12));
   }
-  // Number of cycles in a linear sweep: (f0 + f1) / 2 times its length. In a logarithmic one: (f1 -
-  // f0) T / ln(f1 / f0).
+  // Number of cycles in a linear sweep: (f0 + f1) / 2 times its length. In a logarithmic sweep:
+  // (f1 - f0) T / ln(f1 / f0).
   CHECK_THAT(Signal::chirp(1.0, 1.0, 2.0, 1.5, false).value(1.5),
              WithinAbs(std::sin(2.0 * kPi * 2.25), 1e-12));
   CHECK_THAT(Signal::chirp(1.0, 1.0, 2.0, 1.5, true).value(1.5),
              WithinAbs(std::sin(2.0 * kPi * 1.5 / std::log(2.0)), 1e-12));
-  // With the same frequency at both ends it is a sine, whether logarithmic or not.
+  // With the same frequency at both ends, either sweep is a sine.
   CHECK_THAT(Signal::chirp(1.0, 2.0, 2.0, 1.0, true).value(0.3),
              WithinAbs(Signal::sine(1.0, 2.0).value(0.3), 1e-12));
 }
@@ -140,7 +140,7 @@ TEST_CASE("signal: no step may skip an oscillation", "[model]") {
   CHECK(Signal::sine(1.0, 10.0).max_step() <= 0.1 / 4.0);
   CHECK(Signal::chirp(1.0, 20.0, 1.0, 5.0, false).max_step() <= 0.05 / 4.0);
   CHECK(Signal::constant(1.0).max_step() == kInfinity);
-  CHECK(Signal::square(1.0, 10.0).max_step() == kInfinity);  // its segments ensure that
+  CHECK(Signal::square(1.0, 10.0).max_step() == kInfinity);  // breakpoints limit the steps
 }
 
 TEST_CASE("signal: refuses what is not a signal", "[model]") {

@@ -6,7 +6,7 @@ using namespace rigcal::model;
 
 namespace {
 
-/// After a period of one second in which steps ended at 0.1, 0.3 (forced) and 0.6.
+/// State after a period of one second in which steps ended at 0.1, 0.3 (forced) and 0.6.
 RepeatedSteps after_a_period() {
   RepeatedSteps steps(SampledPeriod{1.0, 10});
   steps.note(0.1, false);
@@ -24,13 +24,13 @@ TEST_CASE("repeated_steps: end where one ended a period ago, if that is about as
   CHECK(at(1.0, 0.12) == Approx(0.1));
   CHECK_FALSE(steps.follow(1.0, 0.12).forced);
   CHECK(at(1.0, 0.095) == Approx(0.1));  // slightly longer than planned
-  CHECK(at(1.0, 0.05) == 0.05);          // not much longer
-  CHECK(at(1.0, 0.15) == 0.15);          // not shorter by more than a third
+  CHECK(at(1.0, 0.05) == 0.05);          // too far beyond the planned step
+  CHECK(at(1.0, 0.15) == 0.15);          // too short by more than a third
   CHECK(at(1.1, 1.0) == Approx(0.2));    // a forced step is repeated even if it is much shorter
   CHECK(steps.follow(1.1, 1.0).forced);
-  CHECK(at(1.2, 0.11) == Approx(0.1));  // from between two ends to the next one
+  CHECK(at(1.2, 0.11) == Approx(0.1));  // starts between two ends
   CHECK(at(1.3, 0.65) == Approx(0.7));  // the last end within reach
-  CHECK(at(1.3, 0.3) == Approx(0.3));   // after the longer step was rejected
+  CHECK(at(1.3, 0.3) == Approx(0.3));   // the longer step was rejected before
   CHECK(at(2.5, 0.3) == 0.3);           // beyond all known ends
 }
 

@@ -38,7 +38,7 @@ Equation nonlinear() {
           [](double t) { return 2.0 / (1.0 + t * t); }};
 }
 
-/// Problem by Prothero and Robinson: x' = -lambda (x - g) + g' with g = sin(t + 1), whose solution
+/// Prothero and Robinson's problem: x' = -lambda (x - g) + g' with g = sin(t + 1), whose solution
 /// is g.
 Equation prothero_robinson(double lambda) {
   return {[=](double x, double t) { return -lambda * (x - std::sin(t + 1.0)) + std::cos(t + 1.0); },

@@ -21,8 +21,8 @@ constexpr int kPeriods = 41;
 using Value = std::function<Dual<1>(double period)>;
 
 struct Foreseen {
-  double period =
-      0.0;  ///< number of periods after which the rest was known; all of them if it never was
+  /// Number of periods until the rest could be extrapolated; all of them if it never could.
+  double period = 0.0;
   bool reached = false;
   Dual<1> end{0.0};
 };

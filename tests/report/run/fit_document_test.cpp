@@ -4,7 +4,7 @@
 #include "report/document/render_terminal.hpp"
 #include "report/run/write_result.hpp"
 
-// A terminal shows the same document for a fit as its page.
+// For a fit, the terminal shows the same document as the page.
 
 namespace rigcal::report {
 namespace {

@@ -21,7 +21,7 @@ TEST_CASE("missing_terms: a line for each term that a campaign may estimate", "[
     effect.alone = size;
     considered.missing.push_back(key);
   }
-  considered.missing.emplace_back("kd");  // that no effect has
+  considered.missing.emplace_back("kd");  // no effect has this key
   const auto terms = missing_terms(model::PlantKind::load_pressure, considered);
   REQUIRE(terms.size() == 4);
   CHECK(terms[0].line ==
@@ -34,7 +34,7 @@ TEST_CASE("missing_terms: a line for each term that a campaign may estimate", "[
   CHECK(
       terms[2].line ==
       "ki = { start = \"5 V/(m s)\", lower = \"0 V/(m s)\", upper = \"55 V/(m s)\", fit = true }");
-  // No derivative by a period exists.
+  // There is no derivative with respect to the sampling period.
   CHECK(terms[3].line == "sample_time = \"0.001 s\"");
 }
 

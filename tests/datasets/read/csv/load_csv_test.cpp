@@ -54,7 +54,7 @@ CsvTable load(const std::string& content, const CsvRequest& wanted = request({"t
   return load_csv(File(content).path(), wanted);
 }
 
-/// Message with which reading is refused, starting at the name of the file: "a.csv:2:3: ...".
+/// Error message on reading a file, from the name of the file on: "a.csv:2:3: ...".
 std::string refusal_of(const fs::path& path, const CsvRequest& wanted) {
   try {
     load_csv(path, wanted);
@@ -354,7 +354,7 @@ namespace {
 // needs memory of its own, and keeps freed blocks in quarantine.
 constexpr long kMostMegabytes = rigcal::test::kSanitized ? 700 : 180;
 
-/// Resident memory of this process, with which a child starts, too.
+/// Resident memory of this process. A child process starts with the same amount.
 long resident_megabytes() {
   long pages_of_program = 0;
   long pages_resident = 0;
