@@ -29,8 +29,7 @@ struct StepLimits {
 struct BoxStep {
   Eigen::VectorXd step;
   double fall = 0.0;       ///< reduction predicted by the model; never negative
-  bool at_radius = false;  ///< true if a larger trust region would allow a longer step, so the
-                           ///< radius was the limit
+  bool at_radius = false;  ///< true if a larger trust region would allow a longer step
 };
 
 /// Returns -(B + damping)^-1 c for a positive semidefinite matrix B.

@@ -39,8 +39,7 @@ class CeresWatch final : public ceres::IterationCallback {
 
 inline ceres::Solver::Options quiet_settings() {
   ceres::Solver::Options settings;
-  settings.num_threads =
-      1;  // more threads would change the order of sums; the simulations are parallel anyway
+  settings.num_threads = 1;  // keeps the order of sums; the simulations themselves run in parallel
   settings.logging_type = ceres::SILENT;
   settings.minimizer_progress_to_stdout = false;
   return settings;
