@@ -49,8 +49,7 @@ struct NutsOptions {
   int chain = 0;  ///< number of the chain, which selects its random numbers
   double target_acceptance = 0.8;
   int most_doublings = 10;
-  std::function<bool()>
-      stop;  ///< called after every draw; if it returns true, sampling stops; may be empty
+  std::function<bool()> stop;  ///< called after every draw; returns true to stop; may be empty
 };
 
 /// Runs the warm-up of a chain. It adapts the step by dual averaging, and estimates the covariance

@@ -20,7 +20,7 @@ struct Validity {
   std::optional<Range> leakage_coefficient;
   std::vector<std::string> leak_levels;
   Omittable<Range> amplitude_n, amplitude_pa,
-      amplitude_m_per_s2;  ///< for other loops
+      amplitude_m_per_s2;  ///< in other loops
   RIGCAL_DESCRIBE(frequency_hz, amplitude_m, amplitude_v, supply_pressure_pa, leakage_coefficient,
                   leak_levels, amplitude_n, amplitude_pa, amplitude_m_per_s2)
 
