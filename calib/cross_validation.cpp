@@ -24,11 +24,11 @@ namespace {
 using datasets::Campaign;
 using datasets::Use;
 
-/// A warning is due if a prediction is this many times worse than the fit, or a parameter shifts by
-/// this many standard errors.
+/// Warns if the error of a prediction is this many times that of the fit, or if a parameter shifts
+/// by this many standard errors.
 constexpr double kMuchWorse = 1.5;
 constexpr double kFarShift = 3.0;
-/// A smaller ratio than this does not count as a deterioration.
+/// A ratio below this does not count as a deterioration.
 constexpr double kNoWorse = 1.005;
 
 Campaign without(const Campaign& campaign, const std::string& id, const Fit& whole) {
@@ -99,7 +99,7 @@ HeldOut leave_out(const Campaign& campaign, const std::vector<datasets::Record>&
       held.rmse = rmse_of(*predicted);
       add_shift(whole, part, campaign, held);
     }
-  } catch (const InputError& error) {  // no other record determines one of its unknowns
+  } catch (const InputError& error) {  // no other record determines one of the unknowns
     held.problem = error.what();
   }
   return held;
@@ -160,8 +160,8 @@ std::vector<HeldOut> cross_validate(const Campaign& campaign,
     result[i] = not_made(i);
     if (!made[i].bytes.empty()) from_bytes(made[i].bytes, taken[i], result[i]);
   }
-  // Discards the folds after the one that reached the limit, because the number of threads decides
-  // how many of them were computed.
+  // Discards the folds after the one that reached the limit, because how many of them were computed
+  // depends on the number of threads.
   long sum = 0;
   for (std::size_t i = 0; i < ids.size(); ++i) {
     if (allowed && sum >= *allowed) result[i] = not_made(i);

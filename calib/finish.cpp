@@ -18,7 +18,7 @@ using datasets::Condition;
 using datasets::Record;
 using datasets::Use;
 
-/// Adds the lack of fit of every scored condition that was not fitted.
+/// Adds a lack-of-fit test for every scored condition that was not fitted.
 void add_predictions(Fit& fit) {
   std::vector<LackOfFit> predictions;
   for (const ConditionScore& score : fit.conditions) {
@@ -34,7 +34,7 @@ void add_predictions(Fit& fit) {
   fit.lack_of_fit.insert(fit.lack_of_fit.end(), predictions.begin(), predictions.end());
 }
 
-/// Conditions from which the campaign's values are assumed to have been estimated.
+/// Returns the conditions from which the campaign's values are assumed to have been estimated.
 std::set<std::string> fitted_conditions(const Campaign& campaign) {
   std::set<std::string> ids;
   for (const Condition& condition : campaign.conditions) {
@@ -43,8 +43,8 @@ std::set<std::string> fitted_conditions(const Campaign& campaign) {
   return ids;
 }
 
-/// Copies warnings about the recordings into the result. Conditions with the same text get one
-/// warning.
+/// Copies warnings about the recordings into the result. Conditions with the same warning are
+/// combined.
 void add_record_warnings(const std::vector<Record>& records, Fit& fit) {
   std::vector<const Record*> used;
   for (ConditionScore& score : fit.conditions) {

@@ -9,9 +9,9 @@
 
 namespace rigcal::calib {
 
-/// Sorts the scores in the order of the campaign and assesses them together.
+/// Sorts the scores into campaign order and assesses them together.
 ///
-/// @param origin  origin of the values if they come from an earlier fit, else null
+/// @param origin  the earlier fit that the values come from, or null
 void finish(const datasets::Campaign& campaign, const std::vector<datasets::Record>& records,
             Budget::Clock::time_point began, const Origin* origin, Fit& fit);
 

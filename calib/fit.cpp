@@ -80,8 +80,8 @@ void look_again(const Problem& problem, const Campaign& campaign,
     sample_posterior(problem, solved.optimum, solved.spread, options, fit, budget);
     note(StoppedIn::posterior);
   }
-  for (const std::size_t j :
-       solved.open) {  // no record bounds these, only the smoothing of the square roots would
+  // The records do not bound these unknowns; only the smoothing of the square roots would.
+  for (const std::size_t j : solved.open) {
     fit.parameters[j].bootstrap.reset();
     fit.parameters[j].profile.reset();
   }
@@ -103,7 +103,7 @@ void warn_of_start(const Campaign& campaign, const std::vector<const Condition*>
   if (!text.empty()) fit.warnings.push_back(text);
 }
 
-/// The different dates of some conditions; empty if any of them has no date.
+/// Returns the distinct dates of some conditions; empty if any of them has no date.
 std::vector<std::string> dates_of(const std::vector<const Condition*>& conditions) {
   std::vector<std::string> dates;
   for (const Condition* each : conditions) {
@@ -114,7 +114,7 @@ std::vector<std::string> dates_of(const std::vector<const Condition*>& condition
   return dates;
 }
 
-/// The effects that a fit considered in addition to its estimates.
+/// Returns the effects that a fit considered in addition to its estimates.
 EffectSpread effects_beside(const Fit& fit, const EstimateSpread& spread) {
   if (!fit.considered) return {};
   std::vector<const Budget95*> budgets;
@@ -132,7 +132,7 @@ EffectSpread effects_beside(const Fit& fit, const EstimateSpread& spread) {
 
 /// Scores conditions at known values. Nuisance parameters are estimated again.
 ///
-/// @param spread  covariance of the values, for prediction bands; null: no bands
+/// @param spread  covariance of the values for prediction bands; if null, no bands are computed
 Fit score_at(const Campaign& campaign, const std::vector<Record>& records,
              const std::vector<const Condition*>& conditions,
              const std::vector<FittedValue>* values, const FitOptions& options, Budget& budget,
@@ -182,7 +182,7 @@ Fit score_at(const Campaign& campaign, const std::vector<Record>& records,
   return fit;
 }
 
-/// Name of a stage in messages.
+/// Returns the name of a stage in messages.
 std::string_view words(StoppedIn stage) {
   switch (stage) {
     case StoppedIn::nothing:
@@ -234,8 +234,8 @@ Fit fit(const Campaign& campaign, const std::vector<Record>& records, const FitO
                      "nothing is free in the conditions of the fit: expected `fit = true` at a "
                      "parameter, or --free");
   }
-  // Reports a leak level without a fitted value, which only the validation uses, before a fit that
-  // may take hours.
+  // If only the validation uses a leak level, it has no fitted value. This is reported before a fit
+  // that may take hours.
   std::vector<FittedValue> starts;
   for (const Unknown& unknown : problem.map.unknowns()) {
     if (!unknown.nuisance)
@@ -266,7 +266,8 @@ Fit fit(const Campaign& campaign, const std::vector<Record>& records, const FitO
     if (spread) {
       add_prediction_sd(problem, solved.optimum.z, *spread, {}, options.threads, result.conditions);
     }
-    // Scored before steps that may take hours, so that stopping them does not change a score.
+    // Conditions are scored before the steps that may take hours, so that stopping those does not
+    // change a score.
     std::optional<Fit> validation;
     if (!validated.empty()) {
       const auto values = values_of(result.parameters);

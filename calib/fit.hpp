@@ -24,8 +24,8 @@ Fit fit(const datasets::Campaign& campaign, const std::vector<datasets::Record>&
 /// with the same code as fit().
 ///
 /// @param values  values of an earlier fit, or null to use the campaign's own values
-/// @param origin  origin of `values`; null: they are assumed to be estimated from the campaign's
-///                `fit` conditions
+/// @param origin  where `values` come from; if null, they are assumed to have been estimated from
+///                the campaign's `fit` conditions
 /// @throws InputError  if `values` lacks a value for a leak level or condition
 Fit validate(const datasets::Campaign& campaign, const std::vector<datasets::Record>& records,
              const std::vector<datasets::FittedValue>* values, const FitOptions& options,

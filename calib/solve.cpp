@@ -14,10 +14,11 @@
 namespace rigcal::calib {
 namespace {
 
-/// Step budget of later points relative to the start at a coarse tolerance. A later point may have
-/// to be simulated to its end, while the start soon becomes periodic.
+/// Step budget of later points relative to the number of steps at the start with a coarse
+/// tolerance. A later point may need many steps up to the end of the record, while the start soon
+/// becomes periodic.
 constexpr long kStepsOverStart = 100;
-/// Minimum budget, for starts at which nothing moves and which take fewer than twenty steps.
+/// Minimum budget, for starts at which nothing moves, so that they take fewer than twenty steps.
 constexpr long kLeastSteps = 20'000;
 
 void budget_steps(Problem& problem, const Evaluation& start) {
@@ -50,7 +51,7 @@ Solved solve_problem(Problem& problem, Evaluator& evaluator, const FitOptions& o
   fit.starts = std::move(found.starts);
   const auto made = static_cast<int>(fit.starts.size());
   if (made < options.starts && fit.status == FitStatus::converged) {
-    // Starts that were never made could have been better.
+    // One of the starts that were never run could have been better.
     fit.status = FitStatus::stopped;
     fit.message = fmt::format("stopped after {} of {} starts; the best of these {}", made,
                               options.starts, fit.message);
@@ -67,8 +68,7 @@ Solved solve_problem(Problem& problem, Evaluator& evaluator, const FitOptions& o
       fit.message = "no start could be simulated; of the first: " + fit.message;
     return {};
   }
-  give_freed_memory_back();  // frees the memory of the simulations, because the next steps need
-                             // other sizes
+  give_freed_memory_back();  // the next steps allocate blocks of other sizes
   const bool awaited = found.result.status == FitStatus::stopped && evaluator.budget().cancelled();
   Uncertainty spread = uncertainty(problem, found.optimum, std::move(rows), options.threads,
                                    awaited ? Detail::plain : Detail::full);
@@ -90,8 +90,8 @@ Solved solve_from_starts(Problem& problem, Evaluator& evaluator, const FitOption
   FitOptions more = options;
   more.starts += options.further_starts;
   more.resume = &checkpoint;
-  problem = fresh;  // discards the weights, because those of a point that is not a minimum are
-                    // wrong for the others
+  problem = fresh;  // discards the weights: estimated away from a minimum, they are wrong for other
+                    // starts
   evaluator.forget();
   const std::string why = fit.message;
   fit = {};

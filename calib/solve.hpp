@@ -9,19 +9,19 @@
 
 namespace rigcal::calib {
 
-/// Results of a solved fit that later steps need. The optimum is not ok if there is none.
+/// Results of a solved fit that later steps need. If the fit found no optimum, `optimum` is not ok.
 struct Solved {
   Evaluation optimum;
   Uncertainty spread;
   std::vector<std::size_t> open;  ///< unknowns that a scaling symmetry leaves undetermined
 };
 
-/// Solves a problem and describes the result except for the scores: multi-start, weights,
-/// verification, intervals.
+/// Solves a problem: runs the multi-start, estimates weights, verifies the optimum and computes
+/// intervals. Describes everything except the scores in `fit`.
 Solved solve_problem(Problem& problem, Evaluator& evaluator, const FitOptions& options, Fit& fit);
 
-/// Does what solve_problem() does, and if its only start ends away from a minimum, continues with
-/// further starts, just as a multi-start that began with that start would.
+/// Calls solve_problem(). If its only start ends away from a minimum, continues with further
+/// starts. The result is the same as if the fit had been a multi-start from the beginning.
 Solved solve_from_starts(Problem& problem, Evaluator& evaluator, const FitOptions& options,
                          Fit& fit);
 

@@ -11,13 +11,13 @@
 
 namespace rigcal::calib {
 
-/// Selects the effects considered in a fit that may act in a problem. The secants of curved effects
-/// are taken at the sizes that prior and records give.
+/// Selects, from the effects considered in a fit, those that may act in a problem. The secants of
+/// curved effects are computed at the sizes that follow from prior and records.
 std::vector<Effect> considered_in(const Problem& problem, std::span<const double> z,
                                   const EffectSpread& effects);
 
-/// Changes of the outputs of one condition due to the effects considered in a fit, at any parameter
-/// values. An effect that does not act there has zeros.
+/// Returns the changes in the outputs of one condition due to the effects considered in a fit, at
+/// any parameter values. An effect that does not act in the condition has a column of zeros.
 ///
 /// @param acting   from considered_in()
 /// @param further  outputs to append after the channels
@@ -26,13 +26,14 @@ EffectChanges changes_by(const Problem& problem, std::size_t condition,
                          const EffectSpread& effects, const std::atomic<bool>* cancel,
                          std::span<const model::Output> further = {});
 
-/// changes_by() for each condition that is predicted; empty for conditions of use `fit`.
+/// Returns changes_by() for each condition that is predicted; empty for conditions with use `fit`.
 std::vector<EffectChanges> predicted_changes(const Problem& problem, std::span<const double> z,
                                              const EffectSpread& effects, int threads,
                                              const std::atomic<bool>* cancel);
 
-/// Changes of the readings of one channel due to each effect of its sensor, at the size that prior
-/// and records give. They are the uncertainty of the measured side of a score in addition to noise.
+/// Returns the changes in the readings of one channel due to each effect of its sensor, at the size
+/// that follows from prior and records. In a score, they are the uncertainty of the measured side
+/// in addition to noise.
 ///
 /// @param acting     from considered_in()
 /// @param simulated  simulated values of the channel at `time_s`

@@ -12,7 +12,7 @@
 
 namespace rigcal::calib {
 
-/// Largest number of unknowns for a refit, because its matrices are dense.
+/// Maximum number of unknowns for a refit; it is limited because the matrices are dense.
 inline constexpr std::size_t kMostRefitted = 64;
 
 /// Minimum of a problem with some effects as additional unknowns.
@@ -21,14 +21,14 @@ struct Refit {
   Eigen::VectorXd sizes;       ///< effects, as multiples of their plausible sizes
   Eigen::MatrixXd covariance;  ///< (J^T J)^-1; unknowns in the unit box, then effects
   double squares = 0.0;        ///< sum of the squared weighted residuals and priors
-  /// That sum with each condition predicted from the others to first order; absent if there is only
-  /// one condition.
+  /// The same sum if each condition is predicted from the others, to first order. Absent if there
+  /// is only one condition.
   std::optional<double> held_out;
 };
 
-/// Estimates the unknowns again together with some effects, by Gauss-Newton steps. The
-/// sensitivities are those of the model with the effects. An effect that cannot be negative ends at
-/// zero if the records push it below.
+/// Estimates the unknowns again, together with some effects, by Gauss-Newton steps. The
+/// sensitivities are those of the model that includes the effects. An effect that cannot be
+/// negative ends at zero if the records would make it negative.
 class Refitter {
  public:
   /// @param scores  residuals of the fit at z
@@ -42,19 +42,21 @@ class Refitter {
                            Eigen::VectorXd sizes) const;
 
  private:
-  /// Sum of squares, gradient and J^T J of one condition.
+  /// Sum of squares, gradient and J^T J for one condition.
   struct Part {
     bool ok = false;
     double squares = 0.0;
     Eigen::VectorXd gradient;
     Eigen::MatrixXd normal;
-    Eigen::VectorXd residual;  ///< until complete() has made gradient and J^T J of it
-    Eigen::MatrixXd jacobian;  ///< likewise; columns: the acting unknowns, then the effects
+    Eigen::VectorXd residual;  ///< kept until complete() has computed gradient and J^T J
+    /// Kept as long as `residual`; columns: the acting unknowns, then the effects.
+    Eigen::MatrixXd jacobian;
   };
-  /// The squares, and what a simulation with the derivatives by the unknowns gives besides.
+  /// Computes the sum of squares and everything else that a single simulation with derivatives with
+  /// respect to the unknowns provides.
   Part squares_at(std::size_t condition, const std::vector<Effect>& effects,
                   std::span<const double> z, const Eigen::VectorXd& sizes) const;
-  /// Simulates the derivatives by the effects, and makes gradient and J^T J.
+  /// Simulates the derivatives with respect to the effects, and computes gradient and J^T J.
   void complete(std::size_t condition, const std::vector<Effect>& effects,
                 std::span<const double> z, const Eigen::VectorXd& sizes, Part& part) const;
   Part priors_at(std::span<const double> z, Eigen::Index unknowns) const;

@@ -5,15 +5,15 @@
 
 namespace rigcal::calib {
 
-/// Estimates the parameters of a fit again, from the validation records only. It makes Gauss-Newton
-/// steps from the fit's values, and computes the error of each estimate from the residuals.
-/// `stability` of the fit then has how far each estimate moves, and whether that exceeds both
-/// uncertainties (at 5 % for all parameters together, by Holm). Parameters that the validation
-/// records do not determine to within 25 % are omitted.
+/// Estimates the parameters of a fit again, from the validation records only. The function takes
+/// Gauss-Newton steps from the fit's values, and computes the error of each estimate from the
+/// residuals. It stores in `fit.stability` how far each estimate moves, and whether this exceeds
+/// the uncertainty of both estimates (at 5 % for all parameters together, Holm). Parameters that
+/// the validation records do not determine to within 25 % are omitted.
 ///
-/// @param validation  the problem of the validation records with the unknowns of the fit
+/// @param validation  the problem for the validation records, with the unknowns of the fit
 /// @param nuisance    values already estimated from the validation records
-/// @param fit         converged, with the budgets of its parameters
+/// @param fit         must have converged, and contain the uncertainty budgets of its parameters
 void repeat_on_validation(Problem validation, const std::vector<FittedParameter>& nuisance,
                           int threads, const std::atomic<bool>* cancel, Fit& fit);
 

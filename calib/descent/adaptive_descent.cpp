@@ -10,8 +10,8 @@
 namespace rigcal::calib {
 namespace {
 
-/// A step is accepted if the reduction in cost exceeds this fraction of the prediction; Ceres'
-/// value.
+/// A step is accepted if the reduction in cost exceeds this fraction of the prediction. The value
+/// is that of Ceres.
 constexpr double kTaken = 1e-3;
 /// Limits for the ratio of actual to predicted reduction. Below the first, the trust region shrinks
 /// to a fraction of the step; above the second, it grows.
@@ -20,16 +20,18 @@ constexpr double kGoodGain = 0.75;
 constexpr double kRadiusGrowth = 2.0;
 constexpr double kLeastShrink = 0.1;
 constexpr double kMostShrink = 0.5;
-/// The other model is used next if its prediction error is smaller by this factor; NL2SOL's value.
+/// The other model is used for the next step if its prediction error is smaller by this factor. The
+/// value is that of NL2SOL.
 constexpr double kNearer = 1.5;
-/// Minimum ratio of an unknown's scale to its scale at the previous point; NL2SOL's value.
+/// Minimum ratio of an unknown's scale to its scale at the previous point. The value is that of
+/// NL2SOL.
 constexpr double kScaleMemory = 0.6;
-/// Minimum scale, relative to the largest one, and minimum cosine of the angle between a step and
+/// Minimum scale relative to the largest scale, and minimum cosine of the angle between a step and
 /// the change in the gradient.
 constexpr double kLeastScale = 1e-6;
 constexpr double kLeastCosine = 1e-6;
-/// A rejected step ends the descent if the predicted and the actual change in cost are below this
-/// fraction of the cost, because the simulations are no more accurate.
+/// A rejected step ends the descent if both the predicted and the actual change in cost are below
+/// this fraction of the cost, because simulations are not accurate enough to resolve it.
 constexpr double kNoise = 1e-8;
 /// The descent gives up after this many consecutive points that cannot be evaluated. The last step
 /// is then a millionth of the first.
@@ -49,10 +51,10 @@ std::optional<Point> point_at(const DescentOptions& options, const Eigen::Vector
   return Point{z, 0.5 * found->square(), found->gradient(), found->normal()};
 }
 
-/// Updates S after a step as proposed by Dennis, Gay and Welsch: S maps the step to the change in
-/// the gradient that J'J does not explain, and otherwise remains as close to its previous value as
-/// this allows. S only covers the shared unknowns, because a full S would couple the own unknowns
-/// of different conditions.
+/// Updates S after a step as proposed by Dennis, Gay and Welsch: the new S maps the step to the
+/// change in the gradient that J'J does not explain, and is otherwise as close as possible to the
+/// previous S. S covers only the shared unknowns, because a full S would couple the own unknowns of
+/// different conditions.
 void learn(const Point& from, const Point& to, const Eigen::VectorXd& scales, Eigen::MatrixXd& s) {
   const std::vector<int>& shared = from.square.layout.shared;
   const Eigen::VectorXd whole = to.z - from.z;
@@ -61,7 +63,7 @@ void learn(const Point& from, const Point& to, const Eigen::VectorXd& scales, Ei
   const Eigen::VectorXd scale = scales(shared);
   const Eigen::VectorXd change = to.gradient(shared) - from.gradient(shared);
   const Eigen::VectorXd unexplained = change - explained(shared);
-  // Sizing: S was learnt where the residuals were larger, and may be too large by now.
+  // Sizing: S was estimated where the residuals were larger, and may now be too large.
   const double before = std::abs(step.dot(s * step));
   if (before > 0.0) s *= std::min(1.0, std::abs(step.dot(unexplained)) / before);
   const double along = change.dot(step);
@@ -74,7 +76,7 @@ void learn(const Point& from, const Point& to, const Eigen::VectorXd& scales, Ei
   s += half + half.transpose() - error.dot(step) * weight * weight.transpose();
 }
 
-/// Updates the scales. They are the column norms of the Jacobian, but may only decrease slowly from
+/// Updates the scales. They are the column norms of the Jacobian, but may decrease only slowly from
 /// one point to the next.
 void rescale(const Point& at, Eigen::VectorXd& scale) {
   scale = at.square.diagonal().cwiseSqrt().cwiseMax(kScaleMemory * scale);
@@ -120,7 +122,7 @@ Descent descend_adaptively(const DescentOptions& options, std::vector<double>& z
   const Eigen::Index shared = here->square.blocks.shared.rows();
   Eigen::MatrixXd second = Eigen::MatrixXd::Zero(shared, shared);  // S
   bool augmented = false;
-  bool switched = false;  // whether the model was exchanged at this point, after a rejected step
+  bool switched = false;  // the other model has been tried at this point, too
   int invalid = 0;
   bool ended = enough(here->cost, 0.0);
   while (!ended && !result.converged && result.iterations < options.most_iterations) {
@@ -148,7 +150,7 @@ Descent descend_adaptively(const DescentOptions& options, std::vector<double>& z
     const double gain = fall / tried.fall;
     const double other = (augmented ? plain : full).fall(tried.step);
     const bool other_nearer = kNearer * std::abs(fall - other) < std::abs(fall - tried.fall);
-    learn(*here, *there, scale, second);  // rejected steps are used, too
+    learn(*here, *there, scale, second);  // rejected steps provide information, too
     if (gain <= kTaken) {
       ended = enough(here->cost, 0.0);
       result.converged = std::max(std::abs(fall), tried.fall) <= kNoise * here->cost;

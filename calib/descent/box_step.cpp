@@ -22,8 +22,8 @@ struct BallStep {
   double multiplier = 0.0;  ///< multiplier of the constraint on the radius; 0 inside the ball
 };
 
-/// Replaces eigenvalues that are only rounding errors with a small one, because the model is flat
-/// along these directions.
+/// Replaces eigenvalues that are only rounding errors by a small value, because the model is flat
+/// in these directions.
 Eigen::VectorXd without_rounding(const Eigen::VectorXd& eigenvalues, double flat) {
   return eigenvalues.unaryExpr(
       [flat](double value) { return std::abs(value) <= flat ? flat : value; });
@@ -36,13 +36,13 @@ class ShiftedDense {
     const double flat = kSquaredRounding * spectrum_.eigenvalues().cwiseAbs().maxCoeff() + 1e-300;
     curvature_ = without_rounding(spectrum_.eigenvalues(), flat);
     least_ = std::max(0.0, -curvature_(0));
-    // Shifts are counted from the point where the matrix becomes semidefinite, to avoid
+    // Shifts are measured from the value at which the matrix becomes semidefinite, to avoid
     // cancellation there.
     curvature_.array() += least_;
   }
 
-  /// Returns the smallest shift that makes the matrix semidefinite. The shifts passed to the
-  /// functions below are added to it.
+  /// Returns the smallest shift that makes the matrix semidefinite. The functions below add the
+  /// shift that they are given to this value.
   double least() const { return least_; }
   Eigen::VectorXd into(const Eigen::VectorXd& x) const {
     return spectrum_.eigenvectors().transpose() * x;
@@ -65,8 +65,8 @@ class ShiftedDense {
   double least_ = 0.0;
 };
 
-/// (B + shift)^-1 for an arrow matrix. The own unknowns are eliminated with the eigenvectors of
-/// their blocks; the shared ones use the eigenvalues of the reduced matrix.
+/// (B + shift)^-1 for an arrow matrix. The own unknowns are eliminated using the eigenvectors of
+/// their blocks; the reduced matrix of the shared unknowns is solved using its eigenvalues.
 class ShiftedArrow {
  public:
   explicit ShiftedArrow(const ArrowSquare& b)
@@ -142,7 +142,7 @@ class ShiftedArrow {
     return x.cwiseQuotient((curvature_[i].array() + shift).matrix());
   }
 
-  /// Returns the reduced matrix of the shared unknowns at a shift.
+  /// Returns the reduced matrix of the shared unknowns for a given shift.
   Eigen::MatrixXd schur(double shift) const {
     Eigen::MatrixXd result = b_.blocks.shared;
     result.diagonal().array() += shift;
@@ -195,7 +195,7 @@ BallStep ball_step(const Shifted& b, const Eigen::VectorXd& c, double radius) {
       const double length = y.norm();
       if (std::abs(length - radius) <= kOnRadius * radius) break;
       (length > radius ? low : high) = more;
-      // Newton's method for 1 / length, which is almost linear.
+      // Newton's method for 1 / length, which is almost linear in the shift.
       const double slope = b.slope(along, y, more);
       const double next =
           more + (length / radius - 1.0) * length * length / std::max(slope, 1e-300);
@@ -279,7 +279,7 @@ BoxStep box_step(const QuadraticModel& model, const StepLimits& limits) {
         fixed[static_cast<std::size_t>(hit)] = true;
       }
     }
-    // If the model is indefinite, a step along bounds may increase the cost again.
+    // If the model is indefinite, a step along the bounds may increase the cost again.
     if (model.fall(x) > best.fall) best = {x, model.fall(x), multiplier > 0.0};
     if (hit >= 0) continue;
     const Eigen::VectorXd slope =

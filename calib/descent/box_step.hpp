@@ -6,9 +6,9 @@
 
 namespace rigcal::calib {
 
-/// Model of the change in cost for a step p: gradient' p + p' hessian p / 2.
+/// Quadratic model of the change in cost for a step p: gradient' p + p' hessian p / 2.
 struct QuadraticModel {
-  ArrowSquare hessian;  ///< may be indefinite, but not in the block of a condition
+  ArrowSquare hessian;  ///< may be indefinite, except in the blocks of the conditions
   Eigen::VectorXd gradient;
 
   /// Returns the reduction in cost that the model predicts for a step.
@@ -35,11 +35,11 @@ struct BoxStep {
 /// Returns -(B + damping)^-1 c for a positive semidefinite matrix B.
 Eigen::VectorXd damped_step(const ArrowSquare& b, const Eigen::VectorXd& c, double damping);
 
-/// Minimises a model exactly in the ball, and then in the box with an active set. An unknown that
-/// reaches its bound is fixed there, and the others are solved for again. An unknown that the model
-/// would move back inside is released, once (Moré and Sorensen, SIAM J. Sci. Stat. Comput. 4,
-/// 1983). Uses eigenvalues, because few unknowns remain once those of the conditions are
-/// eliminated.
+/// Minimises the model exactly within the trust region (Moré and Sorensen, SIAM J. Sci. Stat.
+/// Comput. 4, 1983), and within the bounds by an active-set method: an unknown that reaches its
+/// bound is fixed there, and the system is solved again for the others. An unknown that the model
+/// would move back inside is released, but only once. Eigenvalues are affordable, because few
+/// unknowns remain once those of the conditions have been eliminated.
 BoxStep box_step(const QuadraticModel& model, const StepLimits& limits);
 
 }  // namespace rigcal::calib

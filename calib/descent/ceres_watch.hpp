@@ -10,8 +10,7 @@
 namespace rigcal::calib {
 
 /// Reports each iteration of Ceres, and stops Ceres on request. Exceptions must not pass through
-/// Ceres, so an exception thrown by the callback is stored and ends the call; the caller rethrows
-/// it.
+/// Ceres. If the callback throws, the exception is stored and Ceres stops; the caller rethrows it.
 class CeresWatch final : public ceres::IterationCallback {
  public:
   CeresWatch(const std::function<bool(const DescentStep&)>& enough, std::exception_ptr& error)
@@ -40,8 +39,7 @@ class CeresWatch final : public ceres::IterationCallback {
 
 inline ceres::Solver::Options quiet_settings() {
   ceres::Solver::Options settings;
-  settings.num_threads = 1;  // more threads would change the order of sums; simulations are
-                             // parallel
+  settings.num_threads = 1;  // keeps the order of sums; the simulations themselves run in parallel
   settings.logging_type = ceres::SILENT;
   settings.minimizer_progress_to_stdout = false;
   return settings;

@@ -9,7 +9,8 @@
 namespace rigcal::calib {
 namespace {
 
-/// All residuals, with one parameter block of size 1 per unknown. Borrows everything.
+/// All residuals as a cost function of Ceres, with one parameter block of size 1 per unknown.
+/// Borrows everything.
 class BoxCost final : public ceres::CostFunction {
  public:
   BoxCost(const DescentOptions& options, Eigen::Index residuals, std::size_t unknowns,

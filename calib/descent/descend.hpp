@@ -6,11 +6,11 @@
 
 namespace rigcal::calib {
 
-/// Least squares in the unit box with Ceres (trust region, dense QR). Starts at z and stores the
-/// end point in z. Exceptions from the callbacks are passed on to the caller.
+/// Solves a least-squares problem in the unit box with Ceres (trust region, dense QR). Starts at z
+/// and stores the end point in z. Exceptions from the callbacks are passed on to the caller.
 ///
 /// @param residuals     number of residuals
-/// @param active_bound  unknowns that keep their value
+/// @param active_bound  marks the unknowns that keep their values
 Descent descend(const DescentOptions& options, Eigen::Index residuals,
                 const std::vector<bool>& active_bound, std::vector<double>& z);
 

@@ -17,11 +17,11 @@ inline constexpr double kFunctionTolerance = 1e-10;
 struct DescentStep {
   int number = 0;
   double cost = 0.0;
-  double relative_change = 0.0;  ///< relative change in cost
-  double seconds = 0.0;          ///< since the descent began
+  double relative_change = 0.0;
+  double seconds = 0.0;  ///< time since the descent began
 };
 
-/// The function to minimise, and the tolerances.
+/// The function to minimise, and when to stop.
 struct DescentOptions {
   /// Returns the residuals at a point in the unit box, or std::nullopt if it cannot be evaluated.
   /// The Jacobian is computed only on request.
@@ -37,7 +37,7 @@ struct DescentOptions {
 
 /// Result of a descent.
 struct Descent {
-  bool converged = false;  ///< whether a tolerance was reached
+  bool converged = false;  ///< true if a tolerance was reached
   int iterations = 0;      ///< number of steps tried, without the start
   std::string failure;     ///< why the descent gave up; otherwise empty
 };

@@ -9,11 +9,11 @@
 
 namespace rigcal::calib {
 
-/// Rates a test for the named unknowns, with the other unknowns estimated at the same time. A
-/// larger score is better. For `determinant`, the score is minus half the logarithm of the
-/// determinant of the covariance of the named unknowns. For `worst`, it is minus the logarithm of
-/// the largest standard deviation relative to its value (relative to the width of the bounds if the
-/// value is 0).
+/// Scores how well a test determines the named unknowns when the other unknowns are estimated at
+/// the same time. A larger score is better. For `determinant`, the score is minus half the
+/// logarithm of the determinant of the covariance of the named unknowns. For `worst`, it is minus
+/// the logarithm of the largest standard deviation relative to the value of the unknown (or to the
+/// width of its bounds if the value is 0).
 ///
 /// @param rows   weighted sensitivities, one column per unknown in the unit box. Priors are added.
 ///               An unknown that the rows do not determine gets a uniform distribution within its

@@ -17,19 +17,19 @@ namespace rigcal::calib {
 /// One unknown in the designed test. Standard deviations are Cramer-Rao bounds, SI; absent if the
 /// test does not determine the unknown.
 struct DesignedParameter : TestedParameter {
-  bool named = false;  ///< the drive was designed for this parameter
+  bool named = false;  ///< true if the drive was designed for this parameter
   std::optional<double> sd;
-  /// Standard deviation from the campaign's own signals, for equal total time, noise and number of
-  /// repeats.
+  /// Standard deviation that the campaign's own signals would give with the same total time, noise
+  /// and number of repeats.
   std::optional<double> sd_own_signals;
   RIGCAL_DESCRIBE(name, unit, scope, level, named, value, sd, sd_own_signals)
 };
 
-/// Result of the search in one family of drives.
+/// Result of the search within one family of drives.
 struct FamilyTrial {
   datasets::DriveFamily family = datasets::DriveFamily::multisine;
   int evaluations = 0;
-  bool found = false;  ///< true if one of the drives keeps the limits
+  bool found = false;  ///< true if any of the drives keeps the limits
   /// Standard deviation of each unknown with the best drive, at the accuracy of the search.
   std::vector<std::optional<double>> sd;
   RIGCAL_DESCRIBE(family, evaluations, found, sd)
@@ -46,34 +46,33 @@ struct Design {
   std::vector<LimitUse> limits;
   std::vector<DesignedParameter> parameters;
   std::vector<FamilyTrial> trials;
-  std::map<datasets::Channel, double> noise_sd;  ///< per sample of one repeat, SI
+  std::map<datasets::Channel, double> noise_sd;  ///< noise in one sample of one repeat, SI
   std::vector<std::string> own_conditions;       ///< the campaign's own signals
   double own_duration_s = 0.0;                   ///< total duration of the campaign's own signals
-  bool stopped = false;                          ///< true if stopped by the flag; the drive is the
-                                                 ///< best so far
+  bool stopped = false;  ///< true if the search was cancelled; the drive is the best so far
   std::vector<std::string> messages;
 };
 
 struct DesignOptions {
   int threads = 1;
   const std::atomic<bool>* cancel = nullptr;
-  /// Called after each generation with the family, the number of drives tried in it, and the number
-  /// that it may try.
+  /// Called after each generation with the family, the number of its drives that have been tried,
+  /// and the number that may be tried.
   std::function<void(datasets::DriveFamily, int, int)> progress = {};
 };
 
 /// Searches for the drive that is most informative about the named parameters
-/// (datasets::DesignSettings). All other unknowns are estimated at the same time. The result is the
-/// same for any number of threads.
+/// (datasets::DesignSettings) when all other unknowns are estimated at the same time. The result is
+/// the same for any number of threads.
 ///
-/// @param records  records of the campaign's own conditions, as far as they exist
+/// @param records  records of the campaign's own conditions, if there are any
 /// @param names    keys of fitted parameters, such as "bulk_modulus"
-/// @param values   values from an earlier fit, or null for those of the campaign
+/// @param values   values from an earlier fit, or null to use those of the campaign
 /// @throws InputError, UsageError  if there is no [design], a name is unknown or not fitted, no
 ///                                 record determines the noise, or the rig exceeds a limit at rest
 /// @throws NoResultError           if the rig cannot be simulated, or none of the tried drives
 ///                                 keeps the limits
-/// @throws Error                   if the search was stopped before there was any drive
+/// @throws Error                   if the search was stopped before it had found any drive
 Design design(const datasets::Campaign& campaign, const std::vector<datasets::Record>& records,
               const std::vector<std::string>& names,
               const std::vector<datasets::FittedValue>* values, const DesignOptions& options);

@@ -9,7 +9,7 @@
 
 namespace rigcal::calib {
 
-/// The sample times of a test, and the frequency band of its drive.
+/// Sample times of a test, and the frequency band of its drive.
 struct DriveGrid {
   std::size_t samples = 0;
   double rate_hz = 0.0;
@@ -19,11 +19,11 @@ struct DriveGrid {
   double duration_s() const { return static_cast<double>(samples - 1) / rate_hz; }
 };
 
-/// Returns the grid. The default band extends from two periods in the test to ten samples per
-/// period.
+/// Returns the grid for the settings. By default, the band extends from the frequency with two
+/// periods in the test to the frequency with ten samples per period.
 DriveGrid drive_grid(const datasets::DesignSettings& settings);
 
-/// One number of a drive, as results name it.
+/// One of the numbers that describe a drive, as named in results.
 struct DrivePart {
   std::string name;  ///< "frequency 1", "bit time"
   std::string unit;  ///< in SI
@@ -31,11 +31,12 @@ struct DrivePart {
   RIGCAL_DESCRIBE(name, unit, value)
 };
 
-/// A drive relative to its largest allowed distance from its first value.
+/// A drive, relative to the largest distance from its first value that is allowed.
 struct DriveShape {
   std::vector<double> values;  ///< shape (samples), in [-1, 1]; begins and ends at 0
   std::vector<DrivePart> parts;
-  /// Additional factor chosen by the search, because information need not increase with amplitude.
+  /// Additional factor on the amplitude. The search chooses it, because more amplitude does not
+  /// always give more information.
   double share = 1.0;
 };
 
@@ -48,8 +49,8 @@ Eigen::Index drive_coordinates(datasets::DriveFamily family);
 ///   steps      eight levels, each with its duration, and the rise time;
 ///   prbs       bit time, rise time, and the start of the sequence of x^11 + x^9 + 1.
 /// Two further coordinates are the fraction of the allowed amplitude and the offset of the drive.
-/// The drive rises from its first value within a twentieth of the test, and returns to it at the
-/// end.
+/// The drive departs from its first value during the first twentieth of the test, and returns to it
+/// during the last.
 ///
 /// @param point  shape (coordinates), in [0, 1]
 DriveShape drive_shape(datasets::DriveFamily family, const Eigen::VectorXd& point,

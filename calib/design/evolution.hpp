@@ -9,7 +9,7 @@
 
 namespace rigcal::calib {
 
-/// The best point of all points tried.
+/// The best of all points tried.
 struct Evolved {
   Eigen::VectorXd point;  ///< in the unit box; empty if no point had a score
   double score = -std::numeric_limits<double>::infinity();
@@ -20,11 +20,11 @@ struct Evolved {
 /// The scores may be computed in parallel.
 using ScorePoints = std::function<std::vector<double>(const std::vector<Eigen::VectorXd>&)>;
 
-/// Searches for the largest score in the unit box. A third of the evaluations are random points.
-/// The others belong to an evolution strategy with covariance matrix adaptation that starts from
-/// the best of these (Hansen, The CMA evolution strategy: a tutorial, arXiv:1604.00772). A
-/// coordinate that leaves the box is reflected back into it. The score needs no derivative and need
-/// not exist at every point.
+/// Searches for the largest score in the unit box. A third of the evaluations are spent on random
+/// points. An evolution strategy with covariance matrix adaptation then starts from the best of
+/// them (Hansen, The CMA evolution strategy: a tutorial, arXiv:1604.00772). A coordinate that
+/// leaves the box is reflected back into it. No derivatives are needed, and the score need not
+/// exist at every point.
 ///
 /// @param evaluations  maximum number of evaluations
 /// @param stopped      called before each generation; returns true to end the search

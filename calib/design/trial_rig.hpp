@@ -14,8 +14,8 @@
 
 namespace rigcal::calib {
 
-/// Returns the noise per sample of one repeat, SI: from [design], from the `sd` of the channel,
-/// from [synthetic], or from the records.
+/// Returns the noise in one sample of one repeat, SI, for each channel. It comes from [design],
+/// from the `sd` of the channel, from [synthetic], or from the records.
 ///
 /// @throws InputError  if the noise is unknown
 std::map<datasets::Channel, double> noise_of_one_repeat(
@@ -25,7 +25,7 @@ std::map<datasets::Channel, double> noise_of_one_repeat(
 class TrialRig {
  public:
   /// @param campaign  must contain [design]; borrowed
-  /// @param noise_sd  noise per sample of one repeat
+  /// @param noise_sd  noise in one sample of one repeat
   /// @param values    values from an earlier fit, or null
   /// @throws InputError     if nothing is free, or the rig exceeds a limit at rest
   /// @throws NoResultError  if the rig cannot be simulated at rest
@@ -43,7 +43,7 @@ class TrialRig {
   /// Returns the largest allowed distance of a drive from neutral().
   double reach() const { return reach_; }
 
-  /// Returns the use of each limit under a drive, or std::nullopt if it cannot be simulated.
+  /// Returns how much of each limit a drive uses, or std::nullopt if it cannot be simulated.
   ///
   /// @param drive  shape (samples)
   /// @param finer  number of response samples for each drive sample
@@ -51,13 +51,13 @@ class TrialRig {
   std::optional<std::vector<LimitUse>> uses_under(const std::vector<double>& drive,
                                                   double tolerance, int finer = 1,
                                                   Eigen::MatrixXd* at = nullptr) const;
-  /// Returns the weighted sensitivities of all channels under a drive, one column per unknown in
-  /// the unit box. Empty if the drive cannot be simulated.
+  /// Returns the weighted sensitivities of all channels to the unknowns (unit box, one column each)
+  /// under a drive. Empty if the drive cannot be simulated.
   Eigen::MatrixXd sensitivities(const std::vector<double>& drive, double tolerance) const;
-  /// Uses a drive in the problem's condition, for code that simulates the problem itself.
+  /// Puts a drive into the problem's condition, for code that simulates the problem itself.
   void play(const std::vector<double>& drive);
-  /// Disables the cancel flag for all further simulations, so that what was found is checked and
-  /// kept.
+  /// Makes all further simulations ignore the cancel flag, so that the drive found so far can still
+  /// be checked and kept.
   void finish() { cancel_ = nullptr; }
 
  private:

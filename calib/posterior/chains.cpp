@@ -20,7 +20,7 @@ bool too_short(const Chains& chains) {
   return chains.empty() || chains.front().size() < kLeastDraws;
 }
 
-/// Splits each chain into two halves. The middle draw of a chain with an odd number is left out.
+/// Splits each chain into two halves. If the number of draws is odd, the middle draw is left out.
 Chains halves(const Chains& chains) {
   Chains split;
   for (const auto& chain : chains) {
@@ -126,8 +126,8 @@ double effective_of(const Chains& chains) {
     least = std::min(least, pair);
     sum += 2.0 * least;
   }
-  // Antithetic chains may be worth more than their number of draws. This limits how much more is
-  // accepted.
+  // The draws of antithetic chains may be worth more than as many independent draws. This limits
+  // how much more.
   return count / std::max(sum, 1.0 / std::log10(count));
 }
 

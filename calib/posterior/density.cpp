@@ -14,14 +14,14 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// Limits for the distance from a bound at which the sampler may start, as fractions of the box. At
-/// the bound itself its coordinates would be infinite.
+/// the bound itself, the sampler's coordinates would be infinite.
 constexpr double kLeastDistance = 1e-6;
 constexpr double kMostDistance = 0.25;
 /// Minimum eigenvalue of the covariance of the score, relative to the mean eigenvalue.
 constexpr double kLeastEigenvalue = 1e-6;
 
 double logistic(double y) {
-  // The smaller of z and 1 - z is exact, however far out.
+  // Neither branch overflows, and a very small z keeps its full precision.
   return y >= 0.0 ? 1.0 / (1.0 + std::exp(-y)) : std::exp(y) / (1.0 + std::exp(y));
 }
 
@@ -29,7 +29,7 @@ double log_logistic(double y) {
   return y >= 0.0 ? -std::log1p(std::exp(-y)) : y - std::log1p(std::exp(y));
 }
 
-/// Returns R of all unknowns over all directions.
+/// Returns R for all unknowns and all directions as a dense matrix.
 MatrixXd dense_root(const ArrowRoot& root, std::size_t conditions) {
   MatrixXd all = MatrixXd::Zero(root.unknowns(), root.directions());
   for (Index j = 0; j < root.unknowns(); ++j) {
@@ -44,9 +44,9 @@ MatrixXd dense_root(const ArrowRoot& root, std::size_t conditions) {
   return all;
 }
 
-/// Returns S in the directions of the root: the covariance of the score estimated from the
-/// residuals, or that of white noise. It is scaled so that each unknown has the error reported by
-/// the fit.
+/// Returns S in the directions of the root. It is the covariance of the score estimated from the
+/// residuals, or that for white noise, scaled so that each unknown has the error reported by the
+/// fit.
 MatrixXd score_covariance(const Problem& problem, const Evaluation& optimum,
                           const Uncertainty& found, const std::vector<FittedParameter>& parameters,
                           const MatrixXd& root, const VectorXd& prior_row) {
@@ -118,7 +118,7 @@ PosteriorDensity::PosteriorDensity(const Problem& problem, const Evaluation& opt
   weight_ = information - none / kappa_;
 
   // In the unit box the precision is R^-T S^-1 R^-1 in the directions that the records determine.
-  // The transform adds the terms that keep the other coordinates from going to infinity.
+  // The transform adds terms that keep the other coordinates finite.
   const MatrixXd inverse = Eigen::CompleteOrthogonalDecomposition<MatrixXd>(root_).pseudoInverse();
   const MatrixXd precision = inverse.transpose() * information * inverse;
   VectorXd slope(unknowns);

@@ -14,19 +14,19 @@ namespace rigcal::calib {
 
 /// Posterior density of the unknowns of a problem.
 ///
-/// Likelihood: the weighted residuals r of the fit are normal. In the directions that move the
-/// estimates, the columns of G = J R at the optimum, their covariance is the matrix S that the fit
-/// uses to compute its errors. Autocorrelated residuals, differences between repeats and stated
-/// uncertainties of known values thus widen the posterior in the same way as the intervals. In all
-/// other directions the residuals are white with variance kappa, which is the mean of S, but at
-/// least 1 and at least the reduced chi-square. Hence
+/// Likelihood: the weighted residuals r of the fit are normal. In the directions that affect the
+/// estimates, which are the columns of G = J R at the optimum, their covariance is the matrix S
+/// from which the fit computes its errors. Autocorrelated residuals, differences between repeats
+/// and stated uncertainties of known values thus widen the posterior in the same way as the
+/// intervals. In all other directions the residuals are white with variance kappa, which is the
+/// mean of S, but at least 1 and at least the reduced chi-square. Hence
 ///
 ///     -2 log L = q^T S^-1 q + (r^T r - q^T q) / kappa,  q = G^T r,
 ///
-/// which is r^T r if the noise is white and known. Close to the optimum the likelihood has the
-/// curvature of the fit's covariance; further away it has the shape given by the simulations.
+/// which equals r^T r if the noise is white and known. Close to the optimum the curvature of the
+/// likelihood matches the covariance of the fit; further away the simulations determine its shape.
 ///
-/// Prior: uniform between the bounds in the scale used by the fit, the coordinate z of the unit
+/// Prior: uniform between the bounds on the scale that the fit uses, the coordinate z of the unit
 /// box. An unknown with `prior` and `prior_sd` has that normal distribution, truncated at its
 /// bounds.
 ///
@@ -38,9 +38,10 @@ class PosteriorDensity {
   ///
   /// @param optimum     an evaluation with status ok, with its rows
   /// @param found       uncertainty of the fit at the optimum
-  /// @param parameters  parameters of the unknowns, in the same order; they define which error each
-  ///                    interval is based on
-  /// @param cancel      set to true to stop simulations; afterwards no point has a density
+  /// @param parameters  parameters of the unknowns, in the same order; they specify on which error
+  ///                    each interval is based
+  /// @param cancel      set to true to stop simulations; from then on the density is zero
+  ///                    everywhere
   PosteriorDensity(const Problem& problem, const Evaluation& optimum, const Uncertainty& found,
                    const std::vector<FittedParameter>& parameters,
                    const std::atomic<bool>* cancel = nullptr);
@@ -57,11 +58,11 @@ class PosteriorDensity {
   /// Returns the covariance of a normal approximation, from the curvature at the optimum including
   /// the priors and the transform.
   const Eigen::MatrixXd& covariance() const { return covariance_; }
-  /// Returns the variance of the residuals outside the directions that move the estimates.
+  /// Returns the variance of the residuals in directions that do not affect the estimates.
   double noise() const { return kappa_; }
 
  private:
-  /// @param fidelity  if it has no derivatives, the result has no gradient
+  /// @param fidelity  without derivatives, the result has no gradient
   LogDensity evaluate(const Eigen::VectorXd& y, const Fidelity& fidelity) const;
 
   struct Directions {

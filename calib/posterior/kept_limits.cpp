@@ -12,7 +12,7 @@
 namespace rigcal::calib {
 namespace {
 
-/// A limit of a condition, with the channel and the metric that it applies to.
+/// A limit in a condition, with the channel and the metric that it applies to.
 struct Bound {
   std::size_t condition = 0;
   std::size_t channel = 0;
@@ -37,7 +37,7 @@ std::vector<Bound> bounds_of(const Problem& problem) {
   return bounds;
 }
 
-/// Returns the metric at a point; NaN if it is undefined.
+/// Returns the metric for one simulation; NaN if it is undefined.
 double score_of(const Bound& bound, const ProblemCondition& condition,
                 const model::Simulation& run) {
   if (!run.ok()) return std::numeric_limits<double>::quiet_NaN();
@@ -48,7 +48,7 @@ double score_of(const Bound& bound, const ProblemCondition& condition,
         run.outputs(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(bound.channel)));
   try {
     return bound.metric->compute(channel.measured, simulated);
-  } catch (const std::logic_error&) {  // the record is constant, whatever the draw
+  } catch (const std::logic_error&) {  // the record is constant
     return std::numeric_limits<double>::quiet_NaN();
   }
 }

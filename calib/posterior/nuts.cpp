@@ -18,15 +18,16 @@ using Eigen::VectorXd;
 
 /// An energy error above this value counts as a divergence.
 constexpr double kDivergence = 1000.0;
-/// Ends of the warm-up windows, as fractions of its draws. The first window adapts only the step,
-/// the next two also the covariance, and the last one the step for the final covariance.
+/// Ends of the warm-up windows, as fractions of the warm-up draws. The first window adapts only the
+/// step, the next two also estimate the covariance, and the last one adapts the step to the final
+/// covariance.
 constexpr double kFirstWindow = 0.15;
 constexpr double kSecondWindow = 0.45;
 constexpr double kLastWindow = 0.85;
-/// In the first window, the search is drawn towards this multiple of the first step, because long
-/// steps are cheap to try.
+/// In the first window, the step search is drawn towards this multiple of the first step, because
+/// trying long steps is cheap.
 constexpr double kHopeful = 10.0;
-/// Number of draws that the previous covariance counts for.
+/// The previous covariance counts as this many draws.
 constexpr double kPriorDraws = 10.0;
 constexpr int kMostHalvings = 50;
 
@@ -44,7 +45,7 @@ struct Phase {
   double energy() const { return 0.5 * momentum.squaredNorm() - log_density; }
 };
 
-/// The density in coordinates x with position = L x, where L L^T is the inverse mass matrix.
+/// The density in coordinates x, with position = L x, where L L^T is the inverse mass matrix.
 class Whitened {
  public:
   Whitened(const LogDensityOf& density, const MatrixXd& covariance) : density_(density) {
@@ -93,8 +94,8 @@ bool goes_on(const VectorXd& first, const VectorXd& last, const VectorXd& sum) {
   return first.dot(sum) > 0.0 && last.dot(sum) > 0.0;
 }
 
-/// Returns true if two adjacent sections do not make a U-turn, neither over the whole nor from each
-/// section to the start of the other.
+/// Returns true if two adjacent sections make no U-turn, either over their whole length or from one
+/// section to the nearest point of the other.
 bool go_on(const Stretch& a, const Stretch& b) {
   const VectorXd sum = a.sum + b.sum;
   return goes_on(a.first, b.last, sum) && goes_on(a.first, b.first, a.sum + b.first) &&
@@ -150,12 +151,12 @@ class Trajectory {
   int points_ = 0;
 };
 
-/// Converts a section that was generated backwards to the order of time.
+/// Converts a section that was generated backwards to chronological order.
 Stretch forwards(const Stretch& stretch) {
   return {stretch.last, stretch.first, stretch.sum, {}, stretch.log_weight};
 }
 
-/// Makes one draw, starting from `at` and updating it.
+/// Makes one draw, starting from `at`, which is updated.
 Draw draw_from(const Whitened& density, double step, int most_doublings,
                datasets::RandomStream& stream, Phase& at) {
   for (double& each : at.momentum) each = datasets::normal(stream, 1.0);
@@ -170,7 +171,7 @@ Draw draw_from(const Whitened& density, double step, int most_doublings,
     Stretch grown;
     if (!trajectory.grow(draw.doublings, ahead ? 1.0 : -1.0, ahead ? front : back, grown)) break;
     ++draw.doublings;
-    // The new section is preferred, because a draw far from the previous one is worth more.
+    // The new section is favoured, because a draw far from the previous one is worth more.
     if (trajectory.chance() < std::exp(grown.log_weight - whole.log_weight))
       whole.drawn = std::move(grown.drawn);
     const Stretch added = ahead ? std::move(grown) : forwards(grown);
@@ -200,7 +201,7 @@ Phase phase_at(const Whitened& density, VectorXd x) {
   return phase;
 }
 
-/// Finds a step for which the first leap is accepted with about the target probability.
+/// Finds a step with which the first leap is accepted with about the target probability.
 double first_step(const Whitened& density, const NutsOptions& options, long iteration, Phase at) {
   auto stream = stream_of(options, iteration);
   for (double& each : at.momentum) each = datasets::normal(stream, 1.0);
@@ -230,8 +231,8 @@ class StepSearch {
         log_mean_(std::log(first)) {}
 
   void learn(double acceptance) {
-    // Six times the value of Hoffman and Gelman. With a smaller value the steps vary so much that
-    // their mean is too short by a third.
+    // Six times the value used by Hoffman and Gelman. With a smaller value the steps vary so much
+    // that their mean is too short by a third.
     constexpr double kGamma = 0.3;
     constexpr double kDelay = 10.0;
     constexpr double kForgetting = 0.75;
@@ -274,11 +275,12 @@ bool warm_up(const LogDensityOf& density, int draws, const NutsOptions& options,
   for (int window = 0; window < 4; ++window) {
     const Whitened whitened(density, state.covariance);
     Phase phase = phase_at(whitened, whitened.coordinates(state.position));
-    if (options.stop && options.stop()) return false;  // the density may have been cut short
+    if (options.stop && options.stop()) return false;  // the last density may be wrong
     if (phase.log_density == -HUGE_VAL)
       throw std::invalid_argument("nuts: the density is zero where the chain begins");
-    // Long steps are tried first. Later windows already know the step, which hardly changes in
-    // coordinates of the covariance. A search drawn away from it would end with too short a step.
+    // Long steps are tried first. For later windows the step is already known, because it hardly
+    // changes in coordinates of the covariance. A search that was drawn away from it would end with
+    // too short a step.
     const double first =
         window == 0 ? first_step(whitened, options, state.iteration, phase) : state.step;
     StepSearch search(first, window == 0 ? kHopeful * first : first, options.target_acceptance);

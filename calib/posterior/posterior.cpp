@@ -22,23 +22,24 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Chains start from the normal approximation around the optimum, widened by this factor. That is
-/// wider than the posterior, so that R-hat can detect chains that have not forgotten their start.
+/// The start points of the chains are drawn from the normal approximation around the optimum,
+/// widened by this factor. They vary more than the posterior, so that R-hat can detect chains that
+/// have not forgotten their start.
 constexpr double kScattered = 2.0;
 /// Maximum number of attempts to draw a start point that can be simulated. Each attempt is half as
-/// far from the optimum.
+/// far from the optimum as the last.
 constexpr int kMostTries = 8;
-/// Fraction of missing information below which the tails may not be reached.
+/// Fraction of missing information below which the chains may not reach the tails.
 constexpr double kLeastEnergyFraction = 0.3;
-/// Effective draws of all chains below which the quantiles are unreliable.
+/// Number of effective draws in all chains below which the quantiles are unreliable.
 constexpr double kLeastEffective = 100.0 * kPosteriorChains;
 
 std::vector<double> listed(const MatrixXd& matrix) {
   return {matrix.data(), matrix.data() + matrix.size()};
 }
 
-/// State of a chain after a task, with the draws from that task. Contains only numbers, so that it
-/// can be stored.
+/// State of a chain after a task, with the draws from that task. It contains only numbers, so that
+/// it can be stored.
 struct ChainTask {
   std::vector<double> position, whitened, covariance;
   double step = 0.0;
@@ -77,7 +78,7 @@ struct ChainTask {
 
 /// Chooses the start point of a chain.
 ///
-/// @return  false if nothing can be simulated there, not even the optimum
+/// @return  false if no point can be simulated, not even the optimum
 bool begin_chain(const LogDensityOf& density, const PosteriorDensity& posterior, std::uint64_t seed,
                  std::size_t chain, ChainState& state) {
   const MatrixXd lower = posterior.covariance().llt().matrixL();
@@ -127,7 +128,8 @@ PosteriorSpread spread_of(const Chains& chains) {
   return spread;
 }
 
-/// Draws of the estimates that are shown in pairs: at most kMostPairDraws of kMostPaired of them.
+/// Returns the draws that are shown in pair plots: at most kMostPairDraws draws of at most
+/// kMostPaired estimates.
 Pairs pairs_of(const Posterior& found, const std::vector<FittedParameter>& parameters) {
   constexpr std::size_t kMostPaired = 6;
   constexpr std::size_t kMostPairDraws = 400;
@@ -145,7 +147,7 @@ Pairs pairs_of(const Posterior& found, const std::vector<FittedParameter>& param
   return pairs;
 }
 
-/// Describes the problems with the chains, in words; empty if there are none.
+/// Describes any problems with the chains, in words; empty if there are none.
 std::string complaints(const Posterior& found) {
   std::vector<std::string> words;
   if (!found.mixed()) {

@@ -10,20 +10,20 @@ namespace rigcal::calib {
 inline constexpr int kPosteriorChains = 4;
 /// Warm-up draws of each chain, which do not count.
 inline constexpr int kPosteriorWarmUp = 300;
-/// Number of draws of a chain that are kept together; a stopped run loses fewer than these.
+/// Number of draws per chain that are stored together; a stopped run loses at most one such group.
 inline constexpr int kPosteriorStretch = 250;
-/// Number of draws that are simulated to judge the limits.
+/// Number of draws that are simulated to judge limits.
 inline constexpr int kPosteriorSimulated = 200;
 
 /// Samples the posterior of a fit with four chains. Each starts from its own point close to the
 /// optimum; the warm-up and every group of draws are separate tasks. Random numbers depend only on
-/// the seed, the chain and the number of the draw. A limit on evaluations is only checked between
+/// the seed, the chain and the number of the draw. The limit on evaluations is checked only between
 /// groups, so that the draws are the same for any number of threads. Stores the result in
 /// `fit.posterior` and `fit.parameters`.
 ///
 /// @param found  uncertainty at the optimum
-/// @param left   budget of the whole job; if it ends during a group of draws, that group is dropped
-///               in all chains
+/// @param left   budget of the whole job; if it runs out during a group of draws, that group is
+///               dropped in all chains
 void sample_posterior(const Problem& problem, const Evaluation& optimum, const Uncertainty& found,
                       const FitOptions& options, Fit& fit, Budget& left);
 

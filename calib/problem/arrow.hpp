@@ -17,7 +17,7 @@ struct ArrowLayout {
   std::vector<std::vector<int>> own;  ///< per condition; empty: all unknowns are shared
 };
 
-/// Symmetric arrow-shaped matrix over unknowns or over directions.
+/// Symmetric arrow-shaped matrix whose rows and columns are unknowns or directions.
 struct ArrowMatrix {
   Eigen::MatrixXd shared;                 ///< shape (shared)^2
   std::vector<Eigen::MatrixXd> own;       ///< shape (own)^2 of each condition; may be empty
@@ -28,15 +28,15 @@ struct ArrowMatrix {
                               // blocks
   ArrowMatrix(const Eigen::EigenBase<Matrix>& all) : shared(all.derived()) {}
 
-  /// Submatrix that concerns a condition: its own rows and columns, then the shared ones.
+  /// Submatrix for a condition: its own rows and columns, followed by the shared ones.
   Eigen::MatrixXd of(std::size_t condition) const;
-  /// Adds a submatrix to the rows and columns of a condition, in the order of of().
+  /// Adds a submatrix to the rows and columns of a condition, in the order used by of().
   void add(std::size_t condition, const Eigen::MatrixXd& part);
 };
 
-/// Arrow-shaped matrix over unknowns, which are identified by their indices.
+/// Arrow-shaped matrix whose rows and columns are unknowns, identified by their indices.
 struct ArrowSquare {
-  ArrowLayout layout;  ///< without `own` all unknowns are shared, in their order
+  ArrowLayout layout;  ///< if `own` is empty, all unknowns are shared, in their order
   ArrowMatrix blocks;
 
   ArrowSquare() = default;
@@ -61,10 +61,10 @@ struct ArrowSquare {
   ArrowSquare part(const std::vector<Eigen::Index>& kept, const Eigen::VectorXd& scale) const;
 };
 
-/// Least-squares system |J x + r|^2 of all conditions and priors at one point, as R factors. The
-/// cost is half the squared norm of its residuals.
+/// Least-squares system |J x + r|^2 for all conditions and priors at one point, stored as R
+/// factors. The cost is half the squared norm of the residuals.
 struct Linearisation {
-  /// Rows that depend on the own unknowns of one condition and on shared ones.
+  /// Rows that depend on the own unknowns of one condition and on the shared unknowns.
   struct Own {
     std::vector<int> unknowns;  ///< indices among all unknowns
     Eigen::MatrixXd jacobian;   ///< shape (own)^2, unit-box coordinates
@@ -72,10 +72,12 @@ struct Linearisation {
     Eigen::VectorXd residual;   ///< shape (own)
   };
 
-  Eigen::MatrixXd jacobian;  ///< shape (any, shared): the remaining rows, with shared unknowns only
+  /// Shape (any, shared): the remaining rows, which depend only on shared unknowns.
+  Eigen::MatrixXd jacobian;
   Eigen::VectorXd residual;  ///< shape (any)
-  std::vector<int> shared = {};  ///< unknowns of its columns; ignored if `own` is empty
-  std::vector<Own> own = {};     ///< per condition; empty: all unknowns are shared, in their order
+  /// Unknowns of the columns of `jacobian`; ignored if `own` is empty.
+  std::vector<int> shared = {};
+  std::vector<Own> own = {};  ///< per condition; empty: all unknowns are shared, in their order
 
   Eigen::Index unknowns() const;
   double square() const;             ///< sum over all residuals
@@ -88,10 +90,10 @@ struct Linearisation {
   }
 };
 
-/// A matrix with one row per unknown, over directions of which some belong to one condition. The
-/// row of an own unknown covers the directions of its condition, then the shared ones. The row of a
-/// shared unknown covers only the shared ones. With R R^T = (J^T J)^-1, standard errors are
-/// computed from it.
+/// A matrix R with one row per unknown and one column per direction. Some directions belong to a
+/// single condition, the others are shared. The row of an own unknown has components in the
+/// directions of its condition and in the shared ones; the row of a shared unknown has components
+/// only in the shared ones. If R R^T = (J^T J)^-1, the rows of R give the standard errors.
 class ArrowRoot {
  public:
   ArrowRoot() = default;
@@ -108,23 +110,24 @@ class ArrowRoot {
   const Eigen::MatrixXd& shared() const { return shared_; }
   Eigen::Index own_unknowns(std::size_t condition) const;
   Eigen::Index own_directions(std::size_t condition) const;
-  /// Condition to which the unknown belongs; negative for a shared one.
+  /// Condition to which the unknown belongs; negative if it is shared.
   int condition_of(Eigen::Index unknown) const { return place(unknown).condition; }
-  /// Row among the unknowns of its condition, or among the shared ones.
+  /// Row of the unknown among those of its condition, or among the shared ones.
   Eigen::Index row_of(Eigen::Index unknown) const { return place(unknown).row; }
 
   /// Components of a row in the own and shared directions of a condition.
   Eigen::VectorXd row(Eigen::Index unknown, std::size_t condition) const;
-  /// Components of the rows of the given unknowns. Without a list: of the condition's own unknowns,
-  /// then the shared ones.
+  /// Components of the rows of several unknowns. The overload without a list of unknowns returns
+  /// the condition's own unknowns, followed by the shared ones.
   Eigen::MatrixXd rows(const std::vector<int>& unknowns, std::size_t condition) const;
   Eigen::MatrixXd rows(std::size_t condition) const;
-  /// Number of all directions. Their order is: those of each condition in turn, then the shared
-  /// ones.
+  /// Total number of directions. The directions of each condition come first, in turn, and the
+  /// shared ones last.
   Eigen::Index directions() const;
-  /// Indices of the own and shared directions of a condition in that order.
+  /// Indices of a condition's own directions, followed by those of the shared ones.
   std::vector<Eigen::Index> directions(std::size_t condition) const;
-  /// Product of a row with x, which has the shape (all directions, any): shape (any).
+  /// Product of an unknown's row and x. Shape of x: (all directions, any); shape of the result:
+  /// (any).
   Eigen::VectorXd times(Eigen::Index unknown, const Eigen::MatrixXd& x) const;
   /// |a R_i + b R_k|^2 for two rows.
   double square(Eigen::Index i, double a, Eigen::Index k, double b) const;
@@ -132,7 +135,7 @@ class ArrowRoot {
   double product(Eigen::Index i, Eigen::Index k) const;
   /// c^T M c for a row c.
   double quadratic(Eigen::Index unknown, const ArrowMatrix& matrix) const;
-  /// A zero matrix over its directions.
+  /// A zero matrix whose rows and columns are the directions.
   ArrowMatrix zero() const;
 
  private:

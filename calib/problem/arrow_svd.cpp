@@ -16,7 +16,7 @@ VectorXd inverse_of(const VectorXd& squares) {
       [](double square) { return square > 0.0 ? 1.0 / std::sqrt(square) : 0.0; });
 }
 
-/// Directions in the coordinates of the unknowns, each divided by its singular value.
+/// Returns the directions in the coordinates of the unknowns, each divided by its singular value.
 MatrixXd over_singular_values(const ScaledSvd& svd, const std::optional<double>& floor,
                               double factor) {
   if (!floor) return factor * svd.root();

@@ -8,28 +8,28 @@
 
 namespace rigcal::calib {
 
-/// ScaledSvd of a system whose own unknowns are eliminated condition by condition. Each condition's
-/// rows get one decomposition, and what remains for the shared unknowns another (the Schur
-/// complement, as an R factor). Columns are scaled by their whole length. Without own unknowns this
-/// is equal to ScaledSvd.
+/// ScaledSvd of a system whose own unknowns are eliminated condition by condition. The rows of each
+/// condition are decomposed separately, and so is the remaining system for the shared unknowns (the
+/// Schur complement, as an R factor). Columns are scaled by their length over all rows. Without own
+/// unknowns the result is that of ScaledSvd.
 class ArrowSvd {
  public:
-  /// @param threshold  as in ScaledSvd; relative to 1 if all singular values are smaller
+  /// @param threshold  as for ScaledSvd; relative to 1 if all singular values are smaller
   ArrowSvd(const Linearisation& system, double threshold);
 
   Eigen::Index rank() const;
   /// Singular values of all blocks, descending.
   Eigen::VectorXd singular_values() const;
-  /// Square of the part of the residual that a step can remove.
+  /// Squared norm of the component of the residual that a step can remove.
   double explained() const;
   /// x that minimises |J x + residual| and has no component in undetermined directions.
   Eigen::VectorXd step() const;
   /// R such that R R^T is the inverse of J^T J on the determined directions.
   ArrowRoot root() const;
-  /// S with S S^T = factor^2 (J^T J)^-1 over all directions. Singular values below `least` are
-  /// raised to it. Undetermined directions come last among the own and among the shared ones.
+  /// S such that S S^T = factor^2 (J^T J)^-1 in all directions. Singular values below `least` are
+  /// raised to `least`. Undetermined directions come last among the own and among the shared ones.
   ArrowRoot spread(double factor, double least) const;
-  /// 1 / length of the column of each unknown; 0 for a column of zeros.
+  /// 1 / length of the column of each unknown, or 0 for a column of zeros.
   const Eigen::VectorXd& inverse_lengths() const { return inverse_lengths_; }
 
   /// A direction of unit length in scaled coordinates.
@@ -52,7 +52,7 @@ class ArrowSvd {
     Eigen::VectorXd explained;     ///< U^T times the system's residual, shape (rank)
   };
 
-  /// How the own unknowns of a block respond to shared ones, shape (own, shared).
+  /// How the own unknowns of a block respond to the shared ones, shape (own, shared).
   Eigen::MatrixXd follow(const Block& block) const;
   Direction shared_direction(Eigen::Index k) const;
   ArrowRoot root_with(const std::optional<double>& floor, double factor) const;

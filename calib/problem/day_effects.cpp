@@ -6,7 +6,7 @@
 namespace rigcal::calib {
 namespace {
 
-// Usual sizes, as listed in docs/diagnosis.md.
+// Usual standard deviations between days, as listed in docs/diagnosis.md.
 constexpr double kSupplyShare = 5e-3;
 constexpr double kBulkModulusShare = 0.03;
 constexpr double kTravelShare = 2e-4;
@@ -42,13 +42,13 @@ UsualSize usual_size(const datasets::Campaign& campaign, const model::ParameterV
           "half a sampling interval"};
 }
 
-/// Whether the record of a condition already includes the day's value of a quantity.
+/// Returns true if the record of a condition already includes the day's value of a quantity.
 bool is_recorded(const ProblemCondition& condition, const DayQuantity& quantity) {
   if (quantity.index < 0) return condition.condition->waveform == datasets::Waveform::recorded;
   return quantity.key == "supply_pressure" && condition.inputs.supply_pressure_pa.has_value();
 }
 
-/// Time derivative by central differences.
+/// Returns the time derivative, by central differences.
 Eigen::VectorXd rate_of(const Eigen::VectorXd& x, std::span<const double> time_s) {
   const Eigen::Index n = x.size();
   Eigen::VectorXd rate = Eigen::VectorXd::Zero(n);

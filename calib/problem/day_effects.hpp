@@ -9,7 +9,8 @@
 
 namespace rigcal::calib {
 
-/// A quantity that varies between days, so that the repeats of one day do not show it.
+/// A quantity that varies from day to day, so that repeats recorded on one day do not show the
+/// variation.
 struct DayQuantity {
   std::string key;      ///< "supply_pressure"
   std::string meaning;  ///< "supply"
@@ -19,20 +20,20 @@ struct DayQuantity {
   int index = -1;       ///< row of the parameter table; -1: the start of the record
 };
 
-/// The quantities of a campaign. Their sizes are those that the campaign gives, or else the usual
-/// ones, which are derived from the rig.
+/// Returns the quantities that vary between the days of a campaign. Each standard deviation is the
+/// one given by the campaign, or otherwise a usual value derived from the rig.
 ///
 /// @param values    parameter values of the rig
 /// @param sample_s  sampling interval
 std::vector<DayQuantity> day_quantities(const datasets::Campaign& campaign,
                                         const model::ParameterValues& values, double sample_s);
 
-/// Rows of the parameter table that the quantities need and that `free` does not include.
+/// Returns the rows of the parameter table that the quantities need and `free` does not include.
 std::vector<int> further_rows(const std::vector<DayQuantity>& quantities,
                               std::span<const int> free);
 
-/// Change of one output for each quantity, per standard deviation between days. Zero for a quantity
-/// that was recorded, or if a recorded drive has the same error.
+/// Returns the change in one output due to each quantity, per standard deviation between days. The
+/// change is zero if the quantity was recorded, or if a recorded drive has the same error.
 ///
 /// @param run    simulated at the times of the record, with the sensitivities to `free`, which
 ///               includes further_rows()

@@ -10,9 +10,9 @@
 namespace rigcal::calib {
 namespace {
 
-/// Looseness of derivatives near the optimum. If they were as loose as far from it, their errors
-/// would shift the gradient of a residual that is pure noise by a hundredth of a standard error or
-/// more (decision 0004).
+/// Close to the optimum, derivatives may be less accurate than the outputs by this factor. With the
+/// factor used elsewhere, their errors would shift the gradient by a hundredth of a standard error
+/// or more if the residual is pure noise (decision 0004).
 constexpr double kLoosenessNearOptimum = 10.0;
 
 double prior_cost(const Problem& problem, std::span<const double> z) {
@@ -24,10 +24,10 @@ double prior_cost(const Problem& problem, std::span<const double> z) {
   return cost;
 }
 
-/// Rows of a condition and of the priors on its own unknowns. Columns: own unknowns, shared
-/// unknowns, residual.
+/// Returns the rows of a condition and of the priors on its own unknowns. The columns are its own
+/// unknowns, the shared unknowns and the residual.
 ///
-/// @param column  column of each shared unknown
+/// @param column  for each shared unknown, its column among the shared ones
 Eigen::MatrixXd condition_rows(const Problem& problem, const Evaluation& evaluation, std::size_t i,
                                const std::vector<int>& own, const std::vector<Eigen::Index>& column,
                                Eigen::Index shared) {
@@ -81,7 +81,7 @@ Eigen::MatrixXd weighted_rows(const ProblemCondition& condition, std::size_t cha
   if (count == 0) return rows;
   const auto first = static_cast<Eigen::Index>(condition.rows[range.begin] - range.first_sample);
   if (condition.rows[range.end - 1] - condition.rows[range.begin] + 1 == range.end - range.begin) {
-    fill(Eigen::seqN(first, count));  // no gaps: lets Eigen use vector registers
+    fill(Eigen::seqN(first, count));  // without gaps, Eigen can use vector registers
   } else {
     std::vector<Eigen::Index> samples;
     for (std::size_t i = range.begin; i < range.end; ++i)

@@ -12,7 +12,7 @@
 
 namespace rigcal::calib {
 
-/// Contribution of one condition at a point of the unit box.
+/// Contribution of one condition to the evaluation of a point in the unit box.
 struct ConditionEvaluation {
   model::SimulationStatus status = model::SimulationStatus::ok;
   double failed_at_s = 0.0;
@@ -33,16 +33,16 @@ struct ConditionRows {
   Eigen::VectorXd residual;
 };
 
-/// Samples of a condition that count, [begin, end) of its `rows`, and the index in the record of
-/// the first simulated time.
+/// A range of the samples that count in a condition, [begin, end) in its `rows`, and the index of
+/// the first simulated sample in the record.
 struct RowRange {
   std::size_t begin = 0;
   std::size_t end = 0;
   std::size_t first_sample = 0;
 };
 
-/// [J r] of one channel over a range, after the chain rule to the coordinates of the unknowns,
-/// weights and loss.
+/// Returns [J r] for one channel over a range. J is the derivative with respect to the coordinates
+/// of the unknowns; weights and loss have been applied.
 ///
 /// @param slopes      shape (columns of the run's sensitivities): d value / d coordinate
 /// @param square_sum  increased by the sum of squares of simulated minus measured, SI
@@ -51,17 +51,18 @@ Eigen::MatrixXd weighted_rows(const ProblemCondition& condition, std::size_t cha
                               const Eigen::VectorXd& slopes, const datasets::FitSettings& settings,
                               double& square_sum);
 
-/// d value / d z for the unknowns that act in a condition, in their order.
+/// Returns d value / d z for each unknown that acts in a condition, in their order.
 Eigen::VectorXd acting_slopes(const Problem& problem, std::size_t condition,
                               std::span<const double> z);
 
-/// Options for simulating a condition: the campaign's method and limits, with the given tolerance.
+/// Returns the options for simulating a condition: the campaign's method and limits, with the given
+/// tolerance.
 model::SimulationOptions simulation_options(const Problem& problem, std::size_t condition,
                                             double tolerance, const std::atomic<bool>* cancel);
 
-/// Simulates one condition. The residual is (simulated - measured) / sd, followed by the loss.
-/// Never throws for a point that cannot be simulated. Without derivatives, the R factor has only
-/// the column of residuals.
+/// Simulates one condition. The residual is (simulated - measured) / sd, to which the loss is then
+/// applied. Does not throw if the point cannot be simulated. Without derivatives, the R factor
+/// contains only the column of residuals.
 ///
 /// @param z     shape (unknowns), in the unit box
 /// @param rows  if not null, receives all rows
@@ -70,13 +71,13 @@ ConditionEvaluation evaluate_condition(const Problem& problem, std::size_t condi
                                        ConditionRows* rows = nullptr,
                                        const Fidelity& fidelity = Fidelity::full);
 
-/// The simulation for evaluate_condition(). It depends on the measurements only if they drive the
-/// model, so it can be reused for other measurements of the outputs.
+/// Runs the simulation for evaluate_condition(). The result depends on the measurements only if
+/// they drive the model, so it can be reused for other measurements of the outputs.
 model::Simulation simulate_condition(const Problem& problem, std::size_t condition,
                                      std::span<const double> z, const std::atomic<bool>* cancel,
                                      const Fidelity& fidelity = Fidelity::full);
 
-/// Evaluates a simulation, with results bit-identical to evaluate_condition().
+/// Evaluates an existing simulation. The result is bit-identical to that of evaluate_condition().
 /// @param run  simulation at `z` with this fidelity
 ConditionEvaluation evaluate_run(const Problem& problem, std::size_t condition,
                                  std::span<const double> z, const model::Simulation& run,
@@ -88,7 +89,7 @@ struct Evaluation {
   std::vector<double> z;
   std::vector<ConditionEvaluation> conditions;
   double cost = 0.0;   ///< half the sum of squares, including the priors
-  bool ok = false;     ///< every condition could be simulated
+  bool ok = false;     ///< true if every condition could be simulated
   double share = 1.0;  ///< fraction of the samples in windows that were evaluated
   std::shared_ptr<std::vector<ConditionRows>> rows;  ///< rows of each condition, if they were kept
 };
@@ -106,8 +107,8 @@ struct EvaluationOptions {
 Evaluation evaluate_at(const Problem& problem, std::span<const double> z, int threads,
                        const EvaluationOptions& options = {});
 
-/// The linear system of all conditions and priors. Its shared component has one row more than
-/// unknowns.
+/// Returns the linear system for all conditions and priors. Its shared component has one more row
+/// than it has unknowns.
 ///
 /// @param evaluation  a successful evaluation
 Linearisation linearise(const Problem& problem, const Evaluation& evaluation);

@@ -17,19 +17,20 @@ using datasets::Condition;
 using datasets::InitialMode;
 using datasets::Record;
 
-/// Smallest half width of bounds for a record without motion [m, m/s, Pa], or [rad, rad/s].
+/// Minimum half-widths of the bounds if a record shows no motion, in m, m/s and Pa, or in rad and
+/// rad/s.
 constexpr double kLeastTravel_m = 1e-6;
 constexpr double kLeastSpeed_m_per_s = 1e-6;
 constexpr double kLeastPressure_pa = 1e3;
 
-/// Recorded mean of a channel; empty if it was not recorded.
+/// Returns the recorded mean of a channel; empty if it was not recorded.
 std::vector<double> recorded(const Record& record, Channel channel) {
   const auto found = record.channels.find(channel);
   return found == record.channels.end() ? std::vector<double>{} : found->second.mean;
 }
 
-/// Reading of a load pressure sensor, computed from the two chamber pressures if necessary; empty
-/// if neither was recorded.
+/// Returns the reading of a load pressure sensor, or the load pressure computed from the two
+/// chamber pressures. Empty if neither was recorded.
 std::vector<double> load_pressure(const Record& record, const model::ParameterValues& values) {
   if (auto direct = recorded(record, Channel::load_pressure); !direct.empty()) return direct;
   std::vector<double> a = recorded(record, Channel::pressure_a);
@@ -54,8 +55,8 @@ double initial_mean(const Record& record, const std::vector<double>& signal, dou
   return sum / count;
 }
 
-/// Value and slope of a line through the finite samples within `half_width_s` of an instant;
-/// std::nullopt if there are none.
+/// Returns the value and slope, at an instant, of a line fitted to the finite samples within
+/// `half_width_s` of it. Returns std::nullopt if there are no such samples.
 std::optional<std::pair<double, double>> line_at(const Record& record,
                                                  const std::vector<double>& signal, double time_s,
                                                  double half_width_s) {
@@ -93,7 +94,7 @@ double fastest_change(const Record& record, const std::vector<double>& signal) {
   return fastest;
 }
 
-/// Keys of the initial value and rate of the motion, and of the gain of its sensor.
+/// Keys of the initial value and rate of the motion, and of the gain of the motion sensor.
 struct InitialKeys {
   std::string_view value;
   std::string_view rate;
@@ -152,7 +153,7 @@ InitialPlan plan_initial_state(const Campaign& campaign, const Condition& condit
   add_pressure("initial_load_pressure", load_pressure(record, values), 0.0);
   add_pressure("initial_pressure_a", recorded(record, Channel::pressure_a), 0.5 * supply_pa);
   add_pressure("initial_pressure_b", recorded(record, Channel::pressure_b), 0.5 * supply_pa);
-  // A rig that settles starts from the speed and the pressures at which it settles.
+  // A rig that has settled before the run starts with the speed and pressures at which it settled.
   if (campaign.rig.before == model::Before::steady) guesses.resize(1);
   for (const Guess& guess : guesses) {
     const int index = model::parameter_index(campaign.rig.plant, guess.key);

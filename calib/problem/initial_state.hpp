@@ -25,26 +25,26 @@ struct InitialPlan {
 ///           peak-to-peak value about the mean of the window, the fastest change between two
 ///           samples, and the supply pressure (or one peak-to-peak value of the recorded load
 ///           pressure).
-/// Values that the campaign gives or fits itself stay unchanged. A load pressure that is computed
-/// from both chamber pressures is corrected for their sensor offsets in `values`.
+/// Initial values that the campaign itself gives or fits are not changed. A load pressure that is
+/// computed from both chamber pressures is corrected for their sensor offsets in `values`.
 ///
-/// @param values  values in the condition: known, fitted before, or start values
+/// @param values  values in the condition: known, from an earlier fit, or start values
 /// @throws InputError  if `initial` is record or fit, and no position was recorded
 InitialPlan plan_initial_state(const datasets::Campaign& campaign,
                                const datasets::Condition& condition, const datasets::Record& record,
                                const model::ParameterValues& values);
 
-/// Explains why `initial = "record"` is wrong if the piston moves within the window; empty if it
+/// Explains why `initial = "record"` is wrong if the piston moves within the window. Empty if it
 /// does not move.
 std::string moving_start(const datasets::Campaign& campaign,
                          const std::vector<const datasets::Condition*>& conditions,
                          const std::vector<datasets::Record>& records);
 
-/// Values of the initial_* parameters for a run that begins in the middle of a record. Position and
-/// velocity come from a straight line through the samples within `half_width_s` of that instant,
-/// recorded pressures from their means there. Empty if no position was recorded.
+/// Values of the initial_* parameters for a run that begins in the middle of a record. Position,
+/// velocity and recorded pressures come from straight lines fitted to the samples within
+/// `half_width_s` of that instant. Empty if no position was recorded.
 ///
-/// @param values  values in the condition, for the sensors of both pressures
+/// @param values  values in the condition, including the gains and offsets of the sensors
 datasets::Overrides recorded_state(const datasets::Campaign& campaign,
                                    const datasets::Record& record,
                                    const model::ParameterValues& values, double time_s,

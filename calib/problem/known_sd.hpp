@@ -5,8 +5,9 @@
 
 namespace rigcal::calib {
 
-/// Standard deviation of a channel's averaged samples, SI. It comes from the repeats, or else from
-/// the campaign's `sd`; NaN without either. Residuals are divided by it.
+/// Returns the standard deviation of a channel's averaged samples, SI, by which residuals are
+/// divided. It comes from the repeats, or otherwise from the campaign's `sd`; NaN if there is
+/// neither.
 double known_sd(const datasets::Campaign& campaign, datasets::Channel channel,
                 const datasets::Series& series);
 

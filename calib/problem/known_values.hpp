@@ -6,9 +6,9 @@
 
 namespace rigcal::calib {
 
-/// Parameter values in a condition, with fitted values replacing those of the rig. Values that the
-/// campaign gives for the condition or its leak level have priority. Nuisance parameters stay
-/// unchanged.
+/// Returns the parameter values in a condition, with fitted values replacing those of the rig.
+/// Values that the campaign gives for the condition or its leak level take precedence. Nuisance
+/// parameters keep the campaign's values.
 ///
 /// @throws InputError  if a parameter that the campaign fits, or that was fitted per leak level or
 ///                     condition, has no value for this one (names it and the levels that exist)

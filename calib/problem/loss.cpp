@@ -5,7 +5,7 @@
 namespace rigcal::calib {
 namespace {
 
-/// rho(s) / s and rho'(s) at s = r^2. Both are 1 at the origin, which avoids a division by zero.
+/// rho(s) / s and rho'(s) at s = r^2. Both are set to 1 at the origin, to avoid a division by zero.
 struct Rho {
   double over_s = 1.0;
   double slope = 1.0;

@@ -4,7 +4,8 @@
 
 namespace rigcal::calib {
 
-/// A residual after the loss, and its derivative with respect to the residual before the loss.
+/// A residual to which the loss has been applied, and its derivative with respect to the original
+/// residual.
 struct LossValue {
   double residual = 0.0;
   double slope = 1.0;

@@ -10,19 +10,19 @@
 namespace rigcal::calib {
 namespace {
 
-/// Tolerances of the two simulations that are compared. Errors grow about as the tolerance, so the
-/// difference is nearly the error of the coarser one. Beyond that the derivatives would be too
-/// coarse.
+/// Tolerances of the two simulations that are compared. Errors are roughly proportional to the
+/// tolerance, so the difference is approximately the error of the coarser simulation. With a
+/// tolerance above kCoarserRun the derivatives would be too inaccurate.
 constexpr double kCoarserRun = 1e-5;
 constexpr double kFinerRun = 1e-6;
-/// Norm of the errors of all residuals, each over its standard deviation. At worst the estimates
-/// move by so many standard errors; errors that change their sign move them less.
+/// Norm of the errors of all residuals, each divided by its standard deviation. In the worst case
+/// an estimate moves by this many standard errors; errors that change sign move it less.
 constexpr double kHarmless = 0.005;
-/// Factor by which a tolerance must be too coarse before it is changed.
+/// A tolerance is changed only if it is too coarse by more than this factor.
 constexpr double kMuchFiner = 2.0;
 
-/// Root mean square of the difference between both simulations over the standard deviation; NaN if
-/// one fails.
+/// Returns the root mean square difference between the two simulations, in standard deviations; NaN
+/// if either fails.
 double simulation_error(const Problem& problem, std::size_t i, std::span<const double> z,
                         const std::atomic<bool>* cancel) {
   const ProblemCondition& data = problem.conditions[i];
@@ -47,13 +47,13 @@ double simulation_error(const Problem& problem, std::size_t i, std::span<const d
   return std::sqrt(squares / static_cast<double>(data.rows.size() * data.channels.size()));
 }
 
-/// Whether the samples of the record drive the rig.
+/// Returns true if the rig is driven by the samples of the record.
 bool has_recorded_drive(const ProblemCondition& condition) {
   return condition.condition->waveform == datasets::Waveform::recorded &&
          !condition.record->generated_drive;
 }
 
-/// The measured tolerance of each condition; 0 where there is none.
+/// Returns the measured tolerance of each condition, or 0 if none was measured.
 std::vector<double> measure_all(const Problem& problem, std::span<const double> z, int threads,
                                 const std::atomic<bool>* cancel) {
   const double harmless = kHarmless / std::sqrt(static_cast<double>(problem.residual_count()));

@@ -7,20 +7,20 @@
 
 namespace rigcal::calib {
 
-/// Measures for each condition with a recorded drive at which tolerance the errors of its
-/// simulation are harmless (docs/decisions/0047). The rule of Problem::tolerance_of() takes an
-/// error of the tolerance that is the same throughout. What a recorded drive excites is simulated
-/// anew from sample to sample, and its errors may be a thousandth of that. Where
-/// only nuisance parameters are unknown, too few simulations follow to be worth it.
+/// Determines, for each condition with a recorded drive, the tolerance at which simulation errors
+/// are harmless (docs/decisions/0047). The rule in Problem::tolerance_of() assumes that the error
+/// is as large as the tolerance and the same at all samples. With a recorded drive the error
+/// changes from sample to sample, and may be a thousandth of that. If only nuisance parameters are
+/// unknown, nothing is measured, because too few simulations follow to repay the effort.
 ///
-/// @param z  where, in the unit box
+/// @param z  point in the unit box at which to measure
 void measure_tolerances(Problem& problem, std::span<const double> z, int threads,
                         const std::atomic<bool>* cancel);
 
-/// Measures again at another point, and takes the measured tolerances that must be much finer
-/// there. None becomes coarser: each change is another cost, which has its minimum elsewhere.
+/// Measures again at another point, and adopts those tolerances that must be much finer there. No
+/// tolerance becomes coarser, because each change alters the cost and thereby moves its minimum.
 ///
-/// @return  whether any was changed
+/// @return  true if any tolerance was changed
 bool refine_tolerances(Problem& problem, std::span<const double> z, int threads,
                        const std::atomic<bool>* cancel);
 

@@ -13,7 +13,7 @@ using datasets::Condition;
 using datasets::ParameterSetting;
 using datasets::Scope;
 
-/// The scale is logarithmic if the ratio of the bounds exceeds this.
+/// The scale is logarithmic if the ratio of the bounds exceeds this value.
 constexpr double kLogarithmicRatio = 10.0;
 
 UnitInterval interval_of(const Unknown& unknown) {
@@ -54,7 +54,7 @@ void check(const Unknown& unknown, std::string_view key, const Location& where) 
 double UnitInterval::value(double z) const {
   const double value = logarithmic ? std::exp(std::log(lower) + z * std::log(upper / lower))
                                    : lower + z * (upper - lower);
-  return std::clamp(value, lower, upper);  // keeps rounding errors within the hard limits
+  return std::clamp(value, lower, upper);  // rounding must not carry a value beyond its limits
 }
 
 double UnitInterval::place(double value) const {

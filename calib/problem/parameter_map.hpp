@@ -9,7 +9,7 @@
 
 namespace rigcal::calib {
 
-/// Maps a value between its bounds to a coordinate z in [0, 1], which is linear in the value or in
+/// Maps a value between its bounds to a coordinate z in [0, 1] that is linear in the value or in
 /// its logarithm.
 struct UnitInterval {
   double lower = 0.0;
@@ -22,7 +22,7 @@ struct UnitInterval {
   double slope(double z) const;
 };
 
-/// Largest number of unknowns with which all are treated as shared.
+/// Up to this number of unknowns, all are treated as shared.
 inline constexpr std::size_t kMostTogether = 32;
 
 /// One unknown of the fit: a parameter of the rig, of one leak level, or of one condition.
@@ -37,24 +37,24 @@ struct Unknown {
   bool nuisance = false;
 };
 
-/// Whether the condition or its leak level has its own known value for a parameter. Such a value
-/// has priority over any value of the rig, including a fitted one.
+/// Returns true if the condition or its leak level has its own known value for a parameter. Such a
+/// value takes precedence over any value of the rig, including a fitted one.
 bool known_in(const datasets::Campaign& campaign, const datasets::Condition& condition, int index);
 
-/// The level to which a value of this scope belongs in a condition; empty for the rig.
+/// Returns the level to which a value with this scope belongs in a condition; empty for the rig.
 ///
-/// @throws InputError  if the scope is leak_level and the condition has none
+/// @throws InputError  if the scope is leak_level and the condition has no leak level
 std::string level_in(const datasets::Condition& condition, datasets::Scope scope,
                      std::string_view parameter);
 
-/// Name of a parameter with its level: "mass_kg", "leakage_coefficient (leak level 33 %)".
+/// Returns a parameter's name with its level: "mass_kg", "leakage_coefficient (leak level 33 %)".
 std::string parameter_name(const model::ParameterSpec& spec, datasets::Scope scope,
                            const std::string& level);
 
 /// The unknowns of a set of conditions in a fixed order (table index, then first appearance of the
-/// level), and which of them act in which condition. Optimiser coordinates z are in [0, 1]. They
-/// are linear in the value, or in its logarithm if both bounds are positive and span more than a
-/// decade.
+/// level), with a record of which act in which condition. The optimiser's coordinates z range from
+/// 0 to 1. They are linear in the value, or in its logarithm if both bounds are positive and span
+/// more than a decade.
 class ParameterMap {
  public:
   /// @param conditions     the conditions of the problem
@@ -69,7 +69,8 @@ class ParameterMap {
                const std::vector<Unknown>& extra = {}, const std::vector<int>& repeats = {});
 
   const std::vector<Unknown>& unknowns() const { return unknowns_; }
-  /// Indices in unknowns() of those that act in a condition, in the order of their table index.
+  /// Indices in unknowns() of the unknowns that act in a condition, in the order of their table
+  /// indices.
   const std::vector<int>& acting(std::size_t condition) const { return acting_[condition]; }
   /// Which unknowns belong to a single condition. If there are few unknowns, all are shared,
   /// because dense matrices are then cheap.
@@ -79,7 +80,7 @@ class ParameterMap {
   double to_unit(int unknown, double value) const;
   /// d value / d z
   double slope(int unknown, double z) const;
-  /// Residual of the prior on an unknown, and d residual / d z; zero if it has none.
+  /// Residual of the prior on an unknown, and d residual / d z; both are zero if it has no prior.
   double prior_residual(int unknown, double z) const;
   double prior_slope(int unknown, double z) const;
 

@@ -21,21 +21,22 @@ using datasets::Channel;
 using datasets::Condition;
 using datasets::Record;
 
-/// First guess of an unknown standard deviation, as a fraction of the peak-to-peak value.
+/// Initial guess for an unknown standard deviation, as a fraction of the peak-to-peak value.
 constexpr double kGuessedNoise = 1e-2;
-/// Simulation tolerance if the noise is unknown, which is also the upper limit if it is known, and
-/// the lower limit. Cost and gradient jump by about the tolerance when the steps of a simulation
-/// change, which stalls the optimiser.
+/// kDefaultTolerance is the simulation tolerance if the noise is unknown, and the upper limit if it
+/// is known; kLeastTolerance is the lower limit. When the steps of a simulation change, cost and
+/// gradient jump by about the tolerance, and such jumps stall the optimiser.
 constexpr double kDefaultTolerance = 1e-6;
 constexpr double kLeastTolerance = 1e-8;
-/// Largest tolerance for a record whose noise allows a less exact simulation than for others.
+/// Maximum tolerance for a record whose noise allows a less exact simulation than the noise of
+/// others.
 constexpr double kLargestTolerance = 1e-5;
 /// Tolerance for derivatives that only serve to compute an uncertainty.
 constexpr double kDerivativeTolerance = 1e-5;
 /// Tolerance far from an optimum. A smaller one would not save the optimiser any steps.
 constexpr double kCoarseTolerance = 1e-4;
-/// A residual below this fraction of the peak-to-peak value is not noise: it is the resolution of a
-/// 20-bit sensor.
+/// A residual below this fraction of the peak-to-peak value, the resolution of a 20-bit sensor, is
+/// not noise.
 constexpr double kLeastShare = 1e-6;
 
 const Record& record_of(const Condition& condition, const std::vector<Record>& records) {
@@ -50,7 +51,7 @@ const Record& record_of(const Condition& condition, const std::vector<Record>& r
   return *found;
 }
 
-/// Rejects counts, which would be taken for metres, pascals and seconds.
+/// Rejects values in counts, which would be taken for metres, pascals and seconds.
 void require_units(const Campaign& campaign, const Condition& condition) {
   const bool counted =
       campaign.time_in_counts ||
@@ -86,8 +87,8 @@ ProblemChannel make_channel(const Campaign& campaign, const ProblemCondition& co
   return result;
 }
 
-/// Initialises the unknown noise of a channel with a fraction of its largest peak-to-peak value
-/// over all conditions. There is one value per channel, as in estimate_weights().
+/// Sets the unknown noise of each channel to a fraction of the channel's largest peak-to-peak value
+/// over all conditions. There is only one value per channel, as in estimate_weights().
 void guess_unknown_sd(std::vector<ProblemCondition>& conditions) {
   std::map<Channel, double> largest;
   for (const ProblemCondition& condition : conditions) {
@@ -113,8 +114,8 @@ void guess_unknown_sd(std::vector<ProblemCondition>& conditions) {
   }
 }
 
-/// Number of rows within one period after the first row, if the drive is periodic; otherwise of all
-/// rows.
+/// Returns the number of rows within one period after the first row if the drive is periodic, or
+/// otherwise the number of all rows.
 std::size_t count_first_period(const ProblemCondition& condition) {
   const Condition& settings = *condition.condition;
   if (!is_periodic(settings.waveform) || !settings.frequency_hz || !(*settings.frequency_hz > 0.0))
@@ -151,13 +152,14 @@ ProblemCondition make_condition(const Campaign& campaign, const std::vector<Reco
     result.outputs.push_back(datasets::model_output(channel).value());
   }
   result.first_period_rows = count_first_period(result);
-  // The start point is simulated with this budget; later points get one based on the steps it took.
+  // Budget for simulating the start point. Later points get a budget based on the steps taken
+  // there.
   result.max_steps = 1'000'000 + 50 * static_cast<long>(result.record->time_s.size());
   return result;
 }
 
-/// Minimum ratio of standard deviation to peak-to-peak value over the outputs of a condition; 0 if
-/// a standard deviation is unknown, infinite if no output moves.
+/// Returns the smallest ratio of standard deviation to peak-to-peak value among the outputs of a
+/// condition. Returns 0 if a standard deviation is unknown, and infinity if no output moves.
 double relative_noise(const ProblemCondition& condition) {
   double least = std::numeric_limits<double>::infinity();
   for (const ProblemChannel& channel : condition.channels) {
@@ -323,9 +325,9 @@ std::vector<std::size_t> samples_that_count(const Condition& condition, const Re
   return rows;
 }
 
-/// A simulation error e moves an estimate by up to e sqrt(n) / sd of its standard errors, with n
-/// residuals. A factor of 0.1 keeps that below about a thirtieth, since the tolerance is an upper
-/// bound for e.
+/// With n residuals, a simulation error e moves an estimate by up to e sqrt(n) / sd standard
+/// errors. Because the tolerance is an upper bound for e, a factor of 0.1 keeps this below about a
+/// thirtieth.
 double tolerance_from_noise(const std::vector<ProblemCondition>& conditions, bool estimated) {
   double least = std::numeric_limits<double>::infinity();
   std::size_t residuals = 0;

@@ -13,16 +13,15 @@
 
 namespace rigcal::calib {
 
-/// Fidelity of one simulation: tolerance, horizon, and whether it computes sensitivities.
+/// Fidelity of a simulation: its tolerance, its horizon, and whether it computes sensitivities.
 struct Fidelity {
   bool derivatives = true;
-  bool exact =
-      false;  ///< as exact as the noise requires; otherwise to within about a standard error
-  /// Length of the part of each record that is used, counted from the first sample in a window. For
-  /// a sine or square wave it is limited to the first period. Infinite: all samples.
+  bool exact = false;  ///< as exact as the noise requires; if false, to about a standard error
+  /// Duration of each record that is used, counted from the first sample in a window and limited to
+  /// the first period of a sine or square wave. Infinite: all samples are used.
   double horizon_s = std::numeric_limits<double>::infinity();
 
-  static const Fidelity cost;  ///< for the cost of a start
+  static const Fidelity cost;  ///< for evaluating the cost of a start
   static const Fidelity coarse;
   static const Fidelity full;
   static constexpr Fidelity first(double length_s) { return {true, false, length_s}; }
@@ -39,9 +38,9 @@ inline constexpr Fidelity Fidelity::full{true, true};
 struct ProblemChannel {
   datasets::Channel channel = datasets::Channel::position;
   std::vector<double> measured;  ///< samples that count, SI
-  double sd = 0.0;               ///< divisor of the residuals, SI
-  bool sd_known = false;         ///< false: estimated from the residual of the fit
-  double peak_to_peak = 0.0;     ///< peak-to-peak of `measured`
+  double sd = 0.0;               ///< the residuals are divided by this value, SI
+  bool sd_known = false;         ///< false if `sd` is estimated from the residual of the fit
+  double peak_to_peak = 0.0;     ///< peak-to-peak value of `measured`
 };
 
 /// One condition with everything that its simulation needs. The campaign and the record are not
@@ -58,7 +57,7 @@ struct ProblemCondition {
   std::vector<int> free;               ///< table indices of the acting unknowns
   std::size_t first_period_rows = 0;   ///< number of `rows` within the first period
   long max_steps = 0;                  ///< step budget of one simulation
-  /// Tolerance of a recorded drive, as measured (measured_tolerance.hpp); 0: it was not.
+  /// Tolerance measured for a recorded drive (measured_tolerance.hpp); 0 if none was measured.
   double measured_tolerance = 0.0;
 
   /// Number of `rows` within the horizon of a fidelity.
@@ -75,13 +74,13 @@ struct Problem {
   ParameterMap map;
   std::vector<ProblemCondition> conditions;
   double tolerance = 0.0;        ///< simulation tolerance: the smallest that any condition requires
-  bool tolerance_fixed = false;  ///< the campaign fixes it
+  bool tolerance_fixed = false;  ///< true if the campaign specifies the tolerance
 
-  /// Simulation tolerance for a condition. the measured one, else If the relative noise of all
-  /// conditions is known, the tolerance exceeds the smallest one in proportion to the relative
-  /// noise of the condition.
+  /// Simulation tolerance for a condition: the measured tolerance if there is one. Otherwise, if
+  /// the relative noise of all conditions is known, it exceeds the smallest tolerance in proportion
+  /// to the relative noise of the condition.
   double tolerance_of(std::size_t condition, const Fidelity& fidelity = Fidelity::full) const;
-  /// Tolerance far from an optimum.
+  /// Simulation tolerance far from an optimum.
   double coarse_tolerance() const;
   /// Simulation options with the smallest tolerance and the campaign's method and time limit.
   model::SimulationOptions simulation_options(const std::atomic<bool>* cancel = nullptr) const;
@@ -90,9 +89,9 @@ struct Problem {
   model::SimulationOptions derivative_options(std::size_t condition) const;
   /// Fraction of all residuals within the horizon of a fidelity.
   double share_at(const Fidelity& fidelity) const;
-  /// Whether some record is longer than one period of its drive.
+  /// Returns true if any record is longer than one period of its drive.
   bool repeats_itself() const;
-  /// Fidelity at which start values are evaluated. Derivatives are useful only if the optimiser
+  /// Fidelity with which start values are evaluated. Derivatives are useful only if the optimiser
   /// begins with whole records.
   Fidelity of_starts() const { return repeats_itself() ? Fidelity::cost : Fidelity::coarse; }
   /// Number of weighted residuals, including priors.
@@ -101,36 +100,36 @@ struct Problem {
   /// Lower limit for the estimated standard deviation of a channel, SI.
   double least_sd(const ProblemChannel& channel) const;
   /// RMS of the weighted residuals below which simulation errors dominate: 1 if the noise of a
-  /// channel is known, else the limit from least_sd().
+  /// channel is known, otherwise the limit given by least_sd().
   double least_noise() const;
-  /// Values of all parameters in a condition at unit-box coordinates z.
+  /// Values of all parameters in a condition at the point z in the unit box.
   model::ParameterValues values_at(std::size_t condition, std::span<const double> z) const;
   /// SI values of the unknowns.
   std::vector<double> to_physical(std::span<const double> z) const;
   /// Unit-box coordinates of the start values.
   std::vector<double> start() const;
-  /// Row of the parameter table of an unknown.
+  /// Row of the parameter table for an unknown.
   const model::ParameterSpec& spec(std::size_t unknown) const;
   /// Name of an unknown: "mass_kg", "leakage_coefficient (leak level 33 %)".
   std::string name(std::size_t unknown) const;
 };
 
-/// Output channels of a record: recorded, with the role output, and listed in [fit] outputs if that
-/// is given.
+/// Returns the output channels of a record: those that are recorded, have the role output, and are
+/// listed in [fit] outputs if that key is given.
 std::vector<datasets::Channel> output_channels(const datasets::Campaign& campaign,
                                                const datasets::Record& record);
 
-/// Samples of a record that are inside the windows of the condition, or inside those detected in
-/// the record; all samples if there are no windows.
+/// Returns the samples of a record that are inside the windows of the condition, or inside windows
+/// detected in the record. Returns all samples if there are no windows.
 std::vector<std::size_t> samples_that_count(const datasets::Condition& condition,
                                             const datasets::Record& record);
 
-/// Smallest tolerance that the noise of the channels requires, between 1e-8 and 1e-6.
+/// Returns the smallest tolerance that the noise of any channel requires, between 1e-8 and 1e-6.
 ///
 /// @param estimated  whether to include channels whose noise is estimated
 double tolerance_from_noise(const std::vector<ProblemCondition>& conditions, bool estimated);
 
-/// Sets up the problem of some conditions.
+/// Sets up the problem for the given conditions.
 ///
 /// @param records        records, identified by their `condition`
 /// @param nuisance_only  true: only nuisance parameters are unknown

@@ -6,7 +6,7 @@
 namespace rigcal::calib {
 namespace {
 
-/// A sum of squares up to this counts as zero, because its inverse must be finite.
+/// A sum of squares up to this value counts as zero, because its inverse must be finite.
 constexpr double kNothing = 1e-300;
 
 }  // namespace

@@ -12,7 +12,8 @@ namespace {
 using datasets::Channel;
 using Eigen::Index;
 
-/// Recorded channels that drive the simulation of a condition and differ between repeats.
+/// Returns the recorded channels that drive the simulation of a condition and differ between
+/// repeats.
 std::vector<Channel> differing_inputs(const Problem& problem, const ProblemCondition& condition) {
   std::vector<Channel> result;
   for (const auto& [channel, series] : condition.record->channels) {
@@ -31,8 +32,8 @@ std::vector<Channel> differing_inputs(const Problem& problem, const ProblemCondi
   return result;
 }
 
-/// The record with the inputs of one repeat. Where the repeat has no sample, the mean input is
-/// used.
+/// Returns the record with the inputs of one repeat, or with the mean input where the repeat has no
+/// sample.
 datasets::Record with_inputs_of(const datasets::Record& record, const std::vector<Channel>& inputs,
                                 std::size_t repeat) {
   datasets::Record result;

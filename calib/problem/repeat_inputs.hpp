@@ -7,11 +7,11 @@
 
 namespace rigcal::calib {
 
-/// Effect of the recorded inputs of individual repeats (supply pressure, tank pressure, force, a
-/// recorded drive) on the outputs. For each repeat it is the simulation with its own inputs minus
-/// the simulation with their mean, divided by the standard deviation of the mean. A difference that
-/// an input explains does not count as an unexplained difference between repeats, and the fit of
-/// the mean output with the mean input already includes it.
+/// Returns how the recorded inputs of individual repeats (supply pressure, tank pressure, force, a
+/// recorded drive) affect the outputs. For each repeat this is the simulation with its own inputs
+/// minus the simulation with the mean inputs, divided by the standard deviation of the mean. A
+/// difference that an input explains does not count as an unexplained difference between repeats,
+/// and a fit of the mean output to the mean input already accounts for it.
 ///
 /// @return  shape (channels * samples in windows, repeats); empty if no input was recorded, all
 ///          repeats have equal inputs, or a repeat cannot be simulated

@@ -21,29 +21,29 @@ struct SimulationTask {
   std::vector<int> free = {};              ///< parameters whose sensitivities are requested
 };
 
-/// Whether the simulation of a condition needs its record.
+/// Returns true if simulating a condition requires its record.
 bool needs_record(const datasets::Condition& condition);
 
 /// @param values  parameter values in the condition
-/// @param record  the record of the condition, if it has been read already. The simulation then
-///                uses its samples, even with a generated drive.
-/// @throws InputError  if the record cannot be read, or a recorded waveform has none
+/// @param record  the record of the condition if it has already been read. The simulation then uses
+///                its samples, even if the drive is generated.
+/// @throws InputError  if the record cannot be read, or if a recorded waveform has no record
 SimulationTask simulation_task(const datasets::Campaign& campaign,
                                const datasets::Condition& condition, model::ParameterValues values,
                                std::optional<datasets::Record> record = std::nullopt);
-/// Creates a task with the campaign's own values.
+/// Makes a task with the campaign's own values.
 SimulationTask simulation_task(const datasets::Campaign& campaign,
                                const datasets::Condition& condition);
 
-/// Simulation settings of the campaign.
+/// Returns the simulation settings of the campaign.
 model::SimulationOptions simulation_options(const datasets::Campaign& campaign);
 
-/// Simulates each task: all its outputs, with the sensitivities to its `free`. A failure is
-/// reported in the status.
+/// Simulates all outputs of each task, with their sensitivities to the parameters in `free`. A
+/// failure is reported in the status.
 std::vector<model::Simulation> simulate(const std::vector<SimulationTask>& tasks,
                                         const model::SimulationOptions& options, int threads);
 
-/// Reference of the loop at the samples, SI; empty without a controller.
+/// Returns the reference of the control loop at each sample, SI; empty if there is no controller.
 std::vector<double> reference_of(const SimulationTask& task);
 
 }  // namespace rigcal::calib

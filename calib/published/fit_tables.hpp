@@ -12,7 +12,7 @@
 
 namespace rigcal::calib {
 
-/// One estimated assumption.
+/// An assumption whose value was estimated.
 struct FittedAssumption {
   int index = 0;  ///< row of the parameter table, or datasets::kResidualScale
   double value = 0.0;
@@ -21,12 +21,12 @@ struct FittedAssumption {
   double upper = 0.0;
   std::optional<double> standard_error;  ///< absent if the tables do not determine the value
   std::optional<Range> ci95;
-  std::optional<double> degrees_of_freedom;  ///< degrees of freedom of the standard error
+  std::optional<double> degrees_of_freedom;
   bool at_bound = false;
   Identifiability identifiability = Identifiability::not_identifiable;
 };
 
-/// One published number compared with the computed one at the end of the fit.
+/// Comparison of a published number with the computed one at the end of the fit.
 struct TableResidual {
   std::string of;          ///< "share, sine_0.1Hz, 10 %", "mean, Slight"
   double weight = 1.0;     ///< factor on `log_ratio` in the residual
@@ -34,7 +34,7 @@ struct TableResidual {
   RIGCAL_DESCRIBE(of, weight, log_ratio)
 };
 
-/// Least-squares estimates of the values that reproduce the published tables.
+/// Least-squares estimates of the values that best reproduce the published tables.
 struct TablesFit {
   FitStatus status = FitStatus::failed;
   std::string message;
@@ -44,25 +44,27 @@ struct TablesFit {
   double wall_seconds = 0.0;
   double rms = 0.0;  ///< root mean square of the weighted residuals
   std::vector<FittedAssumption> parameters;
-  Correlation correlation;  ///< correlation of all parameters, parameters
+  Correlation correlation;  ///< correlation of the estimates, in the order of `parameters`
   std::vector<TableResidual> residuals;
-  std::vector<std::string> left_out;     ///< published numbers that were left out, and why
-  datasets::LeakTableSettings settings;  ///< with the estimated values filled in
+  std::vector<std::string> left_out;     ///< published numbers that were not used, and why
+  datasets::LeakTableSettings settings;  ///< the settings with the estimated values inserted
 };
 
-/// Weight of the logarithm of a share at its published coefficient. Flows and features have weight
-/// 1.
+/// Weight of the logarithm of a leak share at its published coefficient. Flows and features have
+/// weight 1.
 inline constexpr double kShareWeight = 0.5;
 
 /// Estimates the assumptions marked `fit` from the published numbers with Ceres. Derivatives come
-/// from sensitivities. The residuals are weighted logarithms of computed over published values: the
-/// share at each published coefficient, and the flows and features that are not left out.
+/// from sensitivities. Each residual is the weighted logarithm of a computed value divided by the
+/// published one. The values are the leak share at each published coefficient, and the flows and
+/// features that are not left out.
 ///
-/// A value with a positive lower bound is estimated as its logarithm, and any other value directly,
-/// so that a gain may start at zero. Intervals take their error from the scatter of the residuals.
+/// If the lower bound of a value is positive, its logarithm is estimated. Any other value is
+/// estimated directly, so that a gain may start at zero. The errors behind the intervals are
+/// computed from the size of the residuals.
 ///
 /// @throws InputError  if nothing is marked `fit`, or there are fewer published numbers than values
-/// @return  a fit that fails does not throw: see status
+/// @return  the result; if the fit fails, `status` says so, and nothing is thrown
 TablesFit fit_tables(const datasets::Campaign& campaign,
                      const datasets::LeakTableSettings& settings, const LeakTableOptions& options);
 

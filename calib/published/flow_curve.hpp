@@ -8,9 +8,9 @@
 
 namespace rigcal::calib {
 
-/// Mean flows of one rig under one drive as a function of the leakage coefficient. Every
-/// coefficient is simulated only once. Each simulation starts with the number of periods and
-/// samples that the previous one needed.
+/// Mean flows of one rig under one drive as a function of the leakage coefficient. Each coefficient
+/// is simulated only once, and each simulation starts with the numbers of periods and samples that
+/// the previous one needed.
 class FlowCurve {
  public:
   using Quantity = std::function<double(const PeriodicFlow&)>;
@@ -19,8 +19,8 @@ class FlowCurve {
   FlowCurve(PeriodicDrive drive, model::ParameterValues values, PeriodicOptions options)
       : drive_(std::move(drive)), values_(std::move(values)), options_(options) {}
 
-  /// @throws NoResultError  if it cannot be simulated or does not become periodic; says where and
-  ///                        why
+  /// @throws NoResultError  if the coefficient cannot be simulated or the run does not become
+  ///                        periodic; states where and why
   const PeriodicFlow& at(double coefficient);
 
   /// Returns d ln share / d ln coefficient, from sensitivities.
@@ -28,7 +28,7 @@ class FlowCurve {
   /// @throws NoResultError  as for at()
   double log_slope(double coefficient) const;
 
-  /// Returns d ln share / d parameter, from sensitivities, first for the coefficient and then for
+  /// Returns d ln share / d parameter from sensitivities, first for the coefficient, then for
   /// `parameters` (rows of the parameter table), SI. Shape (1 + parameters).
   ///
   /// @throws NoResultError  as for at()
@@ -37,9 +37,9 @@ class FlowCurve {
   /// Simulates a grid of coefficients that is equidistant on a logarithmic scale.
   void scan(double lowest, double highest, int per_decade);
 
-  /// Finds all coefficients in the simulated range at which `quantity` equals `target`, to a
-  /// relative accuracy of 1e-4 and in increasing order. If the quantity is flat close to the
-  /// target, the scan is refined first, so that a plateau cannot hide a pair of roots.
+  /// Finds all coefficients in the simulated range at which `quantity` equals `target`, in
+  /// increasing order and with a relative accuracy of 1e-4. If the quantity is nearly constant
+  /// close to the target, the scan is refined first, so that a plateau cannot hide a pair of roots.
   ///
   /// @param quantity  must be positive
   std::vector<double> roots(const Quantity& quantity, double target);

@@ -20,21 +20,23 @@ std::string_view to_string(LeakGrade grade);
 struct LeakRoot {
   double coefficient = 0.0;
   double log_slope = 0.0;  ///< d ln share / d ln coefficient
-  /// Standard error of ln coefficient due to the errors of the rig's values; absent if none is
+  /// Standard error of ln coefficient due to the errors of the rig's values; absent if no error is
   /// known.
   std::optional<double> log_error;
-  /// Returns false on a plateau, where 1 % of the share moves the coefficient by more than 5 %.
+  /// Returns false on a plateau, where a change of 1 % in the share moves the coefficient by more
+  /// than 5 %.
   bool determined() const;
-  /// Returns the 95 % interval of the coefficient. It is positive, because it is symmetric in the
-  /// logarithm.
+  /// Returns the 95 % interval of the coefficient. Both ends are positive, because the interval is
+  /// symmetric in the logarithm.
   std::optional<std::array<double, 2>> ci95() const;
 };
 
-/// The published coefficient of an entry compared with the computed one.
+/// Comparison of the published coefficient of an entry with the computed one.
 struct LeakComparison {
   double published = 0.0;
-  double share_percent = 0.0;      ///< at the published coefficient
-  double share_low_percent = 0.0;  ///< at the ends of the interval that its rounding allows
+  double share_percent = 0.0;  ///< at the published coefficient
+  /// At the ends of the interval within which the published value may have been rounded.
+  double share_low_percent = 0.0;
   double share_high_percent = 0.0;
   std::optional<double> relative_error_percent;  ///< for the nearest root; absent if there is none
 };
@@ -46,7 +48,7 @@ struct LeakEntry {
   std::vector<LeakRoot> roots;  ///< all roots, increasing
   std::optional<LeakComparison> comparison;
   LeakGrade grade = LeakGrade::not_published;
-  std::string note;  ///< explains why there is no root or more than one, or comments on an outlier
+  std::string note;  ///< why there is no root or more than one, or a comment on an outlier
 };
 
 /// The published coefficient of the rig without a fault.
@@ -56,7 +58,7 @@ struct NormalEntry {
   double share_percent = 0.0;  ///< at this coefficient
 };
 
-/// One row of the published flows and features, as computed.
+/// Computed values for one row of the published flows and features.
 struct FeatureRow {
   datasets::PrintedFeatures printed;
   double servo_flow_m3_per_s = 0.0;
@@ -69,7 +71,8 @@ struct FeatureRow {
 inline constexpr std::array kFeatureOutputs{model::Output::position, model::Output::servo_flow,
                                             model::Output::leakage_flow, model::Output::work_flow};
 
-/// A combination of values that the tables determine although they do not determine each value.
+/// A combination of values that the tables determine although they do not determine the individual
+/// values.
 struct FixedCombination {
   std::string name;     ///< "loop_gain_per_s"
   std::string formula;  ///< "kp k_sv C_d w sqrt(P_s / rho) / A"
@@ -78,12 +81,12 @@ struct FixedCombination {
   RIGCAL_DESCRIBE(name, formula, value, unit)
 };
 
-/// Agreement with the published numbers, over all entries that have one.
+/// Agreement with the published numbers, over all entries that have a published number.
 struct LeakSummary {
   int published = 0;
   int within_10_percent = 0;
   int within_16_percent = 0;                ///< includes those within 10 %
-  std::optional<double> share_rms_percent;  ///< rms of ln(share / target), in percent
+  std::optional<double> share_rms_percent;  ///< root mean square of ln(share / target), in percent
   RIGCAL_DESCRIBE(published, within_10_percent, within_16_percent, share_rms_percent)
 };
 
@@ -109,21 +112,22 @@ struct LeakTableOptions {
   RigUncertainty rig;         ///< empty: coefficients have no interval
 };
 
-/// Computes the leak table of a rig: for each signal and target, all leakage coefficients at which
-/// that share of the servo flow leaks, and the published value.
+/// Computes the leak table of a rig. For each signal and target share, it contains all leakage
+/// coefficients at which that share of the servo flow leaks, and the published value.
 ///
 /// If the rig's values p are estimates with covariance S, the coefficients C at a share s are
 /// uncertain as well. With s(C, p) constant, d ln C / dp = -(d ln s / dp) / (d ln s / d ln C) = g.
-/// To first order the variance of ln C is g^T S g, plus that of the numerical error of the share.
+/// To first order, the variance of ln C is g^T S g plus the variance due to the numerical error of
+/// the share.
 ///
 /// @param settings  signals, targets, published numbers, assumptions
-/// @throws NoResultError  if a simulation fails or takes too long to become periodic; says which
-///                        and why
+/// @throws NoResultError  if a simulation fails or takes too long to become periodic; states which
+///                        one and why
 /// @throws InputError     if a parameter of the plant has no value
 LeakTable leak_table(const datasets::Campaign& campaign,
                      const datasets::LeakTableSettings& settings, const LeakTableOptions& options);
 
-/// Computes the loop gain, m / b and the leak conductance, as far as they exist for the rig.
+/// Computes the loop gain, m / b and the leak conductance, or those of them that exist for the rig.
 std::vector<FixedCombination> fixed_combinations(const datasets::Campaign& campaign,
                                                  const model::ParameterValues& values);
 

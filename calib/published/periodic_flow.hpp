@@ -20,17 +20,17 @@ struct PeriodicOptions {
   model::SimulationOptions simulation{.tolerance = 1e-5};
   int periods = 4;          ///< initial number; a power of two, at least 4
   int most_periods = 1024;  ///< if more are needed, the flow counts as not periodic
-  int intervals = 512;      ///< initial number of samples per piece of a period
+  int intervals = 512;      ///< initial number of intervals per piece of a period
   double tolerance = 1e-4;  ///< allowed error of the mean flows due to transient and sampling
 };
 
 /// Mean flows of a rig that has become periodic.
 struct PeriodicFlow {
   double servo_flow_m3_per_s = 0.0;  ///< mean |Q_servo| over the last period
-  double leak_flow_m3_per_s = 0.0;   ///< mean |Q_leak|
+  double leak_flow_m3_per_s = 0.0;   ///< mean |Q_leak| over the last period
   Eigen::VectorXd servo_slope;       ///< d servo flow / d parameter, shape (free), SI
   Eigen::VectorXd leak_slope;
-  double saturated = 0.0;  ///< fraction of the period in which the command is at its limit
+  double saturated = 0.0;  ///< fraction of the period during which the command is at its limit
   int periods = 0;         ///< number of periods simulated from rest
   int intervals = 0;       ///< per piece
   std::string failure;     ///< why there is no result; empty if there is one
@@ -40,14 +40,14 @@ struct PeriodicFlow {
 };
 
 /// Simulates from rest until the mean flows are periodic, and refines the sampling until they are
-/// resolved.
+/// accurate enough.
 ///
-/// Whether a run of n periods is periodic can be seen from the means f of its periods n/4, n/2 and
-/// n. With a transient a y^k per quarter of the run, f(n/2) - f(n/4) = a y (y - 1) and f(n) -
-/// f(n/2) = a y^2 (y^2 - 1). Their quotient gives y, and y gives the remainder at n. If the
-/// remainder exceeds the tolerance, the length of the run is doubled until that no longer helps: a
-/// loop that oscillates by itself never settles. The sampling is judged by leaving out every second
-/// sample.
+/// Whether a run of n periods has become periodic follows from the means f of its periods n/4, n/2
+/// and n. If the transient is a y^k after k quarters of the run, f(n/2) - f(n/4) = a y (y - 1) and
+/// f(n) - f(n/2) = a y^2 (y^2 - 1). Their quotient gives y, and y gives the remaining transient at
+/// n. If this exceeds the tolerance, the run is doubled in length, as long as that helps: a loop
+/// that oscillates by itself never settles. The sampling error is estimated by leaving out every
+/// second sample.
 ///
 /// @param values  SI; includes the leakage coefficient
 /// @param free    table indices of the parameters for which slopes are needed
@@ -57,10 +57,10 @@ PeriodicFlow periodic_flow(const PeriodicDrive& drive, const model::ParameterVal
 /// One period of a periodic run at equidistant times.
 struct PeriodicSeries {
   std::vector<double> time_s;  ///< from the start of the period; shape (samples)
-  model::Simulation run;       ///< outputs and their slopes
+  model::Simulation run;       ///< outputs and their sensitivities
 };
 
-/// @param periods  number of periods after which the run is periodic; the last one is returned
+/// @param periods  number of periods after which the run is periodic; the last of them is returned
 PeriodicSeries periodic_series(const PeriodicDrive& drive, const model::ParameterValues& values,
                                std::span<const int> free, std::span<const model::Output> outputs,
                                int periods, int samples, const model::SimulationOptions& options);

@@ -11,7 +11,7 @@ namespace rigcal::calib {
 /// The published numbers of a leak table as weighted residuals that depend on its assumptions.
 class TableResiduals {
  public:
-  /// @param free  indices of the free assumptions, which may include kResidualScale
+  /// @param free  indices of the free assumptions; may include kResidualScale
   TableResiduals(const datasets::Campaign& campaign, const datasets::LeakTableSettings& settings,
                  std::vector<int> free, LeakTableOptions options);
 
@@ -24,7 +24,7 @@ class TableResiduals {
   Evaluation evaluate(const std::vector<double>& values, bool with_jacobian);
 
   std::size_t size() const { return rows_.size(); }
-  /// The quantity behind a residual, and its weight.
+  /// The quantity that a residual compares, and the weight of the residual.
   const std::string& name(std::size_t row) const { return rows_[row].what; }
   double weight(std::size_t row) const { return rows_[row].weight; }
 
@@ -32,17 +32,19 @@ class TableResiduals {
   struct Row {
     std::string what;
     double weight = 1.0;
-    std::size_t run = 0;     ///< index of the run that gives the result
-    double published = 0.0;  ///< SI; features are in their printed unit
+    std::size_t run = 0;     ///< index of the run that provides the computed value
+    double published = 0.0;  ///< SI, except that features are in their printed unit
     bool is_share = false;   ///< true for a share, false for `feature`
     datasets::Feature feature = datasets::Feature::servo_flow;
   };
-  /// One coefficient under one drive. The first run of a feature signal is the healthy rig.
+  /// A run with one coefficient under one drive. The first run with a feature signal is that of the
+  /// healthy rig.
   struct Run {
     PeriodicDrive drive;
     double coefficient = 0.0;
     bool with_series = false;
-    PeriodicOptions options;  ///< start with the numbers that the last evaluation needed
+    PeriodicOptions options;  ///< begin with the numbers of periods and intervals that the last
+                              ///< evaluation needed
   };
   struct Outcome {
     PeriodicFlow flow;

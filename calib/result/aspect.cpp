@@ -5,7 +5,7 @@
 namespace rigcal::calib {
 namespace {
 
-/// Seriousness of a state.
+/// Returns how serious a state is; a higher rank is more serious.
 int rank(AspectState state) {
   switch (state) {
     case AspectState::fail:

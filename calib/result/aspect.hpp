@@ -13,10 +13,10 @@ namespace rigcal::calib {
 /// State of one aspect of a result, or of one reason.
 enum class AspectState {
   pass,
-  reservation,   ///< nothing failed, but the signatory must know
+  reservation,   ///< nothing failed, but whoever signs must know about it
   fail,          ///< a limit is broken, or cannot be evaluated
   not_assessed,  ///< the data for a judgement are missing
-  note,          ///< for reasons only: shown, but does not change the state of the aspect
+  note,          ///< only for reasons: shown, but does not affect the state of the aspect
 };
 std::string_view to_string(AspectState state);
 

@@ -24,12 +24,12 @@ struct ChannelScore {
   datasets::Channel channel = datasets::Channel::position;
   std::optional<metrics::Agreement> agreement;     ///< absent: see `problem`
   std::optional<metrics::NoiseFloor> noise_floor;  ///< absent where the noise is unknown
-  /// One-sided, from repeats and sensor; absent with fewer than two repeats.
+  /// One-sided uncertainty due to repeats and sensor; absent with fewer than two repeats.
   std::optional<metrics::Agreement> expanded_uncertainty;
-  /// Two-sided, as printed after +-.
+  /// Two-sided uncertainty, as printed after +-.
   std::optional<metrics::Agreement> two_sided_uncertainty;
   std::optional<double> gain_ratio, phase_deg, delay_s;  ///< at the fundamental (sine, square)
-  std::string problem;                                   ///< in words: why a metric is missing
+  std::string problem;                                   ///< why a metric is missing, in words
   /// Tests of the residual (measured minus simulated) over the longest window; absent if the window
   /// is too short or the residual is constant.
   std::optional<metrics::ResidualTests> residual_tests;
@@ -42,14 +42,14 @@ struct ChannelScore {
 enum class Verdict { pass, warn, fail };
 std::string_view to_string(Verdict verdict);
 
-/// One metric of one channel of a condition against its limit.
+/// Comparison of one metric of one channel with its limit.
 struct LimitCheck {
   datasets::Channel channel = datasets::Channel::position;
   std::string metric;
   std::optional<double> value;  ///< absent if the metric does not exist; `words` says why
   std::optional<double> limit, warn;
-  /// Distance of the value from the ideal, divided by the limit's distance from it; absent without
-  /// a value.
+  /// Distance of the value from the ideal, divided by the distance of the limit from the ideal.
+  /// Absent if there is no value.
   std::optional<double> tolerance_used;
   Omittable<double> expanded_uncertainty;  ///< uncertainty of the value; absent if unknown
   Verdict verdict = Verdict::pass;
@@ -64,24 +64,24 @@ struct ConditionScore {
   std::string id;
   datasets::Use use = datasets::Use::fit;
   std::vector<ChannelScore> channels;
-  std::vector<LimitCheck> checks;          ///< verdicts on all limits of its channels
+  std::vector<LimitCheck> checks;          ///< one for each limit on its channels
   std::optional<Verdict> verdict;          ///< worst of the checks; absent without limits
   std::vector<std::string> reasons;        ///< reasons for WARN and FAIL, in words
   std::vector<std::string> data_warnings;  ///< doubts about the recording, in words
   std::string failure;                     ///< why the simulation failed; empty if it did not
-  std::string not_scored;  ///< why a condition that can be simulated has no score; else empty
+  std::string not_scored;  ///< why there is no score although the simulation succeeded; else empty
   long samples = 0;        ///< number of samples inside the windows
   std::vector<double> time_s;
-  /// measured mean and simulated value per output channel, whole record
+  /// Measured mean and simulated value for each output channel, over the whole record.
   std::map<datasets::Channel, std::pair<std::vector<double>, std::vector<double>>> series;
-  /// Standard deviation of a measurement about the simulated value, whole record, SI. It combines
-  /// the uncertainty of the estimates with the noise of the record. Absent if the former is
-  /// unknown.
+  /// Standard deviation of a measurement about the simulated value, over the whole record, SI. It
+  /// combines the uncertainty of the estimates with the noise of the record. Absent if the former
+  /// is unknown.
   std::map<datasets::Channel, std::vector<double>> prediction_sd;
   std::vector<double> drive;  ///< reference [m] or command [V] at time_s
   /// Simulated flows at time_s [m3/s]; empty if the simulation failed.
   std::vector<double> servo_flow_m3_per_s, leakage_flow_m3_per_s;
-  std::vector<bool> in_window;  ///< empty: all
+  std::vector<bool> in_window;  ///< empty if all samples count
 
   /// Verdict on a channel: its worst check, or the condition's verdict if the simulation failed.
   /// Absent if no limit applies to the channel.

@@ -20,17 +20,19 @@ struct ConsideredEffect {
   std::string meaning;     ///< in words
   std::string unit;        ///< SI unit of its size
   double size = 0.0;       ///< plausible size: standard deviation of the prior about zero
-  bool one_sided = false;  ///< the effect cannot be negative
+  bool one_sided = false;  ///< true if the effect cannot be negative
   std::string size_from;   ///< source of the size, in words
-  std::optional<std::string> problem;  ///< why it could not be considered, in words
-  /// Estimated from prior and records, jointly with all other effects; absent if not considered.
+  std::optional<std::string> problem;  ///< why the effect could not be considered, in words
+  /// Estimated from prior and records, jointly with all other effects. Absent if the effect was not
+  /// considered.
   std::optional<double> estimate, standard_error;
-  /// Estimated from the records as the only effect; absent if the records do not respond to it.
+  /// Estimated from the records under the assumption that no other effect acts. Absent if the
+  /// records do not respond to the effect.
   std::optional<double> alone, alone_error;
-  std::optional<double> alone_half_width;  ///< half width of its 95 % interval
+  std::optional<double> alone_half_width;  ///< half-width of the 95 % interval of `alone`
   std::optional<double> p_value;           ///< score test against zero size
   std::optional<double> p_of_all;          ///< p_value adjusted for all effects (Holm)
-  double explains = 0.0;  ///< decrease of the sum of squared residuals with this effect only
+  double explains = 0.0;  ///< decrease in the sum of squared residuals if only this effect is added
   RIGCAL_DESCRIBE(key, meaning, unit, size_from, size, one_sided, problem, estimate, standard_error,
                   alone, alone_half_width, p_value, p_of_all, explains)
 };
@@ -39,9 +41,9 @@ struct ConsideredEffect {
 struct BudgetLine {
   /// "noise", "repeats", the key of a known value or an effect, or "nonlinearity" (in the effects).
   std::string source;
-  std::string kind;                    ///< "records", "known_value" or "effect"
-  double uncertainty = 0.0;            ///< contribution to the standard uncertainty, SI
-  Omittable<double> sensitivity = {};  ///< change of the estimate per unit of an effect's size, SI
+  std::string kind;          ///< "records", "known_value" or "effect"
+  double uncertainty = 0.0;  ///< contribution to the standard uncertainty of the estimate, SI
+  Omittable<double> sensitivity = {};  ///< change in the estimate per unit of an effect's size, SI
   RIGCAL_DESCRIBE(source, kind, uncertainty, sensitivity)
 };
 
@@ -68,19 +70,19 @@ struct Budget95 {
 struct RefittedModel {
   std::vector<std::string> effects;  ///< keys; empty for the unchanged model
   std::vector<double> sizes;         ///< SI
-  double fall = 0.0;                 ///< decrease of the sum of squared residuals
-  /// Decrease of the squared residuals where each condition is predicted from the others; absent
-  /// with one condition.
+  double fall = 0.0;                 ///< decrease in the sum of squared residuals
+  /// Decrease in the sum of squared residuals if each condition is predicted from the others.
+  /// Absent if there is only one condition.
   std::optional<double> held_out_fall;
-  double weight = 0.0;  ///< Akaike weight of this model's estimates in the average
+  double weight = 0.0;  ///< Akaike weight of this model in the averaged estimates
   RIGCAL_DESCRIBE(effects, sizes, fall, held_out_fall, weight)
 };
 
 /// The small effects that a fit considered.
 struct Considered {
   std::vector<ConsideredEffect> effects;
-  std::vector<std::string> left_out;  ///< keys that the campaign excludes
-  /// Keys of the effects that the residuals call for, the best explanation first.
+  std::vector<std::string> left_out;  ///< keys of effects that the campaign excludes
+  /// Keys of the effects that the residuals call for; the one that explains them best comes first.
   std::vector<std::string> missing;
   Later<std::vector<RefittedModel>> refitted;  ///< empty if the residuals call for no effect
   /// Correlations of the effects' sizes given prior and records, shape (considered effects)^2. The
@@ -92,7 +94,7 @@ struct Considered {
   const ConsideredEffect* find(std::string_view key) const;
 };
 
-/// An estimate repeated from the validation records only. SI.
+/// An estimate recomputed from the validation records only. SI.
 struct StabilityCheck {
   std::string key;  ///< key of the parameter
   std::string unit;
@@ -100,8 +102,8 @@ struct StabilityCheck {
   std::optional<std::string> level;  ///< leak level or condition; absent: the rig
   double value = 0.0;                ///< estimate from the validation records
   double difference = 0.0;           ///< `value` minus the estimate of the fit
-  double expanded = 0.0;             ///< half width of the difference's 95 % interval
-  bool differs = false;              ///< significant, adjusted for all parameters
+  double expanded = 0.0;             ///< half-width of the 95 % interval of the difference
+  bool differs = false;  ///< true if the difference is significant, adjusted for all parameters
   RIGCAL_DESCRIBE(key, unit, scope, level, value, difference, expanded, differs)
 };
 

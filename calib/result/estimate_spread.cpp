@@ -78,7 +78,7 @@ EffectSpread effect_spread(const Considered& considered,
     mean(k) = effect.estimate.value_or(0.0);
     error(k) = effect.standard_error.value_or(0.0);
   }
-  // Sizes are scaled by their standard errors, since in SI they span twelve decades.
+  // Sizes are scaled by their standard errors, because in SI units they span twelve decades.
   const Eigen::VectorXd scale =
       error.unaryExpr([](double sd) { return sd > 0.0 ? 1.0 / sd : 1.0; });
   const Eigen::VectorXd scaled = scale.cwiseProduct(mean);

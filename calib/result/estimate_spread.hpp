@@ -12,13 +12,13 @@
 namespace rigcal::calib {
 
 /// The small effects that the model of a fit omits: their possible sizes, and how they bias the
-/// estimates. Bands, scores, leaks and comparisons all read them from here.
+/// estimates. Prediction bands, scores, leak estimates and comparisons all use this.
 struct EffectSpread {
   std::vector<std::string> keys;
-  /// S with S S^T the second moments of the effects' sizes about zero, SI. They are not central
-  /// moments, since nothing is corrected for the effects. Shape (effects, columns).
+  /// S, where S S^T contains the second moments of the effects' sizes about zero, SI. These are not
+  /// central moments, because no estimate is corrected for the effects. Shape (effects, columns).
   Eigen::MatrixXd root;
-  /// Change of the estimates per unit of an effect's size, SI. Shape (estimates, effects).
+  /// Change in the estimates per unit of an effect's size, SI. Shape (estimates, effects).
   Eigen::MatrixXd moves;
 
   bool empty() const { return keys.empty(); }
@@ -43,28 +43,28 @@ struct EstimateSpread {
   /// Estimates that apply to one condition only.
   struct Own {
     std::vector<Estimate> estimates;
-    /// S with S S^T the joint covariance of these estimates, then the shared ones, SI. Shape (own
-    /// and shared estimates, columns).
+    /// S, where S S^T is the joint covariance of these estimates followed by the shared ones, SI.
+    /// Shape (own and shared estimates, columns).
     Eigen::MatrixXd root;
   };
 
   std::vector<Estimate> estimates;
-  /// S with S S^T the covariance of the estimates, SI. Shape (estimates, columns).
+  /// S, where S S^T is the covariance of the estimates, SI. Shape (estimates, columns).
   Eigen::MatrixXd root;
-  /// One entry per condition with estimates of its own. They are kept apart because no simulation
-  /// uses those of two conditions, and there may be many.
+  /// One entry per condition with estimates of its own. They are stored separately because there
+  /// may be many, and no simulation needs those of more than one condition.
   std::vector<Own> own = {};
   EffectSpread effects = {};  ///< its `moves` refer to `estimates`
-  /// Dates of the fitted records; empty if one of them has no date.
+  /// Dates of the fitted records; empty if any record has no date.
   std::vector<std::string> dates = {};
 };
 
 /// Whether a matrix is a correlation matrix: symmetric, ones on the diagonal, entries from -1 to 1,
-/// positive semidefinite. Ignores rows whose diagonal is NaN; returns true if another entry that
-/// counts is not finite, since the matrix then cannot be checked.
+/// positive semidefinite. Ignores rows whose diagonal is NaN. Returns true if any other entry is
+/// not finite, because the matrix then cannot be checked.
 bool are_correlations(const Eigen::MatrixXd& matrix);
 
-/// Computes the covariance of estimates; NaN where a correlation is missing.
+/// Computes the covariance of estimates. An element is NaN if its correlation is missing.
 ///
 /// @param errors  standard errors
 /// @param rows    row of each estimate in `correlations`; absent for an uncorrelated estimate
@@ -72,14 +72,14 @@ Eigen::MatrixXd covariance_of(const std::vector<double>& errors,
                               const std::vector<std::optional<Eigen::Index>>& rows,
                               const Eigen::MatrixXd& correlations);
 
-/// Adds the estimates that apply to one condition only, uncorrelated with all others.
+/// Adds estimates that apply to one condition only and are uncorrelated with all others.
 ///
 /// @param errors  standard errors, shape (estimates)
 void add_own(std::vector<EstimateSpread::Estimate> estimates, const std::vector<double>& errors,
              EstimateSpread& spread);
 
-/// Returns R with R R^T = M. M is positive semidefinite except for rounding: eigenvalues that
-/// rounding made negative count as zero.
+/// Returns R with R R^T = M for a positive semidefinite M. Eigenvalues that are negative due to
+/// rounding count as zero.
 Eigen::MatrixXd square_root(const Eigen::MatrixXd& m);
 
 }  // namespace rigcal::calib

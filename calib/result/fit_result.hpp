@@ -33,30 +33,33 @@ struct Fit {
   double reduced_chi_square = 0.0;  ///< 2 cost / (residuals - rank); about 1 if there is only noise
   long evaluations = 0;             ///< evaluations of all residuals
   double wall_seconds = 0.0;
-  double tolerance = 0.0;              ///< tolerance of the simulations
-  double independent_residuals = 0.0;  ///< effective number in the noise model; 0: unknown
+  double tolerance = 0.0;  ///< tolerance of the simulations
+  /// Effective number according to the noise model; 0 if unknown.
+  double independent_residuals = 0.0;
   double aic = 0.0,
-         bic = 0.0;  ///< from the independent residuals, to compare models within a campaign
+         bic = 0.0;  ///< from the independent residuals, for comparing models within a campaign
   std::vector<FittedParameter> parameters;
-  std::vector<LackOfFit> lack_of_fit;  ///< channels of known noise
-  std::optional<bool> misfit;          ///< significant lack of fit; absent: cannot be judged
+  std::vector<LackOfFit> lack_of_fit;  ///< one test per channel with known noise
+  /// Whether the lack of fit is significant; absent if it cannot be judged.
+  std::optional<bool> misfit;
   std::optional<BetweenRepeats> between_repeats;  ///< absent without single repeats
-  std::optional<Considered> considered;           ///< small effects; absent if not examined
-  std::vector<StabilityCheck> stability;          ///< comparison with the validation records
-  std::string interval_advice;                    ///< which interval to believe, and why
-  std::vector<std::string> combinations;          ///< parameter combinations that are determined
-  Correlation correlation;                        ///< unknowns that have a standard error
-  int rank = 0;                                   ///< rank of the scaled Jacobian at the optimum
+  /// Small effects that the model omits; absent if they were not examined.
+  std::optional<Considered> considered;
+  std::vector<StabilityCheck> stability;  ///< comparison with the validation records
+  std::string interval_advice;            ///< which interval to believe, and why
+  std::vector<std::string> combinations;  ///< parameter combinations that the records determine
+  Correlation correlation;  ///< correlation of the unknowns that have a standard error
+  int rank = 0;             ///< rank of the scaled Jacobian at the optimum
   std::vector<double> singular_values;
   std::vector<StartReport> starts;
   int best_start = 0;
   std::optional<FurtherStarts> further_starts;  ///< absent if no further starts were evaluated
   std::vector<Basin> basins;                    ///< sorted by cost
   int bootstrap_replicates = 0;                 ///< replicates that converged
-  std::string bootstrap_message;                ///< how they were drawn, and what went wrong
+  std::string bootstrap_message;                ///< how the replicates were drawn, and any problem
   std::optional<Posterior> posterior;           ///< absent if not requested
   std::vector<HeldOut> cross_validation;
-  std::string agreement;  ///< agreement of the starts, in words; empty for a single one
+  std::string agreement;  ///< how well the starts agree, in words; empty for a single start
   std::vector<SimulationFailure> failures;
   long failure_count = 0;
   std::vector<std::string> warnings;

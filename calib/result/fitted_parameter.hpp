@@ -13,15 +13,15 @@
 
 namespace rigcal::calib {
 
-/// Half width of an interval, relative to the value, above which a parameter is weak. The same
+/// Half-width of an interval, relative to the value, above which a parameter is weak. The same
 /// limit applies to fitted, planned and combined values (docs/uncertainty.md).
 inline constexpr double kWeak = 0.2;
 
 enum class Identifiability {
   identified,
-  weak,              ///< half width of the 95 % interval above 20 % of the value
-  bounded,           ///< not distinguishable from zero; only its interval is known
-  not_identifiable,  ///< half width above 100 %, no interval, or an open profile
+  weak,              ///< half-width of the 95 % interval above 20 % of the value
+  bounded,           ///< cannot be distinguished from zero; only its interval is known
+  not_identifiable,  ///< half-width above 100 % of the value, no interval, or an open profile
 };
 std::string_view to_string(Identifiability identifiability);
 
@@ -33,8 +33,8 @@ std::string_view to_string(IntervalSource source);
 struct ProfileEnd {
   std::optional<double> value;  ///< absent if the cost is still below the limit at `reached`
   double reached = 0.0;         ///< value up to which the profile was followed
-  /// Whether the profile was abandoned because an inner fit failed or was cancelled. If not, an end
-  /// without a value is unbounded. Absent if unknown.
+  /// Whether the profile was abandoned because an inner fit failed or was cancelled. If it was not,
+  /// an end without a value is unbounded. Absent if unknown.
   Later<std::optional<bool>> lost = std::optional(false);
   RIGCAL_DESCRIBE(value, reached, lost)
 
@@ -45,9 +45,10 @@ struct ProfileEnd {
 /// others.
 struct Profile {
   ProfileEnd low, high;
-  std::vector<double> values;     ///< SI, ascending
-  std::vector<double> rises;      ///< rise of 2 cost over the threshold; the interval ends at 1
-  bool lower_cost_found = false;  ///< the fit was not at the minimum; not stored
+  std::vector<double> values;  ///< SI, ascending
+  /// Rise in 2 cost as a fraction of the threshold; the interval ends at 1.
+  std::vector<double> rises;
+  bool lower_cost_found = false;  ///< true if the fit was not at the minimum; not stored
   RIGCAL_DESCRIBE(low, high, values, rises)
 };
 
@@ -62,8 +63,9 @@ struct BootstrapSpread {
 
 /// Weighted average of an estimate over several models.
 struct AveragedEstimate {
-  double value = 0.0;           ///< SI
-  double standard_error = 0.0;  ///< error within and variation between the models, SI
+  double value = 0.0;  ///< SI
+  /// Combines the errors within the models and the variation between them, SI.
+  double standard_error = 0.0;
   RIGCAL_DESCRIBE(value, standard_error)
 };
 
@@ -78,27 +80,28 @@ struct FittedParameter {
   double upper = 0.0;
   bool fitted = false;
   bool nuisance = false;
-  bool correlated = true;                ///< with an error, it has a row in the correlation matrix
+  bool correlated = true;  ///< if true and it has an error, it has a row in the correlation matrix
   std::optional<double> standard_error;  ///< absent if the Jacobian does not determine it
-  /// Computed from the residuals themselves, hence larger if they are correlated in time.
+  /// Computed from the residuals themselves, and therefore larger if they are correlated in time.
   std::optional<double> robust_standard_error;
-  /// Interval for the rig; includes the effects that the model omits, if they were considered.
+  /// Interval for the real rig. It includes the effects that the model omits, if they were
+  /// considered.
   std::optional<Range> ci95;
   /// Interval under the assumption that the model is exact.
   std::optional<Range> ci95_if_exact;
   IntervalSource interval = IntervalSource::none;  ///< basis of ci95_if_exact
-  /// Degrees of freedom of the error behind ci95_if_exact; at most metrics::kManyDegrees.
+  /// Degrees of freedom of the error that ci95_if_exact is based on; at most metrics::kManyDegrees.
   std::optional<double> degrees_of_freedom;
-  /// Standard error due to quantities that differ between days. No interval includes it; it counts
-  /// only where estimates of different dates are compared.
+  /// Standard error due to quantities that differ between days. No interval includes it. It only
+  /// matters when estimates from different dates are compared.
   std::optional<double> between_days_error;
   std::optional<Budget95> budget;  ///< contributions to ci95; absent if no effects were considered
-  /// Average over the fits with the effects that the residuals call for; absent if they call for
-  /// none.
+  /// Average over the fits with the effects that the residuals call for. Absent if the residuals
+  /// call for no effect.
   std::optional<AveragedEstimate> averaged;
-  /// Largest change of the estimate due to an effect that the residuals call for, SI.
+  /// Largest change in the estimate due to an effect that the residuals call for, SI.
   double moved_by_missing = 0.0;
-  /// Largest possible change of the estimate due to a significant model error that no effect
+  /// Largest possible change in the estimate due to a significant model error that no effect
   /// explains, SI.
   double moved_by_unexplained = 0.0;
   std::optional<BootstrapSpread> bootstrap;
@@ -109,8 +112,8 @@ struct FittedParameter {
   std::string reason;  ///< in words: why it has no error or is weak, or which bound it is at
 };
 
-/// Standard deviation that later steps assume for a parameter without an error: that of a uniform
-/// distribution over its interval, or over its bounds without an interval.
+/// Returns the standard deviation that later steps assume for a parameter without an error: that of
+/// a uniform distribution over its interval, or over its bounds if it has no interval.
 double undetermined_sd(const std::optional<Range>& ci95, double lower, double upper);
 
 }  // namespace rigcal::calib

@@ -8,12 +8,12 @@
 #include "datasets/record.hpp"
 #include "metrics/residual_tests.hpp"
 
-// Model errors that the records show: errors relative to the noise, differences between repeats,
+// Signs of model error in the records: errors relative to the noise, differences between repeats,
 // and predictions of records that were not fitted.
 
 namespace rigcal::calib {
 
-/// Test of the model error against the pure error, for one channel of one condition
+/// Test of the model error against the pure error for one channel of one condition
 /// (lack_of_fit.hpp).
 struct LackOfFit : metrics::Judged {
   std::string condition;
@@ -21,9 +21,9 @@ struct LackOfFit : metrics::Judged {
   std::string against = "sd";       ///< source of the pure error: "repeats" or "sd"
   double ratio = 0.0;               ///< variance of the residual over that of the pure error
   double freedom = 0.0;             ///< effective degrees of freedom of the residual
-  double pure_error_freedom = 0.0;  ///< for the pure error; infinite with a stated `sd`
-  /// Probability that noise alone gives this ratio or a larger one. The outcome is adjusted for all
-  /// tests.
+  double pure_error_freedom = 0.0;  ///< for the pure error; infinite if the campaign states `sd`
+  /// Probability that noise alone gives this ratio or a larger one. The outcome takes the number of
+  /// tests into account.
   double p = 1.0;
   RIGCAL_DESCRIBE(condition, channel, against, ratio, freedom, pure_error_freedom, p, outcome,
                   reason)
@@ -33,14 +33,16 @@ struct LackOfFit : metrics::Judged {
 
 /// Differences between the repeats of the fitted conditions (between_repeats.hpp).
 struct BetweenRepeats {
-  bool differ = false;  ///< significantly (5 %) more than the mean's residuals explain
-  double p = 1.0;       ///< for the most significant parameter, times the number of parameters
-  double ratio = 0.0;   ///< largest ratio of the error from repeats to that from residuals
+  /// True if the repeats differ significantly (5 %) more than the mean's residuals explain.
+  bool differ = false;
+  double p = 1.0;  ///< p-value of the most significant parameter, times the number of parameters
+  double ratio = 0.0;  ///< largest ratio of the error from the repeats to that from the residuals
   std::vector<std::string> parameters;  ///< parameters whose interval is based on the repeats
-  /// Possible cause of the differences: the key of a parameter, or "start". This and the next two
-  /// members are absent if no cause was found.
+  /// Possible cause of the differences: the key of a parameter, or "start". If no cause was found,
+  /// this and the next two members are absent.
   std::optional<std::string> cause;
-  std::optional<double> cause_sd;  ///< standard deviation of the cause: relative, or s (start)
+  /// Standard deviation of the cause: relative, or in s for the start.
+  std::optional<double> cause_sd;
   std::optional<double> cause_explains;  ///< fraction of the differences that the cause explains
   RIGCAL_DESCRIBE(differ, p, ratio, parameters, cause, cause_sd, cause_explains)
 };
@@ -51,8 +53,8 @@ struct HeldOut {
   std::optional<std::string> problem;            ///< why there is no prediction, in words
   Keyed<double, datasets::Channel> rmse;         ///< error of the prediction, SI
   Keyed<double, datasets::Channel> fitted_rmse;  ///< error in the full fit, SI
-  /// Largest change of a parameter in units of its error; 0 if no parameter has an error, absent
-  /// without a prediction.
+  /// Largest change in a parameter, in units of its error. 0 if no parameter has an error; absent
+  /// if there is no prediction.
   std::optional<double> largest_shift;
   std::optional<std::string> shifted;  ///< the parameter that changes most
   RIGCAL_DESCRIBE(condition, problem, rmse, fitted_rmse, largest_shift, shifted)

@@ -12,8 +12,9 @@ namespace rigcal::calib {
 /// Data of an earlier fit whose values are validated.
 struct Origin {
   std::set<std::string> estimated_from;  ///< conditions whose records the fit used
-  Aspect parameters;                     ///< judgement of that fit
-  std::optional<EstimateSpread> spread;  ///< for the values; absent without convergence
+  Aspect parameters;                     ///< how that fit judged its parameters
+  /// Covariance of the values; absent if that fit did not converge.
+  std::optional<EstimateSpread> spread;
 };
 
 }  // namespace rigcal::calib

@@ -18,7 +18,7 @@ struct PosteriorSpread {
   double sd = 0.0;
   std::optional<Range> ci95;  ///< 2.5 % and 97.5 % quantiles
   double r_hat = 0.0;         ///< rank-normalised, split
-  double bulk_draws = 0.0;    ///< effective sample size for the middle
+  double bulk_draws = 0.0;    ///< effective sample size for the centre of the distribution
   double tail_draws = 0.0;    ///< effective sample size for the tails
   RIGCAL_DESCRIBE(median, sd, ci95, r_hat, bulk_draws, tail_draws)
 };
@@ -29,7 +29,7 @@ struct KeptLimit {
   datasets::Channel channel = datasets::Channel::position;
   std::string metric;
   double limit = 0.0;
-  double probability = 0.0;  ///< fraction of the simulated draws that keep the limit
+  double probability = 0.0;  ///< fraction of simulated draws that keep the limit
   double median = 0.0;       ///< median of the metric over these draws
   RIGCAL_DESCRIBE(condition, channel, metric, limit, probability, median)
 };
@@ -45,19 +45,20 @@ struct Pairs {
 /// Chains of the no-U-turn sampler with their diagnostics.
 struct Posterior {
   int chains = 0;
-  int warm_up = 0;  ///< draws per chain that are discarded
-  int draws = 0;    ///< draws per chain that count; if 0, only `message` is valid
-  int asked = 0;    ///< draws per chain that were requested
+  int warm_up = 0;  ///< number of draws per chain that are discarded
+  int draws = 0;    ///< number of draws per chain that are used; if 0, only `message` is valid
+  int asked = 0;    ///< number of draws per chain that were requested
   long evaluations = 0;
-  int diverged = 0;  ///< trajectories whose energy error showed that the steps are too long
-  int longest = 0;   ///< trajectories cut off at the maximum number of doublings
+  /// Number of trajectories whose energy error shows that the steps are too long.
+  int diverged = 0;
+  int longest = 0;  ///< number of trajectories cut off at the maximum number of doublings
   double energy_fraction = kUnknown;  ///< minimum over the chains
   double r_hat = kUnknown;            ///< maximum over the unknowns
   double least_draws = kUnknown;      ///< minimum effective sample size, bulk or tail
   std::optional<std::string> worst;   ///< the unknown with the largest R-hat
-  double noise_variance =
-      1.0;               ///< variance of a weighted residual outside the estimates' directions
-  bool effects = false;  ///< whether small effects that the model omits were sampled, too
+  /// Variance of the weighted residuals in directions that do not affect the estimates.
+  double noise_variance = 1.0;
+  bool effects = false;  ///< whether the small effects that the model omits were sampled as well
   int simulated = 0;     ///< number of draws simulated to judge the limits
   std::vector<KeptLimit> limits;
   Pairs pairs;

@@ -8,13 +8,14 @@
 #include "common/describe.hpp"
 #include "model/simulate.hpp"
 
-// Course of the search.
+// Report on the search: its starts, their end points, and simulations that failed.
 
 namespace rigcal::calib {
 
 enum class FitStatus {
   converged,
-  stopped,  ///< by a limit on iterations or time, or by a signal; gives the best result so far
+  stopped,  ///< a limit on iterations or time, or a signal, ended the fit; the result is the best
+            ///< so far
   failed,   ///< no start gave a usable result
 };
 std::string_view to_string(FitStatus status);
@@ -47,12 +48,12 @@ struct StartReport {
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Further starts that a single-start fit evaluated with coarse simulations.
+/// Further starts that a fit with a single start evaluated with coarse simulations.
 struct FurtherStarts {
   int looked_at = 0;
   /// Starts that led to a lower cost than the campaign's start, and were then searched fully.
   int followed = 0;
-  /// Starts that led to the same cost as the result, within the error of coarse simulations.
+  /// Starts that led to the same cost as the result, to within the error of coarse simulations.
   int as_low = 0;
 };
 

@@ -20,7 +20,8 @@ const metrics::MetricSpec& metric(std::string_view name) {
   return *found;
 }
 
-/// Best value of a metric that the noise allows any model; absent if the noise is unknown.
+/// Returns the best value of a metric that the noise allows for any model; absent if the noise is
+/// unknown.
 std::optional<double> floor_of(const ChannelScore& score, std::string_view name) {
   if (!score.noise_floor) return std::nullopt;
   if (name == "rho2") return score.noise_floor->rho2;
@@ -29,8 +30,8 @@ std::optional<double> floor_of(const ChannelScore& score, std::string_view name)
   return std::nullopt;
 }
 
-/// Distance of a value from the ideal, divided by the bound's distance from it. Infinite if the
-/// bound is the ideal and the value is not.
+/// Returns the distance of a value from the ideal, divided by the distance of the bound from the
+/// ideal. Infinite if the bound is ideal and the value is not.
 double used_of(const metrics::MetricSpec& spec, double value, double bound) {
   const double distance = std::abs(value - metrics::ideal(spec));
   const double allowed = std::abs(bound - metrics::ideal(spec));
@@ -38,7 +39,7 @@ double used_of(const metrics::MetricSpec& spec, double value, double bound) {
   return distance / allowed;
 }
 
-/// Whether a score must keep its limit by more than its expanded uncertainty.
+/// Returns true if a score must keep its limit by more than its expanded uncertainty.
 bool counts_uncertainty(datasets::DecisionRule rule) {
   switch (rule) {
     case datasets::DecisionRule::simple:

@@ -10,21 +10,23 @@
 
 namespace rigcal::calib {
 
-/// Judges a finished fit or validation. Only this function judges; reports repeat its words. The
-/// four aspects are judged separately, see judge_agreement.hpp, judge_validation.hpp,
+/// Judges a finished fit or validation. No other function judges: reports only repeat its words.
+/// The four aspects are judged separately, see judge_agreement.hpp, judge_validation.hpp,
 /// judge_adequacy.hpp and judge_parameters.hpp.
 ///
 /// @param estimated_from  ids of the conditions whose records the values were fitted to
-/// @param parameters      judgement of the parameters by the validated fit; null: judged from `fit`
+/// @param parameters      how the validated fit judged its parameters; if null, they are judged
+///                        from `fit`
 Assessment assess(const datasets::Campaign& campaign, const Fit& fit,
                   const std::set<std::string>& estimated_from, const Aspect* parameters = nullptr);
 
-/// FAIL if agreement or validation fails, PASS if all four aspects pass, otherwise WARN; absent if
-/// the campaign has no limits.
+/// Returns FAIL if agreement or validation fails, PASS if all four aspects pass, and WARN
+/// otherwise. Absent if the campaign has no limits.
 std::optional<Verdict> verdict_of(const Assessment& assessment);
 
-/// Whether a report may state a range of validity: the result was validated with separate records,
-/// and no limit is broken. Otherwise the report only states which conditions were tested.
+/// Returns true if a report may state a range of validity, that is, if the result was validated
+/// with separate records and no limit is broken. Otherwise the report states only which conditions
+/// were tested.
 bool has_range_of_validity(AspectState agreement, AspectState validation);
 
 }  // namespace rigcal::calib

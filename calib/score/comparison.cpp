@@ -12,8 +12,8 @@
 namespace rigcal::calib {
 namespace {
 
-/// Whether a value is zero or not significantly different from zero, so that a percentage of it is
-/// meaningless.
+/// Returns true if a value is zero, or not significantly different from zero, so that a percentage
+/// of it is meaningless.
 bool may_be_zero(const ComparedEstimate& estimate) {
   if (estimate.value.value_or(0.0) == 0.0) return true;
   const auto& ci95 = estimate.ci95;
@@ -21,14 +21,14 @@ bool may_be_zero(const ComparedEstimate& estimate) {
   return ci95->low <= 0.0 && ci95->high >= 0.0;
 }
 
-/// Adds an independent variance, which is known exactly, to an error.
+/// Adds an independent variance that is known exactly to an error.
 metrics::EstimateError with_variance(const metrics::EstimateError& own, double variance) {
   const std::array parts{metrics::ErrorPart{own.standard_error * own.standard_error, own.freedom},
                          metrics::ErrorPart{variance, metrics::kManyDegrees}};
   return {std::hypot(own.standard_error, std::sqrt(variance)), metrics::effective_freedom(parts)};
 }
 
-/// Tests whether one result is better more often than by chance.
+/// Tests whether one result is better in more conditions than chance would explain.
 void sign_test(bool shared, ScoreDifference& result) {
   const int untied = result.better + result.worse;
   if (shared) {
@@ -96,7 +96,7 @@ void judge_together(const std::vector<EstimateDifference*>& differences) {
 }
 
 double variance_by_effects(const EffectSpread& first, const EffectSpread& other) {
-  // Per unit of each effect, the difference changes by the moves of one result minus those of the
+  // Per unit of an effect, the difference changes by the move of one estimate minus that of the
   // other.
   const auto variance_by = [](const EffectSpread& own, const EffectSpread& beside) {
     Eigen::RowVectorXd moves = own.moves.row(0);
@@ -154,7 +154,7 @@ EstimateTrend trend_of(const std::vector<PlacedEstimate>& estimates, bool shared
   metrics::Trend trend;
   try {
     trend = metrics::weighted_trend(x, y, errors);
-  } catch (const std::domain_error&) {  // possible for hand-edited files
+  } catch (const std::domain_error&) {  // possible if a file was edited by hand
     result.reason = "the errors of the estimates are too far apart for a line";
     return result;
   }

@@ -11,7 +11,7 @@
 #include "metrics/significance.hpp"
 
 // Tests whether the estimates of two results differ by more than their errors, and whether the
-// estimates of several results have a trend over date or temperature.
+// estimates of several results show a trend over date or temperature.
 
 namespace rigcal::calib {
 
@@ -30,7 +30,7 @@ struct ComparedEstimate {
   std::optional<Range> ci95;
   std::optional<Identifiability> identifiability;
   bool at_bound = false;
-  Omittable<double> between_days_error;  ///< standard error due to differences between days
+  Omittable<double> between_days_error;  ///< standard error due to day-to-day differences
   RIGCAL_DESCRIBE(value, fitted, standard_error, degrees_of_freedom, ci95, identifiability,
                   at_bound, between_days_error)
 };
@@ -45,17 +45,17 @@ struct EstimateDifference {
   std::optional<double> p_value_of_all;             ///< adjusted for all parameters (Holm)
   std::optional<bool> significant;
   std::optional<std::string> reason;  ///< why it is not tested
-  Omittable<bool> of_other_dates;     ///< the error includes differences between days
-  /// Component of the error due to small effects that both models omit.
+  Omittable<bool> of_other_dates;     ///< true if the error includes day-to-day differences
+  /// Component of the error that is due to small effects which both models omit.
   Omittable<double> by_effects;
   RIGCAL_DESCRIBE(difference, percent, standard_error, degrees_of_freedom, p_value, p_value_of_all,
                   significant, reason, of_other_dates, by_effects)
 };
 
-/// How two results depend on each other, which decides how they are tested.
+/// How two results depend on each other, which decides how their difference is tested.
 struct Dependence {
-  bool same_records = false;  ///< both were fitted to common data
-  bool other_dates = false;   ///< the campaigns state different dates
+  bool same_records = false;  ///< true if records were used in both fits
+  bool other_dates = false;   ///< true if the campaigns state different dates
   double by_effects = 0.0;    ///< variance of the difference, from variance_by_effects()
 };
 
@@ -68,18 +68,19 @@ EstimateDifference difference_of(const ComparedEstimate& first, const ComparedEs
 /// differences without a p-value.
 void judge_together(const std::vector<EstimateDifference*>& differences);
 
-/// Variance of the difference of two estimates for one rig due to the effects that the models omit.
-/// The effects are the same in both results, so their common change of both estimates cancels.
-/// Returns the larger of the two variances that follow from the effect sizes in either result.
+/// Returns the variance of the difference between two estimates for the same rig that is due to the
+/// effects which the models omit. The effects are the same for both results, so any change that
+/// they cause in both estimates cancels. Returns the larger of the two variances that follow from
+/// the effect sizes in either result.
 ///
-/// @param first, other  each has one estimate only
+/// @param first, other each must have exactly one estimate
 double variance_by_effects(const EffectSpread& first, const EffectSpread& other);
 
-/// Adds the error due to differences between days to the error of an estimate.
+/// Adds the error due to day-to-day differences to the error of an estimate.
 metrics::EstimateError with_days(const metrics::EstimateError& own,
                                  const std::optional<double>& between_days_error);
 
-/// Means of a score over the conditions that two results have in common, and the number of
+/// Means of a score over the conditions that two results have in common, and the numbers of
 /// conditions in which the other result is better or worse.
 struct ScoreDifference {
   int conditions = 0;
@@ -91,17 +92,18 @@ struct ScoreDifference {
   RIGCAL_DESCRIBE(conditions, mean_of_first, mean, better, worse, p_value, significant, reason)
 };
 
-/// @param scores  for each condition, the score in the first result and in the other; not empty
+/// @param scores  for each condition, the score in the first and in the other result; not empty
 /// @param shared  whether the results share records, which makes a sign test meaningless
 ScoreDifference score_difference(const std::vector<std::pair<double, double>>& scores,
                                  bool higher_is_better, bool shared);
 
 /// A straight line fitted to estimates, weighted by their errors.
 struct EstimateTrend {
-  long points = 0;  ///< estimates with an error and a position
+  long points = 0;  ///< number of estimates that have an error and a position
   std::optional<double> slope, intercept, standard_error;
-  Later<std::optional<double>> degrees_of_freedom;  ///< for the slope's error
-  Later<std::optional<double>> widened;  ///< factor on that error for variation about the line
+  Later<std::optional<double>> degrees_of_freedom;  ///< for the standard error of the slope
+  /// Factor by which variation about the line widens that error.
+  Later<std::optional<double>> widened;
   std::optional<Range> ci95;
   std::optional<double> p_value, reduced_chi_square;
   std::optional<bool> significant;

@@ -12,7 +12,7 @@ namespace {
 using datasets::Condition;
 using Label = std::function<std::optional<std::string>(const Condition&)>;
 
-/// Returns the score of a channel, and adds an empty one if there is none.
+/// Returns the score of a channel. If there is none, an empty one is added first.
 GroupScore& score_in(Group& group, datasets::Channel channel) {
   auto& all = group.metrics;
   const auto place =

@@ -28,8 +28,8 @@ struct Group {
 };
 
 /// Groups the scores of a result by use, signal (waveform and frequency), frequency, waveform and
-/// leak level, the last in the order of the campaign. A condition without a property belongs to no
-/// group for it.
+/// leak level. Leak levels are in the order of the campaign. A condition that lacks a property is
+/// in none of the groups for that property.
 std::vector<Group> groups(const datasets::Campaign& campaign, const Fit& fit);
 
 }  // namespace rigcal::calib

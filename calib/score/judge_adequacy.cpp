@@ -14,19 +14,19 @@ namespace {
 
 using datasets::Campaign;
 
-/// Minimum fraction of the residual's variance that the input must explain before the dependence
-/// counts. A smaller fraction is negligible compared with the rest.
+/// The residual counts as dependent on the input only if the input explains at least this fraction
+/// of its variance. A smaller fraction is negligible compared with the rest.
 constexpr double kLeastDriven = 0.1;
 
-/// Ratio of the model error to the noise, as standard deviations.
+/// Returns the ratio of the model error to the noise, both as standard deviations.
 double model_error(const LackOfFit& test) { return std::sqrt(std::max(0.0, test.ratio - 1.0)); }
 
 std::string signal_of(const std::string& condition, datasets::Channel channel) {
   return fmt::format("{} of {}", datasets::info(channel).key, condition);
 }
 
-/// Describes the largest model error among signals that pass. An estimate that exceeds the allowed
-/// error by chance is reported as not significant.
+/// Describes the largest model error among the signals that pass. An error that exceeds the allowed
+/// value but may be due to chance is reported as not significant.
 std::string error_words(double largest, double largest_significant, double bound) {
   if (largest <= bound)
     return fmt::format("model error at most {:.2g} times the noise ({:.2g} allowed)", largest,
@@ -44,8 +44,8 @@ std::string error_words(double largest, double largest_significant, double bound
 
 /// Judges the records with known noise.
 void judge_lack_of_fit(const Campaign& campaign, const Fit& fit, std::vector<Reason>& reasons) {
-  /// If the residual's variance is below this fraction of the stated noise variance (half of the
-  /// standard deviation), the noise is overstated and cannot be used for a judgement.
+  /// If the variance of the residual is below this fraction of the stated noise variance (half of
+  /// the standard deviation), the noise is overstated and no basis for a judgement.
   constexpr double kOverstated = 0.25;
   const double bound = campaign.acceptance_bounds.model_error_to_noise;
   const auto& tests = fit.lack_of_fit;
@@ -110,7 +110,7 @@ void judge_lack_of_fit(const Campaign& campaign, const Fit& fit, std::vector<Rea
   }
 }
 
-/// A signal with unknown noise, which can only be judged from its residual.
+/// A signal with unknown noise, which can be judged only from its residual.
 struct UnjudgedSignal {
   const ConditionScore* condition = nullptr;
   const ChannelScore* channel = nullptr;

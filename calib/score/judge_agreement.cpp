@@ -15,7 +15,7 @@ namespace {
 
 using datasets::Campaign;
 
-/// Without limits, an agreement below this value is reported. By any standard, a model that
+/// If there are no limits, an agreement below this value is reported. By any standard, a model that
 /// explains less than nine tenths of the variance does not describe a record.
 constexpr double kPoorRho2 = 0.9;
 
@@ -61,14 +61,15 @@ void judge_recordings(const Fit& fit, std::vector<Reason>& reasons) {
              first->id, {{"conditions", static_cast<double>(count)}}));
 }
 
-/// An output channel that has no limit in some conditions.
+/// Conditions in which an output channel has no limit.
 struct WithoutLimit {
   std::size_t conditions = 0;
-  const ConditionScore* worst = nullptr;  ///< has the lowest rho2; the first if none has one
+  /// The one with the lowest rho2, or the first if there is no rho2.
+  const ConditionScore* worst = nullptr;
   double rho2 = std::numeric_limits<double>::infinity();
 };
 
-/// Reports the compared channels without a limit.
+/// Reports compared channels that have no limit.
 void judge_without_limits(const Campaign& campaign, const Fit& fit, std::vector<Reason>& reasons) {
   std::map<std::pair<datasets::Channel, bool>, WithoutLimit> found;
   for (const ConditionScore& score : fit.conditions) {
@@ -115,7 +116,7 @@ void judge_sensors(const Campaign& campaign, std::vector<Reason>& reasons) {
                              doubt.words));
 }
 
-/// Reports the lowest rho2 of all signals; for campaigns without limits.
+/// Reports the lowest rho2 of all signals. Used for campaigns without limits.
 void name_poor_agreement(const Fit& fit, std::vector<Reason>& reasons) {
   const ConditionScore* where = nullptr;
   const ChannelScore* worst = nullptr;

@@ -5,9 +5,10 @@
 
 namespace rigcal::calib {
 
-/// Fails if a scored condition breaks a limit or cannot be evaluated. Makes a reservation for a
-/// value between limit and warning limit, for a condition that was not scored, and for a doubtful
-/// recording. Without limits agreement is not assessed, and the reason names the lowest agreement.
+/// Fails if a scored condition breaks a limit or cannot be evaluated. Expresses a reservation if a
+/// value is between the limit and the warning limit, if a condition was not scored, or if a
+/// recording is doubtful. Without limits, agreement is not assessed, and the reason names the
+/// signal that agrees least.
 Aspect judge_agreement(const datasets::Campaign& campaign, const Fit& fit);
 
 }  // namespace rigcal::calib

@@ -8,17 +8,18 @@
 
 namespace rigcal::calib {
 
-/// Whether the campaign or a condition has limits.
+/// Returns true if the campaign or one of its conditions has limits.
 bool has_limits(const datasets::Campaign& campaign, const Fit& fit);
 
-/// The reason to give if there are no limits.
+/// Returns the reason to give if there are no limits.
 Reason no_limits();
 
-/// Appends the verdicts on the limits of some conditions, the worst first: one reason for each
-/// condition that breaks a limit or is not scored, and a common one for all that keep their limits.
+/// Appends reasons with the verdicts on the limits of several conditions, the worst first. Each
+/// condition that breaks a limit or is not scored has its own reason; all conditions that keep
+/// their limits share one.
 void judge_limits(const std::vector<const ConditionScore*>& scores, std::vector<Reason>& reasons);
 
-/// "1 condition", "3 conditions".
+/// Returns, for example, "1 condition" or "3 conditions".
 std::string conditions_text(std::size_t count);
 
 }  // namespace rigcal::calib

@@ -16,11 +16,12 @@ namespace {
 
 using datasets::Campaign;
 
-/// An upper limit is negligible below this fraction of the same parameter's value elsewhere in the
-/// campaign. Estimates are called weak from the same fraction on.
+/// An upper limit is negligible if it is below this fraction of the same parameter's value
+/// elsewhere in the campaign. Estimates with half-widths above the same fraction are called weak.
 constexpr double kNegligibleShare = 0.2;
 
-/// Largest absolute value of the same parameter at other levels or conditions, fitted or known.
+/// Returns the largest absolute value of the same parameter at other levels or in other conditions,
+/// fitted or known.
 double elsewhere(const Fit& fit, const FittedParameter& parameter) {
   double largest = 0.0;
   for (const FittedParameter& each : fit.parameters) {
@@ -31,7 +32,8 @@ double elsewhere(const Fit& fit, const FittedParameter& parameter) {
   return largest;
 }
 
-/// Upper 95 % limit on the absolute value of a parameter that is indistinguishable from zero.
+/// Returns the upper 95 % limit on the absolute value of a parameter that is indistinguishable from
+/// zero.
 double upper_limit(const FittedParameter& parameter) {
   return parameter.ci95 ? std::max(std::abs(parameter.ci95->low), std::abs(parameter.ci95->high))
                         : HUGE_VAL;
@@ -58,8 +60,8 @@ Reason judge_bounded(const Campaign& campaign, const Fit& fit, const FittedParam
                 {{"upper_limit", limit}, {"allowed", allowed}});
 }
 
-/// Notes the known values that the estimates treat as exact because the campaign states no
-/// `prior_sd` for them.
+/// Notes the known values that are treated as exact because the campaign states no `prior_sd` for
+/// them.
 void note_exact_values(const Campaign& campaign, const Fit& fit, std::vector<Reason>& reasons) {
   const auto table = model::parameter_table(campaign.rig.plant);
   std::set<int> uncertain;
@@ -87,14 +89,14 @@ void note_exact_values(const Campaign& campaign, const Fit& fit, std::vector<Rea
              {}, {{"values", static_cast<double>(names.size())}}));
 }
 
-/// Whether only one of several starts ended at the result.
+/// Returns true if only one of several starts ended at the result.
 bool found_once(const Fit& fit) {
   const bool several = fit.starts.size() > 1 && !fit.basins.empty();
   return several && fit.basins.front().starts.size() < 2 &&
          !(fit.further_starts && fit.further_starts->as_low > 0);
 }
 
-/// Notes how many further starts a fit with one start evaluated, and where they led.
+/// Notes how many further starts a fit with a single start evaluated, and where they led.
 void note_further_starts(const Fit& fit, std::vector<Reason>& reasons) {
   if (!fit.further_starts || fit.further_starts->looked_at == 0) return;
   const FurtherStarts& looks = *fit.further_starts;
@@ -113,7 +115,7 @@ void note_further_starts(const Fit& fit, std::vector<Reason>& reasons) {
                             {"as_low", static_cast<double>(looks.as_low)}}));
 }
 
-/// Text of an effect's size in a readable unit.
+/// Formats the size of an effect in a readable unit.
 std::string readable_size(double value, const std::string& unit) {
   if (unit == "1") return significant(100.0 * value, 2) + " %";
   if (unit == "s" || unit == "m" || unit == "V")
@@ -127,8 +129,8 @@ double half_width_if_exact(const FittedParameter& parameter) {
   return 0.5 * (parameter.ci95_if_exact->high - parameter.ci95_if_exact->low);
 }
 
-/// Text that names other effects which explain almost as much as the missing one, with their
-/// weights: "; lag of the position sensor would explain nearly as much (weight 0.3)".
+/// Names other effects that explain almost as much as the missing one, with their weights: "; lag
+/// of the position sensor would explain nearly as much (weight 0.3)".
 std::string alternatives_text(const Considered& considered) {
   constexpr double kNegligibleWeight = 0.05;
   std::vector<std::string> words;
@@ -145,8 +147,8 @@ std::string alternatives_text(const Considered& considered) {
   return fmt::format("; the records hardly separate it from {}", fmt::join(words, ", "));
 }
 
-/// Reports effects that the residuals call for. Makes a reservation if such an effect would move an
-/// estimate out of the interval that assumes an exact model.
+/// Reports effects that the residuals call for. Expresses a reservation if such an effect would
+/// move an estimate out of the interval that assumes an exact model.
 void judge_missing(const Campaign& campaign, const Fit& fit, std::vector<Reason>& reasons) {
   const auto table = model::parameter_table(campaign.rig.plant);
   std::vector<std::string> moved;
@@ -179,7 +181,7 @@ void judge_missing(const Campaign& campaign, const Fit& fit, std::vector<Reason>
   }
 }
 
-/// Judges whether the validation records on their own give the same estimates.
+/// Judges whether the validation records alone lead to the same estimates.
 void judge_stability(const Campaign& campaign, const Fit& fit, std::vector<Reason>& reasons) {
   const auto table = model::parameter_table(campaign.rig.plant);
   std::vector<std::string> words;

@@ -5,8 +5,8 @@
 
 namespace rigcal::calib {
 
-/// Passes if every estimate except nuisance parameters is identified, or is indistinguishable from
-/// zero with a negligible upper limit. Otherwise makes a reservation.
+/// Passes if every estimate except nuisance parameters is either identified, or indistinguishable
+/// from zero with a negligible upper limit. Otherwise expresses a reservation.
 Aspect judge_parameters(const datasets::Campaign& campaign, const Fit& fit);
 
 }  // namespace rigcal::calib

@@ -19,7 +19,8 @@ namespace {
 
 using datasets::Condition;
 
-/// Finds the longest stretch of consecutive samples that count. Returns its first index and count.
+/// Finds the longest run of consecutive samples that count, and returns its first index and its
+/// length.
 std::pair<std::size_t, std::size_t> longest_stretch(const std::vector<std::size_t>& rows) {
   std::pair<std::size_t, std::size_t> best{0, 0};
   std::size_t begin = 0;
@@ -46,12 +47,12 @@ void compare_at_fundamental(const ProblemCondition& condition, std::span<const d
     score.gain_ratio = found.gain_ratio;
     score.phase_deg = found.phase_deg;
     score.delay_s = found.delay_s;
-  } catch (const std::logic_error& error) {  // no whole period, or no such component
+  } catch (const std::logic_error& error) {  // no whole period, or no component at that frequency
     add_problem(score, error.what());
   }
 }
 
-/// Tests the residual over the longest stretch without a gap; absent if it cannot be tested.
+/// Tests the residual over the longest run of samples without a gap; absent if it cannot be tested.
 std::optional<metrics::ResidualTests> test_residual(const ProblemCondition& condition,
                                                     std::span<const double> measured,
                                                     std::span<const double> simulated,
@@ -67,7 +68,7 @@ std::optional<metrics::ResidualTests> test_residual(const ProblemCondition& cond
       (time_s[begin + count - 1] - time_s[begin]) / static_cast<double>(count - 1);
   try {
     return metrics::residual_tests(residual, drive.subspan(begin, count), interval_s);
-  } catch (const std::logic_error&) {  // too short, or constant
+  } catch (const std::logic_error&) {  // residual too short or constant
     return std::nullopt;
   }
 }
@@ -90,7 +91,7 @@ metrics::MeasuredMean measured_mean(const datasets::Campaign& campaign,
   return result;
 }
 
-/// Effects that a fit considered, and the subset that acts in a problem.
+/// Effects that a fit considered, and those of them that act in a problem.
 struct ScoredEffects {
   const EffectSpread& spread;
   std::vector<Effect> acting;
@@ -112,7 +113,7 @@ ChannelScore score_channel(const datasets::Campaign& campaign, const ProblemCond
       score.expanded_uncertainty = found->one_sided;
       score.two_sided_uncertainty = found->two_sided;
     }
-  } catch (const std::logic_error& error) {  // constant, or fewer than two samples
+  } catch (const std::logic_error& error) {  // constant channel, or fewer than two samples
     add_problem(score, error.what());
   }
   if (channel.sd_known) {
@@ -227,7 +228,8 @@ std::vector<std::string> overfitting_warnings(const std::vector<ConditionScore>&
   for (const ConditionScore& score : scores) {
     for (const ChannelScore& channel : score.channels) {
       if (!channel.agreement || !channel.noise_floor || score.samples < 2) continue;
-      // The variance of n noise samples has a relative standard deviation of sqrt(2 / n).
+      // The variance estimated from n samples of noise has a relative standard deviation of sqrt(2
+      // / n).
       const double scatter = 5.0 * std::sqrt(2.0 / static_cast<double>(score.samples));
       const double unexplained = 1.0 - channel.agreement->rho2;
       const double least = 1.0 - channel.noise_floor->rho2;

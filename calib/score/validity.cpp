@@ -35,7 +35,8 @@ std::optional<Range> recorded_range(const Record* record, Channel channel) {
   return range;
 }
 
-/// Value of a parameter in a condition, fitted or known. The narrowest scope takes precedence.
+/// Returns the value of a parameter in a condition, fitted or known. The narrowest scope takes
+/// precedence.
 double value_in(const Campaign& campaign, const Condition& condition, const Fit& fit,
                 std::string_view key) {
   const int index = model::parameter_index(campaign.rig.plant, key);
@@ -46,7 +47,7 @@ double value_in(const Campaign& campaign, const Condition& condition, const Fit&
     if (p.scope == datasets::Scope::leak_level && p.level != condition.leak_level) continue;
     if (p.scope == datasets::Scope::condition && p.level != condition.id) continue;
     narrowest = p.scope;
-    // A value that is not distinguishable from zero counts as zero, not as 8.8e-07.
+    // A value that cannot be distinguished from zero counts as zero rather than, say, 8.8e-07.
     value = p.identifiability == Identifiability::bounded ? 0.0 : p.value;
   }
   return value;

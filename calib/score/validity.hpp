@@ -19,7 +19,8 @@ struct Validity {
   std::optional<Range> supply_pressure_pa;
   std::optional<Range> leakage_coefficient;
   std::vector<std::string> leak_levels;
-  Omittable<Range> amplitude_n, amplitude_pa, amplitude_m_per_s2;  ///< in other loops
+  Omittable<Range> amplitude_n, amplitude_pa,
+      amplitude_m_per_s2;  ///< in other loops
   RIGCAL_DESCRIBE(frequency_hz, amplitude_m, amplitude_v, supply_pressure_pa, leakage_coefficient,
                   leak_levels, amplitude_n, amplitude_pa, amplitude_m_per_s2)
 
@@ -44,8 +45,8 @@ void put_amplitude(std::string_view unit, const std::optional<Value>& amplitude,
 /// Computes the ranges covered by the conditions with the given uses. Values from `fit` take
 /// precedence.
 ///
-/// @param records  compared records; they provide the amplitude if a condition does not state one,
-///                 and the supply pressure if it was recorded
+/// @param records  the compared records, which provide the amplitude if a condition does not state
+///                 one, and the supply pressure if it was recorded
 Validity coverage(const datasets::Campaign& campaign, const std::vector<datasets::Record>& records,
                   const Fit& fit, const std::vector<datasets::Use>& uses);
 

@@ -9,9 +9,11 @@
 namespace rigcal::calib {
 namespace {
 
-/// Fraction of a 95 % interval that corresponds to 0.4 standard errors; searches end within 0.05.
+/// Fraction of a 95 % interval, equal to 0.4 standard errors; searches end within 0.05 standard
+/// errors of the minimum.
 constexpr double kSamePoint = 0.1;
-/// Fraction of the variance of a residual: half the square of 0.2 standard errors.
+/// Fraction of the variance of a residual; it corresponds to a distance of 0.2 standard errors
+/// (half the square).
 constexpr double kSameCost = 0.02;
 /// Fraction of the cost by which two simulations of the same point may differ.
 constexpr double kSimulated = 2e-6;

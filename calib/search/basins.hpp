@@ -13,15 +13,15 @@ namespace rigcal::calib {
 /// simulations.
 bool same_cost(double a, double b, double variance);
 
-/// Returns true if start a is better than start b: it has the lower cost, whatever the reason why
-/// it ended. At equal cost a converged start is better than one that has not converged.
+/// Returns true if start a is better than start b, that is, if it has the lower cost, regardless of
+/// why each start ended. At equal cost a converged start is better than one that has not converged.
 bool better_start(const StartReport& a, const StartReport& b, double variance);
 
 /// Groups converged starts that ended at the same point. Within a basin the costs are the same, and
 /// each parameter is within a tenth of its interval from the best start of the basin. Parameters
 /// without an interval are ignored. Basins are ordered by cost, then by start.
 ///
-/// @param parameters  parameters of the fit, in the order of the starts' values
+/// @param parameters  parameters of the fit, in the same order as the values in `starts`
 /// @param variance    variance of the weighted residuals: 1, or more if the model leaves more than
 ///                    noise
 std::vector<Basin> basins(const std::vector<StartReport>& starts,

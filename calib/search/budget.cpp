@@ -5,7 +5,8 @@
 namespace rigcal::calib {
 namespace {
 
-/// About thirty years; a longer time would overflow a clock that counts nanoseconds.
+/// In seconds, about thirty years. A much longer time would overflow a clock that counts
+/// nanoseconds.
 constexpr double kWithoutEnd = 1e9;
 
 }  // namespace

@@ -7,13 +7,13 @@
 
 namespace rigcal::calib {
 
-/// Budget of a whole job: the search and everything that follows it. All threads of the job use the
-/// same budget.
+/// Budget for a whole job, that is, the search and everything that follows it. All threads of the
+/// job share it.
 class Budget {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// Creates a budget without limits, which only ends on request.
+  /// Creates a budget without limits, which ends only on request.
   explicit Budget(const std::atomic<bool>* cancel = nullptr) : cancel_(cancel) {}
   /// @param cancel           becomes true to end the job; may be null
   /// @param max_seconds      counted from `began`; no limit if it exceeds the range of the clock
@@ -21,8 +21,8 @@ class Budget {
   Budget(const std::atomic<bool>* cancel, Clock::time_point began,
          const std::optional<double>& max_seconds, const std::optional<long>& max_evaluations);
 
-  /// Returns a budget for a part of the job whose evaluations are counted when it ends. It has the
-  /// same deadline and no limit on evaluations.
+  /// Returns a budget for a part of the job whose evaluations are only counted when it ends. The
+  /// part has the same deadline, but no limit on evaluations.
   Budget part() const { return Budget(cancel_, deadline_); }
 
   const std::atomic<bool>* cancel() const { return cancel_; }
@@ -34,8 +34,8 @@ class Budget {
 
   bool cancelled() const;
   bool out_of_time() const { return deadline_ && Clock::now() >= *deadline_; }
-  /// Returns true if the job must end now, at a moment that the clock or the user decides. What a
-  /// task computes after that may be wrong: simulations end early. It must not be kept.
+  /// Returns true if the clock or the user requires the job to end now. From then on simulations
+  /// end early, so that results may be wrong and must be discarded.
   bool interrupted() const { return cancelled() || out_of_time(); }
   bool out_of_evaluations() const {
     return max_evaluations_ && evaluations_.load() >= *max_evaluations_;

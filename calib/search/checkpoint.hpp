@@ -7,8 +7,8 @@
 
 namespace rigcal::calib {
 
-/// State of a multi-start between two starts. It is enough to continue as if the search had never
-/// been stopped.
+/// State of a multi-start between two starts. It contains everything needed to continue as if the
+/// search had never been stopped.
 struct Checkpoint {
   std::vector<StartReport> starts;  ///< completed starts
   int best = 0;                     ///< number of the best start; 0 if none could be simulated

@@ -5,7 +5,7 @@
 namespace rigcal::calib {
 namespace {
 
-/// Number of failures described in words, for each condition and kind.
+/// Maximum number of failures described in words, for each condition and kind.
 constexpr int kFailuresKept = 3;
 
 }  // namespace

@@ -9,11 +9,11 @@
 
 namespace rigcal::calib {
 
-/// The evaluations that a search has made, and how many of them failed.
+/// Counts the evaluations that a search has made, and those that failed.
 struct EvaluationCounters {
   long evaluations = 0;
   long failure_count = 0;
-  std::vector<SimulationFailure> failures;  ///< the first few for each condition and kind
+  std::vector<SimulationFailure> failures;  ///< the first few failures for each condition and kind
   std::map<std::pair<std::size_t, model::SimulationStatus>, int> kept;
 
   void record(const Problem& problem, const Evaluation& evaluation, int start);

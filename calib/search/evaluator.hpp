@@ -13,7 +13,7 @@ namespace rigcal::calib {
 ///
 /// Every evaluation includes sensitivities. Almost every trial point becomes the next iterate,
 /// whose Jacobian is then available, and cost and gradient come from the same solver steps. The
-/// last point and the best point are kept, so that nothing is computed twice.
+/// last point and the best point are kept, so that they need not be evaluated again.
 class Evaluator {
  public:
   /// Borrows the budget and the problem. If the weights of the problem change between solves, call
@@ -29,29 +29,29 @@ class Evaluator {
         best_(other.best_),
         fidelity_(other.fidelity_) {}
 
-  /// Returns the evaluation at z. It is not ok if a condition could not be simulated; the failure
-  /// is recorded.
+  /// Returns the evaluation at z. If a condition cannot be simulated, the failure is recorded and
+  /// the evaluation is not ok.
   const Evaluation& evaluate(std::span<const double> z);
-  /// Evaluates even if the budget is spent, so that a stopped fit can still be scored with whole
+  /// Evaluates z even if the budget is spent, so that a stopped fit can still be scored with whole
   /// records.
   const Evaluation& conclude(std::span<const double> z);
 
-  /// Starts with a point that was evaluated elsewhere, and counts that evaluation.
+  /// Begins with a point that was evaluated elsewhere, and counts that evaluation.
   void begin_with(Evaluation evaluation);
 
   /// Sets the fidelity of future simulations, and clears the cache if the fidelity changes.
   void set_fidelity(const Fidelity& fidelity);
   const Fidelity& fidelity() const { return fidelity_; }
-  /// Makes evaluations at the working tolerance keep their rows from now on, for verify_optimum().
+  /// From now on, evaluations at the working tolerance keep their rows for verify_optimum().
   void keep_rows() { keep_rows_ = true; }
 
   /// Begins a start of a multi-start; best() is then the best point of this start.
   void begin_start(int number);
   /// Clears the cache.
   void forget();
-  /// Returns the point with the lowest cost so far; not ok if there is none.
+  /// Returns the point with the lowest cost so far; it is not ok if no point has been evaluated.
   const Evaluation& best() const { return best_; }
-  /// Makes the last point the best, whatever its cost.
+  /// Makes the last point the best one, regardless of its cost.
   void take_last() { best_ = last_; }
 
   const Budget& budget() const { return budget_; }

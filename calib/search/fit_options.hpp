@@ -15,7 +15,7 @@ struct Checkpoint;  // checkpoint.hpp
 
 /// Options of a fit in addition to the campaign and its records.
 struct FitOptions {
-  int starts = 1;  ///< 1: the campaign's start values; more: latin hypercube around them
+  int starts = 1;  ///< 1: only the campaign's start values; more: also a latin hypercube
   /// Latin-hypercube starts in addition to a single start. If that start converges, they are only
   /// evaluated coarsely. Otherwise each is searched like the first.
   int further_starts = 0;
@@ -24,18 +24,19 @@ struct FitOptions {
   int max_iterations = 200;             ///< per start
   std::optional<long> max_evaluations;  ///< limit for the whole job; status `stopped` if reached
   std::optional<double> max_seconds;    ///< limit for the whole job; status `stopped` if reached
-  bool consider = true;                 ///< whether to consider small effects missing from the
-                                        ///< model
-  int bootstrap = 0;                    ///< replicates, each fitted from the optimum; 0: none
-  int posterior = 0;                    ///< number of posterior draws per chain; 0: none
-  bool profiles = false;                ///< profile likelihood of all unknowns except nuisances
-  bool cross_validate = false;          ///< leave out one condition at a time
-  const Checkpoint* resume = nullptr;   ///< checkpoint to continue from
+  bool consider = true;                 ///< whether to consider small effects that the model omits
+  int bootstrap = 0;      ///< number of replicates, each fitted from the optimum; 0: none
+  int posterior = 0;      ///< number of posterior draws per chain; 0: none
+  bool profiles = false;  ///< whether to compute the profile likelihood of all unknowns except
+                          ///< nuisance parameters
+  bool cross_validate = false;         ///< whether to leave out one condition at a time
+  const Checkpoint* resume = nullptr;  ///< checkpoint to continue from
   std::function<void(const Checkpoint&)> checkpoint;  ///< called after every completed start
-  /// Runs starts (if it has several processes), replicates, profiles and folds. If null, the
-  /// threads of this process run them.
+  /// Runs the starts (if it has several processes), replicates, profiles and folds. If null, they
+  /// run on the threads of this process.
   TaskFarm* farm = nullptr;
-  const std::atomic<bool>* cancel = nullptr;  ///< set to true to end the fit with the best point
+  /// Set to true to end the fit with the best point so far.
+  const std::atomic<bool>* cancel = nullptr;
   /// Called after every iteration with start (from 1), iteration, cost, relative change of cost,
   /// seconds.
   std::function<void(int, int, double, double, double)> progress;

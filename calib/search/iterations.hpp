@@ -6,12 +6,13 @@
 
 namespace rigcal::calib {
 
-/// Counts the iterations of one start. All stages of the start have a common limit and a common
-/// count for progress messages. Borrows the options.
+/// Counts the iterations of one start. All stages of the start share one limit, and one count for
+/// progress messages. Borrows the options.
 class Iterations {
  public:
   /// @param start   number of the start
-  /// @param before  iterations that the start has already made; counted, but not against its limit
+  /// @param before  iterations that the start has already made; they are included in the count, but
+  ///                not in the limit
   explicit Iterations(const FitOptions& options, int start = 1, int before = 0)
       : options_(options), start_(start), before_(before) {}
 

@@ -14,8 +14,7 @@ namespace {
 /// With coarse simulations, a search ends when the remaining step is at most this many standard
 /// errors. The errors of the simulations themselves are larger.
 constexpr double kCoarseOffset = 1.0;
-/// A horizon ends when at most this fraction of the cost could still be gained. The model error is
-/// then only a fraction of the residual anyway.
+/// A horizon ends when at most this fraction of the cost could still be removed.
 constexpr double kHorizonLeaves = 0.05;
 /// In addition, the remaining step must be at most this many standard errors. With many samples, a
 /// parameter that is far off but acts on few of them contributes only a small fraction of the cost.
@@ -23,8 +22,8 @@ constexpr double kHorizonOffset = 10.0;
 /// Relative change in cost below which coarse simulations cannot resolve the change.
 constexpr double kCoarseChange = 1e-4;
 
-/// Returns true if a horizon has no more information to offer. The next horizon, a few times as
-/// long, has far more.
+/// Returns true if further iterations on a horizon are not worthwhile. The next horizon, which is a
+/// few times as long, contains far more information.
 bool horizon_exhausted(const Problem& problem, const Evaluator& evaluator,
                        const OptimumCheck& check) {
   const Evaluation& best = evaluator.best();

@@ -20,12 +20,12 @@ struct SolveResult {
 
 /// Minimises with Ceres' trust-region method at the evaluator's fidelity. With exact simulations it
 /// continues to a stationary point. With coarse simulations it ends within about a standard error
-/// of one, or when a short horizon has no more information to offer. If Ceres stops elsewhere it is
-/// called again from the best point with a new trust region, up to three times.
+/// of a stationary point, or when a short horizon can contribute little more. If Ceres stops
+/// elsewhere it is called again from the best point with a new trust region, up to three times.
 ///
-/// Parameters at an active bound are fixed there in the next call, because a projected Gauss-Newton
-/// step is not the right step for the others. Parameters that the cost pushes back into the box are
-/// released.
+/// Parameters at an active bound are fixed there for the next call, because projecting a
+/// Gauss-Newton step onto the bound does not give the right step for the others. Parameters are
+/// released if the cost falls towards the inside of the box.
 ///
 /// @param z  start point, in the unit box
 SolveResult minimise(const Problem& problem, Evaluator& evaluator, std::vector<double> z,
@@ -34,14 +34,15 @@ SolveResult minimise(const Problem& problem, Evaluator& evaluator, std::vector<d
 /// Returns the result for a start at which not even the first point could be simulated.
 SolveResult no_start(const Problem& problem, const Evaluator& evaluator, const Evaluation& first);
 
-/// Explains why a fit ended before it converged.
+/// Explains why a fit ended before it had converged.
 ///
-/// @param most_iterations  limit on iterations
+/// @param most_iterations  maximum number of iterations
 std::string stop_reason(const Evaluator& evaluator, int most_iterations);
 
 SolveResult converged(const Iterations& iterations, const OptimumCheck& check);
 
-/// Describes the first condition that could not be simulated, with time, reason and values.
+/// Describes the first condition that could not be simulated: the time, the reason and the
+/// parameter values.
 std::string describe_failure(const Problem& problem, const Evaluation& evaluation);
 
 }  // namespace rigcal::calib

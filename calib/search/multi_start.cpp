@@ -32,20 +32,21 @@ void serialize(Archive& archive, EvaluationCounters& counters) {
 
 namespace {
 
-/// Maximum number of iterations for a start that is only evaluated coarsely.
+/// Maximum number of iterations for a start that is evaluated only coarsely.
 constexpr int kLookIterations = 30;
-/// Two minima differ if their costs differ by more than the sum of two tolerances: the error of
-/// coarse simulations, as a fraction of the cost, and a number of variances of a residual.
+/// Two minima are different if their costs differ by more than the sum of two tolerances:
+/// kCoarseCost is the error of coarse simulations as a fraction of the cost, and kFurtherCost is in
+/// variances of a residual.
 constexpr double kCoarseCost = 1e-3;
 constexpr double kFurtherCost = 2.0;
 
-/// Returns a uniform number in [0, 1) with 53 bits. std::uniform_real_distribution would give
-/// different numbers with different libraries.
+/// Returns a uniformly distributed number in [0, 1) with 53 bits. std::uniform_real_distribution
+/// would give different numbers with different standard libraries.
 double uniform(boost::random::mt19937_64& random) {
   return static_cast<double>(random() >> 11U) * 0x1p-53;
 }
 
-/// Returns the campaign's start values and `count - 1` points of a latin hypercube.
+/// Returns the campaign's start values, followed by `count - 1` points of a latin hypercube.
 std::vector<std::vector<double>> start_points(const Problem& problem, int count,
                                               std::uint64_t seed) {
   const auto& unknowns = problem.map.unknowns();
@@ -95,7 +96,7 @@ StartReport make_start(const Problem& problem, Evaluator& evaluator, const FitOp
   return report;
 }
 
-/// Returns true if a start whose end point could be simulated is better than those before it.
+/// Returns true if a start whose end point could be simulated is better than all previous starts.
 bool is_best(const MultiStart& before, const StartReport& report, const Problem& problem) {
   if (before.best == 0) return true;
   const StartReport& best = before.starts[static_cast<std::size_t>(before.best) - 1];
@@ -158,8 +159,9 @@ void make_in_turn(const Problem& problem, Evaluator& evaluator, const FitOptions
   }
 }
 
-/// Runs the starts in parallel in the processes of a farm. The results are bitwise identical,
-/// because each start begins with the evaluator's state before the first.
+/// Runs the starts in parallel in the processes of a farm. The results are bitwise identical to
+/// those of make_in_turn(), because each start begins with the evaluator's state before the first
+/// start.
 void make_in_farm(const Problem& problem, Evaluator& evaluator, const FitOptions& options,
                   const std::vector<std::vector<double>>& points, TaskFarm& farm,
                   MultiStart& found) {
@@ -198,19 +200,20 @@ void make_in_farm(const Problem& problem, Evaluator& evaluator, const FitOptions
 struct Approach {
   std::size_t start = 0;
   std::vector<double> end;
-  double cost = 0.0;  ///< predicted after the remaining step, from coarse whole-record simulations
+  /// Predicted cost after the remaining step, from coarse simulations of whole records.
+  double cost = 0.0;
 };
 
-/// Evaluates further starts coarsely, then fully searches those that lead to a lower cost than the
-/// first start.
+/// Evaluates further starts coarsely. Those that lead to a lower cost than the first start are then
+/// searched fully.
 void look_around(const Problem& problem, Evaluator& evaluator, const FitOptions& options,
                  MultiStart& found) {
   FitOptions coarsely = options;
   coarsely.progress = nullptr;
   coarsely.max_iterations = std::min(options.max_iterations, kLookIterations);
   const auto points = start_points(problem, 1 + options.further_starts, options.seed);
-  // The cost includes the predicted fall of one more Gauss-Newton step, because an approach may end
-  // some standard errors before its minimum.
+  // The predicted reduction by one more Gauss-Newton step is subtracted from the cost, because an
+  // approach may end some standard errors away from its minimum.
   const auto coarse_cost = [&](const std::vector<double>& z) {
     evaluator.set_fidelity(Fidelity::coarse);
     const Evaluation& there = evaluator.evaluate(z);
@@ -291,7 +294,7 @@ MultiStart multi_start(const Problem& problem, Evaluator& evaluator, const FitOp
   MultiStart result;
   if (options.resume != nullptr) result = resumed(problem, evaluator, options);
   const auto points = start_points(problem, options.starts, options.seed);
-  // The limit on evaluations requires that the starts run one after the other.
+  // With a limit on evaluations, the starts must run one after the other.
   const bool spread = options.farm != nullptr && options.farm->processes() > 1 &&
                       points.size() > 1 && !options.max_evaluations;
   if (spread) {

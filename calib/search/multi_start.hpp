@@ -9,13 +9,13 @@
 namespace rigcal::calib {
 
 /// Returns a latin hypercube: every dimension is divided into `points` strata, and each stratum
-/// contains one point. Portable: the same seed gives bitwise identical points on any machine.
+/// contains one point. The same seed gives bitwise identical points on any machine.
 ///
 /// @return  `points` vectors of shape (dimensions), in [0, 1)
 std::vector<std::vector<double>> latin_hypercube(std::size_t points, std::size_t dimensions,
                                                  std::uint64_t seed);
 
-/// All starts of a fit and the best of them.
+/// All starts of a fit, and the best of them.
 struct MultiStart {
   std::vector<StartReport> starts;
   int best = 0;        ///< number of the best start, from 1; 0 if none could be simulated
@@ -26,16 +26,16 @@ struct MultiStart {
 
 /// Solves from the campaign's start values (start 1) and from a latin hypercube over the unit box.
 /// Nuisance parameters always start at their own start values. A failed start does not affect the
-/// others. The best start is the one with the lowest cost, whatever the reason why it ended. At
-/// equal cost (same_cost()) a converged start is better; ties go to the lower number.
+/// others. The best start is the one with the lowest cost, regardless of why it ended. Among starts
+/// of equal cost (same_cost()) a converged one is preferred, then the one with the lower number.
 ///
 /// If there is only one start and it converges, `options.further_starts` more starts are evaluated
-/// with coarse simulations. They are only searched fully if they lead to a lower cost.
+/// with coarse simulations. Only those that lead to a lower cost are searched fully.
 MultiStart multi_start(const Problem& problem, Evaluator& evaluator, const FitOptions& options);
 
-/// Polishes the optimum again after weights or tolerance have changed.
+/// Refines the optimum again after weights or tolerance have changed.
 ///
-/// @return  false if the optimum can no longer be simulated
+/// @return  false if the optimum cannot be simulated any more
 bool search_on(const Problem& problem, Evaluator& evaluator, const FitOptions& options,
                MultiStart& found);
 

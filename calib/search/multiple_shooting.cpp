@@ -21,35 +21,36 @@
 namespace rigcal::calib {
 namespace {
 
-/// For each stage, the jump, in floors, that has the same weight as a residual of one standard
-/// deviation. It decreases from about a tenth of the usual size of states to less than a simulation
-/// can resolve.
+/// For each stage, the jump (in floors, the absolute tolerances of the states) that has the same
+/// weight as a residual of one standard deviation. It decreases from about a tenth of the usual
+/// size of the states to less than a simulation can resolve.
 constexpr double kJumps[] = {3e3, 30.0, 0.3, 3e-3};
 constexpr std::size_t kStages = std::size(kJumps);
 /// Relative change in cost at which each stage ends.
 constexpr double kStageChange[] = {1e-3, 1e-3, 1e-6, 1e-10};
-/// Floors of a state per unit of its coordinate. Coordinates are then of order 1, like the other
-/// unknowns.
+/// Number of floors per unit of a state's coordinate. The coordinates are then of order 1, like the
+/// other unknowns.
 constexpr double kCoordinate = 1e4;
 constexpr std::size_t kLeastSamples = 4;
-/// Fraction of an interval over which the record is read on each side of a node.
+/// The state at a node is read from the record over this fraction of an interval on each side.
 constexpr double kReadShare = 0.1;
-/// Levenberg-Marquardt damping is relative to the weights. Larger weights on the jumps would damp
-/// the common motion of all states more, unless the radius grows with the square of the weights.
+/// Levenberg-Marquardt damping is relative to the weights. Larger weights on the jumps would
+/// therefore damp a common motion of all states more, unless the radius grew with the square of the
+/// weights.
 constexpr double kTrustRadii[] = {1e2, 1e4, 1e8, 1e12};
-/// Reduced systems up to this size are solved densely, so that the bits do not depend on the
-/// available library.
+/// Reduced systems up to this size are solved densely, so that the result does not depend, bit for
+/// bit, on which sparse library is available.
 constexpr std::size_t kMostDense = 1000;
 
-/// An interval of a condition's record that is simulated separately. Its last sample is the first
-/// sample of the next piece and is counted there.
+/// An interval of a condition's record that is simulated separately. Its last sample is also the
+/// first sample of the next piece, where it is counted.
 struct Piece {
   std::size_t condition = 0;
   std::size_t first = 0;                   ///< index of the first sample
   std::size_t last = 0;                    ///< index of the last sample
   std::size_t begin_row = 0, end_row = 0;  ///< range in the condition's `rows`
-  int node = -1;       ///< node with its initial state; -1: the condition's initial state
-  int next_node = -1;  ///< node with the state at its end; -1: none
+  int node = -1;  ///< node that contains its initial state; -1: the condition's own initial state
+  int next_node = -1;  ///< node that contains the state at its end; -1: none
 };
 
 /// The state between two pieces.
@@ -65,10 +66,11 @@ struct PieceEvaluation {
   model::SimulationStatus status = model::SimulationStatus::ok;
   double failed_at_s = 0.0;
   std::string reason;
-  /// R factor of [J r]. Columns: acting unknowns, coordinates of the node if there is one, r.
+  /// R factor of [J r]. The columns are the acting unknowns, the coordinates of the node if there
+  /// is one, and r.
   Eigen::MatrixXd r_factor;
   Eigen::VectorXd end;           ///< final state, in floors
-  Eigen::MatrixXd end_jacobian;  ///< same columns as the R factor, except the last
+  Eigen::MatrixXd end_jacobian;  ///< same columns as the R factor except the last
 };
 
 /// Returns the first sample of each piece of a condition.
@@ -82,7 +84,7 @@ std::vector<std::size_t> cuts(const ProblemCondition& condition, double interval
                                  "fewer than {} samples of its record",
                                  condition.condition->id, interval_s, kLeastSamples));
   };
-  // Checked before anything of this length is allocated.
+  // This is checked before anything of this length is allocated.
   if (wanted > 1.0 && wanted * kLeastSamples > static_cast<double>(times.size() - 1)) refuse();
   const auto pieces = static_cast<std::size_t>(wanted);
   std::vector<std::size_t> result{0};
@@ -114,15 +116,15 @@ class Pieces final : public ceres::EvaluationCallback {
   std::span<const double> z() const {
     return std::span(coordinates_).first(problem_.map.unknowns().size());
   }
-  /// Coordinates for Ceres: the unknowns in the unit box, then state / (kCoordinate floor) for
-  /// every node. They are contiguous in memory, because Ceres orders its blocks by their addresses.
+  /// Coordinates for Ceres: the unknowns in the unit box, followed by state / (kCoordinate floor)
+  /// for every node. They are contiguous in memory, because Ceres orders its blocks by address.
   double* unknown(std::size_t j) { return &coordinates_[j]; }
   double* coordinates(const Node& node) { return &coordinates_[node.first]; }
   const PieceEvaluation& evaluation(std::size_t piece) const { return evaluations_[piece]; }
 
-  /// Sets the unknowns to z, and every node to the state read from the record.
+  /// Sets the unknowns to z, and every node to the state determined from the record.
   ///
-  /// @return  false if such a state cannot be determined
+  /// @return  false if the state at a node cannot be determined
   bool begin_at(std::span<const double> z, double interval_s) {
     coordinates_.assign(z.begin(), z.end());
     for (const Piece& piece : pieces_) {
@@ -150,7 +152,6 @@ class Pieces final : public ceres::EvaluationCallback {
     return true;
   }
 
-  /// Sets the tolerance of the simulations.
   void set_tolerance(double tolerance) { tolerance_ = tolerance; }
 
   void PrepareForEvaluation(bool /*evaluate_jacobians*/, bool /*new_evaluation_point*/) override {
@@ -225,7 +226,7 @@ class Pieces final : public ceres::EvaluationCallback {
   void evaluate() {
     parallel_for(pieces_.size(), evaluator_.threads(),
                  [this](std::size_t i) { evaluations_[i] = evaluate_piece(pieces_[i]); });
-    Evaluation told;  // only for the counters
+    Evaluation told;  // used only to update the counters
     told.z.assign(z().begin(), z().end());
     told.conditions.resize(problem_.conditions.size());
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
@@ -304,7 +305,8 @@ void give_jacobians(const Eigen::MatrixXd& columns, const std::vector<int>& size
   }
 }
 
-/// Residuals of the samples in a piece. Blocks: acting unknowns, then its node if it has one.
+/// Residuals of the samples in a piece. Its parameter blocks are the acting unknowns, then the node
+/// if there is one.
 class PieceCost final : public ceres::CostFunction {
  public:
   PieceCost(const Pieces& pieces, std::size_t piece, const std::vector<int>& sizes)
@@ -332,7 +334,7 @@ class PieceCost final : public ceres::CostFunction {
 };
 
 /// The jump from the end of a piece to the next node, divided by the jump that the stage allows.
-/// Blocks: those of PieceCost, then the next node.
+/// Its parameter blocks are those of PieceCost, then the next node.
 class JumpCost final : public ceres::CostFunction {
  public:
   JumpCost(const Pieces& pieces, std::size_t piece, const std::vector<int>& sizes, double jump)
@@ -364,9 +366,9 @@ class JumpCost final : public ceres::CostFunction {
   double weight_;
 };
 
-/// Runs one stage. It starts from the current unknowns and nodes in `pieces` and updates them.
+/// Runs one stage, which starts from the unknowns and nodes in `pieces` and updates them.
 ///
-/// @return  false if not even its start could be simulated
+/// @return  false if not even the start of the stage could be simulated
 bool stage(const Problem& problem, Pieces& pieces, std::size_t number, int iterations,
            CeresWatch& watch) {
   pieces.PrepareForEvaluation(true, true);
@@ -387,7 +389,7 @@ bool stage(const Problem& problem, Pieces& pieces, std::size_t number, int itera
   }
   for (const Node& node : pieces.nodes()) {
     system.AddParameterBlock(pieces.coordinates(node), node.states());
-    const bool eliminated = node.number % 2 == 0;  // no two of these have a residual in common
+    const bool eliminated = node.number % 2 == 0;  // no residual depends on two of these
     ordering->AddElementToGroup(pieces.coordinates(node), eliminated ? 0 : 1);
     if (!eliminated) reduced += static_cast<std::size_t>(node.states());
   }

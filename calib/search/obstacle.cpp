@@ -14,14 +14,14 @@ namespace rigcal::calib {
 namespace {
 
 /// A direction is a valley if a step along it changes the residuals by less than this fraction of
-/// the change for a step in one parameter.
+/// the change caused by a step in a single parameter.
 constexpr double kValley = 0.1;
-/// A parameter is named if it contributes at least this fraction to the squared length of the
+/// A parameter is named if it contributes at least this fraction of the squared length of the
 /// valley's direction.
 constexpr double kPart = 0.1;
 
-/// Returns the unknowns of the direction that most of the remaining step follows, if that direction
-/// is a valley; otherwise empty.
+/// Returns the unknowns that form the direction of most of the remaining step if that direction is
+/// a valley; otherwise empty.
 std::vector<std::size_t> valley(const Problem& problem, Linearisation system,
                                 const OptimumCheck& check) {
   system.hold(check.active_bound);

@@ -8,7 +8,7 @@
 namespace rigcal::calib {
 namespace {
 
-/// In standard errors; see OptimumCheck.
+/// Largest relative offset of a stationary point, in standard errors; see OptimumCheck.
 constexpr double kStationary = 0.01;
 
 }  // namespace

@@ -8,19 +8,19 @@
 namespace rigcal::calib {
 namespace {
 
-/// Distance from the minimum, in standard errors, at which full Gauss-Newton steps begin, and their
-/// maximum number.
+/// Full Gauss-Newton steps begin at this distance from the minimum, in standard errors; there are
+/// at most kFullSteps.
 constexpr double kFullStepOffset = 30.0;
 constexpr int kFullSteps = 4;
-/// Distance at which these steps end: a third of the limit for a stationary point, because each
-/// step is almost exact.
+/// Full steps end at this distance. It is only a third of the limit for a stationary point, because
+/// each step is almost exact.
 constexpr double kFullStepEnd = 0.003;
-/// The step from coarse to exact simulations is rejected if the cost grows by more than this
-/// factor. With large residuals a Gauss-Newton step may overshoot; errors of the coarse simulations
-/// are far smaller.
+/// The step taken when simulations change from coarse to exact is rejected if the cost grows by
+/// more than this factor. With large residuals a Gauss-Newton step may overshoot; the errors of the
+/// coarse simulations are far smaller than that.
 constexpr double kWorseStep = 1.5;
-/// If the mean square residual grows by more than this factor, the estimate from the shorter
-/// horizon is discarded.
+/// The estimate from a shorter horizon is discarded if the mean square residual of the next horizon
+/// is larger by more than this factor.
 constexpr double kForeseen = 4.0;
 
 /// Returns the point reached by a full Gauss-Newton step.
@@ -84,8 +84,8 @@ bool Search::enter(const Stage& stage) {
     if (iterations_.used() >= horizons_until_) return false;
     evaluator_.set_fidelity(stage.fidelity);
     evaluator_.evaluate(z_);
-    // An estimate that fits the next horizon much worse than its own horizon is discarded, unless
-    // its start point is even worse.
+    // An estimate that fits the next horizon much worse than its own is discarded, unless the point
+    // from which it started is even worse.
     if (!evaluator_.best().ok || mean_square(evaluator_.best()) > kForeseen * foreseen_)
       evaluator_.evaluate(before_);
     if (!evaluator_.best().ok) {
@@ -99,7 +99,7 @@ bool Search::enter(const Stage& stage) {
     evaluator_.set_fidelity(stage.fidelity);
     if (!after_horizons) return true;
     const Evaluation& whole = evaluator_.evaluate(z_);
-    if (!whole.ok || whole.cost > begin_cost_) {  // the whole records contradict the horizons
+    if (!whole.ok || whole.cost > begin_cost_) {  // whole records contradict the horizons
       z_ = begin_;
       evaluator_.forget();
       evaluator_.evaluate(z_);
@@ -118,8 +118,8 @@ bool Search::enter(const Stage& stage) {
   return true;
 }
 
-/// Returns the end point of multiple shooting if a simulation of whole records is better there than
-/// at z. Multiple shooting gets at most half of the iterations.
+/// Returns the end point of multiple shooting if whole records fit better there than at z;
+/// otherwise returns z. Multiple shooting gets at most half of the iterations.
 std::vector<double> Search::shoot(std::vector<double> z, double interval_s) {
   const Evaluation first = evaluator_.evaluate(z);
   const ShootingResult found =
@@ -138,7 +138,7 @@ SolveResult Search::polish(std::vector<double> z) {
   return minimise(problem_, evaluator_, std::move(z), kPolishStage, iterations_);
 }
 
-/// Makes full Gauss-Newton steps from the evaluator's best point as long as they approach a
+/// Takes full Gauss-Newton steps from the evaluator's best point as long as they approach a
 /// stationary point. Close to it the cost is not a useful criterion, because simulation errors
 /// exceed the remaining reduction. The last point becomes the evaluator's best point.
 OptimumCheck Search::full_steps() {
@@ -158,8 +158,8 @@ OptimumCheck Search::full_steps() {
 }
 
 /// Returns the result of a start that was stopped before any simulation at the working tolerance:
-/// the best of the end points of its stages. They are compared by coarse simulations of whole
-/// records. Only the best is then simulated at the working tolerance.
+/// the best of the end points of its stages. They are compared using coarse simulations of whole
+/// records, and only the best is simulated at the working tolerance.
 SolveResult Search::stopped() {
   if (evaluator_.best().ok) ends_.push_back(evaluator_.best().z);
   const std::vector<double>* best = nullptr;

@@ -5,9 +5,9 @@
 
 namespace rigcal::calib {
 
-/// Least squares from one start, in the unit box. The end point is the evaluator's best(). A search
-/// has `converged` if check_optimum() finds the point stationary, or almost stationary if Ceres
-/// also converged. Borrows everything.
+/// Solves the least-squares problem from one start, in the unit box. The end point is the
+/// evaluator's best(). A search has `converged` if check_optimum() finds the point stationary; if
+/// Ceres has converged as well, almost stationary is enough. Borrows everything.
 class Search {
  public:
   /// @param start   number of the start, for progress and messages
@@ -20,7 +20,7 @@ class Search {
         iterations_(options, start, before) {}
 
   /// Runs multiple shooting if the campaign asks for it, then the stages of plan_schedule(). If the
-  /// search is stopped, the best point is the end point of a stage with the lowest cost over whole
+  /// search is stopped, the best point is the stage end point with the lowest cost over whole
   /// records.
   SolveResult run(std::vector<double> z);
 
@@ -45,12 +45,12 @@ class Search {
   const FitOptions& options_;
   Iterations iterations_;
 
-  std::vector<double> z_;                  ///< end point of the stages so far
-  std::vector<double> begin_;              ///< start point of the stages
-  double begin_cost_ = 0.0;                ///< cost of whole records at the start point
-  std::vector<double> before_;             ///< start point of the last horizon
-  double foreseen_ = 0.0;                  ///< mean square residual at the end of the last horizon
-  int horizons_until_ = 0;                 ///< number of used iterations after which horizons end
+  std::vector<double> z_;       ///< end point of the stages so far
+  std::vector<double> begin_;   ///< start point of the stages
+  double begin_cost_ = 0.0;     ///< cost of whole records at the start point
+  std::vector<double> before_;  ///< start point of the last horizon
+  double foreseen_ = 0.0;       ///< mean square residual at the end of the last horizon
+  int horizons_until_ = 0;      ///< number of iterations after which no further horizon is used
   std::vector<std::vector<double>> ends_;  ///< end points of the stages
 };
 

@@ -7,13 +7,13 @@
 namespace rigcal::calib {
 namespace {
 
-/// If the samples resolve an oscillation, this number of samples spans less than a cycle. Each
-/// unknown that only one record determines (its initial state, the offset of a sensor) adds the
-/// same number.
+/// If the samples resolve an oscillation, this many of them span less than a cycle. The same number
+/// is added for each unknown that only one record determines (its initial state, the offset of a
+/// sensor).
 constexpr std::size_t kShortestSamples = 4;
-/// Largest ratio of the length of a horizon to that of the one before.
+/// Maximum ratio between the lengths of successive horizons.
 constexpr double kGrowth = 4.0;
-/// Maximum number of iterations at one horizon; the next one carries more information.
+/// Maximum number of iterations on one horizon; the next one contains more information.
 constexpr int kHorizonIterations = 10;
 
 /// Returns the number of unknowns that no other record determines.

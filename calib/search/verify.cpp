@@ -23,7 +23,7 @@ std::vector<ConditionRows> verify_optimum(const Problem& problem, Evaluator& eva
     return {};
   }
   found.result.check = check_optimum(problem, found.optimum);
-  evaluator.forget();  // frees a second copy of the rows
+  evaluator.forget();  // frees a second copy of the rows, which may be large
   std::vector<ConditionRows> rows = std::move(*found.optimum.rows);
   found.optimum.rows.reset();
   return rows;

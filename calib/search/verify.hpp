@@ -7,8 +7,8 @@
 namespace rigcal::calib {
 
 /// Simulates the optimum, unless the search has kept all its rows. Checks that a fit reported as
-/// converged really is at a minimum: a start restored from a checkpoint may have ended anywhere. If
-/// it is not at a minimum, the search continues from there.
+/// converged really is at a minimum, because a start restored from a checkpoint may have ended
+/// anywhere. If it is not at a minimum, the search continues from there.
 ///
 /// @param found  receives the simulated optimum and its result
 /// @return       rows for each condition; empty if there is no optimum

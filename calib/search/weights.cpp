@@ -13,7 +13,7 @@
 namespace rigcal::calib {
 namespace {
 
-/// If the standard deviations have not settled after this many rounds, a warning says so.
+/// A warning is added if the standard deviations have not settled after this many rounds.
 constexpr int kMaxRounds = 10;
 /// Reweighting stops when no standard deviation changes by more than this fraction.
 constexpr double kSettled = 0.1;
@@ -30,8 +30,8 @@ void for_each_estimated(Problem& problem, const Evaluation& optimum, const Actio
 }
 
 /// Returns the root mean square residual of each channel whose noise is estimated, over the samples
-/// of all its conditions. Separate values for each condition would give most weight to the record
-/// that the model happens to fit best, at the expense of the others.
+/// of all its conditions. With separate values for each condition, the record that the model
+/// happens to fit best would get most of the weight, at the expense of the others.
 std::map<datasets::Channel, double> pooled_rms(Problem& problem, const Evaluation& optimum) {
   struct Sum {
     double squares = 0.0;
@@ -50,7 +50,8 @@ std::map<datasets::Channel, double> pooled_rms(Problem& problem, const Evaluatio
 }
 
 /// Sets every estimated standard deviation to the pooled residual of its channel, and derives the
-/// simulation tolerance from it. Returns the largest relative change in a standard deviation.
+/// simulation tolerance from these values. Returns the largest relative change in a standard
+/// deviation.
 double update(Problem& problem, const Evaluation& optimum, int threads,
               const std::atomic<bool>* cancel) {
   const auto pooled = pooled_rms(problem, optimum);
@@ -62,8 +63,8 @@ double update(Problem& problem, const Evaluation& optimum, int threads,
   };
   for_each_estimated(problem, optimum, set);
   if (!problem.tolerance_fixed) {
-    // The tolerance never becomes coarser again: each change gives a different cost with a
-    // different minimum.
+    // The tolerance never becomes coarser again, because each change alters the cost and moves its
+    // minimum.
     problem.tolerance = std::min(problem.tolerance, tolerance_from_noise(problem.conditions, true));
     for_each_estimated(problem, optimum, set);  // a finer simulation allows a smaller sd
     refine_tolerances(problem, optimum.z, threads, cancel);

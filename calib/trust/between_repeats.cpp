@@ -10,22 +10,22 @@
 namespace rigcal::calib {
 namespace {
 
-/// Significance level for pooling from Bancroft and Han (docs/uncertainty.md). It keeps the
-/// coverage close to 95 % whatever the true ratio is.
+/// Significance level for pooling, from Bancroft and Han (docs/uncertainty.md). It keeps the
+/// coverage close to 95 % for any true ratio.
 constexpr double kPoolingLevel = 0.25;
-/// Above this number of degrees of freedom, Fisher's F agrees to six digits with that for
+/// Above this number of degrees of freedom, Fisher's F agrees to six digits with its limit for
 /// infinitely many.
 constexpr double kFreedomWithoutEnd = 1e6;
-/// Fraction of the squares above which one cause is named. A second cause then explains at most a
-/// quarter as much.
+/// A cause is named if it explains at least this fraction of the squares. A second cause can then
+/// explain at most a quarter as much.
 constexpr double kMostlyExplained = 0.8;
 
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Returns the number of repeats with deviations in every channel of the condition; 0 if the
-/// channels do not have deviations for the same runs.
+/// Returns the number of repeats that have deviations in every channel of the condition, or 0 if
+/// the channels do not have deviations for the same runs.
 std::size_t common_repeats(const ProblemCondition& condition) {
   const auto deviations = [&](const ProblemChannel& channel) {
     return condition.record->channels.at(channel.channel).deviations.size();
@@ -36,14 +36,15 @@ std::size_t common_repeats(const ProblemCondition& condition) {
   return same && first > 1 ? first : 0;
 }
 
-/// Returns the slope of a series at a sample, per second; one-sided at the ends.
+/// Returns the slope of a series at a sample, per second. At the ends, the difference is one-sided.
 double slope(const std::vector<double>& x, const std::vector<double>& time_s, std::size_t at) {
   const std::size_t before = at > 0 ? at - 1 : at;
   const std::size_t after = std::min(at + 1, x.size() - 1);
   return after > before ? (x[after] - x[before]) / (time_s[after] - time_s[before]) : 0.0;
 }
 
-/// Returns d mean / dt for all channels, weighted: how much a later start lowers them, per second.
+/// Returns the weighted d mean / dt for all channels, which is how much a later start lowers them,
+/// per second.
 VectorXd slopes(const ProblemCondition& condition) {
   const std::size_t samples = condition.rows.size();
   VectorXd result(static_cast<Index>(samples * condition.channels.size()));
@@ -58,14 +59,14 @@ VectorXd slopes(const ProblemCondition& condition) {
   return result;
 }
 
-/// Returns true if the drive was recorded. It is then shifted together with the outputs, so that a
-/// common delay adds no uncertainty.
+/// Returns true if the drive was recorded. The drive is then shifted together with the outputs, so
+/// that a common delay adds no uncertainty.
 bool start_is_known(const ProblemCondition& condition) {
   return condition.condition->waveform == datasets::Waveform::recorded;
 }
 
-/// Returns the score caused by one unit of each cause in one condition, with the start last; shape
-/// (directions, causes).
+/// Returns the scores that one unit of each cause produces in one condition. The start comes last.
+/// Shape (directions, causes).
 MatrixXd cause_scores(CauseEffects& effects, std::size_t condition, const MatrixXd& jacobian) {
   const ProblemCondition& own = effects.problem().conditions[condition];
   const std::vector<double> values = effects.values(condition);
@@ -90,7 +91,7 @@ std::vector<datasets::ParameterSetting> declared_in(const Problem& problem, std:
   return result;
 }
 
-/// Returns the change in the weighted outputs per SI unit of a cause; for the start, per second.
+/// Returns the change in the weighted outputs per SI unit of a cause, or per second for the start.
 VectorXd effect_of(CauseEffects& effects, std::size_t condition, const std::string& cause) {
   const auto& causes = effects.causes();
   const auto found = std::find(causes.begin(), causes.end(), cause);
@@ -99,14 +100,15 @@ VectorXd effect_of(CauseEffects& effects, std::size_t condition, const std::stri
   return felt.size() > 0 ? VectorXd(felt.col(found - causes.begin())) : VectorXd();
 }
 
-/// Sum of squared deviations along a direction, and the expected value of this sum if there is only
-/// noise.
+/// Sum of squared deviations along a direction, and the value expected for this sum if there is
+/// only noise.
 struct AlongCause {
   double squares = 0.0;
   double noise = 0.0;
 };
 
-/// Number of intervals of a record that are treated as independent: nineteen degrees of freedom.
+/// A record is divided into this many intervals, which are treated as independent: nineteen degrees
+/// of freedom.
 constexpr Index kStretches = 20;
 
 AlongCause along(const VectorXd& direction, const MatrixXd& deviations) {
@@ -164,8 +166,8 @@ MatrixXd explained_by_declared(const Problem& problem, std::size_t condition,
   for (std::size_t j = 0; j < declared.size(); ++j)
     felt.col(static_cast<Index>(j)) *= declared[j].prior->sd;
   MatrixXd normal = felt.transpose() * felt;
-  // The weights are those of the mean, but the variance of a single repeat is larger by the number
-  // of repeats.
+  // The weights are those of the mean. The variance of a single repeat is larger by a factor equal
+  // to the number of repeats.
   normal.diagonal().array() += static_cast<double>(deviations.cols());
   return felt * normal.llt().solve(felt.transpose() * deviations);
 }

@@ -17,20 +17,20 @@ namespace rigcal::calib {
 /// repeats.
 ///
 /// Aligning the repeats in time hides that they started at different times. With a generated drive,
-/// the start of the mean is only known as well as the offsets of the repeats agree. The shift of
-/// each repeat is therefore added back to its deviation.
+/// the start of the mean is known only as precisely as the offsets of the repeats agree. The shift
+/// of each repeat is therefore added back to its deviation.
 ///
-/// @param explained  component explained by recorded inputs (repeat_inputs.hpp), or empty
+/// @param explained  component that recorded inputs explain (repeat_inputs.hpp), or empty
 Eigen::MatrixXd repeat_deviations(const ProblemCondition& condition,
                                   const Eigen::MatrixXd& explained);
 
 /// Returns the component of the repeat deviations that declared parameters explain
-/// (datasets::ParameterSetting::between_repeats), from their linear effects and their priors. Same
-/// shape as `deviations`.
+/// (datasets::ParameterSetting::between_repeats), given their linear effects and their priors. It
+/// has the shape of `deviations`.
 Eigen::MatrixXd explained_by_declared(const Problem& problem, std::size_t condition,
                                       std::span<const double> z, const Eigen::MatrixXd& deviations);
 
-/// Returns J^T times the deviations, shape (directions, repeats), minus its mean over the repeats.
+/// Returns J^T times the deviations, minus the mean over the repeats. Shape (directions, repeats).
 Eigen::MatrixXd repeat_scores(const Eigen::MatrixXd& jacobian, const Eigen::MatrixXd& deviations);
 
 /// Variance of a linear combination of unknowns, with its degrees of freedom.
@@ -53,11 +53,11 @@ RepeatVariance repeat_variance(const std::vector<Eigen::MatrixXd>& scores,
                                const ArrowRoot& combinations, Eigen::Index unknown);
 
 /// Returns true if repeats differ so much more than the residuals predict that the interval must be
-/// based on the repeats: the F ratio of the two variances is in its upper quartile. Pooling or
-/// choosing a variance only after a significant difference at 5 % or 1 % would give too little
-/// coverage for moderate ratios. At 25 % the coverage is close to its nominal level for any true
-/// ratio (Bancroft and Han, International Statistical Review 45, 1977; docs/uncertainty.md has the
-/// study).
+/// based on the repeats, that is, if the F ratio of the two variances is in its upper quartile.
+/// Pooling or choosing a variance only after a significant difference at 5 % or 1 % would give too
+/// little coverage for moderate ratios. At 25 % the coverage is close to its nominal level for any
+/// true ratio (Bancroft and Han, International Statistical Review 45, 1977; docs/uncertainty.md has
+/// the study).
 bool rests_on_repeats(const RepeatVariance& repeats, const RobustVariance& robust);
 
 /// Returns the probability of a variance ratio at least this large if the repeats differ only by
@@ -66,15 +66,16 @@ double exceedance(const RepeatVariance& repeats, const RobustVariance& robust);
 
 /// A cause that could explain how the repeats differ.
 struct LikelyDifference {
-  std::string cause;       ///< key of a parameter, or "start" for the time when the run began
-  double sd = 0.0;         ///< standard deviation between repeats: relative, or in s for the start
-  double explained = 0.0;  ///< explained fraction of the repeats' squared scores, 0 to 1
-  double p = 1.0;          ///< probability under noise alone, see difference_by_noise()
+  std::string cause;  ///< key of a parameter, or "start" for the time at which the run began
+  double sd = 0.0;    ///< standard deviation between repeats: relative, or in s for the start
+  /// Fraction of the repeats' squared scores that the cause explains, 0 to 1.
+  double explained = 0.0;
+  double p = 1.0;  ///< from difference_by_noise()
 };
 
 /// Returns the cause (supply pressure, bulk modulus or start) whose scores best explain those of
-/// the repeats over all conditions. Returns std::nullopt if none explains four fifths. This does
-/// not prove the cause, because another one may act in the same way.
+/// the repeats over all conditions. Returns std::nullopt if no cause explains four fifths of them.
+/// This does not prove the cause, because another one may have the same effect.
 ///
 /// @param rows    as for score_scatter(), for all conditions
 /// @param scores  from repeat_scores(), for all conditions
@@ -83,9 +84,10 @@ std::optional<LikelyDifference> likely_difference(CauseEffects& effects,
                                                   const std::vector<Eigen::MatrixXd>& scores);
 
 /// Returns the probability that noise alone makes the repeats differ this much in the direction of
-/// a cause. It is based on the F ratio of the deviations along that direction to those in twenty
-/// intervals of the remaining deviations, over all conditions. Unlike rests_on_repeats(), which
-/// uses the residuals, this does not depend on how well the model fits the mean.
+/// a cause. It is based on an F ratio over all conditions: the deviations along that direction are
+/// compared with the remaining deviations, divided into twenty intervals. Unlike
+/// rests_on_repeats(), which uses the residuals, this does not depend on how well the model fits
+/// the mean.
 double difference_by_noise(CauseEffects& effects, const std::string& cause);
 
 }  // namespace rigcal::calib

@@ -17,19 +17,19 @@
 namespace rigcal::calib {
 namespace {
 
-/// With this many replicates the standard deviation is known to about one sixth.
+/// With this many replicates the standard deviation is known to within about one sixth.
 constexpr std::size_t kLeastReplicates = 20;
 /// Two repeats differ from their mean by the same amount with opposite signs, so drawing from them
-/// would add nothing.
+/// would provide no information.
 constexpr std::size_t kLeastRepeats = 3;
 
-using Samples = std::vector<std::vector<double>>;  ///< for each channel, the scored samples
+using Samples = std::vector<std::vector<double>>;  ///< the scored samples of each channel
 
 /// Data from which the replicates of one condition are drawn.
 struct Source {
-  Samples centre;                ///< the record or the simulation
-  std::vector<Samples> repeats;  ///< deviations, scaled up; if empty, blocks of residuals are drawn
-  Samples residuals;             ///< residuals, scaled up
+  Samples centre;                ///< record or simulation
+  std::vector<Samples> repeats;  ///< scaled-up deviations; if empty, blocks of residuals are drawn
+  Samples residuals;             ///< scaled-up residuals
   std::size_t block = 1;
 };
 
@@ -130,7 +130,7 @@ double quantile(const std::vector<double>& ordered, double share) {
   return ordered[below] + (at - static_cast<double>(below)) * (ordered[above] - ordered[below]);
 }
 
-/// @param spec  gives the limits beyond which values make no sense
+/// @param spec  contains the limits beyond which values have no physical meaning
 BootstrapSpread replicate_spread(std::vector<double> values, double estimate, double freedom,
                                  const model::ParameterSpec& spec) {
   const auto count = static_cast<double>(values.size());
@@ -193,8 +193,8 @@ std::string drawn_from(const std::vector<Source>& sources) {
   return text;
 }
 
-/// Drops the replicates after the one that reached the limit of evaluations. Which of them were
-/// computed depends on the number of threads.
+/// Discards the replicates after the one that reached the limit on evaluations, because which of
+/// them were computed depends on the number of threads.
 void cut_at(const std::optional<long>& allowed, std::vector<long>& taken,
             std::vector<std::vector<double>>& values) {
   if (!allowed) return;
@@ -251,7 +251,7 @@ void bootstrap(const Problem& problem, const Evaluation& optimum, const Uncertai
   const std::optional<long> allowed = left.evaluations_left();
   std::vector<long> taken(replicates, 0);  // evaluations; 0: the replicate was not completed
   std::atomic<int> done = 0;
-  // Every replicate starts at the optimum, so that this first simulation is the same for all.
+  // Every replicate starts at the optimum, so its first simulation is the same for all of them.
   std::once_flag simulated;
   std::vector<model::Simulation> runs(problem.conditions.size());
   const auto simulate = [&] {

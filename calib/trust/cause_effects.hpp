@@ -10,10 +10,10 @@
 
 namespace rigcal::calib {
 
-/// Effects on the outputs of every condition of the parameters that may differ between repeats:
-/// supply pressure and bulk modulus, if the plant has them and the campaign does not declare them.
-/// A condition is simulated only once, on the first request. The simulation then serves two
-/// purposes: to find likely causes, and to test whether noise could look like one.
+/// Computes how parameters that may differ between repeats affect the outputs of every condition.
+/// These are supply pressure and bulk modulus, if the plant has them and the campaign does not
+/// declare them. Each condition is simulated only once, on the first request. The result is used
+/// both to find likely causes and to test whether noise could look like one.
 class CauseEffects {
  public:
   /// Borrows both arguments.
@@ -36,7 +36,8 @@ class CauseEffects {
   std::span<const double> z_;
   std::vector<int> indices_;  ///< rows of the plant's parameter table
   std::vector<std::string> causes_;
-  std::vector<std::optional<Eigen::MatrixXd>> effects_;  ///< one for each condition, once requested
+  /// One for each condition; absent until requested.
+  std::vector<std::optional<Eigen::MatrixXd>> effects_;
 };
 
 }  // namespace rigcal::calib

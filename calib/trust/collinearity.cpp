@@ -13,11 +13,11 @@
 namespace rigcal::calib {
 namespace {
 
-/// Above this correlation, the best combination of two estimates is known ten times as precisely as
-/// either of them (its variance is 1 - r).
+/// Above this correlation, the best combination of two estimates is known at least ten times as
+/// precisely as either of them (its variance is 1 - r).
 constexpr double kCombination = 0.99;
-/// Above this correlation, the variance of an estimate is five times as large as if the other one
-/// were known (1 / (1 - r^2)).
+/// Above this correlation, the variance of an estimate is more than five times as large as it would
+/// be if the other one were known (1 / (1 - r^2)).
 constexpr double kMadeUp = 0.9;
 constexpr double kInflated = 10.0;
 

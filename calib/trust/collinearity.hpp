@@ -6,10 +6,10 @@
 
 namespace rigcal::calib {
 
-/// Returns the variance of each estimate relative to its variance if all others were known: the
-/// diagonal of the inverse correlation matrix (Belsley, Kuh, Welsch, Regression Diagnostics, 1980,
-/// 3.1). Pairwise correlations are not enough, because an estimate may depend on several others
-/// together.
+/// Returns the variance of each estimate relative to the variance it would have if all others were
+/// known: the diagonal of the inverse correlation matrix (Belsley, Kuh, Welsch, Regression
+/// Diagnostics, 1980, 3.1). Pairwise correlations are not enough, because an estimate may depend on
+/// several others together.
 ///
 /// @param correlation  shape (n, n), finite
 /// @return             shape (n); infinite if the correlation matrix is singular

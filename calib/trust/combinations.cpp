@@ -13,13 +13,14 @@
 namespace rigcal::calib {
 namespace {
 
-/// A combination is named if it is not weak and its interval is narrower than that of the parameter
-/// by this factor.
+/// A combination is named if it is not weak and the ratio of its interval to that of the parameter
+/// is below this value.
 constexpr double kMuchBetter = 1.0 / 3.0;
-/// Exponents within this relative distance of a simple one are rounded to it: 0.52 is written as a
-/// square root.
+/// Exponents within this relative distance of a simple one are rounded to it, so that 0.52 becomes
+/// a square root.
 constexpr double kRoundedPower = 0.1;
-/// Outside this range the combination consists almost entirely of one of the two parameters.
+/// Outside this range of exponents, the combination consists almost entirely of one of the two
+/// parameters.
 constexpr double kLeastPower = 0.2;
 constexpr double kMostPower = 5.0;
 
@@ -65,7 +66,7 @@ std::string text_of(const Problem& problem, std::span<const double> z, const Pow
 
 /// Finds the partner with which the unknown forms the most precisely known product of powers.
 ///
-/// @param to_log  d ln value / d z for each unknown; 0 if the unknown is excluded
+/// @param to_log  d ln value / d z for each unknown, or 0 if the unknown is excluded
 std::optional<PowerLaw> best_partner(const ArrowRoot& spread, const std::vector<double>& to_log,
                                      std::size_t unknown) {
   const auto j = static_cast<Eigen::Index>(unknown);

@@ -10,11 +10,11 @@
 
 namespace rigcal::calib {
 
-/// Names combinations that the data determine although they do not determine the single parameters.
-/// For each positive parameter that is weak or not identifiable, the combination is a product of
-/// powers with the parameter that it is most closely tied to. The exponent q in a ~ b^q comes from
-/// the covariance of the logarithms, and is rounded to 1/2, 1 or 2 if it is within a tenth. The
-/// same words are added to the reasons in `parameters`.
+/// Names combinations that the data determine although they do not determine the individual
+/// parameters. For each positive parameter that is weak or not identifiable, the combination is a
+/// product of powers of this parameter and the one that it is most closely tied to. The exponent q
+/// in a ~ b^q follows from the covariance of the logarithms, and is rounded to 1/2, 1 or 2 if it is
+/// within a tenth of that value. The same words are added to the reasons in `parameters`.
 ///
 /// @param parameters  result of describe_unknowns()
 /// @return            for example, "the records fix mass/damping = 0.085 s (to 1.2 %), not mass and

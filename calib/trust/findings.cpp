@@ -18,8 +18,9 @@
 namespace rigcal::calib {
 namespace {
 
-/// Adds the correlation of all unknowns that have an error. Unknowns of single conditions are left
-/// out if there are many, because the matrix would be most of the result.
+/// Adds the correlation of all unknowns that have an error. If there are many unknowns that belong
+/// to single conditions, these are left out, because the matrix would otherwise make up most of the
+/// result.
 void add_correlation(const Problem& problem, const Uncertainty& found, Fit& fit) {
   std::vector<Eigen::Index> rows;
   for (std::size_t j = 0; j < found.standard_error.size(); ++j) {
@@ -57,10 +58,10 @@ void warn_of_noise(const Problem& problem, const Uncertainty& found, Fit& fit) {
   }
 }
 
-/// Warns about priors that contradict the records: the fit then matches neither.
+/// Warns about priors that contradict the records, because the fit then matches neither.
 void warn_of_priors(const Problem& problem, const std::vector<FittedParameter>& parameters,
                     Fit& fit) {
-  constexpr double kFar = 3.0;  // standard deviations; one in 370 by chance
+  constexpr double kFar = 3.0;  // in standard deviations; by chance, one prior in 370 is exceeded
   const auto warn = [&](const std::string& name, double value, const datasets::Prior& prior,
                         std::string_view unit, const char* what) {
     const double pull = std::abs(prior.residual(value));
@@ -130,13 +131,13 @@ void judge_residuals(const Problem& problem, const OptimumCheck& check, const Un
   rate_model(spread, fit);
 }
 
-/// Adds measures that would determine the parameters that the records leave undetermined. Only the
-/// first few parameters are treated, because each measure must be tried. Parameters left open by a
-/// symmetry are described separately.
+/// Adds measures that would determine the parameters which the records leave undetermined. Only the
+/// first few parameters are treated, because each measure must be tried out. Parameters that a
+/// symmetry leaves undetermined are described separately.
 void add_remedies(const Problem& problem, const Evaluation& optimum,
                   const std::vector<std::size_t>& symmetric, const Uncertainty& spread,
                   std::vector<FittedParameter>& parameters) {
-  constexpr int kMostTried = 4;  // each requires simulations of some records
+  constexpr int kMostTried = 4;  // each requires several simulations
   int tried = 0;
   const Linearisation system = linearise(problem, optimum);
   if (!system.own.empty()) return;  // the trial uses a dense matrix over all unknowns
@@ -158,8 +159,8 @@ void add_remedies(const Problem& problem, const Evaluation& optimum,
   }
 }
 
-/// Adds the combinations that are determined although their parameters are not, and measures that
-/// would determine the parameters.
+/// Adds the combinations that are determined although their parameters are not, and the measures
+/// that would determine these parameters.
 ///
 /// @return  the unknowns that a scaling symmetry leaves undetermined
 std::vector<std::size_t> judge_identifiability(const Problem& problem, const Evaluation& optimum,

@@ -12,19 +12,20 @@
 namespace rigcal::calib {
 namespace {
 
-/// The interval extends as far as the value itself to each side, so that not even the sign is known
-/// (docs/uncertainty.md).
+/// At this ratio, the interval extends as far to each side as the value itself, so that not even
+/// the sign is known (docs/uncertainty.md).
 constexpr double kNotIdentifiable = 1.0;
-/// If the robust error exceeds the plain error by this factor, the residuals are called
-/// autocorrelated. The interval is then one and a half times as wide, which the user should know.
+/// If the robust error exceeds the plain error by this factor, the user is informed that the
+/// residuals are autocorrelated, because the interval is then one and a half times as wide.
 constexpr double kRobustMatters = 1.5;
-/// Residuals below this fraction of the noise are due to simulation errors or a wrong `sd`, not to
+/// Residuals below this fraction of the noise show simulation errors or a wrong `sd` rather than
 /// noise.
 constexpr double kSuspiciouslySmall = 0.5;
-/// Student's t with two degrees of freedom has no variance, so that a robust error below the plain
-/// one is meaningless there.
+/// With two degrees of freedom Student's t has no finite variance, so a robust error below the
+/// plain one is meaningless.
 constexpr double kLeastFreedom = 3.0;
-/// A partner is named if less than a fifth of the variance is the parameter's own (1 - 0.9^2).
+/// A partner is named if the parameter would have less than a fifth of its variance with the
+/// partner known (1 - 0.9^2).
 constexpr double kStrongCorrelation = 0.9;
 
 using datasets::FittedValue;
@@ -68,8 +69,8 @@ std::string partner(const Problem& problem, const Uncertainty& found, std::size_
                      problem.name(static_cast<std::size_t>(best)));
 }
 
-/// Returns the half-width relative to the value. For a value of zero, returns a number above the
-/// limit of identifiability.
+/// Returns the half-width relative to the value. If the value is zero, returns a number above the
+/// limit for identifiability.
 double share_of_value(double value, double half_width) {
   return value != 0.0 ? half_width / std::abs(value) : kNotIdentifiable * 2.0;
 }
@@ -78,8 +79,8 @@ void add_reason(FittedParameter& parameter, const std::string& text) {
   parameter.reason += parameter.reason.empty() ? text : "; " + text;
 }
 
-/// Explains why an interval with this half-width gives this grade; empty if there is nothing to
-/// say.
+/// Explains why an interval with this half-width leads to the grade; empty if no explanation is
+/// needed.
 std::string grade_words(const Problem& problem, const Uncertainty& found, std::size_t unknown,
                         double half_width, const FittedParameter& parameter) {
   const ParameterSpec& spec = spec_of(problem, problem.map.unknowns()[unknown].index);
@@ -101,8 +102,8 @@ std::string grade_words(const Problem& problem, const Uncertainty& found, std::s
          partner(problem, found, unknown);
 }
 
-/// Sets grade and reason of a parameter for this half-width. Both depend only on the interval and
-/// the value, so that wider bounds do not change them.
+/// Sets the grade and reason of a parameter for this half-width. Both depend only on the interval
+/// and the value, so that wider bounds do not change them.
 void grade(const Problem& problem, const Uncertainty& found, std::size_t unknown, double half_width,
            FittedParameter& parameter) {
   const Unknown& u = problem.map.unknowns()[unknown];
@@ -126,10 +127,10 @@ double longer_side(double value, const Range& interval) {
   return std::max(interval.high - value, value - interval.low);
 }
 
-/// Clamps degrees of freedom to the range of student_t(). Known variances have infinitely many.
+/// Limits degrees of freedom to the range of student_t(). Known variances have infinitely many.
 double degrees(double freedom) { return std::clamp(freedom, 1.0, metrics::kManyDegrees); }
 
-/// Returns the half-width of the 95 % interval, and records which error it is based on.
+/// Returns the half-width of the 95 % interval, and stores which error it is based on.
 double choose_interval(const Problem& problem, const Uncertainty& found, std::size_t unknown,
                        FittedParameter& parameter) {
   const double plain = *parameter.standard_error;
@@ -279,7 +280,7 @@ void grade_widened(const Problem& problem, const Uncertainty& found, std::size_t
 
 bool rests_on_known(const Problem& problem, const Uncertainty& uncertainty,
                     const std::vector<double>& z, std::size_t unknown) {
-  constexpr double kMost = 0.7;  // fraction of the error; about half of the variance
+  constexpr double kMost = 0.7;  // fraction of the error, equal to about half of the variance
   const auto row = static_cast<Eigen::Index>(unknown);
   const auto& error = uncertainty.standard_error[unknown];
   if (!error || uncertainty.known.names.empty()) return false;

@@ -14,15 +14,16 @@
 namespace rigcal::calib {
 namespace {
 
-/// A parameter is undetermined if its component in an undetermined direction exceeds this value, as
-/// in uncertainty().
+/// As in uncertainty(), a parameter is undetermined if its component in an undetermined direction
+/// exceeds this value.
 constexpr double kLost = 0.1;
-constexpr double kTriedPrior = 0.05;      // relative standard deviation of the prior to try
-constexpr double kPressureNoise = 0.003;  // fraction of the supply pressure; a simple sensor
-/// Length of the record to try: half a period of the slowest signal, sampled at 1 kHz or less.
+constexpr double kTriedPrior = 0.05;      // relative standard deviation of the prior that is tried
+constexpr double kPressureNoise = 0.003;  // fraction of the supply pressure (simple sensor)
+/// Length of the record that is tried: half a period of the slowest signal, sampled at 1 kHz or
+/// less.
 constexpr double kTriedSeconds = 5.0;
 constexpr std::size_t kMostSamples = 5000;
-/// Maximum number of priors to suggest. One is enough for the reader; more would make the sentence
+/// Maximum number of priors to suggest. The reader needs only one, and more would make the sentence
 /// long.
 constexpr std::size_t kMostPriors = 2;
 
@@ -104,7 +105,8 @@ void try_pressure(const Problem& problem, std::span<const double> z,
 
 void try_signals(const Problem& problem, std::span<const double> z, const Eigen::MatrixXd& jacobian,
                  std::size_t target, std::vector<std::string>& words) {
-  // The trial record copies the condition in which the most unknowns act, but with another signal.
+  // The record that is tried is like that of the condition in which the most unknowns act, but with
+  // another signal.
   std::size_t like = 0;
   for (std::size_t i = 0; i < problem.conditions.size(); ++i) {
     if (problem.map.acting(i).size() > problem.map.acting(like).size()) like = i;
@@ -119,7 +121,7 @@ void try_signals(const Problem& problem, std::span<const double> z, const Eigen:
     times.push_back(step_s * static_cast<double>(times.size()));
   const ProblemChannel& channel = condition.channels.front();
   for (const double frequency_hz : {0.1, 1.0, 10.0}) {
-    // Keeps the speed below the largest one observed.
+    // The amplitude keeps the speed below the largest one observed.
     const double amplitude = *c.amplitude * std::min(1.0, *c.frequency_hz / frequency_hz);
     for (const bool square : {false, true}) {
       model::SimulationInputs inputs = condition.inputs;

@@ -14,9 +14,9 @@
 namespace rigcal::calib {
 
 /// Returns the Cramer-Rao standard deviation of each unknown, SI, from a Jacobian of weighted
-/// residuals (any number of rows, one column per unknown, unit box). Assumes white noise and all
-/// unknowns free. The value is absent if the unknown contributes to a direction that the rows do
-/// not determine.
+/// residuals (any number of rows, one column per unknown, unit box). Assumes that the noise is
+/// white and all unknowns are free. The value is absent if the unknown contributes to a direction
+/// that the rows do not determine.
 std::vector<std::optional<double>> cramer_rao(const Problem& problem, std::span<const double> z,
                                               const Eigen::MatrixXd& jacobian);
 
@@ -53,11 +53,11 @@ std::optional<double> relative_half_width(const std::optional<double>& sd, doubl
 
 /// Suggests additions that would determine an unknown which the records leave undetermined.
 /// Returns, in words, the simplest additions that reduce its interval to less than 20 % of the
-/// value: "a prior on mass_kg (5 %)", "a recorded load pressure", "a square wave of 10 Hz" (at most
-/// two priors, and the slowest signal). Each addition is tried separately, by simulation at z.
-/// Empty if none is sufficient.
+/// value, for example "a prior on mass_kg (5 %)", "a recorded load pressure" or "a square wave of
+/// 10 Hz". At most two priors are suggested, and only the slowest sufficient signal. Each addition
+/// is tried separately, by simulation at z. Empty if none is sufficient.
 ///
-/// @param jacobian  for all conditions and priors
+/// @param jacobian  Jacobian for all conditions and priors
 std::vector<std::string> remedies(const Problem& problem, std::span<const double> z,
                                   const Eigen::MatrixXd& jacobian, std::size_t target);
 

@@ -13,10 +13,11 @@
 namespace rigcal::calib {
 namespace {
 
-/// Effective fraction of the residuals below which their correlation is mentioned.
+/// The correlation of the residuals is mentioned if the effective fraction of them is below this
+/// value.
 constexpr double kCorrelated = 0.5;
-/// Intervals, or halves of an interval, whose lengths differ by less than this factor are taken as
-/// equal. A bootstrap with 1000 replicates knows its length to 5 %.
+/// Two intervals, or the two halves of one, are regarded as equal if their lengths differ by less
+/// than this factor. A bootstrap with 1000 replicates determines a length to within 5 %.
 constexpr double kAgrees = 1.25;
 
 double width(const Range& interval) { return interval.high - interval.low; }

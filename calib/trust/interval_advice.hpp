@@ -10,9 +10,9 @@
 
 namespace rigcal::calib {
 
-/// Advises, in words, which errors to use and why. Away from a minimum there are no valid errors.
-/// Otherwise the advice depends on the correlation of the residuals, and on whether the model
-/// leaves more than noise.
+/// Advises, in words, which errors to use and why. Away from a minimum no errors are valid. At a
+/// minimum, the advice depends on the correlation of the residuals, and on whether they contain
+/// more than noise.
 std::string interval_advice(const Problem& problem, const OptimumCheck& check,
                             const Uncertainty& found, const std::vector<LackOfFit>& tests);
 
@@ -26,12 +26,12 @@ std::string between_repeats_warning(const BetweenRepeats& repeats);
 /// Explains, in words, the errors in channels whose residuals contain no noise.
 std::string noiseless_warning(const Problem& problem, const Uncertainty& found);
 
-/// Explains where bootstrap or profile differ from `ci95`, and which of them to use. A parameter
+/// Explains where bootstrap or profile differ from `ci95`, and which interval to use. A parameter
 /// that is not identifiable has no valid interval. Empty if neither was requested.
 ///
 /// @param parameters  parameters of the problem's unknowns
-/// @param carried     known values whose uncertainty only `ci95` includes
-/// @param misfit      whether the model is known to leave more than noise
+/// @param carried     known values whose uncertainty is included only in `ci95`
+/// @param misfit      whether the residuals are known to contain more than noise
 std::string compare_intervals(const Problem& problem,
                               const std::vector<FittedParameter>& parameters,
                               const std::vector<std::string>& carried = {}, bool misfit = false);

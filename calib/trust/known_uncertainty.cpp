@@ -15,9 +15,9 @@ namespace {
 
 /// A known value with a stated uncertainty.
 struct Known {
-  std::string name;  ///< name in messages
-  int index = 0;     ///< row of the parameter table
-  double sd = 0.0;   ///< in SI units
+  std::string name;
+  int index = 0;    ///< row of the parameter table
+  double sd = 0.0;  ///< in SI units
   bool of_sensor = false;
 };
 
@@ -65,8 +65,8 @@ Eigen::MatrixXd known_rows(const Problem& problem, std::size_t i, std::span<cons
   if (rows.size() == 0) return rows;
   for (std::size_t p = 0; p < values.size(); ++p) {
     const Known& each = values[p];
-    // A prior belongs to the value of the rig, so it does not apply to conditions with a value of
-    // their own. A certificate belongs to the sensor and applies to all conditions.
+    // A prior applies to the value of the rig, and therefore not to conditions with a value of
+    // their own. A certificate applies to the sensor, and therefore to all conditions.
     const bool own = !each.of_sensor &&
                      known_in(*problem.campaign, *problem.conditions[i].condition, each.index);
     rows.col(static_cast<Eigen::Index>(p)) *= own ? 0.0 : each.sd;

@@ -20,7 +20,7 @@ struct KnownUncertainty {
   Eigen::MatrixXd response;
 };
 
-/// Returns the names of the uncertain known values for messages.
+/// Returns the names, for messages, of known values with a stated uncertainty.
 std::vector<std::string> uncertain_names(const Problem& problem);
 
 /// Returns the weighted sensitivities of one condition to parameters that are known in it, per SI
@@ -30,7 +30,7 @@ std::vector<std::string> uncertain_names(const Problem& problem);
 Eigen::MatrixXd known_sensitivities(const Problem& problem, std::size_t condition,
                                     std::span<const double> z, const std::vector<int>& indices);
 
-/// Returns the change in the unknowns (unit box), -(J^T J)^-1 J^T K, if the weighted outputs of
+/// Returns the change in the unknowns (unit box), -(J^T J)^-1 J^T K, when the weighted outputs of
 /// each condition change by the columns of K. Shape (unknowns, columns).
 ///
 /// @param known  returns K for a condition, shape (residuals, columns), or an empty matrix
@@ -44,8 +44,9 @@ KnownUncertainty known_uncertainty(const Problem& problem, std::span<const doubl
                                    const std::vector<ConditionRows>& rows, const ArrowRoot& root,
                                    int threads);
 
-/// Returns the standard errors of the unknowns (unit box) due to day-to-day differences. Each date
-/// has its own deviations, common to the conditions of that date. Zero if nothing differs.
+/// Returns the standard errors of the unknowns (unit box) due to day-to-day differences. All
+/// conditions recorded on the same date share the same deviations. The errors are zero if no
+/// quantity differs between days.
 ///
 /// @param rows  rows of each condition at z
 /// @param root  R with R R^T = (J^T J)^-1 on the directions that the data determine

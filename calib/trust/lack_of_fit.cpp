@@ -12,7 +12,8 @@
 namespace rigcal::calib {
 namespace {
 
-/// A test may only pass if it could have detected a residual twice as large as the noise.
+/// A test may pass only if it could have detected this variance ratio, a residual twice as large as
+/// the noise.
 constexpr double kLargestUsefulRatio = 4.0;
 
 /// Returns 1 + 2 sum rho_h^2, the factor by which correlation reduces the degrees of freedom of a
@@ -35,8 +36,9 @@ double exceedance(double ratio, const LackOfFit& test) {
   return metrics::fisher_f_exceedance(ratio, test.freedom, test.pure_error_freedom);
 }
 
-/// Judges a test at a significance level. The level of F is also valid for few degrees of freedom,
-/// so a rejection always counts. A test passes only if it would have rejected kLargestUsefulRatio.
+/// Judges a test at a significance level. The level of the F test is valid even for few degrees of
+/// freedom, so a rejection always counts. A test passes only if it would have rejected
+/// kLargestUsefulRatio.
 metrics::Judged judged(const LackOfFit& test, double level) {
   using metrics::TestOutcome;
   if (test.p < level) return {TestOutcome::failed, {}};

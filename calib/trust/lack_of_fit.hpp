@@ -10,15 +10,15 @@
 
 namespace rigcal::calib {
 
-/// Compares the residual of every channel whose noise is known with its pure error: F = variance of
-/// the residual / variance of the mean of the repeats. Both come from records that are correlated
-/// in time. A sum of n squares therefore counts as n / (1 + 2 sum rho_h^2) degrees of freedom,
-/// where rho_h is the autocorrelation of the residual (Bartlett; if the model is right, the noise
-/// has the same autocorrelation). For the pure error this is multiplied by repeats - 1. It is
-/// infinite if the campaign states `sd`. The variance of the residual is taken from its noise
-/// model, corrected for the part that the fit removed.
+/// Compares the residual of every channel whose noise is known with the pure error of that channel:
+/// F = variance of the residual / variance of the mean of the repeats. Both come from records that
+/// are correlated in time. A sum of n squares therefore has only n / (1 + 2 sum rho_h^2) degrees of
+/// freedom, where rho_h is the autocorrelation of the residual (Bartlett; if the model is right,
+/// the noise has the same autocorrelation). For the pure error this number is multiplied by repeats
+/// - 1, or is infinite if the campaign states `sd`. The variance of the residual is taken from its
+/// noise model, corrected for the variance that the fit removed.
 ///
-/// A test only passes if it would have failed for a residual of twice the noise.
+/// A test passes only if it would have failed for a residual of twice the noise.
 ///
 /// @param found  must include `scatter`; without it there is no test
 std::vector<LackOfFit> lack_of_fit(const Problem& problem, const Uncertainty& found);
@@ -27,8 +27,8 @@ std::vector<LackOfFit> lack_of_fit(const Problem& problem, const Uncertainty& fo
 /// the mean square of the residual divided by the variance of the mean of the repeats.
 ///
 /// @param residual  shape (samples in windows), measured - simulated, SI
-/// @return          not judged yet; std::nullopt if the noise of the channel is unknown or the
-///                  residual is zero
+/// @return          a test without an outcome; std::nullopt if the noise of the channel is unknown
+///                  or the residual is zero
 std::optional<LackOfFit> lack_of_prediction(const ProblemCondition& condition,
                                             const ProblemChannel& channel,
                                             std::span<const double> residual);
@@ -38,8 +38,8 @@ std::optional<LackOfFit> lack_of_prediction(const ProblemCondition& condition,
 void judge_together(std::vector<LackOfFit>& tests);
 
 /// Returns true if at least one channel shows a significant lack of fit, at 5 % for all tests
-/// together (Bonferroni). Returns false if all tests passed. Returns std::nullopt if no test failed
-/// but at least one could not be judged, or if there are no tests.
+/// together (Bonferroni). Returns false if all tests passed, and std::nullopt if there are no
+/// tests, or none failed but at least one could not be judged.
 std::optional<bool> misfit(const std::vector<LackOfFit>& tests);
 
 /// Returns the test with the smallest p, or null if there are no tests.

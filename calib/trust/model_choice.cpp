@@ -33,7 +33,7 @@ struct Noise {
   }
 };
 
-/// A difference in a criterion below this is not worth mentioning (Burnham and Anderson, Model
+/// A smaller difference in a criterion is not worth mentioning (Burnham and Anderson, Model
 /// Selection and Multimodel Inference, 2002, 2.6).
 constexpr double kNoDifference = 2.0;
 

@@ -19,7 +19,7 @@ using datasets::Condition;
 using datasets::Record;
 
 /// Removes the standard deviations of an unknown that a scaling symmetry leaves undetermined. They
-/// come only from the smoothing of the orifice roots, which has no physical meaning.
+/// are only due to the smoothing of the orifice roots, which has no physical meaning.
 void leave_open(std::size_t unknown, Plan& plan) {
   plan.parameters[unknown].sd_recorded.reset();
   plan.parameters[unknown].sd_all.reset();

@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kHalf95 = 1.96;
 
-/// Returns the sum of the covariances of all conditions and of the priors, in coordinates of
-/// `root`.
+/// Returns the sum of the score covariances of all conditions and of the priors, in the coordinates
+/// of `root`.
 ArrowMatrix long_run_covariance(const Problem& problem, std::span<const double> z,
                                 const Uncertainty& uncertainty) {
   ArrowMatrix sum = uncertainty.root.zero();
@@ -26,7 +26,7 @@ ArrowMatrix long_run_covariance(const Problem& problem, std::span<const double> 
 }
 
 /// Unknowns that act in the same simulation: those of one condition together with the shared ones,
-/// or only the shared ones. Rows are in the unit box.
+/// or only the shared ones. The rows of the matrices are in the unit box.
 struct Joint {
   std::vector<std::size_t> unknowns;  ///< the condition's own unknowns come first
   std::size_t own = 0;
@@ -34,8 +34,8 @@ struct Joint {
   Eigen::MatrixXd open;        ///< directions that the data do not determine
 };
 
-/// @param condition   negative: only the shared unknowns
-/// @param covariance  covariance of the score; if absent, the plain errors are used
+/// @param condition   negative for the shared unknowns only
+/// @param covariance  covariance of the score; if it is absent, the plain errors are used
 Joint joint_of(const Uncertainty& found, int condition,
                const std::optional<ArrowMatrix>& covariance) {
   const bool alone = condition < 0;
@@ -64,7 +64,7 @@ Joint joint_of(const Uncertainty& found, int condition,
   return joint;
 }
 
-/// Returns the largest factor by which an interval is wider than the covariance alone would give.
+/// Returns the largest factor by which an interval is wider than the covariance implies.
 double widening(const Problem& problem, std::span<const double> z, const Uncertainty& found,
                 const Joint& joint) {
   const bool robust = !found.scatter.empty();
@@ -86,7 +86,7 @@ double widening(const Problem& problem, std::span<const double> z, const Uncerta
   return widen;
 }
 
-/// Returns the square root S of the full covariance of the joint unknowns, SI.
+/// Returns the square root S of the full covariance of these unknowns, SI.
 Eigen::MatrixXd spread_of(const Problem& problem, std::span<const double> z,
                           const Uncertainty& found, const Joint& joint, double widen) {
   const auto n = static_cast<Eigen::Index>(joint.unknowns.size());
@@ -105,8 +105,8 @@ Eigen::MatrixXd spread_of(const Problem& problem, std::span<const double> z,
   return root;
 }
 
-/// Returns true if an estimate of the fit acts in a condition, that is, unless the condition has
-/// its own known value.
+/// Returns true if an estimate of the fit acts in a condition. It does not if the condition has a
+/// known value of its own.
 bool acts(const Problem& problem, const ProblemCondition& condition,
           const EstimateSpread::Estimate& estimate) {
   if (known_in(*problem.campaign, *condition.condition, estimate.index)) return false;
@@ -121,11 +121,11 @@ bool acts(const Problem& problem, const ProblemCondition& condition,
   return false;
 }
 
-/// Computes the component of the residuals that the uncertainty of the estimates explains. This is
-/// one linear least-squares step from the estimates, with their covariance as the prior.
+/// Computes the component of the residuals that the uncertainty of the estimates explains, by one
+/// linear least-squares step from the estimates with their covariance as the prior.
 ///
 /// @param gradients  for each channel, its derivatives with respect to the quantities whose
-///                   covariance has the square root `root`, shape (times, quantities)
+///                   covariance has the square root `root`. Shape (times, quantities)
 void explain(const ProblemCondition& condition, const std::vector<Eigen::MatrixXd>& gradients,
              const Eigen::MatrixXd& root, ConditionScore& score) {
   const std::vector<Eigen::Index> counted(condition.rows.begin(), condition.rows.end());
@@ -157,8 +157,8 @@ void explain(const ProblemCondition& condition, const std::vector<Eigen::MatrixX
 }
 
 /// Returns by how many day-to-day standard deviations a record may differ from those of the fit.
-/// This includes the deviation of its own day and those of the fit's days. Returns 0 unless the
-/// dates show that its day is a different one.
+/// This combines the deviation on its own day with those on the days of the fit. Returns 0 unless
+/// the dates show that the record was made on a different day.
 double day_distance(const datasets::Condition& condition, const std::vector<std::string>& dates) {
   const bool another = condition.date && !dates.empty() &&
                        std::find(dates.begin(), dates.end(), *condition.date) == dates.end();
@@ -193,8 +193,8 @@ void add_to(const Problem& problem, std::size_t i, std::span<const double> z,
   for (std::size_t j = 0; j < estimates.size(); ++j) {
     const int index = estimates[j].index;
     if (!acts(problem, condition, estimates[j])) continue;
-    // A value for the condition or leak level overrides that of the rig, and comes later in this
-    // loop.
+    // A value for the condition or its leak level comes later in this loop, and overrides that of
+    // the rig.
     const auto same = std::find(free.begin(), free.end(), index);
     if (same == free.end()) {
       free.push_back(index);

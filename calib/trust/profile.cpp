@@ -26,21 +26,22 @@ void serialize(Archive& archive, Profile& profile) {
 
 namespace {
 
-/// First step if no interval suggests one, and the smallest step; both as a fraction of the box.
+/// First step if there is no interval from which to derive it, and the smallest step. Both are
+/// fractions of the box.
 constexpr double kFirstStep = 0.05;
 constexpr double kLeastStep = 1e-6;
-/// This many doublings extend a step of 1/4000 of the box across the whole box.
+/// With this many doublings, a step of 1/4000 of the box extends across the whole box.
 constexpr int kMostDoublings = 12;
-/// Six halvings alone would reduce a doubled step to kCrossing.
+/// Even pure bisection would need only six steps to reduce a doubled step to kCrossing.
 constexpr int kMostRefinements = 8;
-/// How often a step is shortened if a fit does not converge, and by which factor.
+/// If a fit does not converge, the step is shortened up to this many times, by this factor.
 constexpr int kMostShortened = 4;
 constexpr double kShorter = 8.0;
 /// Tolerance for a crossing, relative to its distance from the optimum.
 constexpr double kCrossing = 0.02;
-/// A cost below the optimum by more than this fraction of the threshold, about one standard error,
-/// means that the fit was not at its minimum. A smaller decrease may be simulation error, which
-/// differs from point to point.
+/// If the cost falls below that of the optimum by more than this fraction of the threshold, about
+/// one standard error, the fit was not at its minimum. A smaller decrease may be due to simulation
+/// errors, which differ from point to point.
 constexpr double kLower = 0.25;
 
 datasets::Campaign campaign_with(const Problem& problem, const Unknown& unknown, double value) {
@@ -80,8 +81,8 @@ class Follower {
     points_[optimum.z[unknown]] = {0.0, std::move(others)};
   }
 
-  /// Returns the rise of 2 cost in units of the threshold, or std::nullopt if it could not be
-  /// found.
+  /// Returns the rise in 2 cost as a fraction of the threshold, or std::nullopt if it could not be
+  /// determined.
   std::optional<double> rise(double z) {
     const auto known = points_.find(z);
     if (known != points_.end()) return known->second.rise;
@@ -159,8 +160,8 @@ ProfileEnd follow(Follower& follower, const Problem& problem, std::size_t unknow
   for (int i = 0; i < kMostDoublings && inside != bound; ++i) {
     outside = std::clamp(inside + side * step, 0.0, 1.0);
     outside_rise = follower.rise(outside);
-    // The step may have been too long to fit from the previous point, for example if the interval
-    // includes more than the records determine.
+    // The step may have been too long for a fit from the previous point to succeed, for example if
+    // the interval includes more than the uncertainty of the records.
     for (int k = 0; k < kMostShortened && !outside_rise && !follower.interrupted(); ++k) {
       step /= kShorter;
       outside = std::clamp(inside + side * step, 0.0, 1.0);
@@ -176,7 +177,7 @@ ProfileEnd follow(Follower& follower, const Problem& problem, std::size_t unknow
     inside_rise = *outside_rise;
     step *= 2.0;
   }
-  if (!outside_rise || *outside_rise < 1.0) return end;  // the profile is open up to this point
+  if (!outside_rise || *outside_rise < 1.0) return end;  // the profile is still open at this point
   // The square root of the rise is almost linear in z.
   for (int i = 0; i < kMostRefinements; ++i) {
     if (std::abs(outside - inside) <= kCrossing * std::abs(outside - z0)) break;
@@ -202,13 +203,13 @@ ProfileEnd follow(Follower& follower, const Problem& problem, std::size_t unknow
   return end;
 }
 
-/// Returns the rise of 2 cost at which the profile of this parameter ends. For a quadratic cost
-/// this is where `ci95` ends.
+/// Returns the rise in 2 cost at which the profile of this parameter ends. If the cost is
+/// quadratic, this is where `ci95_if_exact` ends.
 double threshold_of(const FittedParameter& parameter, double reduced_chi_square) {
   const double variance = std::max(1.0, reduced_chi_square);
   if (!parameter.ci95_if_exact || !parameter.standard_error)
     return metrics::kNormal95 * metrics::kNormal95 * variance;
-  // The longer half is used because the other may be truncated at a limit.
+  // The longer half is used, because the other half may be truncated at a limit.
   const double half = std::max(parameter.ci95_if_exact->high - parameter.value,
                                parameter.value - parameter.ci95_if_exact->low);
   const double errors = half / *parameter.standard_error;
@@ -223,7 +224,7 @@ double first_step(const Problem& problem, std::size_t unknown, double z0,
   return std::clamp(metrics::kNormal95 * error / slope, kLeastStep, 0.5);
 }
 
-/// Returns a profile that contains only the optimum, for when the budget is used up.
+/// Returns a profile that contains only the optimum, for use when the budget is spent.
 Profile not_made(double value) {
   Profile profile;
   profile.low = {{}, value, true};
@@ -288,8 +289,8 @@ void profiles(const Problem& problem, const std::vector<datasets::Record>& recor
     parameter.profile = not_made(parameter.value);
     if (!results[j].bytes.empty()) from_bytes(results[j].bytes, taken[j], *parameter.profile);
   }
-  // Which profiles were computed after the one that reached the limit depends on the number of
-  // threads.
+  // Profiles after the one that reached the limit are discarded, because which of them were
+  // computed depends on the number of threads.
   long sum = 0;
   for (std::size_t j = 0; j < unknowns.size(); ++j) {
     FittedParameter& parameter = fit.parameters[j];
@@ -327,8 +328,8 @@ void profiles(const Problem& problem, const std::vector<datasets::Record>& recor
                     below && above ? "on both sides" : (above ? "above" : "below"),
                     profile.low.value.value_or(profile.low.reached), unit,
                     profile.high.value.value_or(profile.high.reached), unit));
-    // A bound within `ci95` restricts the parameter more than the records do; a bound outside
-    // `ci95` restricts it less.
+    // A bound within the interval restricts the parameter more than the records do; a bound outside
+    // restricts it less.
     const double half_width = parameter.ci95_if_exact
                                   ? std::max(parameter.ci95_if_exact->high - parameter.value,
                                              parameter.value - parameter.ci95_if_exact->low)

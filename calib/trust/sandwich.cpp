@@ -15,10 +15,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using metrics::Autoregression;
-/// Each row is contiguous in memory, because the recursions run along the samples.
+/// Rows are contiguous in memory, because the recursions run from sample to sample.
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Integral of the squared Parzen kernel over both sides.
+/// Two-sided integral of the squared Parzen kernel.
 constexpr double kParzenSquare = 0.539285;
 
 /// Rows of one channel.
@@ -69,8 +69,8 @@ double lagged(const RowMajor& a, const RowMajor& b, Index lag) {
   return a.topRows(a.rows() - lag).cwiseProduct(b.bottomRows(b.rows() - lag)).sum();
 }
 
-/// Returns the bias that the fit causes in the autocovariances of the residuals, if `noise` is
-/// their model and `total` the covariance of the whole score.
+/// Returns the bias that the fit causes in the autocovariances of the residuals, where `noise` is
+/// their model and `total` is the covariance of the whole score.
 std::vector<double> bias(const ChannelRows& rows, const Autoregression& noise,
                          const MatrixXd& total, Index lags) {
   const RowMajor& Q = rows.jacobian;
@@ -85,13 +85,13 @@ std::vector<double> bias(const ChannelRows& rows, const Autoregression& noise,
   return result;
 }
 
-/// Returns the covariance of the score of one channel if `noise` is the model of its residuals.
+/// Returns the covariance of the score of one channel, where `noise` is the model of its residuals.
 MatrixXd expected(const ChannelRows& rows, const Autoregression& noise) {
   const RowMajor filtered = backwards(noise, rows.jacobian);
   return noise.variance * filtered.transpose() * filtered;
 }
 
-/// The noise of one channel before the correction for what the fit removed.
+/// Noise of one channel, before the correction for the part that the fit removed.
 struct ChannelNoise {
   std::size_t condition = 0;
   Index channel = 0;
@@ -108,17 +108,17 @@ std::vector<ChannelNoise> channels_of(const std::vector<ScoreRows>& rows) {
   return channels;
 }
 
-/// Sums in the order of the channels, whichever thread finished first, so that the result is
-/// reproducible.
+/// Sums in the order of the channels rather than in the order in which threads finish, so that the
+/// result is reproducible.
 ArrowMatrix total_of(const ArrowMatrix& priors, const std::vector<ChannelNoise>& channels) {
   ArrowMatrix total = priors;
   for (const ChannelNoise& each : channels) total.add(each.condition, each.expected);
   return total;
 }
 
-/// Fits autoregressions to the residuals of all channels, corrected for what the fit removed. The
-/// rows of a channel are extracted twice, because keeping all of them would be the peak memory use
-/// of a fit.
+/// Fits autoregressions to the residuals of all channels, corrected for the part that the fit
+/// removed. The rows of a channel are extracted twice, because keeping all of them would determine
+/// the peak memory use of a fit.
 std::vector<ChannelNoise> noise_models(const std::vector<ScoreRows>& rows,
                                        const ArrowMatrix& priors, int threads) {
   std::vector<ChannelNoise> channels = channels_of(rows);
@@ -139,8 +139,8 @@ std::vector<ChannelNoise> noise_models(const std::vector<ScoreRows>& rows,
     std::vector<double>& gamma = each.gamma;
     const auto removed =
         bias(own, each.noise, total.of(each.condition), static_cast<Index>(gamma.size()) - 1);
-    // If the correction exceeds half of the total, the fit has left too little to estimate the
-    // noise from.
+    // If the correction exceeds half of the total, the fit has left too little for an estimate of
+    // the noise.
     if (removed.front() < 0.5 * (gamma.front() + removed.front())) {
       for (std::size_t h = 0; h < gamma.size(); ++h) gamma[h] += removed[h];
       // Far from an optimum the residuals are not the noise that the correction assumes.
@@ -155,7 +155,7 @@ std::vector<ChannelNoise> noise_models(const std::vector<ScoreRows>& rows,
 /// Returns Andrews' bandwidth for the Parzen kernel, 2.6614 (alpha(2) n)^(1/5), with alpha(2) from
 /// a first-order autoregression of every component (Econometrica 59, 1991, eqs. 6.2 and 6.4).
 double bandwidth(const RowMajor& scores) {
-  // Bound from Andrews and Monahan (Econometrica 60, 1992): at 1 the bandwidth would be infinite.
+  // Limit from Andrews and Monahan (Econometrica 60, 1992). At 1 the bandwidth would be infinite.
   constexpr double kMostCorrelation = 0.97;
   double above = 0.0;
   double below = 0.0;
@@ -166,7 +166,7 @@ double bandwidth(const RowMajor& scores) {
     if (!(square > 0.0)) continue;
     const double rho = std::clamp(column.head(n - 1).dot(column.tail(n - 1)) / square,
                                   -kMostCorrelation, kMostCorrelation);
-    // Components are scaled by their own size, so that no single one dominates.
+    // Components are scaled by their own size, so that no component dominates.
     above += 4.0 * rho * rho / std::pow(1.0 - rho, 8.0) * std::pow(1.0 - rho * rho, 2.0);
     below += std::pow(1.0 - rho * rho, 2.0) / std::pow(1.0 - rho, 4.0);
   }
@@ -190,12 +190,12 @@ MatrixXd kernel_covariance(const RowMajor& scores, double width) {
 }
 
 /// Sums over the channels of a condition, each of shape (samples, directions or combinations).
-/// Records are long, so at most these and two more such arrays are in memory at a time.
+/// Because records are long, at most these and two more such arrays are in memory at any time.
 struct ChannelSums {
   RowMajor scores;   ///< contributions of the samples to the score
   RowMajor weights;  ///< variance of each combination of these contributions
   RowMajor own;  ///< covariance of the contributions with the error of each combination, divided by
-                 ///< its standard error
+                 ///< the standard error of the combination
   double independent_residuals = 0.0;
 };
 
@@ -260,7 +260,7 @@ ScoreScatter scatter_of(const ScoreRows& rows, std::vector<Autoregression> noise
   return result;
 }
 
-/// Returns the element of `own` for an unknown. It is zero if the unknown belongs to another
+/// Returns the element of `own` for an unknown, or zero if the unknown belongs to another
 /// condition.
 double own_in(const ScoreScatter& scatter, const ArrowRoot& combinations, Index unknown,
               std::size_t condition) {
@@ -333,7 +333,7 @@ RobustVariance robust_variance(const std::vector<ScoreScatter>& scatter, const A
 }
 
 double RobustVariance::quantile() const {
-  constexpr double kMostOwn = 0.9;      // limit that keeps the divisor away from zero
+  constexpr double kMostOwn = 0.9;      // keeps the divisor away from zero
   constexpr double kMostFreedom = 1e9;  // above this, Student's t equals the normal distribution
   const double share = std::clamp(own, 0.0, kMostOwn);
   const double rest = 1.0 - share;

@@ -12,20 +12,20 @@ namespace rigcal::calib {
 /// Maximum order of the autoregressions fitted to residuals.
 inline constexpr int kMostLags = 20;
 
-/// Weighted residuals r and their Jacobian J for one condition at the optimum. The columns of the
-/// Jacobian are coordinates in which the sum of J^T J over all conditions and priors is the
-/// identity. Coordinates that belong only to other conditions are left out.
+/// Weighted residuals r and their Jacobian J for one condition at the optimum. The Jacobian is in
+/// coordinates in which the sum of J^T J over all conditions and priors is the identity.
+/// Coordinates that belong only to other conditions are left out.
 struct ScoreRows {
   /// Shape (channels * samples, own directions + shared directions), one channel after the other.
   Eigen::MatrixXd jacobian;
   Eigen::VectorXd residual;  ///< shape (channels * samples)
   Eigen::Index channels = 1;
-  Eigen::MatrixXf narrow{};  ///< the Jacobian once make_narrow() was called
+  Eigen::MatrixXf narrow{};  ///< the Jacobian after make_narrow() has been called
 
-  /// Stores the Jacobian in half of the memory. Simulations are exact to 1e-6 of a sensitivity, far
-  /// less than seven digits.
+  /// Stores the Jacobian in single precision, which halves its memory. The sensitivities are
+  /// accurate only to about 1e-6, so nothing is lost.
   void make_narrow();
-  /// Rows [first, first + count) of the Jacobian, wherever it is stored.
+  /// Returns the rows [first, first + count) of the Jacobian in either precision.
   Eigen::MatrixXd rows(Eigen::Index first, Eigen::Index count) const;
   Eigen::MatrixXd all_rows() const { return rows(0, std::max(narrow.rows(), jacobian.rows())); }
 };
@@ -33,11 +33,11 @@ struct ScoreRows {
 /// Contribution of one condition to the long-run covariance of the score J^T r.
 struct ScoreScatter {
   Eigen::MatrixXd covariance;  ///< shape (directions, directions), positive semidefinite
-  Eigen::VectorXd freedom;     ///< degrees of freedom of its variance, for each combination
-  /// Contribution to this variance from the error of each combination itself, if that error is one
+  Eigen::VectorXd freedom;     ///< degrees of freedom of the variance of each combination
+  /// Contribution to this variance from the error of each combination itself, for an error of one
   /// standard error, divided by the expected variance over all conditions. Empty if there is none.
   Eigen::VectorXd own;
-  std::vector<metrics::Autoregression> noise;  ///< models of the weighted residuals, by channel
+  std::vector<metrics::Autoregression> noise;  ///< model of the weighted residuals of each channel
   double independent_residuals = 0.0;          ///< sum over all channels
 };
 
@@ -45,26 +45,28 @@ struct ScoreScatter {
 /// and between channels, and their size may change with time (heteroscedasticity and
 /// autocorrelation consistent, HAC; Andrews, Econometrica 59, 1991).
 ///
-/// An autoregression whose order is chosen by the data whitens the residuals of each channel: r = L
-/// u with L unit lower triangular, hence J^T r = (L^T J)^T u exactly. The contributions (L^T J)_t
-/// u_t of the samples, summed over channels, are almost uncorrelated. A Parzen kernel with Andrews'
-/// automatic bandwidth accounts for the remaining correlation. The residuals are whitened rather
-/// than the scores, so that the changing Jacobian does not affect the estimate of the correlation.
+/// The residuals of each channel are whitened by an autoregression whose order is chosen from the
+/// data: r = L u, where L is unit lower triangular, so that J^T r = (L^T J)^T u exactly. The
+/// contributions (L^T J)_t u_t of the samples, summed over channels, are almost uncorrelated. A
+/// Parzen kernel with Andrews' automatic bandwidth accounts for the remaining correlation. The
+/// residuals are whitened rather than the scores, so that the changing Jacobian does not affect the
+/// estimate of the correlation.
 ///
 /// The fit has removed part of the noise, mostly slow noise, in the space of the Jacobian. The
 /// autocovariances are corrected for the bias of (I - H) Sigma (I - H) at the estimated covariance
 /// Sigma, with H = J J^T.
 ///
-/// The degrees of freedom are Satterthwaite's, from the variance of a sum of squares with the
-/// weights of each combination, and 4 / independent residuals for a whitened long-run variance.
+/// The degrees of freedom follow from Satterthwaite's formula. It uses the variance of a sum of
+/// squares with the weights of each combination, and 4 / independent residuals for a whitened
+/// long-run variance.
 ///
 /// If the noise is correlated, least squares is not the best estimator, and the residuals still
-/// contain part of its error: an estimate far from the truth also looks uncertain. `own` is the
-/// size of this part, computed with the same kernel from the covariance of u with the error, (I -
-/// H) Sigma J c whitened.
+/// contain part of its error, so that an estimate far from the truth also appears more uncertain.
+/// `own` is the size of this part. It is computed with the same kernel from the covariance of u
+/// with the error, which is (I - H) Sigma J c, whitened.
 ///
 /// @param rows          all conditions of the fit
-/// @param priors        J^T J of the priors, whose errors have the variance that they state
+/// @param priors        J^T J of the priors; their errors have the stated variances
 /// @param combinations  combinations of the directions, one per unknown
 std::vector<ScoreScatter> score_scatter(const std::vector<ScoreRows>& rows,
                                         const ArrowMatrix& priors, const ArrowRoot& combinations,
@@ -80,13 +82,14 @@ double freedom_in(const ScoreScatter& scatter, const ArrowRoot& combinations, Ei
 struct RobustVariance {
   double variance = 0.0;
   double freedom = 0.0;  ///< Satterthwaite's degrees of freedom; infinite if only priors contribute
-  double own = 0.0;      ///< fraction b of the variance due to the error of the combination itself
+  /// Fraction b of the variance that is due to the error of the combination itself.
+  double own = 0.0;
 
   /// Returns the half-width of the 95 % interval divided by the square root of the variance. Let
-  /// the error be z sigma and the variance sigma^2 ((1 - b) chi^2_f / f + b z^2), with z standard
-  /// normal. Then |error| > q root(variance) if and only if |z| root(f) / chi_f > t, with q^2 = t^2
-  /// / (1 - b + b t^2). This is Student's t for b = 0, and less if the error widens its own
-  /// interval. f is `freedom` without the variance of z^2.
+  /// the error be z sigma and the variance sigma^2 ((1 - b) chi^2_f / f + b z^2), where z is
+  /// standard normal. Then |error| > q sqrt(variance) if and only if |z| sqrt(f) / chi_f > t, with
+  /// q^2 = t^2 / (1 - b + b t^2). For b = 0 this is the quantile of Student's t, and it is smaller
+  /// if the error widens its own interval. f is `freedom` without the variance of z^2.
   double quantile() const;
 };
 

@@ -16,7 +16,8 @@
 namespace rigcal::calib {
 namespace {
 
-/// Relative standard error above which the common scale counts as weak (kWeak, 95 %).
+/// Relative standard error above which the common scale counts as weak (kWeak for the 95 %
+/// interval).
 constexpr double kScaleKnown = 0.1;
 constexpr std::string_view kSmoothing = "leakage_smoothing";  // no physical meaning, so no exponent
 constexpr std::string_view kSupply = "supply_pressure";
@@ -43,7 +44,7 @@ std::vector<std::string> known_and_scaled(const Problem& problem) {
   }
   std::vector<std::string> names;
   for (const std::size_t row : rows) names.emplace_back(table[row].name);
-  // A gas relates pressures to atmospheric pressure, which cannot be scaled.
+  // A gas relates pressures to the atmospheric pressure, which cannot be scaled.
   for (const char* key : {"air_fraction", "accumulator_volume"}) {
     const int gas = model::parameter_index(problem.campaign->rig.plant, key);
     const bool holds_gas =
@@ -72,11 +73,11 @@ Eigen::MatrixXd outputs_at(const Problem& problem, const ProblemCondition& condi
 }
 
 /// Returns the change in the weighted residuals, including priors, per ln s when the unknowns and
-/// the smoothing are scaled. It is found by simulation with scaled values, because the model has no
-/// derivative with respect to the smoothing.
+/// the smoothing are scaled. It is computed by simulating with scaled values, because the model has
+/// no derivative with respect to the smoothing.
 double felt_when_scaled(const Problem& problem, std::span<const double> z,
                         const std::vector<std::size_t>& unknowns, int threads) {
-  constexpr double kScale = 1.5;  // large enough for simulation errors to be negligible
+  constexpr double kScale = 1.5;  // large enough to make simulation errors negligible
   const int smoothing = model::parameter_index(problem.campaign->rig.plant, kSmoothing);
   std::vector<double> scaled(z.size());
   for (std::size_t j = 0; j < z.size(); ++j)
@@ -120,12 +121,13 @@ bool takes_part(const Problem& problem, const ScalingSymmetry& symmetry, std::st
 
 double scaling_exponent(const model::ParameterSpec& spec) {
   using model::ParameterKind;
-  // Flows depend on the square root of pressure over density. The density is not scaled because it
+  // Flows depend on the square root of pressure over density. The density is not scaled, because it
   // is not a force.
   constexpr std::array<std::string_view, 5> kOpenings{
       "valve_gain", "pilot_gain", "leakage_coefficient", "bypass_opening", "return_line_opening"};
   if (std::find(kOpenings.begin(), kOpenings.end(), spec.key) != kOpenings.end()) return -0.5;
-  // The recorded pilot pressure stays, and what is compared with it.
+  // The recorded pilot pressure is not scaled, and neither are the values that are compared with
+  // it.
   constexpr std::array<std::string_view, 6> kStays{
       "density", kSmoothing, "pilot_dead_band", "pilot_range", "return_dead_band", "bypass_range"};
   if (std::find(kStays.begin(), kStays.end(), spec.key) != kStays.end()) return 0.0;
@@ -145,8 +147,8 @@ std::optional<ScalingSymmetry> scaling_symmetry(const Problem& problem, std::spa
       continue;
     result.unknowns.push_back(j);
   }
-  // A known supply pressure fixes s through the orifices. The Jacobian then shows what is
-  // undetermined.
+  // A known supply pressure fixes s through the flow in the orifices. The Jacobian then shows which
+  // unknowns are undetermined.
   if (result.unknowns.size() < 2 || !takes_part(problem, result, kSupply)) return std::nullopt;
   result.known = known_and_scaled(problem);
   const double felt = felt_when_scaled(problem, z, result.unknowns, threads);
@@ -197,7 +199,7 @@ void grade_symmetric(const Problem& problem, const ScalingSymmetry& symmetry,
     FittedParameter& each = parameters[j];
     if (each.nuisance) continue;
     each.identifiability = Identifiability::not_identifiable;
-    // The explanation of the interval is removed together with the interval.
+    // The interval is removed, and so is its explanation.
     const std::string known = each.standard_error || each.reason.empty() ? "" : "; " + each.reason;
     each.standard_error.reset();
     each.robust_standard_error.reset();

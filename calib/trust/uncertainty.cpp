@@ -16,18 +16,18 @@
 namespace rigcal::calib {
 namespace {
 
-/// A parameter belongs to a null direction if its fraction of the effect on the outputs, or its
-/// motion in the box relative to the largest one, is above these values.
+/// A parameter belongs to a null direction if its fraction of the effect on the outputs exceeds
+/// kFelt, or if its motion in the box relative to the largest motion exceeds kMoves.
 constexpr double kFelt = 0.1;
 constexpr double kMoves = 0.05;
-/// Maximum number of partners that are named. An offset common to all records is linked with that
-/// of each record.
+/// Maximum number of partners that are named. Without a limit there could be many: an offset common
+/// to all records, for example, is linked with the offset of each record.
 constexpr std::size_t kMostPartners = 12;
-/// Significance level for a difference between repeats with a named cause. It is low because every
+/// Significance level for naming a cause of a difference between repeats. It is low, because every
 /// fit is tested.
 constexpr double kDifferenceLevel = 0.01;
 
-/// Returns the scores of every condition in coordinates of `root`.
+/// Returns the score rows of every condition, in the coordinates of `root`.
 std::vector<ScoreRows> score_rows(const Problem& problem, std::vector<ConditionRows> rows,
                                   const ArrowRoot& root) {
   std::vector<ScoreRows> result(rows.size());
@@ -154,7 +154,7 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
       result.independent_residuals += each.independent_residuals;
   }
 
-  // The reason for a parameter names the other parameters in its null directions.
+  // The reason given for a parameter names the other parameters in its null directions.
   std::vector<std::vector<int>> directions;
   for (const ArrowSvd::Direction& each : svd.undetermined()) {
     std::vector<int>& members = directions.emplace_back();

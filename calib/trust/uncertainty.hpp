@@ -17,7 +17,7 @@ namespace rigcal::calib {
 enum class Detail {
   full,
   /// Skips everything that needs further simulations or another pass over all residuals. Used for a
-  /// point that is not a minimum, while the user waits for the end.
+  /// point that is not a minimum when the user is waiting for the job to end.
   plain,
 };
 
@@ -36,15 +36,16 @@ struct Uncertainty {
   /// ratio if repeats differ only by noise.
   std::vector<bool> from_repeats;
   std::vector<double> repeats_ratio, repeats_p;
-  std::optional<LikelyDifference> difference;  ///< if repeats differ by more than their noise
+  /// Present if the repeats differ by more than their noise.
+  std::optional<LikelyDifference> difference;
   int noiseless = 0;  ///< number of channels whose residual is not noise, see coherent_error.hpp
-  std::vector<std::string> reason;  ///< in words, why there is no standard error
+  std::vector<std::string> reason;  ///< why there is no standard error, in words
   int rank = 0;
   std::vector<double> singular_values;  ///< descending, columns scaled to length 1
   double reduced_chi_square = 0.0;      ///< 2 cost / (residuals - rank)
   double freedom = 1.0;                 ///< degrees of freedom of standard_error, at least 1
-  /// S, where S S^T is the covariance in the unit box. Directions that the data do not determine
-  /// have the smallest singular value that still counts.
+  /// S, where S S^T is the covariance in the unit box. For directions that the data do not
+  /// determine, the smallest singular value that still counts is used.
   ArrowRoot spread;
   /// R, where R R^T = (J^T J)^-1 on the directions that the data determine. `scatter` is in its
   /// coordinates.
@@ -57,14 +58,14 @@ struct Uncertainty {
   std::vector<ScoreScatter> scatter;   ///< one per condition; empty if there are no robust errors
   double independent_residuals = 0.0;  ///< sum over all conditions and channels
 
-  /// Returns true if repeats differ by more than the residuals predict, at 5 % for all unknowns
+  /// Returns true if the repeats differ by more than the residuals predict, at 5 % for all unknowns
   /// together (Bonferroni).
   bool repeats_differ() const;
   /// Returns the correlation of two unknowns; meaningful only if both have errors.
   double correlation(Eigen::Index a, Eigen::Index b) const;
 };
 
-/// Adds J^T J of the priors, in coordinates of `root`.
+/// Adds J^T J of the priors in the coordinates of `root`.
 void add_prior_information(const Problem& problem, std::span<const double> z, const ArrowRoot& root,
                            ArrowMatrix& sum);
 
@@ -74,18 +75,18 @@ std::vector<Eigen::MatrixXd> scores_of_repeats(const Problem& problem, std::span
                                                const std::vector<ScoreRows>& rows, int threads);
 
 /// Computes standard errors from the Gauss-Newton matrix, sigma^2 (J^T J)^-1, for all unknowns,
-/// including those at a bound. sigma^2 is the larger of 1 (the noise is known) and the reduced
-/// chi-square (the residuals are larger than the noise, so the model is wrong somewhere).
+/// including those at a bound. sigma^2 is 1, because the noise is known, or the reduced chi-square
+/// if that is larger, because the model must then be wrong somewhere.
 ///
 /// The robust errors are the sandwich (J^T J)^-1 (covariance of J^T r) (J^T J)^-1 from
-/// score_scatter(): residuals that are correlated in time, such as model errors, carry less
-/// information than their number suggests. They are absent if there are no degrees of freedom. If
-/// repeats differ by more than the residuals of their mean predict, the covariance of their scores
-/// is used instead (between_repeats.hpp). If the residuals contain no noise, both errors are at
-/// least as large as the errors due to model and solver (coherent_error.hpp).
+/// score_scatter(): residuals that are correlated in time, such as model errors, contain less
+/// information than their number suggests. There are no robust errors without degrees of freedom.
+/// If repeats differ by more than the residuals of their mean predict, the covariance of their
+/// scores is used instead (between_repeats.hpp). If the residuals contain no noise, both errors are
+/// at least as large as the errors due to model and solver (coherent_error.hpp).
 ///
 /// @param optimum  an evaluation with status ok
-/// @param rows     all its rows for each condition; consumed by the call
+/// @param rows     all rows for each condition; consumed by the call
 /// @param detail   plain: no robust errors, and no differences between repeats
 Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
                         std::vector<ConditionRows> rows, int threads, Detail detail = Detail::full);
