@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "common/compact_json.hpp"
 #include "common/quantity.hpp"
 
 namespace rigcal::datasets {
@@ -213,22 +214,6 @@ class SharedTables {
   OrderedJson definitions_ = OrderedJson::object();
 };
 
-/// Formats JSON. A value that fits on one line is written on one line.
-std::string compact(const OrderedJson& json, const std::string& indent = "") {
-  constexpr std::size_t kLine = 110;
-  const std::string line = json.dump();
-  if (!json.is_structured() || indent.size() + line.size() <= kLine) return line;
-  const std::string deeper = indent + " ";
-  std::string text;
-  for (const auto& [key, value] : json.items()) {
-    text += (text.empty() ? "\n" : ",\n") + deeper;
-    if (json.is_object()) text += OrderedJson(key).dump() + ": ";
-    text += compact(value, deeper);
-  }
-  text += "\n" + indent;
-  return json.is_object() ? "{" + text + "}" : "[" + text + "]";
-}
-
 /// Returns the table within a form, or null if there is none.
 const std::vector<CampaignKey>* table_in(const KeyForm& form) {
   if (form.kind == FormKind::table) return &form.keys;
@@ -297,7 +282,7 @@ std::string campaign_schema() {
   schema.update(shared.without_copies(root));
   schema["$defs"] = writer.definitions();
   schema["$defs"].update(shared.definitions());
-  return compact(schema) + "\n";
+  return compact_json(schema, " ") + "\n";
 }
 
 std::string markdown_of(const std::vector<CampaignKey>& keys) {

@@ -3,6 +3,7 @@
 #include <fstream>
 #include <string>
 
+#include "common/compact_json.hpp"
 #include "report/batch/batch.hpp"
 #include "report/store/json.hpp"
 #include "report/store/manifest.hpp"
@@ -13,22 +14,6 @@ using namespace rigcal::report;
 
 namespace {
 
-/// Formats JSON so that everything that fits on one line is written on one line.
-std::string compact(const Json& json, const std::string& indent = "") {
-  constexpr std::size_t kLine = 110;
-  const std::string line = json.dump();
-  if (!json.is_structured() || indent.size() + line.size() <= kLine) return line;
-  const std::string deeper = indent + "  ";
-  std::string text;
-  for (const auto& [key, value] : json.items()) {
-    text += (text.empty() ? "\n" : ",\n") + deeper;
-    if (json.is_object()) text += Json(key).dump() + ": ";
-    text += compact(value, deeper);
-  }
-  text += "\n" + indent;
-  return json.is_object() ? "{" + text + "}" : "[" + text + "]";
-}
-
 std::string schema_text(const std::string& file, const Json& rules) {
   Json schema = {
       {"$schema", "http://json-schema.org/draft-07/schema#"},
@@ -37,7 +22,7 @@ std::string schema_text(const std::string& file, const Json& rules) {
        "SI units unless a name says otherwise; a name ends in its unit. null where there "
        "is no number. Further keys may be added."}};
   schema.update(rules);
-  return compact(schema) + "\n";
+  return compact_json(schema, "  ") + "\n";
 }
 
 void check_schema(const std::string& name, const Json& rules) {
