@@ -12,9 +12,8 @@ set(allowed_report common model metrics datasets calib diagnosis report)
 set(allowed_apps common model metrics datasets calib diagnosis report apps)
 set(allowed_python common model metrics datasets calib diagnosis report python)
 
-# The folders of the same layer that a folder may include besides itself. In model and datasets, every folder may
-# include the files that are in no folder. In calib and diagnosis, these files are above all folders. A nested folder
-# follows the rules of the outer one.
+# The folders of the same layer that a folder may include besides itself. "." means the files outside all folders. In
+# calib and diagnosis, these files are above all folders. A nested folder follows the rules of the outer one.
 set(model_arithmetic)
 set(model_signal .)
 set(model_plant . arithmetic signal)

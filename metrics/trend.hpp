@@ -25,13 +25,13 @@ struct Trend {
 /// Fits the line y = intercept + slope x by generalised least squares and tests its slope. All
 /// trends are tested with this function.
 ///
-/// The errors of the points are known, so they decide the test: with the normal distribution, or
-/// with Student's t if they have few degrees of freedom (Welch and Satterthwaite). If the points
-/// scatter around the line by more than their errors (chi-square beyond its upper quartile, see
-/// Bancroft and Han, International Statistical Review 45, 1977), something else differs between
-/// them, such as the day. The error is then based on the scatter, using Birge's ratio, the square
-/// root of reduced chi-square (Phys. Rev. 40, 1932), and the slope is tested by t with n - 2
-/// degrees of freedom. Two points cannot show scatter, so they do not make a trend.
+/// The errors of the points are known, so the test is based on them. It uses the normal
+/// distribution, or Student's t if they have few degrees of freedom (Welch and Satterthwaite). If
+/// the points scatter around the line by more than their errors (chi-square beyond its upper
+/// quartile, see Bancroft and Han, International Statistical Review 45, 1977), something else
+/// differs between them, such as the day. The error is then based on the scatter, using Birge's
+/// ratio, the square root of reduced chi-square (Phys. Rev. 40, 1932), and the slope is tested by t
+/// with n - 2 degrees of freedom. Two points cannot show scatter, so they do not make a trend.
 ///
 /// @param x, y     shape (n), n >= 3
 /// @param errors   error of each y, independent of the others, shape (n); above 0

@@ -15,8 +15,8 @@ struct KnownPeriods {
 
 /// Extrapolates a column of samples. Each further period is the last known one plus a multiple of
 /// its change since the previous one. Every other period is multiplied by the sign of `known`.
+///
 /// @param share  the multiples, shape (further periods); if one is zero, the change is not read
-/// @param share  the multiples, shape (further periods); for zero, the change is not read
 void continue_periods(const KnownPeriods& known, std::span<const double> share,
                       std::span<double> column);
 

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::array kRigs{"bench_1", "lab/bench_2", "lab/bench_3"};
 
-/// Writes records of three rigs, each to its own folder in `where`. The leak of lab/bench_2 is
+/// Writes records of three rigs, each to its own folder below `where`. The leak of lab/bench_2 is
 /// different.
 void write_rigs(const CommandFolder& folder, const std::string& where, const std::string& date,
                 const std::string& leak) {

@@ -370,7 +370,7 @@ TEST_CASE("diagnose: a record of one sample is told to be too short", "[diagnosi
     CHECK_FALSE(record.fit.ok());
     CHECK_THAT(record.fit.failure, Catch::Contains("one sample counts"));
   }
-  // Two samples are enough to define a flow over a time.
+  // Two samples are enough to define a mean flow.
   const Diagnosis two =
       diagnosis::diagnose(campaign, records_of(campaign, 1, 2), known_rig(campaign), {});
   for (const auto& record : two.records)

@@ -87,8 +87,8 @@ TEST_CASE("nearest_limit: how far a share is from the next class", "[diagnosis]"
   CHECK(above.above == datasets::LeakClass::medium);
   CHECK_THAT(above.distance, WithinAbs(0.02, 1e-12));
   CHECK(diagnosis::nearest_limit(estimate_of(0.12, 0.095, 0.145), settings).on_limit);
-  // A share within 5 % of the limit counts as on it, however certain, because a table may list
-  // rounded shares.
+  // A share within 5 % of the limit counts as on it, however certain it is, because a table may
+  // list rounded shares.
   CHECK(diagnosis::nearest_limit(estimate_of(0.2099, 0.2098, 0.21), settings).on_limit);
   CHECK_FALSE(diagnosis::nearest_limit(estimate_of(0.2101, 0.2100, 0.2102), settings).on_limit);
 }

@@ -67,8 +67,8 @@ struct AlarmCounts {
   int with_cause = 0;  ///< number of campaigns whose repeats are found to have a common cause
 };
 
-/// Counts the alarms of healthy records in campaigns whose repeats all differ in their supply in
-/// the same way.
+/// Counts the alarms of healthy records in campaigns whose repeats all differ in their supply
+/// pressure in the same way.
 AlarmCounts alarms_of_healthy(double rate, double supply_sd, std::uint64_t first, int campaigns) {
   Campaign campaign = three_conditions(0.1);
   campaign.conditions.resize(2);

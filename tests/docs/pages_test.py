@@ -16,7 +16,7 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, str(ROOT / "tests" / "report"))
 from browser import Browser, chromium  # noqa: E402
 
-# Reports that take only seconds. The one that needs recordings is made only if these are available.
+# Reports that take only seconds. Those that need recordings are made only if these are available.
 NAMES = ["uis_leak_table", "martensson", "moog", "karpenko"]
 PAGES = ["index.html", "gallery.html", "tutorial.html", "paper.html", "campaign-file.html", "reference/python.html",
          "reference/cpp-calib.html", "decisions/index.html"]

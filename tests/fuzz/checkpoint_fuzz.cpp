@@ -12,8 +12,8 @@ using namespace rigcal;
 
 namespace {
 
-/// Identity of the fit to which a checkpoint belongs. It includes version and revision, which a
-/// corpus cannot know, so inputs have a placeholder.
+/// Identity of the fit to which a checkpoint belongs. It includes version and revision, which are
+/// not known to a corpus, so inputs have a placeholder.
 const std::string& fit_identity() {
   static const std::string text =
       report::parse_json(report::checkpoint_text({}, {}), "identity").at("fit").dump();
@@ -37,7 +37,7 @@ std::string with_own_hash(const std::string& text) {
 
 }  // namespace
 
-/// A checkpoint either is rejected, or is the same after it was read, written and read again.
+/// A checkpoint is either rejected or unchanged after it has been read, written and read again.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   std::string text(fuzz::text_of_bytes(data, size));
   if (const auto at = text.find(kIdentitySign); at != std::string::npos)

@@ -7,7 +7,7 @@
 using namespace rigcal;
 using namespace rigcal::datasets;
 
-/// A CSV file either is rejected, or all its columns are read as finite values and have equal
+/// A CSV file is either rejected, or all its columns are read as finite values and have equal
 /// lengths.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto file = fuzz::scratch_file("record.csv", fuzz::text_of_bytes(data, size));

@@ -46,7 +46,7 @@ inline std::filesystem::path scratch_file(const std::string& name, std::string_v
   return path;
 }
 
-/// Aborts if a property is violated that every input must have.
+/// Aborts if an input violates a property that every input must have.
 inline void require(bool holds, const char* property) {
   if (holds) return;
   std::cerr << "violated: " << property << '\n';

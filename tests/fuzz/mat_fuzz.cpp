@@ -8,7 +8,7 @@
 using namespace rigcal;
 using namespace rigcal::datasets;
 
-/// A level-5 MAT file either is rejected, or every column that it claims to have is read as finite
+/// A level-5 MAT file is either rejected, or every column that it claims to have is read as finite
 /// values. (Other libraries read version 7.3, in a separate process.)
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto file = fuzz::scratch_file("record.mat", fuzz::text_of_bytes(data, size));

@@ -6,7 +6,7 @@
 
 using namespace rigcal;
 
-/// "number unit" either is rejected or is a finite number with the expected unit.
+/// A text is either rejected or read as a finite number with the expected unit.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   constexpr std::array kUnits{"Pa", "m", "kg", "N s/m", "m^3", "K", "1", "rad/s", "V"};
   if (size == 0) return 0;

@@ -9,7 +9,7 @@
 using namespace rigcal;
 using namespace rigcal::datasets;
 
-/// A workbook whose sheet has this XML either is rejected, or all its columns are read as finite
+/// A workbook whose sheet has this XML is either rejected, or all its columns are read as finite
 /// values and have equal lengths. (The archive is left to libzip, whose authors fuzz it; a changed
 /// byte in an archive mostly results in a wrong checksum.)
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

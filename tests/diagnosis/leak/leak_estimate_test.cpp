@@ -44,7 +44,7 @@ TEST_CASE("estimate_leak: class probabilities follow the interval", "[diagnosis]
   CHECK(sure.most_probable == LeakClass::medium);
   CHECK(probability(sure, LeakClass::medium) > 0.999);
   CHECK_THAT(sure.share, WithinRel(0.15, 1e-9));
-  // The normal quantile is 1.96 times 0.02, and the error of the share is a tenth of that. 401
+  // The half width is 1.96 times 0.02 for the coefficient, and a tenth of that for the share. 401
   // draws resolve a hundredth.
   CHECK_THAT(sure.share_ci95.low, WithinAbs(0.15 - 0.00392, 1e-4));
   CHECK_THAT(sure.ci95.high, WithinAbs(1.5 + 0.0392, 1e-5));

@@ -137,7 +137,7 @@ TEST_CASE("rosenbrock: no order reduction on Prothero and Robinson's problem", "
 }
 
 TEST_CASE("rosenbrock4 of Odeint: loses order where the equation depends on time", "[model]") {
-  // The reason for not using it: d4 in default_rosenbrock_coefficients has the wrong sign.
+  // This is why it is not used: d4 in default_rosenbrock_coefficients has the wrong sign.
   const auto measured_order = [](auto error) { return order(error(40), error(80)); };
   const auto shipped = [](int n) { return odeint_error<AsShipped>(nonlinear(), n); };
   const auto changed = [](int n) { return odeint_error<SignOfD4Changed>(nonlinear(), n); };
