@@ -27,21 +27,21 @@ using datasets::Campaign;
 using datasets::DriveFamily;
 using datasets::Record;
 
-/// Tolerance for comparing many drives; sensitivities are then accurate to one percent.
+/// Tolerance for comparing many drives, with which sensitivities are accurate to one percent.
 constexpr double kTrialTolerance = 1e-5;
-/// Tolerance for the drive that is written.
+/// Tolerance for checking the drive that is written.
 constexpr double kFineTolerance = 1e-8;
 constexpr int kFiner = 4;  // response samples per drive sample
 constexpr int kMostScalings = 6;
 constexpr int kMostFineScalings = 20;
-/// A drive that uses this fraction of a limit is not scaled up further.
+/// A drive that uses at least this fraction of a limit is not scaled up further.
 constexpr double kUsed = 0.95;
 constexpr double kAimedAt = 0.98;
 constexpr double kFineAimedAt = 0.999;
 
 bool is_set(const std::atomic<bool>* flag) { return flag != nullptr && flag->load(); }
 
-// Checks of the names of parameters.
+// Checks of parameter names.
 
 const model::ParameterSpec& spec_at(const Campaign& campaign, int index) {
   return model::parameter_table(campaign.rig.plant)[static_cast<std::size_t>(index)];
@@ -93,8 +93,8 @@ std::vector<double> drive_of(const TrialRig& rig, const DriveShape& shape, doubl
   return drive;
 }
 
-/// Returns the largest scale up to 1 at which a drive keeps the limits, multiplied by the fraction
-/// chosen for its shape. Returns std::nullopt if none was found.
+/// Returns the largest scale, up to 1, at which a drive keeps the limits, multiplied by the
+/// fraction chosen for its shape. Returns std::nullopt if no such scale was found.
 std::optional<double> allowed_scale(const TrialRig& rig, const DriveShape& shape) {
   double kept = 0.0;
   double broken = std::numeric_limits<double>::infinity();
@@ -217,7 +217,7 @@ bool is_comparable(const datasets::Condition& condition, const datasets::Conditi
          condition.specimen == of.specimen;
 }
 
-/// Adds the information that the campaign's own signals would give in the duration of the test.
+/// Adds the information that the campaign's own signals would provide in the duration of the test.
 /// Each signal gets its fraction of that time, counted in samples, so that records with different
 /// sample rates can be compared.
 void add_own_signals(const Campaign& campaign, const std::vector<Record>& records,
@@ -268,7 +268,8 @@ void add_own_signals(const Campaign& campaign, const std::vector<Record>& record
   }
 }
 
-/// Marks the unknowns that only the smoothing of the orifice roots would determine.
+/// Marks as undetermined those unknowns that only the smoothing of the orifice roots would
+/// determine.
 void leave_symmetric_open(const TrialRig& rig, int threads, Design& design) {
   const auto symmetry = scaling_symmetry(rig.problem(), rig.z(), 1.0, threads);
   if (!symmetry) return;

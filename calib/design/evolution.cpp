@@ -25,8 +25,7 @@ Eigen::VectorXd random_direction(Eigen::Index n, datasets::RandomStream& stream)
   return direction;
 }
 
-/// Returns the indices of the points from best to worst. Of points with equal scores the earlier
-/// one comes first.
+/// Returns the indices of the points from best to worst. Points with equal scores keep their order.
 std::vector<std::size_t> ranked(const std::vector<double>& scores) {
   std::vector<std::size_t> order(scores.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -35,7 +34,7 @@ std::vector<std::size_t> ranked(const std::vector<double>& scores) {
   return order;
 }
 
-/// The search distribution, with Hansen's notation and default constants.
+/// The search distribution, in Hansen's notation and with his default constants.
 class Strategy {
  public:
   explicit Strategy(Eigen::VectorXd mean)

@@ -19,8 +19,7 @@ struct Validity {
   std::optional<Range> supply_pressure_pa;
   std::optional<Range> leakage_coefficient;
   std::vector<std::string> leak_levels;
-  Omittable<Range> amplitude_n, amplitude_pa,
-      amplitude_m_per_s2;  ///< in other loops
+  Omittable<Range> amplitude_n, amplitude_pa, amplitude_m_per_s2;  ///< in other loops
   RIGCAL_DESCRIBE(frequency_hz, amplitude_m, amplitude_v, supply_pressure_pa, leakage_coefficient,
                   leak_levels, amplitude_n, amplitude_pa, amplitude_m_per_s2)
 
