@@ -131,7 +131,7 @@ struct Row {
 struct SizedRow {
   const ForeignEffect* effect;
   double factor;
-  bool known;  ///< the effect is in the catalogue
+  bool known;  ///< whether the effect is in the catalogue
 };
 
 void draw_all(ForeignRig& rig, boost::random::mt19937_64& stream) {
@@ -446,7 +446,7 @@ class OutcomeFile {
   std::mutex mutex_;
 };
 
-/// Extent of a study.
+/// Which campaigns a study runs, and how.
 struct StudyExtent {
   std::size_t campaigns = 200;
   int threads = 1;

@@ -27,7 +27,7 @@ namespace {
 
 using datasets::Channel;
 
-constexpr double kNoiseOfOne = 0.05e-3;  // [m]
+constexpr double kNoiseOfOne = 0.05e-3;  // standard deviation of one repeat [m]
 constexpr double kOffTruth = 1.1;
 constexpr double kRateHz = 1000.0;
 constexpr double kTwelveBits = 0.1524 / 4096.0;  // stroke divided by the number of codes [m]
@@ -41,7 +41,7 @@ struct Scenario {
   double hum_m = 0.0;  ///< amplitude at 50 Hz, with a random phase in each repeat
   double quantisation_m = 0.0;
   double jitter_s = 0.0;
-  double supply = 0.0;      ///< relative standard deviation between repeats
+  double supply = 0.0;      ///< relative standard deviation of the supply between repeats
   double oil = 0.0;         ///< relative standard deviation of the bulk modulus between repeats
   double friction_n = 0.0;  ///< Coulomb friction that the fitted model lacks
   bool leaks = true;        ///< if false, the leakage coefficient is at its bound

@@ -47,8 +47,8 @@ const std::vector<Reference> kDaySignals{
 
 /// Standard deviations between days.
 struct DaySizes {
-  double supply = 0.0;        ///< fraction of its value
-  double bulk_modulus = 0.0;  ///< fraction of its value
+  double supply = 0.0;        ///< relative to the supply pressure
+  double bulk_modulus = 0.0;  ///< relative to the bulk modulus
   double zero_m = 0.0;
   double trigger_s = 0.0;
 };

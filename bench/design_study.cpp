@@ -25,7 +25,7 @@ namespace {
 
 using datasets::Channel;
 
-constexpr double kNoiseOfOneRepeat = 0.05e-3;  // [m]
+constexpr double kNoiseOfOneRepeat = 0.05e-3;  // standard deviation of one repeat [m]
 constexpr int kRepeatsOfDesign = 5;
 constexpr double kStartsOff = 1.1;
 

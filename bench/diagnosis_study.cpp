@@ -259,7 +259,7 @@ struct Estimates {
   int found = 0;
 };
 
-constexpr double kSmallLeak = 0.05;  ///< L/min
+constexpr double kSmallLeak = 0.05;  ///< leak to be found [L/min]
 constexpr int kTrials = 5;  ///< number of averages per seed, both with and without the leak
 constexpr const char* kSine = "sine_0.1Hz_open_0";
 

@@ -31,7 +31,7 @@ struct ForeignRig {
   double valve_play_v = 0.0;  ///< half-width; the spool moves only after the play has been taken up
   /// Friction at rest in addition to Coulomb friction; decays over 10 mm/s.
   double breakaway_n = 0.0;
-  double controller_tick_s = 0.0;  ///< a multiple of 10 us; 0: continuous
+  double controller_tick_s = 0.0;  ///< a multiple of 10 us; 0 if the controller is continuous
 
   // Effects that are not in the product's catalogue.
   /// Second-order valve with damping 0.7 instead of the lag; 0: none.

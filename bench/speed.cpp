@@ -353,7 +353,7 @@ void stiff(int rounds) {
   fmt::print("| 1000 refits on two cores, min | {:.1f} | 3 |\n\n", refit * 1000.0 / 2.0 / 60e3);
 }
 
-/// Times a record of 20 s at 10 kHz whose recorded command drives the valve.
+/// Measures simulations of a 20 s record at 10 kHz whose recorded command drives the valve.
 void long_record(int rounds) {
   const auto truth = six_signal_truth();
   const auto free = free_indices({"mass", "damping", "stiffness", "piston_area", "total_volume",

@@ -197,7 +197,7 @@ MatrixXd white_covariance(const Seen& seen) {
   return squares / std::max(1.0, count) * MatrixXd::Identity(determined, determined);
 }
 
-/// Posterior sizes of the effects, as multiples of their plausible sizes.
+/// Posterior of the effects' sizes, as multiples of their plausible sizes.
 struct Sizes {
   VectorXd mean;
   MatrixXd covariance;

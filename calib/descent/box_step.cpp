@@ -51,8 +51,8 @@ class ShiftedDense {
   Eigen::VectorXd solve(const Eigen::VectorXd& y, double more) const {
     return (y.array() / (curvature_.array() + more).max(1e-300)).matrix();
   }
-  /// Returns half of the derivative of -|y|^2 with respect to the shift, where y solves the system
-  /// for x.
+  /// Returns half the derivative of -|y|^2 with respect to the shift, where y is the solution for
+  /// x.
   double slope(const Eigen::VectorXd& x, const Eigen::VectorXd& /*y*/, double more) const {
     return (x.array().square() / (curvature_.array() + more).max(1e-300).cube()).sum();
   }

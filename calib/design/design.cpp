@@ -31,7 +31,7 @@ using datasets::Record;
 constexpr double kTrialTolerance = 1e-5;
 /// Tolerance for checking the drive that is written.
 constexpr double kFineTolerance = 1e-8;
-constexpr int kFiner = 4;  // response samples per drive sample
+constexpr int kFiner = 4;  // number of response samples per drive sample
 constexpr int kMostScalings = 6;
 constexpr int kMostFineScalings = 20;
 /// A drive that uses at least this fraction of a limit is not scaled up further.
@@ -41,7 +41,7 @@ constexpr double kFineAimedAt = 0.999;
 
 bool is_set(const std::atomic<bool>* flag) { return flag != nullptr && flag->load(); }
 
-// Checks of parameter names.
+// Functions that check the names of parameters.
 
 const model::ParameterSpec& spec_at(const Campaign& campaign, int index) {
   return model::parameter_table(campaign.rig.plant)[static_cast<std::size_t>(index)];
@@ -84,7 +84,7 @@ std::vector<std::size_t> named_unknowns(const Campaign& campaign, const TrialRig
   return {found.begin(), found.end()};
 }
 
-// Evaluation of a single drive.
+// Functions that evaluate a single drive.
 
 std::vector<double> drive_of(const TrialRig& rig, const DriveShape& shape, double scale) {
   std::vector<double> drive(shape.values.size());
@@ -207,7 +207,7 @@ void check_finely(const TrialRig& rig, const datasets::DriveUnit& unit, const Dr
   throw NoResultError("design: no drive that was tried keeps the limits in a fine simulation");
 }
 
-// Comparison with the campaign's own signals.
+// Functions for the comparison with the campaign's own signals.
 
 bool is_comparable(const datasets::Condition& condition, const datasets::Condition* like) {
   if (!is_planned_with(condition)) return false;

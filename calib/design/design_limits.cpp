@@ -19,7 +19,7 @@ double travelled(double first, double reached, double end) {
   const double way = std::abs(end - first);
   const double gone = end >= first ? reached - first : first - reached;
   if (way > 0.0) return std::max(gone / way, 0.0);
-  constexpr double kRounding = 1e-9;  // in m
+  constexpr double kRounding = 1e-9;  // [m]
   return gone > kRounding ? std::numeric_limits<double>::infinity() : 0.0;
 }
 

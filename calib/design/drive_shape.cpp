@@ -28,7 +28,7 @@ double between(double low, double high, double coordinate) {
   return low * std::pow(high / low, coordinate);
 }
 
-/// Returns the coordinates of a drive one after the other.
+/// Hands out the coordinates of a drive one after the other.
 class DriveNumbers {
  public:
   explicit DriveNumbers(const Eigen::VectorXd& values) : values_(values) {}

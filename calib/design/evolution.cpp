@@ -139,7 +139,7 @@ class BoundedSearch {
   bool goes_on() const { return left_ > 0 && !stopped_(); }
   const Evolved& best() const { return best_; }
 
-  /// Returns the scores of as many points as may still be evaluated.
+  /// Evaluates the points, after reflecting them into the box, and returns their scores.
   std::vector<double> evaluate(const std::vector<Eigen::VectorXd>& unbounded) {
     std::vector<Eigen::VectorXd> points;
     for (const Eigen::VectorXd& each : unbounded) points.push_back(reflected(each));

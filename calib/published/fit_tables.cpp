@@ -19,15 +19,15 @@
 namespace rigcal::calib {
 namespace {
 
-/// The tables in docs/paper.md need 13 to 32 iterations, depending on the last digits of the start
-/// values.
+/// Maximum number of iterations. The tables in docs/paper.md need 13 to 32, depending on the last
+/// digits of the start values.
 constexpr int kMostIterations = 100;
 /// Maximum number of descents, each with a different set of unknowns at their bounds.
 constexpr int kMostCalls = 10;
-/// Limits the first steps: from a distant start, a full Gauss-Newton step would leave the box
-/// immediately.
+/// Limits the first steps, because a full Gauss-Newton step from a distant start would leave the
+/// box immediately.
 constexpr double kTablesTrustRadius = 10.0;
-/// The flows themselves are only accurate to 2e-4.
+/// A smaller tolerance is pointless, because the flows are only accurate to 2e-4.
 constexpr double kTablesTolerance = 1e-6;
 constexpr double kRankThreshold =
     1e-6;  ///< relative to the largest singular value, with columns scaled to length 1

@@ -100,7 +100,7 @@ std::vector<double> FlowCurve::roots(const Quantity& quantity, double target) {
     return std::log(quantity(at(std::exp(log_coefficient))) / target);
   };
   const auto narrow = [](double a, double b) { return std::abs(a - b) <= kRootWidth; };
-  std::vector<std::pair<double, double>> points;  // ln coefficient, distance
+  std::vector<std::pair<double, double>> points;  // pairs of ln coefficient and distance
   for (const auto& [coefficient, flow] : known_) {
     points.emplace_back(std::log(coefficient), std::log(quantity(flow) / target));
   }

@@ -54,7 +54,7 @@ struct EstimateSpread {
   /// One entry per condition with estimates of its own. They are stored separately because there
   /// may be many, and no simulation needs those of more than one condition.
   std::vector<Own> own = {};
-  EffectSpread effects = {};  ///< its `moves` refer to `estimates`
+  EffectSpread effects = {};  ///< whose `moves` refer to `estimates`
   /// Dates of the fitted records; empty if any record has no date.
   std::vector<std::string> dates = {};
 };
