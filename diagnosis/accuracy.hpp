@@ -33,7 +33,7 @@ struct Accuracy {
   int records = 0;
   int conditions = 0;
   int right = 0;
-  int undecided = 0;               ///< counted as wrong
+  int undecided = 0;               ///< undecided records, which count as wrong
   int off_by_two_or_more = 0;      ///< number of records whose class is wrong by at least two
   std::optional<double> accuracy;  ///< right / records
   /// Wilson's 95 % interval. The number of conditions is used as the number of independent trials,
@@ -49,7 +49,8 @@ struct Accuracy {
 /// @param judged  classified records; if empty, the accuracy is absent
 Accuracy accuracy_of(const std::vector<Judged>& judged);
 
-/// Wilson's 95 % score interval for a proportion. E. B. Wilson, J. Am. Stat. Assoc. 22 (1927).
+/// Returns Wilson's 95 % score interval for a proportion (E. B. Wilson, J. Am. Stat. Assoc. 22,
+/// 1927).
 ///
 /// @param proportion  in [0, 1]
 /// @param trials      > 0

@@ -23,7 +23,7 @@ struct BetweenDays {
   DaySource source = DaySource::usual;
   /// Factor on the variances of the quantities, estimated from healthy days.
   double variance = 1.0;
-  double freedom = metrics::kManyDegrees;  ///< degrees of freedom of that factor
+  double freedom = metrics::kManyDegrees;  ///< degrees of freedom of `variance`
   int dates = 0;                           ///< number of stated dates of healthy records
 
   /// Returns the error that the days cause in a coefficient that changes by `effects` per standard
@@ -41,7 +41,7 @@ std::string day_label(const datasets::Condition& condition);
 /// both are from one day.
 struct DayWeights {
   Eigen::VectorXd own;        ///< shape (days)
-  Eigen::VectorXd reference;  ///< fractions, shape (days)
+  Eigen::VectorXd reference;  ///< fraction recorded on each day, shape (days)
   Eigen::VectorXd difference() const { return own - reference; }
   double norm() const { return own.size() > 0 ? difference().norm() : 0.0; }
   /// Returns the norm of the difference for a record from a day on which no part of the reference
@@ -70,7 +70,7 @@ BetweenDays between_days_of(const datasets::Campaign& campaign,
 /// A healthy average, for comparison with averages from other days.
 struct HealthyDay {
   double coefficient = 0.0;
-  double variance = 0.0;       ///< variance of its own error
+  double variance = 0.0;       ///< variance of the average's own error
   double days_variance = 0.0;  ///< variance that the days would cause with the usual sizes
 };
 

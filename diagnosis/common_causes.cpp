@@ -11,7 +11,7 @@ namespace {
 /// this multiple of the edge. (Missing a weak cause leads to alarms, while mistaking noise for a
 /// cause only makes a threshold slightly higher.)
 constexpr double kBeyondEdge = 1.05;
-/// Autocorrelations below this are attributed to noise.
+/// Smaller autocorrelations are attributed to noise.
 constexpr double kNoCorrelation = 0.05;
 
 /// Returns the number of independent squares that would estimate a variance as precisely as all

@@ -131,9 +131,10 @@ RecordDiagnosis diagnose_record(const LeakProblem& problem, const RigFit& rig, c
 }
 
 struct SignalRecords {
-  std::map<std::string, std::vector<RecordDiagnosis*>> singles;  ///< by condition
-  std::vector<RecordDiagnosis*> healthy;                         ///< averages and singles
-  std::vector<const LeakFit*> averages;  ///< except those that are their own reference
+  /// Single repeats of each condition.
+  std::map<std::string, std::vector<RecordDiagnosis*>> singles;
+  std::vector<RecordDiagnosis*> healthy;  ///< averages and single repeats of healthy conditions
+  std::vector<const LeakFit*> averages;   ///< except those that are their own reference
 };
 
 std::map<std::string, SignalRecords> by_signal(const Campaign& campaign,
@@ -266,8 +267,8 @@ void estimate(const LeakProblem& problem, const RigFit& rig, const Prepared& pre
   }
 }
 
-/// Finds the largest limits among the healthy records of a signal, for averages and for single
-/// repeats.
+/// Finds the largest limits of the healthy records of a signal, separately for averages and for
+/// single repeats.
 void take_limits(const SignalRecords& records,
                  std::optional<DetectionLimit> RecordDiagnosis::*limit, bool others,
                  std::optional<DetectionLimit>& averaged, std::optional<DetectionLimit>& single) {

@@ -30,19 +30,19 @@ struct DiagnosisOptions {
 /// Diagnosis of one record.
 struct RecordDiagnosis {
   std::string condition;
-  std::string signal;         ///< "sine 0.1 Hz, 50.8 mm"
+  std::string signal;         ///< such as "sine 0.1 Hz, 50.8 mm"
   std::optional<int> repeat;  ///< counted from 1; absent for the average
   int repeats = 1;            ///< number of repeats averaged in the record
   /// Number of healthy repeats of the same signal whose parity residual was subtracted from the
-  /// record; 0 if none was.
+  /// record.
   int reference_repeats = 0;
   /// True for a repeat of a healthy condition, which is corrected by the other healthy repeats.
   bool corrects_others = false;
   /// True if the record is itself the healthy reference, so that its leak is zero by construction.
   bool is_reference = false;
   DayWeights days;                     ///< day of the record relative to the days of its reference
-  LeakFit fit;                         ///< contains the reason if nothing was found
-  metrics::ResidualFeatures features;  ///< from the uncorrected parity residual, eq. 14 [m]
+  LeakFit fit;                         ///< contains the reason if no leak could be fitted
+  metrics::ResidualFeatures features;  ///< features of the uncorrected parity residual, eq. 14 [m]
   LeakEstimate estimate;               ///< valid only if fit.ok()
   /// For a healthy record whose errors are known, the smallest leak that could be detected in a
   /// record from the day of the reference, and in one from another day.
@@ -78,14 +78,15 @@ struct SignalDiagnosis {
 struct Diagnosis {
   /// In campaign order; each average comes before its repeats.
   std::vector<RecordDiagnosis> records;
-  std::vector<SignalDiagnosis> signals;  ///< in order of their first appearance
-  std::vector<MachineState> states;      ///< in order of their first appearance
+  std::vector<SignalDiagnosis> signals;  ///< in order of first appearance
+  std::vector<MachineState> states;      ///< in order of first appearance
   BetweenDays between_days;              ///< assumed variation between days
-  std::vector<std::string> other_days;   ///< days other than the reference's
-  std::vector<LeakTrend> trends;         ///< trends over states that differ only by date
-  Accuracy single;                       ///< by fitted leak, for single repeats
-  Accuracy averaged;                     ///< by fitted leak, for averages
-  Accuracy features;  ///< by the paper's features, learned without the repeat itself
+  /// Days of records that are not from the day of their reference.
+  std::vector<std::string> other_days;
+  std::vector<LeakTrend> trends;  ///< trends over states that differ only by date
+  Accuracy single;                ///< accuracy of fitted leaks in single repeats
+  Accuracy averaged;              ///< accuracy of fitted leaks in averages
+  Accuracy features;  ///< accuracy of the paper's features, learned without the repeat itself
   Accuracy features_of_other_signals;
   std::vector<std::string> warnings;
   /// Returns true if at least one record was diagnosed.

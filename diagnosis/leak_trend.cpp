@@ -13,7 +13,7 @@ namespace {
 /// A trend with a p-value below this is significant.
 constexpr double kSignificantTrend = 0.05;
 
-/// A state, and the day of its date.
+/// A state with its date as a number of days.
 struct DatedState {
   const MachineState* state = nullptr;
   int day = 0;

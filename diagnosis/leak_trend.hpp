@@ -15,14 +15,14 @@ namespace rigcal::diagnosis {
 struct LeakTrend {
   std::string leak_level, specimen;  ///< common to all its states; empty if not stated
   std::string duty;                  ///< signal whose share is stated
-  int first_day = 0, last_day = 0;   ///< since 1970-01-01
+  int first_day = 0, last_day = 0;   ///< days since 1970-01-01
   int dates = 0;
   double coefficient_per_day = 0.0;
-  double share_per_day = 0.0;  ///< at the duty, close to the last date
+  double share_per_day = 0.0;  ///< slope of the share at the duty, close to the last date
   Range share_per_day_ci95{};
   double p = 1.0;            ///< two-sided p-value for no change
-  bool significant = false;  ///< at 5 %
-  double chi_squared = 0.0;  ///< variation of the states around the line
+  bool significant = false;  ///< whether the trend is significant at 5 %
+  double chi_squared = 0.0;  ///< measure of the variation of the states about the line
   double freedom = 0.0;      ///< degrees of freedom of chi_squared: dates - 2
   double widened = 1.0;  ///< factor on the error; above 1 if the states are too far from the line
   /// Set if the leak grows significantly: the next limit above the share on the last date, and the

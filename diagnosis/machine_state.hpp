@@ -27,8 +27,8 @@ struct StateMember {
   double coefficient = 0.0;
   double own_se = 0.0;  ///< standard error without the contribution of the rig's parameters
   double freedom = 1.0;
-  Eigen::VectorXd rig_moves;    ///< like LeakFit::rig_moves
-  Eigen::VectorXd day_effects;  ///< like LeakFit::day_effects
+  Eigen::VectorXd rig_moves;    ///< see LeakFit::rig_moves
+  Eigen::VectorXd day_effects;  ///< see LeakFit::day_effects
   Eigen::VectorXd day_weights;  ///< one per day, see DayWeights::difference()
 
   /// Returns the change in the coefficient with each quantity on each day, shape (days *
@@ -53,7 +53,7 @@ struct PooledLeak {
   double freedom = 0.0;         ///< number of members - 1
   double p = 1.0;               ///< probability that errors alone cause such a disagreement
   bool disagree = false;        ///< true if the disagreement is significant at 5 %
-  double widened = 1.0;         ///< factor on the error, at least 1
+  double widened = 1.0;         ///< factor by which the error was widened, at least 1
 };
 
 /// Pools members by generalised least squares. Each member has its own error. In addition, a common
@@ -71,7 +71,7 @@ PooledLeak pooled_leak(const std::vector<StateMember>& members,
 struct LimitDistance {
   LeakClass above = LeakClass::slight;  ///< the class that begins at the limit
   double limit = 0.0;
-  double distance = 0.0;  ///< share minus limit
+  double distance = 0.0;  ///< share minus `limit`
   /// True if the interval includes the limit, or the share is within 5 % of it.
   bool on_limit = false;
 };
@@ -89,9 +89,9 @@ struct MachineState {
   PooledLeak pooled;
   double leak_area_m2 = 0.0;            ///< coefficient times leakage area
   std::string duty;                     ///< signal whose share is stated
-  LeakEstimate estimate;                ///< at that duty
+  LeakEstimate estimate;                ///< leak at that duty
   double share_slope = 0.0;             ///< d share / d coefficient at that duty
-  std::optional<LeakClass> leak_class;  ///< empty: undecided
+  std::optional<LeakClass> leak_class;  ///< absent if undecided
   LimitDistance limit;
   bool ok() const { return failure.empty() && !is_reference && !members.empty(); }
 };

@@ -151,9 +151,9 @@ std::vector<ResidualValues> values_of_patterns(const Eigen::MatrixXd& patterns,
 
 /// Differences between the healthy records of a signal, from which the thresholds are computed.
 struct HealthyScatter {
-  std::vector<ResidualValues> own;     ///< for each record, without common causes
-  std::vector<ResidualValues> causes;  ///< for one standard deviation of each common cause
-  std::vector<ResidualValues> days;    ///< for one standard deviation of each day quantity
+  std::vector<ResidualValues> own;     ///< values for each record without common causes
+  std::vector<ResidualValues> causes;  ///< values for one standard deviation of each common cause
+  std::vector<ResidualValues> days;    ///< values for one standard deviation of each day quantity
   double records = 0.0;
 };
 
@@ -377,7 +377,7 @@ class Work {
   Parity& result_;
   // These members belong to the signal that is being judged.
   HealthyScatter scatter_;
-  std::vector<const Condition*> conditions_;  ///< one per reference
+  std::vector<const Condition*> conditions_;  ///< conditions of the references
 };
 
 /// Warns that records without a date are treated as recorded on the same day as the healthy ones.

@@ -16,7 +16,7 @@ namespace rigcal::diagnosis {
 
 struct ParityOptions {
   double false_alarm = 0.01;  ///< probability that a healthy record raises an alarm
-  int threads = 1;            ///< results are identical to the bit for any number
+  int threads = 1;            ///< the results are bitwise identical for any number
   const std::atomic<bool>* cancel = nullptr;
   /// Called from any thread with the number of conditions done and the total number.
   std::function<void(int, int)> progress;
@@ -50,11 +50,11 @@ struct ParityRecord {
   double alarm_time_s = 0.0;  ///< time from the first sample to the first one above the threshold
 };
 
-/// Records of one condition on one time base.
+/// Records of one condition on a common time base.
 struct ParityCondition {
   std::string condition;
   std::vector<double> time_s;
-  std::vector<double> model_m;  ///< position of the healthy model; empty if it failed
+  std::vector<double> model_m;  ///< position of the healthy model; empty if the simulation failed
   /// Change in that position with each quantity that differs between days, per standard deviation.
   /// Shape (samples, quantities).
   Eigen::MatrixXd day_changes_m;
@@ -67,7 +67,7 @@ struct ParitySignal {
   double window_s = 0.0;    ///< window of the moving RMS: a period, or a tenth of the record
   int healthy_records = 0;  ///< number of records on which the thresholds are based
   std::optional<double> threshold_m;  ///< threshold for peak_m of a record from the same day
-  /// Threshold for peak_m of a record from a day without healthy records.
+  /// Threshold for peak_m of a record from a day on which no healthy record was made.
   Omittable<double> threshold_of_another_day_m;
   FeatureThresholds feature_thresholds;
   std::optional<std::string> reason;   ///< why there is no threshold, in words
@@ -89,10 +89,11 @@ struct FalseAlarmCheck {
 
 struct Parity {
   std::vector<ParityCondition> conditions;  ///< in campaign order
-  std::vector<ParitySignal> signals;        ///< in order of their first appearance
+  std::vector<ParitySignal> signals;        ///< in order of first appearance
   FalseAlarmCheck check;
   BetweenDays between_days;
-  std::vector<std::string> other_days;  ///< days other than the reference's
+  /// Days of records that are not from the day of their reference.
+  std::vector<std::string> other_days;
   std::vector<std::string> warnings;
   bool usable() const;  ///< true if there is at least one residual
 };

@@ -42,8 +42,8 @@ struct EstimateDifference {
   std::optional<double> standard_error;
   /// Degrees of freedom of this error (Welch and Satterthwaite).
   Later<std::optional<double>> degrees_of_freedom;
-  std::optional<double> p_value;         ///< for this parameter only
-  std::optional<double> p_value_of_all;  ///< adjusted for all parameters (Holm)
+  std::optional<double> p_value;         ///< p-value of the test for this parameter only
+  std::optional<double> p_value_of_all;  ///< p-value adjusted for all parameters (Holm)
   std::optional<bool> significant;
   std::optional<std::string> reason;  ///< why it is not tested
   Omittable<bool> of_other_dates;     ///< true if the error includes day-to-day differences
@@ -98,7 +98,7 @@ struct ScoreDifference {
 ScoreDifference score_difference(const std::vector<std::pair<double, double>>& scores,
                                  bool higher_is_better, bool shared);
 
-/// A straight line fitted to estimates, weighted by their errors.
+/// A straight line fitted to estimates that are weighted according to their errors.
 struct EstimateTrend {
   long points = 0;  ///< number of estimates that have an error and a position
   std::optional<double> slope, intercept, standard_error;
@@ -112,7 +112,7 @@ struct EstimateTrend {
   std::optional<std::string> reason;  ///< why there is no line
 };
 
-/// One estimate in a series, with its date or temperature as `place`.
+/// One estimate in a series; `place` is its date or temperature.
 struct PlacedEstimate {
   double place = 0.0;
   double value = 0.0;

@@ -53,8 +53,8 @@ void judge_lack_of_fit(const Campaign& campaign, const Fit& fit, std::vector<Rea
   std::vector<const LackOfFit*> beyond;
   std::vector<const LackOfFit*> overstated;
   std::vector<const LackOfFit*> powerless;
-  double largest = 0.0;            // over all signals
-  double significant_error = 0.0;  // over the signals that differ significantly from the noise
+  double largest = 0.0;            // largest model error of all signals
+  double significant_error = 0.0;  // largest of those that differ significantly from the noise
   for (const LackOfFit& test : tests) {
     if (test.failed() && model_error(test) > bound) beyond.push_back(&test);
     if (!test.passed() && !test.failed()) powerless.push_back(&test);

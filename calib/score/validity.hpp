@@ -12,7 +12,7 @@
 
 namespace rigcal::calib {
 
-/// Ranges covered by the conditions of a fit; a range is absent if no condition provides a value.
+/// Ranges that the conditions of a fit cover. A range is absent if no condition provides a value.
 struct Validity {
   std::optional<Range> frequency_hz;
   std::optional<Range> amplitude_m, amplitude_v;  ///< half the peak-to-peak value of the drive

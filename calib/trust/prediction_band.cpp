@@ -30,7 +30,7 @@ ArrowMatrix long_run_covariance(const Problem& problem, std::span<const double> 
 struct Joint {
   std::vector<std::size_t> unknowns;  ///< the condition's own unknowns come first
   std::size_t own = 0;
-  Eigen::MatrixXd determined;  ///< S of their covariance before widening
+  Eigen::MatrixXd determined;  ///< square root of their covariance, before it is widened
   Eigen::MatrixXd open;        ///< directions that the data do not determine
 };
 

@@ -6,7 +6,7 @@
 namespace rigcal::diagnosis {
 namespace {
 
-/// Value and slope at one coefficient.
+/// An interpolated value and its slope.
 struct ValueAt {
   double value = 0.0;
   double slope = 0.0;

@@ -8,7 +8,7 @@ namespace rigcal::diagnosis {
 /// A simulated leak for one coefficient, with its derivatives with respect to the coefficient.
 struct LeakPoint {
   double coefficient = 0.0;
-  double share = 0.0;               ///< see steady_leak()
+  double share = 0.0;               ///< leak share, see steady_leak()
   double leak_flow_m3_per_s = 0.0;  ///< mean |leakage flow|
   double share_slope = 0.0;
   double flow_slope = 0.0;

@@ -19,7 +19,7 @@ constexpr int kDraws = 401;
 constexpr int kBlurs = 15;
 /// Smaller errors are due to rounding.
 constexpr double kLeastShareError = 1e-7;
-/// Tolerance for a quantile of the share, and the maximum number of steps to find it.
+/// Tolerance for a quantile of the share, and the maximum number of steps for finding it.
 constexpr double kQuantileError = 1e-15;
 constexpr int kQuantileSteps = 120;
 

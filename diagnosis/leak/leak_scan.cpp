@@ -15,7 +15,7 @@ constexpr double kRatio = 1.35;
 constexpr double kFirst = 1e-3;
 constexpr double kLargest = 1e3;
 
-/// One simulated coefficient, compared with the record.
+/// A simulated coefficient and its comparison with the record.
 struct Candidate {
   double coefficient = 0.0;
   double share = 0.0;

@@ -20,7 +20,7 @@ struct SteadyLeak {
 
   double share = 0.0;               ///< mean |leakage flow| / mean |servo flow|
   double leak_flow_m3_per_s = 0.0;  ///< mean |leakage flow|
-  Eigen::VectorXd share_slope;      ///< d share / d parameter, shape (free), SI
+  Eigen::VectorXd share_slope;      ///< d share / d parameter, SI, shape (free)
   Eigen::VectorXd flow_slope;       ///< d leakage flow / d parameter
   bool is_periodic = false;         ///< true for the periodic state, false for the record
 };
