@@ -7,8 +7,8 @@
 
 /// A rig whose records are generated without the product. This is an independent implementation of
 /// docs/model.md that uses fixed steps of the classical Runge-Kutta method, and includes small
-/// effects that the fitted model lacks. If the product generated the records itself, a coverage
-/// study could not detect errors common to generation and fit.
+/// effects that the fitted model lacks. A coverage study still cannot detect errors that both
+/// implementations share.
 namespace rigcal::bench {
 
 /// All values are in SI units. An effect whose size is zero is absent.

@@ -1,4 +1,4 @@
-// Prints every figure in docs/performance.md as tables of CPU times, which are medians over
+// Prints all figures in docs/performance.md as tables of CPU times, which are medians over
 // interleaved rounds.
 #include <fmt/format.h>
 

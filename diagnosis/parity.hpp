@@ -76,7 +76,7 @@ struct ParitySignal {
                   threshold_of_another_day_m, common_causes)
 };
 
-/// Compares the number of alarms for healthy records that set no threshold with the stated rate.
+/// Comparison of the alarms raised by healthy records that set no threshold with the stated rate.
 struct FalseAlarmCheck {
   int records = 0;
   int alarms = 0;

@@ -446,8 +446,8 @@ std::vector<Effect> possible_effects(const Problem& problem, std::span<const dou
   return result;
 }
 
-/// Returns the supply pressure at the end of a line in which the fraction `sag` of it is lost when
-/// the flow equals the effect's range.
+/// Returns the supply pressure at the end of a line along which the fraction `sag` of it is lost
+/// when the flow equals the effect's range.
 model::Signal sagging_supply(const Effect& effect, const model::ParameterValues& values,
                              std::span<const double> time_s, const Eigen::VectorXd& flow,
                              double sag) {

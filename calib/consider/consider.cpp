@@ -61,8 +61,8 @@ struct Seen {
   MatrixXd left;   ///< M
   VectorXd score;  ///< s
   MatrixXd basis;  ///< T: left = T^-T T^-1 on the directions that the records determine
-  /// Columns Q with Q^T Q = 1 that span what the fit leaves of the effects, and the residual
-  /// without the effects.
+  /// Columns Q with Q^T Q = 1, which span the part of the effects that the fit has not absorbed,
+  /// and the residual without the effects.
   std::vector<ScoreRows> rows;
 };
 
@@ -402,7 +402,7 @@ std::optional<std::size_t> next_missing(const Seen& seen, const ScoreCovariance&
   for (std::size_t e = 0; e < about.size(); ++e) {
     const auto k = static_cast<Index>(e);
     if (std::find(taken.begin(), taken.end(), e) != taken.end() || !about[e].p_value) continue;
-    // An effect that would be negative on its own is not an explanation, even if it would be in
+    // An effect that would be negative on its own cannot be the explanation, whatever its sign in
     // combination with others.
     if (about[e].one_sided && seen.score(k) < 0.0) continue;
     // Score, information and score variance of this effect, given the selected ones.

@@ -9,8 +9,8 @@
 namespace rigcal::calib {
 namespace {
 
-/// Eigenvalues below this fraction of the largest are rounding errors: the matrix is J'J, whose
-/// eigenvalues are squares.
+/// Eigenvalues below this fraction of the largest are rounding errors. The fraction is this small
+/// because the eigenvalues of J'J are squares of singular values.
 constexpr double kSquaredRounding = 1e-12;
 /// Relative tolerance for a step that ends on the boundary of the trust region. The limit on
 /// iterations is never reached, because Newton's method takes three or four.

@@ -59,9 +59,9 @@ struct EstimateSpread {
   std::vector<std::string> dates = {};
 };
 
-/// Whether a matrix is a correlation matrix: symmetric, ones on the diagonal, entries from -1 to 1,
-/// positive semidefinite. Ignores rows whose diagonal is NaN. Returns true if any other entry is
-/// not finite, because the matrix then cannot be checked.
+/// Returns true if a matrix is a correlation matrix: symmetric, with ones on the diagonal, entries
+/// from -1 to 1, and positive semidefinite. Ignores rows whose diagonal is NaN. Also returns true
+/// if any other entry is not finite, because the matrix then cannot be checked.
 bool are_correlations(const Eigen::MatrixXd& matrix);
 
 /// Computes the covariance of estimates. An element is NaN if its correlation is missing.

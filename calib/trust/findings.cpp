@@ -61,7 +61,7 @@ void warn_of_noise(const Problem& problem, const Uncertainty& found, Fit& fit) {
 /// Warns about priors that contradict the records, because the fit then matches neither.
 void warn_of_priors(const Problem& problem, const std::vector<FittedParameter>& parameters,
                     Fit& fit) {
-  constexpr double kFar = 3.0;  // in standard deviations; by chance, one prior in 370 is exceeded
+  constexpr double kFar = 3.0;  // in standard deviations; one case in 370 by chance
   const auto warn = [&](const std::string& name, double value, const datasets::Prior& prior,
                         std::string_view unit, const char* what) {
     const double pull = std::abs(prior.residual(value));
