@@ -10,7 +10,7 @@
 namespace rigcal::bench {
 namespace {
 
-/// Averages five repeats of a 1 Hz sine at 1 kHz, each with its own noise and start time.
+/// Averages five repeats of a 1 Hz sine sampled at 1 kHz, each with its own noise and start time.
 void average_five_repeats(benchmark::State& state) {
   boost::random::mt19937_64 engine(1);
   boost::random::normal_distribution<double> normal;

@@ -17,7 +17,8 @@ namespace {
 
 using Jet = ceres::Jet<double, kFree>;
 
-/// Position [strokes], velocity [m/s], load pressure [supply pressures]: all of order one.
+/// Position in strokes, velocity in m/s, and load pressure as a fraction of the supply pressure,
+/// all of order one.
 template <typename T>
 using State = std::array<T, 3>;
 constexpr double kStroke = 0.0508;
@@ -29,9 +30,8 @@ struct Rig {
   T mass, bulk_modulus, valve_gain, leakage;
   double reference_m = 0.0;
   double amplitude_m = 0.0;
-  double omega =
-      0.0;  ///< angular frequency of a sine; 0: the reference is constant or a straight line
-  double slope = 0.0;  ///< slope [m/s] of the line that begins at begin_s
+  double omega = 0.0;  ///< angular frequency of a sine; 0 if the reference is a straight line
+  double slope = 0.0;  ///< slope of the line that begins at begin_s [m/s]
   double begin_s = 0.0;
 
   T signed_root(const T& p) const { return p / sqrt(sqrt(p * p + 1e8)); }
@@ -66,13 +66,13 @@ double error_of(const Jet& e, const Jet& x, double tolerance) {
   return worst;
 }
 
-/// Timing of a drive that is smooth within each segment.
+/// Timing of a drive, which is smooth within each segment.
 struct Drive {
   double duration_s = 0.0;
   double segment_s = 0.0;
   double longest_step_s = std::numeric_limits<double>::infinity();
-  double first_step_s =
-      std::numeric_limits<double>::infinity();  ///< upper limit for the first step in each segment
+  /// Upper limit for the first step of a segment.
+  double first_step_s = std::numeric_limits<double>::infinity();
 };
 
 Drive drive_of(const Reference& signal) {

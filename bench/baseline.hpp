@@ -5,32 +5,32 @@
 
 #include "bench/problems.hpp"
 
-/// The baseline with which rigcal is compared: what a careful engineer writes in an afternoon with
-/// Odeint and Ceres. It uses Dormand-Prince 5(4) on the six signals, derivatives through
-/// ceres::Jet, and dense QR on all residuals.
+/// The baseline with which rigcal is compared: what a careful engineer could write in an afternoon
+/// with Odeint and Ceres. It simulates the six signals with Dormand-Prince 5(4), computes
+/// derivatives with ceres::Jet, and solves with dense QR on all residuals.
 namespace rigcal::bench::baseline {
 
-/// Number of free parameters: mass, bulk modulus, valve gain, leakage coefficient.
+/// Number of free parameters: mass, bulk modulus, valve gain and leakage coefficient.
 inline constexpr int kFree = 4;
 using Values = std::array<double, kFree>;
 
 Values truth();
 
-/// Positions at the sample times of one signal [m].
+/// Returns the positions at the sample times of one signal [m].
 /// @param factors  multiples of the true values
 std::vector<double> simulate(const Reference& signal, const Values& factors, double tolerance);
-/// Positions with their derivatives with respect to the factors. The derivatives are integrated
-/// together with the states, and error control covers both.
+/// Returns the positions and their derivatives with respect to the factors. The derivatives are
+/// integrated together with the states, and error control covers both.
 /// @return  shape (samples, 1 + kFree), row by row
 std::vector<double> simulate_with_sensitivities(const Reference& signal, const Values& factors,
                                                 double tolerance);
 
-/// A reference recorded at 1 kHz: constant between samples, or joined by straight lines.
+/// A reference recorded at 1 kHz. It is constant between samples, or interpolated linearly.
 struct Recorded {
   std::vector<double> reference_m;
   bool linear = false;
 };
-/// Positions at the samples of a recorded reference, without and with derivatives, as above.
+/// Return the positions at the samples of a recorded reference, without and with derivatives.
 std::vector<double> simulate(const Recorded& drive, const Values& factors, double tolerance);
 std::vector<double> simulate_with_sensitivities(const Recorded& drive, const Values& factors,
                                                 double tolerance);

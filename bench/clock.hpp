@@ -6,14 +6,15 @@
 
 namespace rigcal::bench {
 
-/// CPU time of this process over all threads [ms].
+/// Returns the CPU time that all threads of this process have used [ms].
 inline double cpu_ms() {
   timespec now;
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
   return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
 }
 
-/// Middle value; for an even number of values, the larger of the two in the middle.
+/// Returns the middle value, or the larger of the two middle values if the number of values is
+/// even.
 inline double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   return values[values.size() / 2];

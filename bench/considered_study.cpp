@@ -1,7 +1,7 @@
 // Measures how often 95 % intervals cover the truth if the rig has a small effect that the fitted
-// model lacks, and how often a plain PASS comes with an interval that misses the truth by more than
-// three half widths (false assurance). The records come from bench/foreign_rig.hpp, which has no
-// code in common with the product. Prints the second table of docs/uncertainty.md.
+// model lacks, and how often the verdict is a plain PASS although an interval misses the truth by
+// more than three half-widths (false assurance). The records come from bench/foreign_rig.hpp, which
+// has no code in common with the product. Prints the second table of docs/uncertainty.md.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -37,7 +37,7 @@ using datasets::Channel;
 constexpr double kNoise_m = 0.05e-3;
 constexpr double kOff = 1.1;
 
-/// A rig with the references of its records.
+/// A rig, and the references of its records.
 struct Bench {
   ForeignRig rig;
   std::vector<Reference> fitted{
@@ -45,12 +45,12 @@ struct Bench {
   Reference validated{"sine", 2.0, 0.05, 1.0};
 };
 
-/// Seed for the fresh rows. Their rigs, amplitudes and noise were not used to choose any size in
+/// Seed for the fresh rows, whose rigs, amplitudes and noise were not used for choosing sizes in
 /// the catalogue.
 constexpr unsigned kFreshSeed = 7'042'026;
 
-/// Draws another rig of the same kind with other amplitudes: each value within a quarter of the
-/// usual one, each amplitude within a third.
+/// Draws another rig of the same kind with other amplitudes. Values differ from the usual ones by
+/// up to a quarter, amplitudes by up to a third.
 Bench drawn_bench(boost::random::mt19937_64& stream) {
   boost::random::uniform_real_distribution<double> quarter(0.75, 1.25);
   boost::random::uniform_real_distribution<double> third(0.67, 1.33);
@@ -64,7 +64,7 @@ Bench drawn_bench(boost::random::mt19937_64& stream) {
   return bench;
 }
 
-/// An effect of the rig, with the size that the catalogue gives it.
+/// An effect in the rig, with the plausible size from the catalogue.
 struct ForeignEffect {
   const char* name;
   double plausible;
@@ -96,7 +96,8 @@ const std::vector<ForeignEffect> kEffects{
     {"sample_time", 1e-3, true,
      [](ForeignRig& r, double s) { r.controller_tick_s = 1e-5 * std::round(1e5 * s); }}};
 
-/// Effects that are not in the catalogue. A detectable size is computed from the one given here.
+/// Effects that are not in the catalogue. The detectable size is computed by scaling the size given
+/// here.
 const std::vector<ForeignEffect> kOthers{
     {"a valve of second order, lag of", 0.3e-3, true,
      [](ForeignRig& r, double s) { r.valve_corner_hz = 1.4 / (2.0 * std::numbers::pi * s); }},
@@ -118,19 +119,19 @@ const std::vector<ForeignEffect> kOthers{
 
 struct Row {
   std::string name;
-  std::string effect;  ///< the effect that should be named; empty for none, several, or one that is
-                       ///< not in the catalogue
+  std::string effect;  ///< the effect that should be named; empty if there are none or several, or
+                       ///< if it is not in the catalogue
   std::function<void(ForeignRig&, boost::random::mt19937_64&)> apply;
-  bool drawn = false;  ///< drawn anew for each campaign
-  bool fresh = false;  ///< rig, amplitudes and seeds are drawn, too
+  bool drawn = false;  ///< the effect is drawn anew for each campaign
+  bool fresh = false;  ///< rig, amplitudes and seeds are drawn as well
 };
 
-/// A row whose effect has a multiple of its detectable size, which is computed when the row is
-/// first requested.
+/// A row in which the size of the effect is a multiple of the detectable size. The latter is
+/// computed when it is first needed.
 struct SizedRow {
   const ForeignEffect* effect;
   double factor;
-  bool known;  ///< the effect is in the catalogue
+  bool known;  ///< whether the effect is in the catalogue
 };
 
 void draw_all(ForeignRig& rig, boost::random::mt19937_64& stream) {
@@ -216,7 +217,7 @@ datasets::Condition condition_of(const Reference& reference, datasets::Use use) 
   return condition;
 }
 
-/// The campaign as its user would write it: exact except for the effects of the rig.
+/// Returns the campaign as its user would write it: exact except for the effects in the rig.
 datasets::Campaign campaign_of(const Bench& bench) {
   const ForeignRig& rig = bench.rig;
   datasets::Campaign campaign = foreign_campaign(rig);
@@ -257,7 +258,7 @@ datasets::Record record_of(const datasets::Campaign& campaign, const datasets::C
   return datasets::average_of(campaign, condition, all, true);
 }
 
-/// Readings for each condition, in the order of the campaign.
+/// Returns the readings for each condition, in the order of the campaign.
 std::vector<std::vector<double>> readings_of_all(const Bench& bench) {
   std::vector<std::vector<double>> all;
   for (const Reference& reference : bench.fitted)
@@ -277,12 +278,13 @@ std::vector<datasets::Record> records_of(const datasets::Campaign& campaign,
   return records;
 }
 
-/// Detectable size in standard errors: Holm's limit for about fifteen tests plus the 95 % quantile.
+/// Detectable size in standard errors: Holm's limit for about fifteen tests, plus the 95 %
+/// quantile.
 constexpr double kFound = 4.7;
 
-/// Size of each effect in the catalogue at which 95 % of the score tests find it in the presence of
-/// the tests for all other effects. Computed from the standard error of the size in records without
-/// effects.
+/// Returns, for each effect in the catalogue, the size at which 95 % of the score tests find it
+/// although all other effects are tested, too. It is computed from the standard error of the size
+/// in records without effects.
 const std::map<std::string, double>& detectable_sizes(int repeats) {
   static const std::map<std::string, double> found = [repeats] {
     boost::random::mt19937_64 stream(kFreshSeed);
@@ -298,8 +300,8 @@ const std::map<std::string, double>& detectable_sizes(int repeats) {
   return found;
 }
 
-/// Half the sum of squared residuals of a fit whose model counts as exact. Every rig gets the same
-/// noise.
+/// Returns half the sum of squared residuals of a fit whose model is considered exact. The noise is
+/// the same for every rig.
 double cost_of(const Bench& bench, int repeats) {
   boost::random::mt19937_64 stream(kFreshSeed);
   datasets::Campaign campaign = campaign_of(bench);
@@ -310,8 +312,9 @@ double cost_of(const Bench& bench, int repeats) {
   return calib::fit(campaign, records, {}).cost;
 }
 
-/// Detectable size of an effect that is not in the catalogue: the size at which it leaves equally
-/// much in the residuals. Scaled from the given size: what an effect leaves grows with its square.
+/// Returns the detectable size of an effect that is not in the catalogue: the size at which it
+/// leaves as much in the residuals as a detectable one. It is scaled from the given size, because
+/// the sum of squares that an effect leaves grows with the square of its size.
 double detectable_size(const ForeignEffect& effect, int repeats) {
   static const double none = cost_of({}, repeats);
   Bench bench;
@@ -334,8 +337,8 @@ std::vector<SizedRow> sized_rows() {
   return all;
 }
 
-/// Returns std::nullopt if the effect acts like a change of an estimate, as a hose does, and so can
-/// never be found.
+/// Returns std::nullopt if the effect can never be found because it acts like a change in an
+/// estimate, as a hose does.
 std::optional<Row> with_size(const SizedRow& row, int repeats) {
   constexpr double kNeverFound = 10.0;
   const ForeignEffect& effect = *row.effect;
@@ -357,9 +360,9 @@ std::optional<Row> with_size(const SizedRow& row, int repeats) {
 struct StudyOutcome {
   bool converged = false;
   std::vector<bool> holds, exact;
-  std::vector<double> half_width, error;  ///< relative to the truth
-  double worst =
-      0.0;  ///< largest distance of a missed truth from the centre of its interval, in half widths
+  std::vector<double> half_width, error;  ///< relative to the true value
+  /// Largest distance of a missed truth from the centre of its interval, in half-widths.
+  double worst = 0.0;
   calib::Verdict verdict = calib::Verdict::fail;
   std::string named;  ///< the effect that the residuals indicate first
 };
@@ -389,7 +392,7 @@ StudyOutcome outcome_of(const ForeignRig& rig, const calib::Fit& fit) {
   return result;
 }
 
-/// Results of a study that was stopped, so that it can continue. One line per campaign.
+/// Stores the results, one line per campaign, so that a study that was stopped can continue.
 class OutcomeFile {
  public:
   explicit OutcomeFile(std::string path) : path_(std::move(path)) {
@@ -421,7 +424,7 @@ class OutcomeFile {
       result.half_width.push_back(half);
       result.error.push_back(error);
     }
-    return in ? std::optional(result) : std::nullopt;  // ignores a line that was cut off
+    return in ? std::optional(result) : std::nullopt;  // ignores an incomplete line
   }
 
   void add(const std::string& key, const StudyOutcome& outcome) {
@@ -443,12 +446,13 @@ class OutcomeFile {
   std::mutex mutex_;
 };
 
-/// Extent of a study.
+/// Which campaigns a study runs, and how.
 struct StudyExtent {
   std::size_t campaigns = 200;
   int threads = 1;
   int repeats = 5;
-  std::size_t first = 0;  ///< campaigns before this one are skipped, with their seeds
+  /// Index of the first campaign; earlier ones are skipped together with their seeds.
+  std::size_t first = 0;
 };
 
 std::string percent(std::size_t count, std::size_t of) {

@@ -1,6 +1,6 @@
 // Measures how often 95 % intervals include the truth. Generates many short synthetic campaigns of
-// the paper's rig, and aligns, averages and fits them with the code of `rigcal synthesize` and
-// `rigcal fit`, from starts 10 % off. Prints the table of docs/uncertainty.md.
+// the paper's rig, then aligns, averages and fits them with the code of `rigcal synthesize` and
+// `rigcal fit`, from start values that are 10 % off. Prints the table in docs/uncertainty.md.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -27,24 +27,24 @@ namespace {
 
 using datasets::Channel;
 
-constexpr double kNoiseOfOne = 0.05e-3;  // [m]
+constexpr double kNoiseOfOne = 0.05e-3;  // standard deviation of one repeat [m]
 constexpr double kOffTruth = 1.1;
 constexpr double kRateHz = 1000.0;
-constexpr double kTwelveBits = 0.1524 / 4096.0;  // [m], stroke divided by number of codes
+constexpr double kTwelveBits = 0.1524 / 4096.0;  // stroke divided by the number of codes [m]
 
-/// Disturbances of the repeats.
+/// Disturbances in the repeats.
 struct Scenario {
   std::string name;
   double white_m = kNoiseOfOne;
-  double ar1_m = 0.0;  ///< correlation 0.95 at 1 ms
+  double ar1_m = 0.0;  ///< standard deviation; correlation 0.95 at 1 ms
   double drift_m = 0.0;
-  double hum_m = 0.0;  ///< amplitude at 50 Hz, with its own phase in each repeat
+  double hum_m = 0.0;  ///< amplitude at 50 Hz, with a random phase in each repeat
   double quantisation_m = 0.0;
   double jitter_s = 0.0;
-  double supply = 0.0;      ///< relative standard deviation between repeats
+  double supply = 0.0;      ///< relative standard deviation of the supply between repeats
   double oil = 0.0;         ///< relative standard deviation of the bulk modulus between repeats
-  double friction_n = 0.0;  ///< Coulomb friction that the fitted model does not have
-  bool leaks = true;        ///< otherwise the leakage coefficient is at its bound
+  double friction_n = 0.0;  ///< Coulomb friction that the fitted model lacks
+  bool leaks = true;        ///< if false, the leakage coefficient is at its bound
   int repeats = 5;
 };
 
@@ -88,7 +88,7 @@ int index_of(const std::string& key) {
   return model::parameter_index(model::PlantKind::load_pressure, key);
 }
 
-/// The campaign as its user would write it. The truth is in [synthetic].
+/// Returns the campaign as its user would write it. The truth is in [synthetic].
 datasets::Campaign make_campaign(const Scenario& scenario) {
   const model::ParameterValues truth = six_signal_truth();
   const auto table = model::parameter_table(truth.plant);
@@ -151,7 +151,7 @@ void add_hum(std::vector<datasets::SyntheticRepeat>& repeats, const std::string&
   }
 }
 
-/// Generates repeats for all conditions, aligns and averages them.
+/// Generates, aligns and averages repeats for all conditions.
 std::vector<datasets::Record> make_records(const datasets::Campaign& campaign,
                                            const Scenario& scenario, std::uint64_t seed) {
   const datasets::Campaign truth = datasets::true_campaign(campaign);
@@ -174,8 +174,8 @@ const calib::FittedParameter& parameter(const calib::Fit& fit, const std::string
   throw std::runtime_error("no parameter " + key);
 }
 
-/// The values to which an endless campaign would converge: those of the rig or, if the model lacks
-/// a term, those fitted to a record without noise.
+/// Returns the values to which the estimates would converge with ever more records: those of the
+/// rig or, if the model lacks a term, those fitted to a record without noise.
 std::vector<double> true_values(const Scenario& scenario) {
   std::vector<double> truth;
   for (const std::string& key : kFree)
@@ -195,7 +195,7 @@ std::vector<double> true_values(const Scenario& scenario) {
 
 struct Outcome {
   std::vector<bool> holds, plain;
-  std::vector<double> half_width;  ///< relative to the truth; NaN if that is 0
+  std::vector<double> half_width;  ///< relative to the true value; NaN if that is 0
   bool warned = false;
 };
 
@@ -223,7 +223,7 @@ Outcome outcome_of(const calib::Fit& fit, const std::vector<double>& truth) {
   return result;
 }
 
-/// Percentages for the outcomes that count, as "95.1 94.8 ..."; "-" if there are none.
+/// Formats the percentages for the outcomes that count: "95.1 94.8 ...", or "-" if there are none.
 std::string shares(const std::vector<Outcome>& outcomes, std::vector<bool> Outcome::*holds,
                    bool only_silent) {
   std::vector<std::string> words;

@@ -1,12 +1,12 @@
-// Studies diagnoses of records from other days than their reference: alarms on healthy records, how
-// many leaks of the stated smallest size are found, how often intervals cover the truth, and
-// trends. The records come from bench/foreign_rig.hpp, which has no code in common with the
-// product. Supply, oil, zero and trigger are drawn for each day. Prints the tables of
+// Studies diagnoses of records that are not from the day of their reference: alarms for healthy
+// records, how many leaks of the stated smallest size are found, how often intervals cover the
+// truth, and trends. The records come from bench/foreign_rig.hpp, which has no code in common with
+// the product. Supply, oil, zero and trigger are drawn for each day. Prints the tables in
 // docs/diagnosis.md.
 //
 //   rigcal_days_study [campaigns] [first seed] [threads] [part of a row's name] [file]
 //
-// The file keeps the result of each campaign, so that a study that was stopped can continue.
+// The file stores the result of each campaign, so that a study that was stopped can continue.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -39,16 +39,16 @@ using datasets::Channel;
 constexpr double kDayNoise_m = 0.05e-3;
 constexpr int kRepeats = 5;
 constexpr int kOtherDays = 4;
-/// Coefficient of the seal whose trend is to be found.
+/// Coefficient of a worn seal, which either stays constant or is the start of a trend.
 constexpr double kWornSeal = 0.1;
-constexpr double kStandardErrors = 4.0;  ///< slope of that trend
+constexpr double kStandardErrors = 4.0;  ///< slope of the trend in standard errors
 const std::vector<Reference> kDaySignals{
     {"square", 1.0, 0.05, 2.0}, {"sine", 5.0, 0.02, 1.0}, {"sine", 2.0, 0.05, 1.0}};
 
 /// Standard deviations between days.
 struct DaySizes {
-  double supply = 0.0;        ///< fraction of its value
-  double bulk_modulus = 0.0;  ///< fraction of its value
+  double supply = 0.0;        ///< relative to the supply pressure
+  double bulk_modulus = 0.0;  ///< relative to the bulk modulus
   double zero_m = 0.0;
   double trigger_s = 0.0;
 };
@@ -77,7 +77,7 @@ ForeignRig rig_of_day(const DaySizes& sizes, DaysStream& stream) {
 struct DaysRow {
   std::string name;
   DaySizes drawn;
-  bool same_day = false;  ///< all records are from the day of the reference
+  bool same_day = false;  ///< true if all records are from the day of the reference
   bool trend = false;
   int healthy_dates = 1;
   std::function<void(datasets::BetweenDaysSettings&)> state = [](auto&) {};
@@ -137,7 +137,7 @@ datasets::Campaign days_campaign(const DaysRow& row) {
   campaign.parameters.push_back(free_setting("bulk_modulus", rig.bulk_modulus_pa));
   campaign.parameters.push_back(free_setting("valve_gain", rig.valve_gain_m_per_v));
   campaign.leak_levels["healthy"] = {{days_row_of("leakage_coefficient"), 0.0}};
-  campaign.considered.none = true;  // ci95 of the fit is not used
+  campaign.considered.none = true;  // the intervals of the fit are not used
   row.state(campaign.between_days);
   return campaign;
 }
@@ -146,7 +146,7 @@ std::string date_of(int day) {
   return fmt::format("2026-{:02d}-{:02d}", 1 + day / 28, 1 + day % 28);
 }
 
-/// A campaign to which conditions are added one by one, and the records of each.
+/// A campaign to which conditions are added one by one, with their records.
 struct DaysMade {
   datasets::Campaign campaign;
   std::vector<datasets::RepeatRecords> records;
@@ -194,14 +194,14 @@ struct DaysMade {
   }
 };
 
-/// Counts of one campaign, in the order of the columns in the result file.
+/// Counts for one campaign, in the order of the columns in the result file.
 struct DaysCounts {
   int averages = 0, average_alarms = 0, incompatible = 0;
   int singles = 0, single_alarms = 0;
   int states = 0, state_alarms = 0;
   int leaks = 0, found = 0, held = 0;
   int trends = 0, significant = 0, slopes = 0, slopes_found = 0;
-  double limit_l_per_min = 0.0;  ///< smallest detectable leak of an average, mean over the signals
+  double limit_l_per_min = 0.0;  ///< smallest detectable leak in an average; mean over the signals
 
   template <typename Take>
   void for_each(Take take) {
@@ -311,7 +311,7 @@ DaysCounts counts_of(const DaysRow& row, std::uint64_t seed) {
   return counts;
 }
 
-/// Results of the campaigns so far, in a text file: row, seed and counts.
+/// Stores the results of the campaigns so far in a text file: row, seed and counts.
 class KeptCounts {
  public:
   explicit KeptCounts(std::string file) : file_(std::move(file)) {
@@ -350,7 +350,8 @@ class KeptCounts {
   std::mutex mutex_;
 };
 
-/// A rate in percent, with its standard error from the variation between campaigns.
+/// Formats a rate in percent, with its standard error estimated from the variation between
+/// campaigns.
 std::string rate_of(const std::vector<DaysCounts>& all, int DaysCounts::*hits,
                     int DaysCounts::*trials) {
   double hit = 0.0;

@@ -1,6 +1,7 @@
-// Tests the prediction of `plan --design` for the paper's rig. Designs a drive for the bulk modulus
-// within the limits that the paper's six signals reach, compares the predicted interval with theirs
-// over equal time, and fits many records of the drive. Prints the tables of docs/plan-design.md.
+// Tests the predictions of `plan --design` for the paper's rig. Designs a drive for the bulk
+// modulus within the limits that the paper's six signals reach, compares the predicted interval
+// with that of the six signals in the same total time, and fits many records of the drive. Prints
+// the tables in docs/plan-design.md.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,16 +25,17 @@ namespace {
 
 using datasets::Channel;
 
-constexpr double kNoiseOfOneRepeat = 0.05e-3;  // [m]
+constexpr double kNoiseOfOneRepeat = 0.05e-3;  // standard deviation of one repeat [m]
 constexpr int kRepeatsOfDesign = 5;
 constexpr double kStartsOff = 1.1;
 
-/// The shipped campaign at its true values: the knowledge that a plan has after a first fit.
+/// Returns the shipped campaign at its true values, because a plan is usually made with values from
+/// a first fit.
 datasets::Campaign at_truth(const std::string& like) {
   datasets::Campaign campaign = datasets::true_campaign(datasets::load_campaign(
       std::string(RIGCAL_SOURCE_DIR) + "/datasets/rigs/uis_shake_table/campaign.toml"));
   const std::string level = campaign.find(like)->leak_level.value();
-  // The level's true value becomes the start value of its unknown.
+  // The true value of the level becomes the start value of its unknown.
   auto& levels = campaign.leak_levels[level];
   for (const auto& [index, value] : levels) {
     for (auto& setting : campaign.parameters)
@@ -45,7 +47,7 @@ datasets::Campaign at_truth(const std::string& like) {
   return campaign;
 }
 
-/// Limits that the campaign's own signals reach.
+/// Returns the limits that the campaign's own signals reach.
 datasets::DesignSettings limits_of_own_signals(const datasets::Campaign& campaign,
                                                double duration_s) {
   datasets::DesignSettings settings;
@@ -113,7 +115,7 @@ void print_design(const calib::Design& design) {
   std::cout << std::flush;
 }
 
-/// Fits records of the drive as its controller plays it.
+/// Fits many records of the drive as the controller plays it, and prints how the estimates vary.
 void print_spread(const calib::Design& design, datasets::Campaign campaign, int fits, int threads) {
   const std::string like = *campaign.design->like;
   datasets::Condition condition;

@@ -1,12 +1,13 @@
-// Measures how well leaks are found in synthetic campaigns with known truth, for docs/diagnosis.md.
+// Measures how well leaks are found in synthetic campaigns with known truth. Prints the figures in
+// docs/diagnosis.md.
 //
 //   rigcal_diagnosis_study coverage RECORDS       intervals and classes for random leaks
 //   rigcal_diagnosis_study classes FIRST LAST     classes, seeds FIRST to LAST
 //   rigcal_diagnosis_study smallest FIRST LAST    smallest leak with a 0.1 Hz sine
 //   rigcal_diagnosis_study coefficients           coefficients of the campaign's leaks
 //
-// The rig is equal to the model. With "disturbed" as the last argument, it also has friction, a
-// valve lag and a supply that varies between repeats. The fit to its healthy records then frees the
+// The rig matches the model. With "disturbed" as the last argument, it also has friction, a valve
+// lag and a supply that varies between repeats. The fit to its healthy records then estimates the
 // first two and detects the third.
 #include <fmt/format.h>
 
@@ -57,7 +58,7 @@ void set_leak(const Campaign& campaign, Condition& condition, double coefficient
   condition.overrides.emplace_back(row, coefficient);
 }
 
-/// The leak in one condition of the true rig.
+/// The leak of the true rig in one condition.
 class TrueLeak {
  public:
   TrueLeak(const Campaign& campaign, const Condition& condition)
@@ -77,7 +78,7 @@ class TrueLeak {
     values.set("leakage_coefficient", coefficient);
     return diagnosis::steady_leak(*problem_, condition, values, {});
   }
-  /// Smallest coefficient at which `value` reaches the target, by bisection.
+  /// Returns the smallest coefficient at which `value` reaches the target, found by bisection.
   double solve(double diagnosis::SteadyLeak::*value, double target) const {
     if (target == 0.0) return 0.0;
     double low = 0.0;
@@ -103,7 +104,7 @@ double target_share(const Condition& condition) {
   return shares.at(condition.leak_level.value());
 }
 
-/// Sets the leak of every condition to its level's fraction of the servo flow.
+/// Sets the leak in every condition to the fraction of the servo flow that its level states.
 void set_shares(Campaign& campaign) {
   std::vector<double> found(campaign.conditions.size());
   parallel_for(found.size(), threads, [&](std::size_t i) {
@@ -153,7 +154,8 @@ datasets::ParameterSetting& setting_of(Campaign& campaign, const char* key) {
 }
 
 /// Fits the rig to the healthy records, as a user would. If the fit finds that the supply pressure
-/// differs between repeats, the campaign takes over by how much, and the fit is repeated.
+/// differs between repeats, its standard deviation is added to the campaign, and the fit is
+/// repeated.
 diagnosis::RigFit healthy_fit(Campaign& campaign, const std::vector<RepeatRecords>& records) {
   const calib::Fit fit = usable_fit(campaign, records);
   const auto& repeats = fit.between_repeats;
@@ -167,7 +169,7 @@ diagnosis::RigFit healthy_fit(Campaign& campaign, const std::vector<RepeatRecord
   return diagnosis::rig_fit_of(again);
 }
 
-/// Frees terms that a real rig may have and its model lacks, so that they are estimated from
+/// Frees terms that a real rig may have but its model lacks, so that they are estimated from
 /// healthy records.
 void free_friction_and_lag(Campaign& campaign) {
   const std::pair<const char*, double> most[] = {{"coulomb_friction", 1000.0},
@@ -207,7 +209,7 @@ void print_total(const char* variant, const char* method, const Total& total) {
              total.off_by_two);
 }
 
-/// Adds what the fitted model does not have.
+/// Adds disturbances that the fitted model lacks.
 void disturb(Campaign& campaign) {
   set_true(campaign, "coulomb_friction", 50.0);
   set_true(campaign, "valve_time_constant", 3e-3);
@@ -249,7 +251,7 @@ void study_classes(Campaign campaign, const char* variant, int first, int last) 
   }
 }
 
-/// Estimates for averages on the other day, as signed leak flow in L/min, and numbers of alarms.
+/// Estimates for averages on the other day, as signed leak flows in L/min, and numbers of alarms.
 struct Estimates {
   std::vector<double> none_l_per_min;
   int alarms = 0;
@@ -257,11 +259,12 @@ struct Estimates {
   int found = 0;
 };
 
-constexpr double kSmallLeak = 0.05;  ///< L/min
-constexpr int kTrials = 5;           ///< averages without and averages with the leak, per seed
+constexpr double kSmallLeak = 0.05;  ///< leak to be found [L/min]
+constexpr int kTrials = 5;  ///< number of averages per seed, both with and without the leak
 constexpr const char* kSine = "sine_0.1Hz_open_0";
 
-/// The healthy conditions of one day, and averages of a 0.1 Hz sine on another day.
+/// Returns a campaign with the healthy conditions on one day, and averages of a 0.1 Hz sine on
+/// another day.
 Campaign two_days(Campaign campaign, double leak) {
   std::erase_if(campaign.conditions,
                 [](const Condition& c) { return c.leak_level.value() != "0 %"; });
@@ -281,8 +284,8 @@ Campaign two_days(Campaign campaign, double leak) {
   return campaign;
 }
 
-/// Selects the records that a diagnosis of the sine needs: the healthy day with its repeats, and
-/// the averages of the other day.
+/// Selects the records that a diagnosis of the sine needs: those of the healthy day with their
+/// repeats, and the averages of the other day.
 std::vector<RepeatRecords> sine_records(const std::vector<RepeatRecords>& records) {
   std::vector<RepeatRecords> result;
   for (const RepeatRecords& each : records) {
@@ -360,16 +363,17 @@ void study_smallest(const Campaign& base, int first, int last) {
   for (const auto& [name, estimates] : rows) print_estimates(name, estimates);
 }
 
-/// Conditions with random leaks per signal and campaign, and repeats of each.
+/// Number of conditions with random leaks per signal and campaign, and number of repeats of each.
 constexpr int kRandomLeaks = 4;
 constexpr int kRandomRepeats = 2;
 constexpr int kHealthyRepeats = 5;
 constexpr double kLeastShare = 0.001;
 constexpr const char* kSmall = "0.1 to 1 %, all";
 constexpr double kLargestShare = 0.60;
-constexpr double kCounted = 0.01;  ///< smallest share for which coverage is counted
+constexpr double kCounted = 0.01;  ///< smallest leak share for which coverage is counted
 
-/// Healthy conditions of the six signals, with the lowest sampling rates that they need.
+/// Returns the healthy conditions of the six signals, with the lowest sampling rates that they
+/// need.
 Campaign six_signals(Campaign campaign) {
   std::erase_if(campaign.conditions,
                 [](const Condition& c) { return c.leak_level.value() != "0 %"; });
@@ -382,13 +386,13 @@ Campaign six_signals(Campaign campaign) {
   return campaign;
 }
 
-/// Coefficients of the smallest and the largest share, per signal.
+/// Coefficients for the smallest and the largest share of one signal.
 struct LeakRange {
   double low = 0.0;
   double high = 0.0;
 };
 
-/// Next number of a pseudo-random sequence in (0, 1): splitmix64.
+/// Returns the next number in (0, 1) of a pseudo-random sequence (splitmix64).
 double uniform(std::uint64_t& state) {
   std::uint64_t z = (state += 0x9e3779b97f4a7c15ULL);
   z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9ULL;
@@ -401,7 +405,7 @@ struct Coverage {
   int records = 0;
   int coefficient = 0;
   int share = 0;
-  int share_below = 0;  ///< number of truths below the interval
+  int share_below = 0;  ///< number of true shares below the interval
   int share_above = 0;
   int limits = 0;  ///< number of one-sided intervals
   int limits_hold = 0;
@@ -414,21 +418,21 @@ struct Calibration {
   double probability = 0.0;
 };
 
-/// Coverage for random leaks in every condition, uniform in ln C between the coefficients for 0.1
-/// and 60 %. It is evaluated over all records.
+/// Coverage for random leaks in every condition, evaluated over all records. The leaks are uniform
+/// in ln C between the coefficients for 0.1 % and 60 %.
 struct CoverageTally {
-  std::map<std::string, Coverage>
-      by_signal;  ///< for shares that count, and together for all smaller ones
-  Coverage all;   ///< for shares that count
+  /// One entry per signal for the shares that count, and one entry for all smaller shares.
+  std::map<std::string, Coverage> by_signal;
+  Coverage all;  ///< for shares that count
   Coverage small;
   std::vector<Calibration> calibration = std::vector<Calibration>(5);
   std::map<LeakClass, Total> by_class;
   int healthy_records = 0;
   int alarms = 0;
-  std::vector<double> limits;  ///< upper limits of the share for healthy repeats
+  std::vector<double> limits;  ///< upper limits on the share in healthy repeats
 };
 
-/// Conditions with random leaks in addition to the healthy ones, and their true values.
+/// A campaign that also has conditions with random leaks, and the true values of these.
 struct RandomLeaks {
   Campaign campaign;
   std::vector<datasets::FittedValue> truth;

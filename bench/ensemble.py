@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Measures effective draws per CPU second of emcee's affine-invariant ensemble sampler on the six signals' posterior.
+"""Measures effective draws per CPU second of emcee's affine-invariant ensemble sampler for the posterior of the six signals.
 
 Needs emcee (Debian: python3-emcee). The density is computed by the code of `fit --posterior`, without gradients
-(build/release/bench/rigcal_posterior_study --replay). Only its CPU time counts, not that of Python, so the ratio to
-`scripts/posterior-study --speed` compares the samplers, not the languages.
+(build/release/bench/rigcal_posterior_study --replay). Only its CPU time counts, not that of Python, so that a
+comparison with `scripts/posterior-study --speed` is one of samplers, not of languages.
 
     bench/ensemble.py [STEPS]
 """
@@ -34,7 +34,7 @@ def main():
         numpy.random.seed(1)
         begin = generator.multivariate_normal(centre, covariance, WALKERS)
         sampler = emcee.EnsembleSampler(WALKERS, len(centre), lambda y: ask(" ".join(map(repr, map(float, y))))[0])
-        state = sampler.run_mcmc(begin, steps // 3)  # starts within the posterior, so a third suffices as warm-up
+        state = sampler.run_mcmc(begin, steps // 3)  # short warm-up, because it starts within the posterior
         sampler.reset()
         before = ask("cpu")[0]
         sampler.run_mcmc(state, steps)

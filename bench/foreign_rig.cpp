@@ -8,17 +8,16 @@
 namespace rigcal::bench {
 namespace {
 
-constexpr double kStep_s =
-    1e-5;  // a third of the stability limit from the smoothed root of the leak
+constexpr double kStep_s = 1e-5;  // a third of the stability limit due to the leak's smoothed root
 constexpr int kStepsPerSample = 100;
 
-/// Position, velocity, load pressure, filtered error, integral, spool signal and its rate, lagged
-/// reference.
+/// Position, velocity, load pressure, filtered error, integral, spool signal, rate of the spool
+/// signal, and lagged reference.
 using ForeignState = std::array<double, 8>;
 
-/// State that changes only between steps.
+/// The part of the state that changes only between steps.
 struct Memory {
-  double played = 0.0;  ///< spool signal after its play
+  double played = 0.0;  ///< spool signal after the play
   double held = 0.0;    ///< command of a sampled controller
 };
 
@@ -46,10 +45,11 @@ double valve_flow(const ForeignRig& rig, double volts, double load, double suppl
          std::sqrt(rig.density_kg_per_m3) * straightened_root(head, rig.straight_below_pa);
 }
 
-/// Friction that grows with the speed and reaches its full size at about a millimetre per second.
+/// Returns a friction force that grows with speed and reaches its full size at a few millimetres
+/// per second.
 double rubbing(double size, double velocity) { return size * std::tanh(velocity / 1e-3); }
 
-/// Command that the controller requests, before its limit.
+/// Returns the command that the controller requests, before it is limited.
 double wanted_command(const ForeignRig& rig, const ForeignState& s, double error) {
   const double kp = rig.kp_v_per_m + rig.kp_error_v_per_m;
   const double kd = rig.kd_v_s_per_m + rig.kd_error_v_s_per_m;
@@ -66,7 +66,7 @@ double with_play(const ForeignRig& rig, double played, double spool) {
              : spool;
 }
 
-/// Signal that the spool follows, given the command of the controller.
+/// Returns the signal that the spool follows, given the command of the controller.
 double spool_signal(const ForeignRig& rig, const ForeignState& s, double command) {
   return rig.valve_lag_s > 0.0 || rig.valve_corner_hz > 0.0 ? s[5] : command;
 }
@@ -140,11 +140,12 @@ ForeignState moved(const ForeignState& s, const ForeignState& d, double h) {
   return result;
 }
 
-/// Advances by one step. If the reference jumps within the step, the value in its middle is used;
-/// otherwise the reference is exact.
+/// Advances by one step. If the reference jumps within the step, its value in the middle of the
+/// step is used; otherwise the reference is exact.
 ForeignState stepped(const ForeignRig& rig, const Reference& reference, double t,
                      const Memory& memory, const ForeignState& s) {
-  // Stays a thousandth of a step inside, so that both ends are on the same side of an edge.
+  // Both ends are evaluated a thousandth of a step inside, so that they are on the same side of an
+  // edge that falls between two steps.
   const double inside = 1e-3 * kStep_s;
   const double first = reference_at(reference, t - rig.delay_s + inside);
   const double middle = reference_at(reference, t - rig.delay_s + 0.5 * kStep_s);
@@ -160,8 +161,8 @@ ForeignState stepped(const ForeignRig& rig, const Reference& reference, double t
   return next;
 }
 
-/// Tick of the sampled controller: the filter advances by backward Euler, the integral by forward
-/// Euler.
+/// Executes one tick of the sampled controller. The filter advances by backward Euler, the integral
+/// by forward Euler.
 void tick(const ForeignRig& rig, double reference, ForeignState& s, Memory& memory) {
   const double error = reference - s[0];
   const double step = rig.filter_rad_per_s * rig.controller_tick_s;

@@ -5,13 +5,13 @@
 
 #include "bench/problems.hpp"
 
-/// A rig whose records are generated without the product: an independent implementation of
-/// docs/model.md with fixed steps of the classical Runge-Kutta method, and with small effects that
-/// the fitted model lacks. A study of coverage cannot detect errors that both implementations have
-/// in common.
+/// A rig whose records are generated without the product. This is an independent implementation of
+/// docs/model.md that uses fixed steps of the classical Runge-Kutta method, and includes small
+/// effects that the fitted model lacks. A coverage study still cannot detect errors that both
+/// implementations share.
 namespace rigcal::bench {
 
-/// In SI units. An effect of size zero is absent.
+/// All values are in SI units. An effect whose size is zero is absent.
 struct ForeignRig {
   double mass_kg = 110.0, damping_n_s_per_m = 1400.0;
   double area_m2 = 1.62e-3, volume_m3 = 2.46888e-4, supply_pa = 6.2e6, bulk_modulus_pa = 800e6;
@@ -22,30 +22,31 @@ struct ForeignRig {
 
   double valve_lag_s = 0.0, delay_s = 0.0, null_shift_v = 0.0, dead_band_v = 0.0;
   double kp_error_v_per_m = 0.0,
-         kd_error_v_s_per_m = 0.0;  ///< added to the values that the user knows
+         kd_error_v_s_per_m = 0.0;  ///< errors in the gains that the user knows
   double friction_n = 0.0, laminar_m3_per_s_pa = 0.0, integral_v_per_m_s = 0.0;
   double hose_volume_m3 = 0.0,
-         sag = 0.0;  ///< sag: fraction of the supply pressure lost at the flow of full command
+         sag = 0.0;  ///< sag: fraction of the supply pressure lost at full flow
   double sensor_lag_s = 0.0, sensor_gain = 0.0, sensor_offset_m = 0.0;  ///< gain: relative error
   double sensor_bow_m = 0.0, sensor_wave_m = 0.0, sensor_hysteresis_m = 0.0;
-  double valve_play_v = 0.0;  ///< half width; the spool moves only after the signal has taken it up
-  double breakaway_n = 0.0;   ///< friction above Coulomb's at rest; decays over 10 mm/s
-  double controller_tick_s = 0.0;  ///< a multiple of 10 us; 0: continuous
+  double valve_play_v = 0.0;  ///< half-width; the spool moves only after the play has been taken up
+  /// Friction at rest in addition to Coulomb friction; decays over 10 mm/s.
+  double breakaway_n = 0.0;
+  double controller_tick_s = 0.0;  ///< a multiple of 10 us; 0 if the controller is continuous
 
   // Effects that are not in the product's catalogue.
-  double valve_corner_hz = 0.0;       ///< second order, damping 0.7, replaces the lag; 0: none
-  double pressure_friction_m2 = 0.0;  ///< seal friction per load pressure
-  double square_damping = 0.0;        ///< force per square of the speed [N s2/m2]
-  double valve_skew = 0.0;            ///< the valve passes 1 + this outwards, 1 - this inwards
-  double oil_drift = 0.0;             ///< relative change of the bulk modulus over a record
-  double supply_drift = 0.0;          ///< relative fall of the supply pressure over a record
-  double volume_bow =
-      0.0;  ///< relative decrease of the oil volume towards either end of the stroke
-  double reference_lag_s = 0.0;  ///< a filter ahead of the controller
-  double quantum_m = 0.0;        ///< step of the converter; the noise includes its quantisation
+  /// Second-order valve with damping 0.7 instead of the lag; 0: none.
+  double valve_corner_hz = 0.0;
+  double pressure_friction_m2 = 0.0;  ///< seal friction per unit of load pressure
+  double square_damping = 0.0;        ///< force per squared speed [N s2/m2]
+  double valve_skew = 0.0;            ///< factor on the flow: 1 + this outwards, 1 - this inwards
+  double oil_drift = 0.0;             ///< relative change in the bulk modulus over a record
+  double supply_drift = 0.0;          ///< relative decrease in the supply pressure over a record
+  double volume_bow = 0.0;            ///< relative decrease in the oil volume towards either end
+  double reference_lag_s = 0.0;       ///< lag of a filter in front of the controller
+  double quantum_m = 0.0;  ///< resolution of the converter; the noise includes its quantisation
 };
 
-/// Readings of the position sensor at a sampling rate of 1 kHz, without noise, starting at rest.
+/// Returns the noise-free readings of the position sensor at 1 kHz, starting from rest.
 std::vector<double> foreign_readings(const ForeignRig& rig, const Reference& reference);
 
 }  // namespace rigcal::bench

@@ -6,12 +6,12 @@
 Prints rho2 = 1 - var(e) / var(y) for every compared channel of every condition that was not fitted. The models are:
 
     rigcal     the calibrated model
-    null       a + b drive; a constant in an open loop
+    null       a + b drive, or only a constant in an open loop
     black box  a finite impulse response of the drive with N taps (default 24) and a constant, for the channel or for its
-               rate, whichever fits the fitted conditions better; with a rate, the channel's first value is taken as known
+               rate, whichever fits the fitted conditions better; with a rate, the channel's first value is assumed to be known
 
 The last two are fitted by least squares to the fitted conditions. A channel that a loop controls has a second score, "tracking
-error", for the reference minus the channel: the reference alone already predicts the channel almost completely.
+error", for the reference minus the channel, because the reference alone predicts the channel almost completely.
 """
 import argparse
 import pathlib
@@ -32,7 +32,7 @@ def drive_of(table):
 
 
 def lagged(drive, taps):
-    """Returns the drive delayed by 0 to taps - 1 samples as columns. Before its first sample it equals that sample."""
+    """Returns columns with the drive delayed by 0 to taps - 1 samples. Before the record it is assumed to equal its first sample."""
     padded = np.r_[np.full(taps - 1, drive[0]), drive]
     rows = [padded[taps - 1 - k:len(padded) - k] for k in range(taps)]
     return np.c_[np.array(rows).T, np.ones(len(drive))]
@@ -71,7 +71,7 @@ class Linear:
 
 
 def channels_of(table):
-    """Returns (words, measured, simulated) of each compared channel, and of the tracking error of a controlled one."""
+    """Returns (words, measured, simulated) for each compared channel, and for the tracking error of a controlled channel."""
     drive = drive_of(table)
     found = []
     for name, words in CHANNELS.items():

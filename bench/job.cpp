@@ -2,7 +2,8 @@
 //
 //   rigcal_job phases CAMPAIGN ROUNDS
 //
-// or the CPU time of each replicate of a bootstrap, after a first one that is not counted:
+// Alternatively, measures the CPU time of each bootstrap replicate, except for a first one that is
+// not counted:
 //
 //   rigcal_job replicates CAMPAIGN DATA COUNT
 //
@@ -33,7 +34,7 @@
 namespace rigcal::bench {
 namespace {
 
-/// All files that a fit reads, with the columns that it needs from each.
+/// Returns all files that a fit reads, with the columns that it needs from each.
 std::map<std::string, std::vector<std::string>> files_of(const datasets::Campaign& campaign) {
   std::map<std::string, std::vector<std::string>> files;
   for (const datasets::Condition& condition : campaign.conditions) {

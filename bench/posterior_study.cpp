@@ -1,9 +1,9 @@
-// Simulation-based calibration of the posterior (Talts et al., arXiv:1804.06788): draws truths from
-// the prior, generates records from them, and ranks each truth among the draws of its posterior.
-// The ranks must be uniform. Prints the table of docs/uncertainty.md. With --speed it samples the
-// six signals of the speed tests instead, and prints CPU time and effective draws. With --replay it
-// reads lines of unit-box coordinates and answers each with the log density, for samplers in other
-// languages (bench/ensemble.py).
+// Simulation-based calibration of the posterior (Talts et al., arXiv:1804.06788). Draws true values
+// from the prior, generates records from them, and ranks each true value among the draws of its
+// posterior. The ranks must be uniform. Prints the table in docs/uncertainty.md. With --speed,
+// samples the posterior for the six signals of the speed tests instead, and prints CPU time and
+// effective draws. With --replay, reads lines of sampler coordinates and answers each with the log
+// density, for samplers in other languages (bench/ensemble.py).
 #include <fmt/format.h>
 
 #include <Eigen/Core>
@@ -34,14 +34,14 @@ using datasets::Channel;
 constexpr double kTwinNoise_m = 0.5e-3;
 constexpr double kTwinRateHz = 250.0;
 constexpr int kBins = 20;
-constexpr int kThinned = 100;  ///< number of posterior draws among which the truth is ranked
+constexpr int kThinned = 100;  ///< number of posterior draws among which a true value is ranked
 
 double cpu_seconds() {
   return static_cast<double>(std::clock()) / static_cast<double>(CLOCKS_PER_SEC);
 }
 
-/// The paper's rig with two short records and three unknowns, each bounded between half and double
-/// its usual value.
+/// Returns a campaign for the paper's rig with two short records and three unknowns, each bounded
+/// by half and twice its usual value.
 datasets::Campaign make_campaign(int number) {
   const model::ParameterValues usual = six_signal_truth();
   const auto table = model::parameter_table(usual.plant);
@@ -103,7 +103,7 @@ std::vector<datasets::Record> records_of(const datasets::Campaign& campaign, std
   return records;
 }
 
-/// Bins of the ranks of one campaign's truths; empty if the fit did not converge.
+/// Bins into which the ranks of one campaign's true values fall; empty if the fit did not converge.
 struct Ranked {
   std::vector<int> bins;
   std::vector<std::string> names;
@@ -174,7 +174,7 @@ int study(int campaigns, int threads, std::uint64_t seed) {
   fmt::print("| --- | --- | --- | --- |\n");
   bool uniform = true;
   for (std::size_t j = 0; j < counts.size(); ++j) {
-    // The 101 ranks do not divide evenly among the bins.
+    // The 101 ranks cannot be divided equally among the bins.
     std::vector<double> expected(kBins, 0.0);
     for (int rank = 0; rank <= kThinned; ++rank)
       expected[static_cast<std::size_t>(rank * kBins / (kThinned + 1))] +=
@@ -218,8 +218,8 @@ int speed(int draws) {
   return alone.status == calib::FitStatus::converged ? 0 : 1;
 }
 
-/// Answers lines of sampler coordinates with the log density, and the words "centre" and
-/// "covariance" with their values.
+/// Answers each line of sampler coordinates with the log density, and the words "centre" and
+/// "covariance" with the corresponding values.
 int replay() {
   const Problem problem = six_signal_problem();
   calib::FitOptions options;
@@ -252,7 +252,7 @@ int replay() {
       std::istringstream words(line);
       Eigen::VectorXd y(static_cast<Eigen::Index>(z.size()));
       for (double& each : y) words >> each;
-      // An ensemble sampler needs no gradient, so none is computed.
+      // No gradient is computed, because an ensemble sampler needs none.
       print(std::vector<double>{density.value(y)});
     }
   }

@@ -11,7 +11,7 @@ namespace {
 
 struct FreeParameter {
   const char* key;
-  double start;  ///< multiple of the truth
+  double start;  ///< multiple of the true value
   datasets::Scope scope = datasets::Scope::rig;
 };
 
@@ -57,7 +57,7 @@ void add_condition(const Reference& reference, const std::string& level,
   problem.truth.push_back(truth);
 }
 
-/// Values that the rigs of both problems have in common.
+/// Returns the values that the rigs of both problems have in common.
 model::ParameterValues shaker_truth() {
   auto values = model::ParameterValues::defaults(model::PlantKind::load_pressure);
   values.set("mass", 85.0);

@@ -5,7 +5,7 @@
 namespace rigcal::bench {
 namespace {
 
-/// Simulates the six signals once with tolerance 1e-6.
+/// Simulates the six signals once, with a tolerance of 1e-6.
 void sweep(benchmark::State& state, const std::vector<const char*>& free_keys,
            model::Method method) {
   const model::ParameterValues values = six_signal_truth();

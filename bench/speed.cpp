@@ -1,5 +1,5 @@
-// Prints every figure in docs/performance.md as a table: CPU times, as medians over interleaved
-// rounds.
+// Prints all figures in docs/performance.md as tables of CPU times, which are medians over
+// interleaved rounds.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ double wall_ms() {
 
 using Task = std::function<void()>;
 
-/// Median CPU time of each task. The tasks take turns.
+/// Returns the median CPU time of each task. The tasks take turns.
 std::vector<double> medians(const std::vector<Task>& tasks, int rounds,
                             double (*clock)() = cpu_ms) {
   std::vector<std::vector<double>> times(tasks.size());
@@ -72,8 +72,8 @@ model::Simulation run(const model::ParameterValues& values, const std::vector<in
   return result;
 }
 
-/// The part of a fit before the result is described: the problem solved from its start. The
-/// simulation that assesses the optimum belongs to the intervals.
+/// Result of the first part of a fit: the problem, solved from its start. The simulation that
+/// assesses the optimum is not included, because it is needed for the intervals.
 struct Solved {
   calib::Problem problem;
   calib::MultiStart found;
@@ -98,7 +98,8 @@ void require_converged(const calib::SolveResult& result) {
   std::exit(1);
 }
 
-/// Largest difference between two points in standard errors of the first.
+/// Returns the largest difference between the parameters of a fit and other values, in standard
+/// errors.
 double distance_in_errors(const calib::Fit& fit, const std::vector<double>& other) {
   double worst = 0.0;
   std::size_t j = 0;
@@ -109,8 +110,8 @@ double distance_in_errors(const calib::Fit& fit, const std::vector<double>& othe
   return worst;
 }
 
-/// Distance between a fit to one draw of the noise and the optimum with simulations at 1e-10, in
-/// standard errors.
+/// Returns the distance, in standard errors, between a fit to one draw of the noise and the optimum
+/// with simulations at a tolerance of 1e-10.
 double distance_of_draw(unsigned seed) {
   Problem data = six_signal_problem(seed);
   const Solved found = solve(data, {});
@@ -120,7 +121,7 @@ double distance_of_draw(unsigned seed) {
   return distance_in_errors(exact, found.problem.to_physical(found.found.optimum.z));
 }
 
-/// Tolerance at which rigcal's error is smaller than the baseline's at 1e-6.
+/// Tolerance at which rigcal's error is smaller than that of the baseline at 1e-6.
 constexpr double kAsAccurate = 6e-5;
 
 void six_signals(int rounds) {
@@ -218,7 +219,8 @@ void six_signals(int rounds) {
       median(distances), *std::max_element(distances.begin(), distances.end()));
 }
 
-/// The six signals as a lab records them, with 0.05 mm of noise on each sample of the reference.
+/// Returns the references of the six signals as a laboratory would record them, with 0.05 mm of
+/// noise in each sample.
 std::vector<baseline::Recorded> recorded_signals(bool linear) {
   boost::random::mt19937 random(1);
   boost::random::normal_distribution<double> noise(0.0, 5e-5);
@@ -283,7 +285,7 @@ void recorded_drives(int rounds) {
                 i, run_recorded(parameters, kSixSignals[i], signals[i], tolerance).outputs.col(0)));
       return worst;
     };
-    // The coarsest tolerance at which rigcal's error is smaller than the baseline's at 1e-6.
+    // The coarsest tolerance at which rigcal's error is smaller than that of the baseline at 1e-6.
     double as_accurate = 1e-3;
     while (as_accurate > 1e-6 && std::max(ours({}, as_accurate), ours(free, as_accurate)) > theirs)
       as_accurate *= 0.5;
@@ -351,7 +353,7 @@ void stiff(int rounds) {
   fmt::print("| 1000 refits on two cores, min | {:.1f} | 3 |\n\n", refit * 1000.0 / 2.0 / 60e3);
 }
 
-/// Times a record of 20 s at 10 kHz whose recorded command drives the valve.
+/// Measures simulations of a 20 s record at 10 kHz whose recorded command drives the valve.
 void long_record(int rounds) {
   const auto truth = six_signal_truth();
   const auto free = free_indices({"mass", "damping", "stiffness", "piston_area", "total_volume",
@@ -403,7 +405,7 @@ void draw(const std::string& title, const std::string& head, const std::vector<P
   fmt::print("\n");
 }
 
-/// The problem with every condition repeated `copies` times.
+/// Returns the problem with every condition repeated `copies` times.
 Problem repeated(const Problem& data, int copies) {
   Problem more = data;
   for (int c = 1; c < copies; ++c) {

@@ -18,7 +18,7 @@ namespace {
 using model::Output;
 using model::PlantKind;
 
-/// A cylinder 16/10 x 200 mm at 44 bar with hoses, as on a training stand.
+/// Returns the values of a 16/10 x 200 mm cylinder with hoses at 44 bar, as on a training stand.
 model::ParameterValues single_rod() {
   auto values = model::ParameterValues::defaults(PlantKind::two_chamber);
   for (const auto& [key, value] : std::initializer_list<std::pair<std::string_view, double>>{

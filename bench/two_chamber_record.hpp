@@ -2,8 +2,8 @@
 
 namespace rigcal::bench {
 
-/// Prints the cost of a record of 20 s at 10 kHz with sensitivities to ten parameters of a cylinder
-/// with both chambers and a first-order valve: CPU times, as medians.
+/// Prints median CPU times for a record of 20 s at 10 kHz, with sensitivities to ten parameters of
+/// a two-chamber cylinder with a first-order valve.
 void two_chamber_record(int rounds);
 
 }  // namespace rigcal::bench

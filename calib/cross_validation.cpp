@@ -24,8 +24,8 @@ namespace {
 using datasets::Campaign;
 using datasets::Use;
 
-/// Warns if the error of a prediction is this many times that of the fit, or if a parameter shifts
-/// by this many standard errors.
+/// A warning is given if the error of a prediction is this many times that of the fit, or if a
+/// parameter shifts by this many standard errors.
 constexpr double kMuchWorse = 1.5;
 constexpr double kFarShift = 3.0;
 /// A ratio below this does not count as a deterioration.

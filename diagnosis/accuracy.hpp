@@ -14,10 +14,10 @@ namespace rigcal::diagnosis {
 struct Judged {
   std::string condition;
   datasets::LeakClass truth = datasets::LeakClass::normal;
-  std::optional<datasets::LeakClass> found;  ///< absent if undecided
+  std::optional<datasets::LeakClass> found;  ///< assigned class; absent if undecided
 };
 
-/// Confusion matrix with numbers of records. Rows are true classes, columns are assigned classes.
+/// Confusion matrix of record counts. Rows are true classes, columns are assigned classes.
 struct Confusion {
   static constexpr std::size_t kClasses = datasets::kLeakClasses.size();
   std::array<std::string, kClasses> truth;      ///< names of the rows
@@ -28,16 +28,16 @@ struct Confusion {
   Confusion();
 };
 
-/// Accuracy of a method.
+/// Accuracy of a method of classification.
 struct Accuracy {
   int records = 0;
   int conditions = 0;
   int right = 0;
-  int undecided = 0;               ///< counted as wrong
-  int off_by_two_or_more = 0;      ///< wrong by at least two classes
+  int undecided = 0;               ///< undecided records, which count as wrong
+  int off_by_two_or_more = 0;      ///< number of records whose class is wrong by at least two
   std::optional<double> accuracy;  ///< right / records
-  /// Wilson's 95 % interval. The number of conditions serves as the number of independent trials,
-  /// because the repeats of one condition have common errors.
+  /// Wilson's 95 % interval. The number of conditions is used as the number of independent trials,
+  /// because the repeats of one condition share errors.
   std::optional<Range> accuracy_ci95;
   Confusion confusion;
   RIGCAL_DESCRIBE(records, conditions, right, undecided, off_by_two_or_more, accuracy,
@@ -49,7 +49,8 @@ struct Accuracy {
 /// @param judged  classified records; if empty, the accuracy is absent
 Accuracy accuracy_of(const std::vector<Judged>& judged);
 
-/// Wilson's 95 % score interval for a proportion. E. B. Wilson, J. Am. Stat. Assoc. 22 (1927).
+/// Returns Wilson's 95 % score interval for a proportion (E. B. Wilson, J. Am. Stat. Assoc. 22,
+/// 1927).
 ///
 /// @param proportion  in [0, 1]
 /// @param trials      > 0

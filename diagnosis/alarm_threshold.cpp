@@ -54,7 +54,7 @@ std::vector<double> moving_rms(std::span<const double> x, std::size_t window) {
     sum += x[i] * x[i];
     ++run;
     if (run > window) sum -= x[i - window] * x[i - window];
-    // Adding and subtracting rounds, so the sum could become negative.
+    // Rounding errors accumulate in the sum, which could become negative.
     result[i] = std::sqrt(std::max(0.0, sum) / static_cast<double>(window));
   }
   return result;

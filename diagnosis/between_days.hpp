@@ -12,78 +12,84 @@
 
 namespace rigcal::diagnosis {
 
-/// Where the assumed size of the variation between days comes from.
+/// Source of the assumed size of the variation between days.
 enum class DaySource { usual, stated, estimated };
 
-/// Variation between the days of a campaign. Each quantity has a separate deviation on each day.
-/// The deviations are independent, with the standard deviations of the quantities.
+/// Variation between the days of a campaign. On each day, each quantity has an independent
+/// deviation with the standard deviation of that quantity.
 struct BetweenDays {
   std::vector<calib::DayQuantity> quantities;
-  std::vector<std::string> days;  ///< a date, or the text that replaces it
+  std::vector<std::string> days;  ///< dates, or the text that replaces a missing date
   DaySource source = DaySource::usual;
-  double variance = 1.0;  ///< factor on the variances of quantities, from healthy days
-  double freedom = metrics::kManyDegrees;  ///< degrees of freedom of that factor
-  int dates = 0;                           ///< stated dates of healthy records
+  /// Factor on the variances of the quantities, estimated from healthy days.
+  double variance = 1.0;
+  double freedom = metrics::kManyDegrees;  ///< degrees of freedom of `variance`
+  int dates = 0;                           ///< number of stated dates of healthy records
 
-  /// Error that the days cause in a coefficient that changes by `effects` per standard deviation.
+  /// Returns the error that the days cause in a coefficient that changes by `effects` per standard
+  /// deviation.
   double error(double weight, const Eigen::VectorXd& effects) const;
 };
 
-/// Day of a condition: its date, if it has one. Otherwise, conditions with use `fit` belong to the
-/// day of the fit, and the others to a separate day for each state of the machine.
+/// Returns the day of a condition, which is its date if it has one. Otherwise, conditions with use
+/// `fit` belong to the day of the fit, and the others to a separate day for each state of the
+/// machine.
 std::string day_label(const datasets::Condition& condition);
 
-/// How the day of a record differs from the days of its reference: 1 for the day of the record,
-/// minus the fraction of the reference recorded on each day. All zero if both are from one day.
+/// How the day of a record differs from the days of its reference. The difference is 1 for the day
+/// of the record, minus the fraction of the reference that was recorded on each day. It is zero if
+/// both are from one day.
 struct DayWeights {
   Eigen::VectorXd own;        ///< shape (days)
-  Eigen::VectorXd reference;  ///< fractions, shape (days)
+  Eigen::VectorXd reference;  ///< fraction recorded on each day, shape (days)
   Eigen::VectorXd difference() const { return own - reference; }
   double norm() const { return own.size() > 0 ? difference().norm() : 0.0; }
-  /// Norm of the difference for a record from a day on which none of the reference was recorded.
+  /// Returns the norm of the difference for a record from a day on which no part of the reference
+  /// was recorded.
   double norm_of_another_day() const { return std::sqrt(1.0 + reference.squaredNorm()); }
 };
 
-/// @param references  conditions of the reference, one for each repeat in it; if empty, the
-///                    conditions of the fit
+/// @param references  condition of each repeat in the reference; if empty, the conditions of the
+///                    fit are used
 DayWeights day_weights(const BetweenDays& between, const datasets::Campaign& campaign,
                        const datasets::Condition& condition,
                        const std::vector<const datasets::Condition*>& references);
 
-/// Values of the rig in the first condition of a campaign, including the fitted ones.
+/// Returns the values of the rig in the first condition of a campaign, including fitted values.
 model::ParameterValues rig_values(const LeakProblem& problem);
-/// Shortest sampling interval of the records.
+/// Returns the shortest sampling interval of any record.
 double shortest_interval(const std::vector<datasets::RepeatRecords>& records);
 
-/// Returns the days and quantities of a campaign, with the stated or usual sizes.
+/// Returns the days of a campaign, and the quantities with their stated or usual sizes.
 ///
 /// @param values    values of the rig
 /// @param sample_s  shortest sampling interval
 BetweenDays between_days_of(const datasets::Campaign& campaign,
                             const model::ParameterValues& values, double sample_s);
 
-/// A healthy average that is compared with averages from other days.
+/// A healthy average, for comparison with averages from other days.
 struct HealthyDay {
   double coefficient = 0.0;
-  double variance = 0.0;       ///< variance of its own error
-  double days_variance = 0.0;  ///< variance that the days would cause at the usual sizes
+  double variance = 0.0;       ///< variance of the average's own error
+  double days_variance = 0.0;  ///< variance that the days would cause with the usual sizes
 };
 
-/// Minimum number of dates of healthy records from which to estimate the variation between days.
+/// Minimum number of dates with healthy records for an estimate of the variation between days.
 inline constexpr int kLeastHealthyDates = 4;
 
-/// Estimates the factor on the variances from healthy averages: their squares minus the variances
-/// of their own errors, divided by what the usual sizes would cause, and weighted by the
-/// information in each. Does nothing if the campaign states sizes or has too few dates.
+/// Estimates the factor on the variances from the coefficients of healthy averages. For each
+/// average, the square of the coefficient, minus the variance of its own error, is divided by the
+/// variance that the usual sizes would cause. These ratios are averaged with weights according to
+/// their information. Does nothing if the campaign states sizes or has too few dates.
 void estimate_days(const std::vector<HealthyDay>& healthy, BetweenDays& between);
 
 /// Describes, in words, how much days are assumed to differ: "records of 2026-03-02: another day
-/// than their reference's ...". Empty if no record is from another day.
+/// than their reference's ...". Empty if every record is from the day of its reference.
 ///
-/// @param other_days  days of records that differ from the days of their references
+/// @param other_days  days of those records that are not from the day of their reference
 std::string in_words(const BetweenDays& between, const std::vector<std::string>& other_days);
 
-/// Returns an error increased by the contribution of the days.
+/// Returns an error increased by the contribution of day-to-day differences.
 CoefficientError with_days(CoefficientError error, double days_se, double freedom);
 
 }  // namespace rigcal::diagnosis

@@ -7,15 +7,15 @@
 namespace rigcal::diagnosis {
 namespace {
 
-/// The largest component of noise varies around the edge. Above this multiple of the edge, a
-/// component is significant. (A weak cause that is missed raises alarms; noise mistaken for a cause
-/// makes a threshold slightly higher.)
+/// The largest component of pure noise varies around the edge. A component is significant above
+/// this multiple of the edge. (Missing a weak cause leads to alarms, while mistaking noise for a
+/// cause only makes a threshold slightly higher.)
 constexpr double kBeyondEdge = 1.05;
-/// Autocorrelations below this are attributed to noise.
+/// Smaller autocorrelations are attributed to noise.
 constexpr double kNoCorrelation = 0.05;
 
-/// Number of independent squares that would estimate a variance as precisely as all samples do: n /
-/// (1 + 2 sum rho^2), summed up to the first autocorrelation below kNoCorrelation.
+/// Returns the number of independent squares that would estimate a variance as precisely as all
+/// samples do: n / (1 + 2 sum rho^2), summed up to the first autocorrelation below kNoCorrelation.
 double independent_samples(const Eigen::MatrixXd& series) {
   const Eigen::Index n = series.rows();
   const double power = series.squaredNorm();
@@ -33,7 +33,7 @@ double independent_samples(const Eigen::MatrixXd& series) {
 
 CommonCauses common_causes(const Eigen::MatrixXd& residuals) {
   const Eigen::Index records = residuals.cols();
-  const Eigen::Index most = records - 1;  // because the residuals sum to zero
+  const Eigen::Index most = records - 1;  // the residuals sum to zero
   CommonCauses result{Eigen::MatrixXd(residuals.rows(), 0), residuals};
   const double own = static_cast<double>(most) / static_cast<double>(records);
   const Eigen::MatrixXd deviations = own * residuals;

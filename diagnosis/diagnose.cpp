@@ -47,10 +47,10 @@ Prepared prepare(const LeakProblem& problem, const RigFit& rig,
   return result;
 }
 
-/// A fit to be made.
+/// A fit to be made: one record of a condition.
 struct Task {
   const Prepared* prepared = nullptr;
-  int single = -1;  ///< index of the repeat; -1: the average
+  int single = -1;  ///< index of the repeat, or -1 for the average
 };
 
 /// A repeat of a healthy condition, or its average if it has no repeats.
@@ -131,9 +131,10 @@ RecordDiagnosis diagnose_record(const LeakProblem& problem, const RigFit& rig, c
 }
 
 struct SignalRecords {
-  std::map<std::string, std::vector<RecordDiagnosis*>> singles;  ///< by condition
-  std::vector<RecordDiagnosis*> healthy;                         ///< averages and singles
-  std::vector<const LeakFit*> averages;                          ///< except for references
+  /// Single repeats of each condition.
+  std::map<std::string, std::vector<RecordDiagnosis*>> singles;
+  std::vector<RecordDiagnosis*> healthy;  ///< averages and single repeats of healthy conditions
+  std::vector<const LeakFit*> averages;   ///< except those that are their own reference
 };
 
 std::map<std::string, SignalRecords> by_signal(const Campaign& campaign,
@@ -163,8 +164,8 @@ SignalErrors errors_of(const SignalRecords& records) {
   return signal_errors(singles, healthy, records.averages);
 }
 
-/// Largest structured parity residual that the healthy model leaves in a signal's healthy records
-/// [m].
+/// Returns the largest structured parity residual that the healthy model leaves in a signal's
+/// healthy records [m].
 double healthy_misfit(const SignalRecords& records) {
   double largest = 0.0;
   for (const RecordDiagnosis* each : records.healthy)
@@ -172,7 +173,7 @@ double healthy_misfit(const SignalRecords& records) {
   return largest;
 }
 
-/// Sets the class that the record is known to have, if any.
+/// Sets the known class of a record, if there is one.
 void set_truth(const Campaign& campaign, RecordDiagnosis& record) {
   const Condition& condition = *campaign.find(record.condition);
   const auto& known = campaign.diagnosis.level_class;
@@ -200,8 +201,8 @@ void classify_by_features(std::vector<RecordDiagnosis>& records) {
 
 enum class Method { fitted_leak, features };
 
-/// Skips records that features could not classify, since they had no reference. A fitted leak
-/// counts even if it leaves the class undecided.
+/// Skips records that could not be classified by features because there was nothing to learn from.
+/// A fitted leak counts even if its class is undecided.
 template <typename Found>
 Accuracy accuracy(const std::vector<RecordDiagnosis>& records, Method method, bool single,
                   Found found) {
@@ -214,8 +215,8 @@ Accuracy accuracy(const std::vector<RecordDiagnosis>& records, Method method, bo
   return accuracy_of(judged);
 }
 
-/// Estimates the share of each record, and for healthy records the smallest detectable leak. A
-/// record whose share cannot be simulated counts as not diagnosed.
+/// Estimates the share of a record and, if the record is healthy, the smallest detectable leak. If
+/// the share cannot be simulated, the record counts as not diagnosed.
 void estimate(const LeakProblem& problem, const RigFit& rig, const Prepared& prepared,
               const SignalErrors& errors, const BetweenDays& between, RecordDiagnosis& record) {
   const CoefficientError of_its_day =
@@ -242,7 +243,8 @@ void estimate(const LeakProblem& problem, const RigFit& rig, const Prepared& pre
         estimate_leak(record.fit.coefficient, error, curve, std::hypot(share_rig_se, share_days_se),
                       problem.campaign.diagnosis);
     if (!prepared.is_healthy) return;
-    // A record that is its own reference does not deviate from it.
+    // A record that is its own reference has no error relative to it, so the error of an average is
+    // used.
     const auto of_healthy =
         record.is_reference
             ? error_of_averages(record.fit, errors, record.repeats, record.reference_repeats)
@@ -265,8 +267,8 @@ void estimate(const LeakProblem& problem, const RigFit& rig, const Prepared& pre
   }
 }
 
-/// Finds the largest limits among the healthy records of a signal, for averages and for single
-/// repeats.
+/// Finds the largest limits of the healthy records of a signal, separately for averages and for
+/// single repeats.
 void take_limits(const SignalRecords& records,
                  std::optional<DetectionLimit> RecordDiagnosis::*limit, bool others,
                  std::optional<DetectionLimit>& averaged, std::optional<DetectionLimit>& single) {
@@ -282,7 +284,7 @@ SignalDiagnosis limits_of(const SignalRecords& records, const SignalErrors& erro
   result.signal = signal;
   result.errors = errors;
   result.of_another_day = of_another_day;
-  // Another healthy average is better evidence than one that is its own reference.
+  // A healthy average that is not its own reference is better evidence than one that is.
   const auto is_other = [](const RecordDiagnosis* each) {
     return !each->repeat && !each->is_reference && each->smallest_leak.has_value();
   };
@@ -305,7 +307,8 @@ SignalDiagnosis limits_of(const SignalRecords& records, const SignalErrors& erro
   return result;
 }
 
-/// Days of records that differ from those of their references, in order of first appearance.
+/// Returns the days of those records that are not from the day of their reference, in order of
+/// first appearance.
 std::vector<std::string> days_off_reference(const Campaign& campaign,
                                             const std::vector<RecordDiagnosis>& records) {
   std::vector<std::string> days;
@@ -317,7 +320,7 @@ std::vector<std::string> days_off_reference(const Campaign& campaign,
   return days;
 }
 
-/// Collects the healthy averages that have a date, for estimating the variation between days.
+/// Collects the dated healthy averages from which the variation between days is estimated.
 std::vector<HealthyDay> healthy_days(const Campaign& campaign,
                                      const std::vector<RecordDiagnosis>& records,
                                      const std::map<std::string, SignalErrors>& errors) {
@@ -380,15 +383,15 @@ Diagnosis diagnose(const Campaign& campaign, const std::vector<datasets::RepeatR
       tasks.push_back({&each, single});
   }
   result.records.resize(tasks.size());
-  // A record counts as done after two passes: its leak is found, and then judged.
+  // A record is done after two passes: its leak is fitted in the first and judged in the second.
   std::atomic<int> halves{0};
   const auto half_done = [&] {
     const int done = ++halves / 2;
     if (options.progress) options.progress(done, static_cast<int>(tasks.size()));
   };
   begin.push_back(tasks.size());
-  // The average of a condition comes first, because its simulation without a leak is reused for the
-  // repeats.
+  // The average of a condition comes first, because the repeats reuse its simulation without a
+  // leak.
   parallel_for(prepared.size(), options.threads, [&](std::size_t condition) {
     std::optional<LeakRuns> runs;
     for (std::size_t i = begin[condition]; i < begin[condition + 1]; ++i) {
@@ -417,7 +420,7 @@ Diagnosis diagnose(const Campaign& campaign, const std::vector<datasets::RepeatR
     const double healthy_m = healthy_misfit(members);
     for (RecordDiagnosis& record : result.records) {
       if (!record.fit.ok() || record.signal != signal) continue;
-      // A difference that days may cause is not another fault.
+      // A difference that may be due to day-to-day differences does not indicate another fault.
       const double of_days_m =
           record.days.norm() * std::sqrt(between.variance) * record.fit.day_rms_m;
       judge(record, errors.at(signal), std::hypot(healthy_m, of_days_m), campaign.diagnosis);

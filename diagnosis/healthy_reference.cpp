@@ -5,7 +5,7 @@
 namespace rigcal::diagnosis {
 namespace {
 
-/// Residual of a record at the sample nearest to a time.
+/// Returns the residual of a record at the sample that is nearest to a time.
 double at_time(const std::vector<double>& residual, const std::vector<double>& time_s, double t) {
   const auto above = std::lower_bound(time_s.begin(), time_s.end(), t);
   auto i = static_cast<std::size_t>(above - time_s.begin());

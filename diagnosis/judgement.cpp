@@ -7,14 +7,16 @@
 namespace rigcal::diagnosis {
 namespace {
 
-/// The share is on a plateau if its relative change is below this fraction of the coefficient's.
+/// The share is on a plateau if its relative change is below this fraction of the relative change
+/// in the coefficient.
 constexpr double kFlat = 0.1;
-/// Fractions of the difference from the healthy model that a leak leaves unexplained: one that is
-/// reported, and one that is too large to assign a class.
+/// Limits for the fraction of the difference from the healthy model that a leak leaves unexplained.
+/// Above kNoticeable it is reported, and above kTooMuch no class is assigned.
 constexpr double kNoticeable = 0.05;
 constexpr double kTooMuch = 1.0 / 3.0;
 
-/// Adds warnings to a record. The healthy reference gets only a note that it is the reference.
+/// Adds warnings to a record. For the healthy reference, there is only a note that it is the
+/// reference.
 void warn(RecordDiagnosis& record, const SignalErrors& errors, double healthy_m) {
   if (record.is_reference) {
     record.warnings.emplace_back(

@@ -4,11 +4,11 @@
 
 namespace rigcal::diagnosis {
 
-/// Sets the class of a record whose leak has been estimated, unless it is undecided, and its
-/// warnings.
+/// Sets the warnings of a record whose leak has been estimated, and its class if this can be
+/// decided.
 ///
-/// @param healthy_m  structured rms residual that the healthy model leaves in healthy records of
-///                   the signal
+/// @param healthy_m  RMS of the structured residual that the healthy model leaves in healthy
+///                   records of the signal
 void judge(RecordDiagnosis& record, const SignalErrors& errors, double healthy_m,
            const datasets::DiagnosisSettings& settings);
 

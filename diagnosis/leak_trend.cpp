@@ -13,7 +13,7 @@ namespace {
 /// A trend with a p-value below this is significant.
 constexpr double kSignificantTrend = 0.05;
 
-/// A state, and the day of its date.
+/// A state with its date as a number of days.
 struct DatedState {
   const MachineState* state = nullptr;
   int day = 0;
@@ -60,8 +60,8 @@ metrics::Trend line_through(const std::vector<DatedState>& states,
     coefficients.push_back(pooled.coefficient);
     errors.push_back({pooled.error.own_se, pooled.error.freedom});
   }
-  // Errors in the rig's parameters shift the coefficients for all dates together, and so does the
-  // day of the reference. In addition, each date has its own day.
+  // Errors in the rig's parameters shift the coefficients of all dates together, and so does the
+  // deviation on the day of the reference. In addition, each date has its own deviation.
   return metrics::weighted_trend(
       days, coefficients, errors,
       moves * rig_covariance * moves.transpose() + days_factor * day_moves * day_moves.transpose());

@@ -14,7 +14,7 @@ namespace {
 
 /// A share within this fraction of a limit counts as being on it.
 constexpr double kOnLimit = 0.05;
-/// Disagreement that is less probable than this widens the error.
+/// If the disagreement is less probable than this, the error is widened.
 constexpr double kDisagree = 0.05;
 
 double square_of(double x) { return x * x; }

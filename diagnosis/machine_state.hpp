@@ -12,7 +12,7 @@ namespace rigcal::diagnosis {
 
 /// One machine in one state, identified by leak level, specimen and date.
 struct StateKey {
-  std::string leak_level;  ///< the condition's id if it has neither leak level nor date
+  std::string leak_level;  ///< id of the condition if it has neither leak level nor date
   std::string specimen;
   std::string date;
   auto operator<=>(const StateKey&) const = default;
@@ -20,48 +20,49 @@ struct StateKey {
 };
 StateKey state_of(const datasets::Condition& condition);
 
-/// Contribution of one condition's average to the state.
+/// Contribution of the average of one condition to the state.
 struct StateMember {
   std::string condition;
   std::string signal;
   double coefficient = 0.0;
-  double own_se = 0.0;  ///< without the contribution of the rig's parameters
+  double own_se = 0.0;  ///< standard error without the contribution of the rig's parameters
   double freedom = 1.0;
-  Eigen::VectorXd rig_moves;    ///< like LeakFit::rig_moves
-  Eigen::VectorXd day_effects;  ///< like LeakFit::day_effects
-  Eigen::VectorXd day_weights;  ///< one for each day, see DayWeights::difference()
+  Eigen::VectorXd rig_moves;    ///< see LeakFit::rig_moves
+  Eigen::VectorXd day_effects;  ///< see LeakFit::day_effects
+  Eigen::VectorXd day_weights;  ///< one per day, see DayWeights::difference()
 
-  /// Change of the coefficient with each quantity on each day, shape (days * quantities).
+  /// Returns the change in the coefficient with each quantity on each day, shape (days *
+  /// quantities).
   Eigen::VectorXd day_moves() const;
 };
 
-/// Size of the variation between days, relative to the sizes of the quantities.
+/// Variance between days, relative to the squares of the sizes of the quantities.
 struct DayVariance {
   double factor = 0.0;
   double freedom = metrics::kManyDegrees;
 };
 
-/// One leak that all members have in common.
+/// The leak that all members have in common.
 struct PooledLeak {
   double coefficient = 0.0;
   CoefficientError error;       ///< widened if the members disagree
-  Eigen::VectorXd rig_moves;    ///< change of the pooled coefficient
-  Eigen::VectorXd day_moves;    ///< change with each quantity on each day
-  Eigen::VectorXd day_weights;  ///< one for each day
-  double chi_squared = 0.0;     ///< disagreement of the members
-  double freedom = 0.0;         ///< members - 1
-  double p = 1.0;               ///< probability that errors alone cause such disagreement
-  bool disagree = false;        ///< at 5 %
-  double widened = 1.0;         ///< factor on the error, at least 1
+  Eigen::VectorXd rig_moves;    ///< change in the pooled coefficient
+  Eigen::VectorXd day_moves;    ///< change in the pooled coefficient with each quantity on each day
+  Eigen::VectorXd day_weights;  ///< one per day
+  double chi_squared = 0.0;     ///< measure of the disagreement between members
+  double freedom = 0.0;         ///< number of members - 1
+  double p = 1.0;               ///< probability that errors alone cause such a disagreement
+  bool disagree = false;        ///< true if the disagreement is significant at 5 %
+  double widened = 1.0;         ///< factor by which the error was widened, at least 1
 };
 
-/// Pools members by generalised least squares. Members have their own errors and a common one, from
-/// the rig's parameters and from differences between days, which shifts all of them together. If
-/// they disagree by more than their errors, the error is multiplied by Birge's ratio, the square
-/// root of chi-square over its degrees of freedom (Phys. Rev. 40, 1932), because it is unknown
-/// which of them is wrong.
+/// Pools members by generalised least squares. Each member has its own error. In addition, a common
+/// error due to the rig's parameters and day-to-day differences shifts all of them together. If the
+/// members disagree by more than their errors, the error is multiplied by Birge's ratio, the square
+/// root of chi-square divided by its degrees of freedom (Phys. Rev. 40, 1932), because it is not
+/// known which of the members is wrong.
 ///
-/// @param members         at least one; own_se above 0
+/// @param members         at least one; each with own_se > 0
 /// @param rig_covariance  covariance of the rig's parameters, shape (rig_moves)^2
 PooledLeak pooled_leak(const std::vector<StateMember>& members,
                        const Eigen::MatrixXd& rig_covariance, const DayVariance& days = {});
@@ -70,27 +71,27 @@ PooledLeak pooled_leak(const std::vector<StateMember>& members,
 struct LimitDistance {
   LeakClass above = LeakClass::slight;  ///< the class that begins at the limit
   double limit = 0.0;
-  double distance = 0.0;  ///< share minus limit
-  /// Whether the interval includes the limit, or the share is within 5 % of it.
+  double distance = 0.0;  ///< share minus `limit`
+  /// True if the interval includes the limit, or the share is within 5 % of it.
   bool on_limit = false;
 };
 LimitDistance nearest_limit(const LeakEstimate& estimate,
                             const datasets::DiagnosisSettings& settings);
 
-/// Verdict on one state, from the averages of its conditions.
+/// Verdict on one state, based on the averages of its conditions.
 struct MachineState {
   StateKey key;
   std::vector<StateMember> members;
-  std::vector<std::string> left_out;  ///< condition and reason, in words
-  /// Whether every signal is its own healthy reference, so that its leak is zero by construction.
+  std::vector<std::string> left_out;  ///< conditions that were left out, with reasons in words
+  /// True if every signal is its own healthy reference, so that the leak is zero by construction.
   bool is_reference = false;
-  std::string failure;  ///< why there is no verdict; the other members are then meaningless
+  std::string failure;  ///< why there is no verdict; the members below are then meaningless
   PooledLeak pooled;
   double leak_area_m2 = 0.0;            ///< coefficient times leakage area
   std::string duty;                     ///< signal whose share is stated
-  LeakEstimate estimate;                ///< at that duty
+  LeakEstimate estimate;                ///< leak at that duty
   double share_slope = 0.0;             ///< d share / d coefficient at that duty
-  std::optional<LeakClass> leak_class;  ///< empty: undecided
+  std::optional<LeakClass> leak_class;  ///< absent if undecided
   LimitDistance limit;
   bool ok() const { return failure.empty() && !is_reference && !members.empty(); }
 };

@@ -18,8 +18,9 @@ using datasets::Condition;
 
 bool is_sine(const Condition& condition) { return condition.waveform == datasets::Waveform::sine; }
 
-/// Returns the duty at which the shares of states are stated: the campaign's own choice, else the
-/// slowest generated sine (the largest, if several are equally slow), else the first condition.
+/// Returns the duty for which the shares of states are stated. This is the campaign's own choice,
+/// or otherwise the slowest generated sine (the largest, if several are equally slow), or otherwise
+/// the first condition.
 const Prepared& duty_of(const Campaign& campaign, const std::vector<Prepared>& all) {
   const std::string& wanted = campaign.diagnosis.duty;
   const Prepared* best = &all.front();
@@ -57,8 +58,8 @@ void add_average(const RecordDiagnosis& record, const SignalErrors& errors, Mach
                            record.days.difference()});
 }
 
-/// Error of the share at the duty from differences between days: through the coefficient, and
-/// directly.
+/// Returns the error of the share at the duty due to day-to-day differences, both through the
+/// coefficient and directly.
 double share_days_error(const LeakProblem& problem, const Prepared& duty, const DayVariance& days,
                         const LeakFit& leak, const MachineState& state) {
   const Eigen::VectorXd& weights = state.pooled.day_weights;

@@ -11,10 +11,10 @@
 namespace rigcal::diagnosis {
 
 /// Returns a verdict on the machine in each of its states, based on the averages of all conditions
-/// in that state. The share is stated at one duty, the same for all states.
+/// in that state. The leak share is stated for the same duty in all states.
 ///
-/// @param records  fitted and judged
-/// @param errors   by signal
+/// @param records  records that have been fitted and judged
+/// @param errors   errors of each signal
 /// @throws InputError  if the campaign names a duty that cannot be diagnosed
 std::vector<MachineState> machine_states(const LeakProblem& problem, const RigFit& rig,
                                          const std::vector<Prepared>& all,

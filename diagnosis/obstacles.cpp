@@ -15,7 +15,7 @@ using datasets::Campaign;
 using datasets::Channel;
 using datasets::Condition;
 
-/// Collects reasons with their conditions, in order of first appearance.
+/// Collects reasons, and the conditions to which each applies, in order of first appearance.
 class Reasons {
  public:
   void add(const std::string& reason, const std::string& condition) {

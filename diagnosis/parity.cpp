@@ -25,8 +25,7 @@ using datasets::Condition;
 using datasets::RepeatRecords;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-/// Window of the moving root mean square for a record without a period, as a fraction of the
-/// record.
+/// Window of the moving RMS as a fraction of the record, for records without a period.
 constexpr double kWindowShare = 0.1;
 
 /// Computes the parity residuals of a condition's repeats, or of its average if it has none.
@@ -57,7 +56,7 @@ ParityCondition residuals_of(const LeakProblem& problem, const Condition& condit
   return result;
 }
 
-/// Residual at the sample nearest to a time.
+/// Returns the residual at the sample that is nearest to a time.
 double at_time(const ParityCondition& condition, const ParityRecord& record, double t) {
   const auto& times = condition.time_s;
   const auto above = std::lower_bound(times.begin(), times.end(), t);
@@ -71,7 +70,8 @@ struct Healthy {
   const ParityRecord* record = nullptr;
 };
 
-/// Whether a sample of a record counts: it was recorded, and is within the condition's windows.
+/// Returns true if a sample of a record counts, that is, if it was recorded and is within the
+/// condition's windows.
 bool counts(const RepeatRecords& records, std::size_t repeat, double t) {
   const auto holds = [t](const datasets::TimeWindow& window) {
     return window.start_s <= t && t <= window.end_s;
@@ -99,14 +99,15 @@ std::vector<double> corrected(const ParityCondition& condition, const ParityReco
   return result;
 }
 
-/// Values of a residual that are compared: its largest moving root mean square, and its features.
+/// The values of a residual that are compared with thresholds: its largest moving RMS, and its
+/// features.
 struct ResidualValues {
   std::vector<double> moving_rms_m;
   double peak_m = 0.0;
   metrics::ResidualFeatures features;
 };
 
-/// Empty if fewer than two samples count.
+/// Returns std::nullopt if fewer than two samples count.
 std::optional<ResidualValues> values_of(const std::vector<double>& residual_m,
                                         const std::vector<double>& time_s, double window_s) {
   std::vector<double> counted;
@@ -122,7 +123,7 @@ std::optional<ResidualValues> values_of(const std::vector<double>& residual_m,
   return values;
 }
 
-/// Sets all values of a record that describe its residual, except for the alarm.
+/// Sets all members of a record that describe its residual, except the alarm.
 void describe(const std::vector<double>& time_s, double window_s, ParityRecord& record) {
   const auto values = values_of(record.residual_m, time_s, window_s);
   if (!values) {
@@ -134,7 +135,7 @@ void describe(const std::vector<double>& time_s, double window_s, ParityRecord& 
   record.peak_m = values->peak_m;
 }
 
-/// Returns the values for each pattern; samples that do not count are NaN.
+/// Returns the values for each pattern. Samples that are NaN in `like` do not count.
 std::vector<ResidualValues> values_of_patterns(const Eigen::MatrixXd& patterns,
                                                const std::vector<double>& like,
                                                const std::vector<double>& time_s, double window_s) {
@@ -148,11 +149,11 @@ std::vector<ResidualValues> values_of_patterns(const Eigen::MatrixXd& patterns,
   return values;
 }
 
-/// How the healthy records of a signal differ, as needed for the thresholds.
+/// Differences between the healthy records of a signal, from which the thresholds are computed.
 struct HealthyScatter {
-  std::vector<ResidualValues> own;     ///< one for each record, without common causes
-  std::vector<ResidualValues> causes;  ///< for one standard deviation of each common cause
-  std::vector<ResidualValues> days;    ///< for one standard deviation of each day quantity
+  std::vector<ResidualValues> own;     ///< values for each record without common causes
+  std::vector<ResidualValues> causes;  ///< values for one standard deviation of each common cause
+  std::vector<ResidualValues> days;    ///< values for one standard deviation of each day quantity
   double records = 0.0;
 };
 
@@ -256,7 +257,7 @@ class Work {
     for (const Healthy& each : others) of.push_back(campaign_.find(each.condition->condition));
     const Condition& own = *campaign_.find(condition.condition);
     record.days = day_weights(result_.between_days, campaign_, own, of);
-    // Only a date shows that a record is from another day.
+    // Without a date, a record is not assumed to be from another day.
     if (!own.date ||
         std::any_of(of.begin(), of.end(), [](const auto* each) { return !each->date; }))
       record.days.own = record.days.reference;
@@ -264,9 +265,9 @@ class Work {
     describe(condition.time_s, window_s, record);
   }
 
-  /// Scales variances: a healthy record minus the mean of the n - 1 others has 1 + 1 / (n - 1)
-  /// times the variance of one record, and a new record minus the mean of all n has 1 + 1 / n times
-  /// that variance.
+  /// Sets the thresholds of a signal. Variances must be scaled: a healthy record minus the mean of
+  /// the n - 1 others has 1 + 1 / (n - 1) times the variance of one record, and a new record minus
+  /// the mean of all n has 1 + 1 / n times that variance.
   void set_thresholds(const std::vector<Healthy>& references, ParitySignal& signal) {
     if (references.size() < kLeastHealthyRecords) {
       signal.reason = fmt::format(
@@ -293,8 +294,8 @@ class Work {
   using ValueOf = double (*)(const ResidualValues&);
   static constexpr ValueOf kPeak = [](const ResidualValues& v) { return v.peak_m; };
 
-  /// Separates the residuals of records on one time base into common causes and what each record
-  /// has of its own. Residuals on different time bases are used unchanged.
+  /// Separates the residuals of records on a common time base into common causes and individual
+  /// components. Residuals on different time bases are used unchanged.
   HealthyScatter scatter_of(const std::vector<Healthy>& references, double window_s) const {
     HealthyScatter scatter;
     scatter.records = static_cast<double>(references.size());
@@ -329,8 +330,8 @@ class Work {
     return scatter;
   }
 
-  /// @param day_norm  distance of the day of a record from those of the healthy ones; 0: no
-  ///                  distance
+  /// @param day_norm  norm of the day weights of a record relative to the healthy records; 0 if it
+  ///                  is from the same day
   std::optional<double> threshold(ValueOf value, double day_norm) const {
     const double n = scatter_.records;
     const double scale = std::sqrt((1.0 + 1.0 / n) / (1.0 + 1.0 / (n - 1.0)));
@@ -374,12 +375,12 @@ class Work {
   const std::vector<RepeatRecords>& records_;
   const ParityOptions& options_;
   Parity& result_;
-  // These belong to the signal that is being judged.
+  // These members belong to the signal that is being judged.
   HealthyScatter scatter_;
-  std::vector<const Condition*> conditions_;  ///< one per reference
+  std::vector<const Condition*> conditions_;  ///< conditions of the references
 };
 
-/// Warns that records without a date count as recorded on the day of the healthy ones.
+/// Warns that records without a date are treated as recorded on the same day as the healthy ones.
 void warn_of_undated(const Campaign& campaign, Parity& result) {
   std::vector<std::string> undated;
   for (const ParityCondition& condition : result.conditions)

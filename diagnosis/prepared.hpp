@@ -13,23 +13,23 @@
 
 namespace rigcal::diagnosis {
 
-/// A condition with its records and the simulated effects of a leak.
+/// A condition with its records and everything that was simulated in preparation for the leak fits.
 struct Prepared {
   const datasets::Condition* condition = nullptr;
   const datasets::RepeatRecords* records = nullptr;
   LeakScan scan;
-  std::shared_ptr<const LeakEffects> effects;  ///< null if none were considered
-  Residuals residuals;                         ///< for the average, then for each repeat
+  std::shared_ptr<const LeakEffects> effects;  ///< null if no effects were considered
+  Residuals residuals;                         ///< first for the average, then for each repeat
   std::string failure;
   std::optional<double> true_share;
   bool is_healthy = false;
   std::shared_ptr<LeakMemo> leaks = std::make_shared<LeakMemo>();
 
   const std::vector<double>& time_s() const { return records->average.time_s; }
-  /// Minimum half width of a curve of shares. A record that is its own reference has no error, and
-  /// any width that includes a leak will do.
+  /// Minimum half-width of a curve of shares. It is needed for a record that is its own reference:
+  /// its error is zero, and any width that includes a leak is sufficient.
   double least_reach() const { return 1e-2 * scan.largest_coefficient; }
-  /// Coefficient whose share is a ten-thousandth of the smallest share of interest.
+  /// A coefficient so small that its leak need not be simulated.
   double negligible() const { return 1e-4 * least_reach(); }
 };
 

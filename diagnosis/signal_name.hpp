@@ -6,7 +6,8 @@
 
 namespace rigcal::diagnosis {
 
-/// Name of a condition's drive: "sine 0.1 Hz, 50.8 mm". Records with the same name are comparable.
+/// Returns the name of a condition's drive: "sine 0.1 Hz, 50.8 mm". Records with the same name are
+/// comparable.
 std::string signal_name(const datasets::Campaign& campaign, const datasets::Condition& condition);
 
 }  // namespace rigcal::diagnosis

@@ -14,33 +14,33 @@ namespace {
 using datasets::Channel;
 using model::Output;
 
-/// Characteristic sizes of a rig, SI; NaN where a value is missing.
+/// Characteristic sizes of a rig, SI; NaN if a value is missing.
 struct RigScale {
   double force_n = 0.0;        ///< piston area times supply pressure
   double moment_n_m = 0.0;     ///< that force times the lever
-  double command_v = 0.0;      ///< full scale of the command [V], or of the pilot pressure [Pa]
+  double command_v = 0.0;      ///< full scale of the command [V] or of the pilot pressure [Pa]
   double flow_m3_per_s = 0.0;  ///< flow through the valve at full command without load
-  double travel_m = 0.0;       ///< stroke, or oil volume over piston area
+  double travel_m = 0.0;       ///< stroke, or oil volume divided by piston area
   double turn_rad = 0.0;       ///< angle between the stops
   double middle_rad = 0.0;     ///< angle midway between the stops
   double pressure_pa = 0.0;    ///< supply pressure
   double sample_s = 0.0;       ///< shortest sampling interval
-  double kp = 0.0;             ///< gain of the rig's loop, in the units of that loop
+  double kp = 0.0;             ///< gain of the rig's control loop, in the units of that loop
   double kd = 0.0;
   double mass_kg = 0.0;
   double leak_per_coefficient =
       0.0;  ///< flow of the orifice leak at supply pressure, per leakage coefficient
 };
 
-/// A size derived from the rig.
+/// A plausible size derived from the rig.
 struct EffectSize {
   double value = 0.0;  ///< standard deviation, SI
   const char* from = "";
 };
 
-/// One row of the catalogue. To add an effect, add a row here and its key to
-/// datasets/considered_settings.cpp. The rows kp, ki and kd stand in for the gains of whichever
-/// loop the rig has.
+/// One row of the catalogue. To add an effect, add a row here, and its key to
+/// datasets/considered_settings.cpp. The rows kp, ki and kd represent the gains of whichever loop
+/// the rig has.
 struct CatalogueRow {
   const char* key;
   EffectKind kind;
@@ -49,7 +49,8 @@ struct CatalogueRow {
   EffectSize (*size)(const RigScale& rig);
 };
 
-/// Full scale of a typical laboratory converter; used if the controller has no limit of its own.
+/// Full scale of a typical laboratory converter. It is used if the controller has no limit of its
+/// own.
 constexpr double kUsualCommand_v = 10.0;
 /// Lags and delays are of the order of the sampling interval, within these limits.
 constexpr double kLeastLag_s = 0.05e-3;
@@ -57,14 +58,15 @@ constexpr double kMostLag_s = 0.5e-3;
 /// Typical range of controller periods.
 constexpr double kShortestPeriod_s = 0.1e-3;
 constexpr double kLongestPeriod_s = 1e-3;
-/// How often the play of a valve is recomputed from the command that it causes.
+/// Number of times that the play of a valve is recomputed from the resulting command.
 constexpr int kPlayRounds = 2;
 
-/// An effect changes an output by at least a ten-thousandth of its peak. This tolerance resolves a
-/// hundredth of that.
+/// An effect that matters changes an output by at least a ten-thousandth of its peak. This
+/// tolerance resolves a hundredth of such a change.
 constexpr double kSecantTolerance = 1e-6;
-/// The same for a recorded drive, as a multiple of the measured tolerance, and its upper limit. It
-/// can be larger, because most of the error cancels in the difference between two similar runs.
+/// Tolerance for secants with a recorded drive, as a multiple of the measured tolerance, and its
+/// upper limit. It may exceed the measured tolerance, because most of the error cancels in the
+/// difference between two similar runs.
 constexpr double kRecordedShare = 30.0;
 constexpr double kLargestSecantTolerance = 3e-5;
 
@@ -268,7 +270,7 @@ double value_of_key(const Problem& problem, const model::ParameterValues& values
   return index < 0 ? std::nan("") : values.value[static_cast<std::size_t>(index)];
 }
 
-/// Whether the model has a pump with limited flow.
+/// Returns true if the model has a pump with limited flow.
 bool has_pump(const model::ParameterValues& values) {
   return model::parameter_index(values.plant, "pump_flow") >= 0 && values.is_given("pump_flow");
 }
@@ -331,8 +333,8 @@ bool is_curved(std::string_view key) {
          key == "pilot_dead_band" || key == "stribeck_friction" || key.ends_with("_hysteresis");
 }
 
-/// Whether a key belongs to the kind of valve that the rig does not have: voltage-driven or
-/// pilot-operated.
+/// Returns true if a key belongs to the kind of valve that the rig does not have (voltage-driven or
+/// pilot-operated).
 bool is_of_other_valve(std::string_view key, bool pilot) {
   if (key.starts_with("pilot_")) return !pilot;
   return pilot && (key == "valve_dead_band" || key == "valve_offset" || key == "valve_hysteresis");
@@ -342,7 +344,7 @@ bool is_volume(std::string_view key) {
   return key == "total_volume" || key.starts_with("dead_volume");
 }
 
-/// Key of a row for the loop that the rig has. For a force loop, "kp" becomes "force_kp".
+/// Returns the key of a row for the rig's loop. For a force loop, "kp" becomes "force_kp".
 std::string_view key_in_loop(std::string_view key, const model::FeedbackRow& loop) {
   if (key == "kp") return loop.kp;
   if (key == "ki") return loop.ki;
@@ -353,14 +355,14 @@ bool is_of_controller(std::string_view key, const model::FeedbackRow& loop) {
   return key == loop.kp || key == loop.ki || key == loop.kd || key == "sample_time";
 }
 
-/// Whether an effect is the error of a value that the model has. Hoses add to a volume, and
-/// converters change a gain.
+/// Returns true if an effect is an error in a value that the model already contains: hoses add to a
+/// volume, and converters change a gain.
 bool changes_value(std::string_view key, const model::FeedbackRow& loop) {
   return is_volume(key) || key == loop.kp || key == loop.kd;
 }
 
-/// Whether the model includes the effect already, or its size is given elsewhere: the parameter is
-/// free or given in any condition, or the sensor has a certificate.
+/// Returns true if the model already includes the effect, or if its size is given elsewhere: the
+/// parameter is free, or given in any condition, or the sensor has a certificate.
 bool is_in_model(const Problem& problem, std::string_view key, int index) {
   const auto& unknowns = problem.map.unknowns();
   if (std::any_of(unknowns.begin(), unknowns.end(),
@@ -390,7 +392,8 @@ bool is_in_model(const Problem& problem, std::string_view key, int index) {
   return false;
 }
 
-/// Effects in the catalogue that may act in a problem, regardless of the campaign's settings.
+/// Returns the effects in the catalogue that may act in a problem, regardless of the campaign's
+/// settings.
 std::vector<Effect> possible_effects(const Problem& problem, std::span<const double> z) {
   std::vector<Effect> result;
   if (problem.conditions.empty()) return result;
@@ -428,9 +431,9 @@ std::vector<Effect> possible_effects(const Problem& problem, std::span<const dou
     if (row.kind == EffectKind::supply_sag &&
         std::any_of(problem.conditions.begin(), problem.conditions.end(),
                     [](const auto& each) { return each.inputs.supply_pressure_pa.has_value(); }))
-      continue;  // the recorded pressure includes the sag
+      continue;  // the recorded pressure already includes the sag
     if (row.kind == EffectKind::supply_sag && has_pump(values))
-      continue;  // the pump determines how far its pressure falls
+      continue;  // the pump determines how far the pressure falls
     if (!(effect.range > 0.0) || !std::isfinite(size.value) || !(size.value > 0.0)) continue;
     effect.about.key = key;
     effect.about.meaning = row.meaning;
@@ -443,8 +446,8 @@ std::vector<Effect> possible_effects(const Problem& problem, std::span<const dou
   return result;
 }
 
-/// The supply pressure at the end of a line that loses the fraction `sag` of it when the flow
-/// equals the effect's range.
+/// Returns the supply pressure at the end of a line along which the fraction `sag` of it is lost
+/// when the flow equals the effect's range.
 model::Signal sagging_supply(const Effect& effect, const model::ParameterValues& values,
                              std::span<const double> time_s, const Eigen::VectorXd& flow,
                              double sag) {
@@ -455,12 +458,13 @@ model::Signal sagging_supply(const Effect& effect, const model::ParameterValues&
   return model::Signal::linear({time_s.begin(), time_s.end()}, std::move(supply));
 }
 
-/// Output that drives the valve.
+/// Returns the output that drives the valve.
 Output valve_drive(const model::ParameterValues& values) {
   return model::has_output(values, Output::command) ? Output::command : Output::pilot_pressure;
 }
 
-/// Position of a sensor or spool with play. It moves only after the play has been taken up.
+/// Returns the position of a sensor or spool with play, which moves only after the play has been
+/// taken up.
 Eigen::VectorXd with_play(const Eigen::VectorXd& x, double half_width) {
   Eigen::VectorXd y = x;
   for (Eigen::Index i = 1; i < x.size(); ++i)
@@ -468,14 +472,13 @@ Eigen::VectorXd with_play(const Eigen::VectorXd& x, double half_width) {
   return y;
 }
 
-/// Error of the spool position if the spool follows its signal with play.
+/// Returns the error in the spool position if the spool follows its signal with play.
 model::Signal spool_error(std::span<const double> time_s, const Eigen::VectorXd& signal,
                           double half_width) {
   const Eigen::VectorXd error = with_play(signal, half_width) - signal;
   return model::Signal::linear({time_s.begin(), time_s.end()}, {error.begin(), error.end()});
 }
 
-/// Simulation options for effects.
 model::SimulationOptions effect_options(const Problem& problem, std::size_t condition,
                                         const std::atomic<bool>* cancel) {
   auto options = problem.simulation_options(cancel);
@@ -491,7 +494,7 @@ model::SimulationOptions effect_options(const Problem& problem, std::size_t cond
 }  // namespace
 
 std::optional<Channel> sensor_channel(std::string_view key) {
-  // "force_kp" is the gain of a loop, "force_gain" that of a sensor.
+  // "force_kp" is the gain of a loop, "force_gain" is the gain of a sensor.
   const std::string_view error = key.substr(std::min(key.rfind('_'), key.size()));
   if (error != "_lag" && error != "_gain" && error != "_offset" && error != "_bow" &&
       error != "_wave" && error != "_hysteresis")
@@ -592,9 +595,9 @@ OutputsWith outputs_with(const Problem& problem, std::size_t condition, std::spa
   };
   model::Simulation simulation = run(values, free);
   if (!simulation.ok()) return {};
-  // With another sampling period, edges between the ticks are seen later by a fraction of it. The
-  // output is not a smooth function of the period, so its effect is taken as proportional to that
-  // of the plausible period.
+  // A change in the sampling period shifts, by a fraction of the period, when the controller sees
+  // an edge between two ticks. The output is therefore not a smooth function of the period, and the
+  // effect is taken to be proportional to that of the plausible period.
   if (sampling < effects.size()) {
     model::ParameterValues ticking = values;
     ticking.set(effects[sampling].index, effects[sampling].about.size);
@@ -663,8 +666,8 @@ std::vector<Eigen::MatrixXd> effect_changes(const Problem& problem, std::size_t 
   };
   const model::Simulation base = run_with(values, data.inputs, outputs);
   if (!base.ok()) return result;
-  // Simulated separately: requesting a flow makes a simulation take more steps, and its samples
-  // take longer to read.
+  // The flow is simulated separately, because requesting it makes a simulation take more steps and
+  // longer to sample.
   Eigen::VectorXd flow;
   Eigen::VectorXd drive;
   if (std::any_of(effects.begin(), effects.end(), [](const Effect& each) {

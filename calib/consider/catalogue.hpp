@@ -19,8 +19,8 @@ enum class EffectKind {
   sampling,    ///< the controller acts only at ticks, and the parameter is their period
   supply_sag,  ///< the supply pressure falls with the flow taken from it
   valve_play,  ///< the spool moves only after the signal has taken up the play
-  bow,         ///< nonlinearity of the motion sensor, quadratic in the reading
-  wave,        ///< nonlinearity of the motion sensor, one sine wave over the range
+  bow,         ///< nonlinearity of the motion sensor that is quadratic in the reading
+  wave,        ///< nonlinearity of the motion sensor in the form of one sine wave over the range
   hysteresis,  ///< play of the motion sensor
 };
 
@@ -85,7 +85,7 @@ std::vector<Eigen::MatrixXd> effect_changes(const Problem& problem, std::size_t 
                                             const std::atomic<bool>* cancel,
                                             std::span<const model::Output> further = {});
 
-/// Weighted outputs of one condition with some effects active.
+/// Weighted outputs of one condition when some effects are active.
 struct OutputsWith {
   Eigen::VectorXd
       outputs;  ///< shape (channels * samples that count); empty if the simulation failed

@@ -25,49 +25,50 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// The records do not determine a direction in which they carry less than this fraction of the
-/// priors' information.
+/// The records do not determine a direction if they contain less than this fraction of the priors'
+/// information about it.
 constexpr double kLeastInformation = 1e-6;
-/// Significance level for all tests for missing effects together: with the right model, one fit in
+/// Significance level for all tests for missing effects together. With the right model, one fit in
 /// fifty proposes an effect.
 constexpr double kMissingLevel = 0.02;
 /// Significance level of the tests for unexplained error, for all records together (Bonferroni).
 constexpr double kUnexplainedLevel = 0.01;
-/// Two sizes have the same secant if their logarithms differ by less than this.
+/// Two sizes share a secant if their logarithms differ by less than this.
 constexpr double kSameSize = 0.5;
-/// Limit for chord iterations, and the step, in standard errors of white noise, at which they have
-/// converged.
+/// Maximum number of chord iterations, and the step at which they have converged, in standard
+/// errors for white noise.
 constexpr int kMostChords = 12;
 constexpr double kSettledMove = 0.3;
-/// How often secants are recomputed.
+/// Maximum number of times that secants are recomputed.
 constexpr int kMostSecants = 2;
-/// Naming more terms than this at once would be a guess.
+/// Maximum number of missing effects to name; more than this would be a guess.
 constexpr std::size_t kMostMissing = 3;
-/// Number of effects that are refitted individually, and the fraction of the best explanation from
-/// which a refit is worthwhile.
+/// Maximum number of effects that are refitted individually. A refit is worthwhile if the effect
+/// explains at least the fraction kWorthRefitting of what the best one explains.
 constexpr std::size_t kMostCandidates = 8;
 constexpr double kWorthRefitting = 0.2;
 /// Factor by which a score test may misjudge the size of an effect.
 constexpr double kMistakenSize = 3.0;
-/// Size at which the refit of a further effect begins, as a multiple of its plausible size.
+/// Size at which the refit of an additional effect starts, as a multiple of its plausible size.
 constexpr double kFirstSize = 0.3;
 
-/// Effects, and how they appear to the fit and in the residuals. Each is in units of its plausible
-/// size.
+/// Effects, with the changes in the estimates and residuals that they cause. All sizes are in units
+/// of the plausible size.
 struct Seen {
   std::vector<Effect> effects;
-  MatrixXd taken;  ///< C: what the fit mistakes for a change of the estimates, shape (all
-                   ///< directions of the root, effects)
+  MatrixXd taken;  ///< C: the change in the estimates for which the fit mistakes each effect, shape
+                   ///< (all directions of the root, effects)
   MatrixXd left;   ///< M
   VectorXd score;  ///< s
   MatrixXd basis;  ///< T: left = T^-T T^-1 on the directions that the records determine
-  /// EffectColumns Q with Q^T Q = 1 that span the remaining effects, and the residual without the
-  /// effects.
+  /// Columns Q with Q^T Q = 1, which span the part of the effects that the fit has not absorbed,
+  /// and the residual without the effects.
   std::vector<ScoreRows> rows;
 };
 
-/// What each effect does to the rows of a condition, shape (channels * samples, effects). Those of
-/// all conditions take the most memory of a fit, hence seven digits.
+/// The change that each effect causes in the rows of a condition, shape (channels * samples,
+/// effects). Together these matrices take more memory than anything else in a fit, and are
+/// therefore stored in single precision.
 using EffectColumns = Eigen::MatrixXf;
 
 /// Removes effects that cannot be simulated, and records the reason.
@@ -92,12 +93,13 @@ void drop_failed(std::vector<Effect>& effects, std::vector<EffectColumns>& colum
   for (EffectColumns& each : columns) each = EffectColumns(each(Eigen::all, kept));
 }
 
-/// What the fit mistakes for a change of the estimates, in the directions of a condition.
+/// Returns the rows of `taken` for the directions of a condition.
 MatrixXd taken_in(std::size_t condition, const Uncertainty& found, const Seen& seen) {
   return seen.taken(found.root.directions(condition), Eigen::all);
 }
 
-/// Computes how the effects appear to the fit and in the residuals. Consumes their columns.
+/// Computes the changes that the effects cause in the estimates and residuals. Consumes their
+/// columns.
 Seen look_at(std::vector<Effect> effects, std::vector<EffectColumns>& columns,
              const Uncertainty& found) {
   const std::vector<ScoreRows>& scores = found.scores;
@@ -124,7 +126,8 @@ Seen look_at(std::vector<Effect> effects, std::vector<EffectColumns>& columns,
   const Index determined = count - first;
   seen.basis = solver.eigenvectors().rightCols(determined) *
                values.tail(determined).cwiseSqrt().cwiseInverse().asDiagonal();
-  // Estimates the effects under white noise, so that the remaining residual is noise.
+  // The sizes of the effects are estimated for white noise, so that the residual without the
+  // effects is only noise.
   const VectorXd size = seen.basis.transpose() * seen.score;
   const VectorXd first_guess =
       size.array() * values.tail(determined).array() / (1.0 + values.tail(determined).array());
@@ -140,7 +143,8 @@ Seen look_at(std::vector<Effect> effects, std::vector<EffectColumns>& columns,
   return seen;
 }
 
-/// Covariance of the remaining scores: of the columns Q, and of each effect individually.
+/// Covariance of the scores of the columns Q, and the variance of the score of each individual
+/// effect.
 struct ScoreCovariance {
   MatrixXd directions;  ///< W, shape (directions)^2
   VectorXd alone;       ///< variance of the score of each effect
@@ -180,8 +184,8 @@ ScoreCovariance covariance_of(const Problem& problem, std::span<const double> z,
   return result;
 }
 
-/// Covariance of the scores of the columns Q if the residuals were white noise of the observed
-/// size.
+/// Returns the covariance that the scores of the columns Q would have if the residuals were white
+/// noise of the observed size.
 MatrixXd white_covariance(const Seen& seen) {
   double squares = 0.0;
   double count = 0.0;
@@ -193,15 +197,15 @@ MatrixXd white_covariance(const Seen& seen) {
   return squares / std::max(1.0, count) * MatrixXd::Identity(determined, determined);
 }
 
-/// Posterior sizes of the effects, as multiples of their plausible sizes.
+/// Posterior of the effects' sizes, as multiples of their plausible sizes.
 struct Sizes {
   VectorXd mean;
   MatrixXd covariance;
-  VectorXd likeliest;  ///< joint mode; it differs from the mean if an effect is truncated at zero
+  VectorXd likeliest;  ///< joint mode; differs from the mean if an effect is truncated at zero
 };
 
-/// Minimises (x - mean)^T precision (x - mean) by coordinate descent, where some components must
-/// not be negative.
+/// Minimises (x - mean)^T precision (x - mean) by coordinate descent. Some components must not be
+/// negative.
 VectorXd likeliest_of(const VectorXd& mean, const MatrixXd& precision,
                       const std::vector<Index>& never_negative) {
   constexpr int kMostSweeps = 1000;
@@ -252,10 +256,11 @@ MatrixXd correlation_of(const MatrixXd& covariance) {
   return correlation;
 }
 
-/// Recomputes the secants of curved effects at the sizes that prior and records give.
+/// Recomputes the secants of curved effects at the sizes that follow from prior and records.
 ///
-/// @return  whether any was recomputed. If so, `columns` has the columns of all effects, and `seen`
-///          has lost its rows, because keeping both would take half of a fit's memory.
+/// @return  true if any secant was recomputed. In that case `columns` contains the columns of all
+///          effects, and `seen` no longer has its rows, because keeping both would take half of a
+///          fit's memory.
 bool take_again(const Problem& problem, std::span<const double> z, const Uncertainty& found,
                 const Sizes& sizes, int threads, const std::atomic<bool>* cancel, Seen& seen,
                 std::vector<EffectColumns>& columns) {
@@ -286,13 +291,14 @@ bool take_again(const Problem& problem, std::span<const double> z, const Uncerta
   return true;
 }
 
-/// Computes the sizes of the effects and the move of the estimate if the effects exceed the range
-/// in which the linear model is accurate. It simulates all effects together at moved parameters
-/// instead of using secants, with the sensitivities of the fit (chord iterations). It also replaces
-/// the scores and residuals by those that a model linear about the optimum would give.
+/// Computes the sizes of the effects and the move of the estimates if the effects exceed the range
+/// in which the linear model is accurate. Instead of using secants, it simulates all effects
+/// together at the moved parameters; the sensitivities remain those of the fit (chord iterations).
+/// The scores and residuals are then replaced by those that a model linear about the optimum would
+/// give.
 ///
-/// @param moved  move of the estimate, shape (all directions of the root)
-/// @return  whether the iterations converged; if not, nothing has changed
+/// @param moved  move of the estimates, shape (all directions of the root)
+/// @return  true if the iterations converged; if not, nothing has been changed
 bool follow_curvature(const Problem& problem, std::span<const double> z, const Uncertainty& found,
                       const MatrixXd& directions, int threads, const std::atomic<bool>* cancel,
                       Seen& seen, Sizes& sizes, VectorXd& moved) {
@@ -355,7 +361,7 @@ bool follow_curvature(const Problem& problem, std::span<const double> z, const U
   return false;
 }
 
-/// Tests each effect individually against the residuals.
+/// Tests whether the residuals indicate each effect, one at a time.
 void test_alone(const Seen& seen, const ScoreCovariance& scores,
                 std::vector<ConsideredEffect>& about) {
   std::vector<double> p_values;
@@ -380,8 +386,8 @@ void test_alone(const Seen& seen, const ScoreCovariance& scores,
   for (std::size_t i = 0; i < tested.size(); ++i) about[tested[i]].p_of_all = together[i];
 }
 
-/// Returns the effect that explains most of what the selected effects leave, if it is significant
-/// in addition to them.
+/// Returns the effect that explains most of what the selected effects leave unexplained, provided
+/// that it is significant in addition to them.
 std::optional<std::size_t> next_missing(const Seen& seen, const ScoreCovariance& scores,
                                         const std::vector<ConsideredEffect>& about,
                                         const std::vector<std::size_t>& taken) {
@@ -396,8 +402,8 @@ std::optional<std::size_t> next_missing(const Seen& seen, const ScoreCovariance&
   for (std::size_t e = 0; e < about.size(); ++e) {
     const auto k = static_cast<Index>(e);
     if (std::find(taken.begin(), taken.end(), e) != taken.end() || !about[e].p_value) continue;
-    // An effect that would be negative on its own is no explanation, whatever it does in
-    // combination.
+    // An effect that would be negative on its own cannot be the explanation, whatever its sign in
+    // combination with others.
     if (about[e].one_sided && seen.score(k) < 0.0) continue;
     // Score, information and score variance of this effect, given the selected ones.
     VectorXd weights = VectorXd::Zero(seen.left.rows());
@@ -411,8 +417,8 @@ std::optional<std::size_t> next_missing(const Seen& seen, const ScoreCovariance&
     const double information = weights.dot(seen.left * weights);
     const double spread = weights.dot(variance * weights);
     if (!(information > 0.01 * seen.left(k, k)) || !(spread > 0.0)) continue;
-    // The variance of its own score may come from the repeats, which are more informative than
-    // `variance`.
+    // The variance of the effect's own score may come from the repeats, which are more informative
+    // than `variance`.
     const double widened = std::max(1.0, scores.alone(k) / variance(k, k));
     const double score = weights.dot(seen.score);
     const double t = score / std::sqrt(spread * widened);
@@ -428,7 +434,8 @@ std::optional<std::size_t> next_missing(const Seen& seen, const ScoreCovariance&
   return tested[static_cast<std::size_t>(best)];
 }
 
-/// Forward selection: adds effects as long as one is significant in addition to those selected.
+/// Selects missing effects by forward selection, as long as a further effect is significant in
+/// addition to those selected.
 std::vector<std::size_t> missing_effects(const Seen& seen, const ScoreCovariance& scores,
                                          const std::vector<ConsideredEffect>& about) {
   std::vector<std::size_t> taken;
@@ -440,24 +447,24 @@ std::vector<std::size_t> missing_effects(const Seen& seen, const ScoreCovariance
   return taken;
 }
 
-/// Variance of a score relative to its variance under white noise of variance 1.
+/// Returns the variance of a score relative to its variance for white noise of variance 1.
 double score_inflation(const Seen& seen, const ScoreCovariance& scores, std::size_t effect) {
   const auto k = static_cast<Index>(effect);
   return std::max(scores.alone(k) / seen.left(k, k), 1e-300);
 }
 
-/// One of the refitted models.
+/// A refitted model.
 struct RefittedFit {
   std::vector<std::size_t> effects;
   Refit refit;
 
-  /// Minus twice the log posterior, up to a constant. It separates two effects that act alike by
-  /// how plausible the sizes are that they would need.
+  /// Returns minus twice the log posterior, up to a constant. If two effects act alike, this
+  /// favours the one that needs the more plausible size.
   double misfit(double scale) const { return refit.squares / scale + refit.sizes.squaredNorm(); }
 };
 
 /// Refits the effects that explain most, first individually and then in combination. Score tests
-/// are linear about the fit, which has mistaken the missing effect for a change of the estimates,
+/// are linear about the fit, which has mistaken the missing effect for a change in the estimates,
 /// so they may confuse two effects that act alike. The effect with the highest posterior is named
 /// first.
 std::vector<RefittedFit> refit_best(const Problem& problem, std::span<const double> z,
@@ -469,7 +476,7 @@ std::vector<RefittedFit> refit_best(const Problem& problem, std::span<const doub
   std::vector<RefittedFit> models;
   if (missing.empty() || z.size() > kMostRefitted) return models;
   const Refitter refitter(problem, z, found.scores, threads, cancel);
-  // Starts where the linear model with these effects predicts the minimum.
+  // Each refit starts where the linear model with these effects predicts the minimum.
   const auto refit = [&](const std::vector<std::size_t>& which, const std::vector<double>& from,
                          const VectorXd& sizes) {
     std::vector<Effect> effects;
@@ -479,9 +486,10 @@ std::vector<RefittedFit> refit_best(const Problem& problem, std::span<const doub
   auto plain = refit({}, {z.begin(), z.end()}, VectorXd::Zero(0));
   if (!plain) return models;
   const double scale = score_inflation(seen, scores, missing.front());
-  // Tests each effect individually rather than all together. That some effect is present is already
-  // decided, and if the linear model is far off, the test of the right effect may be weak. Excludes
-  // an effect that would need an implausible size, such as hoses in place of oil compressibility.
+  // The effects are tested individually rather than all together: it has already been decided that
+  // some effect is present, and the test of the right effect may be weak if the linear model is far
+  // off. An effect that would need an implausible size is excluded, such as hoses instead of oil
+  // compressibility.
   const auto plausible = [&](std::size_t e) {
     const double size = about[e].alone.value_or(0.0) / about[e].size / kMistakenSize;
     return size * size < about[missing.front()].explains / scale;
@@ -524,7 +532,7 @@ std::vector<RefittedFit> refit_best(const Problem& problem, std::span<const doub
     sizes << best.refit.sizes, kFirstSize;
     auto more = refit(which, best.refit.z, sizes);
     if (!more || more->sizes(more->sizes.size() - 1) == 0.0) break;
-    // The score test may mistake the curvature of the first effect for a further effect.
+    // The score test may mistake the curvature of the first effect for an additional effect.
     const auto k = static_cast<Index>(*next);
     const double t = std::sqrt(std::max(0.0, best.refit.squares - more->squares) /
                                score_inflation(seen, scores, *next));
@@ -539,7 +547,7 @@ std::vector<RefittedFit> refit_best(const Problem& problem, std::span<const doub
   return models;
 }
 
-/// Writes the refits into the result: sizes and errors of the missing effects, and the models with
+/// Stores the refits in the result: sizes and errors of the missing effects, and the models with
 /// their weights.
 void describe_refits(const Seen& seen, const ScoreCovariance& scores,
                      const std::vector<RefittedFit>& models,
@@ -579,7 +587,7 @@ void describe_refits(const Seen& seen, const ScoreCovariance& scores,
   for (RefittedModel& each : considered.refitted) each.weight /= sum;
 }
 
-/// Average of an estimate over the refitted models.
+/// Returns the average of an estimate over the refitted models.
 std::optional<AveragedEstimate> averaged_over(const Problem& problem, std::size_t unknown,
                                               const std::vector<RefittedFit>& models,
                                               const Considered& considered, double scale) {
@@ -603,8 +611,9 @@ std::optional<AveragedEstimate> averaged_over(const Problem& problem, std::size_
   return result;
 }
 
-/// Contributions of the effects to the variance of an estimate, none below zero. Effects that the
-/// records cannot separate share their joint contribution in proportion to their terms.
+/// Returns the contributions of the effects to the variance of an estimate, none of them negative.
+/// If the records cannot separate some effects, their joint contribution is divided in proportion
+/// to their terms.
 VectorXd variances_by_effect(const VectorXd& moves, const MatrixXd& covariance) {
   const VectorXd along = covariance * moves;
   const double all = std::max(0.0, moves.dot(along));
@@ -613,12 +622,13 @@ VectorXd variances_by_effect(const VectorXd& moves, const MatrixXd& covariance) 
   return sum > 0.0 ? VectorXd(parts * (all / sum)) : VectorXd::Zero(moves.size());
 }
 
-/// Uncertainty budget of one estimate, starting from the error that it would have if the model were
-/// exact. If an effect was refitted, the averaged estimate is a correction without a linear model.
-/// Its difference from the linear correction is a contribution with a uniform distribution.
+/// Returns the uncertainty budget of one estimate, based on the error that it would have if the
+/// model were exact. If an effect was refitted, the averaged estimate provides a correction that
+/// does not rely on a linear model. Its difference from the linear correction is a contribution
+/// with a uniform distribution.
 ///
-/// @param moves  change of the estimate due to each effect at its plausible size, SI
-/// @param shift  change of the estimate due to the mean sizes of the effects, SI
+/// @param moves  change in the estimate due to each effect at its plausible size, SI
+/// @param shift  change in the estimate due to the mean sizes of the effects, SI
 Budget95 budget_of(const Uncertainty& found, std::size_t unknown, const FittedParameter& parameter,
                    double slope, const Seen& seen, const VectorXd& moves, const Sizes& sizes,
                    double shift) {
@@ -660,9 +670,9 @@ Budget95 budget_of(const Uncertainty& found, std::size_t unknown, const FittedPa
   return budget;
 }
 
-/// Upper limit of how far model error that no effect explains could move each estimate, in the unit
-/// box. Assumes an error as large as the residual without the effects, if that is significant, and
-/// everywhere in phase with the sensitivity.
+/// Returns an upper limit on how far model error that no effect explains could move each estimate,
+/// in the unit box. If the residual without the effects is significant, the error is assumed to be
+/// as large as that residual, and everywhere in phase with the sensitivity.
 ///
 /// @param rows  rows whose residuals exclude the effects
 VectorXd unexplained_moves(const Problem& problem, const std::vector<ScoreRows>& scores,
@@ -697,10 +707,10 @@ VectorXd unexplained_moves(const Problem& problem, const std::vector<ScoreRows>&
   return squares.cwiseSqrt();
 }
 
-/// Widens the interval of an estimate. Nobody knows which effects are present, so it covers the
-/// estimate, the estimate shifted by the mean sizes of the effects and the estimate shifted by
-/// their likeliest sizes, each plus or minus the expanded uncertainty. If the residuals indicate an
-/// effect, it also covers the interval of the averaged estimate.
+/// Widens the interval of an estimate. It is not known which effects are present, so the interval
+/// covers the estimate, the estimate shifted by the mean sizes of the effects, and the estimate
+/// shifted by their likeliest sizes, each plus or minus the expanded uncertainty. If the residuals
+/// indicate an effect, the interval also covers that of the averaged estimate.
 ///
 /// @param likeliest  shift due to the likeliest sizes, SI
 void widen(const Problem& problem, std::size_t unknown, Budget95 budget, double likeliest,
@@ -740,11 +750,11 @@ void consider_effects(const Problem& problem, std::span<const double> z, const U
   Sizes sizes;
   VectorXd moved;
   std::vector<RefittedFit> models;
-  std::vector<std::size_t> missing;  // indices of effects
+  std::vector<std::size_t> missing;  // indices of the missing effects
   double scale = 1.0;
   if (!effects.empty()) {
     seen = look_at(std::move(effects), columns, found);
-    // White noise is accurate enough for choosing the size of a secant.
+    // The assumption of white noise is accurate enough for choosing the size of a secant.
     sizes = sizes_of(*seen, white_covariance(*seen));
     for (int i = 0; i < kMostSecants; ++i) {
       if (!take_again(problem, z, found, sizes, threads, cancel, *seen, columns)) break;
@@ -765,7 +775,7 @@ void consider_effects(const Problem& problem, std::span<const double> z, const U
       test_alone(*seen, scores, considered.effects);
       missing = missing_effects(*seen, scores, considered.effects);
     }
-    // Only the residual is still needed, and a refit needs as much memory.
+    // From here on only the residuals are needed, and a refit needs the memory.
     for (ScoreRows& each : seen->rows) each.narrow.resize(0, 0);
     models =
         refit_best(problem, z, found, *seen, scores, threads, cancel, considered.effects, missing);
@@ -801,7 +811,7 @@ void consider_effects(const Problem& problem, std::span<const double> z, const U
           parameter);
     const std::string exact = fmt::format("{}: {}", problem.name(j), parameter.reason);
     grade_widened(problem, found, j, parameter);
-    // Updates the warning about an estimate to its present interval.
+    // The warning about an estimate must describe its new interval.
     const std::string widened = fmt::format("{}: {}", problem.name(j), parameter.reason);
     const auto warning = std::find(fit.warnings.begin(), fit.warnings.end(), exact);
     if (warning != fit.warnings.end())

@@ -9,8 +9,8 @@
 namespace rigcal::calib {
 
 /// Widens the intervals of a fit to account for the small effects that the model omits (consider
-/// covariance: S. F. Schmidt, Advances in Control Systems 3, 1966). Unlike there, the records also
-/// update the sizes of the effects.
+/// covariance: S. F. Schmidt, Advances in Control Systems 3, 1966). In contrast to that method, the
+/// records also update the sizes of the effects.
 ///
 /// At its plausible size, each effect e_k adds E_k to the residual r, measured minus simulated. The
 /// fit has mistaken the component B B^T E e for a change in the estimates, which in coordinates of

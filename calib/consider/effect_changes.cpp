@@ -13,7 +13,7 @@ std::size_t place_of(const EffectSpread& effects, const std::string& key) {
                                   effects.keys.begin());
 }
 
-/// Time derivative by central differences.
+/// Returns the time derivative, by central differences.
 std::vector<double> rate(std::span<const double> x, std::span<const double> time_s) {
   std::vector<double> result(x.size(), 0.0);
   for (std::size_t i = 0; i < x.size() && x.size() > 1; ++i) {

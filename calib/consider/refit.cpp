@@ -17,20 +17,22 @@ using Eigen::VectorXd;
 
 constexpr int kMostRefitSteps = 12;
 constexpr int kMostStepHalvings = 5;
-/// The search ends when a step promises to lower the sum of squares by less than this, in variances
-/// of a weighted residual.
+/// The search ends when the predicted decrease in the sum of squares is below this, in variances of
+/// a weighted residual.
 constexpr double kSettledFall = 0.02;
-/// Smallest actual decrease as a fraction of the predicted one. Beside a kink the derivatives
-/// predict what no step achieves, and tiny decreases would go on to the last iteration.
+/// A step is accepted only if the actual decrease is at least this fraction of the predicted one.
+/// Close to a kink the derivatives predict decreases that no step achieves, and tiny decreases
+/// would continue until the last iteration.
 constexpr double kLeastFall = 0.01;
-/// Fall that the simulations resolve, in the same unit.
+/// Smallest decrease that the simulations resolve, in variances of a weighted residual.
 constexpr double kResolvedFall = 1.0;
-/// Smallest size as a multiple of the plausible size. A shorter lag is stiff and counts as zero.
+/// Minimum size as a multiple of the plausible size. A smaller one, such as a very short and
+/// therefore stiff lag, counts as zero.
 constexpr double kLeastSize = 0.02;
-/// Added to the scaled J^T J, so that undetermined directions do not move.
+/// This is added to the scaled J^T J, so that there is no step in undetermined directions.
 constexpr double kRidge = 1e-9;
 
-/// (J^T J)^-1, computed with columns scaled to 1.
+/// Returns (J^T J)^-1, computed with columns scaled to length 1.
 MatrixXd scaled_inverse(const MatrixXd& normal) {
   const VectorXd scale =
       normal.diagonal().cwiseSqrt().unaryExpr([](double d) { return d > 0.0 ? 1.0 / d : 1.0; });
@@ -89,7 +91,8 @@ void Refitter::complete(std::size_t condition, const std::vector<Effect>& effect
                         std::span<const double> z, const VectorXd& sizes, Part& part) const {
   const std::vector<int>& acting = problem_.map.acting(condition);
   const Index unknowns = part.jacobian.cols() - sizes.size();
-  // The difference uses two runs without derivatives, because derivatives change the error control.
+  // Both runs of a difference are made without derivatives, because derivatives change the error
+  // control.
   const auto plain = [&](const VectorXd& at) {
     return outputs_with(problem_, condition, z, effects, at, Derivatives::none, cancel_);
   };
@@ -142,7 +145,7 @@ std::optional<Refit> Refitter::fit(const std::vector<Effect>& effects, std::vect
   best.sizes = within_signs(effects, std::move(sizes));
   std::vector<Part> parts;
   Part sum;
-  // What a rejected point would need for the next step is not simulated.
+  // The derivatives with respect to the effects are simulated only if the point is accepted.
   const auto evaluate = [&](std::span<const double> z, const VectorXd& at, double below,
                             std::vector<Part>& own) {
     own.assign(conditions, {});
@@ -168,14 +171,15 @@ std::optional<Refit> Refitter::fit(const std::vector<Effect>& effects, std::vect
   if (!sum.ok) return std::nullopt;
   double count = 0.0;
   for (const VectorXd& each : base_) count += static_cast<double>(each.size());
-  // Where effects are simulated more coarsely, shorter steps are not worth trying below what is
-  // resolved.
+  // With recorded drives, effects are simulated more coarsely. If the predicted decrease is below
+  // what these simulations resolve, shorter steps are not worth trying.
   const bool recorded = std::any_of(problem_.conditions.begin(), problem_.conditions.end(),
                                     [](const auto& each) { return each.measured_tolerance > 0.0; });
   bool settled = false;
   for (int step = 0; step < kMostRefitSteps && !settled; ++step) {
     if (cancel_ != nullptr && cancel_->load()) return std::nullopt;
-    // An effect that the records push below zero stays at zero, and an unknown at its bound.
+    // An effect that the records would make negative is kept at zero, and an unknown at a bound is
+    // kept there if the cost falls outwards.
     std::vector<Index> moving;
     for (Index j = 0; j < all; ++j) {
       const bool is_unknown = j < unknowns;

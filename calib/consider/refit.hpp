@@ -15,12 +15,13 @@ namespace rigcal::calib {
 /// Maximum number of unknowns for a refit; it is limited because the matrices are dense.
 inline constexpr std::size_t kMostRefitted = 64;
 
-/// Minimum of a problem with some effects as additional unknowns.
+/// Minimum of a problem in which some effects are additional unknowns.
 struct Refit {
   std::vector<double> z;
-  Eigen::VectorXd sizes;       ///< effects, as multiples of their plausible sizes
-  Eigen::MatrixXd covariance;  ///< (J^T J)^-1; unknowns in the unit box, then effects
-  double squares = 0.0;        ///< sum of the squared weighted residuals and priors
+  Eigen::VectorXd sizes;  ///< effects, as multiples of their plausible sizes
+  /// (J^T J)^-1 for the unknowns in the unit box, followed by the effects.
+  Eigen::MatrixXd covariance;
+  double squares = 0.0;  ///< sum of the squared weighted residuals and priors
   /// The same sum if each condition is predicted from the others, to first order. Absent if there
   /// is only one condition.
   std::optional<double> held_out;
@@ -31,7 +32,7 @@ struct Refit {
 /// negative ends at zero if the records would make it negative.
 class Refitter {
  public:
-  /// @param scores  residuals of the fit at z
+  /// @param scores  contain the residuals of the fit at z
   Refitter(const Problem& problem, std::span<const double> z, const std::vector<ScoreRows>& scores,
            int threads, const std::atomic<bool>* cancel);
 

@@ -13,9 +13,10 @@
 namespace rigcal::calib {
 namespace {
 
-/// The second step is needed if the model is not quite linear between the two estimates.
+/// A second step is needed if the model is not quite linear between the two estimates.
 constexpr int kSteps = 2;
-/// Fraction of the value. A wider interval is not symmetrical, and comparing it would be a guess.
+/// Maximum half-width of an interval, as a fraction of the value. A wider interval is not
+/// symmetric, so that a comparison would be a guess.
 constexpr double kWidestInterval = 0.25;
 
 const FittedParameter* same_unknown(const std::vector<FittedParameter>& parameters,
@@ -28,7 +29,8 @@ const FittedParameter* same_unknown(const std::vector<FittedParameter>& paramete
   return found == parameters.end() ? nullptr : &*found;
 }
 
-/// Takes the noise from the residuals at the fit's values if there are neither repeats nor an `sd`.
+/// Estimates the noise from the residuals at the fit's values if there are neither repeats nor an
+/// `sd`.
 void weigh_by_residuals(const Evaluation& at, Problem& problem) {
   for (std::size_t i = 0; i < problem.conditions.size(); ++i) {
     auto& channels = problem.conditions[i].channels;
@@ -83,7 +85,7 @@ void repeat_on_validation(Problem validation, const std::vector<FittedParameter>
   std::vector<double> p_values;
   for (std::size_t j = 0; j < unknowns.size(); ++j) {
     if (fitted[j] == nullptr || !fitted[j]->budget || !found.robust_standard_error[j]) continue;
-    if (bound_side(at.z[j]) != BoundSide::inside) continue;  // its error is not that of a minimum
+    if (bound_side(at.z[j]) != BoundSide::inside) continue;  // at a bound its error is not valid
     const double value = validation.map.to_physical(static_cast<int>(j), at.z[j]);
     if (student_t(found.robust_freedom[j]) * *found.robust_standard_error[j] >
         kWidestInterval * std::abs(value))

@@ -6,9 +6,10 @@
 namespace rigcal::calib {
 namespace {
 
-/// Density divided by upper tail probability of the standard normal distribution at a.
+/// Returns the density of the standard normal distribution at a, divided by the probability of its
+/// upper tail.
 double hazard(double a) {
-  // Beyond this the tail underflows; there the series is accurate to 1e-5.
+  // Far out the tail underflows, but there the series is accurate to 1e-5.
   constexpr double kFarOut = 20.0;
   if (a > kFarOut) return a + 1.0 / a - 2.0 / (a * a * a);
   const double density = std::exp(-0.5 * a * a) / std::sqrt(2.0 * std::numbers::pi);
@@ -20,12 +21,12 @@ struct Moments {
   double variance = 0.0;
 };
 
-/// Moments of N(mean, variance) truncated below zero.
+/// Returns the moments of a normal distribution from which the part below zero has been cut off.
 Moments above_zero(const Moments& normal) {
   const double sd = std::sqrt(normal.variance);
   const double a = -normal.mean / sd;
   const double h = hazard(a);
-  // For large a, 1 - h (h - a) suffers cancellation, and equals 1 / a^2.
+  // For large a, 1 - h (h - a) suffers from cancellation, and is approximately 1 / a^2.
   constexpr double kCancels = 20.0;
   const double share = a > kCancels ? 1.0 / (a * a) : 1.0 - h * (h - a);
   return {normal.mean + sd * h, normal.variance * share};

@@ -33,8 +33,8 @@ constexpr double kLeastCosine = 1e-6;
 /// A rejected step ends the descent if both the predicted and the actual change in cost are below
 /// this fraction of the cost, because simulations are not accurate enough to resolve it.
 constexpr double kNoise = 1e-8;
-/// The descent gives up after this many consecutive points that cannot be evaluated. The last step
-/// is then a millionth of the first.
+/// The descent gives up after this many consecutive points that cannot be evaluated. By then the
+/// step is a millionth of the first one.
 constexpr int kMostInvalid = 10;
 
 struct Point {

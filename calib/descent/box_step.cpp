@@ -9,8 +9,8 @@
 namespace rigcal::calib {
 namespace {
 
-/// Eigenvalues below this fraction of the largest are rounding errors: the matrix is J'J, whose
-/// eigenvalues are squares.
+/// Eigenvalues below this fraction of the largest are rounding errors. The fraction is this small
+/// because the eigenvalues of J'J are squares of singular values.
 constexpr double kSquaredRounding = 1e-12;
 /// Relative tolerance for a step that ends on the boundary of the trust region. The limit on
 /// iterations is never reached, because Newton's method takes three or four.
@@ -51,8 +51,8 @@ class ShiftedDense {
   Eigen::VectorXd solve(const Eigen::VectorXd& y, double more) const {
     return (y.array() / (curvature_.array() + more).max(1e-300)).matrix();
   }
-  /// Returns half of the derivative of -|y|^2 with respect to the shift, where y solves the system
-  /// for x.
+  /// Returns half the derivative of -|y|^2 with respect to the shift, where y is the solution for
+  /// x.
   double slope(const Eigen::VectorXd& x, const Eigen::VectorXd& /*y*/, double more) const {
     return (x.array().square() / (curvature_.array() + more).max(1e-300).cube()).sum();
   }

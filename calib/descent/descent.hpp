@@ -38,7 +38,7 @@ struct DescentOptions {
 /// Result of a descent.
 struct Descent {
   bool converged = false;  ///< true if a tolerance was reached
-  int iterations = 0;      ///< number of steps tried, without the start
+  int iterations = 0;      ///< number of steps that were tried, not counting the start
   std::string failure;     ///< why the descent gave up; otherwise empty
 };
 

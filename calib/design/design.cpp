@@ -27,21 +27,21 @@ using datasets::Campaign;
 using datasets::DriveFamily;
 using datasets::Record;
 
-/// Tolerance for comparing many drives; sensitivities are then accurate to one percent.
+/// Tolerance for comparing many drives, with which sensitivities are accurate to one percent.
 constexpr double kTrialTolerance = 1e-5;
-/// Tolerance for the drive that is written.
+/// Tolerance for checking the drive that is written.
 constexpr double kFineTolerance = 1e-8;
-constexpr int kFiner = 4;  // response samples per drive sample
+constexpr int kFiner = 4;  // number of response samples per drive sample
 constexpr int kMostScalings = 6;
 constexpr int kMostFineScalings = 20;
-/// A drive that uses this fraction of a limit is not scaled up further.
+/// A drive that uses at least this fraction of a limit is not scaled up further.
 constexpr double kUsed = 0.95;
 constexpr double kAimedAt = 0.98;
 constexpr double kFineAimedAt = 0.999;
 
 bool is_set(const std::atomic<bool>* flag) { return flag != nullptr && flag->load(); }
 
-// Checks of the names of parameters.
+// Functions that check the names of parameters.
 
 const model::ParameterSpec& spec_at(const Campaign& campaign, int index) {
   return model::parameter_table(campaign.rig.plant)[static_cast<std::size_t>(index)];
@@ -84,7 +84,7 @@ std::vector<std::size_t> named_unknowns(const Campaign& campaign, const TrialRig
   return {found.begin(), found.end()};
 }
 
-// Evaluation of a single drive.
+// Functions that evaluate a single drive.
 
 std::vector<double> drive_of(const TrialRig& rig, const DriveShape& shape, double scale) {
   std::vector<double> drive(shape.values.size());
@@ -93,8 +93,8 @@ std::vector<double> drive_of(const TrialRig& rig, const DriveShape& shape, doubl
   return drive;
 }
 
-/// Returns the largest scale up to 1 at which a drive keeps the limits, multiplied by the fraction
-/// chosen for its shape. Returns std::nullopt if none was found.
+/// Returns the largest scale, up to 1, at which a drive keeps the limits, multiplied by the
+/// fraction chosen for its shape. Returns std::nullopt if no such scale was found.
 std::optional<double> allowed_scale(const TrialRig& rig, const DriveShape& shape) {
   double kept = 0.0;
   double broken = std::numeric_limits<double>::infinity();
@@ -207,7 +207,7 @@ void check_finely(const TrialRig& rig, const datasets::DriveUnit& unit, const Dr
   throw NoResultError("design: no drive that was tried keeps the limits in a fine simulation");
 }
 
-// Comparison with the campaign's own signals.
+// Functions for the comparison with the campaign's own signals.
 
 bool is_comparable(const datasets::Condition& condition, const datasets::Condition* like) {
   if (!is_planned_with(condition)) return false;
@@ -217,7 +217,7 @@ bool is_comparable(const datasets::Condition& condition, const datasets::Conditi
          condition.specimen == of.specimen;
 }
 
-/// Adds the information that the campaign's own signals would give in the duration of the test.
+/// Adds the information that the campaign's own signals would provide in the duration of the test.
 /// Each signal gets its fraction of that time, counted in samples, so that records with different
 /// sample rates can be compared.
 void add_own_signals(const Campaign& campaign, const std::vector<Record>& records,
@@ -268,7 +268,8 @@ void add_own_signals(const Campaign& campaign, const std::vector<Record>& record
   }
 }
 
-/// Marks the unknowns that only the smoothing of the orifice roots would determine.
+/// Marks as undetermined those unknowns that only the smoothing of the orifice roots would
+/// determine.
 void leave_symmetric_open(const TrialRig& rig, int threads, Design& design) {
   const auto symmetry = scaling_symmetry(rig.problem(), rig.z(), 1.0, threads);
   if (!symmetry) return;

@@ -30,7 +30,8 @@ struct FamilyTrial {
   datasets::DriveFamily family = datasets::DriveFamily::multisine;
   int evaluations = 0;
   bool found = false;  ///< true if any of the drives keeps the limits
-  /// Standard deviation of each unknown with the best drive, at the accuracy of the search.
+  /// Standard deviation of each unknown with the best drive. Its accuracy is only that of the
+  /// search.
   std::vector<std::optional<double>> sd;
   RIGCAL_DESCRIBE(family, evaluations, found, sd)
 };
@@ -39,15 +40,15 @@ struct FamilyTrial {
 struct Design {
   datasets::DriveFamily family = datasets::DriveFamily::multisine;
   std::vector<double> time_s;
-  std::vector<double> drive;  ///< SI, as written to the CSV file
-  Eigen::MatrixXd response;   ///< limited_outputs() at time_s
+  std::vector<double> drive;  ///< samples of the drive as written to the CSV file, SI
+  Eigen::MatrixXd response;   ///< values of limited_outputs() at time_s
   double amplitude = 0.0;     ///< largest distance of the drive from its first value, SI
   std::vector<DrivePart> parts;
   std::vector<LimitUse> limits;
   std::vector<DesignedParameter> parameters;
   std::vector<FamilyTrial> trials;
   std::map<datasets::Channel, double> noise_sd;  ///< noise in one sample of one repeat, SI
-  std::vector<std::string> own_conditions;       ///< the campaign's own signals
+  std::vector<std::string> own_conditions;       ///< conditions with the campaign's own signals
   double own_duration_s = 0.0;                   ///< total duration of the campaign's own signals
   bool stopped = false;  ///< true if the search was cancelled; the drive is the best so far
   std::vector<std::string> messages;

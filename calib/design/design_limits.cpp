@@ -13,13 +13,13 @@ constexpr std::array kLimited{model::Output::position, model::Output::velocity,
                               model::Output::acceleration, model::Output::command,
                               model::Output::servo_flow};
 
-/// Returns how much of the way from the first position to an end of the stroke was used. Beyond the
-/// end the result exceeds 1, even if the first position is already at the end.
+/// Returns the used fraction of the distance from the first position to an end of the stroke.
+/// Beyond the end the result exceeds 1, even if the first position is already at the end.
 double travelled(double first, double reached, double end) {
   const double way = std::abs(end - first);
   const double gone = end >= first ? reached - first : first - reached;
   if (way > 0.0) return std::max(gone / way, 0.0);
-  constexpr double kRounding = 1e-9;  // in m
+  constexpr double kRounding = 1e-9;  // [m]
   return gone > kRounding ? std::numeric_limits<double>::infinity() : 0.0;
 }
 

@@ -12,8 +12,8 @@ namespace rigcal::calib {
 /// One limit in [design], and how much of it a drive uses.
 struct LimitUse {
   std::string key;    ///< key in the campaign file: "stroke"
-  std::string words;  ///< for example "lowest position"
-  std::string unit;   ///< in SI
+  std::string words;  ///< description such as "lowest position"
+  std::string unit;   ///< SI unit of `limit` and `reached`
   double limit = 0.0;
   double reached = 0.0;
   Location where;

@@ -13,7 +13,7 @@ namespace {
 
 using datasets::DriveFamily;
 
-constexpr Eigen::Index kCommon = 2;  // fraction of the amplitude, offset
+constexpr Eigen::Index kCommon = 2;  // fraction of the amplitude, and offset
 constexpr Eigen::Index kSines = 5;
 constexpr Eigen::Index kLevels = 8;
 constexpr double kLeastAmplitude = 0.1;
@@ -28,7 +28,7 @@ double between(double low, double high, double coordinate) {
   return low * std::pow(high / low, coordinate);
 }
 
-/// Returns the coordinates of a drive one after the other.
+/// Hands out the coordinates of a drive one after the other.
 class DriveNumbers {
  public:
   explicit DriveNumbers(const Eigen::VectorXd& values) : values_(values) {}
@@ -82,7 +82,8 @@ std::vector<double> swept(DriveNumbers& point, const DriveGrid& grid,
   return values;
 }
 
-/// Generates levels, each reached from the previous one by a straight line that begins at its edge.
+/// Generates a sequence of levels. Each is reached from the previous one along a straight line that
+/// begins at its edge.
 std::vector<double> ramped(const std::vector<double>& edges_s, const std::vector<double>& levels,
                            double rise_s, const DriveGrid& grid) {
   std::vector<double> values(grid.samples);
@@ -158,7 +159,7 @@ std::vector<double> pseudo_random(DriveNumbers& point, const DriveGrid& grid,
   return ramped(edges_s, levels, rise_s, grid);
 }
 
-/// Rises from 0 to 1 and falls back to 0, without corners.
+/// A window that rises from 0 to 1 and falls back to 0 without corners.
 double window(double share) {
   const double nearest = std::min({share, 1.0 - share, kTaper}) / kTaper;
   return 0.5 - 0.5 * std::cos(std::numbers::pi * std::max(nearest, 0.0));

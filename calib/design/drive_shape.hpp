@@ -25,8 +25,8 @@ DriveGrid drive_grid(const datasets::DesignSettings& settings);
 
 /// One of the numbers that describe a drive, as named in results.
 struct DrivePart {
-  std::string name;  ///< "frequency 1", "bit time"
-  std::string unit;  ///< in SI
+  std::string name;  ///< such as "frequency 1" or "bit time"
+  std::string unit;  ///< SI unit of `value`
   double value = 0.0;
   RIGCAL_DESCRIBE(name, unit, value)
 };

@@ -25,8 +25,7 @@ Eigen::VectorXd random_direction(Eigen::Index n, datasets::RandomStream& stream)
   return direction;
 }
 
-/// Returns the indices of the points from best to worst. Of points with equal scores the earlier
-/// one comes first.
+/// Returns the indices of the points from best to worst. Points with equal scores keep their order.
 std::vector<std::size_t> ranked(const std::vector<double>& scores) {
   std::vector<std::size_t> order(scores.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -35,7 +34,7 @@ std::vector<std::size_t> ranked(const std::vector<double>& scores) {
   return order;
 }
 
-/// The search distribution, with Hansen's notation and default constants.
+/// The search distribution, in Hansen's notation and with his default constants.
 class Strategy {
  public:
   explicit Strategy(Eigen::VectorXd mean)
@@ -140,7 +139,7 @@ class BoundedSearch {
   bool goes_on() const { return left_ > 0 && !stopped_(); }
   const Evolved& best() const { return best_; }
 
-  /// Returns the scores of as many points as may still be evaluated.
+  /// Evaluates the points, after reflecting them into the box, and returns their scores.
   std::vector<double> evaluate(const std::vector<Eigen::VectorXd>& unbounded) {
     std::vector<Eigen::VectorXd> points;
     for (const Eigen::VectorXd& each : unbounded) points.push_back(reflected(each));

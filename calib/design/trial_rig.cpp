@@ -19,8 +19,8 @@ using datasets::Record;
 
 constexpr double kRestTolerance = 1e-6;
 
-/// Returns the condition of the test: what `like` specifies for the machine, and the recorded
-/// drive.
+/// Returns the condition of the test, with the machine settings of the condition `like` and a
+/// recorded drive.
 datasets::Condition tested_condition(const Campaign& campaign) {
   datasets::Condition condition;
   const datasets::DesignSettings& design = *campaign.design;
@@ -130,7 +130,8 @@ TrialRig::TrialRig(const Campaign& campaign, const std::map<Channel, double>& no
   reach_ = find_reach();
 }
 
-/// Simulates the rig at rest to obtain its initial state and the records before the drive is known.
+/// Simulates the rig at rest, to obtain its initial state and a record to use before the drive is
+/// known.
 void TrialRig::rest(const std::map<Channel, double>& noise_sd) {
   std::vector<model::Output> outputs(limited_outputs().begin(), limited_outputs().end());
   for (const auto& [channel, sd] : noise_sd)

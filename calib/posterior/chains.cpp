@@ -31,7 +31,7 @@ Chains halves(const Chains& chains) {
   return split;
 }
 
-/// Returns the normal scores of the ranks. Equal draws get their mean rank.
+/// Returns the normal scores of the ranks. Equal draws share their mean rank.
 Chains normal_scores(const Chains& chains) {
   struct Place {
     double value;

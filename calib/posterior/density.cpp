@@ -177,7 +177,7 @@ LogDensity PosteriorDensity::evaluate(const VectorXd& y, const Fidelity& fidelit
     VectorXd own_gradient = VectorXd::Zero(columns);
     for (std::size_t k = 0; k < condition.channels.size(); ++k) {
       double unused = 0.0;
-      constexpr std::size_t kBlock = 512;  // small enough to remain in the cache
+      constexpr std::size_t kBlock = 512;  // small enough to stay in the cache
       for (std::size_t begin = 0; begin < samples; begin += kBlock) {
         const std::size_t end = std::min(begin + kBlock, samples);
         const MatrixXd weighted = weighted_rows(condition, k, {begin, end, 0}, run, box_slopes,

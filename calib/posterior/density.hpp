@@ -50,8 +50,8 @@ class PosteriorDensity {
   /// Returns only the logarithm of the density, from simulations without sensitivities.
   double value(const Eigen::VectorXd& y) const { return evaluate(y, {false, true}).value; }
 
-  /// Returns the start point: the optimum, or a point one standard error inside if the optimum is
-  /// closer to a bound than that.
+  /// Returns the start point. It is the optimum, or if the optimum is less than one standard error
+  /// from a bound, a point that is one standard error away from the bound.
   const Eigen::VectorXd& centre() const { return centre_; }
   std::vector<double> to_unit(const Eigen::VectorXd& y) const;
   Eigen::VectorXd from_unit(std::span<const double> z) const;
@@ -66,8 +66,9 @@ class PosteriorDensity {
   LogDensity evaluate(const Eigen::VectorXd& y, const Fidelity& fidelity) const;
 
   struct Directions {
-    Eigen::MatrixXd jacobian;  ///< rows at the optimum, shape (residuals, acting unknowns)
-    Eigen::MatrixXd root;      ///< R of the acting unknowns, shape (acting, directions)
+    /// Rows of the Jacobian at the optimum, shape (residuals, acting unknowns).
+    Eigen::MatrixXd jacobian;
+    Eigen::MatrixXd root;  ///< rows of R for the acting unknowns, shape (acting, directions)
   };
 
   const Problem& problem_;

@@ -30,7 +30,7 @@ struct ChainState {
   /// would introduce rounding that depends on where a group of draws begins. Empty before the first
   /// draw.
   Eigen::VectorXd whitened;
-  double step = 0.0;   ///< in units of the covariance
+  double step = 0.0;   ///< step length in coordinates in which the mass is one
   long iteration = 0;  ///< number of draws so far, including the warm-up
 };
 

@@ -8,7 +8,7 @@
 namespace rigcal::calib {
 
 inline constexpr int kPosteriorChains = 4;
-/// Warm-up draws of each chain, which do not count.
+/// Number of warm-up draws per chain, which are discarded.
 inline constexpr int kPosteriorWarmUp = 300;
 /// Number of draws per chain that are stored together; a stopped run loses at most one such group.
 inline constexpr int kPosteriorStretch = 250;

@@ -52,9 +52,9 @@ struct ArrowSquare {
   Eigen::Index size() const;
   Eigen::VectorXd diagonal() const;
   Eigen::VectorXd operator*(const Eigen::VectorXd& x) const;
-  /// (A + B) / 2 for two matrices with the same layout.
+  /// Returns (A + B) / 2 for two matrices with the same layout.
   ArrowSquare mean(const ArrowSquare& other) const;
-  /// S A S, with A restricted to the rows and columns of some unknowns.
+  /// Returns S A S, where A is restricted to the rows and columns of some unknowns.
   ///
   /// @param kept   indices of these unknowns, ascending
   /// @param scale  diagonal of S, shape (kept)
@@ -115,7 +115,7 @@ class ArrowRoot {
   /// Row of the unknown among those of its condition, or among the shared ones.
   Eigen::Index row_of(Eigen::Index unknown) const { return place(unknown).row; }
 
-  /// Components of a row in the own and shared directions of a condition.
+  /// Components of an unknown's row in the own and shared directions of a condition.
   Eigen::VectorXd row(Eigen::Index unknown, std::size_t condition) const;
   /// Components of the rows of several unknowns. The overload without a list of unknowns returns
   /// the condition's own unknowns, followed by the shared ones.

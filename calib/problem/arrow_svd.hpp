@@ -40,8 +40,8 @@ class ArrowSvd {
   };
   /// Directions that the system does not determine.
   std::vector<Direction> undetermined() const;
-  /// The determined direction with the longest full step, in scaled coordinates; std::nullopt if
-  /// there is none.
+  /// Returns the determined direction along which the full step is longest, in scaled coordinates.
+  /// Returns std::nullopt if there is none.
   std::optional<Direction> longest_way() const;
 
  private:

@@ -17,17 +17,18 @@ struct ConditionEvaluation {
   model::SimulationStatus status = model::SimulationStatus::ok;
   double failed_at_s = 0.0;
   std::string reason;  ///< explains a failure; empty otherwise
-  /// R factor of [J r], shape (acting unknowns + 1)^2: J in unit-box coordinates, r weighted.
+  /// R factor of [J r], with J in unit-box coordinates and weighted r. Shape (acting unknowns +
+  /// 1)^2.
   Eigen::MatrixXd r_factor;
-  std::vector<double> rms;  ///< root mean square of simulated minus measured per channel, SI
+  std::vector<double> rms;  ///< root mean square of simulated minus measured for each channel, SI
   long steps = 0;
 
   bool ok() const { return status == model::SimulationStatus::ok; }
-  /// Half the sum of squares.
+  /// Half the sum of squared weighted residuals.
   double cost() const { return 0.5 * r_factor.col(r_factor.cols() - 1).squaredNorm(); }
 };
 
-/// Weighted residuals of one condition and their Jacobian, with all rows.
+/// All rows of the weighted residuals of one condition and of their Jacobian.
 struct ConditionRows {
   Eigen::MatrixXd jacobian;  ///< shape (channels * samples that count, acting unknowns)
   Eigen::VectorXd residual;
@@ -84,13 +85,13 @@ ConditionEvaluation evaluate_run(const Problem& problem, std::size_t condition,
                                  ConditionRows* rows = nullptr,
                                  const Fidelity& fidelity = Fidelity::full);
 
-/// All conditions at one point.
+/// Evaluation of all conditions at one point.
 struct Evaluation {
   std::vector<double> z;
   std::vector<ConditionEvaluation> conditions;
   double cost = 0.0;   ///< half the sum of squares, including the priors
   bool ok = false;     ///< true if every condition could be simulated
-  double share = 1.0;  ///< fraction of the samples in windows that were evaluated
+  double share = 1.0;  ///< fraction of the samples inside the windows that was evaluated
   std::shared_ptr<std::vector<ConditionRows>> rows;  ///< rows of each condition, if they were kept
 };
 
@@ -99,7 +100,7 @@ struct EvaluationOptions {
   Fidelity fidelity = Fidelity::full;
   const std::atomic<bool>* cancel = nullptr;
   bool rows = false;  ///< whether to keep the rows
-  /// If not null, the simulations at that point, which are used instead of new ones.
+  /// Existing simulations at the point, which are used instead of new ones; may be null.
   const std::vector<model::Simulation>* runs = nullptr;
 };
 

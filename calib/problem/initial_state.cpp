@@ -106,7 +106,7 @@ InitialKeys initial_keys(const Campaign& campaign) {
   return {"initial_position", "initial_velocity", "position_gain"};
 }
 
-/// One initial_* parameter: its value from the record, and its allowed deviation.
+/// An initial_* parameter, with its value from the record and its allowed deviation.
 struct Guess {
   std::string_view key;
   double value = 0.0;

@@ -31,9 +31,9 @@ constexpr double kLeastTolerance = 1e-8;
 /// Maximum tolerance for a record whose noise allows a less exact simulation than the noise of
 /// others.
 constexpr double kLargestTolerance = 1e-5;
-/// Tolerance for derivatives that only serve to compute an uncertainty.
+/// Tolerance for derivatives that are only used to compute an uncertainty.
 constexpr double kDerivativeTolerance = 1e-5;
-/// Tolerance far from an optimum. A smaller one would not save the optimiser any steps.
+/// Tolerance far from an optimum. A smaller tolerance would not save the optimiser any steps.
 constexpr double kCoarseTolerance = 1e-4;
 /// A residual below this fraction of the peak-to-peak value, the resolution of a 20-bit sensor, is
 /// not noise.

@@ -37,14 +37,14 @@ inline constexpr Fidelity Fidelity::full{true, true};
 /// One recorded channel with which the model is compared.
 struct ProblemChannel {
   datasets::Channel channel = datasets::Channel::position;
-  std::vector<double> measured;  ///< samples that count, SI
+  std::vector<double> measured;  ///< values at the samples that count, SI
   double sd = 0.0;               ///< the residuals are divided by this value, SI
   bool sd_known = false;         ///< false if `sd` is estimated from the residual of the fit
   double peak_to_peak = 0.0;     ///< peak-to-peak value of `measured`
 };
 
-/// One condition with everything that its simulation needs. The campaign and the record are not
-/// owned.
+/// One condition with everything that its simulation needs. It does not own the campaign and the
+/// record.
 struct ProblemCondition {
   const datasets::Condition* condition = nullptr;
   const datasets::Record* record = nullptr;
@@ -52,8 +52,8 @@ struct ProblemCondition {
   model::ParameterValues values;  ///< values of all parameters that are not unknowns
   model::SimulationInputs inputs;
   std::vector<ProblemChannel> channels;
-  std::vector<model::Output> outputs;  ///< outputs of the channels
-  std::vector<std::size_t> rows;       ///< samples that count (inside the windows)
+  std::vector<model::Output> outputs;  ///< the model's output for each channel
+  std::vector<std::size_t> rows;       ///< indices of the samples that count (inside the windows)
   std::vector<int> free;               ///< table indices of the acting unknowns
   std::size_t first_period_rows = 0;   ///< number of `rows` within the first period
   long max_steps = 0;                  ///< step budget of one simulation
@@ -68,7 +68,7 @@ struct ProblemCondition {
   }
 };
 
-/// The problem to solve: conditions with records, inputs and weights, and the unknowns.
+/// The problem to solve: the conditions, with their records, inputs and weights, and the unknowns.
 struct Problem {
   const datasets::Campaign* campaign = nullptr;
   ParameterMap map;
@@ -84,8 +84,8 @@ struct Problem {
   double coarse_tolerance() const;
   /// Simulation options with the smallest tolerance and the campaign's method and time limit.
   model::SimulationOptions simulation_options(const std::atomic<bool>* cancel = nullptr) const;
-  /// Simulation options for derivatives that only serve to compute an uncertainty, for which errors
-  /// of a thousandth do not matter.
+  /// Simulation options for derivatives that are only used to compute an uncertainty, where
+  /// relative errors of a thousandth do not matter.
   model::SimulationOptions derivative_options(std::size_t condition) const;
   /// Fraction of all residuals within the horizon of a fidelity.
   double share_at(const Fidelity& fidelity) const;

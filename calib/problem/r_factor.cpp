@@ -11,8 +11,8 @@ constexpr double kNothing = 1e-300;
 
 }  // namespace
 
-/// Applies Householder reflections, each to one row of the R factor and the new rows. All other
-/// elements below the diagonal are already zero.
+/// Applies Householder reflections. Each acts on one row of the R factor and on the new rows,
+/// because all other elements below the diagonal are already zero.
 void RFactor::add(Eigen::MatrixXd rows) {
   for (Eigen::Index first = 0; first < rows.rows(); first += kBlock) {
     auto block = rows.middleRows(first, std::min(kBlock, rows.rows() - first));

@@ -8,8 +8,8 @@ extern template class Eigen::JacobiSVD<Eigen::MatrixXd>;
 
 namespace rigcal::calib {
 
-/// Singular values of a Jacobian J whose columns are scaled to length 1, J = U diag(s) V^T
-/// diag(length), so that units do not decide which directions count. A column of zeros is not
+/// Singular value decomposition of a Jacobian J whose columns are scaled to length 1, so that units
+/// do not decide which directions count: J = U diag(s) V^T diag(length). A column of zeros is not
 /// scaled.
 class ScaledSvd {
  public:

@@ -19,18 +19,18 @@
 namespace rigcal::calib {
 namespace {
 
-/// The tables in docs/paper.md need 13 to 32 iterations, depending on the last digits of the start
-/// values.
+/// Maximum number of iterations. The tables in docs/paper.md need 13 to 32, depending on the last
+/// digits of the start values.
 constexpr int kMostIterations = 100;
-/// Each call has a different set of unknowns at their bounds.
+/// Maximum number of descents, each with a different set of unknowns at their bounds.
 constexpr int kMostCalls = 10;
-/// Limits the first steps: from a distant start, a full Gauss-Newton step would leave the box
-/// immediately.
+/// Limits the first steps, because a full Gauss-Newton step from a distant start would leave the
+/// box immediately.
 constexpr double kTablesTrustRadius = 10.0;
-/// The flows themselves are only accurate to 2e-4.
+/// A smaller tolerance is pointless, because the flows are only accurate to 2e-4.
 constexpr double kTablesTolerance = 1e-6;
 constexpr double kRankThreshold =
-    1e-6;  ///< ratio of smallest to largest singular value, with columns scaled to length 1
+    1e-6;  ///< relative to the largest singular value, with columns scaled to length 1
 
 std::vector<double> values_at(const std::vector<UnitInterval>& intervals,
                               std::span<const double> z) {
@@ -77,7 +77,7 @@ Descent minimise(TableResiduals& residuals, const std::vector<UnitInterval>& int
     if (!descent.failure.empty()) total.failure = failure.empty() ? descent.failure : failure;
     if (!total.converged) return total;
   }
-  total.converged = false;  // it still moves from bound to bound
+  total.converged = false;  // the estimate still moves from bound to bound
   return total;
 }
 
@@ -91,7 +91,7 @@ void add_uncertainty(const TableResiduals::Evaluation& optimum, model::PlantKind
   const Eigen::MatrixXd root = svd.root();
   const Eigen::MatrixXd covariance =
       root * root.transpose() * (optimum.residuals.squaredNorm() / freedom);
-  // Fraction of each unknown in the directions that the tables do not determine.
+  // Squared component of each unknown in the directions that the tables do not determine.
   const Eigen::VectorXd open = svd.V().rightCols(n - svd.rank()).rowwise().squaredNorm();
   const double t = metrics::student_t_quantile(0.975, freedom);
   fit.correlation.matrix.setIdentity(n, n);

@@ -28,7 +28,7 @@ struct FittedAssumption {
 
 /// Comparison of a published number with the computed one at the end of the fit.
 struct TableResidual {
-  std::string of;          ///< "share, sine_0.1Hz, 10 %", "mean, Slight"
+  std::string of;          ///< the published number: "share, sine_0.1Hz, 10 %", "mean, Slight"
   double weight = 1.0;     ///< factor on `log_ratio` in the residual
   double log_ratio = 0.0;  ///< ln(computed / published)
   RIGCAL_DESCRIBE(of, weight, log_ratio)

@@ -11,16 +11,17 @@
 namespace rigcal::calib {
 namespace {
 
-/// Tolerance of a root in ln coefficient: well below three printed digits, and above the noise of
-/// the flows.
+/// Tolerance for a root in ln coefficient. It is well below the resolution of three printed digits,
+/// and above the noise of the flows.
 constexpr double kRootWidth = 1e-4;
-/// Bisection from two decades down to this tolerance would need sixteen steps.
+/// Maximum number of steps for a root. Even bisection from two decades down to the tolerance would
+/// need only sixteen.
 constexpr std::uintmax_t kMostRootSteps = 60;
-/// An interval of the scan is flat if the quantity grows with less than this power of the
-/// coefficient. It is close to a target if it is within this factor of it.
+/// An interval of the scan is flat if the quantity grows with less than the power kFlatPower of the
+/// coefficient. It is close to a target if the quantity is within the factor kNear of it.
 constexpr double kFlatPower = 0.5;
 constexpr double kNear = 1.25;
-/// Width in ln coefficient down to which a flat interval is searched: a fiftieth of a decade.
+/// A flat interval is divided down to this width in ln coefficient, a fiftieth of a decade.
 constexpr double kFinest = 0.046;
 
 }  // namespace
@@ -86,7 +87,7 @@ void FlowCurve::polish(const Quantity& quantity, double target) {
     const bool near = std::min(low, high) < kNear * target && target < kNear * std::max(low, high);
     const bool flat = std::abs(std::log(high / low)) < kFlatPower * width;
     if (near && flat && width > kFinest) {
-      at(std::sqrt(left->first * right->first));  // then checks its left half again
+      at(std::sqrt(left->first * right->first));  // the left half is then checked again
     } else {
       left = right;
     }
@@ -99,7 +100,7 @@ std::vector<double> FlowCurve::roots(const Quantity& quantity, double target) {
     return std::log(quantity(at(std::exp(log_coefficient))) / target);
   };
   const auto narrow = [](double a, double b) { return std::abs(a - b) <= kRootWidth; };
-  std::vector<std::pair<double, double>> points;  // ln coefficient, distance
+  std::vector<std::pair<double, double>> points;  // pairs of ln coefficient and distance
   for (const auto& [coefficient, flow] : known_) {
     points.emplace_back(std::log(coefficient), std::log(quantity(flow) / target));
   }

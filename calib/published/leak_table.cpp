@@ -14,14 +14,14 @@
 namespace rigcal::calib {
 namespace {
 
-/// Points per decade in a scan over the coefficient.
+/// Number of points per decade in a scan over the coefficient.
 constexpr int kScanPerDecade = 4;
-/// Grades in docs/paper.md. A coefficient printed as 0.3 already has a rounding error of up to 17
-/// %.
+/// Limits of the grades in docs/paper.md. A coefficient printed as 0.3 already has a rounding error
+/// of up to 17 %.
 constexpr double kGoodPercent = 10.0;
 constexpr double kFairPercent = 16.0;
-/// If d ln share / d ln coefficient is below this, 1 % of the share corresponds to 5 % of the
-/// coefficient.
+/// If d ln share / d ln coefficient is below this, a change of 1 % in the share corresponds to more
+/// than 5 % in the coefficient.
 constexpr double kFlatSlope = 0.2;
 /// Tolerance for comparing errors with whole percentages, so that rounding does not change a grade.
 constexpr double kHair = 1e-9;
@@ -108,7 +108,7 @@ LeakRoot root_at(const FlowCurve& curve, double coefficient, const LeakTableOpti
   const Eigen::VectorXd slopes = curve.share_slopes(coefficient, rig.indices);
   root.log_slope = coefficient * slopes(0);
   const Eigen::VectorXd moves = -slopes.tail(slopes.size() - 1) / root.log_slope;
-  // The interval also covers the error of the share from transient and sampling.
+  // The interval also covers the error in the share due to transient and sampling.
   const double numeric = options.periodic.tolerance / root.log_slope;
   root.log_error = std::sqrt(std::max(0.0, moves.dot(rig.covariance * moves)) + numeric * numeric);
   return root;
@@ -146,7 +146,8 @@ Column column_of(const PeriodicDrive& drive, const model::ParameterValues& value
   return column;
 }
 
-/// Simulates one period with a coefficient, after as many periods as its flows needed.
+/// Simulates one period with a given coefficient, after as many periods as the flows needed to
+/// become periodic.
 PeriodicSeries series_at(const PeriodicDrive& drive, model::ParameterValues values,
                          double coefficient, int periods, const LeakTableOptions& options) {
   values.set("leakage_coefficient", coefficient);
@@ -160,8 +161,8 @@ PeriodicSeries series_at(const PeriodicDrive& drive, model::ParameterValues valu
   return series;
 }
 
-/// Features need the position, which settles more slowly than the mean flows. It gets this many
-/// times the number of periods.
+/// Features need the position, which settles more slowly than the mean flows. The number of periods
+/// is therefore multiplied by this factor.
 constexpr int kMorePeriods = 2;
 
 FeatureRow feature_row(const PeriodicDrive& drive, const model::ParameterValues& values,

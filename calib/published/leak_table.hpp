@@ -34,18 +34,19 @@ struct LeakRoot {
 /// Comparison of the published coefficient of an entry with the computed one.
 struct LeakComparison {
   double published = 0.0;
-  double share_percent = 0.0;  ///< at the published coefficient
+  double share_percent = 0.0;  ///< computed share at the published coefficient
   /// At the ends of the interval within which the published value may have been rounded.
   double share_low_percent = 0.0;
   double share_high_percent = 0.0;
-  std::optional<double> relative_error_percent;  ///< for the nearest root; absent if there is none
+  /// Error of the nearest root; absent if there is no root.
+  std::optional<double> relative_error_percent;
 };
 
 /// One cell of the table: a signal and a target share.
 struct LeakEntry {
   datasets::LeakSignal signal;
   double target_percent = 0.0;
-  std::vector<LeakRoot> roots;  ///< all roots, increasing
+  std::vector<LeakRoot> roots;  ///< all roots, in increasing order
   std::optional<LeakComparison> comparison;
   LeakGrade grade = LeakGrade::not_published;
   std::string note;  ///< why there is no root or more than one, or a comment on an outlier
@@ -55,7 +56,7 @@ struct LeakEntry {
 struct NormalEntry {
   datasets::LeakSignal signal;
   double coefficient = 0.0;
-  double share_percent = 0.0;  ///< at this coefficient
+  double share_percent = 0.0;  ///< computed share at this coefficient
 };
 
 /// Computed values for one row of the published flows and features.
@@ -63,7 +64,7 @@ struct FeatureRow {
   datasets::PrintedFeatures printed;
   double servo_flow_m3_per_s = 0.0;
   double leak_flow_m3_per_s = 0.0;
-  metrics::ResidualFeatures features;  ///< scaled residual: leaking minus healthy position
+  metrics::ResidualFeatures features;  ///< from the scaled residual: leaking minus healthy position
   /// Coefficients that give the published leak flow; only for the rig without a fault.
   std::vector<double> coefficients_for_leak_flow;
   PeriodicSeries series;  ///< one period, with the outputs in kFeatureOutputs
@@ -74,8 +75,8 @@ inline constexpr std::array kFeatureOutputs{model::Output::position, model::Outp
 /// A combination of values that the tables determine although they do not determine the individual
 /// values.
 struct FixedCombination {
-  std::string name;     ///< "loop_gain_per_s"
-  std::string formula;  ///< "kp k_sv C_d w sqrt(P_s / rho) / A"
+  std::string name;     ///< for example "loop_gain_per_s"
+  std::string formula;  ///< for example "kp k_sv C_d w sqrt(P_s / rho) / A"
   std::string unit;
   double value = 0.0;
   RIGCAL_DESCRIBE(name, formula, value, unit)
@@ -91,7 +92,7 @@ struct LeakSummary {
 };
 
 struct LeakTable {
-  std::vector<LeakEntry> entries;  ///< signals in their order; targets in order for each signal
+  std::vector<LeakEntry> entries;  ///< signal by signal, with the targets of each in order
   std::vector<NormalEntry> normals;
   std::optional<PeriodicSeries> healthy;  ///< series of the feature signal, without a leak
   std::vector<FeatureRow> features;
@@ -107,9 +108,9 @@ struct RigUncertainty {
 
 struct LeakTableOptions {
   PeriodicOptions periodic;
-  int series_samples = 2000;  ///< samples in the period used for features
+  int series_samples = 2000;  ///< number of samples in the period from which features are computed
   int threads = 1;            ///< the results are bitwise identical for any number
-  RigUncertainty rig;         ///< empty: coefficients have no interval
+  RigUncertainty rig;         ///< if empty, coefficients get no interval
 };
 
 /// Computes the leak table of a rig. For each signal and target share, it contains all leakage

@@ -8,7 +8,7 @@ namespace {
 /// Distance between the last sample of a piece and the next jump, as a fraction of a piece. The
 /// simulation treats times closer than 1e-9 s as equal.
 constexpr double kBeforeJump = 1e-7;
-/// Proportion of equidistant spacing in the samples of a square.
+/// Weight of the equidistant component in the spacing of samples for a square.
 constexpr double kUniform = 0.01;
 
 std::vector<double> every(std::span<const double> all, std::size_t first, std::size_t count,
@@ -28,7 +28,7 @@ PeriodGrid period_grid(datasets::Waveform waveform, double period_s, int interva
   const double piece_s = period_s / static_cast<double>(grid.pieces);
   for (std::size_t p = 0; p < grid.pieces; ++p) {
     for (int i = 0; i <= intervals; ++i) {
-      // Samples are dense after a jump, but not so dense that times become equal.
+      // Samples are dense just after a jump, but not so dense that times become equal.
       const double s = static_cast<double>(i) / intervals;
       const double place = jumps ? (s * s * s + kUniform * s) / (1.0 + kUniform) : s;
       grid.offset_s.push_back(piece_s * (static_cast<double>(p) + place * (1.0 - kBeforeJump)));

@@ -17,19 +17,19 @@ using model::Output;
 constexpr std::array kOutputs{Output::servo_flow, Output::leakage_flow, Output::command};
 enum FlowColumn { kServo, kLeak, kCommand };
 
-/// Maximum number of intervals in a period; more would not help.
+/// Maximum number of intervals per period; more would not help.
 constexpr int kMostIntervals = 16384;
 /// A mean flow below this fraction counts as zero, because relative changes would be meaningless.
 constexpr double kNoFlow = 1e-9;
-/// Fraction of the limit above which the command counts as saturated.
+/// The command counts as saturated above this fraction of its limit.
 constexpr double kAtLimit = 0.999;
-/// Largest y (see the header) that the two changes can determine reliably. Close to 1 the
-/// simulation noise can give any quotient.
+/// Largest y (see the header) that the two changes can determine reliably. Close to 1, simulation
+/// noise can produce any quotient.
 constexpr double kSlowest = 0.8;
-/// After this many periods the loop can be judged. A transient that will decay within the maximum
-/// number of periods must then have decreased to this fraction since the run with half as many.
-/// Otherwise the loop oscillates by itself, provided that the remainder exceeds the simulation
-/// noise by this many tolerances.
+/// After kTellingPeriods, a loop that oscillates by itself can be recognised: its transient has not
+/// decreased to the fraction kDecays since the run with half as many periods, as it would have to
+/// if it were to decay within the maximum number of periods. In addition, the remaining transient
+/// must exceed kNotNoise tolerances, to be distinguishable from simulation noise.
 constexpr int kTellingPeriods = 256;
 constexpr double kDecays = 0.7;
 constexpr double kNotNoise = 10.0;
@@ -50,14 +50,14 @@ std::string why(const model::Simulation& run) {
   return fmt::format("{} at {:.6g} s: {}", to_string(run.status), run.failed_at_s, run.reason);
 }
 
-/// Sampling stride for the two earlier periods.
+/// Sampling stride in the two earlier periods.
 constexpr std::size_t kEarlyStride = 4;
 
-/// A run with three sampled periods: n/4 and n/2 coarsely, to observe the transient, and the last
-/// one finely.
+/// A run with three sampled periods. Periods n/4 and n/2 are sampled coarsely, to observe the
+/// transient, and the last one finely.
 struct Run {
   PeriodGrid grid;        ///< grid of the last period
-  PeriodGrid early_grid;  ///< grid of the other two
+  PeriodGrid early_grid;  ///< grid of the two earlier periods
   model::Simulation simulation;
 
   std::span<const double> last(const Eigen::MatrixXd& matrix, Eigen::Index column) const {
@@ -98,8 +98,8 @@ Run make_run(const PeriodicDrive& drive, const model::ParameterValues& values,
   return run;
 }
 
-/// Returns the sampling error of a mean flow: its largest relative change when every second sample
-/// is left out, divided by the gain of a second-order rule.
+/// Returns the largest sampling error of the mean flows. It is the relative change when every
+/// second sample is left out, divided by the gain in accuracy of a second-order rule.
 double sampling_error(const Run& run) {
   const double servo = run.mean(kServo);
   double worst = 0.0;
@@ -150,7 +150,8 @@ Eigen::VectorXd slopes(const Run& run, FlowColumn column) {
   return result;
 }
 
-/// Avoids a block of a matrix without columns, which would apply an offset to a null pointer.
+/// Returns the last rows. Avoids taking a block of a matrix without columns, which would add an
+/// offset to a null pointer.
 Eigen::MatrixXd last_rows(const Eigen::MatrixXd& matrix, Eigen::Index rows) {
   if (matrix.cols() == 0) return {rows, 0};
   return matrix.bottomRows(rows);

@@ -18,10 +18,10 @@ struct PeriodicDrive {
 
 struct PeriodicOptions {
   model::SimulationOptions simulation{.tolerance = 1e-5};
-  int periods = 4;          ///< initial number; a power of two, at least 4
-  int most_periods = 1024;  ///< if more are needed, the flow counts as not periodic
+  int periods = 4;          ///< initial number of periods; a power of two, at least 4
+  int most_periods = 1024;  ///< if more are needed, the flow is considered not periodic
   int intervals = 512;      ///< initial number of intervals per piece of a period
-  double tolerance = 1e-4;  ///< allowed error of the mean flows due to transient and sampling
+  double tolerance = 1e-4;  ///< allowed error in the mean flows due to transient and sampling
 };
 
 /// Mean flows of a rig that has become periodic.
@@ -32,7 +32,7 @@ struct PeriodicFlow {
   Eigen::VectorXd leak_slope;
   double saturated = 0.0;  ///< fraction of the period during which the command is at its limit
   int periods = 0;         ///< number of periods simulated from rest
-  int intervals = 0;       ///< per piece
+  int intervals = 0;       ///< number of intervals per piece
   std::string failure;     ///< why there is no result; empty if there is one
 
   bool ok() const { return failure.empty(); }

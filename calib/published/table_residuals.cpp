@@ -18,7 +18,7 @@ using datasets::Feature;
 constexpr std::array kPosition{model::Output::position};
 constexpr int kSettlingPeriods = 2;  ///< for the position, which settles more slowly than the flows
 
-/// A positive quantity and its derivatives with respect to the free parameters of the rig.
+/// A positive quantity, with its derivatives with respect to the free parameters of the rig.
 struct Quantity {
   double value = 0.0;
   Eigen::VectorXd slope;
@@ -97,7 +97,8 @@ TableResiduals::Outcome TableResiduals::simulate(Run& run, const model::Paramete
   Outcome outcome;
   outcome.flow = periodic_flow(run.drive, at, free, run.options);
   if (!outcome.flow.ok()) return outcome;
-  // Later evaluations never use fewer, because the residuals must be smooth close to the optimum.
+  // Later evaluations never use fewer periods or intervals, because the residuals must be smooth
+  // close to the optimum.
   run.options.periods = outcome.flow.periods;
   run.options.intervals = outcome.flow.intervals;
   if (!run.with_series) return outcome;

@@ -16,7 +16,7 @@ class TableResiduals {
                  std::vector<int> free, LeakTableOptions options);
 
   struct Evaluation {
-    std::string failure;        ///< why there are no residuals; empty if there are some
+    std::string failure;        ///< why there are no residuals; empty if there are residuals
     Eigen::VectorXd residuals;  ///< shape (size())
     Eigen::MatrixXd jacobian;   ///< shape (size(), free), SI; empty if not requested
   };
@@ -34,7 +34,7 @@ class TableResiduals {
     double weight = 1.0;
     std::size_t run = 0;     ///< index of the run that provides the computed value
     double published = 0.0;  ///< SI, except that features are in their printed unit
-    bool is_share = false;   ///< true for a share, false for `feature`
+    bool is_share = false;   ///< true if the row is a leak share, false if it is `feature`
     datasets::Feature feature = datasets::Feature::servo_flow;
   };
   /// A run with one coefficient under one drive. The first run with a feature signal is that of the

@@ -20,20 +20,20 @@ enum class AspectState {
 };
 std::string_view to_string(AspectState state);
 
-/// Whether a reason in this state prevents its aspect from passing.
+/// Returns true if a reason in this state prevents its aspect from passing.
 bool is_against(AspectState state);
 
-/// One reason: a code for scripts, the numbers behind it, and a sentence for readers.
+/// A reason, with a code for scripts, the numbers that it is based on, and a sentence for readers.
 struct Reason {
   std::string code;                       ///< "limit_broken", "lack_of_fit", ...; docs/report.md
   AspectState state = AspectState::pass;  ///< state that the reason supports
-  std::optional<std::string> subject;     ///< condition or parameter; absent: the whole result
+  std::optional<std::string> subject;     ///< condition or parameter; absent for the whole result
   Keyed<double> numbers;
   std::string words;
   RIGCAL_DESCRIBE(code, state, subject, numbers, words)
 };
 
-/// @param subject  empty: the whole result
+/// @param subject  condition or parameter; empty for the whole result
 Reason reason(AspectState state, std::string code, std::string words,
               const std::string& subject = {}, Keyed<double> numbers = {});
 
@@ -50,9 +50,9 @@ Aspect aspect_of(std::vector<Reason> reasons);
 
 /// The four aspects, each judged separately. verdict_of() derives the verdict from them.
 struct Assessment {
-  Aspect agreement;   ///< every scored condition against the limits of the campaign
-  Aspect validation;  ///< conditions that were not fitted, against the same limits
-  Aspect adequacy;    ///< model error against the noise of the records
+  Aspect agreement;   ///< compares every scored condition with the limits of the campaign
+  Aspect validation;  ///< compares conditions that were not fitted with the same limits
+  Aspect adequacy;    ///< compares the model error with the noise of the records
   Aspect parameters;  ///< whether the records determine the estimates
   RIGCAL_DESCRIBE(agreement, validation, adequacy, parameters)
 };

@@ -22,8 +22,8 @@ namespace rigcal::calib {
 /// Agreement of one channel in one condition.
 struct ChannelScore {
   datasets::Channel channel = datasets::Channel::position;
-  std::optional<metrics::Agreement> agreement;     ///< absent: see `problem`
-  std::optional<metrics::NoiseFloor> noise_floor;  ///< absent where the noise is unknown
+  std::optional<metrics::Agreement> agreement;     ///< if absent, `problem` says why
+  std::optional<metrics::NoiseFloor> noise_floor;  ///< absent if the noise is unknown
   /// One-sided uncertainty due to repeats and sensor; absent with fewer than two repeats.
   std::optional<metrics::Agreement> expanded_uncertainty;
   /// Two-sided uncertainty, as printed after +-.
@@ -53,8 +53,9 @@ struct LimitCheck {
   std::optional<double> tolerance_used;
   Omittable<double> expanded_uncertainty;  ///< uncertainty of the value; absent if unknown
   Verdict verdict = Verdict::pass;
-  bool in_guard_band = false;  ///< WARN: the margin to the limit is below the uncertainty
-  std::string words;           ///< why WARN or FAIL; empty for PASS
+  /// True if WARN was given because the margin to the limit is below the uncertainty.
+  bool in_guard_band = false;
+  std::string words;  ///< reason for WARN or FAIL; empty for PASS
   RIGCAL_DESCRIBE(channel, metric, value, limit, warn, tolerance_used, expanded_uncertainty,
                   verdict)
 };

@@ -16,9 +16,9 @@ namespace rigcal::calib {
 
 /// One effect that the model omits. Sizes and estimates in SI.
 struct ConsideredEffect {
-  std::string key;         ///< its key in [considered]
-  std::string meaning;     ///< in words
-  std::string unit;        ///< SI unit of its size
+  std::string key;         ///< key in [considered]
+  std::string meaning;     ///< description in words
+  std::string unit;        ///< SI unit of the size
   double size = 0.0;       ///< plausible size: standard deviation of the prior about zero
   bool one_sided = false;  ///< true if the effect cannot be negative
   std::string size_from;   ///< source of the size, in words
@@ -30,7 +30,7 @@ struct ConsideredEffect {
   /// records do not respond to the effect.
   std::optional<double> alone, alone_error;
   std::optional<double> alone_half_width;  ///< half-width of the 95 % interval of `alone`
-  std::optional<double> p_value;           ///< score test against zero size
+  std::optional<double> p_value;           ///< p-value of a score test against zero size
   std::optional<double> p_of_all;          ///< p_value adjusted for all effects (Holm)
   double explains = 0.0;  ///< decrease in the sum of squared residuals if only this effect is added
   RIGCAL_DESCRIBE(key, meaning, unit, size_from, size, one_sided, problem, estimate, standard_error,
@@ -52,9 +52,9 @@ struct BudgetLine {
 struct Budget95 {
   std::vector<BudgetLine> lines;
   double combined = 0.0;            ///< standard uncertainty, SI
-  double degrees_of_freedom = 0.0;  ///< effective, for `combined`
+  double degrees_of_freedom = 0.0;  ///< effective degrees of freedom of `combined`
   double coverage_factor = 0.0;
-  double expanded = 0.0;  ///< coverage factor times combined, SI
+  double expanded = 0.0;  ///< `coverage_factor` times `combined`, SI
   /// Offset of the interval's centre from the estimate due to the effects, SI. The estimate itself
   /// is not corrected for them.
   double shift = 0.0;
@@ -68,8 +68,8 @@ struct Budget95 {
 
 /// A repeated fit in which effects that the residuals call for are additional unknowns.
 struct RefittedModel {
-  std::vector<std::string> effects;  ///< keys; empty for the unchanged model
-  std::vector<double> sizes;         ///< SI
+  std::vector<std::string> effects;  ///< keys of the added effects; empty for the unchanged model
+  std::vector<double> sizes;         ///< estimated sizes of these effects, SI
   double fall = 0.0;                 ///< decrease in the sum of squared residuals
   /// Decrease in the sum of squared residuals if each condition is predicted from the others.
   /// Absent if there is only one condition.
@@ -90,7 +90,7 @@ struct Considered {
   Later<Eigen::MatrixXd> correlation;
   RIGCAL_DESCRIBE(effects, left_out, missing, refitted, correlation)
 
-  /// Finds an effect by its key; null if there is none.
+  /// Finds an effect by its key; returns null if there is none.
   const ConsideredEffect* find(std::string_view key) const;
 };
 
@@ -99,7 +99,7 @@ struct StabilityCheck {
   std::string key;  ///< key of the parameter
   std::string unit;
   datasets::Scope scope = datasets::Scope::rig;
-  std::optional<std::string> level;  ///< leak level or condition; absent: the rig
+  std::optional<std::string> level;  ///< leak level or condition; absent for the rig
   double value = 0.0;                ///< estimate from the validation records
   double difference = 0.0;           ///< `value` minus the estimate of the fit
   double expanded = 0.0;             ///< half-width of the 95 % interval of the difference

@@ -54,14 +54,14 @@ struct EstimateSpread {
   /// One entry per condition with estimates of its own. They are stored separately because there
   /// may be many, and no simulation needs those of more than one condition.
   std::vector<Own> own = {};
-  EffectSpread effects = {};  ///< its `moves` refer to `estimates`
+  EffectSpread effects = {};  ///< whose `moves` refer to `estimates`
   /// Dates of the fitted records; empty if any record has no date.
   std::vector<std::string> dates = {};
 };
 
-/// Whether a matrix is a correlation matrix: symmetric, ones on the diagonal, entries from -1 to 1,
-/// positive semidefinite. Ignores rows whose diagonal is NaN. Returns true if any other entry is
-/// not finite, because the matrix then cannot be checked.
+/// Returns true if a matrix is a correlation matrix: symmetric, with ones on the diagonal, entries
+/// from -1 to 1, and positive semidefinite. Ignores rows whose diagonal is NaN. Also returns true
+/// if any other entry is not finite, because the matrix then cannot be checked.
 bool are_correlations(const Eigen::MatrixXd& matrix);
 
 /// Computes the covariance of estimates. An element is NaN if its correlation is missing.

@@ -16,7 +16,7 @@
 
 namespace rigcal::calib {
 
-/// Correlations of the estimates; NaN where unknown.
+/// Correlations of the estimates; NaN if unknown.
 struct Correlation {
   std::vector<std::string> names;
   Eigen::MatrixXd matrix;  ///< shape (names)^2
@@ -27,11 +27,11 @@ struct Correlation {
 struct Fit {
   FitStatus status = FitStatus::failed;
   StoppedIn stopped_in = StoppedIn::nothing;
-  std::string message;  ///< in words: why it stopped, and what is unreliable
+  std::string message;  ///< why the fit stopped, and what is unreliable, in words
   double cost = 0.0;    ///< half the sum of squared weighted residuals, priors included
   long residual_count = 0;
   double reduced_chi_square = 0.0;  ///< 2 cost / (residuals - rank); about 1 if there is only noise
-  long evaluations = 0;             ///< evaluations of all residuals
+  long evaluations = 0;             ///< number of evaluations of all residuals
   double wall_seconds = 0.0;
   double tolerance = 0.0;  ///< tolerance of the simulations
   /// Effective number according to the noise model; 0 if unknown.
@@ -42,7 +42,7 @@ struct Fit {
   std::vector<LackOfFit> lack_of_fit;  ///< one test per channel with known noise
   /// Whether the lack of fit is significant; absent if it cannot be judged.
   std::optional<bool> misfit;
-  std::optional<BetweenRepeats> between_repeats;  ///< absent without single repeats
+  std::optional<BetweenRepeats> between_repeats;  ///< absent if there are no single repeats
   /// Small effects that the model omits; absent if they were not examined.
   std::optional<Considered> considered;
   std::vector<StabilityCheck> stability;  ///< comparison with the validation records
@@ -55,7 +55,7 @@ struct Fit {
   int best_start = 0;
   std::optional<FurtherStarts> further_starts;  ///< absent if no further starts were evaluated
   std::vector<Basin> basins;                    ///< sorted by cost
-  int bootstrap_replicates = 0;                 ///< replicates that converged
+  int bootstrap_replicates = 0;                 ///< number of replicates that converged
   std::string bootstrap_message;                ///< how the replicates were drawn, and any problem
   std::optional<Posterior> posterior;           ///< absent if not requested
   std::vector<HeldOut> cross_validation;
@@ -63,13 +63,14 @@ struct Fit {
   std::vector<SimulationFailure> failures;
   long failure_count = 0;
   std::vector<std::string> warnings;
-  std::vector<ConditionScore> conditions;  ///< fit and validate conditions, campaign order
+  std::vector<ConditionScore> conditions;  ///< `fit` and `validate` conditions in campaign order
   Assessment assessment;
   std::optional<Verdict> verdict;  ///< follows from the assessment
 
-  /// Whether the result may be used: the fit converged, and every parameter is finite.
+  /// Returns true if the result may be used, that is, if the fit converged and every parameter is
+  /// finite.
   bool usable() const;
-  /// Whether the search converged, even if a later stage was stopped.
+  /// Returns true if the search converged, even if a later stage was stopped.
   bool has_converged() const;
 };
 

@@ -29,7 +29,7 @@ std::string_view to_string(Identifiability identifiability);
 enum class IntervalSource { none, standard_error, robust_standard_error };
 std::string_view to_string(IntervalSource source);
 
-/// One end of a profile: where the cost has risen to the limit of a 95 % interval.
+/// One end of a profile, at which the cost has risen to the limit of a 95 % interval.
 struct ProfileEnd {
   std::optional<double> value;  ///< absent if the cost is still below the limit at `reached`
   double reached = 0.0;         ///< value up to which the profile was followed
@@ -41,7 +41,7 @@ struct ProfileEnd {
   bool is_lost() const { return lost.value_or(false); }
 };
 
-/// Profile likelihood of one unknown: the cost at fixed values of this unknown, minimized over all
+/// Profile likelihood of one unknown: the cost at fixed values of this unknown, minimised over all
 /// others.
 struct Profile {
   ProfileEnd low, high;
@@ -57,7 +57,7 @@ struct BootstrapSpread {
   double standard_error = 0.0;
   double bias = 0.0;          ///< mean of the replicates minus the estimate
   double freedom = 0.0;       ///< degrees of freedom of the standard error
-  std::optional<Range> ci95;  ///< percentiles, widened for the degrees of freedom
+  std::optional<Range> ci95;  ///< percentiles, widened to account for the degrees of freedom
   RIGCAL_DESCRIBE(standard_error, bias, freedom, ci95)
 };
 
@@ -109,7 +109,7 @@ struct FittedParameter {
   std::optional<PosteriorSpread> posterior;
   bool at_bound = false;
   Identifiability identifiability = Identifiability::identified;
-  std::string reason;  ///< in words: why it has no error or is weak, or which bound it is at
+  std::string reason;  ///< why it has no error or is weak, or at which bound it is, in words
 };
 
 /// Returns the standard deviation that later steps assume for a parameter without an error: that of

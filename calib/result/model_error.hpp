@@ -19,7 +19,7 @@ struct LackOfFit : metrics::Judged {
   std::string condition;
   datasets::Channel channel = datasets::Channel::position;
   std::string against = "sd";       ///< source of the pure error: "repeats" or "sd"
-  double ratio = 0.0;               ///< variance of the residual over that of the pure error
+  double ratio = 0.0;               ///< variance of the residual divided by that of the pure error
   double freedom = 0.0;             ///< effective degrees of freedom of the residual
   double pure_error_freedom = 0.0;  ///< for the pure error; infinite if the campaign states `sd`
   /// Probability that noise alone gives this ratio or a larger one. The outcome takes the number of
@@ -47,12 +47,12 @@ struct BetweenRepeats {
   RIGCAL_DESCRIBE(differ, p, ratio, parameters, cause, cause_sd, cause_explains)
 };
 
-/// Prediction of a condition from a fit without it.
+/// Prediction of a condition by a fit that did not use its record.
 struct HeldOut {
   std::string condition;
   std::optional<std::string> problem;            ///< why there is no prediction, in words
-  Keyed<double, datasets::Channel> rmse;         ///< error of the prediction, SI
-  Keyed<double, datasets::Channel> fitted_rmse;  ///< error in the full fit, SI
+  Keyed<double, datasets::Channel> rmse;         ///< RMS error of the prediction, SI
+  Keyed<double, datasets::Channel> fitted_rmse;  ///< RMS error in the full fit, SI
   /// Largest change in a parameter, in units of its error. 0 if no parameter has an error; absent
   /// if there is no prediction.
   std::optional<double> largest_shift;

@@ -17,7 +17,7 @@ struct PosteriorSpread {
   double median = 0.0;
   double sd = 0.0;
   std::optional<Range> ci95;  ///< 2.5 % and 97.5 % quantiles
-  double r_hat = 0.0;         ///< rank-normalised, split
+  double r_hat = 0.0;         ///< rank-normalised split R-hat
   double bulk_draws = 0.0;    ///< effective sample size for the centre of the distribution
   double tail_draws = 0.0;    ///< effective sample size for the tails
   RIGCAL_DESCRIBE(median, sd, ci95, r_hat, bulk_draws, tail_draws)
@@ -52,9 +52,9 @@ struct Posterior {
   /// Number of trajectories whose energy error shows that the steps are too long.
   int diverged = 0;
   int longest = 0;  ///< number of trajectories cut off at the maximum number of doublings
-  double energy_fraction = kUnknown;  ///< minimum over the chains
-  double r_hat = kUnknown;            ///< maximum over the unknowns
-  double least_draws = kUnknown;      ///< minimum effective sample size, bulk or tail
+  double energy_fraction = kUnknown;  ///< smallest value of any chain
+  double r_hat = kUnknown;            ///< largest value of any unknown
+  double least_draws = kUnknown;      ///< smallest effective sample size, bulk or tail
   std::optional<std::string> worst;   ///< the unknown with the largest R-hat
   /// Variance of the weighted residuals in directions that do not affect the estimates.
   double noise_variance = 1.0;
@@ -62,13 +62,13 @@ struct Posterior {
   int simulated = 0;     ///< number of draws simulated to judge the limits
   std::vector<KeptLimit> limits;
   Pairs pairs;
-  std::string message;  ///< in words: how the chains were drawn, and any problem with them
+  std::string message;  ///< how the chains were drawn, and any problem with them, in words
   RIGCAL_DESCRIBE(chains, warm_up, draws, asked, evaluations, diverged, longest, energy_fraction,
                   r_hat, least_draws, worst, noise_variance, effects, simulated, limits, pairs,
                   message)
 
   std::vector<std::string> names;           ///< names of the unknowns
-  std::vector<std::vector<double>> values;  ///< SI; for each unknown, all draws chain by chain
+  std::vector<std::vector<double>> values;  ///< all draws of each unknown, chain by chain, SI
 
   bool mixed() const { return r_hat <= kMostRHat; }
   static constexpr double kMostRHat = 1.01;

@@ -35,10 +35,10 @@ std::string_view to_string(StoppedIn stage);
 /// One start of a multi-start fit.
 struct StartReport {
   int number = 1;
-  std::vector<double> start_values;  ///< SI, order of the unknowns
+  std::vector<double> start_values;  ///< in the order of the unknowns, SI
   std::vector<double> end_values;
-  double initial_cost = kNone;  ///< NaN if the simulation fails
-  double final_cost = kNone;    ///< NaN if the simulation fails
+  double initial_cost = kNone;  ///< NaN if the start cannot be simulated
+  double final_cost = kNone;    ///< NaN if the end point cannot be simulated
   int iterations = 0;
   FitStatus status = FitStatus::failed;
   std::string message;
@@ -57,9 +57,9 @@ struct FurtherStarts {
   int as_low = 0;
 };
 
-/// Converged starts that ended at one point.
+/// Converged starts that ended at the same point.
 struct Basin {
-  double cost = 0.0;           ///< minimum over its starts
+  double cost = 0.0;           ///< lowest cost of its starts
   std::vector<int> starts;     ///< start numbers, sorted by cost
   std::vector<double> values;  ///< end point of the best start, SI
   RIGCAL_DESCRIBE(cost, starts, values)

@@ -26,7 +26,7 @@ struct ComparedEstimate {
   std::optional<double> value;
   bool fitted = false;
   std::optional<double> standard_error;
-  Later<std::optional<double>> degrees_of_freedom;  ///< for the standard error
+  Later<std::optional<double>> degrees_of_freedom;  ///< degrees of freedom of the standard error
   std::optional<Range> ci95;
   std::optional<Identifiability> identifiability;
   bool at_bound = false;
@@ -35,14 +35,15 @@ struct ComparedEstimate {
                   at_bound, between_days_error)
 };
 
-/// An estimate minus that of the first result.
+/// Difference between an estimate and that of the first result.
 struct EstimateDifference {
   std::optional<double> difference;
-  std::optional<double> percent;  ///< absent if the first value may be zero
+  std::optional<double> percent;  ///< absent if the first estimate may be zero
   std::optional<double> standard_error;
-  Later<std::optional<double>> degrees_of_freedom;  ///< for this error (Welch and Satterthwaite)
-  std::optional<double> p_value;                    ///< for this parameter only
-  std::optional<double> p_value_of_all;             ///< adjusted for all parameters (Holm)
+  /// Degrees of freedom of this error (Welch and Satterthwaite).
+  Later<std::optional<double>> degrees_of_freedom;
+  std::optional<double> p_value;         ///< p-value of the test for this parameter only
+  std::optional<double> p_value_of_all;  ///< p-value adjusted for all parameters (Holm)
   std::optional<bool> significant;
   std::optional<std::string> reason;  ///< why it is not tested
   Omittable<bool> of_other_dates;     ///< true if the error includes day-to-day differences
@@ -97,11 +98,12 @@ struct ScoreDifference {
 ScoreDifference score_difference(const std::vector<std::pair<double, double>>& scores,
                                  bool higher_is_better, bool shared);
 
-/// A straight line fitted to estimates, weighted by their errors.
+/// A straight line fitted to estimates that are weighted according to their errors.
 struct EstimateTrend {
   long points = 0;  ///< number of estimates that have an error and a position
   std::optional<double> slope, intercept, standard_error;
-  Later<std::optional<double>> degrees_of_freedom;  ///< for the standard error of the slope
+  /// Degrees of freedom of the slope's standard error.
+  Later<std::optional<double>> degrees_of_freedom;
   /// Factor by which variation about the line widens that error.
   Later<std::optional<double>> widened;
   std::optional<Range> ci95;
@@ -110,7 +112,7 @@ struct EstimateTrend {
   std::optional<std::string> reason;  ///< why there is no line
 };
 
-/// One estimate in a series, with its date or temperature as `place`.
+/// One estimate in a series; `place` is its date or temperature.
 struct PlacedEstimate {
   double place = 0.0;
   double value = 0.0;

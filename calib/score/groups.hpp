@@ -20,8 +20,8 @@ struct GroupScore {
 
 /// Conditions with a common property.
 struct Group {
-  std::string by;     ///< "use", "signal", "frequency", "waveform", "leak_level"
-  std::string label;  ///< "fit", "sine 0.1 Hz", "0.1 Hz", "sine", "33.33 %"
+  std::string by;     ///< the property: "use", "signal", "frequency", "waveform" or "leak_level"
+  std::string label;  ///< its value: "fit", "sine 0.1 Hz", "0.1 Hz", "sine", "33.33 %"
   std::vector<std::string> conditions;
   Keyed<GroupScore, datasets::Channel> metrics;  ///< in the order of the channels
   RIGCAL_DESCRIBE(by, label, conditions, metrics)

@@ -45,7 +45,7 @@ std::string error_words(double largest, double largest_significant, double bound
 /// Judges the records with known noise.
 void judge_lack_of_fit(const Campaign& campaign, const Fit& fit, std::vector<Reason>& reasons) {
   /// If the variance of the residual is below this fraction of the stated noise variance (half of
-  /// the standard deviation), the noise is overstated and no basis for a judgement.
+  /// the standard deviation), the stated noise is too large to be used for a judgement.
   constexpr double kOverstated = 0.25;
   const double bound = campaign.acceptance_bounds.model_error_to_noise;
   const auto& tests = fit.lack_of_fit;
@@ -53,8 +53,8 @@ void judge_lack_of_fit(const Campaign& campaign, const Fit& fit, std::vector<Rea
   std::vector<const LackOfFit*> beyond;
   std::vector<const LackOfFit*> overstated;
   std::vector<const LackOfFit*> powerless;
-  double largest = 0.0;            // over all signals
-  double significant_error = 0.0;  // over the signals that differ significantly from the noise
+  double largest = 0.0;            // largest model error of all signals
+  double significant_error = 0.0;  // largest of those that differ significantly from the noise
   for (const LackOfFit& test : tests) {
     if (test.failed() && model_error(test) > bound) beyond.push_back(&test);
     if (!test.passed() && !test.failed()) powerless.push_back(&test);

@@ -12,15 +12,14 @@
 
 namespace rigcal::calib {
 
-/// Ranges covered by the conditions of a fit; a range is absent if no condition provides a value.
+/// Ranges that the conditions of a fit cover. A range is absent if no condition provides a value.
 struct Validity {
   std::optional<Range> frequency_hz;
   std::optional<Range> amplitude_m, amplitude_v;  ///< half the peak-to-peak value of the drive
   std::optional<Range> supply_pressure_pa;
   std::optional<Range> leakage_coefficient;
   std::vector<std::string> leak_levels;
-  Omittable<Range> amplitude_n, amplitude_pa,
-      amplitude_m_per_s2;  ///< in other loops
+  Omittable<Range> amplitude_n, amplitude_pa, amplitude_m_per_s2;  ///< in other loops
   RIGCAL_DESCRIBE(frequency_hz, amplitude_m, amplitude_v, supply_pressure_pa, leakage_coefficient,
                   leak_levels, amplitude_n, amplitude_pa, amplitude_m_per_s2)
 

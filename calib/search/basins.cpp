@@ -12,8 +12,7 @@ namespace {
 /// Fraction of a 95 % interval, equal to 0.4 standard errors; searches end within 0.05 standard
 /// errors of the minimum.
 constexpr double kSamePoint = 0.1;
-/// Fraction of the variance of a residual; it corresponds to a distance of 0.2 standard errors
-/// (half the square).
+/// Fraction of the variance of a residual, equal to half the square of 0.2 standard errors.
 constexpr double kSameCost = 0.02;
 /// Fraction of the cost by which two simulations of the same point may differ.
 constexpr double kSimulated = 2e-6;

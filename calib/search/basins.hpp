@@ -8,9 +8,9 @@
 
 namespace rigcal::calib {
 
-/// Returns true if two costs belong to the same minimum: they differ by at most 0.02 variances of
-/// the residuals (0.2 standard errors), or by two millionths of the cost, the error of the
-/// simulations.
+/// Returns true if two costs belong to the same minimum, that is, if they differ by at most 0.02
+/// variances of the residuals (0.2 standard errors), or by two millionths of the cost, the error of
+/// the simulations.
 bool same_cost(double a, double b, double variance);
 
 /// Returns true if start a is better than start b, that is, if it has the lower cost, regardless of

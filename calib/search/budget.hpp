@@ -16,7 +16,8 @@ class Budget {
   /// Creates a budget without limits, which ends only on request.
   explicit Budget(const std::atomic<bool>* cancel = nullptr) : cancel_(cancel) {}
   /// @param cancel           becomes true to end the job; may be null
-  /// @param max_seconds      counted from `began`; no limit if it exceeds the range of the clock
+  /// @param max_seconds      time limit, counted from `began`; ignored if it exceeds the range of
+  ///                         the clock
   /// @param max_evaluations  limit on evaluations of all residuals
   Budget(const std::atomic<bool>* cancel, Clock::time_point began,
          const std::optional<double>& max_seconds, const std::optional<long>& max_evaluations);

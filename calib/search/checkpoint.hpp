@@ -12,8 +12,8 @@ namespace rigcal::calib {
 struct Checkpoint {
   std::vector<StartReport> starts;  ///< completed starts
   int best = 0;                     ///< number of the best start; 0 if none could be simulated
-  std::vector<double> best_z;       ///< its end point, in the unit box
-  EvaluationCounters counters;      ///< counts up to this point
+  std::vector<double> best_z;       ///< end point of the best start, in the unit box
+  EvaluationCounters counters;      ///< counts of all evaluations so far
 };
 
 }  // namespace rigcal::calib

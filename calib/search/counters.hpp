@@ -17,7 +17,7 @@ struct EvaluationCounters {
   std::map<std::pair<std::size_t, model::SimulationStatus>, int> kept;
 
   void record(const Problem& problem, const Evaluation& evaluation, int start);
-  /// Adds the counts of `later` as if they had been counted here afterwards.
+  /// Adds the counts of evaluations that were made after those counted here.
   void add(const EvaluationCounters& later, const Problem& problem);
 };
 

@@ -14,7 +14,7 @@ bool is_at(const Evaluation& evaluation, std::span<const double> z) {
 
 const Evaluation& Evaluator::evaluate(std::span<const double> z) {
   if (!last_.conditions.empty() && is_at(last_, z)) {
-    keep_best();  // the point may come from an earlier start
+    keep_best();  // needed because the point may be from an earlier start
     return last_;
   }
   if (best_.ok && is_at(best_, z)) {

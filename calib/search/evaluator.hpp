@@ -45,7 +45,7 @@ class Evaluator {
   /// From now on, evaluations at the working tolerance keep their rows for verify_optimum().
   void keep_rows() { keep_rows_ = true; }
 
-  /// Begins a start of a multi-start; best() is then the best point of this start.
+  /// Begins a start of a multi-start. From then on, best() is the best point of this start.
   void begin_start(int number);
   /// Clears the cache.
   void forget();

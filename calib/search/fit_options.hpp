@@ -16,15 +16,17 @@ struct Checkpoint;  // checkpoint.hpp
 /// Options of a fit in addition to the campaign and its records.
 struct FitOptions {
   int starts = 1;  ///< 1: only the campaign's start values; more: also a latin hypercube
-  /// Latin-hypercube starts in addition to a single start. If that start converges, they are only
-  /// evaluated coarsely. Otherwise each is searched like the first.
+  /// Number of latin-hypercube starts in addition to a single start. If that start converges, they
+  /// are evaluated only coarsely. Otherwise each is searched like the first.
   int further_starts = 0;
-  std::uint64_t seed = 1;               ///< for the latin hypercube
-  int threads = 1;                      ///< the results are bitwise identical for any number
-  int max_iterations = 200;             ///< per start
-  std::optional<long> max_evaluations;  ///< limit for the whole job; status `stopped` if reached
-  std::optional<double> max_seconds;    ///< limit for the whole job; status `stopped` if reached
-  bool consider = true;                 ///< whether to consider small effects that the model omits
+  std::uint64_t seed = 1;    ///< seed for the latin hypercube
+  int threads = 1;           ///< the results are bitwise identical for any number
+  int max_iterations = 200;  ///< maximum number of iterations per start
+  /// Limit for the whole job; if reached, the status is `stopped`.
+  std::optional<long> max_evaluations;
+  /// Limit for the whole job; if reached, the status is `stopped`.
+  std::optional<double> max_seconds;
+  bool consider = true;   ///< whether to consider small effects that the model omits
   int bootstrap = 0;      ///< number of replicates, each fitted from the optimum; 0: none
   int posterior = 0;      ///< number of posterior draws per chain; 0: none
   bool profiles = false;  ///< whether to compute the profile likelihood of all unknowns except
@@ -37,8 +39,8 @@ struct FitOptions {
   TaskFarm* farm = nullptr;
   /// Set to true to end the fit with the best point so far.
   const std::atomic<bool>* cancel = nullptr;
-  /// Called after every iteration with start (from 1), iteration, cost, relative change of cost,
-  /// seconds.
+  /// Called after every iteration with the number of the start (from 1), the number of the
+  /// iteration, the cost, the relative change in cost, and the time in seconds.
   std::function<void(int, int, double, double, double)> progress;
   /// Called during bootstrap, profiles, posterior and cross-validation with their name ("replicates
   /// of the bootstrap"), the number done and the total number. May be called from any thread.

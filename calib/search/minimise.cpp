@@ -16,10 +16,11 @@ namespace {
 constexpr double kCoarseOffset = 1.0;
 /// A horizon ends when at most this fraction of the cost could still be removed.
 constexpr double kHorizonLeaves = 0.05;
-/// In addition, the remaining step must be at most this many standard errors. With many samples, a
-/// parameter that is far off but acts on few of them contributes only a small fraction of the cost.
+/// In addition, the remaining step must be at most this many standard errors. If there are many
+/// samples, a parameter that is far off but affects only few of them contributes only a small
+/// fraction of the cost.
 constexpr double kHorizonOffset = 10.0;
-/// Relative change in cost below which coarse simulations cannot resolve the change.
+/// Smallest relative change in cost that coarse simulations can resolve.
 constexpr double kCoarseChange = 1e-4;
 
 /// Returns true if further iterations on a horizon are not worthwhile. The next horizon, which is a

@@ -63,7 +63,8 @@ std::vector<std::vector<double>> start_points(const Problem& problem, int count,
   return points;
 }
 
-/// Returns the variance of the weighted residuals at a cost; at least 1 if the noise is known.
+/// Returns the variance of the weighted residuals for a given cost; at least 1 if the noise is
+/// known.
 double residual_variance(const Problem& problem, double cost) {
   const auto freedom = problem.residual_count() - static_cast<long>(problem.map.unknowns().size());
   const double variance = 2.0 * cost / static_cast<double>(std::max(1L, freedom));
@@ -120,7 +121,7 @@ void describe_best(const Problem& problem, const std::vector<double>& best_z, in
   if (found.optimum.ok) found.result.check = check_optimum(problem, found.optimum);
 }
 
-/// Restores the state after the starts in a checkpoint, and evaluates the best point again.
+/// Restores the state after the last start in a checkpoint, and evaluates the best point again.
 MultiStart resumed(const Problem& problem, Evaluator& evaluator, const FitOptions& options) {
   const Checkpoint& from = *options.resume;
   MultiStart result;

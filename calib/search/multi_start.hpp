@@ -20,7 +20,7 @@ struct MultiStart {
   std::vector<StartReport> starts;
   int best = 0;        ///< number of the best start, from 1; 0 if none could be simulated
   SolveResult result;  ///< result of the best start
-  Evaluation optimum;  ///< its end point; not ok if there is none
+  Evaluation optimum;  ///< end point of the best start; not ok if there is none
   std::optional<FurtherStarts> further_starts;  ///< absent if no further starts were evaluated
 };
 

@@ -55,8 +55,8 @@ struct Piece {
 
 /// The state between two pieces.
 struct Node {
-  std::size_t number = 0;  ///< number within its record
-  std::size_t first = 0;   ///< index of its first coordinate
+  std::size_t number = 0;  ///< number of the node within its record
+  std::size_t first = 0;   ///< index of the node's first coordinate
   Eigen::VectorXd floor;
 
   int states() const { return static_cast<int>(floor.size()); }
@@ -101,7 +101,7 @@ std::vector<std::size_t> cuts(const ProblemCondition& condition, double interval
   return result;
 }
 
-/// All pieces and the states between them, with their parallel evaluation.
+/// All pieces and the states between them. Evaluates the pieces in parallel.
 class Pieces final : public ceres::EvaluationCallback {
  public:
   Pieces(const Problem& problem, Evaluator& evaluator, double interval_s)

@@ -10,7 +10,7 @@ namespace rigcal::calib {
 /// Result of multiple shooting.
 struct ShootingResult {
   std::vector<double> z;  ///< in the unit box; the start point if the method failed
-  int iterations = 0;     ///< iterations used
+  int iterations = 0;     ///< number of iterations used
   /// Largest remaining jump between two pieces, in units of the absolute tolerances of the states
   /// (1e-6 m, 1e-5 m/s, 100 Pa, 1e-3 V); infinite if the method failed.
   double largest_gap = 0.0;

@@ -20,8 +20,8 @@ constexpr double kValley = 0.1;
 /// valley's direction.
 constexpr double kPart = 0.1;
 
-/// Returns the unknowns that form the direction of most of the remaining step if that direction is
-/// a valley; otherwise empty.
+/// Returns the unknowns that form a valley if most of the remaining step follows one; otherwise
+/// empty.
 std::vector<std::size_t> valley(const Problem& problem, Linearisation system,
                                 const OptimumCheck& check) {
   system.hold(check.active_bound);

@@ -9,7 +9,8 @@ namespace rigcal::calib {
 
 enum class BoundSide { inside, lower, upper };
 
-/// Distance from a face of the unit box within which a parameter counts as at its bound.
+/// A parameter counts as being at its bound if it is within this distance of a face of the unit
+/// box.
 inline constexpr double kAtBound = 1e-6;
 
 BoundSide bound_side(double z);

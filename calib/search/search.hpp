@@ -27,7 +27,7 @@ class Search {
   /// Runs all stages except the last. The best point is the one with the lowest cost over whole
   /// records, simulated coarsely.
   ///
-  /// @return  false if there is no such point, or the budget was spent
+  /// @return  false if there is no such point, or if the budget has been spent
   bool approach(std::vector<double> z);
 
   /// Runs only the last stage, from a point close to the optimum.

@@ -217,7 +217,7 @@ std::optional<LikelyDifference> likely_difference(CauseEffects& effects,
   std::vector<std::string> causes = effects.causes();
   causes.emplace_back("start");
   const auto count = static_cast<Index>(causes.size());
-  VectorXd explained = VectorXd::Zero(count);  // sum of squares of the scores, for each cause
+  VectorXd explained = VectorXd::Zero(count);  // sum of squared scores that each cause explains
   VectorXd size = VectorXd::Zero(count);
   double all = 0.0;
   for (std::size_t i = 0; i < scores.size(); ++i) {

@@ -122,7 +122,7 @@ void draw_blocks(const Source& from, datasets::RandomStream& stream, ProblemCond
   }
 }
 
-/// Interpolates linearly between the ordered values.
+/// Returns a quantile by linear interpolation between the ordered values.
 double quantile(const std::vector<double>& ordered, double share) {
   const double at = share * static_cast<double>(ordered.size() - 1);
   const auto below = static_cast<std::size_t>(at);
@@ -247,9 +247,9 @@ void bootstrap(const Problem& problem, const Evaluation& optimum, const Uncertai
   FitOptions quiet = options;
   quiet.progress = nullptr;
   const auto replicates = static_cast<std::size_t>(options.bootstrap);
-  std::vector<std::vector<double>> values(replicates);  // empty: the replicate did not converge
+  std::vector<std::vector<double>> values(replicates);  // empty if the replicate did not converge
   const std::optional<long> allowed = left.evaluations_left();
-  std::vector<long> taken(replicates, 0);  // evaluations; 0: the replicate was not completed
+  std::vector<long> taken(replicates, 0);  // evaluations; 0 if the replicate was not completed
   std::atomic<int> done = 0;
   // Every replicate starts at the optimum, so its first simulation is the same for all of them.
   std::once_flag simulated;

@@ -28,7 +28,7 @@ struct PowerLaw {
   std::size_t first = 0;
   std::size_t second = 0;
   double power = 1.0;       ///< the records determine first / second^power
-  double half_width = 0.0;  ///< relative, 95 %
+  double half_width = 0.0;  ///< relative half-width of the 95 % interval
 };
 
 std::string short_name(const Problem& problem, std::size_t unknown) {

@@ -61,7 +61,7 @@ void warn_of_noise(const Problem& problem, const Uncertainty& found, Fit& fit) {
 /// Warns about priors that contradict the records, because the fit then matches neither.
 void warn_of_priors(const Problem& problem, const std::vector<FittedParameter>& parameters,
                     Fit& fit) {
-  constexpr double kFar = 3.0;  // in standard deviations; by chance, one prior in 370 is exceeded
+  constexpr double kFar = 3.0;  // in standard deviations; one case in 370 by chance
   const auto warn = [&](const std::string& name, double value, const datasets::Prior& prior,
                         std::string_view unit, const char* what) {
     const double pull = std::abs(prior.residual(value));
@@ -102,9 +102,9 @@ void warn_of_parameters(const Problem& problem, const std::vector<FittedParamete
   if (!loose.empty()) fit.message += fmt::format("; not identifiable: {}", fmt::join(loose, ", "));
 }
 
-/// Computes Akaike's and Schwarz's criteria. The noise is known or was estimated from the residual,
-/// so 2 cost is -2 ln(likelihood) up to a constant. Correlated residuals count in proportion to
-/// their independent fraction.
+/// Computes Akaike's and Schwarz's criteria. Because the noise is known or was estimated from the
+/// residual, 2 cost equals -2 ln(likelihood) up to a constant. If the residuals are correlated,
+/// only their independent fraction counts.
 void rate_model(const Uncertainty& spread, Fit& fit) {
   const double residuals = std::max(1.0, static_cast<double>(fit.residual_count));
   const double effective = spread.scatter.empty() ? residuals : spread.independent_residuals;
@@ -113,7 +113,7 @@ void rate_model(const Uncertainty& spread, Fit& fit) {
   fit.bic = weighed + spread.rank * std::log(std::max(1.0, effective));
 }
 
-/// Uses the residuals to judge the noise and the intervals based on it.
+/// Judges, from the residuals, the noise and the intervals that are based on it.
 void judge_residuals(const Problem& problem, const OptimumCheck& check, const Uncertainty& spread,
                      Fit& fit) {
   fit.independent_residuals = spread.independent_residuals;
@@ -140,7 +140,7 @@ void add_remedies(const Problem& problem, const Evaluation& optimum,
   constexpr int kMostTried = 4;  // each requires several simulations
   int tried = 0;
   const Linearisation system = linearise(problem, optimum);
-  if (!system.own.empty()) return;  // the trial uses a dense matrix over all unknowns
+  if (!system.own.empty()) return;  // trying a measure requires a dense matrix for all unknowns
   for (std::size_t j = 0; j < parameters.size() && tried < kMostTried; ++j) {
     FittedParameter& each = parameters[j];
     if (each.nuisance || each.identifiability != Identifiability::not_identifiable) continue;
@@ -171,7 +171,7 @@ std::vector<std::size_t> judge_identifiability(const Problem& problem, const Eva
   if (symmetry) grade_symmetric(problem, *symmetry, fit.parameters);
   fit.combinations = name_combinations(problem, optimum.z, spread, fit.parameters);
   if (!symmetric.empty()) {
-    // The reasons of the parameters already contain the other combinations.
+    // The reasons given for the parameters already contain the other combinations.
     fit.combinations.insert(fit.combinations.begin(), symmetric);
     fit.warnings.push_back(symmetric);
   }

@@ -29,13 +29,13 @@ std::vector<double> point_at(const Problem& problem,
 
 /// One unknown in a planned test.
 struct TestedParameter {
-  std::string name;  ///< name in result files: "mass_kg"
+  std::string name;  ///< name in result files, such as "mass_kg"
   std::string unit;
   datasets::Scope scope = datasets::Scope::rig;
-  std::optional<std::string> level;  ///< leak level or condition; absent: the rig
+  std::optional<std::string> level;  ///< leak level or condition; absent for the rig
   double value = 0.0;
 
-  std::string label() const;  ///< "leakage_coefficient (33 %)"
+  std::string label() const;  ///< for example "leakage_coefficient (33 %)"
 };
 TestedParameter parameter_at(const Problem& problem, std::span<const double> z,
                              std::size_t unknown);

@@ -13,8 +13,7 @@
 namespace rigcal::calib {
 namespace {
 
-/// The correlation of the residuals is mentioned if the effective fraction of them is below this
-/// value.
+/// The correlation of the residuals is mentioned if their effective fraction is below this value.
 constexpr double kCorrelated = 0.5;
 /// Two intervals, or the two halves of one, are regarded as equal if their lengths differ by less
 /// than this factor. A bootstrap with 1000 replicates determines a length to within 5 %.

@@ -10,9 +10,9 @@
 
 namespace rigcal::calib {
 
-/// Known values with a stated uncertainty, and the effect of that uncertainty on the estimates. The
-/// uncertainty comes from `prior` and `prior_sd` for a parameter that is not fitted, and from
-/// `gain_sd` and `offset_sd` of a compared channel for the gain and offset of its sensor.
+/// Known values with a stated uncertainty, and the effect of that uncertainty on the estimates. For
+/// a parameter that is not fitted, the uncertainty comes from `prior` and `prior_sd`. For the gain
+/// and offset of a compared channel's sensor, it comes from `gain_sd` and `offset_sd`.
 struct KnownUncertainty {
   std::vector<std::string> names;
   /// First-order change in the unknowns (unit box) per standard deviation of each known value:

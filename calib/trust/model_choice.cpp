@@ -13,7 +13,7 @@ namespace rigcal::calib {
 
 namespace {
 
-/// Residual variance of a model, in units of its weights, per independent residual.
+/// Residual variance per independent residual of a model, in units of its weights.
 struct Noise {
   double variance = 0.0;
   double independent_residuals = 1.0;

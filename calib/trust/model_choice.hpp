@@ -4,7 +4,7 @@
 
 namespace rigcal::calib {
 
-/// A fit in a comparison of models for the same records.
+/// A fit that takes part in a comparison of models for the same records.
 struct Candidate {
   std::string name;
   double cost = 0.0;  ///< half the sum of squared weighted residuals

@@ -26,8 +26,8 @@ struct PlannedRecord {
 /// it.
 struct PlannedParameter : TestedParameter {
   bool nuisance = false;
-  std::optional<double> sd_recorded;  ///< from all existing records
-  std::optional<double> sd_all;       ///< from all existing and planned records
+  std::optional<double> sd_recorded;  ///< standard deviation from all existing records
+  std::optional<double> sd_all;       ///< standard deviation from all existing and planned records
   std::optional<std::string> remedy;  ///< an addition that would determine the unknown
   RIGCAL_DESCRIBE(name, unit, scope, level, nuisance, value, sd_recorded, sd_all, remedy)
 };
@@ -37,7 +37,8 @@ struct PlannedParameter : TestedParameter {
 struct Plan {
   std::vector<PlannedParameter> parameters;
   std::vector<PlannedRecord> records;
-  std::vector<std::string> messages;  ///< determined combinations, symmetries, suggested additions
+  /// Determined combinations, symmetries and suggested additions.
+  std::vector<std::string> messages;
 };
 
 /// Plans records. A condition with use `fit` or `validate` counts as planned if it has no record

@@ -30,7 +30,7 @@ ArrowMatrix long_run_covariance(const Problem& problem, std::span<const double> 
 struct Joint {
   std::vector<std::size_t> unknowns;  ///< the condition's own unknowns come first
   std::size_t own = 0;
-  Eigen::MatrixXd determined;  ///< S of their covariance before widening
+  Eigen::MatrixXd determined;  ///< square root of their covariance, before it is widened
   Eigen::MatrixXd open;        ///< directions that the data do not determine
 };
 
@@ -156,9 +156,9 @@ void explain(const ProblemCondition& condition, const std::vector<Eigen::MatrixX
   }
 }
 
-/// Returns by how many day-to-day standard deviations a record may differ from those of the fit.
-/// This combines the deviation on its own day with those on the days of the fit. Returns 0 unless
-/// the dates show that the record was made on a different day.
+/// Returns the number of day-to-day standard deviations by which a record may differ from those of
+/// the fit. It combines the deviation on the day of the record with those on the days of the fit.
+/// Returns 0 unless the dates show that the record was made on a different day.
 double day_distance(const datasets::Condition& condition, const std::vector<std::string>& dates) {
   const bool another = condition.date && !dates.empty() &&
                        std::find(dates.begin(), dates.end(), *condition.date) == dates.end();

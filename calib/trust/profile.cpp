@@ -144,7 +144,7 @@ class Follower {
   std::map<double, Point> points_;
 };
 
-/// Follows the profile from z0 towards 0 or 1.
+/// Follows the profile from z0 towards one end, 0 or 1.
 ProfileEnd follow(Follower& follower, const Problem& problem, std::size_t unknown, double z0,
                   double step, double side) {
   const auto value = [&](double z) {

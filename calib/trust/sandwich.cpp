@@ -97,7 +97,7 @@ struct ChannelNoise {
   Index channel = 0;
   std::vector<double> gamma;
   Autoregression noise;
-  MatrixXd expected;  ///< covariance of the channel's score, from expected()
+  MatrixXd expected;  ///< covariance of the channel's score, as returned by expected()
 };
 
 std::vector<ChannelNoise> channels_of(const std::vector<ScoreRows>& rows) {
@@ -334,7 +334,7 @@ RobustVariance robust_variance(const std::vector<ScoreScatter>& scatter, const A
 
 double RobustVariance::quantile() const {
   constexpr double kMostOwn = 0.9;      // keeps the divisor away from zero
-  constexpr double kMostFreedom = 1e9;  // above this, Student's t equals the normal distribution
+  constexpr double kMostFreedom = 1e9;  // above this, Student's t is practically normal
   const double share = std::clamp(own, 0.0, kMostOwn);
   const double rest = 1.0 - share;
   const double scatter = std::max(1.0 / freedom - share * share, 1.0 / kMostFreedom);

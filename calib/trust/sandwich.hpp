@@ -73,12 +73,12 @@ std::vector<ScoreScatter> score_scatter(const std::vector<ScoreRows>& rows,
                                         int threads = 1);
 
 /// Returns the degrees of freedom of a condition's contribution to the variance of an unknown. If
-/// the unknown belongs to another condition, the contribution comes through the shared unknowns,
-/// and the result is the minimum over those.
+/// the unknown belongs to another condition, this condition contributes through the shared
+/// unknowns, and the result is the minimum over those.
 double freedom_in(const ScoreScatter& scatter, const ArrowRoot& combinations, Eigen::Index unknown,
                   std::size_t condition);
 
-/// Variance c^T (sum of all covariances + priors) c of a combination.
+/// Variance c^T (sum of all covariances + priors) c of a combination c.
 struct RobustVariance {
   double variance = 0.0;
   double freedom = 0.0;  ///< Satterthwaite's degrees of freedom; infinite if only priors contribute

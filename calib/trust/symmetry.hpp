@@ -36,7 +36,7 @@ std::optional<ScalingSymmetry> scaling_symmetry(const Problem& problem, std::spa
                                                 double sigma, int threads);
 
 /// Describes measurements or values that would determine the parameters which the symmetry leaves
-/// open.
+/// undetermined.
 std::string symmetry_remedy(const Problem& problem, const ScalingSymmetry& symmetry);
 
 /// Describes the symmetry: "multiplying mass_kg, ... by a factor s and dividing valve_gain_m_per_v
@@ -45,9 +45,9 @@ std::string symmetry_remedy(const Problem& problem, const ScalingSymmetry& symme
 /// depends on these values.
 std::string describe(const Problem& problem, const ScalingSymmetry& symmetry);
 
-/// Grades the unknowns that a symmetry leaves open as not identifiable, and removes their errors.
-/// Errors from the Jacobian would only reflect the smoothing of the orifice roots, which has no
-/// physical meaning.
+/// Grades the unknowns that a symmetry leaves undetermined as not identifiable, and removes their
+/// errors. Errors from the Jacobian would only reflect the smoothing of the orifice roots, which
+/// has no physical meaning.
 void grade_symmetric(const Problem& problem, const ScalingSymmetry& symmetry,
                      std::vector<FittedParameter>& parameters);
 

@@ -81,7 +81,7 @@ void add_prior_information(const Problem& problem, std::span<const double> z, co
     const double weight = problem.map.prior_slope(static_cast<int>(j), z[j]);
     if (weight == 0.0) continue;
     const auto unknown = static_cast<Eigen::Index>(j);
-    // Shared unknowns only have components in the shared directions, which every condition
+    // Shared unknowns have components only in the shared directions, which every condition
     // contains.
     const int whose = root.condition_of(unknown);
     if (whose < 0) {
@@ -124,7 +124,7 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
   result.reduced_chi_square = freedom > 0.0 ? 2.0 * optimum.cost / freedom : 0.0;
   result.freedom = std::max(freedom, 1.0);
 
-  // (J^T J)^-1 in the unit box, on the directions that the data determine.
+  // Square root of (J^T J)^-1 in the unit box, in the directions that the data determine.
   const ArrowRoot root = svd.root();
   const double sigma = std::sqrt(std::max(1.0, result.reduced_chi_square));
   const double least = std::max(s(0) * rank_threshold(problem.tolerance), 1e-150);

@@ -24,16 +24,16 @@ enum class Detail {
 /// Uncertainty of the unknowns at an optimum.
 struct Uncertainty {
   Detail detail = Detail::full;
-  /// In SI units; absent if the unknown contributes to a combination that the data do not
-  /// determine.
+  /// Standard errors in SI units; absent if the unknown contributes to a combination that the data
+  /// do not determine.
   std::vector<std::optional<double>> standard_error;
   /// Standard error estimated from the residuals themselves (see below), with its degrees of
   /// freedom and the half-width of the 95 % interval in units of this error.
   std::vector<std::optional<double>> robust_standard_error;
   std::vector<double> robust_freedom, robust_quantile;
   /// Whether the robust error of an unknown comes from the differences between repeats, the ratio
-  /// of that error to the error from the residuals (0: unknown), and the probability of such a
-  /// ratio if repeats differ only by noise.
+  /// of that error to the error from the residuals (0 if unknown), and the probability of such a
+  /// ratio if the repeats differ only by noise.
   std::vector<bool> from_repeats;
   std::vector<double> repeats_ratio, repeats_p;
   /// Present if the repeats differ by more than their noise.
@@ -41,7 +41,7 @@ struct Uncertainty {
   int noiseless = 0;  ///< number of channels whose residual is not noise, see coherent_error.hpp
   std::vector<std::string> reason;  ///< why there is no standard error, in words
   int rank = 0;
-  std::vector<double> singular_values;  ///< descending, columns scaled to length 1
+  std::vector<double> singular_values;  ///< in descending order, for columns scaled to length 1
   double reduced_chi_square = 0.0;      ///< 2 cost / (residuals - rank)
   double freedom = 1.0;                 ///< degrees of freedom of standard_error, at least 1
   /// S, where S S^T is the covariance in the unit box. For directions that the data do not
@@ -54,7 +54,7 @@ struct Uncertainty {
   /// Standard errors due to day-to-day differences (day_errors()), SI; not included in any other
   /// error. Empty with Detail::plain.
   std::vector<double> between_days;
-  std::vector<ScoreRows> scores;       ///< the rows that `scatter` was computed from
+  std::vector<ScoreRows> scores;       ///< rows from which `scatter` was computed
   std::vector<ScoreScatter> scatter;   ///< one per condition; empty if there are no robust errors
   double independent_residuals = 0.0;  ///< sum over all conditions and channels
 

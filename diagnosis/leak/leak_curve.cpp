@@ -6,7 +6,7 @@
 namespace rigcal::diagnosis {
 namespace {
 
-/// Value and slope at one coefficient.
+/// An interpolated value and its slope.
 struct ValueAt {
   double value = 0.0;
   double slope = 0.0;
@@ -29,8 +29,8 @@ ValueAt hermite(const std::vector<LeakPoint>& points, double LeakPoint::*member,
   const double width = b.coefficient - a.coefficient;
   const double t = (coefficient - a.coefficient) / width;
   const double secant = (b.*member - a.*member) / width;
-  // Newton's form: the value at a, the slope at a, and the terms for the secant and for the slope
-  // at b.
+  // Newton's form: the value and the slope at a, and the terms for the secant and for the slope at
+  // b.
   const double second = secant - a.*slope;
   const double third = a.*slope + b.*slope - 2.0 * secant;
   const double step = width * t;
@@ -38,8 +38,8 @@ ValueAt hermite(const std::vector<LeakPoint>& points, double LeakPoint::*member,
           a.*slope + t * (2.0 * second + (3.0 * t - 2.0) * third)};
 }
 
-/// At zero, where |leakage flow| has no derivative, the slope is that of a leak so small that it is
-/// proportional to its coefficient.
+/// Fraction of the next coefficient that is so small that the leak is proportional to it. The slope
+/// there is used at zero, where |leakage flow| has no derivative.
 constexpr double kProportional = 0.02;
 
 LeakPoint without_leak(const LeakAt& leak_at, double next) {
@@ -78,8 +78,8 @@ double LeakCurve::share_slope(double coefficient) const {
 
 LeakCurve curve_about(const LeakAt& leak_at, double coefficient, double reach) {
   const double low = coefficient - reach;
-  // Close to zero, the curve is a straight line through zero, so that all records without a leak
-  // need the same simulation.
+  // An estimate close to zero does not get a point of its own, so that all records without a leak
+  // need the same simulations.
   const bool none = coefficient <= kProportional * reach;
   const double high = none ? reach : coefficient + reach;
   std::vector<LeakPoint> points{low > 0.0 ? leak_at(low) : without_leak(leak_at, high)};

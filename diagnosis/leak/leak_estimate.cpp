@@ -13,20 +13,20 @@
 namespace rigcal::diagnosis {
 namespace {
 
-/// Numbers of equally probable values for the coefficient and for the error of its share. Class
-/// probabilities have a resolution of 1 / 6015.
+/// Numbers of equally probable values for the coefficient and for the error of the share. Class
+/// probabilities thus have a resolution of 1 / 6015.
 constexpr int kDraws = 401;
 constexpr int kBlurs = 15;
-/// Errors below this are due to rounding.
+/// Smaller errors are due to rounding.
 constexpr double kLeastShareError = 1e-7;
-/// Tolerance for a quantile of the share, and the maximum number of steps to find it.
+/// Tolerance for a quantile of the share, and the maximum number of steps for finding it.
 constexpr double kQuantileError = 1e-15;
 constexpr int kQuantileSteps = 120;
 
 double squared(double x) { return x * x; }
 
-/// Distribution of the share for a given distribution of the coefficient: equally probable shares,
-/// each blurred by the error from the rig's parameters.
+/// Distribution of the share that follows from the distribution of the coefficient. It consists of
+/// equally probable shares, each blurred by the error due to the rig's parameters.
 class ShareDistribution {
  public:
   ShareDistribution(const LeakEstimate& estimate, double own_se, double rig_se,
@@ -45,7 +45,7 @@ class ShareDistribution {
     std::sort(shares_.begin(), shares_.end());
   }
 
-  /// Calls `take` with equally probable shares, including blurred ones, which may be negative.
+  /// Calls `take` with equally probable shares, including the blur, which may make them negative.
   template <typename Take>
   void for_each(Take take) const {
     std::array<double, kBlurs> blurs{};
@@ -57,9 +57,9 @@ class ShareDistribution {
   }
 
   /// Returns the share that is exceeded with probability 1 - p, given that it is not negative.
-  /// Newton's method starts at the share of that rank, and its steps narrow the bounds. If the blur
-  /// is small, the distribution is a staircase, so a step beyond the bounds is replaced by a
-  /// bisection.
+  /// Newton's method starts at the share with the corresponding rank, and each step narrows the
+  /// bounds. If the blur is small, the distribution is a staircase, so that a step may lead beyond
+  /// the bounds; it is then replaced by bisection.
   double quantile(double p) const {
     double low = 0.0;
     double high = std::min(1.0, shares_.back() + 10.0 * blur_);
@@ -86,7 +86,7 @@ class ShareDistribution {
     return sum / static_cast<double>(shares_.size());
   }
 
-  /// Derivative of raw_below() with respect to x.
+  /// Returns the derivative of raw_below() with respect to x.
   double density(double x) const {
     double sum = 0.0;
     for (const double share : shares_) sum += std::exp(-0.5 * squared((x - share) / blur_));
@@ -100,8 +100,9 @@ class ShareDistribution {
 
 /// Prior density of a share, up to a factor: 1 / (offset + share), which decreases and has no step
 /// at any limit. The offset makes a normal machine as probable as one with a slight leak: (offset +
-/// first)^2 = offset (offset + second). If the second limit is less than twice the first, no offset
-/// achieves this, and every share is equally probable.
+/// first)^2 = offset (offset + second), where `first` and `second` are the limits of the classes.
+/// If the second limit is less than twice the first, no offset achieves this, and all shares are
+/// equally probable.
 class Prior {
  public:
   explicit Prior(const datasets::DiagnosisSettings& settings) {
@@ -128,8 +129,8 @@ std::array<double, kClassCount> class_probabilities(const ShareDistribution& sha
   return probability;
 }
 
-/// Sets the 95 % interval of the coefficient. If no leak is detected, the upper limit comes from
-/// the distribution truncated at 0, so it is above 0 however negative the estimate is.
+/// Sets the 95 % interval of the coefficient. If no leak is detected, the upper limit is that of
+/// the distribution truncated at 0, so that it is above 0 even for a very negative estimate.
 void set_interval(double half_width, LeakEstimate& estimate) {
   const double coefficient = estimate.coefficient;
   if (estimate.leak_detected || estimate.incompatible || !(estimate.standard_error > 0.0)) {

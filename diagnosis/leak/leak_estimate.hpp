@@ -17,77 +17,79 @@ inline constexpr std::size_t kClassCount = datasets::kLeakClasses.size();
 
 /// Estimate of the leak in one record.
 struct LeakEstimate {
-  double coefficient = 0.0;     ///< signed, see LeakFit
-  double standard_error = 0.0;  ///< error of the coefficient, including that from rig parameters
-  double freedom = 1.0;         ///< degrees of freedom of the standard error (Satterthwaite)
-  /// 95 % interval of the coefficient, with a lower end of at least 0. If no leak is detected, it
-  /// goes from 0 to the upper limit, given that a leak is not negative. It is not cut off at 0 if
-  /// the record is incompatible.
+  double coefficient = 0.0;  ///< may be negative, see LeakFit
+  /// Error of the coefficient, including the error due to rig parameters.
+  double standard_error = 0.0;
+  double freedom = 1.0;  ///< degrees of freedom of the standard error (Satterthwaite)
+  /// 95 % interval of the coefficient, whose lower end is not negative. If no leak is detected, it
+  /// extends from 0 to the upper limit, given that a leak cannot be negative. If the record is
+  /// incompatible, the interval is not cut off at 0.
   Range ci95{0.0, 0.0};
-  /// Whether the coefficient is negative by more than its error, at the false-alarm rate of the
+  /// True if the coefficient is negative by more than its error, at the false-alarm rate in the
   /// settings. No leak explains such a record, so no leak is reported.
   bool incompatible = false;
-  double share = 0.0;  ///< fraction of the servo flow, >= 0; impossible above 1
-  /// 95 % interval of the share, within 0 and 1, given that a leak is not negative. If no leak is
-  /// detected, it goes from 0 to the upper limit.
+  double share = 0.0;  ///< fraction of the servo flow, >= 0; values above 1 are impossible
+  /// 95 % interval of the share, between 0 and 1, given that a leak cannot be negative. If no leak
+  /// is detected, it extends from 0 to the upper limit.
   Range share_ci95{0.0, 0.0};
-  /// One-sided 95 % limit, if no leak is detected.
+  /// One-sided 95 % limit; present if no leak is detected.
   std::optional<double> share_upper_limit;
   double share_slope = 0.0;  ///< d share / d coefficient
   double leak_flow_m3_per_s = 0.0;
   std::array<double, kClassCount> probability{};  ///< probability of each class
   LeakClass most_probable = LeakClass::normal;
   double leak_score = 0.0;     ///< coefficient divided by its standard error
-  bool leak_detected = false;  ///< at the false-alarm rate of the settings
+  bool leak_detected = false;  ///< at the false-alarm rate in the settings
 
-  /// Whether the share is possible: the leak cannot exceed the whole servo flow.
+  /// Returns true if the share is possible: the leak cannot exceed the servo flow.
   bool has_share() const { return share <= 1.0; }
-  /// Whether the leak can be given a class.
+  /// Returns true if the leak can be given a class.
   bool has_class() const { return !incompatible && has_share(); }
 };
 
-/// Error of the coefficient for one record, from independent contributions: the residuals (by
-/// clusters if the signal has a lack of fit and the record shows it), variation between repeats
-/// beyond their white noise (divided by the square root of their number for an average), the
-/// apparent leak of healthy records, the rig's parameters, and the days.
+/// Error of the coefficient for one record. It combines independent contributions: the residuals
+/// (with clusters if the signal has a lack of fit that the record shows), the variation between
+/// repeats beyond their white noise (for an average, divided by the square root of their number),
+/// the apparent leak of healthy records, the rig's parameters, and day-to-day differences.
 struct CoefficientError {
-  double own_se = 0.0;  ///< without the contributions of rig parameters and days
+  double own_se = 0.0;  ///< standard error without the contributions of rig parameters and days
   double rig_se = 0.0;
   double freedom = 1.0;  ///< Welch-Satterthwaite degrees of freedom
-  /// From differences between the day of the record and the days of its reference (with_days()).
+  /// Standard error due to differences between the day of the record and the days of its reference
+  /// (with_days()).
   double days_se = 0.0;
   double total() const;
-  /// Half the width of the 95 % interval.
+  /// Returns the half-width of the 95 % interval.
   double half_width() const;
 };
 
 /// @param repeats    number of repeats averaged in the record
-/// @param reference  number of healthy repeats that correct it; 0: none
+/// @param reference  number of healthy repeats that correct the record; 0 if it is not corrected
 CoefficientError coefficient_error(const LeakFit& fit, const SignalErrors& errors, int repeats,
                                    int reference);
 
-/// Error of an average that is its own reference, from the variation between single repeats. It is
-/// the error of the difference between a mean of `repeats` and a mean of `reference` repeats.
-/// Returns nullopt if there is only one repeat.
+/// Returns the error for an average that is its own reference, estimated from the variation between
+/// single repeats. It is the error of the difference between a mean of `repeats` repeats and a mean
+/// of `reference` repeats. Returns std::nullopt if there is only one repeat.
 std::optional<CoefficientError> error_of_averages(const LeakFit& fit, const SignalErrors& errors,
                                                   int repeats, int reference);
 
 /// Computes the interval, share and class probabilities for one record.
 ///
-/// The coefficient follows a t distribution around its estimate. Given that it is not negative, the
-/// curve converts it to a share, to which the error from the rig's parameters is added. For the
-/// classes, the prior probability of a share decreases with its size, and a normal machine is as
-/// probable as one with a slight leak.
+/// The coefficient has a t distribution around its estimate. Given that it is not negative, the
+/// curve converts it to a share, to which the error due to the rig's parameters is added. For the
+/// classes, the prior probability of a share decreases with its size, such that a normal machine is
+/// as probable as one with a slight leak.
 ///
 /// @param curve         curve around the estimate
-/// @param share_rig_se  standard error of the share from the rig's parameters
+/// @param share_rig_se  standard error of the share due to the rig's parameters
 LeakEstimate estimate_leak(double coefficient, const CoefficientError& error,
                            const LeakCurve& curve, double share_rig_se,
                            const datasets::DiagnosisSettings& settings);
 
-/// The smallest detectable leak. A leak of this size is found in a given fraction of cases
-/// (`detection` in the settings), with at most `false_alarms` of the records without a leak
-/// mistaken for leaking (Currie's detection limit, Anal. Chem. 40, 1968).
+/// The smallest detectable leak (Currie's detection limit, Anal. Chem. 40, 1968). A leak of this
+/// size is found in the fraction `detection` of cases, while at most the fraction `false_alarms` of
+/// records without a leak are mistaken for leaking. Both are settings.
 struct DetectionLimit {
   double coefficient = 0.0;
   double leak_flow_m3_per_s = 0.0;
@@ -96,7 +98,7 @@ struct DetectionLimit {
 
 /// Returns the coefficient of the smallest detectable leak.
 ///
-/// @param healthy  error of the coefficient for a record without a leak
+/// @param healthy  error of the coefficient in a record without a leak
 double detection_limit(const CoefficientError& healthy,
                        const datasets::DiagnosisSettings& settings);
 

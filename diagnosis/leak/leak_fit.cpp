@@ -25,18 +25,19 @@ using datasets::Condition;
 using datasets::Record;
 
 constexpr const char* kLeak = "leakage_coefficient";
-/// Enough for one leak and a few nuisance parameters, starting from the best point of a scan. A fit
-/// that needs more iterations is reported as not converged.
+/// Maximum number of iterations. It is sufficient for one leak and a few nuisance parameters if the
+/// fit starts from the best point of a scan. A fit that needs more is reported as not converged.
 constexpr int kIterations = 40;
-/// Fraction of the largest coefficient in a scan at which the effects are simulated with a leak.
+/// Minimum leak with which the effects are simulated, as a fraction of the largest coefficient in a
+/// scan.
 constexpr double kLeastOfLargest = 0.1;
 
 void erase_value(datasets::Overrides& overrides, int index) {
   std::erase_if(overrides, [index](const auto& entry) { return entry.first == index; });
 }
 
-/// Returns the campaign's setting for the coefficient, but with bounds from 0 to the largest valid
-/// value, and to be estimated for every record.
+/// Returns the campaign's setting for the coefficient, changed such that it is estimated for every
+/// record, with bounds from 0 to the largest valid value.
 datasets::ParameterSetting free_leak(const Campaign& campaign, int index) {
   const auto row = static_cast<std::size_t>(index);
   const model::ParameterSpec& spec = model::parameter_table(campaign.rig.plant)[row];
@@ -52,13 +53,13 @@ datasets::ParameterSetting free_leak(const Campaign& campaign, int index) {
   return setting;
 }
 
-/// Weighted residuals of a record and all their derivatives at the end of the fit. The priors of
-/// the unknowns are separate.
+/// Weighted residuals of a record and their derivatives at the end of the fit. The priors of the
+/// unknowns are separate.
 struct Linear {
   Eigen::MatrixXd jacobian;      ///< shape (residuals, unknowns), SI
   Eigen::MatrixXd rig_jacobian;  ///< shape (residuals, rig parameters), SI
   Eigen::VectorXd residual;      ///< simulated minus measured, weighted
-  Eigen::VectorXd prior_weight;  ///< 1 / sd of each unknown's prior, 0 if it has none
+  Eigen::VectorXd prior_weight;  ///< 1 / sd of each unknown's prior; 0 if it has no prior
   Eigen::VectorXd prior_residual;
 };
 
@@ -98,7 +99,8 @@ Linear linearise(const calib::Problem& problem, const model::Simulation& run) {
   return {rows.leftCols(own), rows.middleCols(own, all - own), rows.col(all), {}, {}};
 }
 
-/// Returns the R factor of samples and priors. Its singular values show what is determined.
+/// Returns the R factor for samples and priors. Its singular values show which combinations are
+/// determined.
 calib::Linearisation with_priors(const Linear& linear) {
   const Eigen::Index p = linear.jacobian.cols();
   const Eigen::Index samples = linear.jacobian.rows();
@@ -110,7 +112,7 @@ calib::Linearisation with_priors(const Linear& linear) {
   return {r_factor.get().leftCols(p), r_factor.get().col(p)};
 }
 
-/// Measured minus simulated position at the samples that count [m].
+/// Returns the measured minus the simulated position at the samples that count [m].
 std::vector<double> position_residual(const calib::ProblemCondition& condition,
                                       const Eigen::VectorXd& simulated) {
   const auto& measured = condition.record->channels.at(datasets::Channel::position).mean;
@@ -125,9 +127,9 @@ std::string in_words(const model::Simulation& run) {
                      model::to_string(run.status));
 }
 
-/// Sets how the quantities that differ between days change the coefficient and the position.
+/// Computes how the quantities that differ between days change the coefficient and the position.
 ///
-/// @param weight  weight of each weighted residual in the coefficient, channel after channel
+/// @param weight  weight of each weighted residual in the coefficient, one channel after the other
 void set_day_effects(const calib::ProblemCondition& condition, const model::Simulation& run,
                      std::size_t position, const std::vector<int>& free,
                      const std::vector<calib::DayQuantity>& quantities,
@@ -150,10 +152,10 @@ void set_day_effects(const calib::ProblemCondition& condition, const model::Simu
                             static_cast<double>(std::max<Eigen::Index>(1, samples)));
 }
 
-/// Change of the coefficient per unit of each effect. If there is a healthy reference, it already
-/// includes what acts without a leak.
+/// Returns the change in the coefficient per unit of each effect. If there is a healthy reference,
+/// it already includes the changes that occur without a leak.
 ///
-/// @param weight  weight of each weighted residual in the coefficient, channel after channel
+/// @param weight  weight of each weighted residual in the coefficient, one channel after the other
 Eigen::VectorXd moves_by_effects(const calib::ProblemCondition& condition,
                                  const LeakEffects& effects, const Eigen::VectorXd& weight,
                                  double coefficient, bool has_reference) {
@@ -169,7 +171,7 @@ Eigen::VectorXd moves_by_effects(const calib::ProblemCondition& condition,
   return moves;
 }
 
-/// Channels of the record that drive the model and are therefore not compared with it.
+/// Returns the channels of the record that drive the model and are therefore not compared with it.
 std::map<datasets::Channel, std::vector<double>> driving_channels(
     const calib::ProblemCondition& condition) {
   std::map<datasets::Channel, std::vector<double>> driving;
@@ -188,9 +190,9 @@ std::vector<model::Output> outputs_and_position(const calib::ProblemCondition& c
   return outputs;
 }
 
-/// Runs the simulations at the end of a fit, with and without the leak.
+/// Runs the simulations with and without the leak at the end of a fit.
 ///
-/// @param healthy  the simulation without the leak, if it is known
+/// @param healthy  the simulation without the leak if there is one already, or null
 LeakRuns run_both(const calib::Problem& problem, const RigFit& rig, const LeakProblem& leak_problem,
                   const model::ParameterValues& values, const model::Simulation* healthy,
                   const std::atomic<bool>* cancel) {
@@ -217,8 +219,8 @@ LeakRuns run_both(const calib::Problem& problem, const RigFit& rig, const LeakPr
   return runs;
 }
 
-/// Whether the simulation without the leak can be reused from another record of the condition,
-/// because its values differ only in the leak.
+/// Returns true if the simulation without the leak can be reused from another record of the
+/// condition, because the values differ only in the leak.
 bool serves(const LeakRuns& runs, const calib::Problem& problem, model::ParameterValues values,
             int leak) {
   const calib::ProblemCondition& condition = problem.conditions.front();
@@ -229,7 +231,7 @@ bool serves(const LeakRuns& runs, const calib::Problem& problem, model::Paramete
          runs.driving == driving_channels(condition);
 }
 
-/// Completes `fit` from the simulations made at its end.
+/// Completes `fit`, using the simulations made at its end.
 void describe(const calib::Problem& problem, const RigFit& rig, const LeakProblem& leak_problem,
               int reference, const LeakRuns& runs, const LeakEffects* effects, LeakFit& fit) {
   const int leak_row = leak_problem.leak;
@@ -239,7 +241,7 @@ void describe(const calib::Problem& problem, const RigFit& rig, const LeakProble
   const model::Simulation& healthy = runs.healthy;
   const std::vector<int>& free = runs.free;
   const std::size_t position = condition.outputs.size();
-  std::vector<int> rig_columns;  // columns in the covariance for rig parameters that are free here
+  std::vector<int> rig_columns;  // covariance columns of rig parameters that are not unknowns here
   for (std::size_t j = 0; j < rig.indices.size(); ++j)
     if (column_of(condition.free, rig.indices[j]) < 0) rig_columns.push_back(static_cast<int>(j));
   if (!run.ok() || !healthy.ok()) {
@@ -263,7 +265,7 @@ void describe(const calib::Problem& problem, const RigFit& rig, const LeakProble
   const auto [covariance, freedom] =
       cluster_sandwich(linear.jacobian, left, bread, clusters_of(condition));
   // White noise contributes to the variance of the estimate through the samples, and each prior
-  // with its own variance.
+  // contributes with its own variance.
   const Eigen::VectorXd of_priors = linear.prior_weight.asDiagonal() * bread.col(leak);
   const double of_samples = std::max(0.0, bread(leak, leak) - of_priors.squaredNorm());
   const double noise_se =
@@ -273,12 +275,12 @@ void describe(const calib::Problem& problem, const RigFit& rig, const LeakProble
   fit.white_freedom = std::max(1, static_cast<int>(left.size() - step.size()));
   fit.cluster_se = std::sqrt(covariance(leak, leak) + of_priors.squaredNorm());
   fit.cluster_freedom = freedom;
-  // The residuals also contain the noise in the mean of the healthy repeats, which is not part of
-  // the record.
+  // The residuals also contain the noise in the mean of the healthy repeats, which does not belong
+  // to the record.
   fit.noise_se = noise_se / std::sqrt(1.0 + (reference > 0 ? 1.0 / reference : 0.0));
-  // The optimiser need not have converged, since the last step is taken here by linear
-  // continuation, but that step must not be long. A record that is its own reference may have no
-  // residual, so the error for white noise of unit variance is allowed, too.
+  // The optimiser need not have converged, because the last step is taken here by linear
+  // continuation, but this step must not be long. A record that is its own reference may have no
+  // residual, so the error for white noise of unit variance is also an allowed length.
   const double error = std::max({fit.white_se, fit.cluster_se, root.row(leak).norm()});
   if (values[kLeak] > 0.0 && std::abs(step(leak)) > error + 1e-3 * values[kLeak]) {
     fit.failure = fmt::format("the leak did not converge: a step of {:.2g} standard errors is left",
@@ -396,7 +398,7 @@ RigFit rig_fit_of(const calib::Fit& fit) {
 }
 
 void RigFit::consider(const calib::EstimateSpread& spread) {
-  // The leak is to be estimated, so it is not one of the effects that were left out.
+  // The leak itself is estimated, so it is not an effect that the model omits.
   const calib::EffectSpread& all = spread.effects;
   std::vector<Eigen::Index> kept;
   effects = {};
@@ -435,7 +437,7 @@ std::shared_ptr<const LeakEffects> leak_effects_of(const LeakProblem& leak_probl
       problem_of(leak_problem, own_condition(leak_problem, condition), records);
   const calib::ProblemCondition& prepared = problem.conditions.front();
   const auto acting = calib::considered_in(problem, problem.start(), rig.effects);
-  // The leak must be large enough to have a visible influence on the effects.
+  // The leak must be large enough to have a noticeable influence on the effects.
   const double leak = std::max(scan.best_coefficient, kLeastOfLargest * scan.largest_coefficient);
   if (!(leak > 0.0)) return nullptr;
   const auto values_at = [&](double coefficient) {
@@ -454,7 +456,7 @@ std::shared_ptr<const LeakEffects> leak_effects_of(const LeakProblem& leak_probl
   for (std::size_t k = 0; k < result->healthy.size(); ++k) {
     if (!result->healthy[k].allFinite() || !result->by_leak[k].allFinite()) return nullptr;
   }
-  // Computes the share from the flows of the record.
+  // The share is computed from the flows over the record.
   model::Simulation run =
       model::simulate(prepared.rig, values_at(leak), std::vector<int>(), prepared.inputs,
                       average.time_s, kFlows, problem.simulation_options(leak_problem.cancel));
@@ -565,7 +567,7 @@ double share_rig_error(const LeakProblem& leak_problem, const RigFit& rig,
   const auto of_rig = static_cast<Eigen::Index>(rig.indices.size());
   if (effects != nullptr && effects->share.size() == moves.size() - of_rig)
     moves.tail(moves.size() - of_rig) -= std::max(0.0, fit.coefficient) * effects->share;
-  if (of_rig > 0 && fit.coefficient > negligible) {  // else the share is zero for any rig
+  if (of_rig > 0 && fit.coefficient > negligible) {  // otherwise the share is zero for any rig
     const std::vector<Record> records{average};
     const calib::Problem problem =
         problem_of(leak_problem, own_condition(leak_problem, condition), records);

@@ -7,11 +7,11 @@
 
 namespace rigcal::diagnosis {
 
-/// Cache of simulated leaks for one condition, whose records all need the same leaks. Each
-/// simulation takes a second if the rig approaches its periodic state slowly. Thread-safe.
+/// Cache of simulated leaks for one condition, because its records all need the same ones. A
+/// simulation may take a second if the rig approaches its periodic state slowly. Thread-safe.
 class LeakMemo {
  public:
-  /// Returns the leak for a coefficient, which is simulated on the first request.
+  /// Returns the leak for a coefficient, and simulates it on the first request.
   LeakPoint at(double coefficient, const LeakAt& simulate) {
     {
       const std::lock_guard lock(mutex_);

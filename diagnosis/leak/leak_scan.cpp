@@ -10,12 +10,12 @@
 namespace rigcal::diagnosis {
 namespace {
 
-/// Ratio between successive coefficients, small enough for a fit to converge from the nearest one.
+/// Ratio of successive coefficients, small enough for a fit to converge from the nearest one.
 constexpr double kRatio = 1.35;
 constexpr double kFirst = 1e-3;
 constexpr double kLargest = 1e3;
 
-/// One simulated coefficient, compared with the record.
+/// A simulated coefficient and its comparison with the record.
 struct Candidate {
   double coefficient = 0.0;
   double share = 0.0;
@@ -68,8 +68,8 @@ LeakScan scan_leaks(const calib::Problem& problem, const calib::ProblemCondition
     return simulate_leak(problem, condition, coefficient, cancel);
   };
   Candidate best = at(0.0);
-  // A coefficient has no meaning without its area, so the range begins where a thousandth of the
-  // flow leaks.
+  // The meaning of a coefficient depends on the leakage area, so the range begins where a
+  // thousandth of the flow leaks.
   double coefficient = kFirst;
   Candidate point = at(coefficient);
   while (point.share > 1e-3 && coefficient > 1e-12) point = at(coefficient *= 0.1);
@@ -79,7 +79,8 @@ LeakScan scan_leaks(const calib::Problem& problem, const calib::ProblemCondition
     const bool is_better = point.cost < best.cost;
     if (is_better) best = point;
     if ((point.share >= share_above && !is_better) || coefficient >= kLargest) break;
-    // Takes larger steps while the share is small and almost proportional to the coefficient.
+    // Larger steps are possible while the share is small and almost proportional to the
+    // coefficient.
     coefficient = std::min(kLargest, coefficient * (point.share < 0.02 ? 2.0 : kRatio));
     point = at(coefficient);
   }

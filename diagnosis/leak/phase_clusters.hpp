@@ -8,20 +8,20 @@
 
 namespace rigcal::diagnosis {
 
-/// Number of clusters, whose scores count as independent. More clusters would be correlated, and
-/// fewer would leave few degrees of freedom (fit_leak()).
+/// Number of clusters, whose scores are treated as independent. More clusters would be correlated,
+/// and fewer would leave too few degrees of freedom (fit_leak()).
 inline constexpr int kClusters = 10;
 
-/// Returns the cluster of each sample that counts, from 0, according to its phase in the period of
-/// a sine or square, or otherwise to its position in the record.
+/// Returns the cluster of each sample that counts, from 0. It depends on the phase in the period of
+/// a sine or square, or otherwise on the position in the record.
 std::vector<int> clusters_of(const calib::ProblemCondition& condition);
 
-/// Sandwich covariance of the unknowns for residuals that are dependent within a cluster, and its
-/// degrees of freedom: the number of clusters with any information minus the number of unknowns, at
-/// least 1. The covariance is multiplied by the number of clusters divided by the degrees of
-/// freedom, because the residuals are those of a fit.
+/// Returns the sandwich covariance of the unknowns for residuals that are dependent within a
+/// cluster, and its degrees of freedom: the number of clusters that contain information minus the
+/// number of unknowns, but at least 1. The covariance is multiplied by the number of clusters
+/// divided by the degrees of freedom, because the residuals are those of a fit.
 ///
-/// @param jacobian  shape (channels * samples, unknowns), channel after channel
+/// @param jacobian  shape (channels * samples, unknowns), one channel after the other
 /// @param residual  shape (channels * samples), at the least-squares solution
 /// @param bread     inverse of J^T J
 /// @param clusters  shape (samples)

@@ -20,7 +20,7 @@ std::span<const double> counted(const Eigen::MatrixXd& matrix, Eigen::Index colu
 
 SteadyPart last_periods(const std::vector<double>& time_s, double period_s, std::size_t begin,
                         std::size_t end) {
-  constexpr double kSlack = 1e-6;  // fraction of a period, allows for rounded times
+  constexpr double kSlack = 1e-6;  // fraction of a period; allows for rounded times
   const double span_s = time_s[end - 1] - time_s[begin];
   double periods = std::floor(span_s / period_s + kSlack);
   if (periods < 1.0) return {begin, end - begin};

@@ -11,7 +11,7 @@ namespace {
 
 double power(double x) { return x * x; }
 
-/// Whether the variances of all records together exceed those of white noise.
+/// Returns true if the variances of all records together exceed those of white noise.
 bool has_misfit(const std::vector<const LeakFit*>& records) {
   double ratios = 0.0;
   double freedom = 0.0;
@@ -31,7 +31,7 @@ SignalErrors signal_errors(const std::vector<std::vector<SingleFit>>& singles,
   SignalErrors errors;
   std::vector<const LeakFit*> records = averages;
   double squares = 0.0;
-  double noise = 0.0;  // for the same degrees of freedom
+  double noise = 0.0;  // expected from noise, for the same degrees of freedom
   for (const auto& members : singles) {
     if (members.size() < 2) continue;
     double mean = 0.0;
@@ -40,7 +40,7 @@ SignalErrors signal_errors(const std::vector<std::vector<SingleFit>>& singles,
     const double freedom_of_each = 1.0 - 1.0 / static_cast<double>(members.size());
     for (const auto& [fit, corrected_by] : members) {
       // The distance of x from the mean of r others is (r + 1) / r times its distance from the mean
-      // of all.
+      // of all r + 1.
       const double spread = corrected_by > 0 ? corrected_by / (corrected_by + 1.0) : 1.0;
       squares += power(spread * (fit->coefficient - mean) * fit->effect_m);
       noise += freedom_of_each * power(fit->noise_se * fit->effect_m);

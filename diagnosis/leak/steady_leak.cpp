@@ -11,7 +11,8 @@
 namespace rigcal::diagnosis {
 namespace {
 
-/// Whether a generated wave is the only input that varies, so that there is a periodic state.
+/// Returns true if a generated wave is the only input that varies, so that there is a periodic
+/// state.
 bool has_periodic_state(const calib::ProblemCondition& condition) {
   const model::SimulationInputs& in = condition.inputs;
   return is_generated_wave(*condition.condition) && condition.condition->amplitude.has_value() &&

@@ -8,7 +8,7 @@
 
 namespace rigcal::diagnosis {
 
-/// Leak in one condition at one leakage coefficient, with its derivatives.
+/// Leak in one condition for one leakage coefficient, with its derivatives.
 struct SteadyLeak {
   /// @param servo, leak  mean absolute flows [m3/s], with their slopes
   SteadyLeak(double servo, double leak, const Eigen::VectorXd& servo_slope,
@@ -20,25 +20,26 @@ struct SteadyLeak {
 
   double share = 0.0;               ///< mean |leakage flow| / mean |servo flow|
   double leak_flow_m3_per_s = 0.0;  ///< mean |leakage flow|
-  Eigen::VectorXd share_slope;      ///< d share / d parameter, shape (free), SI
+  Eigen::VectorXd share_slope;      ///< d share / d parameter, SI, shape (free)
   Eigen::VectorXd flow_slope;       ///< d leakage flow / d parameter
-  bool is_periodic = false;         ///< whether it is for the periodic state, not the record
+  bool is_periodic = false;         ///< true for the periodic state, false for the record
 };
 
-/// Computes the leak in one condition. This is the only definition of its share. For a generated
-/// sine or square with all other inputs constant, the share is that of the periodic state, from the
-/// same simulation as in a leak table (calib::periodic_flow), however few periods a record has.
+/// Computes the leak in one condition. The leak share is defined only here. For a generated sine or
+/// square with all other inputs constant, the share is that of the periodic state, from the same
+/// simulation as in a leak table (calib::periodic_flow), even if a record has only few periods.
 /// With recorded inputs, or if the rig does not become periodic, there is no periodic state, and
 /// the flows are averaged over the record (record_share.hpp).
 ///
-/// @param values  SI, including the leakage coefficient, which must be above 0 for slopes
-/// @param free    table indices for the slopes
+/// @param values  SI; includes the leakage coefficient, which must be above 0 if slopes are
+///                requested
+/// @param free    table indices of the parameters for which slopes are computed
 /// @throws NoResultError  if the run fails, moves no oil, or has only one sample in the windows
 SteadyLeak steady_leak(const calib::Problem& problem, const calib::ProblemCondition& condition,
                        const model::ParameterValues& values, std::span<const int> free,
                        const std::atomic<bool>* cancel = nullptr);
 
-/// Whether the condition is a sine or square of known frequency.
+/// Returns true if the drive of the condition is a sine or square of known frequency.
 bool is_generated_wave(const datasets::Condition& condition);
 
 }  // namespace rigcal::diagnosis
