@@ -237,7 +237,10 @@ std::vector<CampaignKey> limit_keys() {
 
 std::vector<CampaignKey> acceptance_keys() {
   std::vector<CampaignKey> keys = limit_keys();
-  keys.pop_back();  // bound_keys() has `not_judged`, too
+  // bound_keys() has `not_judged`, too.
+  keys.erase(std::remove_if(keys.begin(), keys.end(),
+                            [](const CampaignKey& row) { return row.key == kNotJudged; }),
+             keys.end());
   keys.insert(keys.end(), bound_keys().keys().begin(), bound_keys().keys().end());
   return keys;
 }
