@@ -111,7 +111,7 @@ ForeignState slope(const ForeignRig& rig, const ForeignState& s, const Memory& m
                                       rig.pressure_friction_m2 * std::abs(load),
                                   velocity) +
                           rig.square_damping * velocity * std::abs(velocity);
-  const double end = 2.0 * position * rig.area_m2 / rig.volume_m3;  // 1 at either end of the stroke
+  const double end = 2.0 * position * rig.area_m2 / rig.volume_m3;  // +-1 at the ends
   const double oil = (rig.volume_m3 + rig.hose_volume_m3) * (1.0 - rig.volume_bow * end * end);
   const double stiffness = 4.0 * rig.bulk_modulus_pa * (1.0 + rig.oil_drift * share) / oil;
   ForeignState d{};

@@ -32,7 +32,8 @@ double student_t_cdf(double t, double freedom);
 /// @throws std::domain_error  if x or the degrees of freedom are invalid
 double chi_squared_exceedance(double x, double freedom);
 
-/// Probability that Fisher's F with these degrees of freedom > 0 exceeds x >= 0.
+/// Probability that an F-distributed variable exceeds x >= 0. The degrees of freedom must be
+/// positive.
 ///
 /// @throws std::domain_error  if x or the degrees of freedom are invalid
 double fisher_f_exceedance(double x, double numerator_freedom, double denominator_freedom);

@@ -40,7 +40,7 @@ class Progress {
   /// Reports how many pieces of a job are done, if there is a function.
   void pieces(const char* work, int done, int all);
 
-  /// Throws the exception that the function raised, if any. The caller must have the GIL.
+  /// Throws the exception that the function raised, if any. The caller must hold the GIL.
   void rethrow() const;
 
  private:

@@ -65,8 +65,9 @@ class ShiftedDense {
   double least_ = 0.0;
 };
 
-/// (B + shift)^-1 for an arrow matrix. The own unknowns are eliminated using the eigenvectors of
-/// their blocks; the reduced matrix of the shared unknowns is solved using its eigenvalues.
+/// (B + shift)^-1 for an arrow matrix. The unknowns of each block are eliminated using the
+/// eigenvectors of the block; the reduced system for the shared unknowns is solved using its
+/// eigenvalues.
 class ShiftedArrow {
  public:
   explicit ShiftedArrow(const ArrowSquare& b)

@@ -98,8 +98,9 @@ Run make_run(const PeriodicDrive& drive, const model::ParameterValues& values,
   return run;
 }
 
-/// Returns the largest sampling error of the mean flows. It is the relative change when every
-/// second sample is left out, divided by the gain in accuracy of a second-order rule.
+/// Returns the larger of the relative sampling errors of the two mean flows. Each is estimated by
+/// Richardson extrapolation for a second-order rule: a third of the change when every second sample
+/// is left out.
 double sampling_error(const Run& run) {
   const double servo = run.mean(kServo);
   double worst = 0.0;

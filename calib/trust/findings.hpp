@@ -8,9 +8,9 @@
 
 namespace rigcal::calib {
 
-/// Completes a fit that already has its starts and counters. Adds parameters with intervals,
-/// agreement of the starts, combinations and remedies, tests of the residuals, correlation, and
-/// warnings about unreliable results.
+/// Completes a fit whose starts and counters are already set. Adds the parameters with their
+/// intervals, the agreement of the starts, undetermined combinations and their remedies, residual
+/// tests, correlations, and warnings about unreliable results.
 ///
 /// @return  unknowns that a scaling symmetry leaves undetermined
 std::vector<std::size_t> describe_findings(const Problem& problem, const Evaluation& optimum,

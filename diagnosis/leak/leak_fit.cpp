@@ -28,7 +28,7 @@ constexpr const char* kLeak = "leakage_coefficient";
 /// Maximum number of iterations. It is sufficient for one leak and a few nuisance parameters if the
 /// fit starts from the best point of a scan. A fit that needs more is reported as not converged.
 constexpr int kIterations = 40;
-/// Minimum leak with which the effects are simulated, as a fraction of the largest coefficient in a
+/// Minimum leak at which the effects are simulated, as a fraction of the largest coefficient in a
 /// scan.
 constexpr double kLeastOfLargest = 0.1;
 

@@ -13,8 +13,8 @@ struct ControllerOutput {
 };
 
 /// Copies the gains of a force, pressure or acceleration loop to the members from which the
-/// controller reads the gains of a position loop. The controller computes all loops alike; the
-/// gains are in V per unit of the controlled quantity.
+/// controller reads the gains of a position loop. The controller uses the same equations for every
+/// loop; the gains are in V per unit of the controlled quantity.
 template <typename P>
 void take_gains(Feedback feedback, P& p) {
   switch (feedback) {

@@ -34,7 +34,7 @@ struct EarlierFit {
   std::vector<datasets::FittedValue> known;   ///< known parameters with scope rig
   std::vector<std::pair<std::string, datasets::Use>> conditions;  ///< id and use
   std::vector<std::string> input_hashes;                          ///< SHA-256
-  /// Judgements by the fit; not assessed if its file contains none.
+  /// Judgements by the fit; each is `not_assessed` if its file contains none.
   calib::Aspect adequacy;
   calib::Aspect parameters;
   calib::Validity validity;

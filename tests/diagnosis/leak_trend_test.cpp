@@ -112,7 +112,8 @@ TEST_CASE("leak_trends: an error that all dates share is no trend", "[diagnosis]
   const LeakTrend shared = only_trend(states(0.3), rig);
   CHECK_THAT(shared.p, WithinRel(exact.p, 1e-6));
   CHECK_THAT(shared.coefficient_per_day, WithinRel(0.01, 1e-9));
-  // The error counts if it shifts one date more than the other: by 0.1 * 0.5 over ten days.
+  // The error matters only if it shifts the estimate of one date more than that of another: here by
+  // 0.1 * 0.5 over ten days.
   const LeakTrend uneven =
       only_trend({on("2026-01-01", 0.3, 0.01, 1e6, 0.3), on("2026-01-06", 0.35, 0.01, 1e6, 0.35),
                   on("2026-01-11", 0.4, 0.01, 1e6, 0.4)},

@@ -208,7 +208,7 @@ TEST_CASE("parity: a record of another day has a threshold of its own", "[diagno
   REQUIRE(signal.threshold_of_another_day_m);
   CHECK(*signal.threshold_of_another_day_m > 1.5 * *signal.threshold_m);
   CHECK(other.conditions[1].records.front().threshold_m == signal.threshold_of_another_day_m);
-  // Without a date, it counts as recorded on the day of the healthy records, and a warning says so.
+  // Without a date, it is treated as recorded on the day of the healthy records, with a warning.
   campaign.conditions[1].date.reset();
   const Parity undated = diagnosis::parity(campaign, records, true_rig(campaign), {});
   CHECK(alarms_of(undated) == 5);

@@ -27,8 +27,8 @@ struct BatchOptions {
   JobOptions common;
 };
 
-/// Returns the command line for one rig. It does not pass a data folder, so that relative record
-/// paths start at the folder of the campaign file wherever the command runs.
+/// Returns the command line for one rig. It passes no data folder, so relative record paths start
+/// at the folder of the campaign file, whatever the working folder is.
 std::vector<std::string> arguments_for(const char* verb, const report::BatchRig& rig,
                                        const BatchOptions& options) {
   const int threads = std::max(1, options.common.threads / options.jobs);

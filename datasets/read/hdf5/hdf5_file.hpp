@@ -44,7 +44,7 @@ struct Hdf5Series {
   std::vector<std::size_t> dims;
   std::size_t cell_dims = 0;       ///< number of `dims` that belong to the cells
   std::string kind;                ///< what the elements are, if not numbers: "a text"; else empty
-  std::vector<std::string> units;  ///< one for all, one per line of the last dimension, or none
+  std::vector<std::string> units;  ///< one for all, one per series, or none
 
   /// Cannot overflow: the dimensions were checked when they were read.
   std::size_t element_count() const;

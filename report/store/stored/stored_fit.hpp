@@ -146,7 +146,7 @@ struct StoredCondition {
   std::string id;
   Later<std::optional<datasets::Waveform>> waveform;
   Later<std::optional<double>> frequency_hz, amplitude_m;
-  Omittable<std::optional<double>> amplitude_v;                     ///< in an open loop
+  Omittable<std::optional<double>> amplitude_v;                     ///< open loop only
   Omittable<double> amplitude_n, amplitude_pa, amplitude_m_per_s2;  ///< in other loops
   Later<std::optional<std::string>> leak_level;
   datasets::Use use = datasets::Use::fit;

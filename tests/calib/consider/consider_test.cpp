@@ -337,7 +337,8 @@ TEST_CASE("considered: a band of prediction includes an effect less what the fit
           "[calib]") {
   SmallRig rig;
   rig.add("faster", datasets::Waveform::sine, 6.0, 0.01).use = datasets::Use::validate;
-  // Variance that estimates and effects add to that of the noise, summed over all samples.
+  // Prediction variance beyond the noise, from the estimates and the effects, summed over all
+  // samples.
   const auto beyond_noise = [&](datasets::Use use) {
     const Fit found = rig.fitted();
     double sum = 0.0;

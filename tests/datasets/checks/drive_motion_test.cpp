@@ -10,7 +10,8 @@ using Catch::WithinAbs;
 
 TEST_CASE("drive_motion: share of the drive's range that it passes in a run", "[datasets]") {
   const Samples ramp = samples(101, [](double i) { return 10.0 * i; });
-  // Medians of four parts with ten samples each: from 10 + 4.5 to 40 + 4.5, in a range of 100.
+  // The run is split into four parts of ten samples. Their medians are those at samples 14.5
+  // to 44.5, 30 % of the range of the ramp apart.
   CHECK_THAT(drive_motion(ramp, {10, 40, 0.0}), WithinAbs(0.30, 1e-12));
   CHECK_THAT(drive_motion(ramp, {10, 5, 0.0}), WithinAbs(0.04, 1e-12));  // too short to be divided
   CHECK(drive_motion(Samples(50, 2.0), {10, 20, 0.0}) == 0.0);

@@ -40,7 +40,7 @@ TEST_CASE("align: what comes later is shifted back, relative to the mean", "[dat
   CHECK_THAT(aligned.offset_s[0] / kClock_s, WithinAbs(-1.5, 1e-3));
   CHECK_THAT(aligned.offset_s[1] / kClock_s, WithinAbs(1.5, 1e-3));
   CHECK_THAT(aligned.offset_s[2] / kClock_s, WithinAbs(0.0, 1e-3));
-  // The value for sample i is at i + shift.
+  // Sample i of the common time base is at index i + shift of the repeat.
   CHECK_THAT(aligned.shift[0], WithinAbs(-1.5, 1e-3));
   CHECK_THAT(aligned.shift[1], WithinAbs(1.5, 1e-3));
   CHECK(aligned.shift[2] == 0.0);

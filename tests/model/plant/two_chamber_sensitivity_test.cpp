@@ -148,7 +148,7 @@ std::vector<std::pair<Scenario, Experiment>> two_chamber_scenarios() {
       {{"table, load sensing", Signal::sine(9.0, 8.0), by_table, none}, proportional_rig()});
   rows.push_back(
       {{"pushed in against its valves", Signal::sine(4.0, 8.0), pushed, none}, proportional_rig()});
-  // Moves into the other stop, which is half a stroke out.
+  // Runs into the other end stop, half a stroke from the middle.
   rows.push_back({{"short stroke",
                    Signal::square(3.0, 4.0),
                    {{"stroke", 0.008}, {"stop_stiffness", 2e6}},

@@ -36,7 +36,8 @@ Simulation by_base(const Experiment& e) {
 template <typename Plant, int N>
 void check_same(Experiment e) {
   e.options.periodic_steady_state = false;
-  // Rounding may lead to different steps. With this tolerance, both are exact enough.
+  // Because of rounding, the two may take different steps. At this tolerance both are accurate
+  // enough to be compared.
   e.options.tolerance = 1e-11;
   for (const char* key : kFree) e.free.push_back(parameter_index(e.values.plant, key));
   const Simulation here = e();
