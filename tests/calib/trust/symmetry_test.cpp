@@ -58,8 +58,8 @@ constexpr std::array<std::string_view, 6> kTable{"load_0",  "load_20", "load_40"
 Experiment tabled() {
   Experiment e = everything(model::PlantKind::load_pressure);
   e.set("load_gradient", 0.0).set("load_curvature", 0.0);
-  e.set("load_table_from", -0.004).set("load_table_to", 0.001);
-  for (std::size_t i = 0; i < kTable.size(); ++i) e.set(kTable[i], i % 2 == 0 ? 900.0 : -600.0);
+  e.set("load_table_from", -0.005).set("load_table_to", 0.005);
+  for (std::size_t i = 0; i < kTable.size(); ++i) e.set(kTable[i], i % 2 == 0 ? 150.0 : -100.0);
   return e;
 }
 
