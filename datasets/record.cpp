@@ -26,6 +26,8 @@ const std::vector<ChannelInfo>& channel_table() {
        "m/s2", false},
       {Channel::angle, "angle", "angle_rad", "rad", true},
       {Channel::pilot_pressure, "pilot_pressure", "pilot_pressure_pa", "Pa", false},
+      {Channel::base_acceleration, "base_acceleration", "base_acceleration_m_per_s2", "m/s2",
+       false},
   };
   return table;
 }

@@ -33,6 +33,7 @@ enum class Channel {
   acceleration_reference,   ///< reference of an acceleration loop [m/s2]
   angle,                    ///< angle of a joint [rad]
   pilot_pressure,           ///< pilot pressure of the spool [Pa]
+  base_acceleration,        ///< acceleration of what the cylinder is fixed to [m/s2]
 };
 
 struct ChannelInfo {

@@ -237,7 +237,8 @@ bool too_fast(const SimulationInputs& inputs, std::span<const double> times_s) {
     return signal->max_step() < least_s || (period_s > 0.0 && period_s < kMostEdges * least_s);
   };
   return fast(inputs.drive) || fast(inputs.external_force_n) || fast(inputs.supply_pressure_pa) ||
-         fast(inputs.tank_pressure_pa) || fast(inputs.spool_error);
+         fast(inputs.tank_pressure_pa) || fast(inputs.spool_error) ||
+         fast(inputs.base_acceleration_m_per_s2);
 }
 
 /// @param state  start of the run; null: the rig's initial state
@@ -262,8 +263,9 @@ Simulation simulate_either(const Eigen::VectorXd* state, const Rig& rig,
   }
 
   Simulation result;
-  const Layout layout = layout_of(rig, parameters, free, plant_states(rig.plant),
-                                  inputs.external_force_n.has_value());
+  const Layout layout = layout_of(
+      rig, parameters, free, plant_states(rig.plant),
+      inputs.external_force_n.has_value() || inputs.base_acceleration_m_per_s2.has_value());
   if (state != nullptr) {
     require(state->size() == layout.states, "the state is that of another rig");
     require(state->allFinite(), "the state must be finite");

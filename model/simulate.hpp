@@ -29,8 +29,8 @@ enum class Output {
   servo_flow,            ///< Q_L, flow of the servo valve to the load [m3/s]
   leakage_flow,          ///< internal leakage across the piston [m3/s]
   work_flow,             ///< A x', flow that the moving piston displaces [m3/s]
-  acceleration,          ///< acceleration of the piston and of the mass fixed to it [m/s2]
-  payload_acceleration,  ///< acceleration of the second mass [m/s2]; zero if there is none
+  acceleration,          ///< of the piston and of the mass fixed to it, with the base's [m/s2]
+  payload_acceleration,  ///< of the second mass, with the base's [m/s2]; zero if there is none
   angle,                 ///< reading of the angle sensor of a joint [rad]; zero without a joint
   angular_velocity,      ///< angular velocity of the joint [rad/s]; zero without a joint
   pilot_pressure,        ///< pilot pressure that drives the spool [Pa]; zero without a pilot
@@ -101,6 +101,9 @@ struct SimulationInputs {
   double drive_begins_s = 0.0;               ///< time of its first sample; see Rig::before
   /// Added to the spool signal [V, or Pa for a pilot]; represents the play of a valve.
   std::optional<Signal> spool_error{};
+  /// Acceleration of what the cylinder is fixed to, in the direction of positive travel. Position
+  /// and velocity are relative to it.
+  std::optional<Signal> base_acceleration_m_per_s2{};
 };
 
 enum class Method {

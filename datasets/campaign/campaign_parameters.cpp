@@ -494,6 +494,40 @@ std::optional<ParameterConflict> find_payload_conflict(const model::ParameterVal
   return std::nullopt;
 }
 
+/// Checks that a load table is complete and increases in position, and that no polynomial describes
+/// the same load.
+std::optional<ParameterConflict> find_load_conflict(const model::ParameterValues& values) {
+  constexpr std::array kKeys{"load_table_from", "load_table_to", "load_0",  "load_20",
+                             "load_40",         "load_60",       "load_80", "load_100"};
+  const char* present = nullptr;
+  const char* absent = nullptr;
+  for (const char* key : kKeys) {
+    if (has_key(values, key)) {
+      if (present == nullptr) present = key;
+    } else if (absent == nullptr) {
+      absent = key;
+    }
+  }
+  if (present == nullptr) return std::nullopt;
+  if (absent != nullptr)
+    return ParameterConflict{
+        present, fmt::format("a load by a table needs load_table_from, load_table_to and the loads "
+                             "load_0, load_20, load_40, load_60, load_80 and load_100: expected {} "
+                             "as well",
+                             absent)};
+  if (!(values["load_table_to"] > values["load_table_from"]))
+    return ParameterConflict{
+        "load_table_to", fmt::format("load_table_to = {:g} m is not above load_table_from = {:g} m",
+                                     values["load_table_to"], values["load_table_from"])};
+  for (const char* key : {"load_gradient", "load_curvature"}) {
+    if (has_key(values, key))
+      return ParameterConflict{key, fmt::format("{} (a load by a polynomial) is combined with "
+                                                "load_table_to (by a table): expected one of them",
+                                                key)};
+  }
+  return std::nullopt;
+}
+
 /// Checks the parameters of pre-sliding friction. It needs the sliding force, and replaces the
 /// smoothed sign function.
 std::optional<ParameterConflict> find_bristle_conflict(const model::ParameterValues& values) {
@@ -615,6 +649,7 @@ std::optional<ParameterConflict> find_conflict(const model::Rig& rig,
   if (const auto conflict = find_linkage_conflict(rig, values)) return conflict;
   if (const auto conflict = find_metering_conflict(rig, values)) return conflict;
   if (const auto conflict = find_bristle_conflict(values)) return conflict;
+  if (const auto conflict = find_load_conflict(values)) return conflict;
   if (rig.controller != model::ControllerKind::none) {
     if (const auto conflict = find_loop_conflict(rig, values)) return conflict;
   }

@@ -61,6 +61,7 @@ ChannelRole default_role(Channel channel, Channel drive) {
   switch (channel) {
     case Channel::supply_pressure:
     case Channel::tank_pressure:
+    case Channel::base_acceleration:
       return ChannelRole::input;
     default:
       return info(channel).is_output ? ChannelRole::output : ChannelRole::ignore;
@@ -71,7 +72,8 @@ ChannelRole default_role(Channel channel, Channel drive) {
 void check_role(const TomlNode& node, Channel channel, ChannelRole role, Channel drive) {
   const bool drives = channel == drive;
   const bool can_be_input = drives || channel == Channel::supply_pressure ||
-                            channel == Channel::tank_pressure || channel == Channel::force;
+                            channel == Channel::tank_pressure || channel == Channel::force ||
+                            channel == Channel::base_acceleration;
   const bool open_loop = drive == Channel::command || drive == Channel::pilot_pressure;
   const bool can_be_output = info(channel).is_output || (channel == Channel::command && !open_loop);
   if (role == ChannelRole::input && !can_be_input) {
@@ -217,7 +219,14 @@ void read_channels(const TomlNode& table, Campaign& campaign) {
       table.fail_unknown(key, "channel", known);
     }
     const Channel channel = *channel_from_key(key);
-    campaign.channels.emplace(channel, read_channel(node, channel, drive_channel(campaign)));
+    const auto& setting =
+        campaign.channels.emplace(channel, read_channel(node, channel, drive_channel(campaign)))
+            .first->second;
+    if (channel == Channel::base_acceleration && setting.role == ChannelRole::input &&
+        campaign.rig.plant == model::PlantKind::linkage)
+      node.fail(
+          "the plant linkage turns an arm, and how its base moves the arm depends on lengths that "
+          "the model lacks: expected role = \"ignore\"");
   }
 }
 

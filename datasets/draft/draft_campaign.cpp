@@ -449,23 +449,37 @@ constexpr std::array<std::string_view, 6> kPilotTerms{
     "pilot_dead_band",     "pilot_exponent",         "return_exponent",
     "return_line_opening", "return_line_resistance", "bypass_opening"};
 
+/// A load by a table, proposed if position and both chamber pressures were recorded: they show how
+/// the load varies with the travel.
+constexpr std::array<std::string_view, 8> kLoadTableTerms{
+    "load_table_from", "load_table_to", "load_0",  "load_20",
+    "load_40",         "load_60",       "load_80", "load_100"};
+
 /// Optional terms for a rig with a payload, proposed if an acceleration was recorded.
 constexpr std::array<std::string_view, 3> kPayloadTerms{"payload_mass", "payload_frequency",
                                                         "payload_damping_ratio"};
 
+/// What the recorded channels say about the terms of a rig.
+struct RecordedSigns {
+  bool payload = false;     ///< an acceleration was recorded
+  bool load_table = false;  ///< position and both chamber pressures were recorded
+  bool pilot = false;       ///< the drive is a pilot pressure
+};
+
 /// Lists optional terms, as comments.
-std::string terms_text(model::PlantKind plant, bool with_payload, bool pilot) {
+std::string terms_text(model::PlantKind plant, const RecordedSigns& signs) {
   std::vector<std::string_view> terms(kLoadPressureTerms.begin(), kLoadPressureTerms.end());
   if (plant == model::PlantKind::two_chamber)
     terms.assign(kTwoChamberTerms.begin(), kTwoChamberTerms.end());
   if (plant == model::PlantKind::linkage) terms.assign(kLinkageTerms.begin(), kLinkageTerms.end());
-  if (pilot && plant == model::PlantKind::two_chamber) {
+  if (signs.pilot && plant == model::PlantKind::two_chamber) {
     // A dead band in volts does not apply to this valve.
     terms.erase(std::remove(terms.begin(), terms.end(), "valve_dead_band"), terms.end());
     terms.insert(terms.end(), kPumpTerms.begin(), kPumpTerms.end());
   }
-  if (pilot) terms.insert(terms.end(), kPilotTerms.begin(), kPilotTerms.end());
-  if (with_payload) terms.insert(terms.end(), kPayloadTerms.begin(), kPayloadTerms.end());
+  if (signs.pilot) terms.insert(terms.end(), kPilotTerms.begin(), kPilotTerms.end());
+  if (signs.load_table) terms.insert(terms.end(), kLoadTableTerms.begin(), kLoadTableTerms.end());
+  if (signs.payload) terms.insert(terms.end(), kPayloadTerms.begin(), kPayloadTerms.end());
   std::string text = "# Terms that are absent unless given (rigcal params lists all):\n";
   for (const std::string_view key : terms) {
     const int row = model::parameter_index(plant, key);
@@ -490,10 +504,9 @@ std::string model_text(model::PlantKind plant) {
   return {};
 }
 
-/// @param loop   controlled quantity; nullopt if the command was recorded
-/// @param pilot  whether the recorded drive is a pilot pressure
-std::string rig_text(model::PlantKind plant, std::optional<model::Feedback> loop, bool with_payload,
-                     bool pilot) {
+/// @param loop  controlled quantity; nullopt if the command was recorded
+std::string rig_text(model::PlantKind plant, std::optional<model::Feedback> loop,
+                     const RecordedSigns& signs) {
   std::string text = "[rig]\n" + model_text(plant);
   text +=
       "# What no data sheet gives is fitted: { start = ..., lower = ..., upper = ..., fit = "
@@ -502,7 +515,7 @@ std::string rig_text(model::PlantKind plant, std::optional<model::Feedback> loop
   for (const model::ParameterSpec& spec : model::parameter_table(plant)) {
     // A valve with four metering edges has one of two gains, depending on what drives it.
     const bool needed = plant != model::PlantKind::load_pressure &&
-                        spec.key == std::string_view(pilot ? "pilot_gain" : "valve_gain");
+                        spec.key == std::string_view(signs.pilot ? "pilot_gain" : "valve_gain");
     if (!needed && (spec.kind != model::ParameterKind::plant || spec.default_value)) continue;
     const std::string blank = spec.unit == "1"
                                   ? toml_quoted(kBlank)
@@ -511,12 +524,12 @@ std::string rig_text(model::PlantKind plant, std::optional<model::Feedback> loop
                         comment(fmt::format("{}: {}{}", spec.symbol, spec.meaning,
                                             spec.unit == "1" ? " (a plain number)" : "")));
   }
-  text += terms_text(plant, with_payload, pilot);
+  text += terms_text(plant, signs);
   if (!loop)
     return text + fmt::format(
                       "[rig.controller]\ntype = \"none\"  # the recorded {} drives the "
                       "valve\n",
-                      pilot ? "pilot pressure" : "command");
+                      signs.pilot ? "pilot pressure" : "command");
   const model::FeedbackRow& row = model::gain_keys(*loop);
   const auto unit_of = [&](std::string_view key) {
     return model::parameter_table(
@@ -824,10 +837,13 @@ Draft draft_campaign(const std::vector<fs::path>& files, const fs::path& folder)
   auto plant = chambers || has_pilot(columns) ? model::PlantKind::two_chamber
                                               : model::PlantKind::load_pressure;
   if (find(columns, Channel::angle) != nullptr) plant = model::PlantKind::linkage;
-  text += rig_text(
-      plant, loop,
-      plant != model::PlantKind::linkage && find(columns, Channel::acceleration) != nullptr,
-      has_pilot(columns));
+  const bool slides = plant != model::PlantKind::linkage;
+  const auto recorded = [&own = columns](Channel channel) { return find(own, channel) != nullptr; };
+  text += rig_text(plant, loop,
+                   {slides && recorded(Channel::acceleration),
+                    slides && recorded(Channel::position) && recorded(Channel::pressure_a) &&
+                        recorded(Channel::pressure_b),
+                    has_pilot(columns)});
   text += "\n[recording]\n" + initial_text(groups);
   text += "# " + draft_line("recording", "before");
   text += "# " + draft_line("recording", "decimate_to");

@@ -30,6 +30,7 @@ std::optional<model::Output> model_output(Channel channel) {
     case Channel::acceleration_reference:
     case Channel::supply_pressure:
     case Channel::tank_pressure:
+    case Channel::base_acceleration:
     case Channel::temperature:
       break;
   }

@@ -126,6 +126,8 @@ Channels clean_channels(const Campaign& truth, const Condition& condition, const
       return run.outputs(static_cast<Eigen::Index>(times.sample[i]), column);
     }
     if (channel == drive_channel(truth)) return started ? inputs.drive.value(t) : 0.0;
+    if (channel == Channel::base_acceleration)
+      return inputs.base_acceleration_m_per_s2 ? inputs.base_acceleration_m_per_s2->value(t) : 0.0;
     if (channel == Channel::supply_pressure)
       return inputs.supply_pressure_pa ? inputs.supply_pressure_pa->value(t)
                                        : values["supply_pressure"];

@@ -16,7 +16,8 @@ namespace {
 bool has_periodic_state(const calib::ProblemCondition& condition) {
   const model::SimulationInputs& in = condition.inputs;
   return is_generated_wave(*condition.condition) && condition.condition->amplitude.has_value() &&
-         !in.external_force_n && !in.supply_pressure_pa && !in.tank_pressure_pa;
+         !in.external_force_n && !in.supply_pressure_pa && !in.tank_pressure_pa &&
+         !in.base_acceleration_m_per_s2;
 }
 
 /// Computes the leak in the periodic state; empty if the rig does not become periodic.

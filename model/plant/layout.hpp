@@ -25,8 +25,9 @@ struct PresentTerms {
   bool valve_offset = false;    ///< the null shift is not zero, or is free
   bool spool_shape = false;     ///< null shift or overlap is not zero, or is free
   bool external_force = false;  ///< the external force is recorded, not zero, or free
-  bool varying_load = false;    ///< gradient or curvature of the load is not zero, or is free
+  bool varying_load = false;    ///< the load varies with the travel
   bool curved_load = false;     ///< the curvature of the load is not zero, or is free
+  bool load_table = false;      ///< the load has a table over the travel
   bool overlaps = false;        ///< the overlap of an edge is not zero, or is free
   bool null_opening = false;    ///< covered edges leak through an orifice
   bool line_loss = false;       ///< the lines also throttle the flow
@@ -230,7 +231,9 @@ inline Layout layout_of(const Rig& rig, const ParameterValues& values, std::span
   layout.terms.null_leak = acts("valve_null_leakage");
   layout.terms.external_force = force_recorded || acts("external_force");
   layout.terms.curved_load = acts("load_curvature");
-  layout.terms.varying_load = layout.terms.curved_load || acts("load_gradient");
+  layout.terms.load_table = given("load_table_to");
+  layout.terms.varying_load =
+      layout.terms.load_table || layout.terms.curved_load || acts("load_gradient");
   layout.terms.valve_offset = acts("valve_offset");
   layout.terms.spool_shape = layout.terms.valve_offset || acts("valve_dead_band");
   layout.terms.external_leak = acts("external_leakage_a") || acts("external_leakage_b");

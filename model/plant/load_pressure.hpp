@@ -66,8 +66,8 @@ struct LoadPressurePlant {
   /// except those that act in one direction only. The chamber pressures swap instead of changing
   /// sign.
   static bool reversible(Output output, const PresentTerms& terms) {
-    return !terms.external_force && !terms.curved_load && !terms.valve_offset &&
-           output != Output::pressure_a && output != Output::pressure_b;
+    return !terms.external_force && !terms.curved_load && !terms.load_table &&
+           !terms.valve_offset && output != Output::pressure_a && output != Output::pressure_b;
   }
 
   /// Spool travel [m], eq. 6: x_v = k_sv u, with null shift and overlap.
@@ -174,12 +174,13 @@ struct LoadPressurePlant {
   static std::array<C, kStates> initial(const PlantInput<C>& /*in*/, const Coefficients<C>& p,
                                         const PresentTerms& terms) {
     const C x = (p.initial_position_m - p.position_offset_m) / p.position_gain;
-    const C P_L =
-        terms.initial_load_pressure
-            ? C((p.initial_load_pressure_pa - p.load_pressure_offset_pa) / p.load_pressure_gain)
-            : C((p.external_force_n + p.stiffness_n_per_m * x +
-                 varying_load(x, p.load_gradient_n_per_m, p.load_curvature_n_per_m2)) /
-                p.piston_area_m2);
+    C P_L = terms.initial_load_pressure
+                ? C((p.initial_load_pressure_pa - p.load_pressure_offset_pa) / p.load_pressure_gain)
+                : C((p.external_force_n + p.stiffness_n_per_m * x +
+                     varying_load(x, p.load_gradient_n_per_m, p.load_curvature_n_per_m2)) /
+                    p.piston_area_m2);
+    if (terms.load_table && !terms.initial_load_pressure)
+      P_L = P_L + tabled_load(x, p) / p.piston_area_m2;
     return {x, p.initial_velocity_m_per_s, P_L};
   }
 };

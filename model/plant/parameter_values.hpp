@@ -50,6 +50,14 @@ struct CommonParameters {
   T external_force_n{};
   T load_gradient_n_per_m{};
   T load_curvature_n_per_m2{};
+  T load_table_from_m{};
+  T load_table_to_m{};
+  T load_0_n{};
+  T load_20_n{};
+  T load_40_n{};
+  T load_60_n{};
+  T load_80_n{};
+  T load_100_n{};
   T payload_mass_kg{};
   T payload_frequency_rad_per_s{};
   T payload_damping_ratio{};
@@ -203,6 +211,14 @@ constexpr auto load_rows() {
       F{&P::external_force_n, {"external_force", "external_force_n", "F_ext", "N", "constant load against positive travel", "docs/model.md", K::term, -1e8, 1e8, 0.0}},
       F{&P::load_gradient_n_per_m, {"load_gradient", "load_gradient_n_per_m", "k_F", "N/m", "what the load grows by per travel; negative where it falls", "docs/model.md", K::term, -1e12, 1e12, 0.0}},
       F{&P::load_curvature_n_per_m2, {"load_curvature", "load_curvature_n_per_m2", "c_F", "N/m2", "what the load grows by per square of travel", "docs/model.md", K::term, -1e12, 1e12, 0.0}},
+      F{&P::load_table_from_m, {"load_table_from", "load_table_from_m", "x_L0", "m", "position at which the table of the load begins", "docs/model.md", K::term, -100, 100, 0.0, false}},
+      F{&P::load_table_to_m, {"load_table_to", "load_table_to_m", "x_L1", "m", "position at which it ends; a load by a table over the travel instead of a polynomial", "docs/model.md", K::term, -100, 100, 0.0, false}},
+      F{&P::load_0_n, {"load_0", "load_0_n", "L_0", "N", "load against positive travel where the table begins", "docs/model.md", K::term, -1e8, 1e8, 0.0}},
+      F{&P::load_20_n, {"load_20", "load_20_n", "L_20", "N", "the same at 20 % of the way to its end", "docs/model.md", K::term, -1e8, 1e8, 0.0}},
+      F{&P::load_40_n, {"load_40", "load_40_n", "L_40", "N", "the same at 40 % of the way to its end", "docs/model.md", K::term, -1e8, 1e8, 0.0}},
+      F{&P::load_60_n, {"load_60", "load_60_n", "L_60", "N", "the same at 60 % of the way to its end", "docs/model.md", K::term, -1e8, 1e8, 0.0}},
+      F{&P::load_80_n, {"load_80", "load_80_n", "L_80", "N", "the same at 80 % of the way to its end", "docs/model.md", K::term, -1e8, 1e8, 0.0}},
+      F{&P::load_100_n, {"load_100", "load_100_n", "L_100", "N", "the same where it ends", "docs/model.md", K::term, -1e8, 1e8, 0.0}},
       F{&P::payload_mass_kg, {"payload_mass", "payload_mass_kg", "m_2", "kg", "second mass, behind a spring and a damper", "docs/model.md", K::term, 1e-3, 1e6, 0.0}},
       F{&P::payload_frequency_rad_per_s, {"payload_frequency", "payload_frequency_rad_per_s", "omega_2", "rad/s", "natural frequency of the second mass where the first is fixed", "docs/model.md", K::term, 1e-2, 1e6, 0.0}},
       F{&P::payload_damping_ratio, {"payload_damping_ratio", "payload_damping_ratio", "zeta_2", "1", "damping ratio of the second mass where the first is fixed", "docs/model.md", K::term, 0, 100, 0.0}},

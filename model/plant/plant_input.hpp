@@ -89,11 +89,20 @@ X friction_of(const std::array<X, M>& x, const CommonParameters<C>& p, const Pre
   return friction(x[static_cast<std::size_t>(Plant::velocity)], p, terms);
 }
 
+/// Load of the table at x [N]. Not inlined, to keep the code of rigs without it short.
+template <typename X, typename C>
+[[gnu::noinline]] X tabled_load(const X& x, const CommonParameters<C>& p) {
+  return table_load(x, p.load_table_from_m, p.load_table_to_m,
+                    std::array<C, 6>{p.load_0_n, p.load_20_n, p.load_40_n, p.load_60_n, p.load_80_n,
+                                     p.load_100_n});
+}
+
 /// Load against positive travel [N]: the external force plus the load that varies with the travel.
 template <typename X, typename C>
 X external_load(const X& x, const PlantInput<X>& in, const CommonParameters<C>& p,
                 const PresentTerms& terms) {
   X load = terms.external_force ? in.external_force_n : X(0.0);
+  if (terms.load_table) return load + tabled_load(x, p);
   if (terms.curved_load)
     return load + varying_load(x, p.load_gradient_n_per_m, p.load_curvature_n_per_m2);
   if (terms.varying_load) load = load + x * p.load_gradient_n_per_m;

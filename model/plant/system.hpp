@@ -29,13 +29,15 @@ class System {
   System(const Layout& layout, const ParameterValues& values, std::span<const int> free,
          InputTrack drive, std::optional<InputTrack> external_force,
          std::optional<InputTrack> supply_pressure, std::optional<InputTrack> tank_pressure,
-         std::optional<InputTrack> spool_error = std::nullopt)
+         std::optional<InputTrack> spool_error = std::nullopt,
+         std::optional<InputTrack> base_acceleration = std::nullopt)
       : layout_(layout),
         drive_(std::move(drive)),
         external_force_(std::move(external_force)),
         supply_pressure_(std::move(supply_pressure)),
         tank_pressure_(std::move(tank_pressure)),
-        spool_error_(std::move(spool_error)) {
+        spool_error_(std::move(spool_error)),
+        base_acceleration_(std::move(base_acceleration)) {
     passive_ = coefficients<double>(values, free);
     if constexpr (P > 0) {
       active_ = coefficients<C>(values, free);
@@ -59,6 +61,7 @@ class System {
   std::optional<InputTrack>& supply_pressure() { return supply_pressure_; }
   std::optional<InputTrack>& tank_pressure() { return tank_pressure_; }
   std::optional<InputTrack>& spool_error() { return spool_error_; }
+  std::optional<InputTrack>& base_acceleration() { return base_acceleration_; }
   /// Sensitivity column of the transport delay, among the P directions; -1 if there is none.
   int delay_direction() const { return delay_direction_; }
 
@@ -164,6 +167,8 @@ class System {
         case Output::acceleration:
           result[k] = Plant::derivative(x, in, parameters_of(ByParameters{}),
                                         layout_.terms)[Plant::velocity];
+          if (base_acceleration_)
+            result[k] = result[k] + input_value(ByParameters{}, *base_acceleration_, t, false);
           break;
         case Output::payload_acceleration:
           result[k] = payload_acceleration(ByParameters{}, x);
@@ -457,6 +462,8 @@ class System {
         break;
       case Feedback::acceleration:
         loop.error = drive - Plant::derivative(x, in, p, layout_.terms)[Plant::velocity];
+        if (base_acceleration_)
+          loop.error = loop.error - input_value(by, *base_acceleration_, t, false);
         break;
     }
     if (layout_.pressure_feedback)
@@ -464,7 +471,7 @@ class System {
     return loop;
   }
 
-  /// Acceleration of the second mass [m/s2].
+  /// Acceleration of the second mass, with that of the base [m/s2].
   template <typename K>
   Number<K> payload_acceleration(K by, const Numbers<K>& x) const {
     if constexpr (N > Plant::kStates + 1) {
@@ -489,6 +496,9 @@ class System {
       in.external_force_n = Number<K>(p.external_force_n);
       if (external_force_)
         in.external_force_n = in.external_force_n + input_value(by, *external_force_, t, false);
+      if (base_acceleration_)  // inertia, in the frame of the base
+        in.external_force_n =
+            in.external_force_n + input_value(by, *base_acceleration_, t, false) * p.mass_kg;
     }
     in.supply_pressure_pa =
         layout_.supply >= 0 ? x[static_cast<std::size_t>(layout_.supply)] : source_pressure(by, t);
@@ -581,6 +591,8 @@ class System {
         const auto payload = static_cast<std::size_t>(layout_.payload);
         dx[payload] = x[payload + 1];
         dx[payload + 1] = payload_acceleration(by, x);
+        if (base_acceleration_)
+          dx[payload + 1] = dx[payload + 1] - input_value(by, *base_acceleration_, t, false);
       }
     }
     if constexpr (requires { Plant::pressure_across(x); }) {
@@ -619,6 +631,7 @@ class System {
   std::optional<InputTrack> supply_pressure_;
   std::optional<InputTrack> tank_pressure_;
   std::optional<InputTrack> spool_error_;
+  std::optional<InputTrack> base_acceleration_;  ///< [m/s2]
   int delay_direction_ = -1;
   C while_it_waits_{0.0};  ///< value of the drive before its first sample
 };

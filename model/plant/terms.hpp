@@ -98,6 +98,30 @@ X varying_load(const X& x, const C& gradient_n_per_m, const C& curvature_n_per_m
   return (x * curvature_n_per_m2 + gradient_n_per_m) * x;
 }
 
+/// Load from a table over the travel [N]. It interpolates linearly between six values at equal
+/// distances, and extrapolates the first and the last piece. A parabola over a quarter of a piece
+/// to either side of a corner replaces the corner, so the slope is continuous.
+///
+/// @param from_m, to_m  x at the first and at the last value, to_m > from_m
+/// @param load_n        load at from_m, at 20, 40, 60 and 80 % of the way, and at to_m
+template <typename X, typename C>
+X table_load(const X& x, const C& from_m, const C& to_m, const std::array<C, 6>& load_n) {
+  constexpr double kPieces = 5.0;
+  constexpr double kRounded = 0.25;  // of a piece, to either side of a corner
+  const X place = (x - from_m) * (kPieces / (to_m - from_m));
+  const double nearest = std::round(value_of(place));
+  const auto corner =
+      nearest > 1.0 ? static_cast<std::size_t>(std::min(nearest, kPieces - 1.0)) : std::size_t{1};
+  const C before_n = load_n[corner] - load_n[corner - 1];
+  const C after_n = load_n[corner + 1] - load_n[corner];
+  const X past = place - static_cast<double>(corner);
+  if (value_of(past) >= kRounded) return past * after_n + load_n[corner];
+  const X load = past * before_n + load_n[corner];
+  if (value_of(past) <= -kRounded) return load;
+  const X within = past + kRounded;
+  return load + within * within * ((after_n - before_n) * (0.25 / kRounded));
+}
+
 /// Opening of a metering edge that leaks while it is covered: c + y if it is open, c^2 / (c - y) if
 /// it is covered, so that the leak decays as the overlap increases. Value and slope are continuous.
 ///

@@ -105,6 +105,7 @@ class Run {
     if (system_.supply_pressure()) f(*system_.supply_pressure());
     if (system_.tank_pressure()) f(*system_.tank_pressure());
     if (system_.spool_error()) f(*system_.spool_error());
+    if (system_.base_acceleration()) f(*system_.base_acceleration());
   }
 
   double sample_time(std::size_t sample) const { return times_s_[sample] - times_s_.front(); }

@@ -189,6 +189,16 @@ void take_delay_off(const ExportRequest& request, const Campaign& campaign, Para
   values.given[index] = false;
 }
 
+/// Throws if the base of the rig moves, since the inputs of an FMU are the same for all rigs.
+void require_base_at_rest(const Campaign& campaign) {
+  const auto base = campaign.channels.find(datasets::Channel::base_acceleration);
+  if (base == campaign.channels.end() || base->second.role != datasets::ChannelRole::input) return;
+  throw InputError({campaign.file.string()},
+                   "key 'recording.channels.base_acceleration': an FMU has no such input: expected "
+                   "role = \"ignore\", and mass times this acceleration added to the input "
+                   "external_force in the model that imports it");
+}
+
 /// Throws if the model rejects the values, with the model's own message.
 void require_simulable(const Campaign& campaign, const model::ExportedRig& rig) {
   const std::array times_s{0.0};
@@ -280,6 +290,7 @@ ExportChoice choose_export(const Campaign& campaign, const CampaignChoice& choic
       fmu.step_s = (fmu.stop_s - fmu.start_s) / static_cast<double>(task.time_s.size() - 1);
     if (task.record) records.push_back(std::move(*task.record));
   }
+  require_base_at_rest(campaign);
   take_delay_off(request, campaign, values, made.warnings);
   take_sensors_off(values);
   fmu.rig.values = values;

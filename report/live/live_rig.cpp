@@ -166,6 +166,7 @@ Json recorded_inputs(const Campaign& campaign, const SimulationTask& task) {
   add("force", task.inputs.external_force_n, datasets::Channel::force);
   add("supply", task.inputs.supply_pressure_pa, datasets::Channel::supply_pressure);
   add("tank", task.inputs.tank_pressure_pa, datasets::Channel::tank_pressure);
+  add("base", task.inputs.base_acceleration_m_per_s2, datasets::Channel::base_acceleration);
   return json;
 }
 

@@ -34,6 +34,10 @@ const Edits kTwoChamberGeneratedRuns{
      "s\"\nsample_rate = \"200 Hz\""},
     {"[recording.channels]", "[simulation]\ntolerance = 1e-9\n[recording.channels]"}};
 
+const std::string kLoadTable =
+    "load_table_from = \"-15 mm\"\nload_table_to = \"16 mm\"\nload_0 = \"90 N\"\nload_20 = \"-50 "
+    "N\"\nload_40 = \"70 N\"\nload_60 = \"-30 N\"\nload_80 = \"40 N\"\nload_100 = \"-60 N\"\n";
+
 /// The condition "square" of both campaigns. At 1 Hz its edges are at half seconds.
 Drive square(double amplitude) {
   return [amplitude](double t) { return std::fmod(t + 1e-9, 1.0) < 0.5 ? amplitude : -amplitude; };
@@ -199,6 +203,7 @@ TEST_CASE("export: every term that an FMU can have is in it", "[apps]") {
   const CommandFolder folder;
   SECTION("load pressure") {
     Edits edits = kGeneratedRuns;
+    edits.push_back({"mass = \"60 kg\"", "mass = \"60 kg\"\n" + kLoadTable});
     edits.push_back({"leakage_coefficient = 0.3",
                      "leakage_coefficient = 0.3\nlaminar_leakage = \"1e-13 m3/(s "
                      "Pa)\"\ncoulomb_friction = \"40 N\"\nstribeck_friction = \"20 "
@@ -214,6 +219,7 @@ TEST_CASE("export: every term that an FMU can have is in it", "[apps]") {
   }
   SECTION("two chambers") {
     Edits edits = kTwoChamberGeneratedRuns;
+    edits.push_back({"area_gradient =", kLoadTable + "area_gradient ="});
     edits.push_back(
         {"stroke = \"200 mm\"",
          "stroke = \"40 mm\"\ngravity = \"9.81 m/s2\"\nair_fraction = 0.01\nvalve_time_constant = "
@@ -559,6 +565,14 @@ TEST_CASE("export: bad input", "[apps]") {
   CHECK(without.exit_code == 0);
   CHECK_THAT(without.out, Contains("transport_delay is left out: the reference has to be delayed "
                                    "by 0.004 s"));
+  folder.write("shaken.toml",
+               edited(kCampaign, {{"[recording.channels]",
+                                   "[recording.channels]\nbase_acceleration = { column = "
+                                   "\"a_base\", unit = \"m/s2\" }"}}));
+  const Outcome base = folder.run({"export", "fmu", "shaken.toml", "--out", "out"});
+  CHECK(base.exit_code == 2);
+  CHECK_THAT(base.err, Contains("base_acceleration': an FMU has no such input") &&
+                           Contains("external_force"));
   folder.write("file", "");
   const Outcome out = folder.run({"export", "fmu", "campaign.toml", "--out", "file/out"});
   CHECK(out.exit_code == 5);

@@ -51,6 +51,18 @@ constexpr std::array<std::string_view, 10> kMetering{
     "make_up_conductance", "compensator_pressure", "load_sensing_margin", "relief_pressure",
     "relief_conductance",  "accumulator_precharge"};
 
+/// The loads of a table, which everything() lacks because it has a polynomial.
+constexpr std::array<std::string_view, 6> kTable{"load_0",  "load_20", "load_40",
+                                                 "load_60", "load_80", "load_100"};
+
+Experiment tabled() {
+  Experiment e = everything(model::PlantKind::load_pressure);
+  e.set("load_gradient", 0.0).set("load_curvature", 0.0);
+  e.set("load_table_from", -0.005).set("load_table_to", 0.005);
+  for (std::size_t i = 0; i < kTable.size(); ++i) e.set(kTable[i], i % 2 == 0 ? 150.0 : -100.0);
+  return e;
+}
+
 /// A rig with a pilot-operated valve, a pump and all of these terms except the accumulator, whose
 /// gas law depends on the atmospheric pressure.
 Experiment metered() {
@@ -99,6 +111,7 @@ TEST_CASE("scaling_exponent: positions stay where all that has one is scaled", "
         (spec.key == "payload_mass" || spec.key.starts_with("bristle")))
       continue;
     if (std::find(kMetering.begin(), kMetering.end(), spec.key) != kMetering.end()) continue;
+    if (std::find(kTable.begin(), kTable.end(), spec.key) != kTable.end()) continue;
     CAPTURE(spec.key);
     // Each scaled parameter acts in this rig and matters for the symmetry.
     CHECK(spec.can_be_fitted);
@@ -112,6 +125,15 @@ TEST_CASE("scaling_exponent: a recorded pilot pressure stays", "[calib]") {
   CHECK(change(e, "") < 5e-6);
   for (const std::string_view key : kMetering) {
     if (key == "accumulator_precharge") continue;
+    CAPTURE(key);
+    CHECK(change(e, key) > 2e-5);
+  }
+}
+
+TEST_CASE("scaling_exponent: the loads of a table are forces", "[calib]") {
+  const Experiment e = tabled();
+  CHECK(change(e, "") < 5e-6);
+  for (const std::string_view key : kTable) {
     CAPTURE(key);
     CHECK(change(e, key) > 2e-5);
   }

@@ -92,6 +92,55 @@ TEST_CASE("load_campaign: a load may fall along the travel, a spring may not", "
       Catch::Contains("makes no sense for stiffness"));
 }
 
+TEST_CASE("load_campaign: all of a load table or nothing, and no polynomial beside it",
+          "[datasets]") {
+  const auto with = [](const std::string& lines) {
+    return replaced(kExample, kKnownMass, kKnownMass + "\n" + lines);
+  };
+  const std::string values =
+      "load_0 = { start = \"900 N\", lower = \"-2 kN\", upper = \"2 kN\", fit = true }\n"
+      "load_20 = \"500 N\"\nload_40 = \"700 N\"\nload_60 = \"-300 N\"\nload_80 = \"-100 N\"\n"
+      "load_100 = \"0.4 kN\"\n";
+  const std::string places = "load_table_from = \"-40 mm\"\nload_table_to = \"50 mm\"\n";
+  const Campaign campaign = load_text(with(values + places + "external_force = \"1 kN\""));
+  const auto read = values_in(campaign, campaign.conditions.front());
+  CHECK(read["load_table_to"] == Approx(0.05));
+  CHECK(read["load_60"] == Approx(-300.0));
+  CHECK(read["load_100"] == Approx(400.0));
+  const auto refusal = [&](const std::string& lines) { return loop_refusal_of(with(lines)); };
+  CHECK_THAT(refusal(values),
+             Catch::Contains("'load_0'") && Catch::Contains("expected load_table_from as well"));
+  CHECK_THAT(refusal(places),
+             Catch::Contains("'load_table_from'") && Catch::Contains("expected load_0 as well"));
+  CHECK_THAT(refusal(replaced(values, "load_80 = \"-100 N\"\n", "") + places),
+             Catch::Contains("expected load_80 as well"));
+  CHECK_THAT(refusal(values + replaced(places, "50 mm", "-40 mm")),
+             Catch::Contains("load_table_to = -0.04 m is not above load_table_from = -0.04 m"));
+  for (const char* key : {"load_gradient = \"1 N/m\"", "load_curvature = \"1 N/m2\""})
+    CHECK_THAT(refusal(values + places + key), Catch::Contains("expected one of them"));
+  CHECK_THAT(refusal(values + replaced(places, "\"50 mm\"", "{ start = \"50 mm\", fit = true }")),
+             Catch::Contains("load_table_to") && Catch::Contains("cannot be fitted"));
+}
+
+TEST_CASE("load_campaign: each condition may have its own mass and payload", "[datasets]") {
+  const std::string payload =
+      kKnownMass +
+      "\npayload_mass = { start = \"1 t\", fit = true, scope = \"condition\" }\n"
+      "payload_frequency = \"16 Hz\"\npayload_damping_ratio = 0.05";
+  const Campaign campaign =
+      load_text(replaced(replaced(kExample, kKnownMass, payload), "parameters = { }",
+                         "parameters = { mass = \"80 kg\", payload_mass = \"250 kg\" }"));
+  const auto heavy = values_in(campaign, campaign.conditions[0]);
+  CHECK(heavy["mass"] == Approx(80.0));
+  CHECK(heavy["payload_mass"] == Approx(250.0));
+  const auto plain = values_in(campaign, campaign.conditions[1]);
+  CHECK(plain["mass"] == Approx(60.0));
+  CHECK(plain["payload_mass"] == Approx(1000.0));
+  const auto mass = model::parameter_index(model::PlantKind::load_pressure, "payload_mass");
+  REQUIRE(campaign.setting(mass) != nullptr);
+  CHECK(campaign.setting(mass)->scope == Scope::condition);
+}
+
 TEST_CASE("load_campaign: an integral at the start needs integral action", "[datasets]") {
   const std::string start = kKnownMass + "\ninitial_integral = \"0.1 V\"";
   std::string text = replaced(kExample, kKnownMass, start);

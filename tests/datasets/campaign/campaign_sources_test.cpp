@@ -141,6 +141,26 @@ TEST_CASE("inputs_of: measured force and supply act on the rig", "[datasets]") {
   CHECK(inputs.supply_pressure_pa->value(2.5) == 3.0);
 }
 
+TEST_CASE("inputs_of: a measured acceleration of the base acts on the rig", "[datasets]") {
+  const auto with_base = [](const std::string& more) {
+    return replaced(
+        kExample, "[averaging]",
+        "base_acceleration = { column = \"a\", unit = \"gravity\"" + more + " }\n[averaging]");
+  };
+  const Campaign campaign = load_text(with_base(""));
+  CHECK(campaign.channels.at(Channel::base_acceleration).to_si.scale == 9.80665);
+  const Record record = ramp_record(Channel::base_acceleration);
+  const Condition& sine = campaign.conditions[0];
+  const auto inputs_from = [&](const Campaign& from) {
+    return inputs_of(from, sine, values_in(from, sine), &record).base_acceleration_m_per_s2;
+  };
+  REQUIRE(inputs_from(campaign).has_value());
+  CHECK(inputs_from(campaign)->value(1.5) == 10.0);
+  CHECK_FALSE(inputs_from(load_text(with_base(", role = \"ignore\""))).has_value());
+  CHECK_THROWS_WITH(load_text(with_base(", role = \"output\"")),
+                    Catch::Contains("the model does not compute base_acceleration"));
+}
+
 TEST_CASE("sample_times: of the record, or of duration and rate", "[datasets]") {
   Condition condition;
   CHECK_THROWS_AS(sample_times(condition, nullptr), InputError);

@@ -137,6 +137,9 @@ TEST_CASE("load_campaign: what does not go together on a linkage", "[datasets]")
            Row{"angle = { column",
                "position = { column = \"x_m\", unit = \"m\" }\nangle = { column",
                "the plant linkage turns an arm, and its motion is the angle of the joint"},
+           Row{"angle = { column",
+               "base_acceleration = { column = \"a\", unit = \"m/s2\" }\nangle = { column",
+               "how its base moves the arm depends on lengths"},
            Row{"unit = \"deg\", sd", "unit = \"mm\", sd", "angle"},
        }) {
     CAPTURE(row.with);

@@ -39,6 +39,8 @@ TEST_CASE("guess_column: channels and units by name", "[datasets]") {
                                 {"force_norm", Channel::force, ""},
                                 {"setpoint_bar", Channel::load_pressure_reference, "bar"},
                                 {"acc_x", Channel::acceleration, ""},
+                                {"acc_base_g", Channel::base_acceleration, ""},
+                                {"ground acceleration [m/s2]", Channel::base_acceleration, "m/s2"},
                                 {"log.position", Channel::position, ""},
                                 {"F_kN", Channel::force, "kN"},
                                 {"temp_C", Channel::temperature, "degC"},

@@ -154,6 +154,22 @@ TEST_CASE("draft_campaign: a joint without a pilot has an electric valve", "[dat
   CHECK_THAT(draft, !Contains("pilot_dead_band"));
 }
 
+TEST_CASE("draft_campaign: both pressures and a position suggest a load by a table", "[datasets]") {
+  const TemporaryFolder folder;
+  std::string both = "t_s,u_V,x_mm,pA_bar,pB_bar,acc_base [m/s2]\n";
+  std::string one = "t_s,u_V,x_mm,pA_bar\n";
+  for (int i = 0; i < 200; ++i) {
+    both += fmt::format("{},{},{},80,20,{}\n", 0.01 * i, i > 50 ? 4 : 0, 0.1 * i, 0.01 * (i % 7));
+    one += fmt::format("{},{},{},80\n", 0.01 * i, i > 50 ? 4 : 0, 0.1 * i);
+  }
+  const std::string draft = draft_campaign({folder.write("both.csv", both)}, folder.path()).text;
+  CHECK_THAT(draft, Contains("# load_table_from = \"... m\"") && Contains("# load_0 = \"... N\"") &&
+                        Contains("# load_100 = "));
+  CHECK_THAT(draft, Contains("base_acceleration = { column = \"acc_base [m/s2]\", unit = "));
+  CHECK_THAT(draft_campaign({folder.write("one.csv", one)}, folder.path()).text,
+             !Contains("load_table_from"));
+}
+
 TEST_CASE("draft_campaign: repeats, waveform and columns, and loads once it is filled",
           "[datasets]") {
   const TemporaryFolder folder;

@@ -125,6 +125,10 @@ std::vector<std::pair<Scenario, Experiment>> two_chamber_scenarios() {
   rows.push_back(
       {{"PID, second-order valve, soft supply, friction", Signal::sine(0.006, 9.0), loop},
        single_rod_rig()});
+  const NamedValues table{{"load_table_from", 0.0}, {"load_table_to", 4e-3}, {"load_0", 40.0},
+                          {"load_20", 150.0},       {"load_40", 60.0},       {"load_60", -90.0},
+                          {"load_80", -20.0},       {"load_100", 120.0}};
+  rows.push_back({{"load by a table", Signal::square(3.0, 4.0), table, none}, single_rod_rig()});
   rows.push_back({{"into the stop", Signal::square(-3.0, 4.0), stop, none}, single_rod_rig()});
   const NamedValues filter{{"derivative_filter", 300.0}, {"initial_position", 0.01}};
   const auto loop_on = [&](Feedback feedback, const Signal& drive, double kp, double ki,

@@ -54,6 +54,9 @@ TEST_CASE("sampled_period: none where inputs or samples do not repeat themselves
   inputs.supply_pressure_pa = Signal::ripple(6e6, 1e5, 50.0, 0.0);
   CHECK_FALSE(sampled_period(inputs, times_s, false, {}));
   inputs.supply_pressure_pa = Signal::constant(6e6);
+  inputs.base_acceleration_m_per_s2 = Signal::sine(1.0, 50.0);
+  CHECK_FALSE(sampled_period(inputs, times_s, false, {}));
+  inputs.base_acceleration_m_per_s2 = Signal::constant(1.0);
   CHECK(sampled_period(inputs, times_s, false, {}));
 }
 
