@@ -29,8 +29,8 @@ enum class Output {
   servo_flow,            ///< Q_L, flow of the servo valve to the load [m3/s]
   leakage_flow,          ///< internal leakage across the piston [m3/s]
   work_flow,             ///< A x', flow that the moving piston displaces [m3/s]
-  acceleration,          ///< of the piston and of the mass fixed to it, with the base's [m/s2]
-  payload_acceleration,  ///< of the second mass, with the base's [m/s2]; zero if there is none
+  acceleration,          ///< reading of an accelerometer on the first mass [m/s2]
+  payload_acceleration,  ///< the same on the second mass; zero if there is none
   angle,                 ///< reading of the angle sensor of a joint [rad]; zero without a joint
   angular_velocity,      ///< angular velocity of the joint [rad/s]; zero without a joint
   pilot_pressure,        ///< pilot pressure that drives the spool [Pa]; zero without a pilot

@@ -107,7 +107,7 @@ X varying_load(const X& x, const C& gradient_n_per_m, const C& curvature_n_per_m
 template <typename X, typename C>
 X table_load(const X& x, const C& from_m, const C& to_m, const std::array<C, 6>& load_n) {
   constexpr double kPieces = 5.0;
-  constexpr double kRounded = 0.25;  // of a piece, to either side of a corner
+  constexpr double kRounded = 0.25;  // fraction of a piece, to either side
   const X place = (x - from_m) * (kPieces / (to_m - from_m));
   const double nearest = std::round(value_of(place));
   const auto corner =

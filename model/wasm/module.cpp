@@ -114,9 +114,13 @@ int simulate_rig(const double* rig, const double* values, const double* drive, c
   for (std::size_t i = 0; i < count; ++i) {
     if (values[count + i] != 0.0) parameters.set(static_cast<int>(i), values[i]);
   }
-  const SimulationInputs inputs{signal_of(drive), optional_signal_of(force),
-                                optional_signal_of(supply), optional_signal_of(tank), rig[8],
-                                std::nullopt, optional_signal_of(base)};
+  const SimulationInputs inputs{signal_of(drive),
+                                optional_signal_of(force),
+                                optional_signal_of(supply),
+                                optional_signal_of(tank),
+                                rig[8],
+                                std::nullopt,
+                                optional_signal_of(base)};
   last_run =
       rigcal::model::simulate(kind, parameters, {}, inputs,
                               {times_s, static_cast<std::size_t>(samples)}, kAllOutputs, options);
