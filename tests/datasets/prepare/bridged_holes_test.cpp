@@ -57,7 +57,9 @@ TEST_CASE("bridge_holes: what is missing is put in and marked", "[datasets]") {
     CHECK(repeat.bridged[i] == (i >= 45 && i <= 48));
   }
   // A stepwise input keeps its value, whereas a measured signal is interpolated.
-  CHECK(repeat.values.at(Channel::command)[48] == 1.0);
+  const Repeat stepped = bridged(torn("b.csv", 47, 52));  // the step from 1 to -1 is in the hole
+  CHECK(stepped.values.at(Channel::command)[52] == 1.0);
+  CHECK(stepped.values.at(Channel::command)[53] == -1.0);
   const auto& x = repeat.values.at(Channel::position);
   CHECK(std::abs(x[45] - (0.8 * x[44] + 0.2 * x[49])) < 1e-12);
   REQUIRE(bridged_notes({repeat}).size() == 1);

@@ -90,6 +90,14 @@ TEST_CASE("recognised_drive: what is no generated signal is none", "[datasets]")
   CHECK_FALSE(recognised(noisy));
   CHECK(recognised(noisy, 5e-5));  // the campaign attributes it to sensor noise
   CHECK_FALSE(recognised(noisy, 1e-5));
+  // Every sample is off by twice the stated noise: no sample is too far, but all together are.
+  Sampled zigzag = sampled(Signal::sine(0.05, 2.0));
+  for (std::size_t i = 0; i < zigzag.drive.size(); ++i)
+    zigzag.drive[i] += i % 2 == 0 ? 2e-5 : -2e-5;
+  CHECK_FALSE(recognised(zigzag, 1e-5));
+  CHECK(recognised(zigzag, 2e-5));
+  CHECK(recognised(sampled(Signal::sine(0.05, 2.0), 5e-4)));
+  CHECK_FALSE(recognised(sampled(Signal::sine(0.05, 2.0), 5e-3)));  // ten steps show no waveform
   Sampled clipped = sampled(Signal::sine(0.05, 2.0), 1e-6);
   for (double& x : clipped.drive) x = std::min(x, 0.0499);
   CHECK_FALSE(recognised(clipped));

@@ -33,6 +33,7 @@ TEST_CASE("unit_in_name: in brackets, or behind a word", "[datasets]") {
                                 {"t in s", "s", false},
                                 {"rod_m_1_mm", "mm", false},
                                 {"p_bar_A", "bar", false},
+                                {"p_bar_min", "bar", false},  // the least pressure
                                 {"p_bar_s_pa", "bar", false},
                                 {"x_in", "in", false},
                                 {"p_pa", "Pa", false},
