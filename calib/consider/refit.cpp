@@ -23,8 +23,12 @@ constexpr double kSettledFall = 0.02;
 /// Smallest actual decrease as a fraction of the predicted one. Beside a kink the derivatives
 /// predict what no step achieves, and tiny decreases would go on to the last iteration.
 constexpr double kLeastFall = 0.01;
-/// Fall that the simulations resolve, in the same unit.
+/// Fall that the simulations resolve, in the same unit. With recorded drives, whose effects are
+/// simulated more coarsely, a step that promises less is taken as promised.
 constexpr double kResolvedFall = 1.0;
+/// The sensitivities are kept for the next step if they promise to leave less than this fall, in
+/// the same unit. A Hessian that is off by a fraction e leaves e^2 of the promised fall.
+constexpr double kLeftFall = 0.1;
 /// Smallest size as a multiple of the plausible size. A shorter lag is stiff and counts as zero.
 constexpr double kLeastSize = 0.02;
 /// Added to the scaled J^T J, so that undetermined directions do not move.
@@ -50,6 +54,21 @@ VectorXd within_signs(const std::vector<Effect>& effects, VectorXd sizes) {
   return sizes;
 }
 
+/// Derivatives of the weighted outputs by the acting unknowns, and by the effects of a sensor; the
+/// columns of the other effects are left.
+MatrixXd derivatives_of(const Problem& problem, std::size_t condition,
+                        const std::vector<Effect>& effects, std::span<const double> z,
+                        const OutputsWith& with) {
+  const VectorXd slopes = acting_slopes(problem, condition, z);
+  MatrixXd jacobian(with.outputs.size(), slopes.size() + with.by_sensor.cols());
+  jacobian.leftCols(slopes.size()) = with.jacobian * slopes.asDiagonal();
+  for (Index e = 0; e < with.by_sensor.cols(); ++e) {
+    if (effects[static_cast<std::size_t>(e)].is_of_sensor())
+      jacobian.col(slopes.size() + e) = with.by_sensor.col(e);
+  }
+  return jacobian;
+}
+
 }  // namespace
 
 Refitter::Refitter(const Problem& problem, std::span<const double> z,
@@ -59,10 +78,13 @@ Refitter::Refitter(const Problem& problem, std::span<const double> z,
       scores_(scores),
       threads_(threads),
       cancel_(cancel),
+      recorded_(std::any_of(problem.conditions.begin(), problem.conditions.end(),
+                            [](const auto& each) { return each.measured_tolerance > 0.0; })),
       base_(problem.conditions.size()) {
+  // Derivatives change the error control, so the outputs are those of the runs that are compared.
+  const Derivatives derivatives = recorded_ ? Derivatives::none : Derivatives::of_unknowns;
   parallel_for(base_.size(), threads, [&](std::size_t i) {
-    base_[i] = outputs_with(problem, i, z, {}, VectorXd::Zero(0), Derivatives::of_unknowns, cancel)
-                   .outputs;
+    base_[i] = outputs_with(problem, i, z, {}, VectorXd::Zero(0), derivatives, cancel).outputs;
   });
 }
 
@@ -70,45 +92,52 @@ Refitter::Part Refitter::squares_at(std::size_t condition, const std::vector<Eff
                                     std::span<const double> z, const VectorXd& sizes) const {
   Part part;
   const OutputsWith with =
-      outputs_with(problem_, condition, z, effects, sizes, Derivatives::of_unknowns, cancel_);
+      outputs_with(problem_, condition, z, effects, sizes,
+                   recorded_ ? Derivatives::none : Derivatives::of_unknowns, cancel_);
   if (!with.ok() || base_[condition].size() == 0) return part;
   part.residual = scores_[condition].residual + with.outputs - base_[condition];
-  const VectorXd slopes = acting_slopes(problem_, condition, z);
-  part.jacobian.resize(part.residual.size(), slopes.size() + sizes.size());
-  part.jacobian.leftCols(slopes.size()) = with.jacobian * slopes.asDiagonal();
-  for (Index e = 0; e < sizes.size(); ++e) {
-    if (effects[static_cast<std::size_t>(e)].is_of_sensor())
-      part.jacobian.col(slopes.size() + e) = with.by_sensor.col(e);
-  }
+  if (!recorded_) part.jacobian = derivatives_of(problem_, condition, effects, z, with);
   part.squares = part.residual.squaredNorm();
   part.ok = std::isfinite(part.squares);
   return part;
 }
 
-void Refitter::complete(std::size_t condition, const std::vector<Effect>& effects,
-                        std::span<const double> z, const VectorXd& sizes, Part& part) const {
-  const std::vector<int>& acting = problem_.map.acting(condition);
-  const Index unknowns = part.jacobian.cols() - sizes.size();
-  // The difference uses two runs without derivatives, because derivatives change the error control.
-  const auto plain = [&](const VectorXd& at) {
-    return outputs_with(problem_, condition, z, effects, at, Derivatives::none, cancel_);
+void Refitter::derive(std::size_t condition, const std::vector<Effect>& effects,
+                      std::span<const double> z, const VectorXd& sizes, Part& part) const {
+  const auto run = [&](const VectorXd& at, Derivatives derivatives) {
+    return outputs_with(problem_, condition, z, effects, at, derivatives, cancel_);
   };
-  std::optional<OutputsWith> here;
+  // The difference uses two runs without derivatives, because derivatives change the error control.
+  std::optional<VectorXd> here;
+  if (recorded_) {
+    const OutputsWith with = run(sizes, Derivatives::of_unknowns);
+    part.ok = with.ok();
+    if (!part.ok) return;
+    part.jacobian = derivatives_of(problem_, condition, effects, z, with);
+    here = part.residual - scores_[condition].residual + base_[condition];
+  }
   for (Index e = 0; e < sizes.size(); ++e) {
     if (effects[static_cast<std::size_t>(e)].is_of_sensor()) continue;
-    if (!here) here = plain(sizes);
+    if (!here) here = run(sizes, Derivatives::none).outputs;
     VectorXd further = sizes;
     further(e) += kEffectStep;
-    const OutputsWith there = plain(further);
-    part.ok = here->ok() && there.ok();
+    const OutputsWith there = run(further, Derivatives::none);
+    part.ok = here->size() > 0 && there.ok();
     if (!part.ok) return;
-    part.jacobian.col(unknowns + e) = (there.outputs - here->outputs) / kEffectStep;
+    part.jacobian.col(part.jacobian.cols() - sizes.size() + e) =
+        (there.outputs - *here) / kEffectStep;
   }
+  if (recorded_) part.kept = part.jacobian.cast<float>();
+}
+
+void Refitter::project(std::size_t condition, std::size_t unknowns, Index effects,
+                       Part& part) const {
+  const std::vector<int>& acting = problem_.map.acting(condition);
   std::vector<Index> columns(acting.begin(), acting.end());
-  const auto all = static_cast<Index>(z.size());
-  for (Index e = 0; e < sizes.size(); ++e) columns.push_back(all + e);
-  part.gradient = VectorXd::Zero(all + sizes.size());
-  part.normal = MatrixXd::Zero(all + sizes.size(), all + sizes.size());
+  const auto all = static_cast<Index>(unknowns);
+  for (Index e = 0; e < effects; ++e) columns.push_back(all + e);
+  part.gradient = VectorXd::Zero(all + effects);
+  part.normal = MatrixXd::Zero(all + effects, all + effects);
   part.gradient(columns) = part.jacobian.transpose() * part.residual;
   part.normal(columns, columns) = part.jacobian.transpose() * part.jacobian;
   part.ok = part.normal.allFinite() && part.gradient.allFinite();
@@ -140,11 +169,14 @@ std::optional<Refit> Refitter::fit(const std::vector<Effect>& effects, std::vect
   Refit best;
   best.z = std::move(start);
   best.sizes = within_signs(effects, std::move(sizes));
+  double count = 0.0;
+  for (const VectorXd& each : base_) count += static_cast<double>(each.size());
   std::vector<Part> parts;
   Part sum;
-  // What a rejected point would need for the next step is not simulated.
+  // What a rejected point would need for the next step is not simulated, nor derivatives that may
+  // be kept from the point before.
   const auto evaluate = [&](std::span<const double> z, const VectorXd& at, double below,
-                            std::vector<Part>& own) {
+                            double promised, std::vector<Part>& own) {
     own.assign(conditions, {});
     parallel_for(conditions, threads_,
                  [&](std::size_t i) { own[i] = squares_at(i, effects, z, at); });
@@ -155,7 +187,17 @@ std::optional<Refit> Refitter::fit(const std::vector<Effect>& effects, std::vect
     }
     total.ok = total.ok && total.squares < below;
     if (!total.ok) return total;
-    parallel_for(conditions, threads_, [&](std::size_t i) { complete(i, effects, z, at, own[i]); });
+    const double missed = sum.squares - total.squares - promised;
+    const bool kept = recorded_ && missed * missed <= kLeftFall * promised * total.squares / count;
+    parallel_for(conditions, threads_, [&](std::size_t i) {
+      if (kept) {
+        own[i].kept = parts[i].kept;
+        own[i].jacobian = own[i].kept.cast<double>();
+      } else {
+        derive(i, effects, z, at, own[i]);
+      }
+      if (own[i].ok) project(i, z.size(), at.size(), own[i]);
+    });
     for (const Part& each : own) {
       total.ok = total.ok && each.ok;
       if (!total.ok) return total;
@@ -164,14 +206,8 @@ std::optional<Refit> Refitter::fit(const std::vector<Effect>& effects, std::vect
     }
     return total;
   };
-  sum = evaluate(best.z, best.sizes, HUGE_VAL, parts);
+  sum = evaluate(best.z, best.sizes, HUGE_VAL, 0.0, parts);
   if (!sum.ok) return std::nullopt;
-  double count = 0.0;
-  for (const VectorXd& each : base_) count += static_cast<double>(each.size());
-  // Where effects are simulated more coarsely, shorter steps are not worth trying below what is
-  // resolved.
-  const bool recorded = std::any_of(problem_.conditions.begin(), problem_.conditions.end(),
-                                    [](const auto& each) { return each.measured_tolerance > 0.0; });
   bool settled = false;
   for (int step = 0; step < kMostRefitSteps && !settled; ++step) {
     if (cancel_ != nullptr && cancel_->load()) return std::nullopt;
@@ -194,13 +230,7 @@ std::optional<Refit> Refitter::fit(const std::vector<Effect>& effects, std::vect
       settled = true;
       break;
     }
-    double part_of_step = 1.0;
-    bool lower = false;
-    const bool resolved = promised >= kResolvedFall * sum.squares / count;
-    const int halvings = resolved || !recorded ? kMostStepHalvings : 1;
-    for (int halving = 0; halving < halvings && !lower; ++halving, part_of_step *= 0.5) {
-      std::vector<double> z = best.z;
-      VectorXd next = best.sizes;
+    const auto stepped = [&](double part_of_step, std::vector<double>& z, VectorXd& next) {
       for (std::size_t m = 0; m < moving.size(); ++m) {
         const double by = part_of_step * change(static_cast<Index>(m));
         if (moving[m] < unknowns) {
@@ -211,9 +241,34 @@ std::optional<Refit> Refitter::fit(const std::vector<Effect>& effects, std::vect
         }
       }
       next = within_signs(effects, next);
+    };
+    double part_of_step = 1.0;
+    bool lower = false;
+    const bool resolved = promised >= kResolvedFall * sum.squares / count;
+    if (recorded_ && !resolved) {
+      std::vector<double> z = best.z;
+      VectorXd next = best.sizes;
+      stepped(1.0, z, next);
+      VectorXd last(all);
+      for (Index j = 0; j < unknowns; ++j)
+        last(j) = z[static_cast<std::size_t>(j)] - best.z[static_cast<std::size_t>(j)];
+      last.tail(next.size()) = next - best.sizes;
+      if (sum.linear_change(last) < 0.0) {
+        best.z = std::move(z);
+        best.sizes = std::move(next);
+        sum.take(last);
+        for (Part& each : parts) each.take(last);
+      }
+      settled = true;
+      break;
+    }
+    for (int halving = 0; halving < kMostStepHalvings && !lower; ++halving, part_of_step *= 0.5) {
+      std::vector<double> z = best.z;
+      VectorXd next = best.sizes;
+      stepped(part_of_step, z, next);
       std::vector<Part> own;
       const double least_fall = kLeastFall * part_of_step * promised;
-      Part there = evaluate(z, next, sum.squares - least_fall, own);
+      Part there = evaluate(z, next, sum.squares - least_fall, promised, own);
       if (!there.ok) continue;
       best.z = std::move(z);
       best.sizes = std::move(next);

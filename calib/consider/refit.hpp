@@ -29,6 +29,10 @@ struct Refit {
 /// Estimates the unknowns again together with some effects, by Gauss-Newton steps. The
 /// sensitivities are those of the model with the effects. An effect that cannot be negative ends at
 /// zero if the records push it below.
+///
+/// With recorded drives a step may take several samples of the drive, so each simulation is dear
+/// (docs/decisions/0053). There the sensitivities are kept while the steps lower the squares as
+/// promised, and the last step, which promises less than one variance, is not simulated.
 class Refitter {
  public:
   /// @param scores  residuals of the fit at z
@@ -48,21 +52,36 @@ class Refitter {
     double squares = 0.0;
     Eigen::VectorXd gradient;
     Eigen::MatrixXd normal;
-    Eigen::VectorXd residual;  ///< until complete() has made gradient and J^T J of it
+    Eigen::VectorXd residual;  ///< until project() has made gradient and J^T J of it
     Eigen::MatrixXd jacobian;  ///< likewise; columns: the acting unknowns, then the effects
+    Eigen::MatrixXf kept;      ///< the same for later steps, in seven digits; recorded drives only
+
+    /// Change of the sum of squares after a step, if the residual is linear in it.
+    double linear_change(const Eigen::VectorXd& step) const {
+      return 2.0 * gradient.dot(step) + step.dot(normal * step);
+    }
+    /// Goes on to where a step leads, likewise.
+    void take(const Eigen::VectorXd& step) {
+      squares += linear_change(step);
+      gradient += normal * step;
+    }
   };
-  /// The squares, and what a simulation with the derivatives by the unknowns gives besides.
+  /// The squares. If no drive is recorded, also the derivatives by the unknowns, from the same
+  /// simulation.
   Part squares_at(std::size_t condition, const std::vector<Effect>& effects,
                   std::span<const double> z, const Eigen::VectorXd& sizes) const;
-  /// Simulates the derivatives by the effects, and makes gradient and J^T J.
-  void complete(std::size_t condition, const std::vector<Effect>& effects,
-                std::span<const double> z, const Eigen::VectorXd& sizes, Part& part) const;
+  /// Simulates the derivatives that squares_at() leaves out.
+  void derive(std::size_t condition, const std::vector<Effect>& effects, std::span<const double> z,
+              const Eigen::VectorXd& sizes, Part& part) const;
+  /// Makes gradient and J^T J.
+  void project(std::size_t condition, std::size_t unknowns, Eigen::Index effects, Part& part) const;
   Part priors_at(std::span<const double> z, Eigen::Index unknowns) const;
 
   const Problem& problem_;
   const std::vector<ScoreRows>& scores_;
   int threads_;
   const std::atomic<bool>* cancel_;
+  bool recorded_;                      ///< a drive is recorded
   std::vector<Eigen::VectorXd> base_;  ///< weighted outputs at z without effects
 };
 

@@ -11,8 +11,7 @@ namespace rigcal::calib {
 namespace {
 
 /// Tolerances of the two simulations that are compared. Errors grow about as the tolerance, so the
-/// difference is nearly the error of the coarser one. Beyond that the derivatives would be too
-/// coarse.
+/// difference is nearly the error of the coarser one.
 constexpr double kCoarserRun = 1e-5;
 constexpr double kFinerRun = 1e-6;
 /// Norm of the errors of all residuals, each over its standard deviation. At worst the estimates
@@ -20,6 +19,9 @@ constexpr double kFinerRun = 1e-6;
 constexpr double kHarmless = 0.005;
 /// Factor by which a tolerance must be too coarse before it is changed.
 constexpr double kMuchFiner = 2.0;
+/// Largest tolerance that is told by these runs: errors do not grow so far any more, since steps
+/// end at each sample.
+constexpr double kLargestTold = 1e-2;
 
 /// Root mean square of the difference between both simulations over the standard deviation; NaN if
 /// one fails.
@@ -67,7 +69,7 @@ std::vector<double> measure_all(const Problem& problem, std::span<const double> 
     if (!has_recorded_drive(problem.conditions[i])) return;
     const double error = simulation_error(problem, i, z, cancel);
     if (std::isnan(error)) return;
-    result[i] = error > harmless ? kCoarserRun * harmless / error : kCoarserRun;
+    result[i] = std::min(kLargestTold, error > 0.0 ? kCoarserRun * harmless / error : kLargestTold);
   });
   return result;
 }
@@ -89,8 +91,9 @@ bool refine_tolerances(Problem& problem, std::span<const double> z, int threads,
     double& own = problem.conditions[i].measured_tolerance;
     const double least = std::max(found[i], problem.tolerance);
     if (!(found[i] > 0.0) || !(own > kMuchFiner * least)) continue;
+    const double before = problem.tolerance_of(i);
     own = least;
-    changed = true;
+    changed = changed || problem.tolerance_of(i) < before;
   }
   return changed;
 }

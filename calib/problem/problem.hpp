@@ -58,7 +58,8 @@ struct ProblemCondition {
   std::vector<int> free;               ///< table indices of the acting unknowns
   std::size_t first_period_rows = 0;   ///< number of `rows` within the first period
   long max_steps = 0;                  ///< step budget of one simulation
-  /// Tolerance of a recorded drive, as measured (measured_tolerance.hpp); 0: it was not.
+  /// Tolerance at which the errors of a recorded drive are harmless, as measured
+  /// (measured_tolerance.hpp), whatever its derivatives ask for; 0: it was not measured.
   double measured_tolerance = 0.0;
 
   /// Number of `rows` within the horizon of a fidelity.
@@ -81,7 +82,7 @@ struct Problem {
   /// conditions is known, the tolerance exceeds the smallest one in proportion to the relative
   /// noise of the condition.
   double tolerance_of(std::size_t condition, const Fidelity& fidelity = Fidelity::full) const;
-  /// Tolerance far from an optimum.
+  /// Tolerance far from an optimum; larger for a recorded drive whose errors allow it.
   double coarse_tolerance() const;
   /// Simulation options with the smallest tolerance and the campaign's method and time limit.
   model::SimulationOptions simulation_options(const std::atomic<bool>* cancel = nullptr) const;
