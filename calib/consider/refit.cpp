@@ -17,6 +17,10 @@ using Eigen::VectorXd;
 
 constexpr int kMostRefitSteps = 12;
 constexpr int kMostStepHalvings = 5;
+/// With recorded drives, how often a step is shortened at most, each time to the minimum of the
+/// parabola through both ends, and the smallest part of a step that is tried.
+constexpr int kMostShortenings = 1;
+constexpr double kLeastPart = 0.03;
 /// The search ends when a step promises to lower the sum of squares by less than this, in variances
 /// of a weighted residual.
 constexpr double kSettledFall = 0.02;
@@ -52,6 +56,15 @@ VectorXd within_signs(const std::vector<Effect>& effects, VectorXd sizes) {
     if (effects[e].about.one_sided && size < kLeastSize) size = 0.0;
   }
   return sizes;
+}
+
+/// Part of a step that failed at which the parabola through both ends is least, at most a half.
+///
+/// @param promised  fall that the slope at its start promises, times half the step
+/// @param rise      of the squares at its end
+double shorter_part(double promised, double rise) {
+  const double curvature = rise + 2.0 * promised;
+  return curvature > 0.0 ? std::min(0.5, promised / curvature) : 0.5;
 }
 
 /// Derivatives of the weighted outputs by the acting unknowns, and by the effects of a sensor; the
@@ -262,14 +275,20 @@ std::optional<Refit> Refitter::fit(const std::vector<Effect>& effects, std::vect
       settled = true;
       break;
     }
-    for (int halving = 0; halving < kMostStepHalvings && !lower; ++halving, part_of_step *= 0.5) {
+    const int tries = recorded_ ? 1 + kMostShortenings : kMostStepHalvings;
+    for (int attempt = 0; attempt < tries && !lower; ++attempt) {
       std::vector<double> z = best.z;
       VectorXd next = best.sizes;
       stepped(part_of_step, z, next);
       std::vector<Part> own;
       const double least_fall = kLeastFall * part_of_step * promised;
       Part there = evaluate(z, next, sum.squares - least_fall, promised, own);
-      if (!there.ok) continue;
+      if (!there.ok) {
+        part_of_step *=
+            recorded_ ? shorter_part(promised * part_of_step, there.squares - sum.squares) : 0.5;
+        if (part_of_step < kLeastPart) break;
+        continue;
+      }
       best.z = std::move(z);
       best.sizes = std::move(next);
       parts = std::move(own);

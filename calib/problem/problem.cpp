@@ -28,9 +28,11 @@ constexpr double kGuessedNoise = 1e-2;
 /// change, which stalls the optimiser.
 constexpr double kDefaultTolerance = 1e-6;
 constexpr double kLeastTolerance = 1e-8;
-/// Largest tolerance near the optimum for a record whose noise, or whose measured errors, allow a
-/// less exact simulation than for others. Beyond it the derivatives would be too coarse.
+/// Largest tolerance for a record whose noise allows a less exact simulation than for others.
 constexpr double kLargestTolerance = 1e-5;
+/// Largest tolerance near the optimum for a recorded drive. Derivatives of records whose errors are
+/// harmless there are off by less than a thousandth of those of all records.
+constexpr double kLargestMeasured = 1e-4;
 /// Tolerance for derivatives that only serve to compute an uncertainty.
 constexpr double kDerivativeTolerance = 1e-5;
 /// Tolerance far from an optimum. A smaller one would not save the optimiser any steps.
@@ -207,7 +209,7 @@ double Problem::tolerance_of(std::size_t condition, const Fidelity& fidelity) co
   if (!fidelity.exact)
     return std::max(coarse_tolerance(), std::min(kCoarseShare * measured, kLargestCoarse));
   if (tolerance_fixed) return tolerance;
-  if (measured > 0.0) return std::max(tolerance, std::min(measured, kLargestTolerance));
+  if (measured > 0.0) return std::max(tolerance, std::min(measured, kLargestMeasured));
   double least = std::numeric_limits<double>::infinity();
   for (const ProblemCondition& each : conditions) least = std::min(least, relative_noise(each));
   const double own = relative_noise(conditions[condition]);
