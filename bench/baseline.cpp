@@ -170,10 +170,11 @@ std::vector<double> rows_of(const Signal& signal, const Values& factors, double 
   return rows;
 }
 
+template <typename Signal>
 class Residuals final : public ceres::CostFunction {
  public:
-  Residuals(const Reference& signal, const std::vector<double>& measured, double sd,
-            double tolerance, Fit& counts)
+  Residuals(const Signal& signal, const std::vector<double>& measured, double sd, double tolerance,
+            Fit& counts)
       : signal_(signal), measured_(measured), sd_(sd), tolerance_(tolerance), counts_(counts) {
     mutable_parameter_block_sizes()->push_back(kFree);
     set_num_residuals(static_cast<int>(measured.size()));
@@ -202,12 +203,39 @@ class Residuals final : public ceres::CostFunction {
   }
 
  private:
-  const Reference& signal_;
+  const Signal& signal_;
   const std::vector<double>& measured_;
   double sd_;
   double tolerance_;
   Fit& counts_;
 };
+
+template <typename Signal>
+Fit fit_of(const std::vector<Signal>& signals, const std::vector<std::vector<double>>& measured,
+           double noise_sd_m, double tolerance) {
+  Fit result;
+  Values z{std::log(0.6), std::log(1.5), std::log(0.7), std::log(2.0)};
+  ceres::Problem problem;
+  for (std::size_t i = 0; i < measured.size(); ++i) {
+    problem.AddResidualBlock(
+        new Residuals<Signal>(signals[i], measured[i], noise_sd_m, tolerance, result), nullptr,
+        z.data());
+  }
+  for (int j = 0; j < kFree; ++j) {
+    problem.SetParameterLowerBound(z.data(), j, -std::log(5.0));
+    problem.SetParameterUpperBound(z.data(), j, std::log(5.0));
+  }
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_QR;
+  options.logging_type = ceres::SILENT;
+  options.max_num_iterations = 200;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  for (std::size_t j = 0; j < kFree; ++j) result.factors[j] = std::exp(z[j]);
+  result.cost = summary.final_cost;
+  result.converged = summary.termination_type == ceres::CONVERGENCE;
+  return result;
+}
 
 }  // namespace
 
@@ -230,28 +258,11 @@ std::vector<double> simulate_with_sensitivities(const Recorded& drive, const Val
 }
 
 Fit fit(const std::vector<std::vector<double>>& measured, double noise_sd_m, double tolerance) {
-  Fit result;
-  Values z{std::log(0.6), std::log(1.5), std::log(0.7), std::log(2.0)};
-  ceres::Problem problem;
-  for (std::size_t i = 0; i < measured.size(); ++i) {
-    problem.AddResidualBlock(
-        new Residuals(kSixSignals[i], measured[i], noise_sd_m, tolerance, result), nullptr,
-        z.data());
-  }
-  for (int j = 0; j < kFree; ++j) {
-    problem.SetParameterLowerBound(z.data(), j, -std::log(5.0));
-    problem.SetParameterUpperBound(z.data(), j, std::log(5.0));
-  }
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_QR;
-  options.logging_type = ceres::SILENT;
-  options.max_num_iterations = 200;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
-  for (std::size_t j = 0; j < kFree; ++j) result.factors[j] = std::exp(z[j]);
-  result.cost = summary.final_cost;
-  result.converged = summary.termination_type == ceres::CONVERGENCE;
-  return result;
+  return fit_of(kSixSignals, measured, noise_sd_m, tolerance);
+}
+Fit fit(const std::vector<Recorded>& drives, const std::vector<std::vector<double>>& measured,
+        double noise_sd_m, double tolerance) {
+  return fit_of(drives, measured, noise_sd_m, tolerance);
 }
 
 }  // namespace rigcal::bench::baseline

@@ -45,5 +45,8 @@ struct Fit {
 
 /// @param measured  recorded positions for each signal [m]
 Fit fit(const std::vector<std::vector<double>>& measured, double noise_sd_m, double tolerance);
+/// The same with a recorded reference for each record.
+Fit fit(const std::vector<Recorded>& drives, const std::vector<std::vector<double>>& measured,
+        double noise_sd_m, double tolerance);
 
 }  // namespace rigcal::bench::baseline

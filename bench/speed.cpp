@@ -1,5 +1,8 @@
-// Prints all figures in docs/performance.md as tables of CPU times, which are medians over
-// interleaved rounds.
+// Prints figures in docs/performance.md as tables of CPU times, which are medians over interleaved
+// rounds.
+//
+//   rigcal_speed [ROUNDS]           generated drives
+//   rigcal_speed ROUNDS recorded    recorded drives
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,6 +22,7 @@
 #include "bench/problems.hpp"
 #include "bench/two_chamber_record.hpp"
 #include "calib/fit.hpp"
+#include "calib/problem/measured_tolerance.hpp"
 #include "calib/search/evaluator.hpp"
 #include "calib/search/multi_start.hpp"
 #include "calib/search/search.hpp"
@@ -87,6 +91,7 @@ Solved solve(const Problem& data, const calib::FitOptions& options) {
       calib::make_problem(data.campaign, data.records, conditions, false, nullptr), {}, 0};
   calib::Budget budget;
   calib::Evaluator evaluator(solved.problem, budget, options.threads);
+  calib::measure_tolerances(solved.problem, solved.problem.start(), options.threads, nullptr);
   solved.found = calib::multi_start(solved.problem, evaluator, options);
   solved.evaluations = evaluator.counters().evaluations;
   return solved;
@@ -252,6 +257,71 @@ model::Simulation run_recorded(const std::vector<int>& free, const Reference& re
   return result;
 }
 
+/// The fit of the six signals with recorded references, which drive the rig with their noise.
+Problem recorded_problem(const std::vector<baseline::Recorded>& signals) {
+  Problem data = six_signal_problem();
+  datasets::ChannelSetting setting;
+  setting.channel = datasets::Channel::reference;
+  setting.role = datasets::ChannelRole::input;
+  setting.interpolation =
+      signals.front().linear ? datasets::Interpolation::linear : datasets::Interpolation::hold;
+  data.campaign.channels[datasets::Channel::reference] = setting;
+  boost::random::mt19937 random(2);
+  boost::random::normal_distribution<double> noise(0.0, kNoiseSd);
+  for (std::size_t i = 0; i < signals.size(); ++i) {
+    datasets::Condition& condition = data.campaign.conditions[i];
+    condition.waveform = datasets::Waveform::recorded;
+    condition.frequency_hz.reset();
+    auto& channels = data.records[i].channels;
+    channels[datasets::Channel::reference].mean = signals[i].reference_m;
+    const auto exact = run_recorded({}, kSixSignals[i], signals[i], 1e-9).outputs;
+    std::vector<double>& measured = channels[datasets::Channel::position].mean;
+    for (std::size_t k = 0; k < measured.size(); ++k)
+      measured[k] = exact(static_cast<Eigen::Index>(k), 0) + noise(random);
+  }
+  return data;
+}
+
+void recorded_fits(int rounds) {
+  fmt::print(
+      "| CPU ms of a fit | baseline | rigcal | ratio | evaluations of rigcal | standard errors "
+      "from the optimum, baseline | rigcal |\n"
+      "| --- | --- | --- | --- | --- | --- | --- |\n");
+  for (const bool linear : {false, true}) {
+    const auto signals = recorded_signals(linear);
+    Problem data = recorded_problem(signals);
+    std::vector<std::vector<double>> measured;
+    for (const auto& record : data.records)
+      measured.push_back(record.channels.at(datasets::Channel::position).mean);
+    baseline::Fit theirs;
+    std::optional<Solved> ours;
+    calib::FitOptions plain;
+    plain.consider = false;
+    const auto times = medians({[&] { theirs = baseline::fit(signals, measured, kNoiseSd, 1e-7); },
+                                [&] {
+                                  ours.emplace(solve(data, {}));
+                                  require_converged(ours->found.result);
+                                },
+                                [&] { calib::fit(data.campaign, data.records, plain); }},
+                               rounds);
+    std::vector<double> baseline_values;
+    for (std::size_t j = 0; j < baseline::kFree; ++j)
+      baseline_values.push_back(theirs.factors[j] * baseline::truth()[j]);
+    data.campaign.simulation.tolerance = 1e-9;
+    const calib::Fit exact = calib::fit(data.campaign, data.records, plain);
+    const double distance =
+        distance_in_errors(exact, ours->problem.to_physical(ours->found.optimum.z));
+    const auto row = [&](const char* name, double mine) {
+      fmt::print("| {}{} | {:.0f} | {:.0f} | 1/{:.1f} | {} | {:.4f} | {:.4f} |\n",
+                 linear ? "linear" : "held", name, times[0], mine, times[0] / mine,
+                 ours->evaluations, distance_in_errors(exact, baseline_values), distance);
+    };
+    row("", times[1]);
+    row(", with intervals and scores", times[2]);
+  }
+  fmt::print("\n");
+}
+
 void recorded_drives(int rounds) {
   const auto free = free_indices(kFour);
   const baseline::Values ones{1.0, 1.0, 1.0, 1.0};
@@ -310,6 +380,7 @@ void recorded_drives(int rounds) {
     row("as accurate as the baseline", times[3], times[5], ours(free, as_accurate));
   }
   fmt::print("\n");
+  recorded_fits(std::max(1, rounds / 5));
 }
 
 void stiff(int rounds) {
@@ -491,8 +562,11 @@ int main(int argc, char** argv) {
   using namespace rigcal::bench;
   rigcal::keep_freed_memory();
   const int rounds = argc > 1 ? std::atoi(argv[1]) : 15;
+  if (argc > 2 && std::string(argv[2]) == "recorded") {
+    recorded_drives(rounds);
+    return 0;
+  }
   six_signals(rounds);
-  recorded_drives(rounds);
   stiff(rounds);
   long_record(rounds);
   two_chamber_record(rounds);

@@ -68,7 +68,7 @@ constexpr double kSecantTolerance = 1e-6;
 /// upper limit. It may exceed the measured tolerance, because most of the error cancels in the
 /// difference between two similar runs.
 constexpr double kRecordedShare = 30.0;
-constexpr double kLargestSecantTolerance = 3e-5;
+constexpr double kLargestSecantTolerance = 1e-3;
 
 double lag_of(double intervals, const RigScale& rig) {
   return std::clamp(intervals * rig.sample_s, kLeastLag_s, kMostLag_s);

@@ -30,6 +30,10 @@ struct Refit {
 /// Estimates the unknowns again, together with some effects, by Gauss-Newton steps. The
 /// sensitivities are those of the model that includes the effects. An effect that cannot be
 /// negative ends at zero if the records would make it negative.
+///
+/// With recorded drives simulations are expensive (docs/decisions/0053). The sensitivities are then
+/// used again while the steps lower the squares as predicted, and a last step that is predicted to
+/// gain less than one variance is not simulated.
 class Refitter {
  public:
   /// @param scores  contain the residuals of the fit at z
@@ -49,23 +53,36 @@ class Refitter {
     double squares = 0.0;
     Eigen::VectorXd gradient;
     Eigen::MatrixXd normal;
-    Eigen::VectorXd residual;  ///< kept until complete() has computed gradient and J^T J
-    /// Kept as long as `residual`; columns: the acting unknowns, then the effects.
-    Eigen::MatrixXd jacobian;
+    Eigen::VectorXd residual;  ///< kept until project() has computed gradient and J^T J
+    Eigen::MatrixXd jacobian;  ///< likewise; columns: acting unknowns, then effects
+    Eigen::MatrixXf kept;      ///< for later steps, in seven digits; recorded drives only
+
+    /// Returns the change of the sum of squares after a step, if the residuals are linear in it.
+    double linear_change(const Eigen::VectorXd& step) const {
+      return 2.0 * gradient.dot(step) + step.dot(normal * step);
+    }
+    /// Moves to the end of a step, under the same assumption.
+    void take(const Eigen::VectorXd& step) {
+      squares += linear_change(step);
+      gradient += normal * step;
+    }
   };
-  /// Computes the sum of squares and everything else that a single simulation with derivatives with
-  /// respect to the unknowns provides.
+  /// Computes the sum of squares. If no drive is recorded, the same simulation gives the
+  /// derivatives with respect to the unknowns, too.
   Part squares_at(std::size_t condition, const std::vector<Effect>& effects,
                   std::span<const double> z, const Eigen::VectorXd& sizes) const;
-  /// Simulates the derivatives with respect to the effects, and computes gradient and J^T J.
-  void complete(std::size_t condition, const std::vector<Effect>& effects,
-                std::span<const double> z, const Eigen::VectorXd& sizes, Part& part) const;
+  /// Simulates the derivatives that squares_at() leaves out.
+  void derive(std::size_t condition, const std::vector<Effect>& effects, std::span<const double> z,
+              const Eigen::VectorXd& sizes, Part& part) const;
+  /// Computes gradient and J^T J.
+  void project(std::size_t condition, std::size_t unknowns, Eigen::Index effects, Part& part) const;
   Part priors_at(std::span<const double> z, Eigen::Index unknowns) const;
 
   const Problem& problem_;
   const std::vector<ScoreRows>& scores_;
   int threads_;
   const std::atomic<bool>* cancel_;
+  bool recorded_;                      ///< a drive is recorded
   std::vector<Eigen::VectorXd> base_;  ///< weighted outputs at z without effects
 };
 

@@ -11,8 +11,7 @@ namespace rigcal::calib {
 namespace {
 
 /// Tolerances of the two simulations that are compared. Errors are roughly proportional to the
-/// tolerance, so the difference is approximately the error of the coarser simulation. With a
-/// tolerance above kCoarserRun the derivatives would be too inaccurate.
+/// tolerance, so the difference is approximately the error of the coarser simulation.
 constexpr double kCoarserRun = 1e-5;
 constexpr double kFinerRun = 1e-6;
 /// Norm of the errors of all residuals, each divided by its standard deviation. In the worst case
@@ -20,6 +19,9 @@ constexpr double kFinerRun = 1e-6;
 constexpr double kHarmless = 0.005;
 /// A tolerance is changed only if it is too coarse by more than this factor.
 constexpr double kMuchFiner = 2.0;
+/// Largest tolerance that these two runs can establish. Beyond it errors no longer grow with the
+/// tolerance, because steps end at each sample.
+constexpr double kLargestMeasured = 1e-2;
 
 /// Returns the root mean square difference between the two simulations, in standard deviations; NaN
 /// if either fails.
@@ -67,7 +69,8 @@ std::vector<double> measure_all(const Problem& problem, std::span<const double> 
     if (!has_recorded_drive(problem.conditions[i])) return;
     const double error = simulation_error(problem, i, z, cancel);
     if (std::isnan(error)) return;
-    result[i] = error > harmless ? kCoarserRun * harmless / error : kCoarserRun;
+    result[i] =
+        std::min(kLargestMeasured, error > 0.0 ? kCoarserRun * harmless / error : kLargestMeasured);
   });
   return result;
 }
@@ -89,8 +92,9 @@ bool refine_tolerances(Problem& problem, std::span<const double> z, int threads,
     double& own = problem.conditions[i].measured_tolerance;
     const double least = std::max(found[i], problem.tolerance);
     if (!(found[i] > 0.0) || !(own > kMuchFiner * least)) continue;
+    const double before = problem.tolerance_of(i);
     own = least;
-    changed = true;
+    changed = changed || problem.tolerance_of(i) < before;
   }
   return changed;
 }

@@ -57,7 +57,8 @@ struct ProblemCondition {
   std::vector<int> free;               ///< table indices of the acting unknowns
   std::size_t first_period_rows = 0;   ///< number of `rows` within the first period
   long max_steps = 0;                  ///< step budget of one simulation
-  /// Tolerance measured for a recorded drive (measured_tolerance.hpp); 0 if none was measured.
+  /// Measured tolerance at which the errors of a recorded drive are harmless
+  /// (measured_tolerance.hpp), without regard to its derivatives; 0 if none was measured.
   double measured_tolerance = 0.0;
 
   /// Number of `rows` within the horizon of a fidelity.
@@ -80,7 +81,8 @@ struct Problem {
   /// the relative noise of all conditions is known, it exceeds the smallest tolerance in proportion
   /// to the relative noise of the condition.
   double tolerance_of(std::size_t condition, const Fidelity& fidelity = Fidelity::full) const;
-  /// Simulation tolerance far from an optimum.
+  /// Simulation tolerance far from an optimum. It is larger for a recorded drive whose errors allow
+  /// it.
   double coarse_tolerance() const;
   /// Simulation options with the smallest tolerance and the campaign's method and time limit.
   model::SimulationOptions simulation_options(const std::atomic<bool>* cancel = nullptr) const;

@@ -32,6 +32,8 @@ class InputTrack {
   double max_step() const { return signal_.max_step(); }
   /// Whether the signal has not begun yet. Neither value() nor sample() may be called then.
   bool waits() const { return waits_; }
+  /// Whether the value may jump at the end of the segment.
+  bool may_jump() const { return waits_ || !signal_.joined(); }
   double first_value() const { return signal_.value(begins_s_); }
 
  private:

@@ -68,6 +68,8 @@ class Signal {
   double value(double t) const { return value(segment_at(t), t); }
   /// Time after which the signal repeats; 0 for a constant, std::nullopt if it does not repeat.
   std::optional<double> period_s() const;
+  /// Whether straight lines join samples, so that the value does not jump at a breakpoint.
+  bool joined() const { return kind_ == Kind::linear; }
   /// Whether the signal changes its sign after half a period.
   bool reverses() const;
   /// Longest step that cannot skip an oscillation; infinity if the breakpoints prevent this

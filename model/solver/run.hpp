@@ -261,7 +261,7 @@ class Run {
 
   /// Switches inputs whose segment ends now to their next one, then lets the controller tick. If
   /// the time of a jump depends on the transport delay, the sensitivity to it jumps by
-  /// f(before) - f(after).
+  /// f(before) - f(after). Recorded samples joined by straight lines have no jump.
   void pass_events() {
     const bool drive_jumped = passed(system_.drive(), t_);
     bool others_jumped = false;
@@ -270,7 +270,7 @@ class Run {
     });
     if constexpr (P > 0) {
       const int delay = system_.delay_direction();
-      if (delay >= 0 && drive_jumped) {
+      if (delay >= 0 && drive_jumped && system_.drive().may_jump()) {
         const X before = system_.derivative(x_, t_);
         advance(system_.drive(), t_);
         const X after = system_.derivative(x_, t_);

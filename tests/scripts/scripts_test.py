@@ -142,7 +142,7 @@ class Scripts(unittest.TestCase):
     def test_performance(self):
         (self.tree / "docs").mkdir()
         make_program(self.tree / "scripts" / "performance-job")
-        self.assertTrue(self.run_script("performance", "3").endswith("performance-job \nperformance-job --conditions\nperformance-job --page\n"))
+        self.assertTrue(self.run_script("performance", "3").endswith("performance-job --recorded\nperformance-job \nperformance-job --conditions\nperformance-job --page\n"))
         self.assertTrue((self.tree / "docs" / "performance.md").read_text().endswith("\nrigcal_speed 3\n"))
         self.assertTrue(self.run_script("performance", "--job", "1", "2").endswith("performance-job 1 2\n"))
 

@@ -9,6 +9,7 @@
 #include "bench/foreign_campaign.hpp"
 #include "calib/fit.hpp"
 #include "calib/problem/evaluation.hpp"
+#include "calib/problem/measured_tolerance.hpp"
 #include "datasets/prepare/load_record.hpp"
 #include "tests/calib/twin.hpp"
 
@@ -132,6 +133,57 @@ TEST_CASE("refit: unknowns and effect end at the truth of noiseless records", "[
   CHECK_THAT(values[1], WithinRel(4.06e-5, 1e-3));
   REQUIRE(found->held_out);
   CHECK(*found->held_out >= found->squares);
+}
+
+TEST_CASE("refit: with a recorded drive fewer simulations lead to the same minimum", "[calib]") {
+  Twin twin;
+  twin.free("mass", 85.0, 20.0, 400.0);
+  twin.free("valve_gain", 4.06e-5, 1e-5, 2e-4);
+  twin.add("square", datasets::Waveform::square, 2.0, 0.01);
+  twin.add("sine", datasets::Waveform::sine, 3.0, 0.02);
+  twin.truth.parameters.push_back(known(Twin::index("coulomb_friction"), 30.0));
+  auto records = twin.records(1000, 1000.0, 3);
+  twin.add_channel(Channel::reference, datasets::ChannelRole::input);
+  boost::random::mt19937_64 random(7);
+  boost::random::normal_distribution<double> noise(0.0, 2e-5);
+  const model::Signal drives[] = {model::Signal::square(0.01, 2.0), model::Signal::sine(0.02, 3.0)};
+  std::vector<const datasets::Condition*> conditions;
+  for (std::size_t c = 0; c < records.size(); ++c) {
+    twin.campaign.conditions[c].waveform = datasets::Waveform::recorded;
+    conditions.push_back(&twin.campaign.conditions[c]);
+    datasets::Series& reference = records[c].channels[Channel::reference];
+    for (const double t : records[c].time_s)
+      reference.mean.push_back(drives[c].value(t) + noise(random));
+  }
+  Problem problem = make_problem(twin.campaign, records, conditions, false, nullptr);
+  const std::vector<double> z = problem.start();  // the true values, but without friction
+  std::vector<Effect> effects = effects_of(problem, z);
+  std::erase_if(effects, [](const Effect& each) { return each.about.key != "coulomb_friction"; });
+  REQUIRE(effects.size() == 1);
+  const auto refitted = [&] {
+    const Evaluation at = evaluate_at(problem, z, 1, {Fidelity::full, nullptr, true});
+    std::vector<ScoreRows> scores;
+    for (const ConditionRows& rows : *at.rows) scores.emplace_back().residual = rows.residual;
+    const Refitter refitter(problem, z, scores, 1, nullptr);
+    return refitter.fit(effects, z, Eigen::VectorXd::Constant(1, 0.2));
+  };
+  const auto full = refitted();  // derivatives at each point, each step simulated
+  measure_tolerances(problem, z, 1, nullptr);
+  REQUIRE(problem.conditions[0].measured_tolerance > 0.0);
+  const auto few = refitted();
+  REQUIRE(full);
+  REQUIRE(few);
+  CHECK(full->sizes(0) > 5.0 * std::sqrt(full->covariance(2, 2)));
+  CHECK(std::abs(few->sizes(0) - full->sizes(0)) < 0.1 * std::sqrt(full->covariance(2, 2)));
+  for (Eigen::Index j = 0; j < 2; ++j) {
+    const auto u = static_cast<std::size_t>(j);
+    CHECK(std::abs(few->z[u] - full->z[u]) < 0.1 * std::sqrt(full->covariance(j, j)));
+    CHECK_THAT(few->covariance(j, j), WithinRel(full->covariance(j, j), 0.02));
+  }
+  const double variance = full->squares / static_cast<double>(problem.residual_count());
+  CHECK_THAT(few->squares, WithinAbs(full->squares, 0.3 * variance));
+  REQUIRE(few->held_out);
+  CHECK_THAT(*few->held_out, WithinRel(*full->held_out, 0.05));
 }
 
 TEST_CASE("refit: the derivative by the error of a sensor takes no simulation", "[calib]") {
