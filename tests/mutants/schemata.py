@@ -248,6 +248,12 @@ IS_STATEMENT = re.compile(r"(?:if|for|while|switch|return|throw|continue|break)\
 ENDS_IN_A_KEYWORD = re.compile(r"\b(?:return|else|throw|case)\s*$")
 
 
+def ends_in_a_keyword(text, end):
+    """Whether a keyword stands before the end, which does not lie within a name such as `cases`."""
+    found = ENDS_IN_A_KEYWORD.search(text[:end])
+    return found is not None and not (text[end - 1].isalpha() and re.match(r"\w", text[end:]))
+
+
 def is_assignment(text, i):
     return text[i] == "=" and text[i - 1] not in "=!<>" and text[i + 1] != "="
 
@@ -305,7 +311,7 @@ def expression_around(text, begin, end):
             if BEFORE_A_CONDITION.search(text[:start]):
                 break
             left = start
-        elif c in OPEN or stops(left - 1) or ENDS_IN_A_KEYWORD.search(text[:left]):
+        elif c in OPEN or stops(left - 1) or ends_in_a_keyword(text, left):
             break
         else:
             left -= 1

@@ -26,6 +26,12 @@ class Schemata(unittest.TestCase):
                          "y += k ? (M0 ? (a * 3.0) : (a * 2.0)) : b;")
         self.assertEqual(inserted("if (a && b) return;", ("a && b", "a")), "if ((M0 ? (a) : (a && b))) return;")
 
+    def test_a_name_may_begin_as_a_keyword_does(self):
+        self.assertEqual(inserted("x = a && cases.b == c;", ("cases.b == c", "cases.b != c")),
+                         "x = (M0 ? (a && cases.b != c) : (a && cases.b == c));")
+        self.assertEqual(inserted("if (a) throw(b + c);", ("throw(b + c)", "throw(b - c)")),
+                         "if (a) throw((M0 ? (b - c) : (b + c)));")
+
     def test_an_initialiser_is_part_of_its_expression(self):
         self.assertEqual(inserted("{ f(); } x = T{1} << 3;", ("<< 3", "<< 4")),
                          "{ f(); } x = (M0 ? (T{1} << 4) : (T{1} << 3));")
