@@ -82,7 +82,7 @@ struct Problem {
   /// conditions is known, the tolerance exceeds the smallest one in proportion to the relative
   /// noise of the condition.
   double tolerance_of(std::size_t condition, const Fidelity& fidelity = Fidelity::full) const;
-  /// Tolerance far from an optimum; larger for a recorded drive whose errors allow it.
+  /// Tolerance far from an optimum.
   double coarse_tolerance() const;
   /// Simulation options with the smallest tolerance and the campaign's method and time limit.
   model::SimulationOptions simulation_options(const std::atomic<bool>* cancel = nullptr) const;
