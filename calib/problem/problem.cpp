@@ -28,21 +28,13 @@ constexpr double kGuessedNoise = 1e-2;
 /// gradient jump by about the tolerance, and such jumps stall the optimiser.
 constexpr double kDefaultTolerance = 1e-6;
 constexpr double kLeastTolerance = 1e-8;
-/// Maximum tolerance for a record whose noise allows a less exact simulation than the noise of
-/// others.
+/// Maximum tolerance for a record whose noise or measured errors allow a less exact simulation than
+/// those of others. Above it, the derivatives would be too inaccurate.
 constexpr double kLargestTolerance = 1e-5;
-/// Largest tolerance near the optimum for a recorded drive. Derivatives of records whose errors are
-/// harmless there are off by less than a thousandth of those of all records.
-constexpr double kLargestMeasured = 1e-4;
 /// Tolerance for derivatives that are only used to compute an uncertainty.
 constexpr double kDerivativeTolerance = 1e-5;
 /// Tolerance far from an optimum. A smaller tolerance would not save the optimiser any steps.
 constexpr double kCoarseTolerance = 1e-4;
-/// The same for recorded drives, as a multiple of the measured tolerance: all errors together have
-/// a norm of half a standard deviation. Where samples are close, it takes one step for each.
-constexpr double kCoarseShare = 100.0;
-/// Upper limit for that tolerance.
-constexpr double kLargestCoarse = 1e-2;
 /// A residual below this fraction of the peak-to-peak value, the resolution of a 20-bit sensor, is
 /// not noise.
 constexpr double kLeastShare = 1e-6;
@@ -207,11 +199,10 @@ model::SimulationOptions Problem::simulation_options(const std::atomic<bool>* ca
 double Problem::coarse_tolerance() const { return std::max(kCoarseTolerance, tolerance); }
 
 double Problem::tolerance_of(std::size_t condition, const Fidelity& fidelity) const {
-  const double measured = conditions[condition].measured_tolerance;
-  if (!fidelity.exact)
-    return std::max(coarse_tolerance(), std::min(kCoarseShare * measured, kLargestCoarse));
+  if (!fidelity.exact) return coarse_tolerance();
   if (tolerance_fixed) return tolerance;
-  if (measured > 0.0) return std::max(tolerance, std::min(measured, kLargestMeasured));
+  const double measured = conditions[condition].measured_tolerance;
+  if (measured > 0.0) return std::max(tolerance, std::min(measured, kLargestTolerance));
   double least = std::numeric_limits<double>::infinity();
   for (const ProblemCondition& each : conditions) least = std::min(least, relative_noise(each));
   const double own = relative_noise(conditions[condition]);

@@ -81,8 +81,7 @@ struct Problem {
   /// the relative noise of all conditions is known, it exceeds the smallest tolerance in proportion
   /// to the relative noise of the condition.
   double tolerance_of(std::size_t condition, const Fidelity& fidelity = Fidelity::full) const;
-  /// Simulation tolerance far from an optimum. It is larger for a recorded drive whose errors allow
-  /// it.
+  /// Simulation tolerance far from an optimum.
   double coarse_tolerance() const;
   /// Simulation options with the smallest tolerance and the campaign's method and time limit.
   model::SimulationOptions simulation_options(const std::atomic<bool>* cancel = nullptr) const;
