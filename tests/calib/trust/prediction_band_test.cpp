@@ -171,6 +171,64 @@ TEST_CASE("prediction band: an estimate of another leak level does not count", "
   CHECK(widest(1) > 1.01 * twin.noise_sd_m);
 }
 
+TEST_CASE("prediction band: what the fit took for a change of the estimates is not in it twice",
+          "[calib]") {
+  Twin twin;
+  twin.add("predicted", datasets::Waveform::sine, 3.0, 0.01, {}, datasets::Use::validate);
+  const auto records = twin.records(250, 500.0, 2);
+  const double gain = twin.setting("valve_gain").value;
+  const auto simulated = [&](double valve_gain) {
+    Twin other = twin;
+    other.setting("valve_gain").value = valve_gain;
+    const auto scores = score_conditions(problem_of(other, records), {}, 1);
+    const std::vector<double>& run = scores.front().series.at(Channel::position).second;
+    return Eigen::VectorXd(
+        Eigen::Map<const Eigen::VectorXd>(run.data(), static_cast<Eigen::Index>(run.size())));
+  };
+  // An effect acts as a gain of 1 % more, which the fit has taken for one.
+  const Eigen::MatrixXd change = simulated(1.005 * gain) - simulated(0.995 * gain);
+  const Problem problem = problem_of(twin, records);
+  const auto variance_with = [&](double taken) {
+    std::vector<ConditionScore> scores = score_conditions(problem, {}, 1);
+    EstimateSpread spread;
+    spread.estimates = {{Twin::index("valve_gain"), datasets::Scope::rig, ""}};
+    spread.root = Eigen::MatrixXd::Zero(1, 1);
+    spread.effects.root = Eigen::MatrixXd::Ones(1, 1);
+    spread.effects.moves = Eigen::MatrixXd::Constant(1, 1, taken * 0.01 * gain);
+    add_prediction_sd(problem, {}, spread, {{change}}, 1, scores);
+    double variance = 0.0;
+    for (const double sd : scores.front().prediction_sd.at(Channel::position))
+      variance += sd * sd - twin.noise_sd_m * twin.noise_sd_m;
+    return variance;
+  };
+  CHECK_THAT(variance_with(0.0), WithinRel(change.squaredNorm(), 1e-6));
+  CHECK_THAT(variance_with(1.0), WithinAbs(0.0, 1e-3 * change.squaredNorm()));
+}
+
+TEST_CASE("prediction band: on another day its own deviation counts, and those of the fit's days",
+          "[calib]") {
+  Twin twin = predicting_twin();
+  twin.campaign.conditions[1].date = "2026-03-09";
+  const auto records = twin.records(250, 500.0, 2);
+  const Problem problem = problem_of(twin, records);
+  const auto by_days = [&](const std::vector<std::string>& dates) {
+    EstimateSpread spread;
+    spread.dates = dates;
+    std::vector<ConditionScore> scores = score_conditions(problem, problem.start(), 1);
+    add_prediction_sd(problem, problem.start(), spread, {}, 1, scores);
+    double variance = 0.0;
+    for (const double sd : scores[1].prediction_sd.at(Channel::position))
+      variance += sd * sd - twin.noise_sd_m * twin.noise_sd_m;
+    return variance;
+  };
+  const double one = by_days({"2026-03-01"});
+  CHECK(one > 0.0);
+  CHECK_THAT(by_days({"2026-03-01", "2026-03-02", "2026-03-03", "2026-03-04"}),
+             WithinRel(one * (1.0 + 1.0 / 4.0) / (1.0 + 1.0), 1e-6));
+  CHECK_THAT(by_days({"2026-03-09"}), WithinAbs(0.0, 1e-9 * one));
+  CHECK_THAT(by_days({}), WithinAbs(0.0, 1e-9 * one));
+}
+
 TEST_CASE("prediction band: none of what was not scored or could not be simulated", "[calib]") {
   const Twin twin = predicting_twin();
   const auto records = twin.records(250, 500.0, 2);
