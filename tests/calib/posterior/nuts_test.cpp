@@ -158,6 +158,23 @@ TEST_CASE("nuts: where there is no density nothing is drawn", "[calib]") {
   CHECK_THROWS_AS(warm_up(half, 10, options, outside), std::invalid_argument);
 }
 
+TEST_CASE("nuts: steps that are nearly too long cost draws, not the truth", "[calib]") {
+  // With this step the leapfrog's own invariant distribution has a variance of 1 / (1 - 1.6^2 / 4)
+  // = 2.8; only the weights of the points make it that of the density.
+  const LogDensityOf density = [](const VectorXd& x) {
+    return LogDensity{-0.5 * x.squaredNorm(), -x};
+  };
+  NutsOptions options;
+  options.seed = 5;
+  ChainState state = state_at(Vector2d(0.5, 0.5));
+  state.step = 1.6;
+  double variance = 0.0;
+  constexpr int kMany = 8000;
+  for (const Draw& draw : sample(density, kMany, options, state))
+    variance += draw.position.squaredNorm() / (2.0 * kMany);
+  CHECK_THAT(variance, WithinAbs(1.0, 0.1));
+}
+
 TEST_CASE("nuts: stretches are the draws of one run", "[calib]") {
   const MatrixXd precision = narrow().inverse();
   const LogDensityOf density = [&](const VectorXd& x) {
