@@ -180,6 +180,17 @@ def the_papers_rig(rigcal, sources, folder):
         browser.open(page)
         simulated(browser)
         table_of_levels(browser, rigcal, campaign)
+        moved(browser, "location.hash = '#duration=10&frequency=1'")
+        milliseconds = []
+        for mass in (80, 85, 90, 95, 100):
+            browser.run("""(() => { const {drawn} = window.rigcalLive; const start = performance.now(); window.waited = undefined;
+                const look = () => { if (window.rigcalLive.drawn > drawn) window.waited = performance.now() - start; else setTimeout(look); };
+                look(); })()""")
+            moved(browser, type_in("mass", mass))
+            browser.wait_for("window.waited !== undefined", "nothing is drawn")
+            milliseconds.append(browser.run("window.waited"))
+        print(f"10 s of the paper's rig are drawn after {sorted(milliseconds)[2]:.0f} ms, the median of {len(milliseconds)} masses")
+        moved(browser, "document.getElementById('live-reset').click()")
         # The address contains the tolerance, like every other difference.
         browser.run("location.hash = '#tolerance=1e-9&duration=10&frequency=1'")
         browser.wait_for("window.rigcalLive.request.tolerance === 1e-9", "the address changes nothing")
@@ -229,19 +240,26 @@ def a_rig_with_everything(rigcal, folder):
         check(not browser.problems, browser.problems)
 
 
+def exact(campaign, folder, recordings):
+    """Returns a copy of the campaign beside links to its recordings. Simulates at a tolerance of 1e-9."""
+    text = re.sub(r"(?m)^tolerance *=.*$", "", campaign.read_text())
+    text = text.replace("[simulation]", "[simulation]\ntolerance = 1e-9") if "[simulation]" in text else text + "\n[simulation]\ntolerance = 1e-9\n"
+    folder.mkdir(parents=True)
+    copy = folder / "campaign.toml"
+    copy.write_text(text)
+    for path in recordings.iterdir() if recordings else []:
+        if not (folder / path.name).exists():
+            (folder / path.name).symlink_to(path)
+    return copy
+
+
 def shipped_rigs(rigcal, sources, folder):
     """Checks every shipped rig whose recordings are here, with a leak or a mass that is not the campaign's."""
     for file in sorted((sources / "datasets/rigs").glob("*/*.toml")):
         rig = f"{file.parent.name}/{file.stem}"
         copy = folder / "shipped" / rig
-        copy.mkdir(parents=True)
-        text = re.sub(r"(?m)^tolerance *=.*$", "", file.read_text())
-        text = text.replace("[simulation]", "[simulation]\ntolerance = 1e-9") if "[simulation]" in text else text + "\n[simulation]\ntolerance = 1e-9\n"
-        campaign = copy / "campaign.toml"
-        campaign.write_text(text)
         recordings = next((path for path in (sources.parent / "shared/data").glob("*") if path.name.startswith(file.parent.name.split("_")[0])), None)
-        for path in recordings.glob("*.csv") if recordings else []:
-            (copy / path.name).symlink_to(path)
+        campaign = exact(file, copy, recordings)
         made = subprocess.run([rigcal, "explore", "campaign.toml", "--out", "page", "--quiet"], cwd=copy, capture_output=True, text=True, check=False)
         if made.returncode == 2 and ("no file fits" in made.stderr or "of the rig is unknown" in made.stderr):
             print(f"{rig}: skipped: {made.stderr.strip()[-120:]}")
@@ -259,8 +277,9 @@ def shipped_rigs(rigcal, sources, folder):
             check(not browser.problems, f"{rig}: {browser.problems}")
 
 
-def the_fitted_rig(rigcal, campaign, folder, what, *options):
-    """Checks the page of a fit: at the estimates its curves have the scores in fit.json, and they follow a slider."""
+def the_fitted_rig(rigcal, campaign, folder, what, recordings, *options):
+    """Checks the page of a fit: at the estimates its curves have the scores in fit.json and are those that `simulate`
+    writes, and they follow a slider."""
     fit_folder = folder / "fit"
     done = subprocess.run([rigcal, "fit", campaign, "--out", fit_folder, "--quiet", "--force", *options], capture_output=True, text=True, check=False)
     check(done.returncode in (0, 1), f"{what}: {done.stderr}")
@@ -299,6 +318,9 @@ def the_fitted_rig(rigcal, campaign, folder, what, *options):
         moved(browser, "document.getElementById('live-reset').click()")
         check(browser.run("window.rigcalLive.scores") == scores, f"{what}: a reset does not lead back")
         milliseconds = browser.run("window.rigcalLive.answer.milliseconds")
+        browser.run(f"location.hash = '#live&tolerance=1e-9&case=' + encodeURIComponent({json.dumps(name)})")
+        browser.wait_for("window.rigcalLive.request.tolerance === 1e-9", f"{what}: the address changes nothing")
+        compare(browser, rigcal, exact(campaign, folder / "exact", recordings), f"{what}, {name}, at the estimates")
         browser.size(400)
         browser.wait_for("innerWidth === 400 && document.documentElement.scrollWidth <= 400", f"{what}: as narrow as a telephone")
         check(not browser.problems, browser.problems)
@@ -310,7 +332,7 @@ def the_fitted_rig(rigcal, campaign, folder, what, *options):
 def fitted_rigs(rigcal, sources, folder):
     data = folder / "known"
     run(rigcal, "synthesize", sources / "docs/tutorial/known_rig.toml", "--seed", "1", "--out", data, "--quiet", cwd=folder)
-    the_fitted_rig(rigcal, data / "campaign.toml", folder / "known", "the tutorial's rig")
+    the_fitted_rig(rigcal, data / "campaign.toml", folder / "known", "the tutorial's rig", data)
     fit = folder / "known" / "fit"
     text, result = (fit / "report.html").read_text(), json.loads((fit / "fit.json").read_text())
 
@@ -337,7 +359,7 @@ def fitted_rigs(rigcal, sources, folder):
         if not (recordings / records).is_dir():
             print(f"skipped: no recordings in {recordings / records}")
             continue
-        the_fitted_rig(rigcal, sources / "datasets" / "rigs" / rig / "campaign.toml", folder / rig, rig, "--data", recordings / records)
+        the_fitted_rig(rigcal, sources / "datasets" / "rigs" / rig / "campaign.toml", folder / rig, rig, recordings / records, "--data", recordings / records)
 
 
 def leaking_rigs(rigcal, sources, folder):
