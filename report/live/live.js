@@ -406,6 +406,8 @@
   let levelRuns = [];
   let charts = null;
   const sync = "live";
+  const dashes = {calibrated: {pattern: [6, 3], border: "dashed"}, reference: {pattern: [5, 3], border: "dashed"}, healthy: {pattern: [2, 2], border: "dotted"}};
+  const kindOf = (line) => Object.keys(dashes).find((kind) => line?.[kind]);
   const chartOf = (plot, data) => {
     const figure = make("figure", {class: "plot made", role: "img"}, make("figcaption", {text: `${plot.title} [${plot.unit}]`}));
     $("plots").append(figure);
@@ -413,13 +415,15 @@
     const chart = new uPlot({
       width: figure.clientWidth || 600, height: plot.height,
       series: [{label: "time", value: (_, v) => v == null ? "–" : digits(v) + " s"},
-               ...plot.lines.map((line) => ({label: line.name, stroke: css("--" + line.style), width: line.width ?? 1.2, spanGaps: Boolean(line.measured), dash: line.dash ?? (line.calibrated ? [6, 3] : line.reference ? [5, 3] : line.healthy ? [2, 2] : undefined),
+               ...plot.lines.map((line) => ({label: line.name, stroke: css("--" + line.style), width: line.width ?? 1.2, spanGaps: Boolean(line.measured), dash: line.dash ?? dashes[kindOf(line)]?.pattern,
                                              points: {show: false}, value: (_, v) => v == null ? "–" : `${digits(v)} ${plot.unit}`}))],
       scales: {x: {time: false}},
       axes: [{...axis, size: 28, values: (_, ticks) => ticks.map((t) => digits(t) + " s")}, {...axis, size: 56, values: (_, ticks) => ticks.map((t) => digits(t))},
              ...(plot.percent ? [{...axis, side: 1, size: 52, grid: {show: false}, splits: () => [-100, -50, 0, 50, 100].map((part) => part / 100 * plot.percent()),
                                  values: (_, ticks) => ticks.map((t) => plot.percent() ? `${digits(100 * t / plot.percent(), 3)} %` : "")}] : [])],
       cursor: {sync: {key: sync, setSeries: false, scales: ["x", null]}, drag: {x: true, y: false}},
+      // The mark is a piece of the line, since several lines of a chart differ by their dashes only.
+      legend: {markers: {dash: (_, i) => dashes[kindOf(plot.lines[i - 1])]?.border ?? "solid"}},
     }, data, figure);
     chart.root.setAttribute("aria-hidden", "true");
     return {plot, figure, chart};
@@ -487,7 +491,7 @@
     const leakClass = flows.fraction == null ? "" : classOf(flows.fraction);
     const items = [
       ["Servo flow", perMinute(flows.servo), "mean of its size"], ["Leak", perMinute(flows.leak), "mean of its size"],
-      ["Of the servo flow leak", fraction == null ? "–" : `${digits(fraction, 3)} %`, leakClass],
+      ["Leaked share of servo flow", fraction == null ? "–" : `${digits(fraction, 3)} %`, leakClass],
       [`Peak ${motion.name}`, `${digits(peak(position) / motion.si, 4)} ${motion.unit}`, ""],
     ];
     if (driven.si_unit === "m") {
