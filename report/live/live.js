@@ -491,7 +491,7 @@
     const leakClass = flows.fraction == null ? "" : classOf(flows.fraction);
     const items = [
       ["Servo flow", perMinute(flows.servo), "mean of its size"], ["Leak", perMinute(flows.leak), "mean of its size"],
-      ["Leaked share of servo flow", fraction == null ? "–" : `${digits(fraction, 3)} %`, leakClass],
+      ["Leaked share", fraction == null ? "–" : `${digits(fraction, 3)} %`, leakClass],
       [`Peak ${motion.name}`, `${digits(peak(position) / motion.si, 4)} ${motion.unit}`, ""],
     ];
     if (driven.si_unit === "m") {
