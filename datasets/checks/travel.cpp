@@ -31,15 +31,25 @@ std::optional<double> stroke_m(const Campaign& campaign, const Condition& condit
   return values_in(campaign, condition)[kStroke];
 }
 
-/// Returns the range of the reference in a closed loop.
-std::optional<double> reference_range_m(const Campaign& campaign, const Condition& condition,
-                                        const Record& record) {
+struct Extent {
+  double range = 0.0;
+  double farthest = 0.0;  ///< range or largest size, whichever is larger: the piston may start at
+                          ///< zero and be asked to go to a constant reference
+};
+
+/// Returns the extent of the reference in a closed loop.
+std::optional<Extent> reference_extent_m(const Campaign& campaign, const Condition& condition,
+                                         const Record& record) {
   if (drive_channel(campaign) != Channel::reference) return std::nullopt;
   if (condition.waveform != Waveform::recorded && condition.amplitude)
-    return 2.0 * *condition.amplitude;
+    return Extent{2.0 * *condition.amplitude, 2.0 * *condition.amplitude};
   const auto found = record.channels.find(Channel::reference);
   if (found == record.channels.end()) return std::nullopt;
-  return range(found->second.mean);
+  Extent extent{range(found->second.mean), 0.0};
+  extent.farthest = extent.range;
+  for (const double x : found->second.mean)
+    extent.farthest = std::max(extent.farthest, std::abs(x));
+  return extent;
 }
 
 }  // namespace
@@ -57,12 +67,12 @@ std::string travel_warning(const Campaign& campaign, const Condition& condition,
     return fmt::format("position: {:.4g} m of travel, beyond the stroke of {:.4g} m: {}", travel,
                        *stroke, kUnit);
   }
-  const auto reference = reference_range_m(campaign, condition, record);
-  if (reference && *reference > 0.0) {
-    const double share = travel / *reference;
-    if (share <= kBeyondReference && share >= kOfReference) return {};
+  const auto reference = reference_extent_m(campaign, condition, record);
+  if (reference && reference->range > 0.0) {
+    const bool far = travel > kBeyondReference * reference->farthest;
+    if (!far && travel >= kOfReference * reference->range) return {};
     return fmt::format("position: {:.4g} m of travel, where the reference covers {:.4g} m: {}",
-                       travel, *reference, kUnit);
+                       travel, far ? reference->farthest : reference->range, kUnit);
   }
   if (travel <= kLongestCylinderM) return {};
   return fmt::format("position: {:.4g} m of travel: {}", travel, kUnit);

@@ -42,6 +42,17 @@ TEST_CASE("travel_warning: against the reference", "[datasets]") {
   CHECK_THAT(recorded.told(), Contains("the reference covers 0.144 m"));
 }
 
+TEST_CASE("travel_warning: a step that the record does not show in its reference", "[datasets]") {
+  TravelCase step(0.05);
+  step.condition.waveform = Waveform::recorded;
+  step.record.channels[Channel::reference].mean = {0.0502, 0.0499, 0.0501};
+  CHECK(step.told().empty());
+  step.record.channels[Channel::position].mean = {0.0, 50.0};
+  CHECK_THAT(step.told(), Contains("50 m of travel, where the reference covers 0.0502 m"));
+  step.record.channels[Channel::position].mean = {0.0, 5e-7};
+  CHECK_THAT(step.told(), Contains("the reference covers 0.0003 m"));
+}
+
 TEST_CASE("travel_warning: without a reference, and in counts", "[datasets]") {
   CHECK(TravelCase(19.0, ControllerKind::none).told().empty());
   CHECK_THAT(TravelCase(144.0, ControllerKind::none).told(),
