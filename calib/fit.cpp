@@ -63,7 +63,8 @@ bool asks_for_more(const FitOptions& options) {
 /// Runs the steps requested in addition to the fit: bootstrap, profiles, posterior,
 /// cross-validation. If the budget runs out, the finished steps are kept.
 void look_again(const Problem& problem, const Campaign& campaign,
-                const std::vector<Record>& records, const Solved& solved, const FitOptions& options,
+                const std::vector<Record>& records, const Solved& solved,
+                const std::optional<EffectLikelihood>& effects, const FitOptions& options,
                 Budget& budget, Fit& fit) {
   const auto note = [&](StoppedIn stage) {
     if (budget.spent() && fit.stopped_in == StoppedIn::nothing) fit.stopped_in = stage;
@@ -77,7 +78,8 @@ void look_again(const Problem& problem, const Campaign& campaign,
     note(StoppedIn::profiles);
   }
   if (options.posterior > 0) {
-    sample_posterior(problem, solved.optimum, solved.spread, options, fit, budget);
+    sample_posterior(problem, solved.optimum, solved.spread, effects ? &*effects : nullptr, options,
+                     fit, budget);
     note(StoppedIn::posterior);
   }
   // The records do not bound these unknowns; only the smoothing of the square roots would.
@@ -250,9 +252,10 @@ Fit fit(const Campaign& campaign, const std::vector<Record>& records, const FitO
   evaluator.keep_rows();
   Solved solved = solve_from_starts(problem, evaluator, options, result);
   if (solved.optimum.ok) {
+    std::optional<EffectLikelihood> effects;  // large, and only the posterior needs it
     if (result.status == FitStatus::converged && options.consider) {
       consider_effects(problem, solved.optimum.z, solved.spread, options.threads, options.cancel,
-                       result);
+                       result, options.posterior > 0 ? &effects : nullptr);
     }
     solved.spread.scores = {};
     std::optional<EstimateSpread> spread;
@@ -284,7 +287,7 @@ Fit fit(const Campaign& campaign, const std::vector<Record>& records, const FitO
     if (result.status == FitStatus::converged && validation)
       result.stopped_in = validation->stopped_in;
     if (result.status == FitStatus::converged) {
-      look_again(problem, campaign, records, solved, options, budget, result);
+      look_again(problem, campaign, records, solved, effects, options, budget, result);
     } else if (asks_for_more(options)) {
       result.message +=
           "; bootstrap, profiles, posterior and cross-validation are made of what converged only";

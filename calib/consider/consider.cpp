@@ -248,6 +248,22 @@ Sizes sizes_of(const Seen& seen, const MatrixXd& directions) {
   return {std::move(cut.mean), std::move(cut.covariance), std::move(likeliest)};
 }
 
+/// Takes the rows Q out of `seen`.
+EffectLikelihood likelihood_of(Seen& seen, const ScoreCovariance& scores, const Sizes& sizes) {
+  EffectLikelihood result;
+  for (const Effect& each : seen.effects) {
+    result.keys.push_back(each.about.key);
+    result.one_sided.push_back(each.about.one_sided);
+  }
+  result.taken = seen.taken;
+  result.felt = (seen.left * seen.basis).transpose();
+  result.covariance = scores.directions;
+  for (ScoreRows& each : seen.rows) result.beside.push_back(std::move(each.narrow));
+  result.mean = sizes.mean;
+  result.error = sizes.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  return result;
+}
+
 MatrixXd correlation_of(const MatrixXd& covariance) {
   const VectorXd scale = covariance.diagonal().cwiseSqrt().unaryExpr(
       [](double sd) { return sd > 0.0 ? 1.0 / sd : 0.0; });
@@ -734,7 +750,8 @@ void widen(const Problem& problem, std::size_t unknown, Budget95 budget, double 
 }  // namespace
 
 void consider_effects(const Problem& problem, std::span<const double> z, const Uncertainty& found,
-                      int threads, const std::atomic<bool>* cancel, Fit& fit) {
+                      int threads, const std::atomic<bool>* cancel, Fit& fit,
+                      std::optional<EffectLikelihood>* likelihood) {
   if (found.scores.empty() || found.root.directions() == 0) return;
   Considered considered;
   considered.left_out = left_out_effects(problem, z);
@@ -775,6 +792,7 @@ void consider_effects(const Problem& problem, std::span<const double> z, const U
       test_alone(*seen, scores, considered.effects);
       missing = missing_effects(*seen, scores, considered.effects);
     }
+    if (likelihood != nullptr) *likelihood = likelihood_of(*seen, scores, sizes);
     // From here on only the residuals are needed, and a refit needs the memory.
     for (ScoreRows& each : seen->rows) each.narrow.resize(0, 0);
     models =

@@ -1,12 +1,31 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <atomic>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "calib/problem/problem.hpp"
 #include "calib/result/fit_result.hpp"
 #include "calib/trust/uncertainty.hpp"
 
 namespace rigcal::calib {
+
+/// What the records say about the sizes e of the considered effects, linear about the optimum. All
+/// sizes are multiples of the plausible size, with the prior N(0, 1), truncated at zero for an
+/// effect that cannot be negative. The effects change the weighted outputs by E e = B C e + Q F e:
+/// B are the rows of the directions that move the estimates, Q those of the directions beside them.
+struct EffectLikelihood {
+  std::vector<std::string> keys;
+  std::vector<bool> one_sided;
+  Eigen::MatrixXd taken;                ///< C, shape (directions of the root, effects)
+  Eigen::MatrixXd felt;                 ///< F, shape (columns of Q, effects)
+  Eigen::MatrixXd covariance;           ///< W, covariance of Q^T r
+  std::vector<Eigen::MatrixXf> beside;  ///< Q, rows of each condition
+  Eigen::VectorXd mean, error;          ///< sizes from prior and records, truncated at zero
+};
 
 /// Widens the intervals of a fit to account for the small effects that the model omits (consider
 /// covariance: S. F. Schmidt, Advances in Control Systems 3, 1966). In contrast to that method, the
@@ -28,8 +47,11 @@ namespace rigcal::calib {
 /// of each effect with the same V, Holm's correction, and forward selection.
 ///
 /// @param found  uncertainty at the optimum, including the scores of the residuals
-/// @param fit    must already contain the parameters of the problem's unknowns
+/// @param fit         must already contain the parameters of the problem's unknowns
+/// @param likelihood  if not null, receives what the records say about the sizes; unchanged if no
+///                    effect was considered
 void consider_effects(const Problem& problem, std::span<const double> z, const Uncertainty& found,
-                      int threads, const std::atomic<bool>* cancel, Fit& fit);
+                      int threads, const std::atomic<bool>* cancel, Fit& fit,
+                      std::optional<EffectLikelihood>* likelihood = nullptr);
 
 }  // namespace rigcal::calib

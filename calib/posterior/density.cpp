@@ -17,6 +17,10 @@ using Eigen::VectorXd;
 /// the bound itself, the sampler's coordinates would be infinite.
 constexpr double kLeastDistance = 1e-6;
 constexpr double kMostDistance = 0.25;
+/// Smallest scale of an effect, as a multiple of its plausible size.
+constexpr double kLeastEffectScale = 1e-4;
+/// Smallest size at which an effect that cannot be negative begins, in its standard errors.
+constexpr double kFirstPositiveSize = 0.5;
 /// Minimum eigenvalue of the covariance of the score, relative to the mean eigenvalue.
 constexpr double kLeastEigenvalue = 1e-6;
 
@@ -28,6 +32,9 @@ double logistic(double y) {
 double log_logistic(double y) {
   return y >= 0.0 ? -std::log1p(std::exp(-y)) : y - std::log1p(std::exp(y));
 }
+
+/// Returns log(exp(x) - 1) for x > 0, also where exp(x) overflows.
+double log_of_expm1(double x) { return x + std::log(-std::expm1(-x)); }
 
 /// Returns R for all unknowns and all directions as a dense matrix.
 MatrixXd dense_root(const ArrowRoot& root, std::size_t conditions) {
@@ -84,10 +91,16 @@ MatrixXd score_covariance(const Problem& problem, const Evaluation& optimum,
     const MatrixXd stretched = inverse.solve(MatrixXd(stretch.asDiagonal() * root));
     covariance = MatrixXd(stretched * covariance * stretched.transpose());
   }
+  return covariance;
+}
+
+/// Returns the inverse of a covariance whose eigenvalues have a minimum.
+MatrixXd information_of(const MatrixXd& covariance) {
   const MatrixXd symmetric = 0.5 * (covariance + covariance.transpose());
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(symmetric);
+  if (symmetric.size() == 0) return symmetric;
   const double least = kLeastEigenvalue * std::max(solver.eigenvalues().mean(), 1e-300);
-  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(least).asDiagonal() *
+  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(least).cwiseInverse().asDiagonal() *
          solver.eigenvectors().transpose();
 }
 
@@ -96,8 +109,8 @@ MatrixXd score_covariance(const Problem& problem, const Evaluation& optimum,
 PosteriorDensity::PosteriorDensity(const Problem& problem, const Evaluation& optimum,
                                    const Uncertainty& found,
                                    const std::vector<FittedParameter>& parameters,
-                                   const std::atomic<bool>* cancel)
-    : problem_(problem), cancel_(cancel) {
+                                   const std::atomic<bool>* cancel, const EffectLikelihood* effects)
+    : problem_(problem), cancel_(cancel), effects_(effects) {
   const auto unknowns = static_cast<Index>(optimum.z.size());
   root_ = dense_root(found.root, problem.conditions.size());
   for (std::size_t i = 0; i < problem.conditions.size(); ++i) {
@@ -113,52 +126,105 @@ PosteriorDensity::PosteriorDensity(const Problem& problem, const Evaluation& opt
   const Index directions = root_.cols();
   kappa_ = std::max({1.0, found.reduced_chi_square,
                      directions > 0 ? scores.trace() / static_cast<double>(directions) : 1.0});
-  const MatrixXd none = MatrixXd::Identity(directions, directions);
-  const MatrixXd information = Eigen::LDLT<MatrixXd>(scores).solve(none);
-  weight_ = information - none / kappa_;
+  information_ = information_of(scores);
+  if (effects != nullptr) {
+    beside_ = information_of(effects->covariance);
+    scale_ = effects->error.cwiseMax(kLeastEffectScale);
+  }
+  find_centre(optimum, scores);
+}
 
+void PosteriorDensity::find_centre(const Evaluation& optimum, const MatrixXd& scores) {
+  const Index unknowns = root_.rows();
+  const Index count = effects_ != nullptr ? effects_->taken.cols() : 0;
   // In the unit box the precision is R^-T S^-1 R^-1 in the directions that the records determine.
   // The transform adds terms that keep the other coordinates finite.
   const MatrixXd inverse = Eigen::CompleteOrthogonalDecomposition<MatrixXd>(root_).pseudoInverse();
-  const MatrixXd precision = inverse.transpose() * information * inverse;
-  VectorXd slope(unknowns);
+  MatrixXd by_coordinate(root_.cols(), unknowns + count);  // d q / d (z, e)
+  by_coordinate.leftCols(unknowns) = inverse;
+  VectorXd moved = VectorXd::Zero(unknowns);
+  if (count > 0) {
+    by_coordinate.rightCols(count) = effects_->taken;
+    moved = -root_ * (effects_->taken * effects_->mean);
+  }
+  MatrixXd precision = by_coordinate.transpose() * information_ * by_coordinate;
+  VectorXd slope(unknowns + count);
   std::vector<double> begin;
   for (Index j = 0; j < unknowns; ++j) {
     const double variance = root_.row(j) * scores * root_.row(j).transpose();
     const double error = std::sqrt(std::max(0.0, variance));
     const double inside = std::clamp(error, kLeastDistance, kMostDistance);
-    const double z = std::clamp(optimum.z[static_cast<std::size_t>(j)], inside, 1.0 - inside);
+    const double z =
+        std::clamp(optimum.z[static_cast<std::size_t>(j)] + moved(j), inside, 1.0 - inside);
     slope(j) = z * (1.0 - z);
     begin.push_back(z);
   }
-  centre_ = from_unit(begin);
+  VectorXd e(count);
+  for (Index k = 0; k < count; ++k) {
+    e(k) = is_positive(k) ? std::max(kFirstPositiveSize * scale_(k), effects_->mean(k))
+                          : effects_->mean(k);
+  }
+  if (count > 0) {
+    auto sizes = precision.bottomRightCorner(count, count);
+    sizes += effects_->felt.transpose() * beside_ * effects_->felt;
+    sizes.diagonal().array() += 1.0;
+  }
+  centre_ = from_unit(begin, e);
+  for (Index k = 0; k < count; ++k)
+    slope(unknowns + k) = is_positive(k) ? scale_(k) * logistic(centre_(unknowns + k)) : 1.0;
   MatrixXd curvature = slope.asDiagonal() * precision * slope.asDiagonal();
   // An unknown that the records do not determine has a logistic distribution, whose variance is
-  // pi^2 / 3.
-  curvature.diagonal().array() += 3.0 / (M_PI * M_PI);
-  covariance_ = Eigen::LLT<MatrixXd>(curvature).solve(MatrixXd::Identity(unknowns, unknowns));
+  // pi^2 / 3. A size close to zero keeps the curvature of the factor 1 / (1 + exp(-y)).
+  curvature.diagonal().head(unknowns).array() += 3.0 / (M_PI * M_PI);
+  for (Index k = 0; k < count; ++k) {
+    const double y = centre_(unknowns + k);
+    if (is_positive(k)) curvature(unknowns + k, unknowns + k) += logistic(y) * logistic(-y);
+  }
+  covariance_ =
+      Eigen::LLT<MatrixXd>(curvature).solve(MatrixXd::Identity(unknowns + count, unknowns + count));
   covariance_ = MatrixXd(0.5 * (covariance_ + covariance_.transpose()));
 }
 
 std::vector<double> PosteriorDensity::to_unit(const VectorXd& y) const {
   std::vector<double> z;
-  for (const double each : y) z.push_back(logistic(each));
+  for (const double each : y.head(root_.rows())) z.push_back(logistic(each));
   return z;
 }
 
-VectorXd PosteriorDensity::from_unit(std::span<const double> z) const {
-  VectorXd y(static_cast<Index>(z.size()));
-  for (Index j = 0; j < y.size(); ++j) {
+VectorXd PosteriorDensity::sizes(const VectorXd& y) const {
+  VectorXd e = y.tail(y.size() - root_.rows());
+  for (Index k = 0; k < e.size(); ++k) {
+    if (is_positive(k)) e(k) = -scale_(k) * log_logistic(-e(k));
+  }
+  return e;
+}
+
+VectorXd PosteriorDensity::from_unit(std::span<const double> z, const VectorXd& e) const {
+  const auto unknowns = static_cast<Index>(z.size());
+  VectorXd y(unknowns + e.size());
+  for (Index j = 0; j < unknowns; ++j) {
     const double inside =
         std::clamp(z[static_cast<std::size_t>(j)], kLeastDistance, 1.0 - kLeastDistance);
     y(j) = std::log(inside / (1.0 - inside));
   }
+  for (Index k = 0; k < e.size(); ++k)
+    y(unknowns + k) = is_positive(k) ? log_of_expm1(e(k) / scale_(k)) : e(k);
   return y;
+}
+
+VectorXd PosteriorDensity::changes(std::size_t condition, const VectorXd& e) const {
+  const Directions& own = conditions_[condition];
+  const VectorXd beside = effects_->felt * e;
+  return own.jacobian * (own.root * (effects_->taken * e)) +
+         effects_->beside[condition].cast<double>() * beside;
 }
 
 LogDensity PosteriorDensity::evaluate(const VectorXd& y, const Fidelity& fidelity) const {
   const std::vector<double> z = to_unit(y);
-  const Index unknowns = y.size();
+  const Index unknowns = root_.rows();
+  const VectorXd e = sizes(y);
+  VectorXd p = VectorXd::Zero(beside_.cols());
+  MatrixXd p_slopes = MatrixXd::Zero(beside_.cols(), unknowns);  // d p / d z
   VectorXd q = VectorXd::Zero(root_.cols());
   MatrixXd slopes = MatrixXd::Zero(root_.cols(), unknowns);  // d q / d z
   VectorXd gradient = VectorXd::Zero(unknowns);              // J^T r
@@ -187,7 +253,18 @@ LogDensity PosteriorDensity::evaluate(const VectorXd& y, const Fidelity& fidelit
         const auto residual = weighted.col(free);
         projected.noalias() += before.transpose() * residual;
         square += residual.squaredNorm();
+        MatrixXd along;  // in the directions beside the estimates
+        if (effects_ != nullptr) {
+          along = effects_->beside[i]
+                      .middleRows(static_cast<Index>(k * samples + begin), weighted.rows())
+                      .cast<double>()
+                      .transpose() *
+                  weighted;
+          p += along.col(free);
+        }
         if (!fidelity.derivatives) continue;
+        for (Index a = 0; a < columns && effects_ != nullptr; ++a)
+          p_slopes.col(acting[static_cast<std::size_t>(a)]) += along.col(a);
         projected_slopes.noalias() += before.transpose() * weighted.leftCols(columns);
         own_gradient.noalias() += weighted.leftCols(columns).transpose() * residual;
       }
@@ -219,9 +296,31 @@ LogDensity PosteriorDensity::evaluate(const VectorXd& y, const Fidelity& fidelit
         std::log(problem_.map.slope(unknown, 1.0) / problem_.map.slope(unknown, 0.0));
   }
   LogDensity result;
-  const VectorXd weighted = weight_ * q;
-  result.value = -0.5 * (q.dot(weighted) + square / kappa_) + log_prior;
-  result.gradient = -(slopes.transpose() * weighted + gradient / kappa_) + prior_gradient;
+  const double white = (square - q.squaredNorm() - p.squaredNorm()) / kappa_;
+  gradient -= slopes.transpose() * q + p_slopes.transpose() * p;  // of the white part alone
+  if (effects_ != nullptr) {
+    q += effects_->taken * e;
+    p += effects_->felt * e;
+  }
+  const VectorXd weighted_q = information_ * q;
+  const VectorXd weighted_p = beside_ * p;
+  result.value =
+      -0.5 * (q.dot(weighted_q) + p.dot(weighted_p) + white + e.squaredNorm()) + log_prior;
+  result.gradient.resize(y.size());
+  result.gradient.head(unknowns) =
+      prior_gradient -
+      (slopes.transpose() * weighted_q + p_slopes.transpose() * weighted_p + gradient / kappa_);
+  if (effects_ != nullptr) {
+    result.gradient.tail(e.size()) =
+        -(effects_->taken.transpose() * weighted_q + effects_->felt.transpose() * weighted_p + e);
+  }
+  for (Index k = 0; k < e.size(); ++k) {
+    if (!is_positive(k)) continue;
+    const double at = y(unknowns + k);
+    double& each = result.gradient(unknowns + k);
+    each = each * scale_(k) * logistic(at) + logistic(-at);
+    result.value += log_logistic(at);
+  }
   for (Index j = 0; j < unknowns; ++j) {
     const double inside = z[static_cast<std::size_t>(j)];
     const double above = logistic(-y(j));

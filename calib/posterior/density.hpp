@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "calib/consider/consider.hpp"
 #include "calib/posterior/nuts.hpp"
 #include "calib/problem/evaluation.hpp"
 #include "calib/result/fitted_parameter.hpp"
@@ -12,7 +13,8 @@
 
 namespace rigcal::calib {
 
-/// Posterior density of the unknowns of a problem.
+/// Posterior density of the unknowns of a problem, and of the sizes of the small effects that its
+/// model leaves out.
 ///
 /// Likelihood: the weighted residuals r of the fit are normal. In the directions that affect the
 /// estimates, which are the columns of G = J R at the optimum, their covariance is the matrix S
@@ -26,12 +28,23 @@ namespace rigcal::calib {
 /// which equals r^T r if the noise is white and known. Close to the optimum the curvature of the
 /// likelihood matches the covariance of the fit; further away the simulations determine its shape.
 ///
+/// The effects are linear about the optimum, as for the intervals (consider_effects()): sizes e add
+/// C e to q. They also change p = Q^T r by F e, in directions beside the estimates in which the
+/// noise has the covariance W. With effects,
+///
+///     -2 log L = q^T S^-1 q + p^T W^-1 p + (r^T r - q0^T q0 - p0^T p0) / kappa,
+///
+/// where q0 and p0 are q and p without effects.
+///
 /// Prior: uniform between the bounds on the scale that the fit uses, the coordinate z of the unit
 /// box. An unknown with `prior` and `prior_sd` has that normal distribution, truncated at its
-/// bounds.
+/// bounds. The size of an effect, in units of its plausible size, is N(0, 1), truncated at zero for
+/// an effect that cannot be negative.
 ///
-/// Coordinates of the sampler: y = log(z / (1 - z)). In these coordinates the density has a factor
-/// z (1 - z) for each unknown.
+/// Coordinates of the sampler: y = log(z / (1 - z)) of each unknown, in which the density has a
+/// factor z (1 - z); then e of each effect. If it cannot be negative, e = s log(1 + exp(y)) with
+/// its standard error s from prior and records, and the density has a factor 1 / (1 + exp(-y)). Far
+/// from zero it is then as normal as e itself.
 class PosteriorDensity {
  public:
   /// Borrows the problem.
@@ -40,11 +53,13 @@ class PosteriorDensity {
   /// @param found       uncertainty of the fit at the optimum
   /// @param parameters  parameters of the unknowns, in the same order; they specify on which error
   ///                    each interval is based
+  /// @param effects     the effects, borrowed; null if the model counts as exact
   /// @param cancel      set to true to stop simulations; from then on the density is zero
   ///                    everywhere
   PosteriorDensity(const Problem& problem, const Evaluation& optimum, const Uncertainty& found,
                    const std::vector<FittedParameter>& parameters,
-                   const std::atomic<bool>* cancel = nullptr);
+                   const std::atomic<bool>* cancel = nullptr,
+                   const EffectLikelihood* effects = nullptr);
 
   LogDensity at(const Eigen::VectorXd& y) const { return evaluate(y, Fidelity::full); }
   /// Returns only the logarithm of the density, from simulations without sensitivities.
@@ -53,8 +68,16 @@ class PosteriorDensity {
   /// Returns the start point. It is the optimum, or if the optimum is less than one standard error
   /// from a bound, a point that is one standard error away from the bound.
   const Eigen::VectorXd& centre() const { return centre_; }
+  /// Returns the unknowns of a point, in the unit box.
   std::vector<double> to_unit(const Eigen::VectorXd& y) const;
-  Eigen::VectorXd from_unit(std::span<const double> z) const;
+  /// Returns the sizes of the effects of a point, as multiples of the plausible sizes.
+  Eigen::VectorXd sizes(const Eigen::VectorXd& y) const;
+  /// @param e  shape (effects); a size that cannot be negative must be positive
+  Eigen::VectorXd from_unit(std::span<const double> z,
+                            const Eigen::VectorXd& e = Eigen::VectorXd()) const;
+  /// Returns by how much effects of these sizes change the weighted outputs of a condition, shape
+  /// (channels * samples that count).
+  Eigen::VectorXd changes(std::size_t condition, const Eigen::VectorXd& e) const;
   /// Returns the covariance of a normal approximation, from the curvature at the optimum including
   /// the priors and the transform.
   const Eigen::MatrixXd& covariance() const { return covariance_; }
@@ -62,6 +85,10 @@ class PosteriorDensity {
   double noise() const { return kappa_; }
 
  private:
+  bool is_positive(Eigen::Index effect) const {
+    return effects_->one_sided[static_cast<std::size_t>(effect)];
+  }
+  void find_centre(const Evaluation& optimum, const Eigen::MatrixXd& scores);
   /// @param fidelity  without derivatives, the result has no gradient
   LogDensity evaluate(const Eigen::VectorXd& y, const Fidelity& fidelity) const;
 
@@ -73,10 +100,13 @@ class PosteriorDensity {
 
   const Problem& problem_;
   const std::atomic<bool>* cancel_;
+  const EffectLikelihood* effects_;
   std::vector<Directions> conditions_;
   Eigen::MatrixXd root_;       ///< R, shape (unknowns, directions)
   Eigen::VectorXd prior_row_;  ///< d residual / d z of the priors at the optimum; 0 without a prior
-  Eigen::MatrixXd weight_;     ///< S^-1 - 1 / kappa
+  Eigen::MatrixXd information_;  ///< S^-1
+  Eigen::MatrixXd beside_;       ///< W^-1
+  Eigen::VectorXd scale_;        ///< s of each effect
   double kappa_ = 1.0;
   Eigen::VectorXd centre_;
   Eigen::MatrixXd covariance_;

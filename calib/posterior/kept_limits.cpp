@@ -38,14 +38,19 @@ std::vector<Bound> bounds_of(const Problem& problem) {
 }
 
 /// Returns the metric for one simulation; NaN if it is undefined.
-double score_of(const Bound& bound, const ProblemCondition& condition,
-                const model::Simulation& run) {
+///
+/// @param change  change in the weighted outputs, or empty
+double score_of(const Bound& bound, const ProblemCondition& condition, const model::Simulation& run,
+                const Eigen::VectorXd& change) {
   if (!run.ok()) return std::numeric_limits<double>::quiet_NaN();
   const ProblemChannel& channel = condition.channels[bound.channel];
   std::vector<double> simulated;
   for (const std::size_t row : condition.rows)
     simulated.push_back(
         run.outputs(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(bound.channel)));
+  const auto first = static_cast<Eigen::Index>(bound.channel * simulated.size());
+  for (std::size_t t = 0; t < simulated.size() && change.size() > 0; ++t)
+    simulated[t] += channel.sd * change(first + static_cast<Eigen::Index>(t));
   try {
     return bound.metric->compute(channel.measured, simulated);
   } catch (const std::logic_error&) {  // the record is constant
@@ -56,7 +61,8 @@ double score_of(const Bound& bound, const ProblemCondition& condition,
 }  // namespace
 
 std::vector<KeptLimit> kept_limits(const Problem& problem,
-                                   const std::vector<std::vector<double>>& points, int threads,
+                                   const std::vector<std::vector<double>>& points,
+                                   const ChangeOf& change, int threads,
                                    const std::atomic<bool>* cancel) {
   const std::vector<Bound> bounds = bounds_of(problem);
   if (bounds.empty() || points.empty()) return {};
@@ -68,9 +74,10 @@ std::vector<KeptLimit> kept_limits(const Problem& problem,
                                       [i](const Bound& each) { return each.condition == i; });
       if (!judged || (cancel != nullptr && *cancel)) continue;
       const auto run = simulate_condition(problem, i, points[p], cancel, values_only);
+      const Eigen::VectorXd by_effects = change ? change(i, p) : Eigen::VectorXd();
       for (std::size_t b = 0; b < bounds.size(); ++b) {
         if (bounds[b].condition == i)
-          scores[b][p] = score_of(bounds[b], problem.conditions[i], run);
+          scores[b][p] = score_of(bounds[b], problem.conditions[i], run, by_effects);
       }
     }
   });

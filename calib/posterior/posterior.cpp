@@ -29,6 +29,9 @@ constexpr double kScattered = 2.0;
 /// Maximum number of attempts to draw a start point that can be simulated. Each attempt is half as
 /// far from the optimum as the last.
 constexpr int kMostTries = 8;
+/// Acceptance to aim at where effects are drawn, too. Sizes that cannot be negative curve the
+/// density more than the unknowns do, so that shorter steps are needed.
+constexpr double kAcceptanceWithEffects = 0.95;
 /// Fraction of missing information below which the chains may not reach the tails.
 constexpr double kLeastEnergyFraction = 0.3;
 /// Number of effective draws in all chains below which the quantiles are unreliable.
@@ -96,17 +99,20 @@ bool begin_chain(const LogDensityOf& density, const PosteriorDensity& posterior,
   return std::isfinite(density(state.position).value);
 }
 
-/// Returns the draws of an unknown from each chain, SI.
-Chains chains_of(const Problem& problem, const PosteriorDensity& density,
-                 const std::vector<std::vector<std::vector<double>>>& positions, std::size_t j) {
+/// Draws of all chains, as coordinates of the sampler: [chain][draw][coordinate].
+using Positions = std::vector<std::vector<std::vector<double>>>;
+
+VectorXd point_of(const std::vector<double>& position) {
+  return Eigen::Map<const VectorXd>(position.data(), static_cast<Index>(position.size()));
+}
+
+/// Returns one number for each draw of each chain.
+template <typename Value>
+Chains chains_of(const Positions& positions, const Value& value) {
   Chains chains;
   for (const auto& chain : positions) {
     std::vector<double>& values = chains.emplace_back();
-    for (const auto& position : chain) {
-      const VectorXd y =
-          Eigen::Map<const VectorXd>(position.data(), static_cast<Index>(position.size()));
-      values.push_back(problem.map.to_physical(static_cast<int>(j), density.to_unit(y)[j]));
-    }
+    for (const auto& position : chain) values.push_back(value(point_of(position)));
   }
   return chains;
 }
@@ -186,6 +192,8 @@ std::string how_drawn(const Posterior& found, const std::string& stopped) {
       found.chains, found.draws, found.warm_up);
   if (found.draws < found.asked)
     text += fmt::format(" ({} were asked for: {})", found.asked, stopped);
+  if (found.effects)
+    text += "; the sizes of the small effects that the model leaves out are drawn, too";
   text += fmt::format("; largest R-hat {}, at least {:.0f} effective draws, {}, energy fraction {}",
                       significant(found.r_hat, 4), found.least_draws,
                       found.diverged == 0 ? std::string("no divergence")
@@ -197,7 +205,8 @@ std::string how_drawn(const Posterior& found, const std::string& stopped) {
 }  // namespace
 
 void sample_posterior(const Problem& problem, const Evaluation& optimum, const Uncertainty& found,
-                      const FitOptions& options, Fit& fit, Budget& left) {
+                      const EffectLikelihood* effects, const FitOptions& options, Fit& fit,
+                      Budget& left) {
   Posterior& result = fit.posterior.emplace();
   result.asked = options.posterior;
   result.warm_up = kPosteriorWarmUp;
@@ -210,7 +219,9 @@ void sample_posterior(const Problem& problem, const Evaluation& optimum, const U
         "no draws: {}", left.spent() ? left.reason() : "the optimum could not be simulated again");
     return;
   }
-  const PosteriorDensity posterior(problem, with_rows, found, fit.parameters, left.cancel());
+  const PosteriorDensity posterior(problem, with_rows, found, fit.parameters, left.cancel(),
+                                   effects);
+  result.effects = effects != nullptr;
   result.noise_variance = posterior.noise();
 
   const auto stop = [&left] { return left.interrupted(); };
@@ -234,6 +245,7 @@ void sample_posterior(const Problem& problem, const Evaluation& optimum, const U
       sampler.seed = options.seed;
       sampler.chain = static_cast<int>(c);
       sampler.stop = stop;
+      if (effects != nullptr) sampler.target_acceptance = kAcceptanceWithEffects;
       ChainState state;
       if (warming) {
         if (!begin_chain(density, posterior, options.seed, c, state)) return {{}, !stop()};
@@ -258,10 +270,11 @@ void sample_posterior(const Problem& problem, const Evaluation& optimum, const U
     };
     std::string before;
     for (const ChainTask& each : chains) before += to_bytes(each.position, each.iteration);
-    const auto results =
-        farm.run({name, to_bytes(optimum.z, optimum.cost, options.seed, count, before),
-                  chains.size(), options.threads},
-                 make, tell);
+    const auto results = farm.run(
+        {name,
+         to_bytes(optimum.z, optimum.cost, listed(posterior.centre()), options.seed, count, before),
+         chains.size(), options.threads},
+        make, tell);
     std::vector<ChainTask> next(chains.size());
     for (std::size_t c = 0; c < chains.size(); ++c) {
       if (!results[c].whole || results[c].bytes.empty()) return false;
@@ -277,7 +290,7 @@ void sample_posterior(const Problem& problem, const Evaluation& optimum, const U
     return true;
   };
 
-  std::vector<std::vector<std::vector<double>>> positions(chains.size());
+  Positions positions(chains.size());
   std::vector<std::vector<double>> energies(chains.size());
   bool whole = run("posterior warm-up", kPosteriorWarmUp);
   while (whole && result.draws < options.posterior) {
@@ -301,20 +314,38 @@ void sample_posterior(const Problem& problem, const Evaluation& optimum, const U
   for (const auto& chain : energies)
     result.energy_fraction = std::min(result.energy_fraction, energy_fraction(chain));
   result.least_draws = HUGE_VAL;
-  for (std::size_t j = 0; j < result.names.size(); ++j) {
-    const Chains of_unknown = chains_of(problem, posterior, positions, j);
-    const PosteriorSpread spread = spread_of(of_unknown);
-    fit.parameters[j].posterior = spread;
+  const auto judged = [&result](const Chains& draws, const std::string& name) {
+    const PosteriorSpread spread = spread_of(draws);
     result.least_draws = std::min({result.least_draws, spread.bulk_draws, spread.tail_draws});
     if (!(spread.r_hat <= result.r_hat)) {
       result.r_hat = spread.r_hat;
-      result.worst = result.names[j];
+      result.worst = name;
     }
+    return spread;
+  };
+  for (std::size_t j = 0; j < result.names.size(); ++j) {
+    const Chains of_unknown = chains_of(positions, [&](const VectorXd& y) {
+      return problem.map.to_physical(static_cast<int>(j), posterior.to_unit(y)[j]);
+    });
+    fit.parameters[j].posterior = judged(of_unknown, result.names[j]);
     std::vector<double>& values = result.values.emplace_back();
     for (const auto& chain : of_unknown) values.insert(values.end(), chain.begin(), chain.end());
   }
+  for (std::size_t e = 0; effects != nullptr && e < effects->keys.size(); ++e) {
+    const std::string& key = effects->keys[e];
+    for (ConsideredEffect& about : fit.considered->effects) {
+      if (about.key != key) continue;
+      about.posterior =
+          judged(chains_of(positions,
+                           [&](const VectorXd& y) {
+                             return about.size * posterior.sizes(y)(static_cast<Index>(e));
+                           }),
+                 key);
+    }
+  }
   result.pairs = pairs_of(result, fit.parameters);
   std::vector<std::vector<double>> points;
+  std::vector<VectorXd> sizes;
   const auto count =
       static_cast<std::size_t>(result.chains) * static_cast<std::size_t>(result.draws);
   const std::size_t simulated = std::min<std::size_t>(kPosteriorSimulated, count);
@@ -322,10 +353,16 @@ void sample_posterior(const Problem& problem, const Evaluation& optimum, const U
     const std::size_t at = k * count / simulated;
     const auto& position = positions[at / static_cast<std::size_t>(result.draws)]
                                     [at % static_cast<std::size_t>(result.draws)];
-    points.push_back(posterior.to_unit(
-        Eigen::Map<const VectorXd>(position.data(), static_cast<Index>(position.size()))));
+    points.push_back(posterior.to_unit(point_of(position)));
+    sizes.push_back(posterior.sizes(point_of(position)));
   }
-  if (!stop()) result.limits = kept_limits(problem, points, options.threads, left.cancel());
+  ChangeOf change;
+  if (effects != nullptr) {
+    change = [&](std::size_t condition, std::size_t point) {
+      return posterior.changes(condition, sizes[point]);
+    };
+  }
+  if (!stop()) result.limits = kept_limits(problem, points, change, options.threads, left.cancel());
   if (!result.limits.empty()) result.simulated = static_cast<int>(points.size());
   result.message = how_drawn(result, stopped);
 }

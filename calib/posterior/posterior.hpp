@@ -21,10 +21,13 @@ inline constexpr int kPosteriorSimulated = 200;
 /// groups, so that the draws are the same for any number of threads. Stores the result in
 /// `fit.posterior` and `fit.parameters`.
 ///
-/// @param found  uncertainty at the optimum
-/// @param left   budget of the whole job; if it runs out during a group of draws, that group is
-///               dropped in all chains
+/// @param found    uncertainty at the optimum
+/// @param effects  effects whose sizes are drawn with the unknowns; their draws are stored in
+///                 `fit.considered`. Null if the model counts as exact
+/// @param left     budget of the whole job; if it runs out during a group of draws, that group is
+///                 dropped in all chains
 void sample_posterior(const Problem& problem, const Evaluation& optimum, const Uncertainty& found,
-                      const FitOptions& options, Fit& fit, Budget& left);
+                      const EffectLikelihood* effects, const FitOptions& options, Fit& fit,
+                      Budget& left);
 
 }  // namespace rigcal::calib

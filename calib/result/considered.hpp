@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "calib/result/posterior.hpp"
 #include "common/describe.hpp"
 #include "datasets/campaign/campaign.hpp"
 
@@ -33,8 +34,9 @@ struct ConsideredEffect {
   std::optional<double> p_value;           ///< p-value of a score test against zero size
   std::optional<double> p_of_all;          ///< p_value adjusted for all effects (Holm)
   double explains = 0.0;  ///< decrease in the sum of squared residuals if only this effect is added
+  Omittable<PosteriorSpread> posterior = {};  ///< draws of its size, jointly with all unknowns
   RIGCAL_DESCRIBE(key, meaning, unit, size_from, size, one_sided, problem, estimate, standard_error,
-                  alone, alone_half_width, p_value, p_of_all, explains)
+                  alone, alone_half_width, p_value, p_of_all, explains, posterior)
 };
 
 /// One contribution to the uncertainty of an estimate.

@@ -48,6 +48,24 @@ doc::Table draws_table(const StoredFit& fit, const calib::Posterior& found) {
   return table;
 }
 
+/// Returns the sizes of the small effects that were drawn.
+doc::Table effects_table(const calib::Considered& considered) {
+  doc::Table table{"Posterior of the small effects"};
+  table.columns = {{"Effect"}, {"Plausible size", Kind::number},    {"Median", Kind::number},
+                   {"Unit"},   {"95 % of the draws", Kind::number}, {"R-hat", Kind::number}};
+  for (const calib::ConsideredEffect& each : considered.effects) {
+    if (!each.posterior) continue;
+    const RowUnit unit = row_unit(each.size, each.unit);
+    table.rows.push_back(
+        {{each.meaning, doc::in_unit(each.size, unit.si, 3),
+          doc::in_unit(each.posterior->median, unit.si, 3), unit.name,
+          range_line(each.posterior->ci95, unit),
+          std::isfinite(each.posterior->r_hat) ? fmt::format("{:.4f}", each.posterior->r_hat)
+                                               : std::string("–")}});
+  }
+  return table;
+}
+
 doc::Table limits_table(const calib::Posterior& found) {
   doc::Table table{"How probable it is that limits are kept"};
   table.columns = {{"Condition"},
@@ -132,8 +150,13 @@ void add_posterior(const StoredFit& fit, doc::Blocks& blocks) {
     return;
   }
   blocks.emplace_back(doc::reading(
-      "The draws hold if the model is exact: the small effects that it leaves out are not among "
-      "them, so compare them with the interval of the exact model, not with the wider one. "
+      std::string(found.effects
+                      ? "The sizes of the small effects that the model leaves out are drawn with "
+                        "the unknowns. They act in proportion to their size, as in the 95 % "
+                        "interval; compare the draws with that. "
+                      : "The draws hold if the model is exact: the small effects that it leaves "
+                        "out are not among them, so compare them with the interval of the exact "
+                        "model, not with the wider one. ") +
       "Correlated residuals, differences between repeats and stated uncertainties of known values "
       "count as they do there. Prior: uniform between the bounds, in the logarithm where these "
       "span "
@@ -141,6 +164,8 @@ void add_posterior(const StoredFit& fit, doc::Blocks& blocks) {
       "that "
       "count for the middle of a distribution, and for its ends."));
   blocks.emplace_back(draws_table(fit, found));
+  if (found.effects && fit.considered)
+    blocks.emplace_back(doc::Fold{"Sizes of the small effects", {effects_table(*fit.considered)}});
   if (!found.limits.empty()) {
     blocks.emplace_back(limits_table(found));
     blocks.emplace_back(doc::reading(

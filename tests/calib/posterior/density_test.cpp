@@ -1,9 +1,13 @@
 #include "calib/posterior/density.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <optional>
 
+#include "calib/consider/consider.hpp"
 #include "tests/calib/twin.hpp"
 
 namespace rigcal::calib {
@@ -23,11 +27,13 @@ struct Scene {
   Uncertainty found;
   std::vector<FittedParameter> parameters;
 
-  static Twin rig(double tolerance) {
+  static Twin rig(double tolerance, bool priors) {
     Twin twin;
     twin.campaign.simulation.tolerance = tolerance;
-    twin.free("mass", 58.0, 20.0, 400.0).prior = datasets::Prior{55.0, 10.0};
-    twin.free("damping", 1000.0, 200.0, 1900.0).prior = datasets::Prior{950.0, 200.0};
+    auto& mass = twin.free("mass", 58.0, 20.0, 400.0);
+    if (priors) mass.prior = datasets::Prior{55.0, 10.0};
+    auto& damping = twin.free("damping", 1000.0, 200.0, 1900.0);
+    if (priors) damping.prior = datasets::Prior{950.0, 200.0};
     twin.free("valve_gain", 0.04e-3, 0.01e-3, 0.2e-3);
     twin.free("leakage_coefficient", 0.3, 0.0, 3.0, datasets::Scope::leak_level);
     twin.level_leakage = {{"open", 0.35}, {"shut", 0.1}};
@@ -36,8 +42,8 @@ struct Scene {
     return twin;
   }
 
-  explicit Scene(double tolerance = 1e-10)
-      : twin(rig(tolerance)),
+  explicit Scene(double tolerance = 1e-10, bool priors = true)
+      : twin(rig(tolerance, priors)),
         records(twin.records(150, 300.0, 5)),
         problem(problem_of(twin, records)) {
     // The optimum is at the true values, where the residuals are noise.
@@ -74,6 +80,18 @@ struct Scene {
   }
   PosteriorDensity density() const { return {problem, optimum, found, parameters}; }
 };
+
+/// Returns what the records of a scene say about the small effects that its model leaves out.
+EffectLikelihood effects_in(const Scene& scene) {
+  Fit fit;
+  fit.parameters = scene.parameters;
+  std::optional<EffectLikelihood> found;
+  consider_effects(scene.problem, scene.optimum.z, scene.found, 1, nullptr, fit, &found);
+  REQUIRE(found);
+  REQUIRE(std::count(found->one_sided.begin(), found->one_sided.end(), true) > 0);
+  REQUIRE(std::count(found->one_sided.begin(), found->one_sided.end(), false) > 0);
+  return *found;
+}
 
 double log_jacobian(const std::vector<double>& z) {
   double sum = 0.0;
@@ -183,6 +201,82 @@ TEST_CASE("posterior density: the normal approximation is that of the density", 
     const VectorXd change = lower.transpose() * (density.at(centre + step).gradient - base);
     CHECK_THAT(change(k), WithinRel(-0.1, 0.3));
   }
+}
+
+TEST_CASE("posterior density: with white noise, effects change the outputs", "[calib]") {
+  const Scene scene(1e-10, false);
+  EffectLikelihood effects = effects_in(scene);
+  effects.covariance.setIdentity();
+  const PosteriorDensity exact = scene.density();
+  const PosteriorDensity density(scene.problem, scene.optimum, scene.found, scene.parameters,
+                                 nullptr, &effects);
+  const auto count = effects.taken.cols();
+  VectorXd e(count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const double size = 0.1 + 0.05 * static_cast<double>(k);
+    e(k) = effects.one_sided[static_cast<std::size_t>(k)] || k % 2 == 0 ? size : -size;
+  }
+  std::vector<double> z = scene.optimum.z;
+  z[2] += 0.003;
+  const Evaluation there = evaluate_at(scene.problem, z, 1, {Fidelity::full, nullptr, true});
+  double change = -0.5 * e.squaredNorm();
+  for (std::size_t i = 0; i < scene.problem.conditions.size(); ++i) {
+    const VectorXd& residual = (*there.rows)[i].residual;
+    const VectorXd by_effects = density.changes(i, e);
+    REQUIRE(by_effects.norm() > 1.0);
+    change -= 0.5 * ((residual + by_effects).squaredNorm() - residual.squaredNorm());
+  }
+  const VectorXd y = density.from_unit(z, e);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const double at = y(static_cast<Eigen::Index>(z.size()) + k);
+    if (effects.one_sided[static_cast<std::size_t>(k)]) change -= std::log1p(std::exp(-at));
+  }
+  CHECK((density.sizes(y) - e).norm() < 1e-12);
+  CHECK(density.to_unit(y) == exact.to_unit(exact.from_unit(z)));
+  CHECK_THAT(density.value(y) - exact.value(exact.from_unit(z)), WithinRel(change, 1e-3));
+}
+
+TEST_CASE("posterior density: with effects, its gradient is that of its value", "[calib]") {
+  Scene scene(1e-12);
+  const double stretched[] = {1.5, 1.2, 3.0, 2.0, 1.1};
+  for (std::size_t j = 0; j < scene.parameters.size(); ++j)
+    scene.found.standard_error[j] = stretched[j] * scene.white_error(j);
+  const EffectLikelihood effects = effects_in(scene);
+  const PosteriorDensity density(scene.problem, scene.optimum, scene.found, scene.parameters,
+                                 nullptr, &effects);
+  for (const double off : {0.0, 0.1}) {
+    const VectorXd y =
+        density.centre() + off * VectorXd::LinSpaced(density.centre().size(), 1.0, -0.5);
+    const LogDensity at = density.at(y);
+    for (Eigen::Index j = 0; j < y.size(); ++j) {
+      CAPTURE(off, j);
+      const double step = 1e-4;
+      VectorXd above = y;
+      VectorXd below = y;
+      above(j) += step;
+      below(j) -= step;
+      const double slope = (density.at(above).value - density.at(below).value) / (2.0 * step);
+      CHECK_THAT(at.gradient(j), WithinRel(slope, 2e-4) || WithinAbs(slope, 5e-3));
+    }
+  }
+}
+
+TEST_CASE("posterior density: with effects, the normal approximation has their errors", "[calib]") {
+  const Scene scene;
+  EffectLikelihood effects = effects_in(scene);
+  // Truncation at zero is not normal.
+  effects.one_sided.assign(effects.one_sided.size(), false);
+  const PosteriorDensity density(scene.problem, scene.optimum, scene.found, scene.parameters,
+                                 nullptr, &effects);
+  const auto count = effects.taken.cols();
+  const Eigen::MatrixXd precision =
+      Eigen::MatrixXd::Identity(count, count) +
+      effects.felt.transpose() *
+          Eigen::LDLT<Eigen::MatrixXd>(effects.covariance).solve(effects.felt);
+  const Eigen::MatrixXd sizes = precision.inverse();
+  const auto first = static_cast<Eigen::Index>(scene.optimum.z.size());
+  for (Eigen::Index k = 0; k < count; ++k)
+    CHECK_THAT(density.covariance()(first + k, first + k), WithinRel(sizes(k, k), 0.05));
 }
 
 TEST_CASE("posterior density: there is none where the model cannot be simulated", "[calib]") {

@@ -112,6 +112,45 @@ TEST_CASE("posterior: near the optimum it is what the errors say", "[calib]") {
   CHECK(found.posterior->limits[1].median > 0.99);
 }
 
+TEST_CASE("posterior: with effects it is what the budget says", "[calib]") {
+  Twin twin = drawn_rig();
+  twin.campaign.acceptance.push_back({datasets::Channel::position, "rho2", 0.9, std::nullopt});
+  const auto records = twin.records(250, 500.0, 3);
+  FitOptions options = few_draws();
+  options.consider = true;
+  options.posterior = 1000;
+  const Fit found = fit(twin.campaign, records, options);
+  REQUIRE(found.status == FitStatus::converged);
+  REQUIRE(found.posterior);
+  CHECK(found.posterior->effects);
+  CHECK(found.posterior->r_hat <= 1.01);
+  CHECK(found.posterior->diverged == 0);
+  CHECK_THAT(found.posterior->message, Contains("the sizes of the small effects"));
+  for (const FittedParameter& each : found.parameters) {
+    if (!each.fitted) continue;
+    CAPTURE(each.index);
+    REQUIRE(each.posterior);
+    REQUIRE(each.budget);
+    CHECK(each.budget->combined > 1.2 * each.robust_standard_error.value());
+    CHECK_THAT(each.posterior->sd, WithinRel(each.budget->combined, 0.25));
+    CHECK_THAT(each.posterior->median,
+               WithinAbs(each.value + each.budget->shift, 0.5 * each.budget->combined));
+  }
+  REQUIRE(found.considered);
+  int drawn = 0;
+  for (const ConsideredEffect& each : found.considered->effects) {
+    if (!each.estimate) continue;
+    CAPTURE(each.key);
+    REQUIRE(each.posterior);
+    ++drawn;
+    CHECK_THAT(each.posterior->sd, WithinRel(each.standard_error.value(), 0.25));
+    if (each.one_sided) CHECK(each.posterior->ci95->low >= 0.0);
+  }
+  CHECK(drawn > 5);
+  REQUIRE(found.posterior->limits.size() == 1);
+  CHECK(found.posterior->limits[0].probability == 1.0);
+}
+
 TEST_CASE("posterior: an unknown at its bound stays within it", "[calib]") {
   Twin twin = drawn_rig();
   twin.free("leakage_coefficient", 0.2, 0.0, 2.0);
