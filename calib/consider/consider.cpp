@@ -260,7 +260,6 @@ EffectLikelihood likelihood_of(Seen& seen, const ScoreCovariance& scores, const 
   result.covariance = scores.directions;
   for (ScoreRows& each : seen.rows) result.beside.push_back(std::move(each.narrow));
   result.mean = sizes.mean;
-  result.error = sizes.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   return result;
 }
 

@@ -24,7 +24,7 @@ struct EffectLikelihood {
   Eigen::MatrixXd felt;                 ///< F, shape (columns of Q, effects)
   Eigen::MatrixXd covariance;           ///< W, covariance of Q^T r
   std::vector<Eigen::MatrixXf> beside;  ///< Q, rows of each condition
-  Eigen::VectorXd mean, error;          ///< sizes from prior and records, truncated at zero
+  Eigen::VectorXd mean;                 ///< sizes from prior and records, truncated at zero
 };
 
 /// Widens the intervals of a fit to account for the small effects that the model omits (consider

@@ -17,10 +17,6 @@ using Eigen::VectorXd;
 /// the bound itself, the sampler's coordinates would be infinite.
 constexpr double kLeastDistance = 1e-6;
 constexpr double kMostDistance = 0.25;
-/// Smallest scale of an effect, as a multiple of its plausible size.
-constexpr double kLeastEffectScale = 1e-4;
-/// Smallest size at which an effect that cannot be negative begins, in its standard errors.
-constexpr double kFirstPositiveSize = 0.5;
 /// Minimum eigenvalue of the covariance of the score, relative to the mean eigenvalue.
 constexpr double kLeastEigenvalue = 1e-6;
 
@@ -32,9 +28,6 @@ double logistic(double y) {
 double log_logistic(double y) {
   return y >= 0.0 ? -std::log1p(std::exp(-y)) : y - std::log1p(std::exp(y));
 }
-
-/// Returns log(exp(x) - 1) for x > 0, also where exp(x) overflows.
-double log_of_expm1(double x) { return x + std::log(-std::expm1(-x)); }
 
 /// Returns R for all unknowns and all directions as a dense matrix.
 MatrixXd dense_root(const ArrowRoot& root, std::size_t conditions) {
@@ -129,87 +122,76 @@ PosteriorDensity::PosteriorDensity(const Problem& problem, const Evaluation& opt
   information_ = information_of(scores);
   if (effects != nullptr) {
     beside_ = information_of(effects->covariance);
-    scale_ = effects->error.cwiseMax(kLeastEffectScale);
+    const Index count = effects->felt.cols();
+    VectorXd score = VectorXd::Zero(effects->felt.rows());  // Q^T r at the optimum
+    for (std::size_t i = 0; i < problem.conditions.size(); ++i)
+      score += effects->beside[i].cast<double>().transpose() * (*optimum.rows)[i].residual;
+    sizes_ = {
+        MatrixXd::Identity(count, count) + effects->felt.transpose() * beside_ * effects->felt,
+        -effects->felt.transpose() * (beside_ * score), effects->mean, effects->one_sided};
   }
   find_centre(optimum, scores);
 }
 
 void PosteriorDensity::find_centre(const Evaluation& optimum, const MatrixXd& scores) {
   const Index unknowns = root_.rows();
-  const Index count = effects_ != nullptr ? effects_->taken.cols() : 0;
+  VectorXd shift = VectorXd::Zero(unknowns);
+  if (effects_ != nullptr) shift = -root_ * (effects_->taken * effects_->mean);
   // In the unit box the precision is R^-T S^-1 R^-1 in the directions that the records determine.
   // The transform adds terms that keep the other coordinates finite.
   const MatrixXd inverse = Eigen::CompleteOrthogonalDecomposition<MatrixXd>(root_).pseudoInverse();
-  MatrixXd by_coordinate(root_.cols(), unknowns + count);  // d q / d (z, e)
-  by_coordinate.leftCols(unknowns) = inverse;
-  VectorXd moved = VectorXd::Zero(unknowns);
-  if (count > 0) {
-    by_coordinate.rightCols(count) = effects_->taken;
-    moved = -root_ * (effects_->taken * effects_->mean);
-  }
-  MatrixXd precision = by_coordinate.transpose() * information_ * by_coordinate;
-  VectorXd slope(unknowns + count);
+  const MatrixXd precision = inverse.transpose() * information_ * inverse;
+  VectorXd slope(unknowns);
   std::vector<double> begin;
   for (Index j = 0; j < unknowns; ++j) {
     const double variance = root_.row(j) * scores * root_.row(j).transpose();
     const double error = std::sqrt(std::max(0.0, variance));
     const double inside = std::clamp(error, kLeastDistance, kMostDistance);
     const double z =
-        std::clamp(optimum.z[static_cast<std::size_t>(j)] + moved(j), inside, 1.0 - inside);
+        std::clamp(optimum.z[static_cast<std::size_t>(j)] + shift(j), inside, 1.0 - inside);
     slope(j) = z * (1.0 - z);
     begin.push_back(z);
   }
-  VectorXd e(count);
-  for (Index k = 0; k < count; ++k) {
-    e(k) = is_positive(k) ? std::max(kFirstPositiveSize * scale_(k), effects_->mean(k))
-                          : effects_->mean(k);
-  }
-  if (count > 0) {
-    auto sizes = precision.bottomRightCorner(count, count);
-    sizes += effects_->felt.transpose() * beside_ * effects_->felt;
-    sizes.diagonal().array() += 1.0;
-  }
-  centre_ = from_unit(begin, e);
-  for (Index k = 0; k < count; ++k)
-    slope(unknowns + k) = is_positive(k) ? scale_(k) * logistic(centre_(unknowns + k)) : 1.0;
+  centre_ = from_unit(begin);
   MatrixXd curvature = slope.asDiagonal() * precision * slope.asDiagonal();
   // An unknown that the records do not determine has a logistic distribution, whose variance is
-  // pi^2 / 3. A size close to zero keeps the curvature of the factor 1 / (1 + exp(-y)).
-  curvature.diagonal().head(unknowns).array() += 3.0 / (M_PI * M_PI);
-  for (Index k = 0; k < count; ++k) {
-    const double y = centre_(unknowns + k);
-    if (is_positive(k)) curvature(unknowns + k, unknowns + k) += logistic(y) * logistic(-y);
-  }
-  covariance_ =
-      Eigen::LLT<MatrixXd>(curvature).solve(MatrixXd::Identity(unknowns + count, unknowns + count));
+  // pi^2 / 3.
+  curvature.diagonal().array() += 3.0 / (M_PI * M_PI);
+  covariance_ = Eigen::LLT<MatrixXd>(curvature).solve(MatrixXd::Identity(unknowns, unknowns));
   covariance_ = MatrixXd(0.5 * (covariance_ + covariance_.transpose()));
 }
 
 std::vector<double> PosteriorDensity::to_unit(const VectorXd& y) const {
   std::vector<double> z;
-  for (const double each : y.head(root_.rows())) z.push_back(logistic(each));
+  for (const double each : y) z.push_back(logistic(each));
   return z;
 }
 
-VectorXd PosteriorDensity::sizes(const VectorXd& y) const {
-  VectorXd e = y.tail(y.size() - root_.rows());
-  for (Index k = 0; k < e.size(); ++k) {
-    if (is_positive(k)) e(k) = -scale_(k) * log_logistic(-e(k));
-  }
-  return e;
-}
-
-VectorXd PosteriorDensity::from_unit(std::span<const double> z, const VectorXd& e) const {
-  const auto unknowns = static_cast<Index>(z.size());
-  VectorXd y(unknowns + e.size());
-  for (Index j = 0; j < unknowns; ++j) {
+VectorXd PosteriorDensity::from_unit(std::span<const double> z) const {
+  VectorXd y(static_cast<Index>(z.size()));
+  for (Index j = 0; j < y.size(); ++j) {
     const double inside =
         std::clamp(z[static_cast<std::size_t>(j)], kLeastDistance, 1.0 - kLeastDistance);
     y(j) = std::log(inside / (1.0 - inside));
   }
-  for (Index k = 0; k < e.size(); ++k)
-    y(unknowns + k) = is_positive(k) ? log_of_expm1(e(k) / scale_(k)) : e(k);
   return y;
+}
+
+std::optional<VectorXd> PosteriorDensity::moved(const VectorXd& y, const VectorXd& from,
+                                                const VectorXd& to) const {
+  const VectorXd by = root_ * (effects_->taken * (from - to));
+  std::vector<double> z = to_unit(y);
+  for (std::size_t j = 0; j < z.size(); ++j) {
+    z[j] += by(static_cast<Index>(j));
+    if (!(z[j] > kLeastDistance && z[j] < 1.0 - kLeastDistance)) return std::nullopt;
+  }
+  return from_unit(z);
+}
+
+double PosteriorDensity::log_volume(const VectorXd& y) const {
+  double sum = 0.0;
+  for (const double each : y) sum += log_logistic(each) + log_logistic(-each);
+  return sum;
 }
 
 VectorXd PosteriorDensity::changes(std::size_t condition, const VectorXd& e) const {
@@ -219,10 +201,10 @@ VectorXd PosteriorDensity::changes(std::size_t condition, const VectorXd& e) con
          effects_->beside[condition].cast<double>() * beside;
 }
 
-LogDensity PosteriorDensity::evaluate(const VectorXd& y, const Fidelity& fidelity) const {
+LogDensity PosteriorDensity::evaluate(const VectorXd& y, const VectorXd& e,
+                                      const Fidelity& fidelity) const {
   const std::vector<double> z = to_unit(y);
-  const Index unknowns = root_.rows();
-  const VectorXd e = sizes(y);
+  const Index unknowns = y.size();
   VectorXd p = VectorXd::Zero(beside_.cols());
   MatrixXd p_slopes = MatrixXd::Zero(beside_.cols(), unknowns);  // d p / d z
   VectorXd q = VectorXd::Zero(root_.cols());
@@ -306,27 +288,14 @@ LogDensity PosteriorDensity::evaluate(const VectorXd& y, const Fidelity& fidelit
   const VectorXd weighted_p = beside_ * p;
   result.value =
       -0.5 * (q.dot(weighted_q) + p.dot(weighted_p) + white + e.squaredNorm()) + log_prior;
-  result.gradient.resize(y.size());
-  result.gradient.head(unknowns) =
-      prior_gradient -
-      (slopes.transpose() * weighted_q + p_slopes.transpose() * weighted_p + gradient / kappa_);
-  if (effects_ != nullptr) {
-    result.gradient.tail(e.size()) =
-        -(effects_->taken.transpose() * weighted_q + effects_->felt.transpose() * weighted_p + e);
-  }
-  for (Index k = 0; k < e.size(); ++k) {
-    if (!is_positive(k)) continue;
-    const double at = y(unknowns + k);
-    double& each = result.gradient(unknowns + k);
-    each = each * scale_(k) * logistic(at) + logistic(-at);
-    result.value += log_logistic(at);
-  }
+  result.gradient = prior_gradient - (slopes.transpose() * weighted_q +
+                                      p_slopes.transpose() * weighted_p + gradient / kappa_);
   for (Index j = 0; j < unknowns; ++j) {
     const double inside = z[static_cast<std::size_t>(j)];
     const double above = logistic(-y(j));
     result.gradient(j) = result.gradient(j) * inside * above + above - inside;
-    result.value += log_logistic(y(j)) + log_logistic(-y(j));
   }
+  result.value += log_volume(y);
   if (!result.gradient.allFinite()) return {};
   return result;
 }

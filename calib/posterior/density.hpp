@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <atomic>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,6 +13,16 @@
 #include "calib/trust/uncertainty.hpp"
 
 namespace rigcal::calib {
+
+/// Distribution of the sizes of the effects if the outputs are linear in the unknowns and q is
+/// kept: the log density is slope^T e - e^T precision e / 2, where no size that cannot be negative
+/// is.
+struct SizesBeside {
+  Eigen::MatrixXd precision;
+  Eigen::VectorXd slope;
+  Eigen::VectorXd mean;
+  std::vector<bool> one_sided;
+};
 
 /// Posterior density of the unknowns of a problem, and of the sizes of the small effects that its
 /// model leaves out.
@@ -41,10 +52,8 @@ namespace rigcal::calib {
 /// bounds. The size of an effect, in units of its plausible size, is N(0, 1), truncated at zero for
 /// an effect that cannot be negative.
 ///
-/// Coordinates of the sampler: y = log(z / (1 - z)) of each unknown, in which the density has a
-/// factor z (1 - z); then e of each effect. If it cannot be negative, e = s log(1 + exp(y)) with
-/// its standard error s from prior and records, and the density has a factor 1 / (1 + exp(-y)). Far
-/// from zero it is then as normal as e itself.
+/// Coordinates of the sampler: y = log(z / (1 - z)). In these coordinates the density has a factor
+/// z (1 - z) for each unknown.
 class PosteriorDensity {
  public:
   /// Borrows the problem.
@@ -61,36 +70,46 @@ class PosteriorDensity {
                    const std::atomic<bool>* cancel = nullptr,
                    const EffectLikelihood* effects = nullptr);
 
-  LogDensity at(const Eigen::VectorXd& y) const { return evaluate(y, Fidelity::full); }
+  /// Returns the density of the unknowns and effects at a point, and its gradient with respect to
+  /// y.
+  ///
+  /// @param e  sizes of the effects, as multiples of their plausible sizes; empty if the model
+  ///           counts as exact
+  LogDensity at(const Eigen::VectorXd& y, const Eigen::VectorXd& e = Eigen::VectorXd()) const {
+    return evaluate(y, e, Fidelity::full);
+  }
   /// Returns only the logarithm of the density, from simulations without sensitivities.
-  double value(const Eigen::VectorXd& y) const { return evaluate(y, {false, true}).value; }
+  double value(const Eigen::VectorXd& y, const Eigen::VectorXd& e = Eigen::VectorXd()) const {
+    return evaluate(y, e, {false, true}).value;
+  }
 
-  /// Returns the start point. It is the optimum, or if the optimum is less than one standard error
-  /// from a bound, a point that is one standard error away from the bound.
+  /// Returns the start point. It is the optimum, corrected for the mean sizes of the effects. If it
+  /// is less than one standard error from a bound, it is one standard error away from the bound.
   const Eigen::VectorXd& centre() const { return centre_; }
   /// Returns the unknowns of a point, in the unit box.
   std::vector<double> to_unit(const Eigen::VectorXd& y) const;
-  /// Returns the sizes of the effects of a point, as multiples of the plausible sizes.
-  Eigen::VectorXd sizes(const Eigen::VectorXd& y) const;
-  /// @param e  shape (effects); a size that cannot be negative must be positive
-  Eigen::VectorXd from_unit(std::span<const double> z,
-                            const Eigen::VectorXd& e = Eigen::VectorXd()) const;
+  Eigen::VectorXd from_unit(std::span<const double> z) const;
+  /// Returns the point at which the unknowns make room for other sizes of the effects, so that q
+  /// stays the same if the outputs are linear in the unknowns. Returns std::nullopt beyond a bound.
+  std::optional<Eigen::VectorXd> moved(const Eigen::VectorXd& y, const Eigen::VectorXd& from,
+                                       const Eigen::VectorXd& to) const;
+  /// Returns log(z (1 - z)), summed over the unknowns.
+  double log_volume(const Eigen::VectorXd& y) const;
+  const SizesBeside& sizes_beside() const { return sizes_; }
   /// Returns by how much effects of these sizes change the weighted outputs of a condition, shape
   /// (channels * samples that count).
   Eigen::VectorXd changes(std::size_t condition, const Eigen::VectorXd& e) const;
-  /// Returns the covariance of a normal approximation, from the curvature at the optimum including
-  /// the priors and the transform.
+  /// Returns the covariance of a normal approximation for given sizes of the effects, from the
+  /// curvature at the optimum including the priors and the transform.
   const Eigen::MatrixXd& covariance() const { return covariance_; }
   /// Returns the variance of the residuals in directions that do not affect the estimates.
   double noise() const { return kappa_; }
 
  private:
-  bool is_positive(Eigen::Index effect) const {
-    return effects_->one_sided[static_cast<std::size_t>(effect)];
-  }
   void find_centre(const Evaluation& optimum, const Eigen::MatrixXd& scores);
   /// @param fidelity  without derivatives, the result has no gradient
-  LogDensity evaluate(const Eigen::VectorXd& y, const Fidelity& fidelity) const;
+  LogDensity evaluate(const Eigen::VectorXd& y, const Eigen::VectorXd& e,
+                      const Fidelity& fidelity) const;
 
   struct Directions {
     /// Rows of the Jacobian at the optimum, shape (residuals, acting unknowns).
@@ -106,7 +125,7 @@ class PosteriorDensity {
   Eigen::VectorXd prior_row_;  ///< d residual / d z of the priors at the optimum; 0 without a prior
   Eigen::MatrixXd information_;  ///< S^-1
   Eigen::MatrixXd beside_;       ///< W^-1
-  Eigen::VectorXd scale_;        ///< s of each effect
+  SizesBeside sizes_;
   double kappa_ = 1.0;
   Eigen::VectorXd centre_;
   Eigen::MatrixXd covariance_;

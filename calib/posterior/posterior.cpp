@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "calib/posterior/chains.hpp"
+#include "calib/posterior/effect_step.hpp"
 #include "calib/posterior/kept_limits.hpp"
 #include "common/bytes.hpp"
 #include "common/significant.hpp"
@@ -29,9 +30,11 @@ constexpr double kScattered = 2.0;
 /// Maximum number of attempts to draw a start point that can be simulated. Each attempt is half as
 /// far from the optimum as the last.
 constexpr int kMostTries = 8;
-/// Acceptance to aim at where effects are drawn, too. Sizes that cannot be negative curve the
-/// density more than the unknowns do, so that shorter steps are needed.
-constexpr double kAcceptanceWithEffects = 0.95;
+/// Sweeps of the steps that change the sizes of effects, one step after each draw. Many sweeps give
+/// sizes that do not depend on the last ones. A few give sizes close to them, which are accepted
+/// where the outputs are far from linear.
+constexpr int kManySweeps = 100;
+constexpr int kFewSweeps = 1;
 /// Fraction of missing information below which the chains may not reach the tails.
 constexpr double kLeastEnergyFraction = 0.3;
 /// Number of effective draws in all chains below which the quantiles are unreliable.
@@ -45,18 +48,19 @@ std::vector<double> listed(const MatrixXd& matrix) {
 /// it can be stored.
 struct ChainTask {
   std::vector<double> position, whitened, covariance;
+  std::vector<double> sizes;  ///< of the effects
   double step = 0.0;
   long iteration = 0;
   long evaluations = 0;
-  std::vector<std::vector<double>> positions;  ///< one for each draw
+  std::vector<std::vector<double>> positions;  ///< one for each draw: y, then the sizes
   std::vector<double> energies;
   int diverged = 0;
   int longest = 0;
 
   template <typename Archive>
   void serialize(Archive& archive) {
-    archive(position, whitened, covariance, step, iteration, evaluations, positions, energies,
-            diverged, longest);
+    archive(position, whitened, covariance, sizes, step, iteration, evaluations, positions,
+            energies, diverged, longest);
   }
 
   ChainState state() const {
@@ -99,12 +103,27 @@ bool begin_chain(const LogDensityOf& density, const PosteriorDensity& posterior,
   return std::isfinite(density(state.position).value);
 }
 
-/// Draws of all chains, as coordinates of the sampler: [chain][draw][coordinate].
-using Positions = std::vector<std::vector<std::vector<double>>>;
-
 VectorXd point_of(const std::vector<double>& position) {
   return Eigen::Map<const VectorXd>(position.data(), static_cast<Index>(position.size()));
 }
+
+/// Changes the sizes of the effects after a draw, and the position with them.
+///
+/// @return  number of simulated points
+int change_sizes(const PosteriorDensity& posterior, const NutsOptions& sampler, ChainState& state,
+                 VectorXd& sizes) {
+  auto stream =
+      datasets::random_stream(sampler.seed, {"posterior", fmt::format("chain {}", sampler.chain),
+                                             "sizes", fmt::format("draw {}", state.iteration)});
+  bool accepted = false;
+  for (const int sweeps : {kFewSweeps, kManySweeps})
+    accepted |= step_sizes(posterior, sweeps, stream, state.position, sizes);
+  if (accepted) state.whitened.resize(0);
+  return 4;
+}
+
+/// Draws of all chains, as coordinates of the sampler: [chain][draw][coordinate].
+using Positions = std::vector<std::vector<std::vector<double>>>;
 
 /// Returns one number for each draw of each chain.
 template <typename Value>
@@ -237,31 +256,41 @@ void sample_posterior(const Problem& problem, const Evaluation& optimum, const U
     const auto make = [&](std::size_t c) -> TaskResult {
       if (left.spent()) return {{}, false};
       ChainTask next;
+      VectorXd sizes = posterior.sizes_beside().mean;  // until the first draw
       const LogDensityOf density = [&](const VectorXd& y) {
         ++next.evaluations;
-        return posterior.at(y);
+        return posterior.at(y, sizes);
       };
       NutsOptions sampler;
       sampler.seed = options.seed;
       sampler.chain = static_cast<int>(c);
       sampler.stop = stop;
-      if (effects != nullptr) sampler.target_acceptance = kAcceptanceWithEffects;
       ChainState state;
       if (warming) {
         if (!begin_chain(density, posterior, options.seed, c, state)) return {{}, !stop()};
         if (!warm_up(density, count, sampler, state)) return {{}, false};
       } else {
         state = chains[c].state();
-        const std::vector<Draw> draws = sample(density, count, sampler, state);
-        if (static_cast<int>(draws.size()) < count) return {{}, false};
-        for (const Draw& draw : draws) {
-          next.positions.push_back(listed(draw.position));
-          next.energies.push_back(draw.energy);
-          next.diverged += draw.diverged ? 1 : 0;
-          next.longest += draw.doublings >= sampler.most_doublings ? 1 : 0;
+        sizes = point_of(chains[c].sizes);
+        const int at_once = effects != nullptr ? 1 : count;
+        for (int drawn = 0; drawn < count; drawn += at_once) {
+          const std::vector<Draw> draws = sample(density, at_once, sampler, state);
+          if (static_cast<int>(draws.size()) < at_once) return {{}, false};
+          for (const Draw& draw : draws) {
+            next.positions.push_back(listed(draw.position));
+            next.energies.push_back(draw.energy);
+            next.diverged += draw.diverged ? 1 : 0;
+            next.longest += draw.doublings >= sampler.most_doublings ? 1 : 0;
+          }
+          if (effects == nullptr) continue;
+          next.evaluations += change_sizes(posterior, sampler, state, sizes);
+          next.positions.back() = listed(state.position);
+          const std::vector<double> own = listed(sizes);
+          next.positions.back().insert(next.positions.back().end(), own.begin(), own.end());
         }
       }
       next.take(state);
+      next.sizes = listed(sizes);
       return {to_bytes(next), !stop()};
     };
     const auto tell = [&](std::size_t /*chain*/, const TaskResult& made) {
@@ -314,6 +343,7 @@ void sample_posterior(const Problem& problem, const Evaluation& optimum, const U
   for (const auto& chain : energies)
     result.energy_fraction = std::min(result.energy_fraction, energy_fraction(chain));
   result.least_draws = HUGE_VAL;
+  const auto unknowns = static_cast<Index>(result.names.size());
   const auto judged = [&result](const Chains& draws, const std::string& name) {
     const PosteriorSpread spread = spread_of(draws);
     result.least_draws = std::min({result.least_draws, spread.bulk_draws, spread.tail_draws});
@@ -325,7 +355,7 @@ void sample_posterior(const Problem& problem, const Evaluation& optimum, const U
   };
   for (std::size_t j = 0; j < result.names.size(); ++j) {
     const Chains of_unknown = chains_of(positions, [&](const VectorXd& y) {
-      return problem.map.to_physical(static_cast<int>(j), posterior.to_unit(y)[j]);
+      return problem.map.to_physical(static_cast<int>(j), posterior.to_unit(y.head(unknowns))[j]);
     });
     fit.parameters[j].posterior = judged(of_unknown, result.names[j]);
     std::vector<double>& values = result.values.emplace_back();
@@ -335,12 +365,11 @@ void sample_posterior(const Problem& problem, const Evaluation& optimum, const U
     const std::string& key = effects->keys[e];
     for (ConsideredEffect& about : fit.considered->effects) {
       if (about.key != key) continue;
-      about.posterior =
-          judged(chains_of(positions,
-                           [&](const VectorXd& y) {
-                             return about.size * posterior.sizes(y)(static_cast<Index>(e));
-                           }),
-                 key);
+      about.posterior = judged(chains_of(positions,
+                                         [&](const VectorXd& y) {
+                                           return about.size * y(unknowns + static_cast<Index>(e));
+                                         }),
+                               key);
     }
   }
   result.pairs = pairs_of(result, fit.parameters);
@@ -353,8 +382,9 @@ void sample_posterior(const Problem& problem, const Evaluation& optimum, const U
     const std::size_t at = k * count / simulated;
     const auto& position = positions[at / static_cast<std::size_t>(result.draws)]
                                     [at % static_cast<std::size_t>(result.draws)];
-    points.push_back(posterior.to_unit(point_of(position)));
-    sizes.push_back(posterior.sizes(point_of(position)));
+    const VectorXd point = point_of(position);
+    points.push_back(posterior.to_unit(point.head(unknowns)));
+    sizes.push_back(point.tail(point.size() - unknowns));
   }
   ChangeOf change;
   if (effects != nullptr) {
