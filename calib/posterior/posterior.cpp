@@ -33,7 +33,7 @@ constexpr int kMostTries = 8;
 /// Sweeps of the steps that change the sizes of effects, one step after each draw. Many sweeps give
 /// sizes that do not depend on the last ones. A few give sizes close to them, which are accepted
 /// where the outputs are far from linear.
-constexpr int kManySweeps = 100;
+constexpr int kManySweeps = 300;
 constexpr int kFewSweeps = 1;
 /// Fraction of missing information below which the chains may not reach the tails.
 constexpr double kLeastEnergyFraction = 0.3;

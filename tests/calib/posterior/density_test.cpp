@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "calib/consider/consider.hpp"
+#include "calib/posterior/effect_step.hpp"
 #include "tests/calib/twin.hpp"
 
 namespace rigcal::calib {
@@ -254,6 +255,37 @@ TEST_CASE("posterior density: with effects, its gradient is that of its value", 
       CHECK_THAT(at.gradient(j), WithinRel(slope, 2e-4) || WithinAbs(slope, 5e-3));
     }
   }
+}
+
+TEST_CASE("posterior density: sizes of effects change as the density allows", "[calib]") {
+  const Scene scene;
+  const EffectLikelihood effects = effects_in(scene);
+  const PosteriorDensity density(scene.problem, scene.optimum, scene.found, scene.parameters,
+                                 nullptr, &effects);
+  const SizesBeside& sizes = density.sizes_beside();
+  const auto weight = [&](const VectorXd& y, const VectorXd& e) {
+    return density.value(y, e) - density.log_volume(y) - sizes.slope.dot(e) +
+           0.5 * e.dot(sizes.precision * e);
+  };
+  auto stream = datasets::random_stream(5, {"steps"});
+  // Close to the optimum some steps are accepted, although the short records leave large sizes.
+  VectorXd y = density.centre();
+  VectorXd e = effects.mean;
+  int accepted = 0;
+  for (int i = 0; i < 20; ++i) accepted += step_sizes(density, 20, stream, y, e) ? 1 : 0;
+  CHECK(accepted > 0);
+  // Far from it they are not. A step to a point e^40 times less probable is not accepted.
+  y.array() += 1.5;
+  int refused = 0;
+  for (int i = 0; i < 20; ++i) {
+    const double before = weight(y, e);
+    const VectorXd last = e;
+    const bool moved = step_sizes(density, 20, stream, y, e);
+    refused += moved ? 0 : 1;
+    CHECK((e == last) == !moved);
+    CHECK(weight(y, e) > before - 40.0);
+  }
+  CHECK(refused > 5);
 }
 
 TEST_CASE("posterior density: there is none where the model cannot be simulated", "[calib]") {
