@@ -15,6 +15,7 @@
 #include "calib/problem/known_values.hpp"
 #include "calib/problem/measured_tolerance.hpp"
 #include "calib/score/scorecard.hpp"
+#include "calib/search/late_flag.hpp"
 #include "calib/solve.hpp"
 #include "calib/trust/bootstrap.hpp"
 #include "calib/trust/identifiability.hpp"
@@ -134,14 +135,16 @@ EffectSpread effects_beside(const Fit& fit, const EstimateSpread& spread) {
 
 /// Scores conditions at known values. Nuisance parameters are estimated again.
 ///
+/// @param late    ends the simulations that give the scores
 /// @param spread  covariance of the values for prediction bands; if null, no bands are computed
 Fit score_at(const Campaign& campaign, const std::vector<Record>& records,
              const std::vector<const Condition*>& conditions,
              const std::vector<FittedValue>* values, const FitOptions& options, Budget& budget,
-             const EstimateSpread* spread = nullptr) {
+             const LateFlag& late, const EstimateSpread* spread) {
   Fit fit;
   warn_of_start(campaign, conditions, records, fit);
   Problem problem = make_problem(campaign, records, conditions, true, values);
+  problem.cancel = late.flag();
   Evaluator evaluator(problem, budget, options.threads);
   evaluator.keep_rows();
   FitOptions once = options;
@@ -175,6 +178,12 @@ Fit score_at(const Campaign& campaign, const std::vector<Record>& records,
     add_prediction_sd(problem, z, *spread, changes, options.threads, fit.conditions);
     test_predictions(problem, fit.conditions);
   }
+  if (is_raised(late.flag())) {
+    fit.status = FitStatus::stopped;
+    fit.stopped_in = StoppedIn::validation;
+    fit.message = budget.reason();
+    return fit;
+  }
   if (problem.map.unknowns().empty() &&
       std::all_of(fit.conditions.begin(), fit.conditions.end(),
                   [](const ConditionScore& score) { return !score.failure.empty(); })) {
@@ -192,7 +201,7 @@ std::string_view words(StoppedIn stage) {
     case StoppedIn::starts:
       return "search";
     case StoppedIn::validation:
-      return "estimation of the validation's nuisance parameters";
+      return "scoring";
     case StoppedIn::bootstrap:
       return "bootstrap";
     case StoppedIn::profiles:
@@ -230,7 +239,9 @@ Fit fit(const Campaign& campaign, const std::vector<Record>& records, const FitO
     throw InputError({campaign.file.string()},
                      "no condition has use = \"fit\": expected at least one");
   }
+  const LateFlag late(options.cancel);
   Problem problem = make_problem(campaign, records, fitted, false, nullptr);
+  problem.cancel = late.flag();
   if (problem.map.unknowns().empty()) {
     throw InputError({campaign.file.string()},
                      "nothing is free in the conditions of the fit: expected `fit = true` at a "
@@ -269,6 +280,7 @@ Fit fit(const Campaign& campaign, const std::vector<Record>& records, const FitO
     if (spread) {
       add_prediction_sd(problem, solved.optimum.z, *spread, {}, options.threads, result.conditions);
     }
+    const bool unscored = is_raised(late.flag());
     // Conditions are scored before the steps that may take hours, so that stopping those does not
     // change a score.
     std::optional<Fit> validation;
@@ -276,7 +288,7 @@ Fit fit(const Campaign& campaign, const std::vector<Record>& records, const FitO
       const auto values = values_of(result.parameters);
       FitOptions quiet = options;
       quiet.progress = nullptr;
-      validation = score_at(campaign, records, validated, &values, quiet, budget,
+      validation = score_at(campaign, records, validated, &values, quiet, budget, late,
                             spread ? &*spread : nullptr);
     }
     if (result.considered && validation && validation->status == FitStatus::converged) {
@@ -286,6 +298,8 @@ Fit fit(const Campaign& campaign, const std::vector<Record>& records, const FitO
     if (result.status == FitStatus::stopped) result.stopped_in = StoppedIn::starts;
     if (result.status == FitStatus::converged && validation)
       result.stopped_in = validation->stopped_in;
+    if (result.status == FitStatus::converged && unscored)
+      result.stopped_in = StoppedIn::validation;
     if (result.status == FitStatus::converged) {
       look_again(problem, campaign, records, solved, effects, options, budget, result);
     } else if (asks_for_more(options)) {
@@ -315,7 +329,8 @@ Fit validate(const Campaign& campaign, const std::vector<Record>& records,
                      "no condition has use = \"fit\" or \"validate\": expected at least one");
   }
   Budget budget = budget_of(campaign, options, began);
-  Fit result = score_at(campaign, records, conditions, values, options, budget,
+  const LateFlag late(options.cancel);
+  Fit result = score_at(campaign, records, conditions, values, options, budget, late,
                         origin != nullptr && origin->spread ? &*origin->spread : nullptr);
   finish(campaign, records, began, origin, result);
   return result;

@@ -6,9 +6,11 @@
 
 #include "calib/problem/measured_tolerance.hpp"
 #include "calib/search/checkpoint.hpp"
+#include "calib/search/late_flag.hpp"
 #include "calib/search/verify.hpp"
 #include "calib/search/weights.hpp"
 #include "calib/trust/findings.hpp"
+#include "calib/trust/identifiability.hpp"
 #include "common/memory.hpp"
 
 namespace rigcal::calib {
@@ -27,6 +29,13 @@ void budget_steps(Problem& problem, const Evaluation& start) {
     problem.conditions[i].max_steps =
         std::max(kLeastSteps, kStepsOverStart * start.conditions[i].steps);
   }
+}
+
+/// Withdraws a convergence whose errors or findings the user did not wait for.
+void note_interruption(const Problem& problem, Fit& fit) {
+  if (fit.status != FitStatus::converged || !is_raised(problem.cancel)) return;
+  fit.status = FitStatus::stopped;
+  fit.message += "; stopped on request before its uncertainty was complete";
 }
 
 }  // namespace
@@ -72,8 +81,12 @@ Solved solve_problem(Problem& problem, Evaluator& evaluator, const FitOptions& o
   const bool awaited = found.result.status == FitStatus::stopped && evaluator.budget().cancelled();
   Uncertainty spread = uncertainty(problem, found.optimum, std::move(rows), options.threads,
                                    awaited ? Detail::plain : Detail::full);
+  note_interruption(problem, fit);
   auto open =
       describe_findings(problem, found.optimum, found.result.check, spread, options.threads, fit);
+  const bool stopped = fit.status == FitStatus::stopped;
+  note_interruption(problem, fit);
+  if (fit.status == FitStatus::stopped && !stopped) withhold_grades(fit.parameters);
   return {std::move(found.optimum), std::move(spread), std::move(open)};
 }
 

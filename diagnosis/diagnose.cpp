@@ -252,11 +252,11 @@ void estimate(const LeakProblem& problem, const RigFit& rig, const Prepared& pre
     if (!of_healthy || !(of_healthy->total() > 0.0)) return;
     const auto limit_of = [&](const CoefficientError& each) -> std::optional<DetectionLimit> {
       const double limit = detection_limit(each, problem.campaign.diagnosis);
-      const LeakCurve beyond = leak_curve_of(problem, *prepared.condition, average, limit,
-                                             std::max(limit, least), *prepared.leaks);
-      const double share = beyond.share(limit);
-      if (share > 1.0) return std::nullopt;
-      return DetectionLimit{limit, beyond.leak_flow_m3_per_s(limit), share};
+      const LeakPoint smallest = leak_point_of(problem, *prepared.condition, average, limit,
+                                               std::max(limit, least), *prepared.leaks);
+      if (smallest.share > 1.0) return std::nullopt;
+      return DetectionLimit{limit, std::max(0.0, smallest.leak_flow_m3_per_s),
+                            std::max(0.0, smallest.share)};
     };
     record.smallest_leak = limit_of(*of_healthy);
     const double another = record.days.norm_of_another_day();

@@ -142,11 +142,14 @@ void TrialRig::rest(const std::map<Channel, double>& noise_sd) {
   options.method = campaign_.simulation.method;
   options.tolerance = kRestTolerance;
   options.max_seconds = campaign_.simulation.max_seconds;
+  options.cancel = cancel_;
   const model::ParameterValues values = datasets::values_in(campaign_, condition_);
   const auto run_with = [&](double drive, std::span<const double> time_s) {
     model::SimulationInputs inputs;
     inputs.drive = model::Signal::constant(drive);
     const auto run = model::simulate(rig, values, {}, inputs, time_s, outputs, options);
+    if (run.status == model::SimulationStatus::cancelled)
+      throw Error(ExitCode::stopped, "design: stopped before there was any drive");
     if (!run.ok())
       throw NoResultError(fmt::format("design: the rig cannot be simulated at rest: {}, at {:g} s",
                                       run.reason, run.failed_at_s));

@@ -187,12 +187,12 @@ bool Problem::repeats_itself() const {
   });
 }
 
-model::SimulationOptions Problem::simulation_options(const std::atomic<bool>* cancel) const {
+model::SimulationOptions Problem::simulation_options(const std::atomic<bool>* own) const {
   model::SimulationOptions options;
   options.method = campaign->simulation.method;
   options.tolerance = tolerance;
   options.max_seconds = campaign->simulation.max_seconds;
-  options.cancel = cancel;
+  options.cancel = own != nullptr ? own : cancel;
   return options;
 }
 

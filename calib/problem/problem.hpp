@@ -76,6 +76,8 @@ struct Problem {
   std::vector<ProblemCondition> conditions;
   double tolerance = 0.0;        ///< simulation tolerance: the smallest that any condition requires
   bool tolerance_fixed = false;  ///< true if the campaign specifies the tolerance
+  /// Ends the simulations that were given no flag of their own; may be null.
+  const std::atomic<bool>* cancel = nullptr;
 
   /// Simulation tolerance for a condition: the measured tolerance if there is one. Otherwise, if
   /// the relative noise of all conditions is known, it exceeds the smallest tolerance in proportion
@@ -84,7 +86,9 @@ struct Problem {
   /// Simulation tolerance far from an optimum.
   double coarse_tolerance() const;
   /// Simulation options with the smallest tolerance and the campaign's method and time limit.
-  model::SimulationOptions simulation_options(const std::atomic<bool>* cancel = nullptr) const;
+  ///
+  /// @param own  flag that ends the simulation; if null, the problem's
+  model::SimulationOptions simulation_options(const std::atomic<bool>* own = nullptr) const;
   /// Simulation options for derivatives that are only used to compute an uncertainty, where
   /// relative errors of a thousandth do not matter.
   model::SimulationOptions derivative_options(std::size_t condition) const;

@@ -8,6 +8,7 @@
 
 #include "calib/consider/effect_changes.hpp"
 #include "calib/score/acceptance.hpp"
+#include "calib/search/late_flag.hpp"
 #include "calib/trust/lack_of_fit.hpp"
 #include "common/parallel.hpp"
 #include "metrics/agreement_uncertainty.hpp"
@@ -18,6 +19,9 @@ namespace rigcal::calib {
 namespace {
 
 using datasets::Condition;
+
+/// Why a condition has no score after the user ended the job.
+constexpr const char* kStopped = "stopped on request";
 
 /// Finds the longest run of consecutive samples that count, and returns its first index and its
 /// length.
@@ -152,6 +156,12 @@ ConditionScore score_condition(const Problem& problem, std::size_t i, std::span<
   if (condition.measured_tolerance > 0.0) options.tolerance = problem.tolerance_of(i);
   const model::Simulation run = model::simulate(condition.rig, problem.values_at(i, z), {},
                                                 condition.inputs, score.time_s, outputs, options);
+  if (is_raised(options.cancel)) {
+    score.not_scored = kStopped;
+    for (const ProblemChannel& channel : condition.channels)
+      score.series[channel.channel] = {condition.record->channels.at(channel.channel).mean, {}};
+    return score;
+  }
   if (!run.ok()) {
     score.failure =
         fmt::format("{} at {:g} s ({})", run.reason, run.failed_at_s, model::to_string(run.status));

@@ -16,7 +16,7 @@ namespace rigcal::calib {
 /// @param effects  effects considered in the fit; those of the sensors add to the uncertainty of
 ///                 the scores
 /// @return         one score per condition, in order; it contains the reason if the condition
-///                 cannot be simulated
+///                 cannot be simulated, or if the problem's flag ended the job before
 std::vector<ConditionScore> score_conditions(const Problem& problem, std::span<const double> z,
                                              int threads, const EffectSpread& effects = {});
 

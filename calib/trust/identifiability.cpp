@@ -79,6 +79,21 @@ void add_reason(FittedParameter& parameter, const std::string& text) {
   parameter.reason += parameter.reason.empty() ? text : "; " + text;
 }
 
+/// Removes one of the clauses of a reason, with the mark that parts it from its neighbours.
+void remove_reason(FittedParameter& parameter, const std::string& text) {
+  const std::string mark = "; ";
+  std::size_t begin = parameter.reason.find(text);
+  if (begin == std::string::npos) return;
+  std::size_t end = begin + text.size();
+  if (parameter.reason.compare(end, mark.size(), mark) == 0) {
+    end += mark.size();
+  } else if (begin >= mark.size() &&
+             parameter.reason.compare(begin - mark.size(), mark.size(), mark) == 0) {
+    begin -= mark.size();
+  }
+  parameter.reason.erase(begin, end - begin);
+}
+
 /// Explains why an interval with this half-width leads to the grade; empty if no explanation is
 /// needed.
 std::string grade_words(const Problem& problem, const Uncertainty& found, std::size_t unknown,
@@ -270,9 +285,7 @@ void grade_widened(const Problem& problem, const Uncertainty& found, std::size_t
   const double half_width = longer_side(parameter.value, *parameter.ci95);
   if (!(half_width > before)) return;
   const std::string old = grade_words(problem, found, unknown, before, parameter);
-  if (const auto at = parameter.reason.find(old); !old.empty() && at != std::string::npos)
-    parameter.reason.erase(at, old.size());
-  while (parameter.reason.ends_with("; ")) parameter.reason.resize(parameter.reason.size() - 2);
+  if (!old.empty()) remove_reason(parameter, old);
   grade(problem, found, unknown, half_width, parameter);
   if (parameter.identifiability != Identifiability::identified && parameter.budget)
     add_reason(parameter, widened_words(*parameter.budget));

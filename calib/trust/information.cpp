@@ -46,13 +46,9 @@ Eigen::MatrixXd tried_rows(const Problem& problem, std::size_t i, std::span<cons
                            const model::SimulationInputs& inputs, std::span<const double> time_s,
                            model::Output output, double sd) {
   const ProblemCondition& condition = problem.conditions[i];
-  model::SimulationOptions options;
-  options.method = problem.campaign->simulation.method;
-  options.tolerance = problem.tolerance;
-  options.max_seconds = problem.campaign->simulation.max_seconds;
   const std::vector<model::Output> outputs{output};
   const auto run = model::simulate(condition.rig, problem.values_at(i, z), condition.free, inputs,
-                                   time_s, outputs, options);
+                                   time_s, outputs, problem.simulation_options());
   if (!run.ok()) return {};
   const std::vector<int>& acting = problem.map.acting(i);
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(time_s.size()),

@@ -62,12 +62,9 @@ std::vector<std::string> known_and_scaled(const Problem& problem) {
 /// simulated.
 Eigen::MatrixXd outputs_at(const Problem& problem, const ProblemCondition& condition,
                            const model::ParameterValues& values) {
-  model::SimulationOptions options;
-  options.method = problem.campaign->simulation.method;
-  options.tolerance = problem.tolerance;
-  options.max_seconds = problem.campaign->simulation.max_seconds;
-  const auto run = model::simulate(condition.rig, values, {}, condition.inputs,
-                                   condition.fit_times(), condition.outputs, options);
+  const auto run =
+      model::simulate(condition.rig, values, {}, condition.inputs, condition.fit_times(),
+                      condition.outputs, problem.simulation_options());
   if (!run.ok()) return {};
   return run.outputs(condition.rows, Eigen::all);
 }

@@ -42,6 +42,10 @@ ValueAt hermite(const std::vector<LeakPoint>& points, double LeakPoint::*member,
 /// there is used at zero, where |leakage flow| has no derivative.
 constexpr double kProportional = 0.02;
 
+/// Whether an estimate is so close to zero that it gets no point of its own. All records without a
+/// leak then need the same simulations.
+bool is_none(double coefficient, double reach) { return coefficient <= kProportional * reach; }
+
 LeakPoint without_leak(const LeakAt& leak_at, double next) {
   const LeakPoint small = leak_at(kProportional * next);
   return {0.0, 0.0, 0.0, small.share / small.coefficient,
@@ -78,14 +82,22 @@ double LeakCurve::share_slope(double coefficient) const {
 
 LeakCurve curve_about(const LeakAt& leak_at, double coefficient, double reach) {
   const double low = coefficient - reach;
-  // An estimate close to zero does not get a point of its own, so that all records without a leak
-  // need the same simulations.
-  const bool none = coefficient <= kProportional * reach;
+  const bool none = is_none(coefficient, reach);
   const double high = none ? reach : coefficient + reach;
   std::vector<LeakPoint> points{low > 0.0 ? leak_at(low) : without_leak(leak_at, high)};
   if (!none) points.push_back(leak_at(coefficient));
   points.push_back(leak_at(high));
   return LeakCurve(std::move(points));
+}
+
+LeakPoint point_about(const LeakAt& leak_at, double coefficient, double reach) {
+  if (!is_none(coefficient, reach)) return leak_at(coefficient);
+  const LeakCurve curve = curve_about(leak_at, coefficient, reach);
+  LeakPoint point;
+  point.coefficient = coefficient;
+  point.share = curve.share(coefficient);
+  point.leak_flow_m3_per_s = curve.leak_flow_m3_per_s(coefficient);
+  return point;
 }
 
 }  // namespace rigcal::diagnosis

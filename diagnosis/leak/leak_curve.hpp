@@ -44,4 +44,10 @@ class LeakCurve {
 /// @param reach  half-width of the interval of interest, above 0
 LeakCurve curve_about(const LeakAt& leak_at, double coefficient, double reach);
 
+/// Returns the point of curve_about() at the coefficient itself. The leak is simulated there only,
+/// unless the coefficient is so close to 0 that the curve has no point of its own there.
+///
+/// @param coefficient  above 0
+LeakPoint point_about(const LeakAt& leak_at, double coefficient, double reach);
+
 }  // namespace rigcal::diagnosis

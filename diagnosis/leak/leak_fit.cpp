@@ -542,8 +542,12 @@ LeakScan leak_scan_of(const LeakProblem& leak_problem, const Condition& conditio
   return scan_leaks(problem, problem.conditions.front(), beyond, leak_problem.cancel);
 }
 
-LeakCurve leak_curve_of(const LeakProblem& leak_problem, const Condition& condition,
-                        const Record& average, double coefficient, double reach, LeakMemo& memo) {
+namespace {
+
+/// Makes the leaks of a condition available to `use`, each simulated once.
+template <typename Use>
+auto with_leaks(const LeakProblem& leak_problem, const Condition& condition, const Record& average,
+                LeakMemo& memo, Use use) {
   const std::vector<Record> records{average};
   const calib::Problem problem =
       problem_of(leak_problem, own_condition(leak_problem, condition), records);
@@ -556,7 +560,23 @@ LeakCurve leak_curve_of(const LeakProblem& leak_problem, const Condition& condit
     return LeakPoint{each, leak.share, leak.leak_flow_m3_per_s, leak.share_slope(0),
                      leak.flow_slope(0)};
   };
-  return curve_about([&](double each) { return memo.at(each, leak_at); }, coefficient, reach);
+  return use([&](double each) { return memo.at(each, leak_at); });
+}
+
+}  // namespace
+
+LeakCurve leak_curve_of(const LeakProblem& leak_problem, const Condition& condition,
+                        const Record& average, double coefficient, double reach, LeakMemo& memo) {
+  return with_leaks(leak_problem, condition, average, memo, [&](const LeakAt& leak_at) {
+    return curve_about(leak_at, coefficient, reach);
+  });
+}
+
+LeakPoint leak_point_of(const LeakProblem& leak_problem, const Condition& condition,
+                        const Record& average, double coefficient, double reach, LeakMemo& memo) {
+  return with_leaks(leak_problem, condition, average, memo, [&](const LeakAt& leak_at) {
+    return point_about(leak_at, coefficient, reach);
+  });
 }
 
 double share_rig_error(const LeakProblem& leak_problem, const RigFit& rig,

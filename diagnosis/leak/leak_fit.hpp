@@ -180,6 +180,12 @@ LeakCurve leak_curve_of(const LeakProblem& leak_problem, const datasets::Conditi
                         const datasets::Record& average, double coefficient, double reach,
                         LeakMemo& memo);
 
+/// Returns one point of this curve, which costs a single simulation: that of a leak with the
+/// coefficient, which is above 0.
+LeakPoint leak_point_of(const LeakProblem& leak_problem, const datasets::Condition& condition,
+                        const datasets::Record& average, double coefficient, double reach,
+                        LeakMemo& memo);
+
 /// Returns the standard error of the share due to the rig's parameters, if the coefficient is
 /// refitted. It combines their direct effect on the share with their effect through the
 /// coefficient.

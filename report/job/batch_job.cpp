@@ -180,7 +180,9 @@ JobResult batch_job(const BatchRequest& request, const RigVerbs& verbs, const Jo
     farm.run(work, make, {});
     return {};
   }
-  terms.hold({{"batch.json", "batch.csv", "report.html"}, {}});
+  PlannedFiles planned{{"batch.json", "batch.csv", "report.html"}, {}};
+  for (const BatchRig& rig : rigs) planned.result_folders.emplace_back(rig.folder);
+  terms.hold(std::move(planned));
   EndedRigs ended(terms, rigs.size());
   const auto ends = farm.run(work, make, [&](std::size_t i, const TaskResult& result) {
     ended(rigs[i], rig_end_of(result.bytes));

@@ -114,7 +114,16 @@ std::optional<std::vector<datasets::FittedValue>> truth_beside(const Campaign& c
   std::error_code error;
   if (!campaign.synthetic || !std::filesystem::exists(file, error)) return std::nullopt;
   datasets::require_within(campaign.root, file);
-  return read_truth(file, campaign.rig.plant);
+  try {
+    return read_truth(file, campaign.rig.plant);
+  } catch (const InputError&) {
+    // A link may lead to any file.
+    if (datasets::lies_within(campaign.file.parent_path(), file)) throw;
+    throw InputError({file.string()},
+                     "is no truth.json that synthesize wrote. The content of the file is not "
+                     "shown, since a link leads out of the campaign's folder; expected the "
+                     "truth.json of this campaign");
+  }
 }
 
 /// @param live  contents of diagnosis_live.json, if the rig can be simulated in the page

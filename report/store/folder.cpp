@@ -165,7 +165,9 @@ void HeldFolder::plan(PlannedFiles planned) {
   planned_ = std::move(planned);
   std::vector<ResultFile> files;
   for (const fs::path& file : planned_.files) files.push_back({file, ""});
-  for (const fs::path& folder : planned_.folders) {
+  std::vector<fs::path> entered = planned_.folders;
+  entered.insert(entered.end(), planned_.result_folders.begin(), planned_.result_folders.end());
+  for (const fs::path& folder : entered) {
     if (link_within(out_, folder / "x")) files.push_back({folder / "x", ""});
   }
   require_replaceable(files);

@@ -680,6 +680,35 @@ TEST_CASE("fit: stopped by a signal it keeps the best so far", "[apps]") {
   }
 }
 
+TEST_CASE("validate: a signal ends the scoring of conditions that are long to simulate", "[apps]") {
+  const CommandFolder folder;
+  REQUIRE(write_twin(folder).exit_code == 0);
+  REQUIRE(folder.run({"fit", "twin/campaign.toml", "--out", "one", "--quiet"}).exit_code == 0);
+  std::string campaign = folder.read("twin/campaign.toml");
+  for (int i = 0; i < 40; ++i) {
+    campaign += "\n[[condition]]\nid = \"fast_" + std::to_string(i) +
+                "\"\nwaveform = \"square\"\nfrequency = \"99999 Hz\"\namplitude = \"4 mm\"\n"
+                "leak_level = \"none\"\nuse = \"validate\"\nrepeats = [\"records/square_*.csv\"]\n";
+  }
+  folder.write("twin/campaign.toml", campaign);
+  // The folder is made just before the simulations, which take many seconds.
+  const Outcome outcome = folder.run_and_signal_at(
+      {"validate", "twin/campaign.toml", "--fit", "one/fit.json", "--out", "out"}, "out", SIGTERM);
+  CAPTURE(outcome.err);
+  CHECK(outcome.exit_code == 4);
+  const json validation = json::parse(folder.read("out/validation.json"));
+  CHECK(validation["status"] == "stopped");
+  CHECK(validation["stopped_in"] == "validation");
+  int unscored = 0;
+  for (const json& condition : validation["conditions"]) {
+    if (condition["not_scored"].is_null()) continue;
+    ++unscored;
+    CHECK_THAT(condition["not_scored"].get<std::string>(), Contains("stopped on request"));
+    CHECK(condition["failure"].is_null());
+  }
+  CHECK(unscored > 0);
+}
+
 TEST_CASE("fit: stopped by a limit of iterations it says so", "[apps]") {
   const CommandFolder folder;
   REQUIRE(write_twin(folder).exit_code == 0);

@@ -73,6 +73,40 @@ TEST_CASE("compare: the same records with a term on and off", "[apps]") {
   CHECK_THAT(folder.read("both/report.html"), Contains("id=\"models\""));
 }
 
+TEST_CASE("compare: halves of a campaign are tested by what fit writes", "[apps]") {
+  const CommandFolder folder;
+  REQUIRE(write_twin(folder).exit_code == 0);
+  const std::string campaign = folder.read("twin/campaign.toml");
+  folder.write("twin/swapped.toml", edited(campaign, {{"use = \"fit\"", "use = \"later\""},
+                                                      {"use = \"validate\"", "use = \"fit\""},
+                                                      {"use = \"later\"", "use = \"validate\""}}));
+  REQUIRE(folder.run({"fit", "twin/campaign.toml", "--out", "one", "--quiet"}).exit_code < 2);
+  REQUIRE(folder.run({"fit", "twin/swapped.toml", "--out", "two", "--quiet"}).exit_code < 2);
+  // Without these, a comparison takes independence and a normal distribution for granted.
+  for (const char* name : {"one/fit.json", "two/fit.json"}) {
+    const json fit = json::parse(folder.read(name));
+    int fitted = 0;
+    for (const json& parameter : fit["parameters"]) {
+      if (!parameter["fitted"].get<bool>()) continue;
+      ++fitted;
+      REQUIRE(parameter["degrees_of_freedom"].is_number());
+      CHECK(parameter["degrees_of_freedom"].get<double>() >= 1.0);
+    }
+    CHECK(fitted == 2);
+    REQUIRE(fit["conditions"].size() == 2);
+    for (const json& condition : fit["conditions"]) CHECK(condition["record_sha256"].size() == 3);
+  }
+  REQUIRE(folder.run({"compare", "one", "two", "--out", "both", "--quiet"}).exit_code == 0);
+  const json result = json::parse(folder.read("both/comparison.json"));
+  int tested = 0;
+  for (const json& parameter : result["parameters"]) {
+    if (parameter["key"] != "valve_gain" && parameter["key"] != "damping") continue;
+    ++tested;
+    CHECK(parameter["differences"][1]["significant"].is_boolean());
+  }
+  CHECK(tested == 2);
+}
+
 TEST_CASE("compare: what it refuses", "[apps]") {
   const CommandFolder folder;
   folder.write("empty/note.txt", "");

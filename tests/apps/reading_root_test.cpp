@@ -77,6 +77,30 @@ TEST_CASE("--root: neither is what stands beside a campaign", "[apps]") {
   CHECK_THAT(outcome.err, Contains("truth.json: leads out of 'twin'"));
 }
 
+TEST_CASE("truth.json: what a link out of the folder leads to is not shown", "[apps]") {
+  const CommandFolder folder;
+  REQUIRE(write_twin(folder, {{"use = \"validate\"", "use = \"diagnose\""}}).exit_code == 0);
+  REQUIRE(folder.run({"fit", "twin/campaign.toml", "--out", "one", "--quiet"}).exit_code == 0);
+  const auto diagnose = [&] {
+    return folder.run({"diagnose", "twin/campaign.toml", "--fit", "one/fit.json", "--out", "out",
+                       "--force", "--quiet"});
+  };
+  folder.write("secret.json", "{\"schema\": \"swordfish\"}");
+  fs::rename(folder.work() / "twin/truth.json", folder.work() / "truth.json");
+  fs::create_symlink("../secret.json", folder.work() / "twin/truth.json");
+  const Outcome hidden = diagnose();
+  CHECK(hidden.exit_code == 2);
+  CHECK_THAT(hidden.err,
+             Contains("twin/truth.json: ") && Contains("is not shown") && !Contains("swordfish"));
+  // In the folder of the campaign it is shown, and a link to a true one is followed.
+  fs::remove(folder.work() / "twin/truth.json");
+  fs::copy_file(folder.work() / "secret.json", folder.work() / "twin/truth.json");
+  CHECK_THAT(diagnose().err, Contains("swordfish"));
+  fs::remove(folder.work() / "twin/truth.json");
+  fs::create_symlink("../truth.json", folder.work() / "twin/truth.json");
+  CHECK(diagnose().exit_code == 0);
+}
+
 TEST_CASE("--root: batch passes it on to every rig", "[apps]") {
   const CommandFolder folder;
   write_in_lab(folder, "../../secret.txt");

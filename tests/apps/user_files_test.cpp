@@ -38,6 +38,14 @@ amplitude = "5 mm"
 printed = ["C10"]
 )";
 
+const std::string kShortDesign = R"([design]
+stroke = ["-6 mm", "8 mm"]
+duration = "1 s"
+sample_rate = "100 Hz"
+family = "multisine"
+evaluations = 4
+)";
+
 const std::vector<Verb> kVerbs{
     {{"average", "twin/campaign.toml"}, "averaged/sine.csv"},
     {{"simulate", "twin/campaign.toml"}, "sine.csv"},
@@ -49,6 +57,8 @@ const std::vector<Verb> kVerbs{
     {{"diagnose", "twin/campaign.toml", "--fit", "one/fit.json"}, "diagnosis.csv"},
     {{"parity", "twin/campaign.toml", "--fit", "one/fit.json"}, "parity.csv"},
     {{"plan", "twin/campaign.toml"}, "plan.json"},
+    {{"plan", "twin/designed.toml", "--design", "damping,valve_gain"}, "design.csv"},
+    {{"explore", "twin/campaign.toml"}, "explore.html"},
     {{"export", "fmu", "twin/campaign.toml"}, "small_rig_synthetic.fmu"},
     {{"synthesize", "truth.toml", "--seed", "3"}, "records/sine_r1.csv"},
     {{"init", "twin/records/sine_r1.csv"}, "campaign.toml"},
@@ -67,6 +77,7 @@ void prepare(const CommandFolder& folder) {
   const double coefficient = table["entries"][0]["coefficients"][0];
   folder.write("tables.toml",
                kCampaign + edited(kPublishedTables, {{"C10", std::to_string(coefficient)}}));
+  folder.write("twin/designed.toml", kCampaign + kSynthetic + kShortDesign);
   REQUIRE(folder.run({"fit", "twin/campaign.toml", "--out", "one", "--quiet"}).exit_code == 0);
   REQUIRE(folder.run({"validate", "twin/campaign.toml", "--out", "two", "--quiet"}).exit_code < 2);
   std::filesystem::create_directories(folder.work() / "lab");
@@ -237,6 +248,40 @@ TEST_CASE("user files: batch hands --force on, and a rig alone is refused withou
   CHECK(folder.has("out/batch.json"));
   CHECK(folder.run({"batch", "lab", "--out", "out", "--force"}).exit_code == 0);
   CHECK(json::parse(folder.read("out/bench/fit.json"))["schema"] == "rigcal.fit/2");
+}
+
+TEST_CASE("user files: no verb follows a link inside its folder of results", "[apps]") {
+  const CommandFolder folder;
+  prepare(folder);
+  for (const Verb& verb : kVerbs) {
+    CAPTURE(verb.arguments);
+    const std::filesystem::path file = verb.file;
+    const std::string name = file.filename().string();
+    const std::string link = verb.arguments[0] == "batch" ? "bench" : file.parent_path().string();
+    std::filesystem::remove_all(folder.work() / "out");
+    std::filesystem::remove_all(folder.work() / "elsewhere");
+    folder.write("elsewhere/" + name, "mine");
+    std::filesystem::create_directories(folder.work() / "out");
+    const auto elsewhere = content(folder, "elsewhere");
+    if (!link.empty()) {
+      std::filesystem::create_directory_symlink("../elsewhere", folder.work() / "out" / link);
+      for (const char* option : {"--quiet", "--force"}) {
+        const Outcome outcome = run(folder, verb, {option});
+        CAPTURE(outcome.err);
+        CHECK(outcome.exit_code == 2);
+        CHECK_THAT(outcome.err, Contains("out/" + link + ": is a link"));
+      }
+      CHECK(content(folder, "out").empty());
+    } else {
+      std::filesystem::create_symlink("../elsewhere/" + name, folder.work() / "out" / name);
+      check_kept(folder, verb, name + ": not written by rigcal");
+      const Outcome forced = run(folder, verb, {"--force"});
+      CHECK((forced.exit_code < 2 || forced.exit_code == 3));
+      CHECK_FALSE(std::filesystem::is_symlink(folder.work() / "out" / name));
+      CHECK(folder.has("out/" + name));
+    }
+    CHECK(content(folder, "elsewhere") == elsewhere);
+  }
 }
 
 TEST_CASE("user files: links inside a folder of results are not followed", "[apps]") {

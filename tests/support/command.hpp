@@ -68,6 +68,15 @@ class CommandFolder {
     return finish(process);
   }
 
+  /// Runs the command, sends `signal` once `path` is in its working folder, and waits for the end.
+  Outcome run_and_signal_at(const Arguments& arguments, const std::string& path, int signal) const {
+    const pid_t process = start(arguments, {});
+    for (int tries = 0; tries < 6000 && !has(path); ++tries)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    ::kill(process, signal);
+    return finish(process);
+  }
+
   /// Runs the command and kills it once a file in its working folder contains `sign`. Returns how
   /// it ended; a fast command may end before it is killed.
   Outcome run_and_kill(const Arguments& arguments, const std::string& file,

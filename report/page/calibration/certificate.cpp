@@ -51,7 +51,8 @@ struct Judged {
   Verdict verdict() const { return check != nullptr ? check->verdict : Verdict::fail; }
 };
 
-/// Returns all judged signals: first those in validation records, then the worst first.
+/// Returns all judged signals: first those outside their limits, then those in validation records,
+/// then the worst first. A page that has room for some of them leaves out none that fails.
 std::vector<Judged> judged_signals(const StoredFit& fit) {
   std::vector<Judged> signals;
   for (std::size_t i = 0; i < fit.conditions.size(); ++i) {
@@ -72,10 +73,12 @@ std::vector<Judged> judged_signals(const StoredFit& fit) {
       }
     }
   }
-  std::stable_sort(signals.begin(), signals.end(), [](const Judged& a, const Judged& b) {
-    return std::tuple(b.held_back(), b.verdict(), b.used()) <
-           std::tuple(a.held_back(), a.verdict(), a.used());
-  });
+  const auto rank = [](const Judged& each) {
+    return std::tuple(each.verdict() == Verdict::fail, each.held_back(), each.verdict(),
+                      each.used());
+  };
+  std::stable_sort(signals.begin(), signals.end(),
+                   [&](const Judged& a, const Judged& b) { return rank(b) < rank(a); });
   return signals;
 }
 

@@ -117,6 +117,52 @@ TEST_CASE("check: a cell that is no number is named with file, sheet and address
              Contains("sine_bad.xlsx: Sheet1!B17 is the error #DIV/0!; expected a number"));
 }
 
+TEST_CASE("check: units in an HDF5 file or a workbook that contradict the campaign", "[apps]") {
+  const CommandFolder folder;
+  write_campaign(folder);
+  const std::vector<std::string> names{"time", "setpoint", "stroke", "load"};
+  for (const std::string format : {"h5", "xlsx"}) {
+    folder.write("campaign.toml", edited(kCampaign, {{"\"t_s\"", "\"time\""},
+                                                     {"\"ref_mm\"", "\"setpoint\""},
+                                                     {"\"x_mm\"", "\"stroke\""},
+                                                     {"\"pl_bar\"", "\"load\""},
+                                                     {"sine_*.csv", "sine_1." + format},
+                                                     {"square_*.csv", "square_1." + format}}));
+    for (const std::string load : {"bar", "psi"}) {
+      CAPTURE(format, load);
+      const std::vector<std::string> units{"s", "mm", "mm", load};
+      for (const std::string record : {"records/sine_1", "records/square_1"}) {
+        const RecordColumns columns = record_columns_of(folder.read(record + ".csv"));
+        const std::filesystem::path path = folder.work() / (record + "." + format);
+        if (format == "h5") {
+          const Hdf5Writer file(path);
+          for (std::size_t k = 0; k < names.size(); ++k) {
+            file.array("/" + names[k], columns.values.at(k));
+            file.text("/" + names[k], "units", units[k]);
+          }
+        } else {
+          XlsxRows rows(2);
+          for (std::size_t k = 0; k < names.size(); ++k) {
+            rows[0].push_back(cell(names[k]));
+            rows[1].push_back(cell(units[k]));
+          }
+          for (std::size_t i = 0; i < columns.values.at(0).size(); ++i) {
+            rows.emplace_back();
+            for (const auto& column : columns.values) rows.back().push_back(cell(column[i]));
+          }
+          write_xlsx(path, {{"Log", rows}});
+        }
+      }
+      const Outcome outcome = folder.run({"check", "campaign.toml"});
+      CAPTURE(outcome.err);
+      CHECK(outcome.exit_code == (load == "bar" ? 0 : 2));
+      if (load == "psi")
+        CHECK_THAT(outcome.err, Contains("sine_1." + format) && Contains("is in psi") &&
+                                    Contains("load_pressure says unit = \"bar\""));
+    }
+  }
+}
+
 TEST_CASE("init: a draft from HDF5 and from a workbook, with their units", "[apps]") {
   const CommandFolder folder;
   REQUIRE(write_twin(folder).exit_code == 0);

@@ -123,6 +123,58 @@ TEST_CASE("fit_tables: a twin's values come back from a far start, a gain from z
   CHECK(fit.residuals.size() == 4 + 3 * 5);
 }
 
+TEST_CASE("fit_tables: identifiability has the grades of any fit", "[calib]") {
+  test::LeakRig rig = small_rig();
+  // What is published scatters by a tenth about the rig without friction.
+  auto& signal = rig.settings.signals[0];
+  const auto table = calib::leak_table(rig.campaign, rig.settings, quick());
+  double sign = 1.0;
+  for (const calib::LeakEntry& entry : table.entries) {
+    sign = -sign;
+    signal.printed.at(entry.target_percent).value =
+        entry.roots.at(0).coefficient * (1.0 + 0.1 * sign);
+  }
+  for (std::size_t i = 0; i < table.features.size(); ++i) {
+    const calib::FeatureRow& row = table.features[i];
+    rig.settings.features[i].left_out.clear();
+    rig.settings.features[i].printed = {
+        {datasets::Feature::servo_flow, (1.0 + 0.1 * sign) * row.servo_flow_m3_per_s},
+        {datasets::Feature::leak_flow, (1.0 - 0.1 * sign) * row.leak_flow_m3_per_s}};
+    sign = -sign;
+  }
+  const int friction = model::parameter_index(rig.campaign.rig.plant, "coulomb_friction");
+  datasets::Assumption absent;
+  absent.index = friction;
+  absent.source = "none, and it may be so";
+  absent.fit = true;
+  absent.start = 5.0;
+  absent.lower = 0.0;
+  absent.upper = 500.0;
+  rig.settings.assumptions.push_back(absent);
+  const auto fit = calib::fit_tables(rig.campaign, rig.settings, quick());
+  CAPTURE(fit.message);
+  bool bounded = false;
+  bool wide = false;
+  for (const calib::FittedAssumption& p : fit.parameters) {
+    if (!p.ci95) continue;
+    const double half_width = 0.5 * (p.ci95->high - p.ci95->low);
+    const double share = half_width / p.value;
+    CAPTURE(datasets::assumption_spec(rig.campaign.rig.plant, p.index).key, p.value, share);
+    if (p.index == friction) {
+      bounded = p.ci95->low <= 0.0;
+      CHECK(p.identifiability ==
+            (bounded ? calib::Identifiability::bounded : calib::Identifiability::weak));
+      continue;
+    }
+    wide = wide || share > 0.2;
+    CHECK(p.identifiability == (share > 1.0   ? calib::Identifiability::not_identifiable
+                                : share > 0.2 ? calib::Identifiability::weak
+                                              : calib::Identifiability::identified));
+  }
+  CHECK(bounded);
+  CHECK(wide);
+}
+
 TEST_CASE("fit_tables: too little to fit is said", "[calib]") {
   test::LeakRig rig = small_rig();
   rig.settings.signals[0].printed.clear();

@@ -77,6 +77,27 @@ TEST_CASE("identifiability: the robust error, unless it is small and hardly know
   CHECK(rig.graded().interval == IntervalSource::standard_error);
 }
 
+TEST_CASE("identifiability: a wider interval replaces its own clause, wherever that stands",
+          "[calib]") {
+  const Graded rig(21.0 / 1.96);
+  const std::string first = GENERATE("", "residuals are autocorrelated");
+  const std::string last = GENERATE("", "a prior on mass_kg (5 %) would make it identifiable");
+  const auto joined = [&](const std::string& second, const std::string& third) {
+    std::string text;
+    for (const std::string& each : {first, second, third}) {
+      if (!each.empty()) text += text.empty() ? each : "; " + each;
+    }
+    return text;
+  };
+  FittedParameter parameter = rig.graded();
+  CHECK(parameter.reason == "half width of the 95 % interval is 21 % of the value");
+  parameter.reason = joined(parameter.reason, last);
+  parameter.ci95 = {parameter.value - 50.0, parameter.value + 50.0};
+  grade_widened(*rig.problem, rig.found, 0, parameter);
+  CHECK(parameter.identifiability == Identifiability::weak);
+  CHECK(parameter.reason == joined(last, "half width of the 95 % interval is 50 % of the value"));
+}
+
 TEST_CASE("identifiability: what rests on a known value", "[calib]") {
   Graded rig(10.0);
   const std::vector<double> z = rig.problem->start();

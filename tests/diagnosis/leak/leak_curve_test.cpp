@@ -92,3 +92,24 @@ TEST_CASE("curve_about: records of a condition that do not leak share their simu
   for (int i = 0; i < 2; ++i) curve_about(remembered, 1.0, 0.25);
   CHECK(simulated.size() == 5);
 }
+
+TEST_CASE("point_about: a limit of detection costs one simulation, and is that of its curve",
+          "[diagnosis]") {
+  int simulated = 0;
+  const LeakAt simulate = [&](double c) {
+    ++simulated;
+    return saturating(c);
+  };
+  // Limits far above the least reach, near it, and so far below that they have no point.
+  for (const double limit : {2.0, 0.3, 0.1, 0.004}) {
+    const double reach = std::max(limit, 0.25);
+    const LeakCurve curve = curve_about(saturating, limit, reach);
+    simulated = 0;
+    const LeakPoint point = point_about(simulate, limit, reach);
+    CAPTURE(limit);
+    CHECK(simulated == (limit > 0.005 ? 1 : 2));
+    CHECK(point.coefficient == limit);
+    CHECK(point.share == curve.share(limit));
+    CHECK(point.leak_flow_m3_per_s == curve.leak_flow_m3_per_s(limit));
+  }
+}

@@ -641,6 +641,55 @@ TEST_CASE("page: page one has eight signals, those held back and the worst first
   CHECK_THAT(html, Contains("3 more signals</a>, all within their limits."));
 }
 
+TEST_CASE("page: a signal that fails is on page one, however many are held back", "[report]") {
+  Json json = stored_result();
+  Json condition = json["conditions"][0];
+  condition["metrics"]["load_pressure"] = condition["metrics"]["position"];
+  condition["metrics"]["load_pressure"]["rho2"] = 0.9512;
+  json["conditions"] = Json::array();
+  for (int i = 0; i < 12; ++i) {
+    Json next = condition;
+    next["id"] = "c" + std::to_string(i);
+    next["use"] = i < 3 ? "fit" : "validate";
+    next["limit_checks"][0]["tolerance_used"] = 0.01 * (i + 1);
+    if (i == 1) {
+      next["limit_checks"][0]["value"] = 0.5;
+      next["limit_checks"][0]["tolerance_used"] = 5.0;
+      next["limit_checks"][0]["verdict"] = "FAIL";
+      next["verdict"] = next["channel_verdicts"]["position"] = "FAIL";
+    }
+    if (i == 7) next["metrics"]["load_pressure"]["rho2"] = 0.8431;
+    json["conditions"].push_back(next);
+  }
+  json["verdict"] = "FAIL";
+  const std::string html = page(json);
+  const std::size_t begin = html.find("<table class=\"signals\">");
+  REQUIRE(begin != std::string::npos);
+  const std::string table = html.substr(begin, html.find("</table>", begin) - begin);
+  REQUIRE(table.find(">c1<") != std::string::npos);
+  CHECK(table.find(">c1<") < table.find(">c11<"));
+  CHECK(table.find(">c11<") < table.find(">c10<"));
+  CHECK_THAT(table, Contains(">c5<") && !Contains(">c4<") && !Contains(">c0<"));
+  CHECK_THAT(html, Contains("4 more signals</a>, all within their limits."));
+  // The channel without a limit has one line, with its lowest score.
+  CHECK_THAT(table, !Contains("load pressure"));
+  CHECK_THAT(html, Contains("Recorded, but not judged, since no limit was agreed: load pressure "
+                            "(lowest rho2 0.843, c7)."));
+}
+
+TEST_CASE("page: what was fitted and what was validated are told apart", "[report]") {
+  Json json = stored_result();
+  json["schema"] = "rigcal.fit/2";
+  json["validity"]["frequency_hz"] = {1.0, 2.0};
+  json["validated"] = json["validity"];
+  json["validated"]["frequency_hz"] = {3.0, 3.0};
+  CHECK_THAT(page(json), Contains("frequency fitted 1 to 2 Hz, validated 3 Hz"));
+  json["validated"]["frequency_hz"] = {1.0, 2.0};
+  CHECK_THAT(page(json), Contains("frequency 1 to 2 Hz") && !Contains("fitted 1 to 2 Hz"));
+  json["validity"]["frequency_hz"] = nullptr;
+  CHECK_THAT(page(json), Contains("frequency validated 1 to 2 Hz"));
+}
+
 TEST_CASE("page: the foot of every sheet says whose report it is", "[report]") {
   Json json = stored_result();
   json["report"] = {{"number", "2026-041\"; } body { display: none } </style>"},
