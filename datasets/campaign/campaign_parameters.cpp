@@ -548,9 +548,15 @@ std::optional<ParameterConflict> find_room_conflict(const model::Rig& rig,
                                                     const model::ParameterValues& values) {
   const model::StateCount count = model::count_states(rig, values);
   if (count.needed <= count.room) return std::nullopt;
-  constexpr std::array kTerms{
-      "hose_yield",        "hose_yield_ratio",         "payload_mass",         "pump_second_flow",
-      "bristle_stiffness", "acceleration_feedforward", "velocity_feedforward", "sample_time"};
+  constexpr std::array kTerms{"hose_yield",
+                              "hose_yield_ratio",
+                              "payload_mass",
+                              "pump_second_flow",
+                              "main_spool_gain",
+                              "bristle_stiffness",
+                              "acceleration_feedforward",
+                              "velocity_feedforward",
+                              "sample_time"};
   std::vector<std::string_view> present;
   for (const char* key : kTerms) {
     if (has_key(values, key)) present.emplace_back(key);
@@ -638,6 +644,17 @@ std::optional<ParameterConflict> find_conflict(const model::Rig& rig,
         fmt::format("a second-order valve needs both valve_frequency and valve_damping_ratio: "
                     "expected {} as well",
                     frequency ? "valve_damping_ratio" : "valve_frequency")};
+  }
+  if (given("main_spool_gain") && !given("valve_time_constant") && !given("valve_frequency")) {
+    return ParameterConflict{"main_spool_gain",
+                             "main_spool_gain without the lag of the pilot stage: expected "
+                             "valve_time_constant, or valve_frequency, as well"};
+  }
+  if (given("main_spool_gain") && given("pilot_gain")) {
+    return ParameterConflict{"main_spool_gain",
+                             "main_spool_gain (a main spool with position feedback) is combined "
+                             "with pilot_gain (a spool that a pilot pressure moves against its "
+                             "spring): expected one of them"};
   }
   if (given("valve_rate_limit") && !given("valve_time_constant") && !given("valve_frequency")) {
     return ParameterConflict{"valve_rate_limit",

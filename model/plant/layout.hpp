@@ -94,6 +94,9 @@ inline constexpr StateRow kValveSupply{"valve_supply_pressure", "Pa",
 inline constexpr StateRow kValveSignal{"valve_signal", "V", "signal that the spool has reached",
                                        1e-3, 1.0};
 inline constexpr StateRow kValveSignalRate{"valve_signal_rate", "V/s", "its rate", 1.0, 100.0};
+inline constexpr StateRow kPilotOpening{
+    "pilot_opening", "V", "opening of the pilot stage, in volts of the main spool", 1e-3, 1.0};
+inline constexpr StateRow kPilotOpeningRate{"pilot_opening_rate", "V/s", "its rate", 1.0, 100.0};
 inline constexpr StateRow kPilotSignal{"valve_signal", "Pa",
                                        "pilot pressure that the spool has reached", 100.0, 0.01};
 inline constexpr StateRow kPilotSignalRate{"valve_signal_rate", "Pa/s", "its rate", 1e5, 1e7};
@@ -126,6 +129,9 @@ struct Layout {
   int bristles = -1;    ///< force of the bristles [N]
   int valve_order = 0;  ///< 0: the spool follows the command; 1, 2: order of its lag
   int valve = -1;       ///< first valve state: spool signal [V], then its rate [V/s]
+  /// The valve has two stages: its first state is the main spool, and the lag of `valve_order` that
+  /// follows is the pilot stage's.
+  bool main_spool = false;
   bool pid = false;
   Feedback feedback = Feedback::position;  ///< quantity that the loop controls
   bool pressure_feedback = false;          ///< the load pressure is fed back inside the loop
@@ -199,14 +205,19 @@ inline Layout layout_of(const Rig& rig, const ParameterValues& values, std::span
   }
   if (given("bristle_stiffness")) layout.bristles = layout.add(kBristleForce);
   layout.terms.pilot = given("pilot_gain");
-  const StateRow& signal = layout.terms.pilot ? kPilotSignal : kValveSignal;
   if (given("valve_frequency")) {
     layout.valve_order = 2;
-    layout.valve = layout.add(signal);
-    layout.add(layout.terms.pilot ? kPilotSignalRate : kValveSignalRate);
   } else if (given("valve_time_constant")) {
     layout.valve_order = 1;
-    layout.valve = layout.add(signal);
+  }
+  if (layout.valve_order > 0) {
+    layout.main_spool = given("main_spool_gain");
+    layout.valve = layout.add(layout.terms.pilot ? kPilotSignal : kValveSignal);
+    if (layout.main_spool) layout.add(kPilotOpening);
+    if (layout.valve_order == 2)
+      layout.add(layout.main_spool    ? kPilotOpeningRate
+                 : layout.terms.pilot ? kPilotSignalRate
+                                      : kValveSignalRate);
   }
   layout.pid = rig.controller == ControllerKind::pid;
   if (layout.pid) {

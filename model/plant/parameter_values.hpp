@@ -38,6 +38,7 @@ struct CommonParameters {
   T valve_damping_ratio{};
   T valve_offset_v{};
   T valve_dead_band_v{};
+  T main_spool_gain_per_s{};
   T valve_rate_limit_v_per_s{};
   T valve_null_leakage_m3_per_s_pa{};
   T coulomb_friction_n{};
@@ -187,6 +188,7 @@ constexpr auto valve_rows() {
       F{&P::valve_damping_ratio, {"valve_damping_ratio", "valve_damping_ratio", "zeta_v", "1", "damping ratio of a second-order valve", "docs/model.md", K::term, 0.01, 100, 0.0}},
       F{&P::valve_offset_v, {"valve_offset", "valve_offset_v", "u_0", "V", "voltage added at the spool: null shift", "docs/model.md", K::term, -100, 100, 0.0}},
       F{&P::valve_dead_band_v, {"valve_dead_band", "valve_dead_band_v", "u_db", "V", "half width of the spool overlap, in volts", "docs/model.md", K::term, 0, 100, 0.0}},
+      F{&P::main_spool_gain_per_s, {"main_spool_gain", "main_spool_gain_per_s", "K_ms", "1/s", "rate of the main spool of a two-stage valve per volt that it lacks of its command; the lag is then that of the pilot stage", "docs/model.md", K::term, 0.1, 1e6, 0.0}},
       F{&P::valve_rate_limit_v_per_s, {"valve_rate_limit", "valve_rate_limit_v_per_s", "r_v", "V/s", "fastest change of the spool signal, both signs", "docs/model.md", K::term, 1e-3, 1e9, 0.0}},
       F{&P::valve_null_leakage_m3_per_s_pa, {"valve_null_leakage", "valve_null_leakage_m3_per_s_pa", "G_0", "m3/(s Pa)", "laminar leak of each closed metering edge: servo flow lost per load pressure", "docs/model.md", K::term, 0, 1, 0.0}},
       // clang-format on

@@ -373,7 +373,8 @@ class System {
   bool is_of_loop(std::size_t i) const {
     const int state = static_cast<int>(i);
     return (layout_.of_controller(state) && state != layout_.held) ||
-           (state >= layout_.valve && state < layout_.valve + layout_.valve_order);
+           (state >= layout_.valve &&
+            state < layout_.valve + layout_.valve_order + (layout_.main_spool ? 1 : 0));
   }
 
   /// The states as independent variables, or as numbers with zero derivatives with respect to the
@@ -563,17 +564,45 @@ class System {
           dx[static_cast<std::size_t>(layout_.rate)] = reference_acceleration(loop, x, p, layout_);
       }
     }
-    if (layout_.valve_order == 1) {
+    if (layout_.valve_order > 0) {
       const auto spool = static_cast<std::size_t>(layout_.valve);
-      dx[spool] = spool_rate(by, Number<K>((command - x[spool]) / p.valve_time_constant_s));
-    } else if (layout_.valve_order == 2) {
-      const auto spool = static_cast<std::size_t>(layout_.valve);
-      const auto& omega = p.valve_frequency_rad_per_s;
-      dx[spool] = spool_rate(by, x[spool + 1]);
-      dx[spool + 1] = (command - x[spool]) * (omega * omega) -
-                      x[spool + 1] * (2.0 * p.valve_damping_ratio * omega);
+      if (layout_.main_spool) {
+        lag_rates(by, x, pilot_command(by, x, command), spool + 1, dx);
+        dx[spool] = x[spool + 1] * p.main_spool_gain_per_s;
+      } else {
+        lag_rates(by, x, command, spool, dx);
+        dx[spool] = spool_rate(by, dx[spool]);
+      }
     }
     return command;
+  }
+
+  /// Writes the derivatives of the valve's lag of first or second order.
+  ///
+  /// @param first  index of the state that follows the command
+  template <typename K>
+  void lag_rates(K by, const Numbers<K>& x, const Number<K>& command, std::size_t first,
+                 Numbers<K>& dx) const {
+    const auto& p = parameters_of(by);
+    if (layout_.valve_order == 1) {
+      dx[first] = (command - x[first]) / p.valve_time_constant_s;
+      return;
+    }
+    const auto& omega = p.valve_frequency_rad_per_s;
+    dx[first] = x[first + 1];
+    dx[first + 1] = (command - x[first]) * (omega * omega) -
+                    x[first + 1] * (2.0 * p.valve_damping_ratio * omega);
+  }
+
+  /// Command to the pilot stage [V]: what the main spool lacks of its own. The fully open pilot
+  /// moves the main spool at its rate limit.
+  template <typename K>
+  Number<K> pilot_command(K by, const Numbers<K>& x, const Number<K>& command) const {
+    const auto& p = parameters_of(by);
+    const Number<K> lacks = command - x[static_cast<std::size_t>(layout_.valve)];
+    if (!layout_.terms.valve_rate_limit) return lacks;
+    using C = std::remove_cvref_t<decltype(p.main_spool_gain_per_s)>;
+    return clamp_symmetric(lacks, C(p.valve_rate_limit_v_per_s / p.main_spool_gain_per_s));
   }
 
   /// The derivative of valve, controller and plant together.

@@ -89,6 +89,40 @@ TEST_CASE("equations: a ramp of the input is followed, not held", "[model]") {
   CHECK(travel({0.0, 0.01}) == Approx(0.5 * travel({0.01, 0.0})).epsilon(0.02));
 }
 
+TEST_CASE("equations: a two-stage valve moves as it is simulated, with the limit of its pilot",
+          "[model]") {
+  Experiment e;
+  e.rig.controller = ControllerKind::none;
+  e.set("valve_time_constant", 2e-3).set("main_spool_gain", 200.0).set("valve_rate_limit", 60.0);
+  e.inputs.drive = Signal::constant(0.5);
+  e.times_s = {0.0, 0.012};
+  e.options.tolerance = 1e-10;
+  e.outputs = {Output::position, Output::load_pressure, Output::spool};
+  const Simulation run = e();
+  REQUIRE(run.ok());
+  ExportedRig rig;
+  rig.rig = e.rig;
+  rig.values = e.values;
+  CHECK(names(rig) == std::vector<std::string>{"position", "velocity", "load_pressure",
+                                               "valve_signal", "pilot_opening"});
+  const auto equations = make_equations(rig);
+  RigInputs inputs;
+  inputs.drive.value = 0.5;
+  inputs.supply_pressure_pa.value = rig.values["supply_pressure"];
+  equations->set(rig.values, inputs, 1.0);
+  std::vector<double> x = equations->initial();
+  // The pilot is fully open until 0.3 V are missing: 60 V/s at 200 1/s.
+  const std::vector<double> before = equations->indicators(x);
+  REQUIRE(before.size() == 3);
+  CHECK(before[1] == Approx(60.0 - 0.5 * 200.0));
+  StepMemory memory;
+  equations->advance(x, memory, 0.0, 0.012, 1e-10);
+  CHECK(x[0] == Approx(run.outputs(1, 0)).epsilon(1e-6));
+  CHECK(x[3] * rig.values["valve_gain"] == Approx(run.outputs(1, 2)).epsilon(1e-7));
+  CHECK(equations->indicators(x)[1] == Approx(60.0 - (0.5 - x[3]) * 200.0));
+  CHECK(equations->indicators(x)[1] > 0.0);
+}
+
 TEST_CASE("equations: an arm moves as it is simulated, and its kinks have indicators", "[model]") {
   Experiment e = arm_rig();
   e.set("valve_time_constant", 0.03).set("supply_resistance", 1e9).set("supply_capacity", 1e-11);

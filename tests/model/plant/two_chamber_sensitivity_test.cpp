@@ -107,11 +107,9 @@ std::vector<std::pair<Scenario, Experiment>> two_chamber_scenarios() {
                          {"stribeck_friction", 40.0},
                          {"stribeck_velocity", 0.05},
                          {"friction_smoothing", 0.05}};
-  NamedValues stop{{"retracted_position", -0.004},
-                   {"stop_stiffness", 2e6},
-                   {"stop_damping", 20.0},
-                   {"valve_time_constant", 5e-3},
-                   {"valve_rate_limit", 300.0}};
+  NamedValues stop{{"retracted_position", -0.004}, {"stop_stiffness", 2e6},
+                   {"stop_damping", 20.0},         {"valve_time_constant", 5e-3},
+                   {"valve_rate_limit", 300.0},    {"main_spool_gain", 250.0}};
   std::vector<std::pair<Scenario, Experiment>> rows;
   const auto none = ControllerKind::none;
   rows.push_back(
