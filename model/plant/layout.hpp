@@ -111,8 +111,8 @@ inline constexpr StateRow kFilteredRate{"controller_filtered_rate", "m/s",
                                         "filtered rate of the reference", 1e-5, 0.1};
 inline constexpr StateRow kHeldOutput{"controller_held_output", "V",
                                       "output of the sampled controller", 1e-3, 1.0};
-/// Filtered error, in the unit of the controlled quantity.
-inline constexpr std::array<StateRow, kFeedbackCount> kFilteredError{
+/// Filtered error, in the unit of the controlled quantity. Three-variable control has none.
+inline constexpr std::array<StateRow, 4> kFilteredError{
     StateRow{"controller_filtered_error", "m", "filtered error", 1e-6, 0.01},
     StateRow{"controller_filtered_error", "N", "filtered error", 0.1, 1e3},
     StateRow{"controller_filtered_error", "Pa", "filtered error", 100.0, 0.1},
@@ -137,9 +137,10 @@ struct Layout {
   bool pressure_feedback = false;          ///< the load pressure is fed back inside the loop
   int integral = -1;                       ///< integral action [V]
   int filter = -1;                         ///< filtered error, in the unit of `feedback`
-  int reference = -1;                      ///< filtered reference of a feed-forward [m]
-  int rate = -1;                           ///< its rate, filtered once more [m/s]
-  int held = -1;  ///< output of a sampled controller, constant between ticks [V]
+  int reference = -1;      ///< filtered reference of a feed-forward or of a generator [m]
+  int rate = -1;           ///< its rate, filtered once more for a feed-forward [m/s]
+  bool generator = false;  ///< three-variable control: both states are those of its generator
+  int held = -1;           ///< output of a sampled controller, constant between ticks [V]
   PresentTerms terms;
   int states = 0;
 
@@ -224,11 +225,13 @@ inline Layout layout_of(const Rig& rig, const ParameterValues& values, std::span
     layout.feedback = rig.feedback;
     layout.pressure_feedback = acts("pressure_feedback");
     if (given(gain_keys(rig.feedback).ki)) layout.integral = layout.add(kIntegral);
-    if (given(gain_keys(rig.feedback).kd))
+    layout.generator = is_three_variable(rig.feedback);
+    if (given(gain_keys(rig.feedback).kd) && !layout.generator)
       layout.filter = layout.add(kFilteredError.at(static_cast<std::size_t>(rig.feedback)));
-    if (given("velocity_feedforward") || given("acceleration_feedforward"))
+    if (layout.generator || given("velocity_feedforward") || given("acceleration_feedforward"))
       layout.reference = layout.add(kFilteredReference);
-    if (given("acceleration_feedforward")) layout.rate = layout.add(kFilteredRate);
+    if (layout.generator || given("acceleration_feedforward"))
+      layout.rate = layout.add(kFilteredRate);
     if (given("sample_time")) layout.held = layout.add(kHeldOutput);
   }
   layout.terms.stribeck = given("stribeck_friction");

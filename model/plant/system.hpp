@@ -165,10 +165,7 @@ class System {
           result[k] = x[Plant::velocity];
           break;
         case Output::acceleration:
-          result[k] = Plant::derivative(x, in, parameters_of(ByParameters{}),
-                                        layout_.terms)[Plant::velocity];
-          if (base_acceleration_)
-            result[k] = result[k] + input_value(ByParameters{}, *base_acceleration_, t, false);
+          result[k] = measured_acceleration(ByParameters{}, x, in, t);
           break;
         case Output::payload_acceleration:
           result[k] = payload_acceleration(ByParameters{}, x);
@@ -194,12 +191,17 @@ class System {
         given ? Plant::initial(in, p, layout_.terms) : Plant::rest(in, p, layout_.terms);
     for (std::size_t i = 0; i < plant.size(); ++i) states[i] = plant[i];
     while_it_waits_ = C(0.0);
-    // At rest the reference equals the measured value.
-    if (before == Before::rest && layout_.pid)
+    // At rest the reference equals the measured value, and a generator rests there.
+    const bool generates = layout_.feedback == Feedback::three_variable_acceleration;
+    if (before == Before::rest && layout_.pid) {
       while_it_waits_ = C(0.0) - loop_error(ByParameters{}, states, C(0.0), t).error;
+      const C& omega = p.reference_frequency_rad_per_s;
+      if (generates) while_it_waits_ = while_it_waits_ * (omega * omega);
+    }
     if (before == Before::steady) {
       while_it_waits_ = C(drive_.first_value());
-      if (layout_.pid && layout_.feedback == Feedback::position)
+      if (layout_.pid &&
+          (layout_.feedback == Feedback::position || layout_.feedback == Feedback::three_variable))
         states[Plant::position] = while_it_waits_;
     }
     if (layout_.payload >= 0) {  // starts as if it were fixed to the first mass
@@ -219,9 +221,10 @@ class System {
       // spool is at rest.
       const C drive =
           before == Before::hold ? input_value(ByParameters{}, drive_, t, true) : while_it_waits_;
+      if (layout_.reference >= 0 && !generates)
+        states[static_cast<std::size_t>(layout_.reference)] = drive;
       const LoopError<C> loop = loop_error(ByParameters{}, states, drive, t);
       if (layout_.filter >= 0) states[static_cast<std::size_t>(layout_.filter)] = loop.error;
-      if (layout_.reference >= 0) states[static_cast<std::size_t>(layout_.reference)] = drive;
       if (layout_.sampled()) {
         states[static_cast<std::size_t>(layout_.held)] =
             controller_output(loop, states, p, layout_).limited;
@@ -439,7 +442,8 @@ class System {
     if constexpr (N > Plant::kStates) {
       if (!layout_.position_alone()) return other_loop_error(by, x, drive, t);
     }
-    return {drive - x[Plant::position], Number<K>(0.0), Number<K>(0.0)};
+    const Number<K> none(0.0);
+    return {drive - x[Plant::position], none, none, none, none};
   }
 
   /// Not inlined, to keep the code of position loops short.
@@ -450,7 +454,8 @@ class System {
     // Neither force nor load pressure nor acceleration depends on the spool, so the command is not
     // needed.
     const PlantInput<Number<K>> in = plant_input(by, x, Number<K>(0.0), t);
-    LoopError<Number<K>> loop{drive, Number<K>(0.0), drive};
+    const Number<K> none(0.0);
+    LoopError<Number<K>> loop{drive, none, drive, none, none};
     switch (layout_.feedback) {
       case Feedback::position:
         loop.error = drive - x[Plant::position];
@@ -462,14 +467,29 @@ class System {
         loop.error = drive - Plant::output(Output::load_pressure, x, in, p, layout_.terms);
         break;
       case Feedback::acceleration:
-        loop.error = drive - Plant::derivative(x, in, p, layout_.terms)[Plant::velocity];
-        if (base_acceleration_)
-          loop.error = loop.error - input_value(by, *base_acceleration_, t, false);
+        loop.error = drive - measured_acceleration(by, x, in, t);
+        break;
+      case Feedback::three_variable:
+      case Feedback::three_variable_acceleration:
+        loop.error = x[static_cast<std::size_t>(layout_.reference)] - x[Plant::position];
+        loop.velocity = x[static_cast<std::size_t>(layout_.rate)] - x[Plant::velocity];
+        loop.acceleration =
+            generated_acceleration(drive, x, p, layout_) - measured_acceleration(by, x, in, t);
         break;
     }
     if (layout_.pressure_feedback)
       loop.pressure_pa = Plant::output(Output::load_pressure, x, in, p, layout_.terms);
     return loop;
+  }
+
+  /// Acceleration of the piston relative to the ground [m/s2].
+  template <typename K>
+  Number<K> measured_acceleration(K by, const Numbers<K>& x, const PlantInput<Number<K>>& in,
+                                  double t) const {
+    const Number<K> relative =
+        Plant::derivative(x, in, parameters_of(by), layout_.terms)[Plant::velocity];
+    if (!base_acceleration_) return relative;
+    return relative + input_value(by, *base_acceleration_, t, false);
   }
 
   /// Acceleration of the second mass, with that of the base [m/s2].
@@ -601,8 +621,8 @@ class System {
     const auto& p = parameters_of(by);
     const Number<K> lacks = command - x[static_cast<std::size_t>(layout_.valve)];
     if (!layout_.terms.valve_rate_limit) return lacks;
-    using C = std::remove_cvref_t<decltype(p.main_spool_gain_per_s)>;
-    return clamp_symmetric(lacks, C(p.valve_rate_limit_v_per_s / p.main_spool_gain_per_s));
+    using Known = std::remove_cvref_t<decltype(p.main_spool_gain_per_s)>;
+    return clamp_symmetric(lacks, Known(p.valve_rate_limit_v_per_s / p.main_spool_gain_per_s));
   }
 
   /// The derivative of valve, controller and plant together.

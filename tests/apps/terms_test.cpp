@@ -53,4 +53,39 @@ TEST_CASE("terms: a fit finds the main spool of a two-stage valve", "[apps]") {
   check_recovery(folder, {{"main_spool_gain", 90.0}, {"valve_gain", 4e-6}});
 }
 
+TEST_CASE("terms: a fit finds the gains of a shake table's controller", "[apps]") {
+  const CommandFolder folder;
+  const std::string campaign = edited(
+      kTwoChamber,
+      {{"mass = { start = \"6 kg\", lower = \"1 kg\", upper = \"50 kg\", fit = true }",
+        "mass = \"5 kg\""},
+       {"valve_gain = { start = \"5e-6 m/V\", lower = \"1e-6 m/V\", upper = \"2e-5 m/V\", fit = "
+        "true }",
+        "valve_gain = \"4e-6 m/V\""},
+       {"type = \"none\"\n",
+        "type = \"pid\"\nfeedback = \"three_variable_acceleration\"\nreference_frequency = \"1 "
+        "Hz\"\nreference_damping_ratio = 0.7\n"
+        "kp = { start = \"150 V/m\", lower = \"20 V/m\", upper = \"1000 V/m\", fit = true }\n"
+        "velocity_kp = { start = \"5 V s/m\", lower = \"0.5 V s/m\", upper = \"50 V s/m\", fit = "
+        "true }\nacceleration_kp = { start = \"0.02 V s2/m\", lower = \"0.002 V s2/m\", upper = "
+        "\"0.2 V s2/m\", fit = true }\n"},
+       {"command = { column = \"u_V\", unit = \"V\" }",
+        "acceleration_reference = { column = \"a_ref\", unit = \"gravity\" }\n"
+        "acceleration = { column = \"a\", unit = \"gravity\" }"},
+       {"waveform = \"square\"\nfrequency = \"1 Hz\"\namplitude = \"1 V\"",
+        "waveform = \"chirp\"\nfrequency = \"0.5 Hz\"\nend_frequency = \"15 Hz\"\nduration = "
+        "\"4 s\"\namplitude = \"0.2 m/s2\""}});
+  const std::string truth = R"([synthetic]
+controller = { kp = "220 V/m", velocity_kp = "8 V s/m", acceleration_kp = "0.01 V s2/m" }
+repeats = 3
+duration = "4 s"
+sample_rate = "200 Hz"
+noise = { position = "0.01 mm", pressure_a = "0.05 bar", pressure_b = "0.05 bar", acceleration = "0.02 m/s2" }
+)";
+  const Outcome twin = synthesize_twin(folder, campaign + truth);
+  INFO(twin.err);
+  REQUIRE(twin.exit_code == 0);
+  check_recovery(folder, {{"kp", 220.0}, {"velocity_kp", 8.0}, {"acceleration_kp", 0.01}});
+}
+
 }  // namespace rigcal::test
