@@ -1,5 +1,6 @@
 #include "datasets/considered_settings.hpp"
 
+#include <algorithm>
 #include <array>
 
 #include "model/simulate.hpp"
@@ -54,7 +55,9 @@ std::vector<EffectName> effect_names(model::PlantKind plant) {
   std::vector<EffectName> names;
   std::vector<std::string_view> keys(kOfParameters.begin(), kOfParameters.end());
   for (const model::FeedbackRow& loop : model::kFeedbacks)
-    keys.insert(keys.end(), {loop.kp, loop.ki, loop.kd});
+    for (const std::string_view gain : {loop.kp, loop.ki, loop.kd}) {
+      if (std::find(keys.begin(), keys.end(), gain) == keys.end()) keys.push_back(gain);
+    }
   for (const std::string_view key : keys) {
     const int index = model::parameter_index(plant, key);
     if (index < 0) continue;

@@ -53,7 +53,9 @@ std::string bad_parameter(const ParameterValues& values, const Layout& layout) {
     const bool in_use = values.given[i] || spec.kind == ParameterKind::plant ||
                         (layout.valve_order == 2 && spec.key == "valve_damping_ratio") ||
                         (layout.payload >= 0 && spec.key == "payload_frequency") ||
-                        (layout.filter >= 0 && spec.key == "derivative_filter");
+                        (layout.filter >= 0 && spec.key == "derivative_filter") ||
+                        (layout.generator && (spec.key == "reference_frequency" ||
+                                              spec.key == "reference_damping_ratio"));
     if (!in_use) continue;
     const double v = values.value[i];
     if (!(v >= spec.lower && v <= spec.upper)) {

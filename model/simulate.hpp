@@ -63,24 +63,38 @@ enum class ControllerKind {
   pid,   ///< the drive is the reference of the controlled quantity
 };
 
-/// Quantity that a loop controls. The reference has the same unit.
-enum class Feedback { position, force, load_pressure, acceleration };
+/// Quantity that a loop controls. The reference has the same unit. Three-variable control acts on
+/// position, velocity and acceleration together; its reference is a position or an acceleration.
+enum class Feedback {
+  position,
+  force,
+  load_pressure,
+  acceleration,
+  three_variable,
+  three_variable_acceleration,
+};
 
 /// Maps a controlled quantity to the parameters with the gains of its loop.
 struct FeedbackRow {
   std::string_view name;  ///< in campaign files
-  std::string_view unit;  ///< SI
+  std::string_view unit;  ///< of the reference, SI
   std::string_view meaning;
   std::string_view kp, ki, kd;
+  std::string_view acceleration;  ///< gain of the acceleration besides kp; empty: none
 };
 inline constexpr std::array kFeedbacks{
-    FeedbackRow{"position", "m", "where the piston is to be", "kp", "ki", "kd"},
+    FeedbackRow{"position", "m", "where the piston is to be", "kp", "ki", "kd", ""},
     FeedbackRow{"force", "N", "force that a load cell in the rod is to read", "force_kp",
-                "force_ki", "force_kd"},
+                "force_ki", "force_kd", ""},
     FeedbackRow{"load_pressure", "Pa", "what the pressure of chamber A is to be less that of B",
-                "load_pressure_kp", "load_pressure_ki", "load_pressure_kd"},
+                "load_pressure_kp", "load_pressure_ki", "load_pressure_kd", ""},
     FeedbackRow{"acceleration", "m/s2", "what the acceleration of the piston is to be",
-                "acceleration_kp", "acceleration_ki", "acceleration_kd"},
+                "acceleration_kp", "acceleration_ki", "acceleration_kd", ""},
+    FeedbackRow{"three_variable", "m", "where the piston is to be", "kp", "ki", "velocity_kp",
+                "acceleration_kp"},
+    FeedbackRow{"three_variable_acceleration", "m/s2",
+                "what the acceleration of the piston is to be", "kp", "ki", "velocity_kp",
+                "acceleration_kp"},
 };
 inline constexpr std::size_t kFeedbackCount = kFeedbacks.size();
 constexpr const FeedbackRow& gain_keys(Feedback feedback) {
@@ -140,6 +154,11 @@ enum class SimulationStatus {
   no_equilibrium,  ///< Before::steady was requested, but the rig does not settle
 };
 std::string_view to_string(SimulationStatus status);
+
+/// Whether a loop acts on position, velocity and acceleration together.
+constexpr bool is_three_variable(Feedback feedback) {
+  return !gain_keys(feedback).acceleration.empty();
+}
 
 /// A simulated run. The matrices are empty unless `status` is ok, so that nobody takes the output
 /// of a failed run for a result.

@@ -548,9 +548,15 @@ std::optional<ParameterConflict> find_room_conflict(const model::Rig& rig,
                                                     const model::ParameterValues& values) {
   const model::StateCount count = model::count_states(rig, values);
   if (count.needed <= count.room) return std::nullopt;
-  constexpr std::array kTerms{
-      "hose_yield",        "hose_yield_ratio",         "payload_mass",         "pump_second_flow",
-      "bristle_stiffness", "acceleration_feedforward", "velocity_feedforward", "sample_time"};
+  constexpr std::array kTerms{"hose_yield",
+                              "hose_yield_ratio",
+                              "payload_mass",
+                              "pump_second_flow",
+                              "main_spool_gain",
+                              "bristle_stiffness",
+                              "acceleration_feedforward",
+                              "velocity_feedforward",
+                              "sample_time"};
   std::vector<std::string_view> present;
   for (const char* key : kTerms) {
     if (has_key(values, key)) present.emplace_back(key);
@@ -560,6 +566,34 @@ std::optional<ParameterConflict> find_room_conflict(const model::Rig& rig,
       fmt::format("the rig has {} states, and the solver of the plant {} has room for {}: expected "
                   "fewer of {}",
                   count.needed, to_string(values.plant), count.room, fmt::join(present, ", "))};
+}
+
+/// Checks the keys of the reference generator: three-variable control needs all of them, and has no
+/// other filter.
+std::optional<ParameterConflict> find_generator_conflict(const model::Rig& rig,
+                                                         const model::ParameterValues& values) {
+  const model::FeedbackRow& loop = model::gain_keys(rig.feedback);
+  if (model::is_three_variable(rig.feedback) && has_key(values, "derivative_filter"))
+    return ParameterConflict{
+        "derivative_filter",
+        fmt::format("derivative_filter filters the derivative of an error, and "
+                    "a loop on {} has none: expected it left out",
+                    loop.name)};
+  for (const char* key : {"reference_frequency", "reference_damping_ratio"}) {
+    if (model::is_three_variable(rig.feedback) == has_key(values, key)) continue;
+    if (has_key(values, key))
+      return ParameterConflict{key, fmt::format("{} belongs to three-variable control, and this "
+                                                "loop is on {}: expected feedback = "
+                                                "\"three_variable\" or "
+                                                "\"three_variable_acceleration\"",
+                                                key, loop.name)};
+    return ParameterConflict{"", fmt::format("a loop on {} has no {}: expected reference_frequency "
+                                             "and reference_damping_ratio in [rig.controller], "
+                                             "the corner and the damping of the generator of its "
+                                             "references",
+                                             loop.name, key)};
+  }
+  return std::nullopt;
 }
 
 /// Checks that a loop has the gains for its controlled quantity, and no others.
@@ -573,7 +607,8 @@ std::optional<ParameterConflict> find_loop_conflict(const model::Rig& rig,
     if (other.name == loop.name) continue;
     for (const auto& [key, own] : {std::pair{other.kp, loop.kp}, std::pair{other.ki, loop.ki},
                                    std::pair{other.kd, loop.kd}}) {
-      if (!given(key)) continue;
+      const bool shared = key == loop.kp || key == loop.ki || key == loop.kd;
+      if (!given(key) || shared || key == loop.acceleration) continue;
       return ParameterConflict{
           std::string(key),
           fmt::format("{0} is a gain of a loop on {1}, and this one is on {2}: expected {3}, or "
@@ -581,11 +616,14 @@ std::optional<ParameterConflict> find_loop_conflict(const model::Rig& rig,
                       key, other.name, loop.name, own)};
     }
   }
-  if (!given(loop.kp) && !(given(loop.ki) && rig.feedback != model::Feedback::position)) {
+  const bool of_position = loop.kp == model::gain_keys(model::Feedback::position).kp;
+  if (!given(loop.kp) && !(given(loop.ki) && !of_position)) {
     return ParameterConflict{
         "", fmt::format("the pid controller has no {}: expected one in [rig.controller]", loop.kp)};
   }
-  if (given(loop.kd) && !given("derivative_filter")) {
+  if (const auto conflict = find_generator_conflict(rig, values)) return conflict;
+  const bool generator = model::is_three_variable(rig.feedback);
+  if (given(loop.kd) && !generator && !given("derivative_filter")) {
     return ParameterConflict{
         std::string(loop.kd),
         fmt::format("{} without derivative_filter: expected the corner N of its filter, such as "
@@ -593,7 +631,7 @@ std::optional<ParameterConflict> find_loop_conflict(const model::Rig& rig,
                     loop.kd)};
   }
   for (const char* key : {"velocity_feedforward", "acceleration_feedforward"}) {
-    if (!given(key)) continue;
+    if (!given(key) || generator) continue;
     if (rig.feedback != model::Feedback::position)
       return ParameterConflict{
           key, fmt::format("{} feeds the rate of a position forward, and this loop is on {}: "
@@ -638,6 +676,17 @@ std::optional<ParameterConflict> find_conflict(const model::Rig& rig,
         fmt::format("a second-order valve needs both valve_frequency and valve_damping_ratio: "
                     "expected {} as well",
                     frequency ? "valve_damping_ratio" : "valve_frequency")};
+  }
+  if (given("main_spool_gain") && !given("valve_time_constant") && !given("valve_frequency")) {
+    return ParameterConflict{"main_spool_gain",
+                             "main_spool_gain without the lag of the pilot stage: expected "
+                             "valve_time_constant, or valve_frequency, as well"};
+  }
+  if (given("main_spool_gain") && given("pilot_gain")) {
+    return ParameterConflict{"main_spool_gain",
+                             "main_spool_gain (a main spool with position feedback) is combined "
+                             "with pilot_gain (a spool that a pilot pressure moves against its "
+                             "spring): expected one of them"};
   }
   if (given("valve_rate_limit") && !given("valve_time_constant") && !given("valve_frequency")) {
     return ParameterConflict{"valve_rate_limit",

@@ -375,12 +375,14 @@ Channel drive_channel(const model::Rig& rig) {
     return rig.pilot ? Channel::pilot_pressure : Channel::command;
   switch (rig.feedback) {
     case model::Feedback::position:
+    case model::Feedback::three_variable:
       return Channel::reference;
     case model::Feedback::force:
       return Channel::force_reference;
     case model::Feedback::load_pressure:
       return Channel::load_pressure_reference;
     case model::Feedback::acceleration:
+    case model::Feedback::three_variable_acceleration:
       return Channel::acceleration_reference;
   }
   return Channel::reference;

@@ -542,10 +542,18 @@ std::string rig_text(model::PlantKind plant, std::optional<model::Feedback> loop
                         comment("what the loop controls; position unless given"));
   text += fmt::format("{} = \"{} {}\"{}\n", row.kp, kBlank, unit_of(row.kp),
                       comment("proportional gain; output_limit, sample_time if there are any"));
-  return text + fmt::format("# {} = \"... {}\"{}\n", row.ki, unit_of(row.ki),
-                            comment(fmt::format("integral gain: without it a model lags where the "
-                                                "machine does not; {} likewise",
-                                                row.kd)));
+  text += fmt::format("# {} = \"... {}\"{}\n", row.ki, unit_of(row.ki),
+                      comment(fmt::format("integral gain: without it a model lags where the "
+                                          "machine does not; {} likewise",
+                                          row.kd)));
+  const bool acceleration = *loop == model::Feedback::acceleration;
+  if (!signs.payload || !(acceleration || *loop == model::Feedback::position)) return text;
+  const auto& table = model::gain_keys(acceleration ? model::Feedback::three_variable_acceleration
+                                                    : model::Feedback::three_variable);
+  return text + fmt::format("# feedback = \"{}\"{}\n", table.name,
+                            comment(fmt::format("the controller of many shake tables: with {}, {}, "
+                                                "{}, reference_frequency, reference_damping_ratio",
+                                                table.kp, table.kd, table.acceleration)));
 }
 
 std::string relative_text(const fs::path& file, const fs::path& folder) {

@@ -123,8 +123,9 @@ void loop_indicators(const P& p, const Layout& layout, const std::array<double, 
   }
   if (!layout.terms.valve_rate_limit || layout.valve_order == 0) return;
   const auto spool = static_cast<std::size_t>(layout.valve);
-  const double rate =
-      layout.valve_order == 1 ? (command_v - x[spool]) / p.valve_time_constant_s : x[spool + 1];
+  const double rate = layout.main_spool         ? (command_v - x[spool]) * p.main_spool_gain_per_s
+                      : layout.valve_order == 1 ? (command_v - x[spool]) / p.valve_time_constant_s
+                                                : x[spool + 1];
   indicators.push_back(p.valve_rate_limit_v_per_s - rate);
   indicators.push_back(p.valve_rate_limit_v_per_s + rate);
 }

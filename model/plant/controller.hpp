@@ -19,6 +19,8 @@ template <typename P>
 void take_gains(Feedback feedback, P& p) {
   switch (feedback) {
     case Feedback::position:
+    case Feedback::three_variable:
+    case Feedback::three_variable_acceleration:
       return;
     case Feedback::force:
       p.kp_v_per_m = p.force_kp_v_per_n;
@@ -41,27 +43,45 @@ void take_gains(Feedback feedback, P& p) {
 /// The signals on which the controller acts.
 template <typename X>
 struct LoopError {
-  X error{};        ///< reference minus controlled quantity, in the unit of that quantity
-  X pressure_pa{};  ///< load pressure, if it is fed back
-  X reference{};    ///< reference, if its rate is fed forward
+  X error{};         ///< reference minus controlled quantity, in the unit of that quantity
+  X pressure_pa{};   ///< load pressure, if it is fed back
+  X reference{};     ///< reference, if its rate is fed forward or a generator filters it
+  X velocity{};      ///< error of the velocity in three-variable control [m/s]
+  X acceleration{};  ///< likewise of the acceleration [m/s2]
 };
 
-/// Rate of the filtered reference [m/s]: v_f = N (r - r_f).
+/// Acceleration of the reference generator [m/s2]: a_r = d - 2 zeta_r omega_r v_r - omega_r^2 x_r,
+/// d = omega_r^2 r for a position r, or d = a for an acceleration a.
+template <typename X, typename State, typename P>
+X generated_acceleration(const X& reference, const State& state, const P& p, const Layout& layout) {
+  const auto& omega = p.reference_frequency_rad_per_s;
+  const X drive =
+      layout.feedback == Feedback::three_variable ? X(reference * (omega * omega)) : reference;
+  return drive -
+         state[static_cast<std::size_t>(layout.rate)] * (2.0 * p.reference_damping_ratio * omega) -
+         state[static_cast<std::size_t>(layout.reference)] * (omega * omega);
+}
+
+/// Rate of the filtered reference [m/s]: v_f = N (r - r_f), or v_r of a generator.
 template <typename X, typename State, typename P>
 X reference_rate(const LoopError<X>& loop, const State& state, const P& p, const Layout& layout) {
+  if (layout.generator) return X(state[static_cast<std::size_t>(layout.rate)]);
   return (loop.reference - state[static_cast<std::size_t>(layout.reference)]) *
          p.derivative_filter_rad_per_s;
 }
 
-/// Rate of v_f after a second pass through the same filter [m/s2]: a_f = N (v_f - v_ff).
+/// Rate of v_f after a second pass through the same filter [m/s2]: a_f = N (v_f - v_ff), or a_r of
+/// a generator.
 template <typename X, typename State, typename P>
 X reference_acceleration(const LoopError<X>& loop, const State& state, const P& p,
                          const Layout& layout) {
+  if (layout.generator) return generated_acceleration(loop.reference, state, p, layout);
   return (reference_rate(loop, state, p, layout) - state[static_cast<std::size_t>(layout.rate)]) *
          p.derivative_filter_rad_per_s;
 }
 
 /// Computes u = K_p e + I + K_d N (e - e_f) - K_dp P_L + K_vf v_f + K_af a_f, and limits it.
+/// Three-variable control has K_v e_v + K_pa e_a in place of the third term.
 ///
 /// @param state  the whole state vector; `layout` has the indices of integral and filter
 template <typename X, typename State, typename P>
@@ -74,6 +94,9 @@ ControllerOutput<X> controller_output(const LoopError<X>& loop, const State& sta
     wanted = wanted + (error - state[static_cast<std::size_t>(layout.filter)]) *
                           (p.kd_v_s_per_m * p.derivative_filter_rad_per_s);
   }
+  if (layout.generator)
+    wanted = wanted + loop.velocity * p.velocity_kp_v_s_per_m +
+             loop.acceleration * p.acceleration_kp_v_s2_per_m;
   if (layout.pressure_feedback) wanted = wanted - loop.pressure_pa * p.pressure_feedback_v_per_pa;
   if (layout.reference >= 0)
     wanted = wanted + reference_rate(loop, state, p, layout) * p.velocity_feedforward_v_s_per_m;
@@ -99,11 +122,29 @@ X integral_rate(const X& error, const ControllerOutput<X>& u, const P& p) {
   return error * p.ki_v_per_m_s + (u.limited - u.wanted) * anti_windup_rate(p);
 }
 
+/// Advances the reference generator by backward Euler, and the errors with it.
+template <typename X, typename State, typename P>
+void generator_tick(LoopError<X>& loop, State& state, const P& p, const Layout& layout) {
+  const auto& omega = p.reference_frequency_rad_per_s;
+  const double period_s = value_of(p.sample_time_s);
+  auto& position = state[static_cast<std::size_t>(layout.reference)];
+  auto& rate = state[static_cast<std::size_t>(layout.rate)];
+  const X before = generated_acceleration(loop.reference, state, p, layout);
+  const X gained = (before - rate * (omega * omega * period_s)) /
+                   (1.0 + omega * (2.0 * p.reference_damping_ratio * period_s) +
+                    omega * omega * period_s * period_s);
+  rate = rate + gained * period_s;
+  position = position + rate * period_s;
+  loop.error = loop.error + rate * period_s;
+  loop.velocity = loop.velocity + gained * period_s;
+  loop.acceleration = loop.acceleration + (gained - before);
+}
+
 /// One tick of the sampled controller. The filters advance by backward Euler, the integral by
 /// forward Euler with the same back-calculation, and the output is constant until the next tick.
 /// Back-calculation takes at least one period to reach the limit, so the integral cannot overshoot.
 template <typename X, typename State, typename P>
-void controller_tick(const LoopError<X>& loop, State& state, const P& p, const Layout& layout) {
+void controller_tick(LoopError<X> loop, State& state, const P& p, const Layout& layout) {
   const X& error = loop.error;
   const double period_s = value_of(p.sample_time_s);
   const auto follow = [&](int index, const X& value) {
@@ -112,8 +153,12 @@ void controller_tick(const LoopError<X>& loop, State& state, const P& p, const L
     filtered = (filtered + step * value) / (1.0 + step);
   };
   if (layout.filter >= 0) follow(layout.filter, error);
-  if (layout.reference >= 0) follow(layout.reference, loop.reference);
-  if (layout.rate >= 0) follow(layout.rate, reference_rate(loop, state, p, layout));
+  if (layout.generator) {
+    generator_tick(loop, state, p, layout);
+  } else {
+    if (layout.reference >= 0) follow(layout.reference, loop.reference);
+    if (layout.rate >= 0) follow(layout.rate, reference_rate(loop, state, p, layout));
+  }
   const ControllerOutput<X> u = controller_output(loop, state, p, layout);
   if (layout.integral >= 0) {
     auto& integral = state[static_cast<std::size_t>(layout.integral)];

@@ -94,6 +94,9 @@ inline constexpr StateRow kValveSupply{"valve_supply_pressure", "Pa",
 inline constexpr StateRow kValveSignal{"valve_signal", "V", "signal that the spool has reached",
                                        1e-3, 1.0};
 inline constexpr StateRow kValveSignalRate{"valve_signal_rate", "V/s", "its rate", 1.0, 100.0};
+inline constexpr StateRow kPilotOpening{
+    "pilot_opening", "V", "opening of the pilot stage, in volts of the main spool", 1e-3, 1.0};
+inline constexpr StateRow kPilotOpeningRate{"pilot_opening_rate", "V/s", "its rate", 1.0, 100.0};
 inline constexpr StateRow kPilotSignal{"valve_signal", "Pa",
                                        "pilot pressure that the spool has reached", 100.0, 0.01};
 inline constexpr StateRow kPilotSignalRate{"valve_signal_rate", "Pa/s", "its rate", 1e5, 1e7};
@@ -108,8 +111,8 @@ inline constexpr StateRow kFilteredRate{"controller_filtered_rate", "m/s",
                                         "filtered rate of the reference", 1e-5, 0.1};
 inline constexpr StateRow kHeldOutput{"controller_held_output", "V",
                                       "output of the sampled controller", 1e-3, 1.0};
-/// Filtered error, in the unit of the controlled quantity.
-inline constexpr std::array<StateRow, kFeedbackCount> kFilteredError{
+/// Filtered error, in the unit of the controlled quantity. Three-variable control has none.
+inline constexpr std::array<StateRow, 4> kFilteredError{
     StateRow{"controller_filtered_error", "m", "filtered error", 1e-6, 0.01},
     StateRow{"controller_filtered_error", "N", "filtered error", 0.1, 1e3},
     StateRow{"controller_filtered_error", "Pa", "filtered error", 100.0, 0.1},
@@ -126,14 +129,18 @@ struct Layout {
   int bristles = -1;    ///< force of the bristles [N]
   int valve_order = 0;  ///< 0: the spool follows the command; 1, 2: order of its lag
   int valve = -1;       ///< first valve state: spool signal [V], then its rate [V/s]
+  /// The valve has two stages: its first state is the main spool, and the lag of `valve_order` that
+  /// follows is the pilot stage's.
+  bool main_spool = false;
   bool pid = false;
   Feedback feedback = Feedback::position;  ///< quantity that the loop controls
   bool pressure_feedback = false;          ///< the load pressure is fed back inside the loop
   int integral = -1;                       ///< integral action [V]
   int filter = -1;                         ///< filtered error, in the unit of `feedback`
-  int reference = -1;                      ///< filtered reference of a feed-forward [m]
-  int rate = -1;                           ///< its rate, filtered once more [m/s]
-  int held = -1;  ///< output of a sampled controller, constant between ticks [V]
+  int reference = -1;      ///< filtered reference of a feed-forward or of a generator [m]
+  int rate = -1;           ///< its rate, filtered once more for a feed-forward [m/s]
+  bool generator = false;  ///< three-variable control: both states are those of its generator
+  int held = -1;           ///< output of a sampled controller, constant between ticks [V]
   PresentTerms terms;
   int states = 0;
 
@@ -199,25 +206,32 @@ inline Layout layout_of(const Rig& rig, const ParameterValues& values, std::span
   }
   if (given("bristle_stiffness")) layout.bristles = layout.add(kBristleForce);
   layout.terms.pilot = given("pilot_gain");
-  const StateRow& signal = layout.terms.pilot ? kPilotSignal : kValveSignal;
   if (given("valve_frequency")) {
     layout.valve_order = 2;
-    layout.valve = layout.add(signal);
-    layout.add(layout.terms.pilot ? kPilotSignalRate : kValveSignalRate);
   } else if (given("valve_time_constant")) {
     layout.valve_order = 1;
-    layout.valve = layout.add(signal);
+  }
+  if (layout.valve_order > 0) {
+    layout.main_spool = given("main_spool_gain");
+    layout.valve = layout.add(layout.terms.pilot ? kPilotSignal : kValveSignal);
+    if (layout.main_spool) layout.add(kPilotOpening);
+    if (layout.valve_order == 2)
+      layout.add(layout.main_spool    ? kPilotOpeningRate
+                 : layout.terms.pilot ? kPilotSignalRate
+                                      : kValveSignalRate);
   }
   layout.pid = rig.controller == ControllerKind::pid;
   if (layout.pid) {
     layout.feedback = rig.feedback;
     layout.pressure_feedback = acts("pressure_feedback");
     if (given(gain_keys(rig.feedback).ki)) layout.integral = layout.add(kIntegral);
-    if (given(gain_keys(rig.feedback).kd))
+    layout.generator = is_three_variable(rig.feedback);
+    if (given(gain_keys(rig.feedback).kd) && !layout.generator)
       layout.filter = layout.add(kFilteredError.at(static_cast<std::size_t>(rig.feedback)));
-    if (given("velocity_feedforward") || given("acceleration_feedforward"))
+    if (layout.generator || given("velocity_feedforward") || given("acceleration_feedforward"))
       layout.reference = layout.add(kFilteredReference);
-    if (given("acceleration_feedforward")) layout.rate = layout.add(kFilteredRate);
+    if (layout.generator || given("acceleration_feedforward"))
+      layout.rate = layout.add(kFilteredRate);
     if (given("sample_time")) layout.held = layout.add(kHeldOutput);
   }
   layout.terms.stribeck = given("stribeck_friction");

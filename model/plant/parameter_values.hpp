@@ -38,6 +38,7 @@ struct CommonParameters {
   T valve_damping_ratio{};
   T valve_offset_v{};
   T valve_dead_band_v{};
+  T main_spool_gain_per_s{};
   T valve_rate_limit_v_per_s{};
   T valve_null_leakage_m3_per_s_pa{};
   T coulomb_friction_n{};
@@ -107,6 +108,9 @@ struct CommonParameters {
   T acceleration_kp_v_s2_per_m{};
   T acceleration_ki_v_s_per_m{};
   T acceleration_kd_v_s3_per_m{};
+  T velocity_kp_v_s_per_m{};
+  T reference_frequency_rad_per_s{};
+  T reference_damping_ratio{};
   T pressure_feedback_v_per_pa{};
   T velocity_feedforward_v_s_per_m{};
   T acceleration_feedforward_v_s2_per_m{};
@@ -187,6 +191,7 @@ constexpr auto valve_rows() {
       F{&P::valve_damping_ratio, {"valve_damping_ratio", "valve_damping_ratio", "zeta_v", "1", "damping ratio of a second-order valve", "docs/model.md", K::term, 0.01, 100, 0.0}},
       F{&P::valve_offset_v, {"valve_offset", "valve_offset_v", "u_0", "V", "voltage added at the spool: null shift", "docs/model.md", K::term, -100, 100, 0.0}},
       F{&P::valve_dead_band_v, {"valve_dead_band", "valve_dead_band_v", "u_db", "V", "half width of the spool overlap, in volts", "docs/model.md", K::term, 0, 100, 0.0}},
+      F{&P::main_spool_gain_per_s, {"main_spool_gain", "main_spool_gain_per_s", "K_ms", "1/s", "rate of the main spool of a two-stage valve per volt that it lacks of its command; the lag is then that of the pilot stage", "docs/model.md", K::term, 0.1, 1e6, 0.0}},
       F{&P::valve_rate_limit_v_per_s, {"valve_rate_limit", "valve_rate_limit_v_per_s", "r_v", "V/s", "fastest change of the spool signal, both signs", "docs/model.md", K::term, 1e-3, 1e9, 0.0}},
       F{&P::valve_null_leakage_m3_per_s_pa, {"valve_null_leakage", "valve_null_leakage_m3_per_s_pa", "G_0", "m3/(s Pa)", "laminar leak of each closed metering edge: servo flow lost per load pressure", "docs/model.md", K::term, 0, 1, 0.0}},
       // clang-format on
@@ -301,8 +306,11 @@ constexpr auto controller_rows() {
       F{&P::acceleration_kp_v_s2_per_m, {"acceleration_kp", "acceleration_kp_v_s2_per_m", "K_pa", "V s2/m", "proportional gain of a loop on acceleration", "docs/model.md", K::controller, 0, 1e9, 0.0}},
       F{&P::acceleration_ki_v_s_per_m, {"acceleration_ki", "acceleration_ki_v_s_per_m", "K_ia", "V s/m", "integral gain of a loop on acceleration", "docs/model.md", K::controller, 0, 1e9, 0.0}},
       F{&P::acceleration_kd_v_s3_per_m, {"acceleration_kd", "acceleration_kd_v_s3_per_m", "K_da", "V s3/m", "derivative gain of a loop on acceleration", "docs/model.md", K::controller, 0, 1e9, 0.0}},
+      F{&P::velocity_kp_v_s_per_m, {"velocity_kp", "velocity_kp_v_s_per_m", "K_v", "V s/m", "gain of the velocity's error in three-variable control", "docs/model.md", K::controller, 0, 1e9, 0.0}},
+      F{&P::reference_frequency_rad_per_s, {"reference_frequency", "reference_frequency_rad_per_s", "omega_r", "rad/s", "corner of the reference generator of three-variable control", "docs/model.md", K::controller, 1e-3, 1e6, 0.0}},
+      F{&P::reference_damping_ratio, {"reference_damping_ratio", "reference_damping_ratio", "zeta_r", "1", "damping ratio of that generator", "docs/model.md", K::controller, 0.01, 100, 0.0}},
       F{&P::pressure_feedback_v_per_pa, {"pressure_feedback", "pressure_feedback_v_per_pa", "K_dp", "V/Pa", "gain of the inner feedback of the load pressure", "docs/model.md", K::controller, 0, 1e6, 0.0}},
-      F{&P::velocity_feedforward_v_s_per_m, {"velocity_feedforward", "velocity_feedforward_v_s_per_m", "K_vf", "V s/m", "gain of the rate of a position loop's reference, filtered as the derivative is", "docs/model.md", K::controller, -1e9, 1e9, 0.0}},
+      F{&P::velocity_feedforward_v_s_per_m, {"velocity_feedforward", "velocity_feedforward_v_s_per_m", "K_vf", "V s/m", "gain of the rate of the reference, filtered as the derivative is or by the generator", "docs/model.md", K::controller, -1e9, 1e9, 0.0}},
       F{&P::acceleration_feedforward_v_s2_per_m, {"acceleration_feedforward", "acceleration_feedforward_v_s2_per_m", "K_af", "V s2/m", "gain of the rate of that rate, filtered once more", "docs/model.md", K::controller, -1e9, 1e9, 0.0}},
       F{&P::derivative_filter_rad_per_s, {"derivative_filter", "derivative_filter_rad_per_s", "N", "rad/s", "corner of the derivative's filter", "docs/model.md", K::controller, 1e-3, 1e6, 0.0}},
       F{&P::output_limit_v, {"output_limit", "output_limit_v", "u_max", "V", "limit of the controller's output, both signs", "docs/model.md", K::controller, 1e-6, kInf, kInf}},

@@ -165,10 +165,7 @@ class System {
           result[k] = x[Plant::velocity];
           break;
         case Output::acceleration:
-          result[k] = Plant::derivative(x, in, parameters_of(ByParameters{}),
-                                        layout_.terms)[Plant::velocity];
-          if (base_acceleration_)
-            result[k] = result[k] + input_value(ByParameters{}, *base_acceleration_, t, false);
+          result[k] = measured_acceleration(ByParameters{}, x, in, t);
           break;
         case Output::payload_acceleration:
           result[k] = payload_acceleration(ByParameters{}, x);
@@ -194,12 +191,17 @@ class System {
         given ? Plant::initial(in, p, layout_.terms) : Plant::rest(in, p, layout_.terms);
     for (std::size_t i = 0; i < plant.size(); ++i) states[i] = plant[i];
     while_it_waits_ = C(0.0);
-    // At rest the reference equals the measured value.
-    if (before == Before::rest && layout_.pid)
+    // At rest the reference equals the measured value, and a generator rests there.
+    const bool generates = layout_.feedback == Feedback::three_variable_acceleration;
+    if (before == Before::rest && layout_.pid) {
       while_it_waits_ = C(0.0) - loop_error(ByParameters{}, states, C(0.0), t).error;
+      const C& omega = p.reference_frequency_rad_per_s;
+      if (generates) while_it_waits_ = while_it_waits_ * (omega * omega);
+    }
     if (before == Before::steady) {
       while_it_waits_ = C(drive_.first_value());
-      if (layout_.pid && layout_.feedback == Feedback::position)
+      if (layout_.pid &&
+          (layout_.feedback == Feedback::position || layout_.feedback == Feedback::three_variable))
         states[Plant::position] = while_it_waits_;
     }
     if (layout_.payload >= 0) {  // starts as if it were fixed to the first mass
@@ -219,9 +221,10 @@ class System {
       // spool is at rest.
       const C drive =
           before == Before::hold ? input_value(ByParameters{}, drive_, t, true) : while_it_waits_;
+      if (layout_.reference >= 0 && !generates)
+        states[static_cast<std::size_t>(layout_.reference)] = drive;
       const LoopError<C> loop = loop_error(ByParameters{}, states, drive, t);
       if (layout_.filter >= 0) states[static_cast<std::size_t>(layout_.filter)] = loop.error;
-      if (layout_.reference >= 0) states[static_cast<std::size_t>(layout_.reference)] = drive;
       if (layout_.sampled()) {
         states[static_cast<std::size_t>(layout_.held)] =
             controller_output(loop, states, p, layout_).limited;
@@ -373,7 +376,8 @@ class System {
   bool is_of_loop(std::size_t i) const {
     const int state = static_cast<int>(i);
     return (layout_.of_controller(state) && state != layout_.held) ||
-           (state >= layout_.valve && state < layout_.valve + layout_.valve_order);
+           (state >= layout_.valve &&
+            state < layout_.valve + layout_.valve_order + (layout_.main_spool ? 1 : 0));
   }
 
   /// The states as independent variables, or as numbers with zero derivatives with respect to the
@@ -438,7 +442,8 @@ class System {
     if constexpr (N > Plant::kStates) {
       if (!layout_.position_alone()) return other_loop_error(by, x, drive, t);
     }
-    return {drive - x[Plant::position], Number<K>(0.0), Number<K>(0.0)};
+    const Number<K> none(0.0);
+    return {drive - x[Plant::position], none, none, none, none};
   }
 
   /// Not inlined, to keep the code of position loops short.
@@ -449,7 +454,8 @@ class System {
     // Neither force nor load pressure nor acceleration depends on the spool, so the command is not
     // needed.
     const PlantInput<Number<K>> in = plant_input(by, x, Number<K>(0.0), t);
-    LoopError<Number<K>> loop{drive, Number<K>(0.0), drive};
+    const Number<K> none(0.0);
+    LoopError<Number<K>> loop{drive, none, drive, none, none};
     switch (layout_.feedback) {
       case Feedback::position:
         loop.error = drive - x[Plant::position];
@@ -461,14 +467,29 @@ class System {
         loop.error = drive - Plant::output(Output::load_pressure, x, in, p, layout_.terms);
         break;
       case Feedback::acceleration:
-        loop.error = drive - Plant::derivative(x, in, p, layout_.terms)[Plant::velocity];
-        if (base_acceleration_)
-          loop.error = loop.error - input_value(by, *base_acceleration_, t, false);
+        loop.error = drive - measured_acceleration(by, x, in, t);
+        break;
+      case Feedback::three_variable:
+      case Feedback::three_variable_acceleration:
+        loop.error = x[static_cast<std::size_t>(layout_.reference)] - x[Plant::position];
+        loop.velocity = x[static_cast<std::size_t>(layout_.rate)] - x[Plant::velocity];
+        loop.acceleration =
+            generated_acceleration(drive, x, p, layout_) - measured_acceleration(by, x, in, t);
         break;
     }
     if (layout_.pressure_feedback)
       loop.pressure_pa = Plant::output(Output::load_pressure, x, in, p, layout_.terms);
     return loop;
+  }
+
+  /// Acceleration of the piston relative to the ground [m/s2].
+  template <typename K>
+  Number<K> measured_acceleration(K by, const Numbers<K>& x, const PlantInput<Number<K>>& in,
+                                  double t) const {
+    const Number<K> relative =
+        Plant::derivative(x, in, parameters_of(by), layout_.terms)[Plant::velocity];
+    if (!base_acceleration_) return relative;
+    return relative + input_value(by, *base_acceleration_, t, false);
   }
 
   /// Acceleration of the second mass, with that of the base [m/s2].
@@ -563,17 +584,45 @@ class System {
           dx[static_cast<std::size_t>(layout_.rate)] = reference_acceleration(loop, x, p, layout_);
       }
     }
-    if (layout_.valve_order == 1) {
+    if (layout_.valve_order > 0) {
       const auto spool = static_cast<std::size_t>(layout_.valve);
-      dx[spool] = spool_rate(by, Number<K>((command - x[spool]) / p.valve_time_constant_s));
-    } else if (layout_.valve_order == 2) {
-      const auto spool = static_cast<std::size_t>(layout_.valve);
-      const auto& omega = p.valve_frequency_rad_per_s;
-      dx[spool] = spool_rate(by, x[spool + 1]);
-      dx[spool + 1] = (command - x[spool]) * (omega * omega) -
-                      x[spool + 1] * (2.0 * p.valve_damping_ratio * omega);
+      if (layout_.main_spool) {
+        lag_rates(by, x, pilot_command(by, x, command), spool + 1, dx);
+        dx[spool] = x[spool + 1] * p.main_spool_gain_per_s;
+      } else {
+        lag_rates(by, x, command, spool, dx);
+        dx[spool] = spool_rate(by, dx[spool]);
+      }
     }
     return command;
+  }
+
+  /// Writes the derivatives of the valve's lag of first or second order.
+  ///
+  /// @param first  index of the state that follows the command
+  template <typename K>
+  void lag_rates(K by, const Numbers<K>& x, const Number<K>& command, std::size_t first,
+                 Numbers<K>& dx) const {
+    const auto& p = parameters_of(by);
+    if (layout_.valve_order == 1) {
+      dx[first] = (command - x[first]) / p.valve_time_constant_s;
+      return;
+    }
+    const auto& omega = p.valve_frequency_rad_per_s;
+    dx[first] = x[first + 1];
+    dx[first + 1] = (command - x[first]) * (omega * omega) -
+                    x[first + 1] * (2.0 * p.valve_damping_ratio * omega);
+  }
+
+  /// Command to the pilot stage [V]: what the main spool lacks of its own. The fully open pilot
+  /// moves the main spool at its rate limit.
+  template <typename K>
+  Number<K> pilot_command(K by, const Numbers<K>& x, const Number<K>& command) const {
+    const auto& p = parameters_of(by);
+    const Number<K> lacks = command - x[static_cast<std::size_t>(layout_.valve)];
+    if (!layout_.terms.valve_rate_limit) return lacks;
+    using Known = std::remove_cvref_t<decltype(p.main_spool_gain_per_s)>;
+    return clamp_symmetric(lacks, Known(p.valve_rate_limit_v_per_s / p.main_spool_gain_per_s));
   }
 
   /// The derivative of valve, controller and plant together.

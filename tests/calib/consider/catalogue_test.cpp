@@ -163,6 +163,29 @@ TEST_CASE("catalogue: gains are those of the loop that the rig has", "[calib]") 
   CHECK(sensor_channel("payload_acceleration_lag") == datasets::Channel::payload_acceleration);
 }
 
+TEST_CASE("catalogue: three-variable control has the gains of a position loop", "[calib]") {
+  Twin twin = one_square();
+  twin.setting("velocity_kp").value = 2.0;
+  twin.setting("reference_frequency").value = 60.0;
+  twin.setting("reference_damping_ratio").value = 0.7;
+  twin.campaign.rig.feedback = model::Feedback::three_variable;
+  twin.truth = twin.campaign;
+  const auto records = twin.records(500, 1000.0, 1);
+  const Problem problem = problem_of(twin, records);
+  std::vector<std::string> gains;
+  for (const Effect& each : effects_of(problem, problem.start())) {
+    const std::string& key = each.about.key;
+    if (key.ends_with("kp") || key.ends_with("ki") || key.ends_with("kd")) gains.push_back(key);
+    if (key == "velocity_kp") CHECK_THAT(each.about.size, WithinRel(0.02, 1e-12));
+  }
+  CHECK(gains == std::vector<std::string>{"ki", "kp", "velocity_kp"});
+  std::vector<std::string> names;
+  for (const auto& each : datasets::effect_names(model::PlantKind::load_pressure))
+    names.push_back(each.key);
+  std::sort(names.begin(), names.end());
+  CHECK(std::adjacent_find(names.begin(), names.end()) == names.end());
+}
+
 TEST_CASE("catalogue: a controller's period is an effect only of a loop that has none", "[calib]") {
   Twin twin = one_square();
   const auto keys = [&] {

@@ -72,6 +72,55 @@ TEST_CASE("load_campaign: what a loop controls is one of a list", "[datasets]") 
              Catch::Contains("feedback") && Catch::Contains("type = \"pid\""));
 }
 
+TEST_CASE(
+    "load_campaign: three-variable control has its generator, and the reference of either kind",
+    "[datasets]") {
+  const std::string gains =
+      "kp = \"40 V/m\"\nki = \"5 V/(m s)\"\nvelocity_kp = \"2 V s/m\"\nacceleration_kp = \"0.01 V "
+      "s2/m\"\nvelocity_feedforward = \"10 V s/m\"\n";
+  const std::string generator = "reference_frequency = \"0.5 Hz\"\nreference_damping_ratio = 0.7\n";
+  const std::string control = "feedback = \"three_variable\"\n";
+  const auto with = [](const std::string& lines) { return replaced(kExample, kLoopGain, lines); };
+  const Campaign position = load_text(with(control + gains + generator));
+  CHECK(position.rig.feedback == model::Feedback::three_variable);
+  CHECK(drive_channel(position) == Channel::reference);
+  const auto values = values_in(position, position.conditions.front());
+  CHECK(values["reference_frequency"] == Approx(3.14159265358979));
+  CHECK(values["velocity_kp"] == 2.0);
+  CHECK_THAT(loop_refusal_of(with(control + gains + "reference_frequency = \"0.5 Hz\"")),
+             Catch::Contains("a loop on three_variable has no reference_damping_ratio"));
+  CHECK_THAT(loop_refusal_of(with(control + gains)),
+             Catch::Contains("has no reference_frequency: expected reference_frequency and "
+                             "reference_damping_ratio in [rig.controller]"));
+  CHECK_THAT(loop_refusal_of(with(control + gains + generator + "kd = \"1 V s/m\"")),
+             Catch::Contains("kd is a gain of a loop on position, and this one is on "
+                             "three_variable: expected velocity_kp"));
+  CHECK_THAT(loop_refusal_of(with(control + gains + generator + "acceleration_ki = \"1 V s/m\"")),
+             Catch::Contains("acceleration_ki is a gain of a loop on acceleration"));
+  CHECK_THAT(
+      loop_refusal_of(with(control + gains + generator + "derivative_filter = \"300 rad/s\"")),
+      Catch::Contains("derivative_filter filters the derivative of an error"));
+  CHECK_THAT(loop_refusal_of(with(control + generator)), Catch::Contains("has no kp"));
+  CHECK_THAT(loop_refusal_of(with(kLoopGain + "\n" + generator)),
+             Catch::Contains("reference_frequency belongs to three-variable control, and this loop "
+                             "is on position"));
+  CHECK_THAT(
+      loop_refusal_of(with(kLoopGain + "\nvelocity_kp = \"2 V s/m\"")),
+      Catch::Contains("velocity_kp is a gain of a loop on three_variable, and this one is on "
+                      "position: expected kd"));
+  CHECK_THAT(loop_refusal_of(with(kLoopGain + "\nacceleration_kp = \"2 V s2/m\"")),
+             Catch::Contains("acceleration_kp is a gain of a loop on acceleration"));
+  std::string text = with("feedback = \"three_variable_acceleration\"\n" + gains + generator);
+  for (std::size_t at = text.find("50.8 mm"); at != std::string::npos; at = text.find("50.8 mm"))
+    text.replace(at, 7, "2 m/s2");
+  const Campaign shaken =
+      load_text(replaced(text, "reference = { column = \"ref_mm\", unit = \"mm\" }",
+                         "acceleration_reference = { column = \"ref\", unit = \"gravity\" }"));
+  CHECK(shaken.rig.feedback == model::Feedback::three_variable_acceleration);
+  CHECK(drive_channel(shaken) == Channel::acceleration_reference);
+  CHECK(shaken.conditions.front().amplitude == 2.0);
+}
+
 TEST_CASE("load_campaign: all of a second mass or nothing", "[datasets]") {
   const std::string payload = kKnownMass + "\npayload_mass = \"1 t\"";
   CHECK_THAT(loop_refusal_of(replaced(kExample, kKnownMass, payload)),

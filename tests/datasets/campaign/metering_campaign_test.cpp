@@ -142,6 +142,25 @@ TEST_CASE("load_campaign: what does not go together behind a valve of two chambe
                       Catch::Contains(message));
 }
 
+TEST_CASE("load_campaign: a main spool needs the lag of its pilot stage, and a command in volts",
+          "[datasets]") {
+  const auto valve = [](const std::string& rig, const std::string& gain, const std::string& lines) {
+    return load_text(replaced(rig, gain, gain + lines));
+  };
+  const std::string volts = "valve_gain = \"0.1 mm/V\"\n";
+  const Campaign campaign =
+      valve(electric(), volts, "valve_time_constant = \"2 ms\"\nmain_spool_gain = \"250 1/s\"\n");
+  CHECK(values_in(campaign, campaign.conditions.front())["main_spool_gain"] == 250.0);
+  CHECK_THROWS_WITH(valve(electric(), volts, "main_spool_gain = \"250 1/s\"\n"),
+                    Catch::Contains("main_spool_gain without the lag of the pilot stage: expected "
+                                    "valve_time_constant, or valve_frequency, as well"));
+  CHECK_THROWS_WITH(
+      valve(kSlide, kGain, "valve_time_constant = \"2 ms\"\nmain_spool_gain = \"250 1/s\"\n"),
+      Catch::Contains("is combined with pilot_gain"));
+  CHECK_THROWS_WITH(valve(electric(), volts, "main_spool_gain = \"250 Hz\"\n"),
+                    Catch::Contains("Hz and rad/s count turns"));
+}
+
 TEST_CASE("load_campaign: feed-forward is of a position loop with a filter", "[datasets]") {
   const auto loop = [](const std::string& lines) {
     const std::string text = replaced(electric(), "type = \"none\"", "type = \"pid\"\n" + lines);

@@ -70,7 +70,7 @@ TEST_CASE("draft_campaign: a reference in newtons makes a loop on force", "[data
   CHECK_THAT(draft, Contains("feedback = \"force\""));
   CHECK_THAT(draft, Contains("force_reference = { column = \"ref_kN\", unit = \"kN\" }"));
   CHECK_THAT(draft, Contains("# payload_mass = "));  // because an acceleration was recorded
-  CHECK_THAT(draft, Contains("amplitude = \"2 kN\""));
+  CHECK_THAT(draft, Contains("amplitude = \"2 kN\"") && !Contains("three_variable"));
   draft = filled(draft);
   const auto fill = [&](const std::string& from, const std::string& to) {
     draft = replaced(draft, from, to);
@@ -80,6 +80,26 @@ TEST_CASE("draft_campaign: a reference in newtons makes a loop on force", "[data
   const Campaign campaign = load_campaign(folder.write("draft.toml", draft));
   CHECK(campaign.rig.feedback == model::Feedback::force);
   CHECK(campaign.conditions.front().amplitude == Approx(2000.0));
+}
+
+TEST_CASE("draft_campaign: a reference beside an accelerometer may be that of a shake table",
+          "[datasets]") {
+  const TemporaryFolder folder;
+  const auto drafted = [&](const std::string& header) {
+    std::string text = header + "\n";
+    for (int i = 0; i < 400; ++i) {
+      const double angle = 12.566370614359172 * 0.005 * i;
+      text += fmt::format("{},{},{},{}\n", 0.005 * i, 2.0 * std::sin(angle),
+                          1.9 * std::sin(angle - 0.1), std::cos(angle));
+    }
+    return draft_campaign({folder.write("table.csv", text)}, folder.path()).text;
+  };
+  CHECK_THAT(
+      drafted("t_s,ref_mm,x_mm,acc [m/s2]"),
+      Contains("# feedback = \"three_variable\"  # the controller of many shake tables: with "
+               "kp, velocity_kp, acceleration_kp, reference_frequency, "
+               "reference_damping_ratio"));
+  CHECK_THAT(drafted("t_s,ref_mm,x_mm,force_N"), !Contains("three_variable"));
 }
 
 TEST_CASE("draft_campaign: an angle makes a linkage, and its pilot pressures one drive",

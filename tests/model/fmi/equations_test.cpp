@@ -48,6 +48,43 @@ TEST_CASE("equations: states of a second mass, and the filter of a loop on force
   CHECK(states[2].nominal == Approx(0.1 * rig.values["supply_pressure"]));
 }
 
+TEST_CASE("equations: a shake table moves as it is simulated", "[model]") {
+  for (const Feedback feedback :
+       {Feedback::three_variable, Feedback::three_variable_acceleration}) {
+    const double drive = feedback == Feedback::three_variable ? 0.004 : 10.0;
+    Experiment e;
+    e.rig.feedback = feedback;
+    e.set("kp", 200.0).set("ki", 100.0).set("velocity_kp", 2.0).set("acceleration_kp", 3e-3);
+    e.set("reference_frequency", 60.0).set("reference_damping_ratio", 0.7);
+    e.set("valve_time_constant", 2e-3);
+    e.inputs.drive = Signal::constant(drive);
+    e.times_s = {0.0, 0.05};
+    e.options.tolerance = 1e-10;
+    e.outputs = {Output::position, Output::command};
+    const Simulation run = e();
+    INFO(run.reason);
+    REQUIRE(run.ok());
+    ExportedRig rig;
+    rig.rig = e.rig;
+    rig.values = e.values;
+    CHECK(names(rig) == std::vector<std::string>{"position", "velocity", "load_pressure",
+                                                 "valve_signal", "controller_integral",
+                                                 "controller_filtered_reference",
+                                                 "controller_filtered_rate"});
+    const auto equations = make_equations(rig);
+    RigInputs inputs;
+    inputs.drive.value = drive;
+    inputs.supply_pressure_pa.value = rig.values["supply_pressure"];
+    equations->set(rig.values, inputs, 1.0);
+    std::vector<double> x = equations->initial();
+    StepMemory memory;
+    equations->advance(x, memory, 0.0, 0.05, 1e-10);
+    REQUIRE(std::abs(x[0]) > 1e-4);
+    CHECK(x[0] == Approx(run.outputs(1, 0)).epsilon(1e-6));
+    CHECK(equations->output(Output::command, x) == Approx(run.outputs(1, 1)).epsilon(1e-6));
+  }
+}
+
 TEST_CASE("equations: an indicator is zero where the controller reaches its limit", "[model]") {
   ExportedRig rig = rig_with({});
   rig.values.set("kp", 100.0);
@@ -87,6 +124,40 @@ TEST_CASE("equations: a ramp of the input is followed, not held", "[model]") {
     return x[0];
   };
   CHECK(travel({0.0, 0.01}) == Approx(0.5 * travel({0.01, 0.0})).epsilon(0.02));
+}
+
+TEST_CASE("equations: a two-stage valve moves as it is simulated, with the limit of its pilot",
+          "[model]") {
+  Experiment e;
+  e.rig.controller = ControllerKind::none;
+  e.set("valve_time_constant", 2e-3).set("main_spool_gain", 200.0).set("valve_rate_limit", 60.0);
+  e.inputs.drive = Signal::constant(0.5);
+  e.times_s = {0.0, 0.012};
+  e.options.tolerance = 1e-10;
+  e.outputs = {Output::position, Output::load_pressure, Output::spool};
+  const Simulation run = e();
+  REQUIRE(run.ok());
+  ExportedRig rig;
+  rig.rig = e.rig;
+  rig.values = e.values;
+  CHECK(names(rig) == std::vector<std::string>{"position", "velocity", "load_pressure",
+                                               "valve_signal", "pilot_opening"});
+  const auto equations = make_equations(rig);
+  RigInputs inputs;
+  inputs.drive.value = 0.5;
+  inputs.supply_pressure_pa.value = rig.values["supply_pressure"];
+  equations->set(rig.values, inputs, 1.0);
+  std::vector<double> x = equations->initial();
+  // The pilot is fully open until 0.3 V are missing: 60 V/s at 200 1/s.
+  const std::vector<double> before = equations->indicators(x);
+  REQUIRE(before.size() == 3);
+  CHECK(before[1] == Approx(60.0 - 0.5 * 200.0));
+  StepMemory memory;
+  equations->advance(x, memory, 0.0, 0.012, 1e-10);
+  CHECK(x[0] == Approx(run.outputs(1, 0)).epsilon(1e-6));
+  CHECK(x[3] * rig.values["valve_gain"] == Approx(run.outputs(1, 2)).epsilon(1e-7));
+  CHECK(equations->indicators(x)[1] == Approx(60.0 - (0.5 - x[3]) * 200.0));
+  CHECK(equations->indicators(x)[1] > 0.0);
 }
 
 TEST_CASE("equations: an arm moves as it is simulated, and its kinks have indicators", "[model]") {

@@ -7,6 +7,7 @@
 
 #include "model/plant/layout.hpp"
 #include "model/plant/terms.hpp"
+#include "tests/model/runge_kutta.hpp"
 #include "tests/model/sensitivity.hpp"
 #include "tests/model/two_chamber_rig.hpp"
 
@@ -104,28 +105,12 @@ TEST_CASE("bristles: stick and slip follow an integrator of another kind", "[mod
     const double force = area * pressure(x) - 2e3 * x[1] - 2e4 * x[0] - friction_n(x) - load;
     return {x[1], force / mass, 0.0, bristles(x)};
   };
-  PistonState x{};
-  constexpr int kSteps = 20000;
-  const double h = 0.05 / kSteps;
-  const auto moved = [](const PistonState& from, const PistonState& rate, double by) {
-    PistonState to = from;
-    for (std::size_t i = 0; i < to.size(); ++i) to[i] += by * rate[i];
-    return to;
-  };
+  const Eigen::MatrixXd states = runge_kutta(PistonState{}, e.times_s, 20000, rates);
   Eigen::MatrixXd other(21, 3);
-  for (int sample = 0; sample <= 20; ++sample) {
-    other(sample, 0) = x[0];
-    other(sample, 1) = x[1];
-    other(sample, 2) = area * pressure(x) - friction_n(x);
-    for (int step = 0; step < kSteps && sample < 20; ++step) {
-      const double t = 0.05 * sample + h * step;
-      const PistonState k1 = rates(x, t);
-      const PistonState k2 = rates(moved(x, k1, 0.5 * h), t + 0.5 * h);
-      const PistonState k3 = rates(moved(x, k2, 0.5 * h), t + 0.5 * h);
-      const PistonState k4 = rates(moved(x, k3, h), t + h);
-      for (std::size_t i = 0; i < x.size(); ++i)
-        x[i] += h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]);
-    }
+  other.leftCols(2) = states.leftCols(2);
+  for (int i = 0; i < 21; ++i) {
+    const PistonState x{states(i, 0), states(i, 1), states(i, 2), states(i, 3)};
+    other(i, 2) = area * pressure(x) - friction_n(x);
   }
   REQUIRE(peak(other.col(0)) > 0.01);
   CHECK(difference(run.outputs, other) < 1e-4);

@@ -22,6 +22,10 @@ struct Gains {
   double pressure_feedback_v_per_pa = 0.0;
   double velocity_feedforward_v_s_per_m = 0.0;
   double acceleration_feedforward_v_s2_per_m = 0.0;
+  double velocity_kp_v_s_per_m = 0.0;
+  double acceleration_kp_v_s2_per_m = 0.0;
+  double reference_frequency_rad_per_s = 0.0;
+  double reference_damping_ratio = 0.0;
 };
 
 Layout layout_with(int integral, int filter, int held) {

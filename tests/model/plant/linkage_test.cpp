@@ -352,7 +352,8 @@ TEST_CASE("linkage: sensitivities are exact against differences, every parameter
           {"valve_offset", 0.1},
           {"valve_frequency", 300.0},
           {"valve_damping_ratio", 0.8},
-          {"valve_rate_limit", 100.0}},
+          {"valve_rate_limit", 100.0},
+          {"main_spool_gain", 200.0}},
          none},
         electric);
   check({"power of the command, load sensing, accumulator",

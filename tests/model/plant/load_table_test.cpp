@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "model/plant/terms.hpp"
+#include "tests/model/runge_kutta.hpp"
 #include "tests/model/two_chamber_rig.hpp"
 
 using namespace rigcal::model;
@@ -38,36 +39,6 @@ double load_of_ramps(double x, double from_m, double to_m) {
     load += bend * ramp;
   }
   return load;
-}
-
-template <std::size_t N, typename Rates>
-Eigen::MatrixXd runge_kutta(std::array<double, N> x, const std::vector<double>& times_s, int steps,
-                            Rates rates) {
-  const auto moved = [](const auto& from, const auto& rate, double by) {
-    auto to = from;
-    for (std::size_t i = 0; i < N; ++i) to[i] += by * rate[i];
-    return to;
-  };
-  Eigen::MatrixXd result(static_cast<Eigen::Index>(times_s.size()), static_cast<Eigen::Index>(N));
-  for (std::size_t sample = 0; sample < times_s.size(); ++sample) {
-    for (std::size_t i = 0; i < N; ++i)
-      result(static_cast<Eigen::Index>(sample), static_cast<Eigen::Index>(i)) = x[i];
-    if (sample + 1 == times_s.size()) break;
-    const double h = (times_s[sample + 1] - times_s[sample]) / steps;
-    for (int step = 0; step < steps; ++step) {
-      const double t = times_s[sample] + h * step;
-      const auto k1 = rates(x, t);
-      const auto k2 = rates(moved(x, k1, 0.5 * h), t + 0.5 * h);
-      const auto k3 = rates(moved(x, k2, 0.5 * h), t + 0.5 * h);
-      const auto k4 = rates(moved(x, k3, h), t + h);
-      for (std::size_t i = 0; i < N; ++i) x[i] += h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]);
-    }
-  }
-  return result;
-}
-
-double rounded_root(double head_pa) {
-  return head_pa / std::pow(head_pa * head_pa + 1e4, 0.25);  // eps = 100 Pa
 }
 
 }  // namespace

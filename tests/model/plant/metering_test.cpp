@@ -9,6 +9,7 @@
 
 #include "model/plant/layout.hpp"
 #include "model/plant/terms.hpp"
+#include "tests/model/runge_kutta.hpp"
 #include "tests/model/sensitivity.hpp"
 #include "tests/model/two_chamber_rig.hpp"
 
@@ -128,27 +129,8 @@ TEST_CASE("metering: all terms together follow an integrator of another kind", "
   const Simulation run = e();
   INFO(run.reason);
   REQUIRE(run.ok());
-  SlideState x{0.0, 0.0, run.outputs(0, 2), run.outputs(0, 3), 2e7, 0.0};
-  constexpr int kSteps = 16000;  // classical Runge-Kutta steps between two samples
-  const double h = 0.1 / kSteps;
-  const auto moved = [](const SlideState& from, const SlideState& rate, double by) {
-    SlideState to = from;
-    for (std::size_t i = 0; i < to.size(); ++i) to[i] += by * rate[i];
-    return to;
-  };
-  Eigen::MatrixXd other(15, 4);
-  for (int sample = 0; sample < 15; ++sample) {
-    for (int i = 0; i < 4; ++i) other(sample, i) = x[static_cast<std::size_t>(i)];
-    for (int step = 0; step < kSteps && sample < 14; ++step) {
-      const double t = 0.1 * sample + h * step;
-      const SlideState k1 = slide_rates(x, t);
-      const SlideState k2 = slide_rates(moved(x, k1, 0.5 * h), t + 0.5 * h);
-      const SlideState k3 = slide_rates(moved(x, k2, 0.5 * h), t + 0.5 * h);
-      const SlideState k4 = slide_rates(moved(x, k3, h), t + h);
-      for (std::size_t i = 0; i < x.size(); ++i)
-        x[i] += h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]);
-    }
-  }
+  const SlideState start{0.0, 0.0, run.outputs(0, 2), run.outputs(0, 3), 2e7, 0.0};
+  const Eigen::MatrixXd other = runge_kutta(start, e.times_s, 16000, slide_rates).leftCols(4);
   REQUIRE(peak(other.col(0)) > 5e-3);
   CHECK(difference(run.outputs, other) < 2e-5);
   e.options.method = Method::dopri5;

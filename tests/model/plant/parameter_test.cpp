@@ -13,7 +13,7 @@ using Catch::Contains;
 
 namespace {
 
-const std::set<std::string> kSymbols{"s", "hz", "m", "kg", "n", "pa", "v", "a", "rad"};
+const std::set<std::string> kSymbols{"s", "hz", "m", "kg", "n", "pa", "v", "a", "rad", "k"};
 
 /// "m3/(s Pa)" -> "_m3_per_s_pa": factors joined by _, with one "per" before those in the
 /// denominator. Empty for "1"; "_?" for a symbol outside the closed set.
@@ -30,6 +30,7 @@ std::string unit_suffix(std::string_view unit) {
   std::istringstream words(spaced);
   std::string suffix;
   for (std::string word; words >> word;) {
+    if (word == "1") continue;  // the numerator of "1/s"
     std::string symbol = word;
     while (!symbol.empty() && std::isdigit(static_cast<unsigned char>(symbol.back())) != 0) {
       symbol.pop_back();
@@ -45,6 +46,7 @@ constexpr std::array kPlants{PlantKind::load_pressure, PlantKind::two_chamber, P
 
 TEST_CASE("parameters: every name is its key with the SI unit at its end", "[model]") {
   CHECK(unit_suffix("m3/(s Pa)") == "_m3_per_s_pa");
+  CHECK(unit_suffix("1/s") == "_per_s");
   CHECK(unit_suffix("bar") == "_?");
   for (const PlantKind plant : kPlants) {
     for (const ParameterSpec& spec : parameter_table(plant)) {

@@ -107,11 +107,9 @@ std::vector<std::pair<Scenario, Experiment>> two_chamber_scenarios() {
                          {"stribeck_friction", 40.0},
                          {"stribeck_velocity", 0.05},
                          {"friction_smoothing", 0.05}};
-  NamedValues stop{{"retracted_position", -0.004},
-                   {"stop_stiffness", 2e6},
-                   {"stop_damping", 20.0},
-                   {"valve_time_constant", 5e-3},
-                   {"valve_rate_limit", 300.0}};
+  NamedValues stop{{"retracted_position", -0.004}, {"stop_stiffness", 2e6},
+                   {"stop_damping", 20.0},         {"valve_time_constant", 5e-3},
+                   {"valve_rate_limit", 300.0},    {"main_spool_gain", 250.0}};
   std::vector<std::pair<Scenario, Experiment>> rows;
   const auto none = ControllerKind::none;
   rows.push_back(
@@ -145,6 +143,18 @@ std::vector<std::pair<Scenario, Experiment>> two_chamber_scenarios() {
   loop_on(Feedback::force, Signal::sine(150.0, 9.0), 1e-3, 2e-2, 4e-7);
   loop_on(Feedback::load_pressure, Signal::sine(6e5, 9.0), 2e-7, 4e-6, 8e-11);
   loop_on(Feedback::acceleration, Signal::sine(10.0, 9.0), 2e-3, 4e-2, 8e-6);
+  const NamedValues three_variable{{"kp", 300.0},
+                                   {"ki", 400.0},
+                                   {"velocity_kp", 4.0},
+                                   {"acceleration_kp", 1e-3},
+                                   {"reference_frequency", 15.0},
+                                   {"reference_damping_ratio", 0.7},
+                                   {"velocity_feedforward", 5.0},
+                                   {"valve_time_constant", 2e-3}};
+  Scenario shaken{"three-variable control of an acceleration", Signal::sine(10.0, 9.0),
+                  three_variable};
+  shaken.feedback = Feedback::three_variable_acceleration;
+  rows.push_back({shaken, single_rod_rig()});
   rows.push_back({{"pilot, pump of two flows, accumulator, friction with pre-sliding",
                    Signal::sine(3e6, 8.0), piloted, none},
                   pilot_rig()});
