@@ -80,6 +80,9 @@ TEST_CASE("estimate_days: healthy records of four dates tell how days differ", "
   stated.source = DaySource::stated;
   diagnosis::estimate_days(healthy, stated);
   CHECK(stated.variance == 1.0);
+  // What the days cause in another record grows with the root of the estimate.
+  CHECK_THAT(between.error(2.0, Eigen::Vector2d(3.0, 4.0)),
+             WithinRel(2.0 * 5.0 * std::sqrt(13.0 / 4.0), 1e-12));
   // The records vary by no more than their own errors.
   BetweenDays alike = days({});
   alike.dates = 5;
@@ -123,6 +126,14 @@ TEST_CASE("pooled_leak: the day of a state does not average out", "[diagnosis]")
   CHECK_THAT(pooled.error.own_se, WithinRel(0.05, 1e-12));
   CHECK_THAT(pooled.error.days_se, WithinRel(0.3 * std::sqrt(2.0), 1e-12));
   CHECK_THAT(pooled.error.total(), WithinRel(std::sqrt(0.0025 + 0.18), 1e-12));
+  // If the day moves two members apart, it explains their difference.
+  diagnosis::StateMember lower = member;
+  lower.coefficient = 0.4;
+  lower.day_effects = -member.day_effects;
+  const auto apart = diagnosis::pooled_leak({member, lower}, exact, {1.0, 1e6});
+  CHECK_THAT(apart.coefficient, WithinRel(0.7, 1e-12));
+  CHECK_THAT(apart.error.days_se, WithinAbs(0.0, 1e-12));
+  CHECK_THAT(apart.chi_squared, WithinRel(0.36 / (0.02 + 0.72), 1e-9));
   const auto known = diagnosis::pooled_leak({member, member}, exact, {1.0, 3.0});
   CHECK(known.error.freedom < 4.0);
   CHECK(diagnosis::pooled_leak({member}, exact).error.days_se == 0.0);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "calib/published/leak_table.hpp"
@@ -111,6 +112,15 @@ TEST_CASE("diagnose: every repeat and average in its class, by the true shares",
   const double of_single = found.signals.front().smallest_single_leak->coefficient;
   CHECK(of_average > 0.2 * of_single);
   CHECK(of_average < 1.2 * of_single);
+  // The scatter between repeats, noise included, is all that tells the error of the reference.
+  const auto reference = std::find_if(found.records.begin(), found.records.end(),
+                                      [](const auto& each) { return each.is_reference; });
+  REQUIRE(reference != found.records.end());
+  const auto scatter =
+      diagnosis::error_of_averages(reference->fit, found.signals.front().errors, 3, 3);
+  REQUIRE(scatter);
+  CHECK_THAT(of_average,
+             Catch::WithinRel(diagnosis::detection_limit(*scatter, campaign.diagnosis), 1e-9));
 
   options.threads = 1;
   const Diagnosis again = diagnosis::diagnose(campaign, records, known_rig(campaign), options);

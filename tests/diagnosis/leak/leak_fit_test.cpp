@@ -12,6 +12,7 @@
 #include "tests/diagnosis/healthy_sine.hpp"
 
 using namespace rigcal;
+using Catch::WithinAbs;
 using Catch::WithinRel;
 using test::healthy_sine;
 using test::HealthySine;
@@ -252,6 +253,43 @@ TEST_CASE("fit_leak: an effect that the model lacks moves a coefficient as far a
   // Without the error in the valve gain, only the effect is left.
   rig.covariance(0, 0) = 0.0;
   CHECK_THAT(fit(made, 0).rig_se, WithinRel(std::abs(without.rig_moves(1)) * kSize, 1e-9));
+}
+
+TEST_CASE("share_rig_error: an effect that leaks itself changes the true share, too",
+          "[diagnosis]") {
+  constexpr double kSize = 1e-12;
+  const HealthySine made = healthy_sine(0.3);
+  const int laminar = model::parameter_index(made.campaign.rig.plant, "laminar_leakage");
+  diagnosis::RigFit rig = rig_of(made.campaign);
+  calib::EstimateSpread spread;
+  spread.effects.keys = {"laminar_leakage"};
+  spread.effects.root = Eigen::MatrixXd::Constant(1, 1, kSize);
+  spread.effects.moves = Eigen::MatrixXd::Zero(0, 1);
+  rig.consider(spread);
+  rig.covariance(0, 0) = 0.0;  // only the effect is uncertain
+  const diagnosis::LeakProblem problem = diagnosis::LeakProblem(made.campaign, rig).up_to(1.0);
+  const datasets::Condition& condition = problem.campaign.conditions.front();
+  const auto scan = diagnosis::leak_scan_of(problem, condition, made.record);
+  const auto effects = diagnosis::leak_effects_of(problem, rig, condition, made.record, scan);
+  REQUIRE(effects != nullptr);
+  const auto fit = diagnosis::fit_leak(problem, rig, condition, made.record, std::nullopt, 0, &scan,
+                                       nullptr, effects.get());
+  REQUIRE(fit.ok());
+  const auto share = [&](double coefficient, double leakage) {
+    auto values = rig.values;
+    values.push_back({laminar, datasets::Scope::rig, "", leakage});
+    values.push_back({problem.leak, datasets::Scope::condition, condition.id, coefficient});
+    return diagnosis::share_at(problem.campaign, condition, made.record, values);
+  };
+  const double slope = (share(1.01 * fit.coefficient, 0.0) - share(0.99 * fit.coefficient, 0.0)) /
+                       (0.02 * fit.coefficient);
+  // The estimate takes the effect for a larger leak, and the true share includes the effect.
+  const double seen = slope * fit.rig_moves(1) * kSize;
+  const double itself = share(fit.coefficient, kSize) - share(fit.coefficient, 0.0);
+  REQUIRE(itself > 0.0);
+  const double error = diagnosis::share_rig_error(problem, rig, condition, made.record, fit, slope,
+                                                  0.0, effects.get());
+  CHECK_THAT(error, WithinAbs(std::abs(seen - itself), 0.2 * itself));
 }
 
 TEST_CASE("fit_leak: the noise of the reference is not the record's own", "[diagnosis]") {
