@@ -579,6 +579,17 @@ TEST_CASE("export: bad input", "[apps]") {
   CHECK(!folder.has("out"));
   const Outcome start = folder.run({"export", "fmu", "campaign.toml", "--out", "out"});
   CHECK_THAT(start.out, Contains("warning: not calibrated: damping, valve_gain"));
+  // No fit gives the value of a nuisance parameter that an FMU for all records could have.
+  folder.write(
+      "nuisance.toml",
+      edited(folder.read("campaign.toml"),
+             {{"upper = \"1e5 N s/m\", fit = true",
+               "upper = \"1e5 N s/m\", fit = true, scope = \"condition\", nuisance = true"}}));
+  const Outcome nuisance = folder.run({"export", "fmu", "nuisance.toml", "--out", "out"});
+  CAPTURE(nuisance.err);
+  CHECK(nuisance.exit_code == 0);
+  CHECK_THAT(nuisance.out, Contains("not calibrated: valve_gain") && !Contains("damping, ") &&
+                               Contains("damping belong to each record"));
 }
 
 }  // namespace rigcal::test

@@ -84,6 +84,40 @@ TEST_CASE("resume: a stopped fit keeps what it needs, and only the same fit take
   }
 }
 
+TEST_CASE("resume: a stopped fit keeps every start that had ended, however fast they were",
+          "[apps]") {
+  const CommandFolder folder;
+  REQUIRE(write_quick_twin(folder).exit_code == 0);
+  REQUIRE(folder
+              .run({"fit", "twin/campaign.toml", "--starts", "400", "--out", "out",
+                    "--max-evaluations", "600", "--threads", "1", "--quiet"})
+              .exit_code == 4);
+  const auto fit = nlohmann::json::parse(folder.read("out/fit.json"));
+  const auto kept = nlohmann::json::parse(folder.read("out/checkpoint.json"));
+  REQUIRE(fit["starts"].size() > 10);
+  CHECK(kept["starts"].size() + 1 == fit["starts"].size());  // all but the one that was stopped
+}
+
+TEST_CASE("resume: a fit that was stopped in its bootstrap keeps what it had drawn", "[apps]") {
+  const CommandFolder folder;
+  REQUIRE(write_quick_twin(folder).exit_code == 0);
+  CommandFolder::Arguments fit{
+      "fit",     "twin/campaign.toml", "--bootstrap", "1000", "--out", "parts",
+      "--quiet", "--max-evaluations",  "500"};
+  REQUIRE(folder.run(fit).exit_code == 4);
+  CHECK_THAT(folder.read("parts/fit.json"), Contains("\"stopped_in\": \"bootstrap\""));
+  CHECK(folder.has("parts/checkpoint.tasks"));
+  fit.back() = "1000000";
+  fit.push_back("--resume");
+  const Outcome resumed = folder.run(fit);
+  REQUIRE(resumed.exit_code == 0);
+  fit.pop_back();
+  fit[5] = "whole";
+  REQUIRE(folder.run(fit).exit_code == 0);
+  CHECK(comparable(folder, "parts/fit.json") == comparable(folder, "whole/fit.json"));
+  CHECK_FALSE(folder.has("parts/checkpoint.tasks"));
+}
+
 TEST_CASE("resume: a fit that was killed in what it makes beside the search loses none of it",
           "[apps]") {
   const CommandFolder folder;

@@ -369,7 +369,10 @@ TEST_CASE("effect_spread: second moments of the sizes, and moves by the lines of
   considered.correlation = Eigen::Matrix2d::Identity();
   considered.correlation(0, 1) = considered.correlation(1, 0) = -0.5;
   Budget95 budget;
-  budget.lines = {{"noise", "records", 1.0}, {"laminar_leakage", "effect", 2.0, 7e12}};
+  // A known value may have the name of an effect.
+  budget.lines = {{"noise", "records", 1.0},
+                  {"laminar_leakage", "effect", 2.0, 7e12},
+                  {"ki", "known_value", 1.0, 9.0}};
   const EffectSpread spread = effect_spread(considered, {&budget, nullptr});
   CHECK_THAT(spread.size("ki"), WithinRel(5.0, 1e-12));
   CHECK_THAT(spread.size("laminar_leakage"), WithinRel(1e-12, 1e-12));

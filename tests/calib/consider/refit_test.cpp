@@ -160,13 +160,14 @@ TEST_CASE("refit: with a recorded drive fewer simulations lead to the same minim
   std::vector<Effect> effects = effects_of(problem, z);
   std::erase_if(effects, [](const Effect& each) { return each.about.key != "coulomb_friction"; });
   REQUIRE(effects.size() == 1);
-  const auto refitted = [&] {
+  const auto refitted_from = [&](const std::vector<double>& start, double size) {
     const Evaluation at = evaluate_at(problem, z, 1, {Fidelity::full, nullptr, true});
     std::vector<ScoreRows> scores;
     for (const ConditionRows& rows : *at.rows) scores.emplace_back().residual = rows.residual;
     const Refitter refitter(problem, z, scores, 1, nullptr);
-    return refitter.fit(effects, z, Eigen::VectorXd::Constant(1, 0.2));
+    return refitter.fit(effects, start, Eigen::VectorXd::Constant(1, size));
   };
+  const auto refitted = [&] { return refitted_from(z, 0.2); };
   const auto full = refitted();  // derivatives at each point, each step simulated
   measure_tolerances(problem, z, 1, nullptr);
   REQUIRE(problem.conditions[0].measured_tolerance > 0.0);
@@ -184,6 +185,51 @@ TEST_CASE("refit: with a recorded drive fewer simulations lead to the same minim
   CHECK_THAT(few->squares, WithinAbs(full->squares, 0.3 * variance));
   REQUIRE(few->held_out);
   CHECK_THAT(*few->held_out, WithinRel(*full->held_out, 0.05));
+
+  // From 0.8 standard errors beside the minimum, the step to it is taken without a simulation.
+  const Eigen::VectorXd beside = 0.8 * few->covariance.col(1) / std::sqrt(few->covariance(1, 1));
+  const auto near =
+      refitted_from({few->z[0] + beside(0), few->z[1] + beside(1)}, few->sizes(0) + beside(2));
+  REQUIRE(near);
+  CHECK_THAT(near->squares, WithinAbs(few->squares, 0.15 * variance));
+  CHECK(std::abs(near->z[1] - few->z[1]) < 0.2 * std::sqrt(few->covariance(1, 1)));
+  CHECK_THAT(*near->held_out - near->squares, WithinRel(*few->held_out - few->squares, 0.01));
+}
+
+TEST_CASE("refit: a condition that is held out is predicted by the others alone", "[calib]") {
+  Twin twin;
+  twin.free("mass", 85.0, 20.0, 400.0);
+  twin.free("valve_gain", 4.06e-5, 1e-5, 2e-4);
+  twin.add("square", datasets::Waveform::square, 2.0, 0.01);
+  twin.add("sine", datasets::Waveform::sine, 3.0, 0.02);
+  const auto records = twin.records(1000, 1000.0, 4);
+  const auto problem_with = [&](const std::vector<std::size_t>& kept) {
+    std::vector<const datasets::Condition*> conditions;
+    for (const std::size_t c : kept) conditions.push_back(&twin.campaign.conditions[c]);
+    return make_problem(twin.campaign, records, conditions, false, nullptr);
+  };
+  const auto refitted = [](const Problem& problem) {
+    const std::vector<double> z = problem.start();
+    const Evaluation at = evaluate_at(problem, z, 1, {Fidelity::full, nullptr, true});
+    std::vector<ScoreRows> scores;
+    for (const ConditionRows& rows : *at.rows) scores.emplace_back().residual = rows.residual;
+    const auto found = Refitter(problem, z, scores, 1, nullptr).fit({}, z, Eigen::VectorXd());
+    REQUIRE(found);
+    return *found;
+  };
+  const Problem both = problem_with({0, 1});
+  const Refit whole = refitted(both);
+  const auto squares_of = [&](std::size_t condition, const std::vector<double>& z) {
+    ConditionRows rows;
+    REQUIRE(evaluate_condition(both, condition, z, nullptr, &rows).ok());
+    return rows.residual.squaredNorm();
+  };
+  double more = 0.0;
+  for (const std::size_t c : {0UL, 1UL})
+    more += squares_of(c, refitted(problem_with({1 - c})).z) - squares_of(c, whole.z);
+  REQUIRE(more > 1.0);
+  REQUIRE(whole.held_out);
+  CHECK_THAT(*whole.held_out - whole.squares, WithinRel(more, 0.15));
 }
 
 TEST_CASE("refit: the derivative by the error of a sensor takes no simulation", "[calib]") {

@@ -118,6 +118,22 @@ TEST_CASE("adaptive descent: large residuals, where Gauss-Newton creeps", "[cali
   }
 }
 
+TEST_CASE("adaptive descent: where every step of Gauss and Newton is good but short", "[calib]") {
+  // The residuals x + 1 and 0.95 x^2 + x - 1 (Dennis and Schnabel, Numerical Methods, example
+  // 10.2.5): near the minimum at 0 a step of Gauss and Newton leaves 95 % of the way.
+  TestProblem problem = problem_in(Eigen::VectorXd::Constant(1, -1.0),
+                                   Eigen::VectorXd::Constant(1, 1.0), [](const Eigen::VectorXd& x) {
+                                     Linearisation at{Eigen::MatrixXd(2, 1), Eigen::VectorXd(2)};
+                                     at.residual << x(0) + 1.0, 0.95 * x(0) * x(0) + x(0) - 1.0;
+                                     at.jacobian << 1.0, 1.9 * x(0) + 1.0;
+                                     return at;
+                                   });
+  std::vector<double> z = problem.unit(Eigen::VectorXd::Constant(1, 0.1));
+  CHECK(descend_adaptively(problem.options(), z).converged);
+  CHECK(std::abs(problem.physical(z)(0)) < 1e-3);
+  CHECK(problem.evaluations < 20);
+}
+
 TEST_CASE("adaptive descent: small residuals take no more evaluations than by Ceres", "[calib]") {
   TestProblem problem = curved_valley(2.0);
   std::vector<double> z = problem.unit(Eigen::Vector2d(-1.2, 1.0));

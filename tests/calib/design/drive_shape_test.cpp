@@ -61,6 +61,23 @@ TEST_CASE("drive shapes: a chirp of one frequency is a sine", "[calib]") {
   }
 }
 
+TEST_CASE("drive shapes: a chirp passes each octave in the same time", "[calib]") {
+  const DriveGrid grid{8001, 800.0, 1.0, 4.0};
+  Eigen::VectorXd point = point_of(DriveFamily::chirp, 0.5);
+  point(2) = 0.0;  // 1 Hz at the beginning
+  point(3) = 1.0;  // 4 Hz at the end
+  const DriveShape shape = drive_shape(DriveFamily::chirp, point, grid);
+  const auto reversals_until = [&](std::size_t end) {
+    int count = 0;
+    for (std::size_t i = 2; i < end; ++i) count += shape.values[i] * shape.values[i - 1] < 0.0;
+    return count;
+  };
+  // In ten seconds the phase grows by 10 (4 - 1) / ln 4 turns, a third of them in the first half.
+  const double turns = 30.0 / std::log(4.0);
+  CHECK(std::abs(reversals_until(8000) - 2.0 * turns) <= 1.0);
+  CHECK(std::abs(reversals_until(4000) - 2.0 * turns / 3.0) <= 1.0);
+}
+
 TEST_CASE("drive shapes: a pseudo-random sequence repeats itself after 2047 bits only", "[calib]") {
   // A bit has two samples and a rise has one, so every second sample is at full level.
   const DriveGrid grid{2 * 4096 + 1, 2.0, 0.1, 0.5};

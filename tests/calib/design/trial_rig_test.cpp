@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "calib/design/criterion.hpp"
+#include "calib/design/design_limits.hpp"
 #include "calib/design/drive_shape.hpp"
 #include "tests/calib/design/designed.hpp"
 
@@ -68,6 +69,32 @@ TEST_CASE("trial rig: limits are those of the response and of the reference", "[
   CHECK(uses[1].words == "highest position");
   CHECK(uses[1].share == Approx(2.0));
   CHECK(uses[1].reached == Approx(0.03));
+}
+
+TEST_CASE("trial rig: four repeats tell twice as much as one", "[calib]") {
+  Twin twin = designed_twin();
+  const TrialRig one(twin.campaign, {{datasets::Channel::position, 5e-5}}, nullptr, nullptr);
+  const Eigen::MatrixXd rows = one.sensitivities(some_drive(one), 1e-8);
+  twin.campaign.design->repeats = 4;
+  const TrialRig four(twin.campaign, {{datasets::Channel::position, 5e-5}}, nullptr, nullptr);
+  const Eigen::MatrixXd more = four.sensitivities(some_drive(four), 1e-8);
+  REQUIRE(more.rows() == rows.rows());
+  CHECK((more - 2.0 * rows).norm() < 1e-6 * more.norm());
+}
+
+TEST_CASE("limit uses: motion counts in both directions, of the rig and of its reference",
+          "[calib]") {
+  const datasets::DesignSettings settings = designed_twin().campaign.design.value();
+  Eigen::MatrixXd run = Eigen::MatrixXd::Zero(3, 5);
+  run.row(1) << -0.003, -0.06, -6.0, -4.0, -5e-4;
+  run.row(2) << 0.003, 0.03, 3.0, 1.0, 1e-4;
+  std::vector<double> shares;
+  for (const LimitUse& use : limit_uses(settings, run, std::vector<double>{0.0, -0.006, 0.005}))
+    shares.push_back(use.share);
+  const std::vector<double> expected{0.006 / 0.012, 0.005 / 0.015, 0.06 / 0.15,
+                                     6.0 / 12.0,    4.0 / 5.0,     5e-4 / 1e-3};
+  REQUIRE(shares.size() == expected.size());
+  for (std::size_t i = 0; i < shares.size(); ++i) CHECK(shares[i] == Approx(expected[i]));
 }
 
 TEST_CASE("design score: the covariance of the named, the others estimated too", "[calib]") {

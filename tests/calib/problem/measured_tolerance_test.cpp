@@ -65,10 +65,17 @@ TEST_CASE("measured tolerance: a recorded drive is simulated as exactly as its r
   CHECK(problem.tolerance_of(1) > 3.0 * before[1]);
   CHECK(problem.tolerance_of(1) <= 1e-5);
   CHECK(problem.tolerance_of(1, Fidelity::coarse) == problem.coarse_tolerance());
+  // Derivatives for an uncertainty may be less exact.
+  CHECK(problem.derivative_options(0).tolerance > problem.tolerance_of(0));
   // Even if the whole error went into one estimate, it would be a hundredth of a standard error.
   const double error = error_at(problem, 1, z);
   CHECK(error > 0.0);
   CHECK(error < 0.01);
+
+  // Errors of the residuals alone do not allow derivatives that are too inaccurate.
+  Problem noisy = problem;
+  noisy.conditions[1].measured_tolerance = 1e-3;
+  CHECK(noisy.tolerance_of(1) == 1e-5);
 
   // Less noise requires a smaller tolerance.
   Problem quiet = problem_of(rig.twin, rig.records);
@@ -119,6 +126,7 @@ TEST_CASE(
   measure_tolerances(fixed, fixed.start(), 1, nullptr);
   CHECK(fixed.conditions[1].measured_tolerance == 0.0);
   CHECK(fixed.tolerance_of(1) == 1e-7);
+  CHECK(fixed.derivative_options(1).tolerance == 1e-7);
   rig.twin.campaign.simulation.tolerance.reset();
   Problem scored = make_problem(rig.twin.campaign, rig.records, {&rig.twin.campaign.conditions[1]},
                                 true, nullptr);

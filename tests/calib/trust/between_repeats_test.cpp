@@ -9,9 +9,11 @@
 #include <cmath>
 #include <limits>
 
+#include "calib/trust/known_uncertainty.hpp"
 #include "datasets/campaign/campaign_parameters.hpp"
 #include "datasets/prepare/load_record.hpp"
 #include "datasets/synthetic/synthetic_repeat.hpp"
+#include "metrics/distributions.hpp"
 #include "tests/calib/twin.hpp"
 #include "tests/support/sanitized.hpp"
 
@@ -72,6 +74,10 @@ TEST_CASE("between repeats: a known random effect of a linear model", "[calib]")
   const double spread = (4.0 + 4.0 + 0.25 + 0.25) / 3.0;  // deviations of a from its mean of 1
   CHECK_THAT(found.variance, WithinRel(spread / 4.0 * std::pow(j.dot(g), 2), 1e-12));
   CHECK_THAT(found.freedom, WithinRel(3.0, 1e-12));
+  // What all repeats have in common, as after their inputs have been accounted for, is no
+  // difference between them.
+  const MatrixXd common = deviations.colwise() + 0.7 * g;
+  CHECK((repeat_scores(j, common) - repeat_scores(j, deviations)).norm() < 1e-12);
 }
 
 TEST_CASE("between repeats: identical repeats, or none, say nothing", "[calib]") {
@@ -314,6 +320,55 @@ TEST_CASE("difference by noise: F along the direction of a cause", "[calib]") {
   }
   CHECK(below >= 1);  // 4 of 40 expected; 0 or more than 10 have probabilities of 1.5 % and 0.2 %
   CHECK(below <= 10);
+}
+
+TEST_CASE("difference by noise: for two repeats Student's t of twenty stretches", "[calib]") {
+  // All samples weigh alike in a later start of a ramp. A repeat then deviates along it by the mean
+  // of its stretches, and the noise is their scatter.
+  Twin twin;
+  twin.free("mass", 80.0, 10.0, 500.0);
+  twin.add("square", datasets::Waveform::square, 2.0, 0.01);
+  auto records = twin.records(40, 500.0, 1);
+  datasets::Series& ramp = records[0].channels[datasets::Channel::position];
+  ramp.deviations.assign(2, std::vector<double>(40));
+  double mean = 0.0;
+  double squares = 0.0;
+  for (std::size_t i = 0; i < 40; ++i) {
+    ramp.mean[i] = 3.0 * records[0].time_s[i];
+    const auto stretch = static_cast<double>(i / 2);
+    const double deviation = 1e-5 * (0.4 + std::sin(2.0 * stretch));
+    ramp.deviations[0][i] = deviation;
+    ramp.deviations[1][i] = -deviation;
+    mean += deviation / 40.0;
+    squares += deviation * deviation / 2.0;
+  }
+  const double variance = (squares - 20.0 * mean * mean) / 19.0;
+  const Problem problem = problem_of(twin, records);
+  const std::vector<double> start = problem.start();
+  CauseEffects effects(problem, start);
+  const double p = metrics::fisher_f_exceedance(20.0 * mean * mean / variance, 1.0, 19.0);
+  REQUIRE(p > 0.01);
+  REQUIRE(p < 0.5);
+  CHECK_THAT(difference_by_noise(effects, "start"), WithinRel(p, 1e-9));
+}
+
+TEST_CASE("between repeats: a deviation is shared between what is declared and noise, by variances",
+          "[calib]") {
+  DifferingSupply rig(false);
+  datasets::ParameterSetting& supply = rig.twin.setting("supply_pressure");
+  supply.lower = supply.upper = std::numeric_limits<double>::quiet_NaN();
+  datasets::differ_between_repeats(datasets::spec_of(rig.twin.campaign.rig.plant, supply.index),
+                                   0.02 * supply.value, supply);
+  const Problem whole = problem_of(rig.twin, rig.records);
+  const VectorXd felt =
+      known_sensitivities(whole, 0, whole.start(), {supply.index});  // of the mean of five repeats
+  // With this deviation the supply moves a single repeat as far along its effect as noise does.
+  supply.prior->sd = std::sqrt(5.0) / felt.norm();
+  const Problem problem = problem_of(rig.twin, rig.records);
+  const MatrixXd deviations = felt * Eigen::RowVectorXd::LinSpaced(5, -2.0, 2.0);
+  const MatrixXd explained = explained_by_declared(problem, 0, problem.start(), deviations);
+  REQUIRE(explained.cols() == 5);
+  CHECK((explained - 0.5 * deviations).norm() < 1e-6 * deviations.norm());
 }
 
 TEST_CASE("between repeats: a recorded supply accounts for what differs", "[calib]") {

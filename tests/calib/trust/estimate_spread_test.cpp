@@ -199,6 +199,23 @@ TEST_CASE("estimate_spread: directions that are not determined have the spread o
   require_box(scene, 3.0, 7.0);
 }
 
+TEST_CASE("are_correlations: no combination of parameters has a negative variance", "[calib]") {
+  const auto with = [](double ab, double ac, double bc) {
+    return (Eigen::Matrix3d() << 1.0, ab, ac, ab, 1.0, bc, ac, bc, 1.0).finished();
+  };
+  CHECK(are_correlations(with(0.9, 0.9, 0.9)));
+  CHECK(are_correlations(with(1.0, 1.0, 1.0)));  // one direction is all that is determined
+  // The variance of a - b - c would be 3 - 2 (0.9 + 0.9 + 0.9).
+  CHECK_FALSE(are_correlations(with(0.9, 0.9, -0.9)));
+  CHECK_FALSE(are_correlations(with(1.1, 0.0, 0.0)));
+  MatrixXd lopsided = with(0.9, 0.9, 0.9);
+  lopsided(0, 1) = 0.5;
+  CHECK_FALSE(are_correlations(lopsided));
+  MatrixXd stretched = with(0.0, 0.0, 0.0);
+  stretched(2, 2) = 2.0;
+  CHECK_FALSE(are_correlations(stretched));
+}
+
 namespace {
 
 /// The prediction band of a condition for given estimates.
