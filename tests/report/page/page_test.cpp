@@ -674,7 +674,7 @@ TEST_CASE("page: a signal that fails is on page one, however many are held back"
   // The channel without a limit has one line, with its lowest score.
   CHECK_THAT(table, !Contains("load pressure"));
   CHECK_THAT(html, Contains("Recorded, but not judged, since no limit was agreed: load pressure "
-                            "(lowest rho2 0.843, c7)."));
+                            "(lowest rho2 0.8431, c7)."));
 }
 
 TEST_CASE("page: what was fitted and what was validated are told apart", "[report]") {
