@@ -44,18 +44,21 @@ constexpr std::array kOutputNames{
 };
 
 /// Describes the first parameter in use that is not finite or outside its limits; empty if there is
-/// none. A second-order valve needs its damping ratio, and a derivative action its filter: neither
-/// has a default.
-std::string bad_parameter(const ParameterValues& values, const Layout& layout) {
+/// none. A second-order valve needs its damping ratio, a derivative action its filter, and oil that
+/// follows its temperature a temperature: none of them has a default.
+std::string bad_parameter(const ParameterValues& values, const Layout& layout,
+                          const SimulationInputs& inputs) {
   const auto table = parameter_table(values.plant);
   for (std::size_t i = 0; i < table.size(); ++i) {
     const ParameterSpec& spec = table[i];
-    const bool in_use = values.given[i] || spec.kind == ParameterKind::plant ||
-                        (layout.valve_order == 2 && spec.key == "valve_damping_ratio") ||
-                        (layout.payload >= 0 && spec.key == "payload_frequency") ||
-                        (layout.filter >= 0 && spec.key == "derivative_filter") ||
-                        (layout.generator && (spec.key == "reference_frequency" ||
-                                              spec.key == "reference_damping_ratio"));
+    const bool in_use =
+        values.given[i] || spec.kind == ParameterKind::plant ||
+        (layout.valve_order == 2 && spec.key == "valve_damping_ratio") ||
+        (layout.payload >= 0 && spec.key == "payload_frequency") ||
+        (layout.filter >= 0 && spec.key == "derivative_filter") ||
+        (layout.terms.temperature && !inputs.oil_temperature_k && spec.key == "oil_temperature") ||
+        (layout.generator &&
+         (spec.key == "reference_frequency" || spec.key == "reference_damping_ratio"));
     if (!in_use) continue;
     const double v = values.value[i];
     if (!(v >= spec.lower && v <= spec.upper)) {
@@ -240,7 +243,7 @@ bool too_fast(const SimulationInputs& inputs, std::span<const double> times_s) {
   };
   return fast(inputs.drive) || fast(inputs.external_force_n) || fast(inputs.supply_pressure_pa) ||
          fast(inputs.tank_pressure_pa) || fast(inputs.spool_error) ||
-         fast(inputs.base_acceleration_m_per_s2);
+         fast(inputs.base_acceleration_m_per_s2) || fast(inputs.oil_temperature_k);
 }
 
 /// @param state  start of the run; null: the rig's initial state
@@ -273,7 +276,7 @@ Simulation simulate_either(const Eigen::VectorXd* state, const Rig& rig,
     require(state->allFinite(), "the state must be finite");
     require(!layout.sampled(), "a sampled controller cannot go on from a state");
   }
-  result.reason = bad_parameter(parameters, layout);
+  result.reason = bad_parameter(parameters, layout, inputs);
   if (!result.reason.empty()) {
     result.status = SimulationStatus::bad_parameters;
     result.failed_at_s = times_s.front();

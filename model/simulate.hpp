@@ -118,6 +118,7 @@ struct SimulationInputs {
   /// Acceleration of what the cylinder is fixed to, in the direction of positive travel. Position
   /// and velocity are relative to it.
   std::optional<Signal> base_acceleration_m_per_s2{};
+  std::optional<Signal> oil_temperature_k{};  ///< replaces the parameter `oil_temperature`
 };
 
 enum class Method {

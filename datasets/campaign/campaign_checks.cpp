@@ -92,6 +92,23 @@ void check_motion(const Campaign& campaign) {
   }
 }
 
+/// Checks that the oil has a temperature if its properties follow it: as a parameter, or recorded.
+void check_temperature(const Campaign& campaign, const Condition& condition) {
+  const auto values = values_in(campaign, condition);
+  const auto channel = campaign.channels.find(Channel::temperature);
+  const bool recorded =
+      channel != campaign.channels.end() && channel->second.role == ChannelRole::input;
+  const bool follows = values.is_given("reference_temperature");
+  if (recorded && !follows)
+    throw InputError({campaign.file.string()},
+                     "key 'recording.channels.temperature': no property of the oil follows it: "
+                     "expected reference_temperature in [rig.parameters], or role = \"ignore\"");
+  if (follows && !recorded && !values.is_given("oil_temperature"))
+    fail(condition,
+         "reference_temperature is given, but no temperature of the oil: expected oil_temperature, "
+         "temperature in the condition, or the channel temperature with role = \"input\"");
+}
+
 void check_values(const Campaign& campaign, const Condition& condition) {
   const auto conflict = find_conflict(campaign.rig, values_in(campaign, condition));
   if (!conflict) return;
@@ -265,6 +282,7 @@ void check_campaign(const Campaign& campaign, const Location& start) {
       continue;
     }
     check_values(campaign, condition);
+    check_temperature(campaign, condition);
     check_levels(campaign, condition);
     check_record(campaign, condition);
   }

@@ -73,6 +73,7 @@ model::SimulationInputs inputs_of(const Campaign& campaign, const Condition& con
   inputs.supply_pressure_pa = side_input(campaign, record, Channel::supply_pressure);
   inputs.tank_pressure_pa = side_input(campaign, record, Channel::tank_pressure);
   inputs.base_acceleration_m_per_s2 = side_input(campaign, record, Channel::base_acceleration);
+  inputs.oil_temperature_k = side_input(campaign, record, Channel::temperature);
   return inputs;
 }
 

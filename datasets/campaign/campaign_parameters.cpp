@@ -528,6 +528,21 @@ std::optional<ParameterConflict> find_load_conflict(const model::ParameterValues
   return std::nullopt;
 }
 
+/// Checks that what depends on the temperature of the oil has the temperature at which the given
+/// values hold.
+std::optional<ParameterConflict> find_temperature_conflict(const model::ParameterValues& values) {
+  if (values.is_given("reference_temperature")) return std::nullopt;
+  for (const char* key :
+       {"oil_temperature", "viscosity_decay", "thermal_expansion", "bulk_modulus_decay"}) {
+    if (values.is_given(key))
+      return ParameterConflict{key, fmt::format("{} without reference_temperature: expected the "
+                                                "temperature at which density, bulk modulus, "
+                                                "damping and laminar leaks have the given values",
+                                                key)};
+  }
+  return std::nullopt;
+}
+
 /// Checks the parameters of pre-sliding friction. It needs the sliding force, and replaces the
 /// smoothed sign function.
 std::optional<ParameterConflict> find_bristle_conflict(const model::ParameterValues& values) {
@@ -699,6 +714,7 @@ std::optional<ParameterConflict> find_conflict(const model::Rig& rig,
   if (const auto conflict = find_metering_conflict(rig, values)) return conflict;
   if (const auto conflict = find_bristle_conflict(values)) return conflict;
   if (const auto conflict = find_load_conflict(values)) return conflict;
+  if (const auto conflict = find_temperature_conflict(values)) return conflict;
   if (rig.controller != model::ControllerKind::none) {
     if (const auto conflict = find_loop_conflict(rig, values)) return conflict;
   }

@@ -73,7 +73,8 @@ void check_role(const TomlNode& node, Channel channel, ChannelRole role, Channel
   const bool drives = channel == drive;
   const bool can_be_input = drives || channel == Channel::supply_pressure ||
                             channel == Channel::tank_pressure || channel == Channel::force ||
-                            channel == Channel::base_acceleration;
+                            channel == Channel::base_acceleration ||
+                            channel == Channel::temperature;
   const bool open_loop = drive == Channel::command || drive == Channel::pilot_pressure;
   const bool can_be_output = info(channel).is_output || (channel == Channel::command && !open_loop);
   if (role == ChannelRole::input && !can_be_input) {

@@ -236,6 +236,9 @@ model::ParameterValues values_in(const Campaign& campaign, const Condition& cond
     for (const auto& [index, value] : *level) values.set(index, value);
   }
   for (const auto& [index, value] : condition.overrides) values.set(index, value);
+  if (condition.temperature_k && values.is_given("reference_temperature") &&
+      !values.is_given("oil_temperature"))
+    values.set("oil_temperature", *condition.temperature_k);
   return values;
 }
 

@@ -459,11 +459,16 @@ constexpr std::array<std::string_view, 8> kLoadTableTerms{
 constexpr std::array<std::string_view, 3> kPayloadTerms{"payload_mass", "payload_frequency",
                                                         "payload_damping_ratio"};
 
+/// Oil that follows its temperature, proposed if a temperature was recorded.
+constexpr std::array<std::string_view, 4> kWarmOilTerms{"reference_temperature", "viscosity_decay",
+                                                        "thermal_expansion", "bulk_modulus_decay"};
+
 /// What the recorded channels say about the terms of a rig.
 struct RecordedSigns {
-  bool payload = false;     ///< an acceleration was recorded
-  bool load_table = false;  ///< position and both chamber pressures were recorded
-  bool pilot = false;       ///< the drive is a pilot pressure
+  bool payload = false;      ///< an acceleration was recorded
+  bool load_table = false;   ///< position and both chamber pressures were recorded
+  bool pilot = false;        ///< the drive is a pilot pressure
+  bool temperature = false;  ///< a temperature was recorded
 };
 
 /// Lists optional terms, as comments.
@@ -480,6 +485,7 @@ std::string terms_text(model::PlantKind plant, const RecordedSigns& signs) {
   if (signs.pilot) terms.insert(terms.end(), kPilotTerms.begin(), kPilotTerms.end());
   if (signs.load_table) terms.insert(terms.end(), kLoadTableTerms.begin(), kLoadTableTerms.end());
   if (signs.payload) terms.insert(terms.end(), kPayloadTerms.begin(), kPayloadTerms.end());
+  if (signs.temperature) terms.insert(terms.end(), kWarmOilTerms.begin(), kWarmOilTerms.end());
   std::string text = "# Terms that are absent unless given (rigcal params lists all):\n";
   for (const std::string_view key : terms) {
     const int row = model::parameter_index(plant, key);
@@ -851,7 +857,7 @@ Draft draft_campaign(const std::vector<fs::path>& files, const fs::path& folder)
                    {slides && recorded(Channel::acceleration),
                     slides && recorded(Channel::position) && recorded(Channel::pressure_a) &&
                         recorded(Channel::pressure_b),
-                    has_pilot(columns)});
+                    has_pilot(columns), recorded(Channel::temperature)});
   text += "\n[recording]\n" + initial_text(groups);
   text += "# " + draft_line("recording", "before");
   text += "# " + draft_line("recording", "decimate_to");

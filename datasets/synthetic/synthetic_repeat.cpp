@@ -136,6 +136,8 @@ Channels clean_channels(const Campaign& truth, const Condition& condition, const
       const bool in_table = model::parameter_index(truth.rig.plant, "tank_pressure") >= 0;
       return in_table ? values["tank_pressure"] : 0.0;
     }
+    if (inputs.oil_temperature_k) return inputs.oil_temperature_k->value(t);
+    if (values.is_given("oil_temperature")) return values["oil_temperature"];
     return condition.temperature_k.value_or(kRoomTemperatureK);
   };
   Channels result;

@@ -32,6 +32,7 @@ struct PresentTerms {
   bool null_opening = false;    ///< covered edges leak through an orifice
   bool line_loss = false;       ///< the lines also throttle the flow
   bool air = false;             ///< the bulk modulus falls at low pressure
+  bool temperature = false;     ///< the oil follows its temperature
   bool external_leak = false;   ///< the external leak of a chamber is not zero, or is free
   int hoses = -1;               ///< index of the first state of yielding hoses; -1: rigid hoses
   int payload = -1;             ///< index of the first state of the second mass; -1: no second mass
@@ -256,6 +257,7 @@ inline Layout layout_of(const Rig& rig, const ParameterValues& values, std::span
   layout.terms.null_opening = given("valve_null_opening");
   layout.terms.line_loss = given("valve_line_opening");
   layout.terms.air = given("air_fraction");
+  layout.terms.temperature = given("reference_temperature");
   layout.terms.power_opening = given("pilot_exponent") || given("valve_exponent");
   layout.terms.table_opening =
       given("opening_20") || given("opening_40") || given("opening_60") || given("opening_80");

@@ -27,6 +27,11 @@ struct CommonParameters {
   T supply_pressure_pa{};
   T density_kg_per_m3{};
   T bulk_modulus_pa{};
+  T reference_temperature_k{};
+  T oil_temperature_k{};
+  T viscosity_decay_per_k{};
+  T thermal_expansion_per_k{};
+  T bulk_modulus_decay_per_k{};
   T discharge_coefficient{};
   T area_gradient_m{};
   T valve_gain_m_per_v{};
@@ -168,6 +173,11 @@ constexpr auto oil_rows() {
       F{&P::supply_pressure_pa, {"supply_pressure", "supply_pressure_pa", "P_s", "Pa", "supply above tank", "eq. 4", K::plant, 1e3, 1e9}},
       F{&P::density_kg_per_m3, {"density", "density_kg_per_m3", "rho", "kg/m3", "density of the oil", "eqs. 4, 11", K::plant, 100, 5000}},
       F{&P::bulk_modulus_pa, {"bulk_modulus", "bulk_modulus_pa", "beta", "Pa", "effective bulk modulus", "eq. 13", K::plant, 1e5, 1e11}},
+      F{&P::reference_temperature_k, {"reference_temperature", "reference_temperature_k", "T_0", "K", "temperature at which density, bulk modulus, damping and laminar paths have the given values", "docs/model.md", K::term, 200, 500, 0.0, false}},
+      F{&P::oil_temperature_k, {"oil_temperature", "oil_temperature_k", "T", "K", "temperature of the oil where none was recorded", "docs/model.md", K::term, 200, 500, 0.0}},
+      F{&P::viscosity_decay_per_k, {"viscosity_decay", "viscosity_decay_per_k", "lambda_T", "1/K", "relative fall of the viscosity per temperature", "docs/model.md", K::term, 0, 1, 0.0}},
+      F{&P::thermal_expansion_per_k, {"thermal_expansion", "thermal_expansion_per_k", "alpha_T", "1/K", "relative growth of the volume of oil per temperature", "docs/model.md", K::term, 0, 0.01, 0.0}},
+      F{&P::bulk_modulus_decay_per_k, {"bulk_modulus_decay", "bulk_modulus_decay_per_k", "kappa_T", "1/K", "relative fall of the bulk modulus per temperature", "docs/model.md", K::term, 0, 0.1, 0.0}},
       F{&P::discharge_coefficient, {"discharge_coefficient", "discharge_coefficient", "C_d", "1", "discharge coefficient of the valve", "eq. 4", K::plant, 1e-3, 10}},
       F{&P::area_gradient_m, {"area_gradient", "area_gradient_m", "w", "m", "orifice area per spool travel (m2/m)", "eq. 4", K::plant, 1e-7, 10}},
       F{&P::valve_gain_m_per_v, {"valve_gain", "valve_gain_m_per_v", "k_sv", "m/V", "spool travel per volt", "eq. 6", K::plant, 1e-12, 1}},

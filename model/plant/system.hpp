@@ -11,6 +11,7 @@
 #include "model/plant/controller.hpp"
 #include "model/plant/layout.hpp"
 #include "model/plant/plant_input.hpp"
+#include "model/plant/warm_oil.hpp"
 #include "model/signal/input_track.hpp"
 #include "model/simulate.hpp"
 
@@ -30,14 +31,16 @@ class System {
          InputTrack drive, std::optional<InputTrack> external_force,
          std::optional<InputTrack> supply_pressure, std::optional<InputTrack> tank_pressure,
          std::optional<InputTrack> spool_error = std::nullopt,
-         std::optional<InputTrack> base_acceleration = std::nullopt)
+         std::optional<InputTrack> base_acceleration = std::nullopt,
+         std::optional<InputTrack> oil_temperature = std::nullopt)
       : layout_(layout),
         drive_(std::move(drive)),
         external_force_(std::move(external_force)),
         supply_pressure_(std::move(supply_pressure)),
         tank_pressure_(std::move(tank_pressure)),
         spool_error_(std::move(spool_error)),
-        base_acceleration_(std::move(base_acceleration)) {
+        base_acceleration_(std::move(base_acceleration)),
+        oil_temperature_(layout.terms.temperature ? std::move(oil_temperature) : std::nullopt) {
     passive_ = coefficients<double>(values, free);
     if constexpr (P > 0) {
       active_ = coefficients<C>(values, free);
@@ -62,6 +65,7 @@ class System {
   std::optional<InputTrack>& tank_pressure() { return tank_pressure_; }
   std::optional<InputTrack>& spool_error() { return spool_error_; }
   std::optional<InputTrack>& base_acceleration() { return base_acceleration_; }
+  std::optional<InputTrack>& oil_temperature() { return oil_temperature_; }
   /// Sensitivity column of the transport delay, among the P directions; -1 if there is none.
   int delay_direction() const { return delay_direction_; }
 
@@ -77,11 +81,15 @@ class System {
 
   /// Returns f and its partial derivatives with respect to states, time and parameters.
   Linearisation<N, P> linearise(const Values<N>& x, double t) const {
-    if constexpr (N <= Plant::kStates + 1) {
-      return linearise_inlined(x, t);
-    } else {
-      return linearise_by_calls(x, t);
-    }
+    Linearisation<N, P> lin = [&] {
+      if constexpr (N <= Plant::kStates + 1) {
+        return linearise_inlined(x, t);
+      } else {
+        return linearise_by_calls(x, t);
+      }
+    }();
+    if (oil_temperature_) add_warming(x, t, lin);
+    return lin;
   }
 
   /// Whether the drive acts only on controller and valve. The plant then sees only the states of
@@ -148,13 +156,15 @@ class System {
       command = valve_command(ByParameters{}, x, input_value(ByParameters{}, drive_, t, true), t);
       in = plant_input(ByParameters{}, x, command, t);
     }
+    std::optional<std::remove_cvref_t<decltype(parameters_of(ByParameters{}))>> warm;
+    const auto& p = with_oil(ByParameters{}, t, warm);
     for (std::size_t k = 0; k < outputs.size(); ++k) {
       if (outputs[k] == (layout_.terms.pilot ? Output::pilot_pressure : Output::command)) {
         result[k] = command;
         continue;
       }
       if constexpr (requires { Plant::angle; }) {
-        result[k] = Plant::output(outputs[k], x, in, parameters_of(ByParameters{}), layout_.terms);
+        result[k] = Plant::output(outputs[k], x, in, p, layout_.terms);
         continue;
       }
       switch (outputs[k]) {
@@ -171,8 +181,7 @@ class System {
           result[k] = payload_acceleration(ByParameters{}, x);
           break;
         default:
-          result[k] =
-              Plant::output(outputs[k], x, in, parameters_of(ByParameters{}), layout_.terms);
+          result[k] = Plant::output(outputs[k], x, in, p, layout_.terms);
       }
     }
   }
@@ -275,6 +284,11 @@ class System {
   struct ByStates {
     using Number = Dual<N + 1>;  ///< directions: the states, then time
   };
+  /// Plain numbers, with the oil warmer than it was recorded.
+  struct Warmer {
+    using Number = double;
+    double by_k;
+  };
   static constexpr int kTime = N;
   static constexpr int kBlock = 4;
   static constexpr std::size_t kBlocks = P / kBlock;
@@ -303,7 +317,42 @@ class System {
       }
     }
     if (layout_.pid) take_gains(layout_.feedback, parameters);
+    if (layout_.terms.temperature && !oil_temperature_)
+      warm_oil(parameters, parameters.oil_temperature_k);
     return Coefficients<T>(parameters);
+  }
+
+  /// The parameters with those of the oil at its recorded temperature.
+  ///
+  /// @param warm  space for them
+  template <typename K>
+  const auto& with_oil(K by, double t, auto& warm) const {
+    if (!oil_temperature_) return parameters_of(by);
+    return warmed(by, t, warm);
+  }
+
+  /// Not inlined, to keep the code of rigs without a recorded temperature short.
+  template <typename K>
+  [[gnu::noinline]] const auto& warmed(K by, double t, auto& warm) const {
+    using Known = std::remove_cvref_t<decltype(parameters_of(by))>;
+    using T = std::remove_cvref_t<decltype(parameters_of(by).mass_kg)>;
+    typename Plant::template Parameters<T> parameters = parameters_of(by);
+    double temperature_k = oil_temperature_->value(t);
+    if constexpr (std::is_same_v<K, Warmer>) temperature_k += by.by_k;
+    warm_oil(parameters, T(temperature_k));
+    return warm.emplace(Known(parameters));
+  }
+
+  /// Adds the part of the time derivative that is due to the change of the recorded temperature. It
+  /// is small and smooth, so a difference is as exact as the solver needs.
+  void add_warming(const Values<N>& x, double t, Linearisation<N, P>& lin) const {
+    constexpr double kStep_k = 1e-3;
+    const double slope = oil_temperature_->sample(t).slope;
+    if (slope == 0.0) return;
+    const Values<N> above = right_hand_side(Warmer{kStep_k}, x, t);
+    const Values<N> below = right_hand_side(Warmer{-kStep_k}, x, t);
+    for (std::size_t i = 0; i < N; ++i)
+      lin.f_t[i] += slope * (above[i] - below[i]) / (2.0 * kStep_k);
   }
 
   /// The parameters, with derivatives if Number<K> has derivatives with respect to them.
@@ -486,8 +535,9 @@ class System {
   template <typename K>
   Number<K> measured_acceleration(K by, const Numbers<K>& x, const PlantInput<Number<K>>& in,
                                   double t) const {
+    std::optional<std::remove_cvref_t<decltype(parameters_of(by))>> warm;
     const Number<K> relative =
-        Plant::derivative(x, in, parameters_of(by), layout_.terms)[Plant::velocity];
+        Plant::derivative(x, in, with_oil(by, t, warm), layout_.terms)[Plant::velocity];
     if (!base_acceleration_) return relative;
     return relative + input_value(by, *base_acceleration_, t, false);
   }
@@ -550,7 +600,9 @@ class System {
     const Number<K> drive = input_value(by, drive_, t, true);
     if constexpr (N == Plant::kStates) {
       const Number<K> command = valve_command(by, x, drive, t);
-      return Plant::derivative(x, plant_input(by, x, command, t), parameters_of(by), layout_.terms);
+      std::optional<std::remove_cvref_t<decltype(parameters_of(by))>> warm;
+      return Plant::derivative(x, plant_input(by, x, command, t), with_oil(by, t, warm),
+                               layout_.terms);
     } else {
       return with_states_of_the_loop(by, x, drive, t);
     }
@@ -629,7 +681,8 @@ class System {
   template <typename K>
   Numbers<K> with_states_of_the_loop(K by, const Numbers<K>& x, const Number<K>& drive,
                                      double t) const {
-    const auto& p = parameters_of(by);
+    std::optional<std::remove_cvref_t<decltype(parameters_of(by))>> warm;
+    const auto& p = with_oil(by, t, warm);
     Numbers<K> dx{};
     const Number<K> command = loop_rates(by, x, drive, t, dx);
     const PlantInput<Number<K>> in = plant_input(by, x, command, t);
@@ -681,6 +734,7 @@ class System {
   std::optional<InputTrack> tank_pressure_;
   std::optional<InputTrack> spool_error_;
   std::optional<InputTrack> base_acceleration_;  ///< [m/s2]
+  std::optional<InputTrack> oil_temperature_;    ///< [K]; only if the model has that term
   int delay_direction_ = -1;
   C while_it_waits_{0.0};  ///< value of the drive before its first sample
 };

@@ -24,7 +24,8 @@ std::optional<SampledPeriod> sampled_period(const SimulationInputs& inputs,
   const std::optional<double> period_s = inputs.drive.period_s();
   if (!period_s || *period_s == 0.0 || !constant(inputs.external_force_n) ||
       !constant(inputs.supply_pressure_pa) || !constant(inputs.tank_pressure_pa) ||
-      !constant(inputs.base_acceleration_m_per_s2) || inputs.spool_error)
+      !constant(inputs.base_acceleration_m_per_s2) || !constant(inputs.oil_temperature_k) ||
+      inputs.spool_error)
     return std::nullopt;
   const double same_s = same_instant_s(times_s);
   const Eigen::Map<const Eigen::ArrayXd> times(times_s.data(), std::ssize(times_s));

@@ -106,6 +106,7 @@ class Run {
     if (system_.tank_pressure()) f(*system_.tank_pressure());
     if (system_.spool_error()) f(*system_.spool_error());
     if (system_.base_acceleration()) f(*system_.base_acceleration());
+    if (system_.oil_temperature()) f(*system_.oil_temperature());
   }
 
   double sample_time(std::size_t sample) const { return times_s_[sample] - times_s_.front(); }

@@ -55,12 +55,14 @@ void pass(const SizedRequest& request, int first, int count, Simulation& result)
   std::optional<InputTrack> tank;
   std::optional<InputTrack> spool_error;
   std::optional<InputTrack> base;
+  std::optional<InputTrack> temperature;
   if (request.inputs.external_force_n) force = track(*request.inputs.external_force_n);
   if (request.inputs.supply_pressure_pa) supply = track(*request.inputs.supply_pressure_pa);
   if (request.inputs.tank_pressure_pa) tank = track(*request.inputs.tank_pressure_pa);
   if (request.inputs.spool_error) spool_error = track(*request.inputs.spool_error);
   if (request.inputs.base_acceleration_m_per_s2)
     base = track(*request.inputs.base_acceleration_m_per_s2);
+  if (request.inputs.oil_temperature_k) temperature = track(*request.inputs.oil_temperature_k);
   const auto of_parameters = static_cast<int>(request.free.size());
   const int begin = std::min(first, of_parameters);
   const int end = std::min(first + count, of_parameters);
@@ -84,8 +86,8 @@ void pass(const SizedRequest& request, int first, int count, Simulation& result)
       request.layout, request.parameters, free,
       InputTrack(request.inputs.drive, start_s, request.parameters["transport_delay"],
                  request.before, request.inputs.drive_begins_s),
-      std::move(force), std::move(supply), std::move(tank), std::move(spool_error),
-      std::move(base));
+      std::move(force), std::move(supply), std::move(tank), std::move(spool_error), std::move(base),
+      std::move(temperature));
   State<N, P> start = system.initial(request.initial, request.before, 0.0);
   if (request.state != nullptr) {
     start = state_to_go_on_from<N, P>(request, first, count);

@@ -94,14 +94,15 @@ RIGCAL_EXPORT(output_count) int output_count() { return static_cast<int>(kAllOut
 ///                 limit [s]; enumerators of the controlled quantity and of Before; time of the
 ///                 drive's first sample [s]
 /// @param values   shape (2, parameters): SI values, and 1 for each that is given
-/// @param drive    an input in the format of kInputNumbers. `force`, `supply`, `tank` and `base`
-///                 (its acceleration) have the same format; null if absent.
+/// @param drive    an input in the format of kInputNumbers. `force`, `supply`, `tank`, `base`
+///                 (its acceleration) and `temperature` (of the oil) have the same format; null if
+///                 absent.
 /// @param outputs  shape (samples, outputs), column by column, SI; written only if the result is ok
 /// @return         SimulationStatus; 0 is ok
 RIGCAL_EXPORT(simulate)
 int simulate_rig(const double* rig, const double* values, const double* drive, const double* force,
                  const double* supply, const double* tank, const double* base,
-                 const double* times_s, int samples, double* outputs) {
+                 const double* temperature, const double* times_s, int samples, double* outputs) {
   const Rig kind{static_cast<PlantKind>(rig[0]), static_cast<ControllerKind>(rig[1]),
                  static_cast<InitialState>(rig[2]), static_cast<Feedback>(rig[6]),
                  static_cast<Before>(rig[7])};
@@ -120,7 +121,8 @@ int simulate_rig(const double* rig, const double* values, const double* drive, c
                                 optional_signal_of(tank),
                                 rig[8],
                                 std::nullopt,
-                                optional_signal_of(base)};
+                                optional_signal_of(base),
+                                optional_signal_of(temperature)};
   last_run =
       rigcal::model::simulate(kind, parameters, {}, inputs,
                               {times_s, static_cast<std::size_t>(samples)}, kAllOutputs, options);

@@ -47,9 +47,9 @@ std::string unit_definitions(const std::vector<FmuVariable>& variables) {
   std::string text = "  <UnitDefinitions>\n";
   for (const std::string& unit : units) {
     const BaseUnits& base = base_units(unit);
-    text += fmt::format("    <Unit{}><BaseUnit{}{}{}{}{}/></Unit>\n", attribute("name", unit),
+    text += fmt::format("    <Unit{}><BaseUnit{}{}{}{}{}{}/></Unit>\n", attribute("name", unit),
                         exponent("kg", base.kg), exponent("m", base.m), exponent("s", base.s),
-                        exponent("A", base.A), exponent("rad", base.rad));
+                        exponent("A", base.A), exponent("K", base.K), exponent("rad", base.rad));
   }
   return text + "  </UnitDefinitions>\n";
 }

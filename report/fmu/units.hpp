@@ -12,6 +12,7 @@ struct BaseUnits {
   int s = 0;
   int A = 0;
   int rad = 0;
+  int K = 0;
 };
 
 /// @throws std::invalid_argument  if the table does not contain the unit

@@ -189,14 +189,28 @@ void take_delay_off(const ExportRequest& request, const Campaign& campaign, Para
   values.given[index] = false;
 }
 
+bool is_input(const Campaign& campaign, datasets::Channel channel) {
+  const auto found = campaign.channels.find(channel);
+  return found != campaign.channels.end() && found->second.role == datasets::ChannelRole::input;
+}
+
 /// Throws if the base of the rig moves, since the inputs of an FMU are the same for all rigs.
 void require_base_at_rest(const Campaign& campaign) {
-  const auto base = campaign.channels.find(datasets::Channel::base_acceleration);
-  if (base == campaign.channels.end() || base->second.role != datasets::ChannelRole::input) return;
+  if (!is_input(campaign, datasets::Channel::base_acceleration)) return;
   throw InputError({campaign.file.string()},
                    "key 'recording.channels.base_acceleration': an FMU has no such input: expected "
                    "role = \"ignore\", and mass times this acceleration added to the input "
                    "external_force in the model that imports it");
+}
+
+/// Throws if the oil follows a recorded temperature, for the same reason.
+void require_constant_temperature(const Campaign& campaign) {
+  if (!is_input(campaign, datasets::Channel::temperature)) return;
+  throw InputError(
+      {campaign.file.string()},
+      "key 'recording.channels.temperature': an FMU has no such input: expected role = "
+      "\"ignore\", and the parameter oil_temperature, which the model that imports it "
+      "may set");
 }
 
 /// Throws if the model rejects the values, with the model's own message.
@@ -291,6 +305,7 @@ ExportChoice choose_export(const Campaign& campaign, const CampaignChoice& choic
     if (task.record) records.push_back(std::move(*task.record));
   }
   require_base_at_rest(campaign);
+  require_constant_temperature(campaign);
   take_delay_off(request, campaign, values, made.warnings);
   take_sensors_off(values);
   fmu.rig.values = values;

@@ -167,6 +167,7 @@ Json recorded_inputs(const Campaign& campaign, const SimulationTask& task) {
   add("supply", task.inputs.supply_pressure_pa, datasets::Channel::supply_pressure);
   add("tank", task.inputs.tank_pressure_pa, datasets::Channel::tank_pressure);
   add("base", task.inputs.base_acceleration_m_per_s2, datasets::Channel::base_acceleration);
+  add("temperature", task.inputs.oil_temperature_k, datasets::Channel::temperature);
   return json;
 }
 

@@ -573,6 +573,17 @@ TEST_CASE("export: bad input", "[apps]") {
   CHECK(base.exit_code == 2);
   CHECK_THAT(base.err, Contains("base_acceleration': an FMU has no such input") &&
                            Contains("external_force"));
+  folder.write(
+      "warm.toml",
+      edited(kCampaign,
+             {{"[recording.channels]",
+               "[recording.channels]\ntemperature = { column = \"T\", unit = \"K\", role = "
+               "\"input\" }"},
+              {"[rig.parameters]\n", "[rig.parameters]\nreference_temperature = \"40 degC\"\n"}}));
+  const Outcome warm = folder.run({"export", "fmu", "warm.toml", "--out", "out"});
+  CHECK(warm.exit_code == 2);
+  CHECK_THAT(warm.err,
+             Contains("temperature': an FMU has no such input") && Contains("oil_temperature"));
   folder.write("file", "");
   const Outcome out = folder.run({"export", "fmu", "campaign.toml", "--out", "file/out"});
   CHECK(out.exit_code == 5);

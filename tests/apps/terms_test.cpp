@@ -88,4 +88,33 @@ noise = { position = "0.01 mm", pressure_a = "0.05 bar", pressure_b = "0.05 bar"
   check_recovery(folder, {{"kp", 220.0}, {"velocity_kp", 8.0}, {"acceleration_kp", 0.01}});
 }
 
+TEST_CASE("terms: a fit of a cold and a warm day finds how the viscosity falls", "[apps]") {
+  const CommandFolder folder;
+  const std::string day =
+      "waveform = \"square\"\nfrequency = \"1 Hz\"\namplitude = \"1 V\"\nuse = \"fit\"\n";
+  const std::string campaign = edited(
+      kTwoChamber,
+      {{"mass = { start = \"6 kg\", lower = \"1 kg\", upper = \"50 kg\", fit = true }",
+        "mass = \"5 kg\""},
+       {"leakage_coefficient = 0\n",
+        "leakage_coefficient = 0\nlaminar_leakage = { start = \"1e-12 m3/(s Pa)\", lower = \"1e-13 "
+        "m3/(s Pa)\", upper = \"1e-11 m3/(s Pa)\", fit = true }\nreference_temperature = \"40 "
+        "degC\"\nthermal_expansion = \"7e-4 1/K\"\nviscosity_decay = { start = \"0.02 1/K\", lower "
+        "= "
+        "\"0.005 1/K\", upper = \"0.08 1/K\", fit = true }\n"},
+       {"id = \"square\"\n", "id = \"cold\"\ntemperature = \"25 degC\"\n"},
+       {"records/square_*.csv", "records/cold_*.csv"}});
+  const std::string warm = "[[condition]]\nid = \"warm\"\ntemperature = \"55 degC\"\n" + day +
+                           "repeats = [\"records/warm_*.csv\"]\n";
+  const std::string truth =
+      edited(kTwoChamberTruth,
+             {{"mass = \"5 kg\"",
+               "viscosity_decay = \"0.03 1/K\", laminar_leakage = \"2e-12 m3/(s Pa)\""}});
+  const Outcome twin = synthesize_twin(folder, campaign + warm + truth);
+  INFO(twin.err);
+  REQUIRE(twin.exit_code == 0);
+  check_recovery(folder,
+                 {{"viscosity_decay", 0.03}, {"laminar_leakage", 2e-12}, {"valve_gain", 4e-6}});
+}
+
 }  // namespace rigcal::test

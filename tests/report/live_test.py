@@ -7,6 +7,7 @@ import csv
 import gzip
 import hashlib
 import json
+import math
 import pathlib
 import re
 import subprocess
@@ -253,6 +254,42 @@ def exact(campaign, folder, recordings):
     return copy
 
 
+def a_rig_that_is_shaken(rigcal, folder):
+    """Checks recorded inputs beside the drive: the acceleration of the base and the temperature of the oil."""
+    rows = ["t,u,x,a,T"]
+    for i in range(601):
+        t = i / 200
+        rows.append(f"{t},{2 * math.sin(6 * t):.6f},0,{3 * math.sin(25 * t):.6f},{30 + 8 * t:.4f}")
+    (folder / "shaken.csv").write_text("\n".join(rows) + "\n")
+    text = TWO_CHAMBER.split("[[condition]]")[0].replace('"x", unit = "mm" }', """"x", unit = "mm" }
+command = { column = "u", unit = "V" }
+base_acceleration = { column = "a", unit = "m/s2" }
+temperature = { column = "T", unit = "degC", role = "input" }""")
+    text = re.sub(r"\[rig.controller\].*?(?=\[simulation\])", '[rig.controller]\ntype = "none"\n', text, flags=re.DOTALL)
+    text = text.replace('mass = {', """reference_temperature = "40 degC"
+viscosity_decay = "0.03 1/K"
+thermal_expansion = "7e-4 1/K"
+bulk_modulus_decay = "5.5e-3 1/K"
+laminar_leakage = "1e-11 m3/(s Pa)"
+mass = {""")
+    campaign = folder / "shaken.toml"
+    campaign.write_text(text + """[[condition]]
+id = "shaken"
+waveform = "recorded"
+use = "diagnose"
+leak_level = "half"
+repeats = ["shaken.csv"]
+""")
+    run(rigcal, "explore", "shaken.toml", "--out", "shaken", "--quiet", cwd=folder)
+    with Browser(1280, 900) as browser:
+        browser.open(folder / "shaken" / "explore.html")
+        simulated(browser)
+        for name in ("base", "temperature"):
+            check(browser.run(f"window.rigcalLive.request.{name}?.values.length") == 601, f"no {name} among the inputs")
+        compare(browser, rigcal, campaign, "a base that moves, oil that warms", 1e-5)
+        check(not browser.problems, browser.problems)
+
+
 def shipped_rigs(rigcal, sources, folder):
     """Checks every shipped rig whose recordings are here, with a leak or a mass that is not the campaign's."""
     for file in sorted((sources / "datasets/rigs").glob("*/*.toml")):
@@ -414,6 +451,7 @@ def main():
             return 77
         the_papers_rig(rigcal, sources, folder)
         a_rig_with_everything(rigcal, folder)
+        a_rig_that_is_shaken(rigcal, folder)
         shipped_rigs(rigcal, sources, folder)
         fitted_rigs(rigcal, sources, folder)
         leaking_rigs(rigcal, sources, folder)

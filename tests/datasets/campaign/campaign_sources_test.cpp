@@ -161,6 +161,40 @@ TEST_CASE("inputs_of: a measured acceleration of the base acts on the rig", "[da
                     Catch::Contains("the model does not compute base_acceleration"));
 }
 
+TEST_CASE("inputs_of: the oil follows a recorded temperature where its properties have a reference",
+          "[datasets]") {
+  const auto with_channel = [](const std::string& text, const std::string& role) {
+    return replaced(text, "[averaging]",
+                    "temperature = { column = \"T_C\", unit = \"degC\"" + role + " }\n[averaging]");
+  };
+  const std::string input = ", role = \"input\"";
+  const std::string parameters = "[rig.parameters]\n";
+  const std::string oil =
+      parameters + "reference_temperature = \"40 degC\"\nviscosity_decay = \"0.03 1/K\"\n";
+  const Campaign campaign = load_text(with_channel(replaced(kExample, parameters, oil), input));
+  const Record record = ramp_record(Channel::temperature);
+  const Condition& condition = campaign.conditions[0];
+  const auto values = values_in(campaign, condition);
+  CHECK(values["reference_temperature"] == Approx(313.15));
+  const auto inputs = inputs_of(campaign, condition, values, &record);
+  REQUIRE(inputs.oil_temperature_k.has_value());
+  CHECK(inputs.oil_temperature_k->value(1.5) == 10.0);
+  CHECK_THROWS_WITH(load_text(with_channel(kExample, input)),
+                    Catch::Contains("no property of the oil follows it: expected "
+                                    "reference_temperature"));
+  CHECK_THROWS_WITH(
+      load_text(replaced(kExample, parameters, parameters + "viscosity_decay = \"0.03 1/K\"\n")),
+      Catch::Contains("viscosity_decay without reference_temperature"));
+  // Without a recorded temperature it is that of the condition, or the parameter.
+  const std::string without = with_channel(replaced(kExample, parameters, oil), "");
+  CHECK_THROWS_WITH(load_text(without), Catch::Contains("but no temperature of the oil"));
+  const Campaign given =
+      load_text(replaced(without, parameters, parameters + "oil_temperature = \"50 degC\"\n"));
+  CHECK(values_in(given, given.conditions[0])["oil_temperature"] == Approx(323.15));
+  CHECK_FALSE(inputs_of(given, given.conditions[0], values_in(given, given.conditions[0]), &record)
+                  .oil_temperature_k.has_value());
+}
+
 TEST_CASE("sample_times: of the record, or of duration and rate", "[datasets]") {
   Condition condition;
   CHECK_THROWS_AS(sample_times(condition, nullptr), InputError);

@@ -368,6 +368,16 @@ TEST_CASE("linkage: sensitivities are exact against differences, every parameter
           {"accumulator_exponent", 1.3}},
          none},
         electric);
+  check({"warm oil",
+         Signal::sine(4.0, 10.0),
+         {{"reference_temperature", 313.15},
+          {"oil_temperature", 338.15},
+          {"viscosity_decay", 0.03},
+          {"thermal_expansion", 7e-4},
+          {"bulk_modulus_decay", 5.5e-3},
+          {"laminar_leakage", 1e-11}},
+         none},
+        electric);
   check({"table of the command, relief valves",
          Signal::sine(4.0, 10.0),
          {{"valve_range", 4.0},

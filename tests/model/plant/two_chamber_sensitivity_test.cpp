@@ -123,6 +123,10 @@ std::vector<std::pair<Scenario, Experiment>> two_chamber_scenarios() {
   rows.push_back(
       {{"PID, second-order valve, soft supply, friction", Signal::sine(0.006, 9.0), loop},
        single_rod_rig()});
+  const NamedValues warm{{"reference_temperature", 313.15}, {"oil_temperature", 338.15},
+                         {"viscosity_decay", 0.03},         {"thermal_expansion", 7e-4},
+                         {"bulk_modulus_decay", 5.5e-3},    {"laminar_leakage", 3e-12}};
+  rows.push_back({{"warm oil", Signal::sine(2.0, 10.0), warm, none}, single_rod_rig()});
   const NamedValues table{{"load_table_from", 0.0}, {"load_table_to", 4e-3}, {"load_0", 40.0},
                           {"load_20", 150.0},       {"load_40", 60.0},       {"load_60", -90.0},
                           {"load_80", -20.0},       {"load_100", 120.0}};

@@ -57,6 +57,9 @@ TEST_CASE("sampled_period: none where inputs or samples do not repeat themselves
   inputs.base_acceleration_m_per_s2 = Signal::sine(1.0, 50.0);
   CHECK_FALSE(sampled_period(inputs, times_s, false, {}));
   inputs.base_acceleration_m_per_s2 = Signal::constant(1.0);
+  inputs.oil_temperature_k = Signal::linear({0.0, 1.0}, {300.0, 301.0});
+  CHECK_FALSE(sampled_period(inputs, times_s, false, {}));
+  inputs.oil_temperature_k = Signal::constant(300.0);
   CHECK(sampled_period(inputs, times_s, false, {}));
 }
 
