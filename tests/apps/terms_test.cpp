@@ -23,7 +23,9 @@ void check_recovery(const CommandFolder& folder,
   REQUIRE((outcome.exit_code == 0 || outcome.exit_code == 1));
   const auto fit = nlohmann::json::parse(folder.read("fit/fit.json"));
   REQUIRE(fit["status"].get<std::string>() == "converged");
-  for (const auto& [key, value] : truth) {
+  for (const auto& known : truth) {
+    const std::string& key = known.first;
+    const double value = known.second;
     const auto found = std::find_if(
         fit["parameters"].begin(), fit["parameters"].end(),
         [&](const nlohmann::json& each) { return each["key"].get<std::string>() == key; });
