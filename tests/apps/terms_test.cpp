@@ -75,10 +75,10 @@ TEST_CASE("terms: a fit finds the gains of a shake table's controller", "[apps]"
         "acceleration_reference = { column = \"a_ref\", unit = \"gravity\" }\n"
         "acceleration = { column = \"a\", unit = \"gravity\" }"},
        {"waveform = \"square\"\nfrequency = \"1 Hz\"\namplitude = \"1 V\"",
-        "waveform = \"chirp\"\nfrequency = \"0.5 Hz\"\nend_frequency = \"15 Hz\"\nduration = "
-        "\"4 s\"\namplitude = \"0.2 m/s2\""}});
+        "waveform = \"chirp\"\nfrequency = \"2 Hz\"\nend_frequency = \"40 Hz\"\nduration = "
+        "\"4 s\"\namplitude = \"5 m/s2\""}});
   const std::string truth = R"([synthetic]
-controller = { kp = "220 V/m", velocity_kp = "8 V s/m", acceleration_kp = "0.01 V s2/m" }
+parameters = { kp = "220 V/m", velocity_kp = "8 V s/m", acceleration_kp = "0.01 V s2/m" }
 repeats = 3
 duration = "4 s"
 sample_rate = "200 Hz"
