@@ -23,7 +23,9 @@ void check_recovery(const CommandFolder& folder,
   REQUIRE((outcome.exit_code == 0 || outcome.exit_code == 1));
   const auto fit = nlohmann::json::parse(folder.read("fit/fit.json"));
   REQUIRE(fit["status"].get<std::string>() == "converged");
-  for (const auto& [key, value] : truth) {
+  for (const auto& known : truth) {
+    const std::string& key = known.first;
+    const double value = known.second;
     const auto found = std::find_if(
         fit["parameters"].begin(), fit["parameters"].end(),
         [&](const nlohmann::json& each) { return each["key"].get<std::string>() == key; });
@@ -73,10 +75,10 @@ TEST_CASE("terms: a fit finds the gains of a shake table's controller", "[apps]"
         "acceleration_reference = { column = \"a_ref\", unit = \"gravity\" }\n"
         "acceleration = { column = \"a\", unit = \"gravity\" }"},
        {"waveform = \"square\"\nfrequency = \"1 Hz\"\namplitude = \"1 V\"",
-        "waveform = \"chirp\"\nfrequency = \"0.5 Hz\"\nend_frequency = \"15 Hz\"\nduration = "
-        "\"4 s\"\namplitude = \"0.2 m/s2\""}});
+        "waveform = \"chirp\"\nfrequency = \"2 Hz\"\nend_frequency = \"40 Hz\"\nduration = "
+        "\"4 s\"\namplitude = \"5 m/s2\""}});
   const std::string truth = R"([synthetic]
-controller = { kp = "220 V/m", velocity_kp = "8 V s/m", acceleration_kp = "0.01 V s2/m" }
+parameters = { kp = "220 V/m", velocity_kp = "8 V s/m", acceleration_kp = "0.01 V s2/m" }
 repeats = 3
 duration = "4 s"
 sample_rate = "200 Hz"
