@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
-#include "calib/consider/consider.hpp"
 #include "calib/posterior/nuts.hpp"
 #include "calib/problem/evaluation.hpp"
 #include "calib/result/fitted_parameter.hpp"
+#include "calib/trust/effect_likelihood.hpp"
 #include "calib/trust/uncertainty.hpp"
 
 namespace rigcal::calib {

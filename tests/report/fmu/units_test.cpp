@@ -15,13 +15,15 @@ TEST_CASE("units: each unit of a parameter is the product of its base units", "[
       const report::BaseUnits& base = report::base_units(spec.unit);
       std::string product = "1";
       const auto times = [&](const char* unit, int power) {
-        if (power != 0) product += std::string(" ") + unit + std::to_string(power);
+        if (power != 0)
+          product += std::string(" ") + unit + (power == 1 ? "" : std::to_string(power));
       };
       times("kg", base.kg);
       times("m", base.m);
       times("s", base.s);
       times("A", base.A);
       times("rad", base.rad);
+      times("K", base.K);
       INFO(spec.key << ": " << spec.unit << " is " << product);
       CHECK(parse_quantity(product, spec.unit) == Approx(1.0));
     }
