@@ -5,8 +5,8 @@
 #include <span>
 
 #include "calib/problem/problem.hpp"
+#include "calib/result/estimate_spread.hpp"
 #include "calib/result/fit_result.hpp"
-#include "calib/trust/effect_likelihood.hpp"
 #include "calib/trust/uncertainty.hpp"
 
 namespace rigcal::calib {

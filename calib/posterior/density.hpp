@@ -8,8 +8,8 @@
 
 #include "calib/posterior/nuts.hpp"
 #include "calib/problem/evaluation.hpp"
+#include "calib/result/estimate_spread.hpp"
 #include "calib/result/fitted_parameter.hpp"
-#include "calib/trust/effect_likelihood.hpp"
 #include "calib/trust/uncertainty.hpp"
 
 namespace rigcal::calib {
