@@ -77,7 +77,7 @@ enum class Feedback {
 /// Maps a controlled quantity to the parameters with the gains of its loop.
 struct FeedbackRow {
   std::string_view name;  ///< in campaign files
-  std::string_view unit;  ///< of the reference, SI
+  std::string_view unit;  ///< SI unit of the reference
   std::string_view meaning;
   std::string_view kp, ki, kd;
   std::string_view acceleration;  ///< gain of the acceleration besides kp; empty: none

@@ -279,7 +279,7 @@ LogDensity PosteriorDensity::evaluate(const VectorXd& y, const VectorXd& e,
   }
   LogDensity result;
   const double white = (square - q.squaredNorm() - p.squaredNorm()) / kappa_;
-  gradient -= slopes.transpose() * q + p_slopes.transpose() * p;  // of the white part alone
+  gradient -= slopes.transpose() * q + p_slopes.transpose() * p;  // the white part alone
   if (effects_ != nullptr) {
     q += effects_->taken * e;
     p += effects_->felt * e;

@@ -331,7 +331,8 @@ const KeyTable<Condition>& condition_keys() {
           "sample_rate", &Condition::sample_rate_hz, "Hz", kSampleRates_hz,
           {.doc = "How dense, where there is no record", .otherwise = "that of `[synthetic]`"}),
       Row::quantity("temperature", &Condition::temperature_k, "K", kTemperatures_k,
-                    {.doc = "Kept in the results: `\"38 degC\"`",
+                    {.doc = "Kept in the results: `\"38 degC\"`. The oil has it where "
+                            "`reference_temperature` is given",
                      .otherwise = "none",
                      .example = "\"38 degC\""}),
       Row::date("date", &Condition::date,

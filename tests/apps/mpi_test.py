@@ -86,7 +86,7 @@ class Processes(unittest.TestCase):
                 self.assertLess(time.monotonic(), deadline, "nothing was kept")
                 self.assertIsNone(group.poll(), "it ended before anything was kept")
                 time.sleep(0.002)
-            # The leader stands still meanwhile, so that a slow test cannot come too late.
+            # The leader is paused meanwhile, so that a slow test cannot come too late.
             leader, other = (process_of(rank, group.pid) for rank in (0, 1))
             os.kill(leader, signal.SIGSTOP)
             self.assertTrue(kept.exists(), "it ended before a process was killed")

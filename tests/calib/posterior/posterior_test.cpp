@@ -91,7 +91,7 @@ TEST_CASE("posterior: near the optimum it is what the errors say", "[calib]") {
   CHECK(found.posterior->diverged == 0);
   CHECK(found.posterior->values.at(0).size() == 4000);
   CHECK(found.posterior->energy_fraction > 0.5);
-  // Four chains tell more than one only if each has random numbers of its own.
+  // Four chains are worth more than one only if each has random numbers of its own.
   const auto deviations = [&](int chain) {
     const Eigen::Map<const Eigen::VectorXd> all(found.posterior->values[0].data(), 4000);
     const Eigen::VectorXd own = all.segment(1000 * chain, 1000);

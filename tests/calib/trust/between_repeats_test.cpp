@@ -361,7 +361,7 @@ TEST_CASE("between repeats: a deviation is shared between what is declared and n
                                    0.02 * supply.value, supply);
   const Problem whole = problem_of(rig.twin, rig.records);
   const VectorXd felt =
-      known_sensitivities(whole, 0, whole.start(), {supply.index});  // of the mean of five repeats
+      known_sensitivities(whole, 0, whole.start(), {supply.index});  // for the mean of five repeats
   // With this deviation the supply moves a single repeat as far along its effect as noise does.
   supply.prior->sd = std::sqrt(5.0) / felt.norm();
   const Problem problem = problem_of(rig.twin, rig.records);
