@@ -216,7 +216,7 @@ def the_papers_rig(rigcal, sources, folder):
         # Every field has a label, and assistive technology gets the numbers.
         unnamed = browser.run("[...document.querySelectorAll('#live input, #live select')].filter((n) => !n.labels.length && !n.getAttribute('aria-label')).length")
         check(unnamed == 0, f"{unnamed} fields without a name")
-        browser.wait_for("document.getElementById('live-said').textContent.includes('servo flow')", "nothing is said")
+        browser.wait_for("document.getElementById('live-said').textContent.includes('Servo flow')", "nothing is said")
         check(browser.run("document.documentElement.scrollWidth <= innerWidth"), "wider than the window")
         browser.size(400)
         browser.wait_for("innerWidth === 400 && document.documentElement.scrollWidth <= 400", "as narrow as a telephone")
