@@ -26,7 +26,10 @@ get_target_property(eigen Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
 set(compile ${RIGCAL_WASM_CLANG} --target=wasm32-wasi -std=c++20 -O2 -DNDEBUG -fno-math-errno
   -I${PROJECT_SOURCE_DIR} -isystem ${eigen} -isystem ${wasm}/include -DFMT_HEADER_ONLY -DFMT_EXCEPTIONS=0 -DEIGEN_NO_EXCEPTIONS
   -DEIGEN_DONT_VECTORIZE)
-set(link ${RIGCAL_WASM_CLANG} --target=wasm32-wasi -mexec-model=reactor -O2 -Wl,--strip-all -Wl,--gc-sections)
+# The usual stack of 64 kB is too small for the two-chamber rig with all its terms. It comes first in memory, so that an
+# overflow ends the module instead of changing its data.
+set(link ${RIGCAL_WASM_CLANG} --target=wasm32-wasi -mexec-model=reactor -O2 -Wl,--strip-all -Wl,--gc-sections
+  -Wl,--stack-first -Wl,-z,stack-size=1048576)
 
 # Tests once whether the toolchain is complete: compiles and links the headers that the model includes, together with
 # the replacements for exceptions.
