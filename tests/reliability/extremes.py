@@ -236,10 +236,12 @@ def study(rigcal, folder, size):
     for model, base in (("two_chamber", TWO_CHAMBER), ("linkage", LINKAGE)):
         plant = Study(rigcal, folder / model, base)
         keys = [key for key in parameters(rigcal, model) if f"rig.parameters.{key}" not in base]
+        if size == "small":
+            keys = keys[::5]  # each is asked for its kind by a run of its own
         tried = [(plant, base, "rig.parameters", key, value) for key in keys for value in plant.values("rig.parameters", key)]
         tried += [(plant, base, table, "start", value) for table in base if table.startswith("rig.parameters.")
                   for value in plant.values(table, "start")]
-        if len(tried) < 100:
+        if len(tried) < 20:
             raise SystemExit(f"reliability: extremes: the parameters of {model} could not be found")
         runs += [(change, verb) for change in tried for verb in VERBS_OF_PLANTS]
     rows = {verb: Count(f"extremes: {verb}") for verb in VERBS}
