@@ -15,8 +15,8 @@
 namespace rigcal::calib {
 
 /// Distribution of the sizes of the effects if the outputs are linear in the unknowns and q is
-/// kept: the log density is slope^T e - e^T precision e / 2, where no size that cannot be negative
-/// is.
+/// kept. The log density is slope^T e - e^T precision e / 2. The density is zero where a one-sided
+/// size is negative.
 struct SizesBeside {
   Eigen::MatrixXd precision;
   Eigen::VectorXd slope;
@@ -45,7 +45,8 @@ struct SizesBeside {
 ///
 ///     -2 log L = q^T S^-1 q + p^T W^-1 p + (r^T r - q0^T q0 - p0^T p0) / kappa,
 ///
-/// where q0 and p0 are q and p without effects.
+/// where q0 and p0 are q and p without effects. A stated prior counts in q, not in p, as in the
+/// intervals.
 ///
 /// Prior: uniform between the bounds on the scale that the fit uses, the coordinate z of the unit
 /// box. An unknown with `prior` and `prior_sd` has that normal distribution, truncated at its

@@ -47,23 +47,24 @@ void sweep_sizes(const SizesBeside& sizes, int sweeps, datasets::RandomStream& s
   }
 }
 
-bool step_sizes(const PosteriorDensity& density, int sweeps, datasets::RandomStream& stream,
-                VectorXd& y, VectorXd& e) {
+SizeStep step_sizes(const PosteriorDensity& density, int sweeps, datasets::RandomStream& stream,
+                    VectorXd& y, VectorXd& e) {
   const SizesBeside& sizes = density.sizes_beside();
   VectorXd next = e;
   sweep_sizes(sizes, sweeps, stream, next);
   const double chance = datasets::uniform(stream, 0.0, 1.0);
   const auto there = density.moved(y, e, next);
-  if (!there) return false;
+  if (!there) return {};
   // The densities are those of the unknowns in the unit box, in which the move keeps volumes.
   const auto weight = [&](const VectorXd& point, const VectorXd& at) {
     return density.value(point, at) - density.log_volume(point) - log_density_beside(sizes, at);
   };
   const double rise = weight(*there, next) - weight(y, e);
-  if (!(std::log(chance) < rise)) return false;
+  constexpr int kPoints = 2;  // here and there
+  if (!(std::log(chance) < rise)) return {false, kPoints};
   y = *there;
   e = std::move(next);
-  return true;
+  return {true, kPoints};
 }
 
 }  // namespace rigcal::calib

@@ -15,14 +15,19 @@ double positive_normal(datasets::RandomStream& stream, double mean, double sd);
 void sweep_sizes(const SizesBeside& sizes, int sweeps, datasets::RandomStream& stream,
                  Eigen::VectorXd& e);
 
+struct SizeStep {
+  bool accepted = false;
+  int simulated = 0;  ///< number of points that were simulated
+};
+
 /// Makes one step of Metropolis and Hastings for the sizes of the effects. It proposes the sizes
-/// after some sweeps, and moves the unknowns to make room for them. As the sweeps know the density
-/// but for what is not linear, most proposals are accepted. Each step simulates two points.
+/// after some sweeps, and moves the unknowns to make room for them. The sweeps
+/// neglect only what is not linear, so most proposals are accepted. A proposal beyond a bound is
+/// refused without a simulation.
 ///
 /// @param y  unknowns, which move with the sizes
 /// @param e  sizes
-/// @return   true if the proposal was accepted
-bool step_sizes(const PosteriorDensity& density, int sweeps, datasets::RandomStream& stream,
-                Eigen::VectorXd& y, Eigen::VectorXd& e);
+SizeStep step_sizes(const PosteriorDensity& density, int sweeps, datasets::RandomStream& stream,
+                    Eigen::VectorXd& y, Eigen::VectorXd& e);
 
 }  // namespace rigcal::calib

@@ -30,9 +30,9 @@ constexpr double kScattered = 2.0;
 /// Maximum number of attempts to draw a start point that can be simulated. Each attempt is half as
 /// far from the optimum as the last.
 constexpr int kMostTries = 8;
-/// Sweeps of the steps that change the sizes of effects, one step after each draw. Many sweeps give
-/// sizes that do not depend on the last ones. A few give sizes close to them, which are accepted
-/// where the outputs are far from linear.
+/// Numbers of sweeps in the two steps that change the sizes of effects after each draw. Many sweeps
+/// give sizes that do not depend on the last ones. One gives sizes closer to them, which are
+/// accepted more often where the outputs are far from linear.
 constexpr int kManySweeps = 300;
 constexpr int kFewSweeps = 1;
 /// Fraction of missing information below which the chains may not reach the tails.
@@ -115,11 +115,13 @@ int change_sizes(const PosteriorDensity& posterior, const NutsOptions& sampler, 
   auto stream =
       datasets::random_stream(sampler.seed, {"posterior", fmt::format("chain {}", sampler.chain),
                                              "sizes", fmt::format("draw {}", state.iteration)});
-  bool accepted = false;
-  for (const int sweeps : {kFewSweeps, kManySweeps})
-    accepted |= step_sizes(posterior, sweeps, stream, state.position, sizes);
-  if (accepted) state.whitened.resize(0);
-  return 4;
+  int simulated = 0;
+  for (const int sweeps : {kFewSweeps, kManySweeps}) {
+    const SizeStep step = step_sizes(posterior, sweeps, stream, state.position, sizes);
+    simulated += step.simulated;
+    if (step.accepted) state.whitened.resize(0);
+  }
+  return simulated;
 }
 
 /// Draws of all chains, as coordinates of the sampler: [chain][draw][coordinate].

@@ -16,7 +16,7 @@ LateFlag::LateFlag(const std::atomic<bool>* first, double grace_s) : flag_(first
     waiting_ = std::thread([this, first, grace_s] { follow(*first, grace_s); });
     flag_ = &late_;
   } catch (const std::system_error&) {
-    // Without a thread there is no grace.
+    // Without a thread to wait with, the stop flag acts at once.
   }
 }
 

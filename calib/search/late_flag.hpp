@@ -21,8 +21,8 @@ class LateFlag {
   LateFlag(const LateFlag&) = delete;
   LateFlag& operator=(const LateFlag&) = delete;
 
-  /// The late flag; null without a stop flag. It is the stop flag itself if there is no grace, or
-  /// if the system has no thread to wait with.
+  /// Returns the late flag, or null if there is no stop flag. It is the stop flag itself if there
+  /// is no grace, or if the system has no thread to wait with.
   const std::atomic<bool>* flag() const { return flag_; }
 
  private:

@@ -544,7 +544,7 @@ LeakScan leak_scan_of(const LeakProblem& leak_problem, const Condition& conditio
 
 namespace {
 
-/// Makes the leaks of a condition available to `use`, each simulated once.
+/// Calls `use` with the leaks of a condition, each of which is simulated once.
 template <typename Use>
 auto with_leaks(const LeakProblem& leak_problem, const Condition& condition, const Record& average,
                 LeakMemo& memo, Use use) {

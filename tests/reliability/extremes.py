@@ -192,7 +192,7 @@ class Study:
         if (table, key) == ("[report.sensor]", "uncertainty"):  # a text with two numbers
             return [f'"{number} {rest}"' for number in NUMBERS for rest in ("mm (k = 2)", "% (k = 2)")] + [
                 f'"0.002 mm (k = {number})"' for number in NUMBERS]
-        _, message = self.ended("check", text_of(table, key, "[[[]]]", self.base), "ask")
+        _, message = self.ended("check", text_of(table, key, "[[[]]]", self.base), f"ask_{table.strip('[]')}_{key}")
         if quantity := re.search(r'a text "number unit" such as "1.5 ([^"]*)"', message):
             return [f'"{number} {quantity.group(1)}"' for number in NUMBERS]
         if "a plain number" in message or "number of seconds" in message:
@@ -209,19 +209,24 @@ def parameters(rigcal, model=None):
     return list(dict.fromkeys(each["key"] for plant in ([model] if model else of_plants) for each in of_plants[plant]))
 
 
+def changes_of(study, pairs):
+    """Returns a change for each value of each (table, key). Asking for the kind of a key takes a run."""
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        values = pool.map(lambda pair: study.values(*pair), pairs)
+    return [(study, study.base, table, key, value) for (table, key), own in zip(pairs, values) for value in own]
+
+
 def study(rigcal, folder, size):
     tests = Study(rigcal, folder)
     tables = [each for each in RIG if each and each != "rig"]
     of_rig = parameters(rigcal)
-    changes = []
+    pairs = []
     for table in tables:
         known = tests.known_keys(table)
         if table in ("rig.parameters", "rig.controller", "condition.parameters", "condition.controller"):
             known = list(dict.fromkeys(known + of_rig))
-        for key in known:
-            if f"{table}.{key}" in RIG:
-                continue  # a table of its own
-            changes += [(tests, RIG, table, key, value) for value in tests.values(table, key)]
+        pairs += [(table, key) for key in known if f"{table}.{key}" not in RIG]  # those are tables of their own
+    changes = changes_of(tests, pairs)
     for waveform in WAVEFORMS:
         for key in ("frequency", "end_frequency", "sweep_time"):
             changes += [(tests, with_waveform(waveform), "[condition]", key, f'"{number} {"s" if key == "sweep_time" else "Hz"}"')
@@ -236,12 +241,9 @@ def study(rigcal, folder, size):
     for model, base in (("two_chamber", TWO_CHAMBER), ("linkage", LINKAGE)):
         plant = Study(rigcal, folder / model, base)
         keys = [key for key in parameters(rigcal, model) if f"rig.parameters.{key}" not in base]
-        if size == "small":
-            keys = keys[::5]  # each is asked for its kind by a run of its own
-        tried = [(plant, base, "rig.parameters", key, value) for key in keys for value in plant.values("rig.parameters", key)]
-        tried += [(plant, base, table, "start", value) for table in base if table.startswith("rig.parameters.")
-                  for value in plant.values(table, "start")]
-        if len(tried) < 20:
+        tried = changes_of(plant, [("rig.parameters", key) for key in keys] +
+                           [(table, "start") for table in base if table.startswith("rig.parameters.")])
+        if len(tried) < 100:
             raise SystemExit(f"reliability: extremes: the parameters of {model} could not be found")
         runs += [(change, verb) for change in tried for verb in VERBS_OF_PLANTS]
     rows = {verb: Count(f"extremes: {verb}") for verb in VERBS}
