@@ -169,19 +169,16 @@ std::string_view output_name(Output output) {
 }
 
 bool has_output(const ParameterValues& values, Output output) {
-  const auto given = [&values](std::string_view key) {
-    return parameter_index(values.plant, key) >= 0 && values.is_given(key);
-  };
   switch (output) {
     case Output::payload_acceleration:
-      return given("payload_mass");
+      return values.is_given("payload_mass");
     case Output::angle:
     case Output::angular_velocity:
       return values.plant == PlantKind::linkage;
     case Output::pilot_pressure:
-      return given("pilot_gain");
+      return values.is_given("pilot_gain");
     case Output::command:
-      return !given("pilot_gain");
+      return !values.is_given("pilot_gain");
     default:
       return true;
   }

@@ -272,7 +272,7 @@ double value_of_key(const Problem& problem, const model::ParameterValues& values
 
 /// Returns true if the model has a pump with limited flow.
 bool has_pump(const model::ParameterValues& values) {
-  return model::parameter_index(values.plant, "pump_flow") >= 0 && values.is_given("pump_flow");
+  return values.is_given("pump_flow");
 }
 
 double first_finite(double a, double b) { return std::isfinite(a) ? a : b; }

@@ -283,11 +283,6 @@ Overrides read_overrides(const TomlNode& table, model::PlantKind plant, Paramete
 
 namespace {
 
-/// Returns true if the plant has a parameter with this key and its value was given.
-bool has_key(const model::ParameterValues& values, std::string_view key) {
-  return model::parameter_index(values.plant, key) >= 0 && values.is_given(key);
-}
-
 std::optional<ParameterConflict> find_supply_conflict(const model::ParameterValues& values) {
   if (model::parameter_index(values.plant, "supply_resistance") < 0) return std::nullopt;
   const bool resistance = values.is_given("supply_resistance");
@@ -336,13 +331,13 @@ std::optional<ParameterConflict> find_pilot_conflict(const model::Rig& rig,
       std::pair{"valve_range", "pilot_range"},
       std::pair{"valve_bypass_range", "bypass_range"}};
   for (const char* key : kOfPilot) {
-    if (pilot || !has_key(values, key)) continue;
+    if (pilot || !values.is_given(key)) continue;
     return ParameterConflict{key, fmt::format("{} is of a pilot-operated valve, and this one is "
                                               "driven by a voltage: expected pilot_gain",
                                               key)};
   }
   for (const auto& [key, instead] : kOfVolts) {
-    if (!pilot || !has_key(values, key)) continue;
+    if (!pilot || !values.is_given(key)) continue;
     return ParameterConflict{
         key, fmt::format("{} is in volts, and pilot_gain makes the pilot pressure the drive: "
                          "expected {} out, or {}",
@@ -479,12 +474,9 @@ std::optional<ParameterConflict> find_linkage_conflict(const model::Rig& rig,
 /// Checks that a second mass has either all or none of its parameters.
 std::optional<ParameterConflict> find_payload_conflict(const model::ParameterValues& values) {
   constexpr std::array kKeys{"payload_mass", "payload_frequency", "payload_damping_ratio"};
-  const auto given = [&](std::string_view key) {
-    return model::parameter_index(values.plant, key) >= 0 && values.is_given(key);
-  };
   const char* present = nullptr;
   const char* absent = nullptr;
-  for (const char* key : kKeys) (given(key) ? present : absent) = key;
+  for (const char* key : kKeys) (values.is_given(key) ? present : absent) = key;
   if (present == nullptr) return std::nullopt;
   if (absent != nullptr)
     return ParameterConflict{present,
@@ -502,7 +494,7 @@ std::optional<ParameterConflict> find_load_conflict(const model::ParameterValues
   const char* present = nullptr;
   const char* absent = nullptr;
   for (const char* key : kKeys) {
-    if (has_key(values, key)) {
+    if (values.is_given(key)) {
       if (present == nullptr) present = key;
     } else if (absent == nullptr) {
       absent = key;
@@ -520,7 +512,7 @@ std::optional<ParameterConflict> find_load_conflict(const model::ParameterValues
         "load_table_to", fmt::format("load_table_to = {:g} m is not above load_table_from = {:g} m",
                                      values["load_table_to"], values["load_table_from"])};
   for (const char* key : {"load_gradient", "load_curvature"}) {
-    if (has_key(values, key))
+    if (values.is_given(key))
       return ParameterConflict{key, fmt::format("{} (a load by a polynomial) is combined with "
                                                 "load_table_to (by a table): expected one of them",
                                                 key)};
@@ -546,11 +538,11 @@ std::optional<ParameterConflict> find_temperature_conflict(const model::Paramete
 /// Checks the parameters of pre-sliding friction. It needs the sliding force, and replaces the
 /// smoothed sign function.
 std::optional<ParameterConflict> find_bristle_conflict(const model::ParameterValues& values) {
-  if (has_key(values, "bristle_damping") && !has_key(values, "bristle_stiffness"))
+  if (values.is_given("bristle_damping") && !values.is_given("bristle_stiffness"))
     return ParameterConflict{"bristle_damping",
                              "bristle_damping without pre-sliding: expected bristle_stiffness"};
-  if (!has_key(values, "bristle_stiffness")) return std::nullopt;
-  if (!has_key(values, "coulomb_friction"))
+  if (!values.is_given("bristle_stiffness")) return std::nullopt;
+  if (!values.is_given("coulomb_friction"))
     return ParameterConflict{"bristle_stiffness",
                              "friction with pre-sliding needs the force at which it slides: "
                              "expected coulomb_friction as well"};
@@ -574,7 +566,7 @@ std::optional<ParameterConflict> find_room_conflict(const model::Rig& rig,
                               "sample_time"};
   std::vector<std::string_view> present;
   for (const char* key : kTerms) {
-    if (has_key(values, key)) present.emplace_back(key);
+    if (values.is_given(key)) present.emplace_back(key);
   }
   return ParameterConflict{
       present.empty() ? "" : std::string(present.front()),
@@ -588,15 +580,15 @@ std::optional<ParameterConflict> find_room_conflict(const model::Rig& rig,
 std::optional<ParameterConflict> find_generator_conflict(const model::Rig& rig,
                                                          const model::ParameterValues& values) {
   const model::FeedbackRow& loop = model::gain_keys(rig.feedback);
-  if (model::is_three_variable(rig.feedback) && has_key(values, "derivative_filter"))
+  if (model::is_three_variable(rig.feedback) && values.is_given("derivative_filter"))
     return ParameterConflict{
         "derivative_filter",
         fmt::format("derivative_filter filters the derivative of an error, and "
                     "a loop on {} has none: expected it left out",
                     loop.name)};
   for (const char* key : {"reference_frequency", "reference_damping_ratio"}) {
-    if (model::is_three_variable(rig.feedback) == has_key(values, key)) continue;
-    if (has_key(values, key))
+    if (model::is_three_variable(rig.feedback) == values.is_given(key)) continue;
+    if (values.is_given(key))
       return ParameterConflict{key, fmt::format("{} belongs to three-variable control, and this "
                                                 "loop is on {}: expected feedback = "
                                                 "\"three_variable\" or "
@@ -614,16 +606,13 @@ std::optional<ParameterConflict> find_generator_conflict(const model::Rig& rig,
 /// Checks that a loop has the gains for its controlled quantity, and no others.
 std::optional<ParameterConflict> find_loop_conflict(const model::Rig& rig,
                                                     const model::ParameterValues& values) {
-  const auto given = [&](std::string_view key) {
-    return model::parameter_index(values.plant, key) >= 0 && values.is_given(key);
-  };
   const model::FeedbackRow& loop = model::gain_keys(rig.feedback);
   for (const model::FeedbackRow& other : model::kFeedbacks) {
     if (other.name == loop.name) continue;
     for (const auto& [key, own] : {std::pair{other.kp, loop.kp}, std::pair{other.ki, loop.ki},
                                    std::pair{other.kd, loop.kd}}) {
       const bool shared = key == loop.kp || key == loop.ki || key == loop.kd;
-      if (!given(key) || shared || key == loop.acceleration) continue;
+      if (!values.is_given(key) || shared || key == loop.acceleration) continue;
       return ParameterConflict{
           std::string(key),
           fmt::format("{0} is a gain of a loop on {1}, and this one is on {2}: expected {3}, or "
@@ -632,13 +621,13 @@ std::optional<ParameterConflict> find_loop_conflict(const model::Rig& rig,
     }
   }
   const bool of_position = loop.kp == model::gain_keys(model::Feedback::position).kp;
-  if (!given(loop.kp) && !(given(loop.ki) && !of_position)) {
+  if (!values.is_given(loop.kp) && !(values.is_given(loop.ki) && !of_position)) {
     return ParameterConflict{
         "", fmt::format("the pid controller has no {}: expected one in [rig.controller]", loop.kp)};
   }
   if (const auto conflict = find_generator_conflict(rig, values)) return conflict;
   const bool generator = model::is_three_variable(rig.feedback);
-  if (given(loop.kd) && !generator && !given("derivative_filter")) {
+  if (values.is_given(loop.kd) && !generator && !values.is_given("derivative_filter")) {
     return ParameterConflict{
         std::string(loop.kd),
         fmt::format("{} without derivative_filter: expected the corner N of its filter, such as "
@@ -646,19 +635,19 @@ std::optional<ParameterConflict> find_loop_conflict(const model::Rig& rig,
                     loop.kd)};
   }
   for (const char* key : {"velocity_feedforward", "acceleration_feedforward"}) {
-    if (!given(key) || generator) continue;
+    if (!values.is_given(key) || generator) continue;
     if (rig.feedback != model::Feedback::position)
       return ParameterConflict{
           key, fmt::format("{} feeds the rate of a position forward, and this loop is on {}: "
                            "expected feedback = \"position\"",
                            key, loop.name)};
-    if (!given("derivative_filter"))
+    if (!values.is_given("derivative_filter"))
       return ParameterConflict{key, fmt::format("{} without derivative_filter: expected the corner "
                                                 "N of its filter, such as derivative_filter = "
                                                 "\"500 rad/s\"",
                                                 key)};
   }
-  if (given("initial_integral") && !given(loop.ki))
+  if (values.is_given("initial_integral") && !values.is_given(loop.ki))
     return ParameterConflict{"initial_integral",
                              fmt::format("initial_integral without integral action: expected {} in "
                                          "[rig.controller]",
@@ -670,40 +659,38 @@ std::optional<ParameterConflict> find_loop_conflict(const model::Rig& rig,
 
 std::optional<ParameterConflict> find_conflict(const model::Rig& rig,
                                                const model::ParameterValues& values) {
-  // Not every plant has every parameter.
-  const auto given = [&](std::string_view key) {
-    return model::parameter_index(values.plant, key) >= 0 && values.is_given(key);
-  };
   if (const auto missing = values.missing(); !missing.empty()) {
     return ParameterConflict{"", fmt::format("no value for {}: expected a known value or a start "
                                              "in [rig.parameters]",
                                              fmt::join(missing, ", "))};
   }
-  if (given("valve_time_constant") && given("valve_frequency")) {
+  if (values.is_given("valve_time_constant") && values.is_given("valve_frequency")) {
     return ParameterConflict{"valve_time_constant",
                              "valve_time_constant (a first-order valve) is combined with "
                              "valve_frequency (a second-order one): expected one of them"};
   }
-  if (given("valve_frequency") != given("valve_damping_ratio")) {
-    const bool frequency = given("valve_frequency");
+  if (values.is_given("valve_frequency") != values.is_given("valve_damping_ratio")) {
+    const bool frequency = values.is_given("valve_frequency");
     return ParameterConflict{
         frequency ? "valve_frequency" : "valve_damping_ratio",
         fmt::format("a second-order valve needs both valve_frequency and valve_damping_ratio: "
                     "expected {} as well",
                     frequency ? "valve_damping_ratio" : "valve_frequency")};
   }
-  if (given("main_spool_gain") && !given("valve_time_constant") && !given("valve_frequency")) {
+  if (values.is_given("main_spool_gain") && !values.is_given("valve_time_constant") &&
+      !values.is_given("valve_frequency")) {
     return ParameterConflict{"main_spool_gain",
                              "main_spool_gain without the lag of the pilot stage: expected "
                              "valve_time_constant, or valve_frequency, as well"};
   }
-  if (given("main_spool_gain") && given("pilot_gain")) {
+  if (values.is_given("main_spool_gain") && values.is_given("pilot_gain")) {
     return ParameterConflict{"main_spool_gain",
                              "main_spool_gain (a main spool with position feedback) is combined "
                              "with pilot_gain (a spool that a pilot pressure moves against its "
                              "spring): expected one of them"};
   }
-  if (given("valve_rate_limit") && !given("valve_time_constant") && !given("valve_frequency")) {
+  if (values.is_given("valve_rate_limit") && !values.is_given("valve_time_constant") &&
+      !values.is_given("valve_frequency")) {
     return ParameterConflict{"valve_rate_limit",
                              "valve_rate_limit without the valve's own lag: expected "
                              "valve_time_constant, or valve_frequency, as well"};

@@ -186,10 +186,8 @@ inline Layout layout_of(const Rig& rig, const ParameterValues& values, std::span
   Layout layout;
   layout.plant_states = plant_states;
   layout.states = plant_states;
+  const auto given = [&values](std::string_view key) { return values.is_given(key); };
   // The table of this plant lacks terms that only other plants have.
-  const auto given = [&values](std::string_view key) {
-    return parameter_index(values.plant, key) >= 0 && values.is_given(key);
-  };
   const auto acts = [&](std::string_view key) {
     const int index = parameter_index(values.plant, key);
     return index >= 0 &&

@@ -32,10 +32,22 @@ constexpr auto kPlants = rows_of(std::type_identity<Plants>());
 
 const PlantRow& row_of(PlantKind plant) { return kPlants[static_cast<std::size_t>(plant)]; }
 
+[[noreturn]] void fail_unknown(std::string_view key) {
+  throw std::invalid_argument("unknown parameter '" + std::string(key) + "'");
+}
+
 int checked_index(PlantKind plant, std::string_view key) {
   const int index = parameter_index(plant, key);
-  if (index < 0) throw std::invalid_argument("unknown parameter '" + std::string(key) + "'");
+  if (index < 0) fail_unknown(key);
   return index;
+}
+
+/// Checks that at least one plant has a parameter with this key.
+void check_known(std::string_view key) {
+  for (std::size_t i = 0; i < kPlants.size(); ++i) {
+    if (parameter_index(static_cast<PlantKind>(i), key) >= 0) return;
+  }
+  fail_unknown(key);
 }
 
 }  // namespace
@@ -96,7 +108,10 @@ double ParameterValues::operator[](std::string_view key) const {
 }
 
 bool ParameterValues::is_given(std::string_view key) const {
-  return given[static_cast<std::size_t>(checked_index(plant, key))];
+  const int index = parameter_index(plant, key);
+  if (index >= 0) return given[static_cast<std::size_t>(index)];
+  check_known(key);
+  return false;
 }
 
 void ParameterValues::set(std::string_view key, double value_si) {

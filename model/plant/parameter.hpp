@@ -59,8 +59,10 @@ struct ParameterValues {
   /// All parameters at their defaults, none given.
   static ParameterValues defaults(PlantKind plant);
 
-  /// @throws std::invalid_argument  if the key is unknown
+  /// @throws std::invalid_argument  if the plant has no parameter with this key
   double operator[](std::string_view key) const;
+  /// Returns false if only other plants have this parameter.
+  /// @throws std::invalid_argument  if no plant has it
   bool is_given(std::string_view key) const;
   void set(std::string_view key, double value_si);
   void set(int index, double value_si);
