@@ -344,8 +344,7 @@ ConsideredSettings read_considered(const TomlNode& node, const Campaign& campaig
   const model::PlantKind plant = campaign.rig.plant;
   const auto names = effect_names(plant);
   for (const auto& [key, entry] : node.entries()) {
-    const auto name = std::find_if(names.begin(), names.end(),
-                                   [&key = key](const auto& each) { return each.key == key; });
+    const auto name = std::ranges::find(names, key, &EffectName::key);
     if (name == names.end()) {
       std::vector<std::string> known;
       for (const EffectName& each : names) known.push_back(each.key);
@@ -414,8 +413,7 @@ BetweenDaysSettings read_between_days(const TomlNode& node, const Campaign& camp
   const model::PlantKind plant = campaign.rig.plant;
   const auto names = day_quantity_names(plant);
   for (const auto& [key, entry] : node.entries()) {
-    const auto name = std::find_if(names.begin(), names.end(),
-                                   [&key = key](const auto& each) { return each.key == key; });
+    const auto name = std::ranges::find(names, key, &DayQuantityName::key);
     if (name == names.end()) {
       std::vector<std::string> known;
       for (const DayQuantityName& each : names) known.push_back(each.key);
