@@ -270,11 +270,6 @@ double value_of_key(const Problem& problem, const model::ParameterValues& values
   return index < 0 ? std::nan("") : values.value[static_cast<std::size_t>(index)];
 }
 
-/// Returns true if the model has a pump with limited flow.
-bool has_pump(const model::ParameterValues& values) {
-  return values.is_given("pump_flow");
-}
-
 double first_finite(double a, double b) { return std::isfinite(a) ? a : b; }
 
 double shortest_interval(const Problem& problem) {
@@ -432,7 +427,7 @@ std::vector<Effect> possible_effects(const Problem& problem, std::span<const dou
         std::any_of(problem.conditions.begin(), problem.conditions.end(),
                     [](const auto& each) { return each.inputs.supply_pressure_pa.has_value(); }))
       continue;  // the recorded pressure already includes the sag
-    if (row.kind == EffectKind::supply_sag && has_pump(values))
+    if (row.kind == EffectKind::supply_sag && values.is_given("pump_flow"))
       continue;  // the pump determines how far the pressure falls
     if (!(effect.range > 0.0) || !std::isfinite(size.value) || !(size.value > 0.0)) continue;
     effect.about.key = key;

@@ -65,8 +65,7 @@ TEST_CASE("warm_oil: a warmer rig is one with thinner, lighter and softer oil", 
       by_hand.options.tolerance = 1e-10;
       const double viscosity = std::exp(-kViscosity * above_k);
       const auto scale = [&](const char* key, double factor) {
-        if (rig.values.is_given(key))
-          by_hand.set(key, rig.values[key] * factor);
+        if (rig.values.is_given(key)) by_hand.set(key, rig.values[key] * factor);
       };
       scale("density", 1.0 / (1.0 + kExpansion * above_k));
       scale("bulk_modulus", std::exp(-kModulus * above_k));
