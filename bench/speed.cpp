@@ -562,6 +562,10 @@ int main(int argc, char** argv) {
   using namespace rigcal::bench;
   rigcal::keep_freed_memory();
   const int rounds = argc > 1 ? std::atoi(argv[1]) : 15;
+  if (rounds < 1) {
+    fmt::print(stderr, "usage: rigcal_speed [rounds [recorded]]\n");
+    return 2;
+  }
   if (argc > 2 && std::string(argv[2]) == "recorded") {
     recorded_drives(rounds);
     return 0;

@@ -145,6 +145,7 @@ class Scripts(unittest.TestCase):
         self.assertTrue(self.run_script("performance", "3").endswith("performance-job --recorded\nperformance-job \nperformance-job --conditions\nperformance-job --page\n"))
         self.assertTrue((self.tree / "docs" / "performance.md").read_text().endswith("\nrigcal_speed 3\n"))
         self.assertTrue(self.run_script("performance", "--job", "1", "2").endswith("performance-job 1 2\n"))
+        self.assertIn("scripts/performance [rounds]", self.run_script("performance", "--jop", fails=True))
 
     def test_report_performance(self):
         printed = self.run_script("report-performance")
