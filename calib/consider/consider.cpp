@@ -722,25 +722,43 @@ VectorXd unexplained_moves(const Problem& problem, const std::vector<ScoreRows>&
   return squares.cwiseSqrt();
 }
 
+/// Returns the upper end of the interval of a value that cannot be zero, if what the effects do to
+/// it is proportional to the value. Such a value is known up to a factor.
+///
+/// @param most  largest shift that is linear about the estimate, SI
+double end_in_proportion(const FittedParameter& parameter, const Budget95& budget, double most) {
+  const double share = budget.expanded / parameter.value;
+  const double shifted = parameter.value * std::exp(most / parameter.value);
+  const double refitted = parameter.averaged ? parameter.averaged->value : 0.0;
+  return std::max(shifted, refitted) * std::exp(share);
+}
+
 /// Widens the interval of an estimate. It is not known which effects are present, so the interval
-/// covers the estimate, the estimate shifted by the mean sizes of the effects, and the estimate
-/// shifted by their likeliest sizes, each plus or minus the expanded uncertainty. If the residuals
-/// indicate an effect, the interval also covers that of the averaged estimate.
+/// covers the estimate, the estimate shifted by the mean sizes of the effects, the estimate shifted
+/// by their likeliest sizes, and, if the residuals indicate an effect, the averaged estimate, each
+/// plus or minus the expanded uncertainty. The averaged estimate has it, too, because the refitted
+/// models contain a few effects and lack all others.
+///
+/// Beyond a fifth of the value it also matters whether the value itself or its logarithm responds
+/// linearly to the effects. The interval then covers both.
 ///
 /// @param likeliest  shift due to the likeliest sizes, SI
 void widen(const Problem& problem, std::size_t unknown, Budget95 budget, double likeliest,
            FittedParameter& parameter) {
   const model::ParameterSpec& spec = problem.spec(unknown);
   auto& [low, high] = *parameter.ci95;
-  const double below = parameter.value + std::min({0.0, budget.shift, likeliest}) - budget.expanded;
-  const double above = parameter.value + std::max({0.0, budget.shift, likeliest}) + budget.expanded;
-  low = std::min(low, below);
-  high = std::max(high, above);
+  const double most = std::max({0.0, budget.shift, likeliest});
+  low = std::min(low, parameter.value + std::min({0.0, budget.shift, likeliest}) - budget.expanded);
+  high = std::max(high, parameter.value + most + budget.expanded);
   if (parameter.averaged) {
-    const double half = budget.coverage_factor * parameter.averaged->standard_error;
-    low = std::min(low, parameter.averaged->value - half);
-    high = std::max(high, parameter.averaged->value + half);
+    const AveragedEstimate& averaged = *parameter.averaged;
+    const double half = std::max(budget.expanded, budget.coverage_factor * averaged.standard_error);
+    low = std::min(low, averaged.value - half);
+    high = std::max(high, averaged.value + half);
   }
+  if (spec.lower > 0.0 && budget.contribution("effect") > 0.0 &&
+      high - parameter.value > kWeak * parameter.value)
+    high = std::max(high, end_in_proportion(parameter, budget, most));
   low = std::max(spec.lower, low);
   high = std::min(spec.upper, high);
   parameter.budget = std::move(budget);

@@ -322,8 +322,44 @@ TEST_CASE("considered: the missing effect is refitted, and the estimates with it
       const double differ = each.averaged->value - each.value - budget.shift;
       CHECK_THAT(line->uncertainty, WithinRel(std::abs(differ) / std::sqrt(3.0), 1e-9));
       CHECK(budget.combined >= line->uncertainty);
+      // The refitted models lack the other effects, whose uncertainty is that of the budget.
+      CHECK(budget.expanded > budget.coverage_factor * each.averaged->standard_error);
+      CHECK(each.ci95->low <= (1.0 + 1e-9) * (each.averaged->value - budget.expanded));
+      CHECK(each.ci95->high >= (1.0 - 1e-9) * (each.averaged->value + budget.expanded));
     }
   }
+}
+
+TEST_CASE("considered: an uncertain value that cannot be zero is known up to a factor", "[calib]") {
+  SmallRig rig;
+  rig.free("damping", 1500.0, 300.0, 6000.0);
+  // Hoses act like softer oil, which the records cannot tell apart.
+  rig.campaign.considered.sizes["total_volume"] = 0.3 * 2.47e-4;
+  rig.campaign.considered.sizes["coulomb_friction"] = 200.0;
+  const Fit found = rig.fitted();
+  const auto estimate = [](const Fit& fit, const char* key) {
+    return *std::find_if(fit.parameters.begin(), fit.parameters.end(),
+                         [&](const auto& each) { return each.index == Twin::index(key); });
+  };
+  const FittedParameter oil = estimate(found, "bulk_modulus");
+  const Budget95& budget = oil.budget.value();
+  REQUIRE_FALSE(oil.averaged);
+  REQUIRE(budget.expanded > kWeak * oil.value);
+  // The mean size of the hoses shifts further than the likeliest, which is zero.
+  REQUIRE(budget.shift > 0.1 * oil.value);
+  CHECK_THAT(oil.ci95->high,
+             WithinRel(oil.value * std::exp((budget.shift + budget.expanded) / oil.value), 1e-9));
+  CHECK(oil.ci95->low <= oil.value - budget.expanded);
+  // Below a fifth of the value, and for a value that may be zero, the interval is linear.
+  for (const char* key : {"valve_gain", "damping"}) {
+    const FittedParameter each = estimate(found, key);
+    CAPTURE(key, each.value, each.ci95->high, each.budget->shift, each.budget->expanded);
+    CHECK(each.ci95->high <
+          each.value + std::max(0.0, each.budget->shift) + 1.5 * each.budget->expanded);
+  }
+  rig.campaign.considered.none = true;
+  const FittedParameter exact = estimate(rig.fitted(), "bulk_modulus");
+  CHECK_THAT(exact.ci95->high, WithinRel(exact.ci95_if_exact->high, 1e-3));
 }
 
 TEST_CASE("considered: nothing is refitted where the residuals ask for nothing", "[calib]") {
