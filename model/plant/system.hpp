@@ -156,7 +156,7 @@ class System {
       command = valve_command(ByParameters{}, x, input_value(ByParameters{}, drive_, t, true), t);
       in = plant_input(ByParameters{}, x, command, t);
     }
-    std::optional<std::remove_cvref_t<decltype(parameters_of(ByParameters{}))>> warm;
+    WarmParameters<std::remove_cvref_t<decltype(parameters_of(ByParameters{}))>> warm;
     const auto& p = with_oil(ByParameters{}, t, warm);
     for (std::size_t k = 0; k < outputs.size(); ++k) {
       if (outputs[k] == (layout_.terms.pilot ? Output::pilot_pressure : Output::command)) {
@@ -334,13 +334,12 @@ class System {
   /// Not inlined, to keep the code of rigs without a recorded temperature short.
   template <typename K>
   [[gnu::noinline]] const auto& warmed(K by, double t, auto& warm) const {
-    using Known = std::remove_cvref_t<decltype(parameters_of(by))>;
     using T = std::remove_cvref_t<decltype(parameters_of(by).mass_kg)>;
     typename Plant::template Parameters<T> parameters = parameters_of(by);
     double temperature_k = oil_temperature_->value(t);
     if constexpr (std::is_same_v<K, Warmer>) temperature_k += by.by_k;
     warm_oil(parameters, T(temperature_k));
-    return warm.emplace(Known(parameters));
+    return warm.emplace(parameters);
   }
 
   /// Adds the part of the time derivative that is due to the change of the recorded temperature. It
@@ -535,7 +534,7 @@ class System {
   template <typename K>
   Number<K> measured_acceleration(K by, const Numbers<K>& x, const PlantInput<Number<K>>& in,
                                   double t) const {
-    std::optional<std::remove_cvref_t<decltype(parameters_of(by))>> warm;
+    WarmParameters<std::remove_cvref_t<decltype(parameters_of(by))>> warm;
     const Number<K> relative =
         Plant::derivative(x, in, with_oil(by, t, warm), layout_.terms)[Plant::velocity];
     if (!base_acceleration_) return relative;
@@ -600,7 +599,7 @@ class System {
     const Number<K> drive = input_value(by, drive_, t, true);
     if constexpr (N == Plant::kStates) {
       const Number<K> command = valve_command(by, x, drive, t);
-      std::optional<std::remove_cvref_t<decltype(parameters_of(by))>> warm;
+      WarmParameters<std::remove_cvref_t<decltype(parameters_of(by))>> warm;
       return Plant::derivative(x, plant_input(by, x, command, t), with_oil(by, t, warm),
                                layout_.terms);
     } else {
@@ -681,7 +680,7 @@ class System {
   template <typename K>
   Numbers<K> with_states_of_the_loop(K by, const Numbers<K>& x, const Number<K>& drive,
                                      double t) const {
-    std::optional<std::remove_cvref_t<decltype(parameters_of(by))>> warm;
+    WarmParameters<std::remove_cvref_t<decltype(parameters_of(by))>> warm;
     const auto& p = with_oil(by, t, warm);
     Numbers<K> dx{};
     const Number<K> command = loop_rates(by, x, drive, t, dx);

@@ -1,8 +1,29 @@
 #pragma once
 
 #include <cmath>
+#include <new>
+#include <type_traits>
 
 namespace rigcal::model {
+
+/// Space for the parameters of warm oil. Few rigs need it, but every right-hand side has one.
+/// std::optional would clear all of it each time, 7 kB with derivatives.
+template <typename T>
+class WarmParameters {
+ public:
+  static_assert(std::is_trivially_destructible_v<T>);
+  WarmParameters() {}  // NOLINT(modernize-use-equals-default): leaves the space as it is
+
+  template <typename From>
+  const T& emplace(const From& from) {
+    return *new (&value_) T(from);
+  }
+
+ private:
+  union {
+    T value_;
+  };
+};
 
 /// Replaces the parameters that depend on the oil by their values at its temperature. The given
 /// values hold at the reference temperature.
