@@ -757,8 +757,11 @@ void widen(const Problem& problem, std::size_t unknown, Budget95 budget, double 
     high = std::max(high, averaged.value + half);
   }
   if (spec.lower > 0.0 && budget.contribution("effect") > 0.0 &&
-      high - parameter.value > kWeak * parameter.value)
-    high = std::max(high, end_in_proportion(parameter, budget, most));
+      high - parameter.value > kWeak * parameter.value) {
+    // A factor without limits says no more than the linear end where the parameter has none.
+    const double end = std::min(spec.upper, end_in_proportion(parameter, budget, most));
+    if (std::isfinite(end)) high = std::max(high, end);
+  }
   low = std::max(spec.lower, low);
   high = std::min(spec.upper, high);
   parameter.budget = std::move(budget);
