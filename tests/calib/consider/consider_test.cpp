@@ -338,7 +338,7 @@ TEST_CASE("considered: the missing effect is refitted, and the estimates with it
 TEST_CASE("considered: an uncertain value that cannot be zero is known up to a factor", "[calib]") {
   SmallRig rig;
   rig.free("damping", 1500.0, 300.0, 6000.0);
-  // Hoses act like softer oil, which the records cannot distinguish.
+  // Hoses act like softer oil, so that the oil is uncertain.
   rig.campaign.considered.sizes["total_volume"] = 0.3 * 2.47e-4;
   rig.noise_sd_m *= 8.0;
   rig.campaign.considered.sizes["coulomb_friction"] = 200.0;
