@@ -722,34 +722,33 @@ VectorXd unexplained_moves(const Problem& problem, const std::vector<ScoreRows>&
   return squares.cwiseSqrt();
 }
 
-/// Returns the upper end of the interval of a value that cannot be zero, if what the effects do to
-/// it is proportional to the value. Such a value is known up to a factor.
+/// Returns the upper end of the interval of a value that cannot be zero, if its logarithm is linear
+/// in the effects. Such a value is known up to a factor.
 ///
-/// @param most  largest shift that is linear about the estimate, SI
-double end_in_proportion(const FittedParameter& parameter, const Budget95& budget, double most) {
-  const double share = budget.expanded / parameter.value;
-  const double shifted = parameter.value * std::exp(most / parameter.value);
+/// @param shift  largest shift of the value that the effects cause to first order, SI
+double end_in_proportion(const FittedParameter& parameter, const Budget95& budget, double shift) {
+  const double shifted = parameter.value * std::exp(shift / parameter.value);
   const double refitted = parameter.averaged ? parameter.averaged->value : 0.0;
-  return std::max(shifted, refitted) * std::exp(share);
+  return std::max(shifted, refitted) * std::exp(budget.expanded / parameter.value);
 }
 
 /// Widens the interval of an estimate. It is not known which effects are present, so the interval
 /// covers the estimate, the estimate shifted by the mean sizes of the effects, the estimate shifted
 /// by their likeliest sizes, and, if the residuals indicate an effect, the averaged estimate, each
-/// plus or minus the expanded uncertainty. The averaged estimate has it, too, because the refitted
-/// models contain a few effects and lack all others.
+/// plus or minus the expanded uncertainty. This applies to the averaged estimate, too, because the
+/// refitted models contain a few effects and lack all others.
 ///
-/// Beyond a fifth of the value it also matters whether the value itself or its logarithm responds
-/// linearly to the effects. The interval then covers both.
+/// If the interval extends beyond a fifth of the value, it matters whether the value or its
+/// logarithm is linear in the effects. The interval then covers both cases.
 ///
 /// @param likeliest  shift due to the likeliest sizes, SI
 void widen(const Problem& problem, std::size_t unknown, Budget95 budget, double likeliest,
            FittedParameter& parameter) {
   const model::ParameterSpec& spec = problem.spec(unknown);
   auto& [low, high] = *parameter.ci95;
-  const double most = std::max({0.0, budget.shift, likeliest});
+  const double shift = std::max({0.0, budget.shift, likeliest});
   low = std::min(low, parameter.value + std::min({0.0, budget.shift, likeliest}) - budget.expanded);
-  high = std::max(high, parameter.value + most + budget.expanded);
+  high = std::max(high, parameter.value + shift + budget.expanded);
   if (parameter.averaged) {
     const AveragedEstimate& averaged = *parameter.averaged;
     const double half = std::max(budget.expanded, budget.coverage_factor * averaged.standard_error);
@@ -758,8 +757,9 @@ void widen(const Problem& problem, std::size_t unknown, Budget95 budget, double 
   }
   if (spec.lower > 0.0 && budget.contribution("effect") > 0.0 &&
       high - parameter.value > kWeak * parameter.value) {
-    // A factor without limits says no more than the linear end where the parameter has none.
-    const double end = std::min(spec.upper, end_in_proportion(parameter, budget, most));
+    // The factor overflows for a huge uncertainty. If the parameter has no upper limit either, the
+    // linear end stays, because a result needs a finite number.
+    const double end = std::min(spec.upper, end_in_proportion(parameter, budget, shift));
     if (std::isfinite(end)) high = std::max(high, end);
   }
   low = std::max(spec.lower, low);

@@ -284,7 +284,6 @@ Overrides read_overrides(const TomlNode& table, model::PlantKind plant, Paramete
 namespace {
 
 std::optional<ParameterConflict> find_supply_conflict(const model::ParameterValues& values) {
-  if (model::parameter_index(values.plant, "supply_resistance") < 0) return std::nullopt;
   const bool resistance = values.is_given("supply_resistance");
   if (resistance == values.is_given("supply_capacity")) return std::nullopt;
   return ParameterConflict{

@@ -6,8 +6,8 @@
 
 namespace rigcal::model {
 
-/// Space for the parameters of warm oil. Few rigs need it, but every right-hand side has one.
-/// std::optional would clear all of it each time, 7 kB with derivatives.
+/// Space for the parameters at a recorded oil temperature. Every right-hand side provides it, but
+/// few rigs use it. std::optional would clear all of it each time, 7 kB with derivatives.
 template <typename T>
 class WarmParameters {
  public:

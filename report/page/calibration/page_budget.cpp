@@ -175,8 +175,8 @@ void add_budget(const std::vector<StoredParameter>& parameters, doc::Blocks& blo
   blocks.emplace_back(doc::reading(
       "The 95 % interval extends by U beyond the value as it is, beyond value + shift, beyond the "
       "value that the likeliest sizes of the effects would give, and beyond the estimate over the "
-      "models with a missing effect. If that is more than a fifth of a value that cannot be zero, "
-      "the upper end may be further out, at a factor of the value."));
+      "models with a missing effect. If the interval then extends more than a fifth above a value "
+      "that cannot be zero, its upper end is a factor of the value where that is further out."));
   const std::string summary = fmt::format("Contributions one by one ({})", lines.rows.size());
   blocks.emplace_back(doc::Fold{summary, {std::move(lines)}});
 }

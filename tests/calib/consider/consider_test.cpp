@@ -338,7 +338,7 @@ TEST_CASE("considered: the missing effect is refitted, and the estimates with it
 TEST_CASE("considered: an uncertain value that cannot be zero is known up to a factor", "[calib]") {
   SmallRig rig;
   rig.free("damping", 1500.0, 300.0, 6000.0);
-  // Hoses act like softer oil, so that the oil is uncertain.
+  // An uncertain volume acts like softer oil, so the bulk modulus becomes uncertain.
   rig.campaign.considered.sizes["total_volume"] = 0.3 * 2.47e-4;
   rig.noise_sd_m *= 8.0;
   rig.campaign.considered.sizes["coulomb_friction"] = 200.0;
@@ -351,7 +351,7 @@ TEST_CASE("considered: an uncertain value that cannot be zero is known up to a f
   const Budget95& budget = oil.budget.value();
   REQUIRE_FALSE(oil.averaged);
   REQUIRE(budget.expanded > kWeak * oil.value);
-  // The mean size of the hoses shifts further than the likeliest, which is zero.
+  // The mean size of the volume shifts the estimate further than the likeliest size, zero.
   REQUIRE(budget.shift > 0.03 * oil.value);
   CHECK_THAT(oil.ci95->high,
              WithinRel(oil.value * std::exp((budget.shift + budget.expanded) / oil.value), 1e-9));

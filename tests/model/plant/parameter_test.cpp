@@ -120,7 +120,7 @@ TEST_CASE("ParameterValues: set marks as given, missing names what has no value"
   CHECK(values.is_given("mass"));
   CHECK(values["mass"] == 85.0);
   CHECK(values.missing().size() == 12);
-  CHECK_FALSE(values.is_given("lever"));  // only linkages have one
+  CHECK_FALSE(values.is_given("lever"));  // a parameter of linkages only
   CHECK_THROWS_WITH(values.is_given("mas"), Contains("'mas'"));
   CHECK_THROWS_WITH(values.set("mas", 1.0), Contains("'mas'"));
   CHECK_THROWS_AS(values["mas"], std::invalid_argument);
