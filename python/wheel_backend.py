@@ -31,7 +31,7 @@ def _built() -> pathlib.Path:
         tree = str(ROOT / "build" / "wheel")
         subprocess.run(
             ["cmake", "-S", ROOT, "-B", tree, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DRIGCAL_UNITY=ON",
-             "-DRIGCAL_TESTS=OFF", f"-DPython_EXECUTABLE={sys.executable}"], check=True)
+             "-DRIGCAL_TESTS=OFF", "-DRIGCAL_PYTHON_REQUIRED=ON", f"-DPython_EXECUTABLE={sys.executable}"], check=True)
         subprocess.run(["cmake", "--build", tree, "--target", "rigcal_python"], check=True)
     package = pathlib.Path(tree) / "python" / "rigcal"
     if not any(package.glob("_rigcal*.so")):

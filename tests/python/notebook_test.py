@@ -244,3 +244,15 @@ def test_the_wheel(tmp_path: pathlib.Path) -> None:
     told = subprocess.run([sys.executable, "-c", "import rigcal; print(rigcal.__file__, rigcal.__revision__)"], check=True,
                           capture_output=True, text=True, env=os.environ | {"PYTHONPATH": str(tmp_path / "site")}).stdout
     assert told.split() == [str(tmp_path / "site" / "rigcal" / "__init__.py"), rigcal.__revision__]
+
+
+def test_a_python_that_the_wheel_cannot_be_made_for_is_named(tmp_path: pathlib.Path) -> None:
+    source = pathlib.Path(__file__).resolve().parent.parent.parent
+    subprocess.run([sys.executable, "-m", "venv", "--without-pip", tmp_path / "other"], check=True)
+    other = tmp_path / "other" / "bin" / "python3"  # has no NumPy
+    script = "import sys; sys.path.insert(0, 'python'); import wheel_backend; wheel_backend.build_wheel('.')"
+    done = subprocess.run([other, "-c", script], cwd=source, capture_output=True, text=True, check=False,
+                          env={key: value for key, value in os.environ.items() if key not in ("PYTHONPATH", "RIGCAL_BUILD")})
+    assert done.returncode != 0
+    assert f"no module for {other}" in " ".join(done.stderr.split())
+    assert "scripts/setup --dev" in done.stderr
