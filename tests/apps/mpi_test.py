@@ -86,14 +86,16 @@ class Processes(unittest.TestCase):
                 self.assertLess(time.monotonic(), deadline, "nothing was kept")
                 self.assertIsNone(group.poll(), "it ended before anything was kept")
                 time.sleep(0.002)
-            # The leader is paused meanwhile, so that a slow test cannot come too late.
-            leader, other = (process_of(rank, group.pid) for rank in (0, 1))
+            # The leader is paused first of all, and mpirun wakes it up itself to end it: neither a slow test nor a slow
+            # mpirun leaves it the time to finish.
+            leader = process_of(0, group.pid)
             os.kill(leader, signal.SIGSTOP)
             self.assertTrue(kept.exists(), "it ended before a process was killed")
-            os.kill(other, signal.SIGKILL)
-            os.kill(leader, signal.SIGCONT)
+            os.kill(process_of(1, group.pid), signal.SIGKILL)
             self.assertNotIn(group.wait(60), (0, self.code))
-        self.assertFalse((out / "fit.json").exists())
+        # mpirun gives the leader a second. It may write the best so far, as after any signal, but not as if it were all.
+        if (out / "fit.json").exists():
+            self.assertIn("stopped_in", json.loads((out / "fit.json").read_text()))
         before = kept.stat().st_size
         self.assertGreater(before, 0)
         done = run(2, *arguments, "--resume")
