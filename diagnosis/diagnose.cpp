@@ -270,10 +270,10 @@ void estimate(const LeakProblem& problem, const RigFit& rig, const Prepared& pre
 /// Finds the largest limits of the healthy records of a signal, separately for averages and for
 /// single repeats.
 void take_limits(const SignalRecords& records,
-                 std::optional<DetectionLimit> RecordDiagnosis::*limit, bool others,
+                 std::optional<DetectionLimit> RecordDiagnosis::*limit,
                  std::optional<DetectionLimit>& averaged, std::optional<DetectionLimit>& single) {
   for (const RecordDiagnosis* each : records.healthy) {
-    if (!each->fit.ok() || !(each->*limit) || (others && each->is_reference)) continue;
+    if (!each->fit.ok() || !(each->*limit)) continue;
     keep_larger(*(each->*limit), each->repeat ? single : averaged);
   }
 }
@@ -284,21 +284,15 @@ SignalDiagnosis limits_of(const SignalRecords& records, const SignalErrors& erro
   result.signal = signal;
   result.errors = errors;
   result.of_another_day = of_another_day;
-  // A healthy average that is not its own reference is better evidence than one that is.
-  const auto is_other = [](const RecordDiagnosis* each) {
-    return !each->repeat && !each->is_reference && each->smallest_leak.has_value();
-  };
-  const bool others = std::any_of(records.healthy.begin(), records.healthy.end(), is_other);
   for (const RecordDiagnosis* each : records.healthy) {
-    if (!each->repeat && each->smallest_leak && !(others && each->is_reference))
-      result.repeats = each->repeats;
+    if (!each->repeat && each->smallest_leak) result.repeats = each->repeats;
   }
-  take_limits(records, &RecordDiagnosis::smallest_leak, others, result.smallest_leak_same_day,
+  take_limits(records, &RecordDiagnosis::smallest_leak, result.smallest_leak_same_day,
               result.smallest_single_leak_same_day);
   take_limits(records,
               of_another_day ? &RecordDiagnosis::smallest_leak_of_another_day
                              : &RecordDiagnosis::smallest_leak,
-              others, result.smallest_leak, result.smallest_single_leak);
+              result.smallest_leak, result.smallest_single_leak);
   if (records.healthy.empty()) {
     result.reason = "no healthy record of this signal";
   } else if (!result.smallest_leak) {

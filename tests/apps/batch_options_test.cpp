@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -15,6 +16,14 @@ json batch_in(const CommandFolder& folder, const std::string& out) {
   return json::parse(folder.read(out + "/batch.json"));
 }
 
+/// Runs a batch with --resume, and returns the row of its first rig.
+json resumed_row(const CommandFolder& folder, const CommandFolder::Arguments& options) {
+  CommandFolder::Arguments batch{"batch", "twin", "--out", "out", "--resume", "--force", "--quiet"};
+  batch.insert(batch.end(), options.begin(), options.end());
+  folder.run(batch);
+  return batch_in(folder, "out")["rigs"][0];
+}
+
 }  // namespace
 
 TEST_CASE("batch: every folder with a campaign is a rig, but for those among the results",
@@ -29,6 +38,7 @@ TEST_CASE("batch: every folder with a campaign is a rig, but for those among the
   const Outcome outcome = folder.run({"batch", "lab", "--out", "lab/out", "--quiet"});
   CHECK(outcome.exit_code == 2);
   CHECK(outcome.out.empty());
+  CHECK(outcome.err.empty());
   const json batch = batch_in(folder, "lab/out");
   CHECK(batch["exit_code"] == 2);
   std::vector<std::string> rigs;
@@ -37,7 +47,8 @@ TEST_CASE("batch: every folder with a campaign is a rig, but for those among the
     CHECK(row["exit_code"] == 2);
     CHECK(row["status"].is_null());
     CHECK(row["unchanged"] == false);
-    CHECK_THAT(row["message"].get<std::string>(), Contains("campaign.toml"));
+    CHECK_THAT(row["message"].get<std::string>(),
+               Contains("campaign.toml") && !Contains("rigcal: "));
   }
   CHECK(rigs == std::vector<std::string>{"a/deep", "lab", "z"});
 }
@@ -58,6 +69,44 @@ TEST_CASE("batch: the options of a fit reach every rig, and its exit code comes 
   const json fit = json::parse(folder.read("out/twin/fit.json"));
   CHECK(fit["starts"].size() == 2);
   CHECK(fit["provenance"]["seed"] == 9);
+}
+
+TEST_CASE("batch: --resume keeps a result of the same seed whose files are as written", "[apps]") {
+  const CommandFolder folder;
+  REQUIRE(write_twin(folder).exit_code == 0);
+  CHECK(resumed_row(folder, {})["unchanged"] == false);
+  CHECK(resumed_row(folder, {})["unchanged"] == true);
+  CHECK(resumed_row(folder, {"--seed", "9"})["unchanged"] == false);
+  const std::string scores = folder.read("out/twin/scorecard.csv");
+  folder.write("out/twin/scorecard.csv", scores + "edited\n");
+  CHECK(resumed_row(folder, {"--seed", "9"})["unchanged"] == false);
+  CHECK(folder.read("out/twin/scorecard.csv") == scores);
+}
+
+TEST_CASE("batch: --resume goes on with the fit that was stopped, and refuses another", "[apps]") {
+  const CommandFolder folder;
+  REQUIRE(write_twin(folder).exit_code == 0);
+  REQUIRE(resumed_row(folder, {"--starts", "3", "--max-evaluations", "20"})["status"] == "stopped");
+  const json other = resumed_row(folder, {"--starts", "3", "--seed", "9"});
+  CHECK(other["exit_code"] == 2);
+  CHECK_THAT(other["message"].get<std::string>(), Contains("checkpoint of another fit"));
+  CHECK(resumed_row(folder, {"--starts", "3"})["status"] == "converged");
+}
+
+TEST_CASE("batch: an earlier result that cannot be read is told, and the report is linked",
+          "[apps]") {
+  const CommandFolder folder;
+  REQUIRE(write_twin(folder).exit_code == 0);
+  std::filesystem::create_directories(folder.work() / "lab");
+  std::filesystem::rename(folder.work() / "twin", folder.work() / "lab/bench #1");
+  folder.write("earlier/bench #1/fit.json", "{}");
+  REQUIRE(
+      folder.run({"batch", "lab", "--out", "out", "--earlier", "earlier", "--quiet"}).exit_code ==
+      0);
+  CHECK_THAT(batch_in(folder, "out")["rigs"][0]["warnings"].dump(),
+             Contains("left out: earlier/bench #1/fit.json"));
+  // In an address, # would begin the name of a place in the page.
+  CHECK_THAT(folder.read("out/report.html"), Contains("href=\"bench%20%231/report.html\""));
 }
 
 TEST_CASE("batch: with --diagnose what a diagnosis refuses is told as such", "[apps]") {
@@ -111,5 +160,10 @@ TEST_CASE("fit: options that make no sense are refused before any work", "[apps]
   CHECK(folder
             .run({"fit", "campaign.toml", "--out", "out", "--seed", "0", "--max-evaluations", "1",
                   "--threads", "1", "--starts", "1", "--max-time", "60", "--quiet"})
+            .exit_code != 2);
+  // So is the largest seed, 2^64 - 1.
+  CHECK(folder
+            .run({"fit", "campaign.toml", "--out", "out", "--seed", "18446744073709551615",
+                  "--max-evaluations", "1", "--quiet"})
             .exit_code != 2);
 }

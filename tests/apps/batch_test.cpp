@@ -1,9 +1,12 @@
 #include <array>
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <future>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <system_error>
 
 #include "tests/apps/cli_fixture.hpp"
 #include "tests/apps/schema.hpp"
@@ -41,6 +44,17 @@ json batch_of(const CommandFolder& folder, const std::string& out) {
   return json::parse(folder.read(out + "/batch.json"));
 }
 
+/// Returns the process of a fit that works in a folder, or 0 if there is none.
+pid_t fitting_process(const std::filesystem::path& folder) {
+  for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+    if (text_of(entry.path() / "cmdline").rfind(std::string("rigcal\0fit\0", 11), 0) != 0) continue;
+    std::error_code ended;
+    if (std::filesystem::equivalent(entry.path() / "cwd", folder, ended))
+      return std::stoi(entry.path().filename().string());
+  }
+  return 0;
+}
+
 json without_run(json fit) {
   fit.erase("wall_seconds");
   fit["provenance"].erase("command");
@@ -68,6 +82,7 @@ TEST_CASE("batch: every rig as fit fits it, and one overview", "[apps]") {
     const json& row = batch["rigs"][i];
     CHECK(row["rig"] == rig);
     CHECK(row["unchanged"] == false);
+    CHECK(row["seconds"].get<double>() > 0.0);
     folder.run({"fit", "lab_a/" + rig + "/campaign.toml", "--out", "alone", "--quiet"});
     const json alone = json::parse(folder.read("alone/fit.json"));
     const json fit = json::parse(folder.read("out/" + rig + "/fit.json"));
@@ -133,6 +148,7 @@ TEST_CASE("batch: a leak that grows is a significant trend of its rig alone", "[
   CHECK_THAT(outcome.out, Contains("lab/bench_2: leakage_coefficient: +"));
   const json batch = batch_of(folder, "out_4");
   CHECK(violations(batch, "batch") == "");
+  CHECK(batch["provenance"]["inputs"].size() == 12);  // 3 x (the campaign and 3 earlier results)
   for (const json& row : batch["rigs"]) {
     for (const json& trend : row["trends"]) {
       CAPTURE(row["rig"], trend["key"]);
@@ -185,6 +201,37 @@ TEST_CASE("batch: a signal ends it with what is done, and --resume makes the res
   }
   REQUIRE(folder.run({"batch", "lab_a", "--out", "out", "--resume", "--quiet"}).exit_code == 0);
   CHECK(batch_of(folder, "out")["status"] == "done");
+}
+
+TEST_CASE("batch: a signal stops the fit that runs", "[apps]") {
+  const CommandFolder folder;
+  REQUIRE(write_twin(folder).exit_code == 0);
+  const Outcome outcome = folder.run_and_signal_at(
+      {"batch", "twin", "--out", "out", "--bootstrap", "1000000", "--max-time", "30"},
+      "out/twin/checkpoint.tasks", SIGTERM);
+  CHECK(outcome.exit_code == 4);
+  const json row = batch_of(folder, "out")["rigs"][0];
+  CHECK(row["status"] == "stopped");
+  CHECK_THAT(row["message"].get<std::string>(), Contains("on request"));  // not by the time limit
+}
+
+TEST_CASE("batch: a rig whose process is killed has no result, and the row says why", "[apps]") {
+  const CommandFolder folder;
+  REQUIRE(write_twin(folder).exit_code == 0);
+  auto batch = std::async(std::launch::async, [&] {
+    return folder.run(
+        {"batch", "twin", "--out", "out", "--bootstrap", "1000000", "--max-time", "30", "--quiet"});
+  });
+  pid_t fit = 0;
+  while (fit == 0 && batch.wait_for(std::chrono::milliseconds(10)) != std::future_status::ready)
+    fit = fitting_process(folder.work());
+  REQUIRE(fit > 0);
+  ::kill(fit, SIGKILL);
+  CHECK(batch.get().exit_code == 5);
+  const json row = batch_of(folder, "out")["rigs"][0];
+  CHECK(row["exit_code"] == 5);
+  CHECK(row["status"].is_null());
+  CHECK_THAT(row["message"].get<std::string>(), Contains("signal 9"));
 }
 
 TEST_CASE("batch: what it refuses", "[apps]") {

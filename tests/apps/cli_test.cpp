@@ -309,6 +309,16 @@ json reproducible(const CommandFolder& folder, const std::string& file) {
   return result;
 }
 
+/// Adds forty conditions whose simulation takes many seconds.
+std::string with_long_conditions(std::string campaign) {
+  for (int i = 0; i < 40; ++i) {
+    campaign += "\n[[condition]]\nid = \"fast_" + std::to_string(i) +
+                "\"\nwaveform = \"square\"\nfrequency = \"99999 Hz\"\namplitude = \"4 mm\"\n"
+                "leak_level = \"none\"\nuse = \"validate\"\nrepeats = [\"records/square_*.csv\"]\n";
+  }
+  return campaign;
+}
+
 const Edits kNoRecords{
     {"use = \"fit\"", "use = \"fit\"\nduration = \"1 s\"\nsample_rate = \"100 Hz\""},
     {"repeats = [\"records/sine_*.csv\"]\n", ""},
@@ -405,6 +415,17 @@ TEST_CASE("rigcal: standard output that is full is an error", "[apps]") {
   const Outcome outcome = folder.run({"params"}, "/dev/full");
   CHECK(outcome.exit_code == 5);
   CHECK_THAT(outcome.err, Contains("standard output"));
+  // A short text fits into the buffer of the stream, and fails only when that is flushed.
+  REQUIRE(folder.run({"schema", "campaign", "--table", "fit"}).out.size() < 4000);
+  CHECK(folder.run({"schema", "campaign", "--table", "fit"}, "/dev/full").exit_code == 5);
+}
+
+TEST_CASE("rigcal: a result records the command so that a shell reads it back", "[apps]") {
+  const CommandFolder folder;
+  write_campaign(folder);
+  folder.run({"validate", "campaign.toml", "--set", "mass=60 kg", "--out", "it's", "--quiet"});
+  CHECK(json::parse(folder.read("it's/validation.json"))["provenance"]["command"] ==
+        "rigcal validate campaign.toml --set 'mass=60 kg' --out 'it'\\''s' --quiet");
 }
 
 TEST_CASE("rigcal: a result never replaces what it was made from", "[apps]") {
@@ -526,6 +547,33 @@ TEST_CASE("simulate: runs without records", "[apps]") {
   const std::string csv = folder.read("out/sine.csv");
   CHECK_THAT(csv, StartsWith("time_s,reference_m,position_m,velocity_m_per_s,"));
   CHECK(std::count(csv.begin(), csv.end(), '\n') == 102);  // header, and both ends of 1 s
+}
+
+TEST_CASE("simulate: --set changes a value as the campaign file would", "[apps]") {
+  const CommandFolder folder;
+  const std::string campaign = edited(kCampaign, kNoRecords);
+  folder.write("campaign.toml", campaign);
+  folder.write("changed.toml", replaced(campaign, "\"60 kg\"", "\"90 kg\""));
+  const auto simulated = [&](const CommandFolder::Arguments& arguments) {
+    CommandFolder::Arguments all{"simulate", "--out", "out", "--quiet"};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    CHECK(folder.run(all).exit_code == 0);
+    return folder.read("out/sine.csv");
+  };
+  const std::string set = simulated({"campaign.toml", "--set", "mass=90 kg"});
+  CHECK(set == simulated({"changed.toml"}));
+  CHECK(set != simulated({"campaign.toml"}));
+}
+
+TEST_CASE("simulate: a signal ends it as stopped, and leaves no empty folder", "[apps]") {
+  const CommandFolder folder;
+  write_campaign(folder);
+  folder.write("campaign.toml", with_long_conditions(kCampaign));
+  // The folder is made just before the simulations, which take many seconds.
+  const Outcome outcome =
+      folder.run_and_signal_at({"simulate", "campaign.toml", "--out", "out"}, "out", SIGTERM);
+  CHECK(outcome.exit_code == 4);
+  CHECK_FALSE(folder.has("out"));
 }
 
 TEST_CASE("simulate: what fails says so at its top, the others are written", "[apps]") {
@@ -684,13 +732,7 @@ TEST_CASE("validate: a signal ends the scoring of conditions that are long to si
   const CommandFolder folder;
   REQUIRE(write_twin(folder).exit_code == 0);
   REQUIRE(folder.run({"fit", "twin/campaign.toml", "--out", "one", "--quiet"}).exit_code == 0);
-  std::string campaign = folder.read("twin/campaign.toml");
-  for (int i = 0; i < 40; ++i) {
-    campaign += "\n[[condition]]\nid = \"fast_" + std::to_string(i) +
-                "\"\nwaveform = \"square\"\nfrequency = \"99999 Hz\"\namplitude = \"4 mm\"\n"
-                "leak_level = \"none\"\nuse = \"validate\"\nrepeats = [\"records/square_*.csv\"]\n";
-  }
-  folder.write("twin/campaign.toml", campaign);
+  folder.write("twin/campaign.toml", with_long_conditions(folder.read("twin/campaign.toml")));
   // The folder is made just before the simulations, which take many seconds.
   const Outcome outcome = folder.run_and_signal_at(
       {"validate", "twin/campaign.toml", "--fit", "one/fit.json", "--out", "out"}, "out", SIGTERM);

@@ -78,7 +78,7 @@ Fmu exported(const CommandFolder& folder, CommandFolder::Arguments more = {}) {
   REQUIRE(outcome.exit_code == 0);
   for (const auto& entry : std::filesystem::directory_iterator(folder.work() / "fmu")) {
     if (entry.path().extension() != ".fmu") continue;
-    const auto to = folder.work() / "unpacked" / entry.path().stem();
+    const auto to = folder.work() / "unpacked f\u00fcr 1" / entry.path().stem();
     unzip(entry.path(), to);
     return Fmu(to);
   }
@@ -356,6 +356,26 @@ TEST_CASE("export: instances are apart, and go back to what they were", "[apps]"
   CHECK(one.get("position") == -other.get("position"));
 }
 
+TEST_CASE("export: without a tolerance of the importer, an FMU has the campaign's", "[apps]") {
+  const CommandFolder folder;
+  folder.write("campaign.toml", edited(kCampaign, kGeneratedRuns));
+  const Fmu fmu = exported(folder);
+  const FmuLibrary library(fmu.library());
+  const auto position_with = [&](fmi2Boolean defined, double tolerance) {
+    FmuRun run(fmu, library, fmi2CoSimulation);
+    run.require(
+        RIGCAL_FMI2(library, fmi2SetupExperiment)(run.component, defined, tolerance, 0.0, 0, 0.0));
+    run.require(RIGCAL_FMI2(library, fmi2EnterInitializationMode)(run.component));
+    run.require(RIGCAL_FMI2(library, fmi2ExitInitializationMode)(run.component));
+    run.require(run.set("reference", 0.004));
+    run.require(run.step(0.0, 0.1));
+    return run.get("position");
+  };
+  // An importer that defines none passes zero, which would be refused as a tolerance.
+  CHECK(position_with(fmi2False, 0.0) == position_with(fmi2True, kTolerance));
+  CHECK(position_with(fmi2False, 0.0) != position_with(fmi2True, 1e-3));
+}
+
 TEST_CASE("export: an FMU says in words what it refuses", "[apps]") {
   const CommandFolder folder;
   folder.write("campaign.toml", edited(kCampaign, kGeneratedRuns));
@@ -387,6 +407,11 @@ TEST_CASE("export: an FMU says in words what it refuses", "[apps]") {
   CHECK(RIGCAL_FMI2(library, fmi2SetReal)(run.component, &largest, 1, &value) == fmi2Error);
   CHECK_THAT(run.messages(), Contains("2147483648: no input or parameter has it"));
   CHECK(run.step(0.0, 0.01) == fmi2OK);
+  const auto real_status = RIGCAL_FMI2(library, fmi2GetRealStatus);
+  CHECK(real_status(run.component, fmi2LastSuccessfulTime, &value) == fmi2OK);
+  CHECK(value == 0.01);
+  CHECK(real_status(run.component, fmi2Terminated, &value) == fmi2Error);
+  CHECK_THAT(run.messages(), Contains("fmi2GetRealStatus: expected fmi2LastSuccessfulTime"));
 
   FmuRun exchange(fmu, library, fmi2ModelExchange);
   exchange.initialize(0.0, 1e-6);

@@ -64,6 +64,8 @@ TEST_CASE("init: a draft that check accepts once its blanks are filled", "[apps]
   REQUIRE(made.exit_code == 0);
   CHECK_THAT(made.out, Contains("new/campaign.toml") && Contains("blanks marked \"FILL IN\""));
   const std::string draft = folder.read("new/campaign.toml");
+  // kValues fills every blank; "FILL IN" in the header is none.
+  CHECK_THAT(made.out, Contains("\n" + std::to_string(kValues.size()) + " blanks marked"));
   CHECK_THAT(draft, StartsWith("#:schema ./campaign.schema.json\n"));
   CHECK(folder.read("new/campaign.schema.json") == folder.run({"schema", "campaign"}).out);
   CHECK_THAT(draft, Contains("frequency = \"2 Hz\"") && Contains("amplitude = \"5 mm\"") &&

@@ -97,6 +97,25 @@ class Hdf5Writer {
     H5Pclose(plan);
   }
 
+  /// Writes a matrix of doubles, each column a chunk of its own, of which only the first is
+  /// written.
+  void first_column(const std::string& path, const std::vector<double>& values,
+                    hsize_t columns) const {
+    const std::vector<hsize_t> column{values.size(), 1};
+    const std::vector<hsize_t> start{0, 0};
+    const hid_t plan = checked(H5Pcreate(H5P_DATASET_CREATE));
+    H5Pset_chunk(plan, 2, column.data());
+    const hid_t set = dataset(path, {values.size(), columns}, H5T_IEEE_F64LE, plan);
+    const hid_t space = checked(H5Dget_space(set));
+    H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, column.data(), nullptr);
+    const hid_t memory = checked(H5Screate_simple(2, column.data(), nullptr));
+    checked(H5Dwrite(set, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, values.data()));
+    H5Sclose(memory);
+    H5Sclose(space);
+    H5Dclose(set);
+    H5Pclose(plan);
+  }
+
   /// Creates a dataset with this type and shape, but writes nothing into it.
   void unwritten(const std::string& path, std::vector<hsize_t> shape, hid_t type) const {
     H5Dclose(dataset(path, shape, type, H5P_DEFAULT));

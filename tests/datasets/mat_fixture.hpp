@@ -49,14 +49,16 @@ inline matvar_t* mat_text(const std::string& name, const std::string& text) {
                        const_cast<char*>(text.data()), 0);
 }
 
-/// Creates a struct array: one list of fields per element, all with the same names.
+/// Creates a struct array: one list of fields per element, all with the same names; a row if no
+/// shape is given.
 inline matvar_t* mat_struct(const std::string& name,
-                            const std::vector<std::vector<matvar_t*>>& elements) {
+                            const std::vector<std::vector<matvar_t*>>& elements,
+                            std::vector<std::size_t> dims = {}) {
   std::vector<const char*> names;
   for (const matvar_t* field : elements.front()) names.push_back(field->name);
-  std::vector<std::size_t> dims{1, elements.size()};
-  matvar_t* result = Mat_VarCreateStruct(name.c_str(), 2, dims.data(), names.data(),
-                                         static_cast<unsigned>(names.size()));
+  if (dims.empty()) dims = {1, elements.size()};
+  matvar_t* result = Mat_VarCreateStruct(name.c_str(), static_cast<int>(dims.size()), dims.data(),
+                                         names.data(), static_cast<unsigned>(names.size()));
   for (std::size_t k = 0; k < elements.size(); ++k)
     for (matvar_t* field : elements[k]) Mat_VarSetStructFieldByName(result, field->name, k, field);
   return result;

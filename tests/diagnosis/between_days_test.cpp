@@ -113,6 +113,17 @@ TEST_CASE("in_words: what was taken of the days, or that nothing was", "[diagnos
   CHECK_THAT(diagnosis::in_words(between, {"2026-01-02"}), Contains("counts as a leak"));
 }
 
+TEST_CASE("in_words: each size in the unit of its quantity", "[diagnosis]") {
+  BetweenDays between = days({});
+  between.quantities = {{"supply_pressure", "supply", "Pa", 2e6, "", 0},
+                        {"position_offset", "position", "m", 2e-5, "", 0},
+                        {"trigger", "start", "s", 5e-4, "", -1},
+                        {"oil_temperature", "oil", "K", 3.0, "", 0}};
+  CHECK_THAT(diagnosis::in_words(between, {"2026-01-02"}),
+             Contains("supply 2 MPa") && Contains("position 0.02 mm") && Contains("start 0.5 ms") &&
+                 Contains("oil 3 K"));
+}
+
 TEST_CASE("pooled_leak: the day of a state does not average out", "[diagnosis]") {
   diagnosis::StateMember member;
   member.coefficient = 1.0;
@@ -141,7 +152,7 @@ TEST_CASE("pooled_leak: the day of a state does not average out", "[diagnosis]")
 
 TEST_CASE("leak_trends: each date has a day of its own, and all share the reference's",
           "[diagnosis]") {
-  const auto trend_with = [](bool own_days) {
+  const auto trend_with = [](bool own_days, double days_factor) {
     std::vector<diagnosis::MachineState> states;
     for (int i = 0; i < 4; ++i) {
       diagnosis::MachineState& state = states.emplace_back();
@@ -156,12 +167,22 @@ TEST_CASE("leak_trends: each date has a day of its own, and all share the refere
       if (own_days) state.pooled.day_moves(1 + i) = 0.1;
       state.share_slope = 0.2;
     }
-    const auto trends = diagnosis::leak_trends(states, Eigen::MatrixXd::Zero(0, 0), {}, 1.0);
+    const auto trends =
+        diagnosis::leak_trends(states, Eigen::MatrixXd::Zero(0, 0), {}, days_factor);
     REQUIRE(trends.size() == 1);
     return trends.front();
   };
-  CHECK(trend_with(false).significant);
-  CHECK_FALSE(trend_with(true).significant);
+  CHECK(trend_with(false, 1.0).significant);
+  CHECK_FALSE(trend_with(true, 1.0).significant);
+  // The points are on a line, so the square of the half width grows with the factor on the
+  // variance between days.
+  const auto square_with = [&](double days_factor) {
+    const diagnosis::LeakTrend trend = trend_with(true, days_factor);
+    return std::pow(trend.share_per_day_ci95.high - trend.share_per_day, 2);
+  };
+  CHECK(trend_with(true, 0.0).significant);
+  CHECK_THAT(square_with(4.0) - square_with(0.0),
+             WithinRel(4.0 * (square_with(1.0) - square_with(0.0)), 1e-6));
 }
 
 TEST_CASE("fit_leak: a supply of another day moves the coefficient as it says", "[diagnosis]") {

@@ -130,6 +130,18 @@ TEST_CASE("diagnose: every repeat and average in its class, by the true shares",
   }
 }
 
+TEST_CASE("diagnose: a record that stays undecided counts as one that is not right",
+          "[diagnosis]") {
+  Campaign campaign = small_campaign();
+  campaign.conditions.resize(1);
+  campaign.diagnosis.least_probability = 1.0 + 1e-9;
+  const Diagnosis found =
+      diagnosis::diagnose(campaign, records_of(campaign), known_rig(campaign), {});
+  CHECK(found.single.records == 3);
+  CHECK(found.single.undecided == 3);
+  CHECK(found.single.right == 0);
+}
+
 TEST_CASE("diagnose: a coefficient of the leak table has the table's share", "[diagnosis]") {
   // The record has two periods from rest. The first is a transient, so the share in the record
   // would differ.

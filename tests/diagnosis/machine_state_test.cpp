@@ -72,6 +72,12 @@ TEST_CASE("pooled_leak: members that disagree widen the interval by Birge's rati
   CHECK_THAT(pooled.p, WithinRel(std::exp(-9.0), 1e-9));
   CHECK_THAT(pooled.widened, WithinRel(3.0, 1e-9));
   CHECK_THAT(pooled.error.own_se, WithinRel(0.3 / std::sqrt(3.0), 1e-9));
+  // An error of the rig that moves all members alike explains none of it, and is widened as well.
+  const auto unsure = diagnosis::pooled_leak(
+      {member(0.7, 0.1, 1e6, 1.0), member(1.0, 0.1, 1e6, 1.0), member(1.3, 0.1, 1e6, 1.0)},
+      Eigen::MatrixXd::Constant(1, 1, 0.01));
+  CHECK_THAT(unsure.widened, WithinRel(3.0, 1e-9));
+  CHECK_THAT(unsure.error.rig_se, WithinRel(3.0 * 0.1, 1e-9));
   CHECK(diagnosis::pooled_leak({member(0.7, 0.1)}, kExactRig).p == 1.0);
   CHECK_THROWS_AS(diagnosis::pooled_leak({}, kExactRig), std::invalid_argument);
   CHECK_THROWS_AS(diagnosis::pooled_leak({member(0.7, 0.0)}, kExactRig), std::invalid_argument);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "common/error.hpp"
 #include "diagnosis/signal_name.hpp"
@@ -75,6 +76,23 @@ TEST_CASE("machine_states: one state of all signals, at the slowest sine", "[dia
   CHECK(state.share_slope > 0.0);
   REQUIRE(state.leak_class);
   CHECK(*state.leak_class == state.estimate.most_probable);
+}
+
+TEST_CASE("machine_states: members that disagree widen the share's whole interval", "[diagnosis]") {
+  // The error of the valve gain changes the share at the duty, whatever the coefficient.
+  TwoSines scene;
+  for (RecordDiagnosis& each : scene.found) each.fit.white_se = 0.001;
+  const auto width = [](const MachineState& state) {
+    return state.estimate.share_ci95.high - state.estimate.share_ci95.low;
+  };
+  const MachineState agreed = scene.only_state();
+  // Two standard errors below and above their mean: Birge's ratio is the root of 8.
+  scene.found[0].fit.coefficient -= 0.002;
+  scene.found[1].fit.coefficient += 0.002;
+  const MachineState torn = scene.only_state();
+  CHECK(agreed.pooled.widened == 1.0);
+  CHECK_THAT(torn.pooled.widened, WithinRel(std::sqrt(8.0), 1e-9));
+  CHECK_THAT(width(torn), WithinRel(std::sqrt(8.0) * width(agreed), 0.02));
 }
 
 TEST_CASE("machine_states: the campaign's duty", "[diagnosis]") {

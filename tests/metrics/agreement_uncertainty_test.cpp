@@ -164,6 +164,23 @@ TEST_CASE("agreement_uncertainty: a sensor's gain and offset", "[metrics]") {
              WithinRel(std::hypot(gain->one_sided.rmse, offset->one_sided.rmse), 1e-6));
 }
 
+TEST_CASE("agreement_uncertainty: what the sensor adds to few repeats adds to their freedom",
+          "[metrics]") {
+  // Each of three repeats is the truth plus an offset. The sensor's offset is as uncertain as their
+  // mean, so the 2 degrees of freedom count four times (Welch and Satterthwaite).
+  const std::vector<double> truth = sine(300, 1.0);
+  Repeats repeats{truth, {}};
+  for (double& y : repeats.mean) y += 0.12;
+  for (const double deviation : {-0.02, 0.0, 0.02})
+    repeats.deviations.emplace_back(truth.size(), deviation);
+  MeasuredMean with = measured(repeats);
+  with.offset_sd = 0.02 / std::sqrt(3.0);
+  const auto found = agreement_uncertainty(with, truth);
+  REQUIRE(found.has_value());
+  // 97.5 % quantile of t with 8 degrees of freedom, as printed in tables.
+  CHECK_THAT(found->one_sided.rmse, WithinRel(2.306004135 * std::sqrt(2.0) * with.offset_sd, 1e-7));
+}
+
 TEST_CASE("agreement_uncertainty: a sensor's gain may be too low as well as too high",
           "[metrics]") {
   const std::vector<double> truth = sine(300, 1.0);

@@ -148,33 +148,45 @@ TEST_CASE("periodic_response: one period tells no scatter", "[metrics]") {
 
 TEST_CASE("periodic_response: 95 % intervals hold the truth about as often", "[metrics]") {
   const double f = 2.0;
-  const Values t = even_times(3500, 1e-3);  // seven periods, six of which count
-  const std::vector<Tone> tone{{1.0, f, 0.0}};
-  const Values u =
-      values_at(t, [&](double time) { return std::sin(2.0 * std::numbers::pi * f * time); });
-  const Values y = through_lag(t, tone, 0.05);
   const std::complex<double> h = lag(f, 0.05);
   constexpr int kRecords = 400;
-  int gains = 0;
-  int phases = 0;
-  for (unsigned seed = 0; seed < kRecords; ++seed) {
-    const auto points = periodic_response(t, u, with_noise(y, 0.5, seed), f);
-    REQUIRE(points.size() == 1);
-    REQUIRE(points[0].interval.has_value());
-    gains +=
-        points[0].interval->gain_low <= std::abs(h) && std::abs(h) <= points[0].interval->gain_high
-            ? 1
-            : 0;
-    phases += std::abs(points[0].phase_deg - std::arg(h) * 180.0 / std::numbers::pi) <=
-                      points[0].interval->phase_half_deg
-                  ? 1
-                  : 0;
+  for (const std::size_t periods : {3U, 7U}) {  // the first one does not count
+    CAPTURE(periods);
+    const Values t = even_times(500 * periods, 1e-3);
+    const std::vector<Tone> tone{{1.0, f, 0.0}};
+    const Values u =
+        values_at(t, [&](double time) { return std::sin(2.0 * std::numbers::pi * f * time); });
+    const Values y = through_lag(t, tone, 0.05);
+    int gains = 0;
+    int phases = 0;
+    for (unsigned seed = 0; seed < kRecords; ++seed) {
+      const auto points = periodic_response(t, u, with_noise(y, 0.5, seed), f);
+      REQUIRE(points.size() == 1);
+      REQUIRE(points[0].interval.has_value());
+      const auto& interval = *points[0].interval;
+      const double off_deg = points[0].phase_deg - std::arg(h) * 180.0 / std::numbers::pi;
+      gains += interval.gain_low <= std::abs(h) && std::abs(h) <= interval.gain_high ? 1 : 0;
+      phases += std::abs(off_deg) <= interval.phase_half_deg ? 1 : 0;
+    }
+    // The expected number is 380, with a binomial standard deviation of 4.4.
+    CHECK(gains > 362);
+    CHECK(gains < 396);
+    CHECK(phases > 362);
+    CHECK(phases < 396);
   }
-  // The expected number is 380, with a binomial standard deviation of 4.4.
-  CHECK(gains > 362);
-  CHECK(gains < 396);
-  CHECK(phases > 362);
-  CHECK(phases < 396);
+}
+
+TEST_CASE("periodic_response: no harmonic with fewer than four samples per cycle", "[metrics]") {
+  // A square wave of 16 samples per period, whose fifth harmonic has 3.2.
+  Values t, u;
+  for (int i = 0; i < 64; ++i) {
+    t.push_back(i / 16.0);
+    u.push_back(i % 16 < 8 ? 1.0 : -1.0);
+  }
+  const auto points = periodic_response(t, u, u, 1.0);
+  REQUIRE(points.size() == 2);
+  CHECK(points[0].frequency_hz == 1.0);
+  CHECK(points[1].frequency_hz == 3.0);
 }
 
 TEST_CASE("periodic_response: what the drive does not cause has no coherence", "[metrics]") {
@@ -240,6 +252,34 @@ TEST_CASE("broadband_response: a sweep through a pure delay, with drift", "[metr
   CHECK(within > 6);
   // Beyond the end of the sweep, the drive has no power.
   CHECK(points.back().frequency_hz < 100.0);
+}
+
+TEST_CASE("broadband_response: drift changes no point, not even at the lowest lines", "[metrics]") {
+  const double step_s = 2e-3;
+  const Values t = even_times(1001, step_s);
+  const Values u = with_noise(Values(t.size(), 0.0), 1.0, 5);
+  Values y = with_noise(u, 0.1, 6);
+  const auto still = broadband_response(step_s, u, y);
+  for (std::size_t i = 0; i < y.size(); ++i) y[i] += 50.0 * t[i];
+  const auto drifting = broadband_response(step_s, u, y);
+  REQUIRE(still.size() > 12);
+  REQUIRE(drifting.size() == still.size());
+  for (std::size_t i = 0; i < still.size(); ++i) {
+    CAPTURE(still[i].frequency_hz);
+    CHECK_THAT(drifting[i].gain, WithinRel(still[i].gain, 1e-8));
+    CHECK_THAT(drifting[i].phase_deg, WithinAbs(still[i].phase_deg, 1e-6));
+    CHECK_THAT(drifting[i].coherence, WithinRel(still[i].coherence, 1e-8));
+  }
+}
+
+TEST_CASE("broadband_response: lines of a tapered record are not quite independent", "[metrics]") {
+  // A taper of a tenth at each end has a mean square of 0.8 + 0.2 * 3/8 and a mean fourth power of
+  // 0.8 + 0.2 * 35/128. The lowest bin has eight lines.
+  const Values u = with_noise(Values(1001, 0.0), 1.0, 3);
+  const auto points = broadband_response(2e-3, u, with_noise(u, 0.1, 4));
+  REQUIRE_FALSE(points.empty());
+  CHECK_THAT(points.front().independent,
+             WithinRel(8.0 * 0.875 * 0.875 / (0.8 + 0.2 * 35.0 / 128.0), 1e-9));
 }
 
 TEST_CASE("broadband_response: intervals widen as coherence falls", "[metrics]") {

@@ -77,6 +77,18 @@ TEST_CASE("residual_tests: a first-order process has its known autocorrelation",
   CHECK_THAT(tests.effective_samples, Catch::WithinRel(20000.0 * 0.05 / 1.95, 0.35));
 }
 
+TEST_CASE("residual_tests: the correlation time is in seconds, and zero for white noise",
+          "[metrics]") {
+  const std::vector<double> coloured = first_order(white(5000, 7), 0.9);
+  const auto time_s = [](const std::vector<double>& residual, double interval_s) {
+    return residual_tests(residual, {}, interval_s).autocorrelation.correlation_time_s;
+  };
+  // 0.9^k falls below a quarter, far above the band for white noise, after 13 samples.
+  CHECK(time_s(coloured, 0.001) > 0.013);
+  CHECK_THAT(time_s(coloured, 0.01), Catch::WithinRel(10.0 * time_s(coloured, 0.001), 1e-12));
+  CHECK(time_s(white(5000, 6), 0.001) == 0.0);
+}
+
 TEST_CASE("residual_tests: what follows the input late is found at its lag", "[metrics]") {
   const std::vector<double> input = first_order(white(4000, 3), 0.5);
   std::vector<double> residual = white(4000, 4);

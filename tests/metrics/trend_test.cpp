@@ -129,6 +129,17 @@ TEST_CASE("trend: an error that all points share is none of the slope", "[metric
   CHECK_THAT(shared.slope, WithinRel(0.1, 1e-9));
 }
 
+TEST_CASE("trend: a common error that differs between points adds to the freedom", "[metrics]") {
+  // It moves each point in proportion to x, so the slope as well: by as much as the errors of the
+  // two ends do. Of twice their variance, their 8 degrees of freedom count four times.
+  const Eigen::Vector3d move(0.0, 1.0, 2.0);
+  const double own = 0.3 * 0.3 / 2.0;
+  const Trend trend = weighted_trend(Values{0, 1, 2}, Values{0, 1, 2}, Errors(3, {0.3, 4.0}),
+                                     own * move * move.transpose());
+  CHECK_THAT(trend.slope_standard_error, WithinRel(0.3, 1e-9));
+  CHECK_THAT(trend.freedom, WithinRel(32.0, 1e-4));
+}
+
 TEST_CASE("trend: of errors that are too far apart there is none", "[metrics]") {
   for (const double size : {1e-160, 1e-170}) {
     CAPTURE(size);

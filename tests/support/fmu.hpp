@@ -83,7 +83,21 @@ class Fmu {
     return description().get<std::string>("CoSimulation.<xmlattr>.modelIdentifier");
   }
   const std::filesystem::path& folder() const { return folder_; }
-  std::string resources() const { return "file://" + (folder_ / "resources").string(); }
+  /// As a URI, in which a blank and every byte beyond ASCII is escaped.
+  std::string resources() const {
+    std::string uri = "file://";
+    for (const char each : (folder_ / "resources").string()) {
+      const auto byte = static_cast<unsigned char>(each);
+      if (byte > ' ' && byte < 0x7f && each != '%') {
+        uri += each;
+      } else {
+        char escaped[4];
+        std::snprintf(escaped, sizeof escaped, "%%%02X", static_cast<unsigned>(byte));
+        uri += escaped;
+      }
+    }
+    return uri;
+  }
   std::filesystem::path library() const {
     return folder_ / "binaries" / "linux64" / (identifier() + ".so");
   }

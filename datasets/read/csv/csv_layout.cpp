@@ -98,7 +98,7 @@ std::optional<CsvLayout> layout_above(std::span<const std::string> lines, std::s
                                       char separator, std::size_t width) {
   const std::size_t above = line_above(lines, data);
   if (above == lines.size()) return std::nullopt;
-  CsvLayout layout{above, data, separator, names_in(lines[above], separator, width), false, {}};
+  CsvLayout layout{above, data, separator, names_in(lines[above], separator, width), false, {}, 0};
   if (layout.names.empty()) return std::nullopt;
   layout.last_may_lack = layout.names.size() > width;
   if (!are_units(layout.names)) return layout;
@@ -112,6 +112,7 @@ std::optional<CsvLayout> layout_above(std::span<const std::string> lines, std::s
       text = text.substr(1, text.size() - 2);
     layout.units.emplace_back(text);
   }
+  layout.units_line = above;
   layout.header = higher;
   layout.names = std::move(names);
   return layout;

@@ -19,6 +19,7 @@ struct CsvLayout {
   std::vector<CsvName> names;
   bool last_may_lack = false;      ///< the last column is a comment that rows may omit
   std::vector<std::string> units;  ///< one per name; empty without a row of units
+  std::size_t units_line = 0;      ///< line that contains the units, if there are any
 };
 
 /// Finds the layout of a text that does not simply begin with its header. Names may follow lines of

@@ -119,7 +119,7 @@ std::optional<Header> unusual_header(HeadedLines& lines, const std::string& file
       file, static_cast<long>(layout->header) + 1, layout->separator, layout->names, layout->units,
       0};
   header.last_may_lack = layout->last_may_lack;
-  if (!header.units.empty()) header.units_line = static_cast<long>(layout->data);
+  if (!header.units.empty()) header.units_line = static_cast<long>(layout->units_line) + 1;
   while (lines.number() < static_cast<long>(layout->data)) lines.next();
   return header;
 }

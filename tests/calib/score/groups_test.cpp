@@ -50,6 +50,11 @@ TEST_CASE("groups: means and the worst by signal, frequency, waveform and leak l
   CHECK(find("signal", "sine 10 Hz").conditions == std::vector<std::string>{"a"});
   CHECK(find("frequency", "1 Hz").conditions == std::vector<std::string>{"b", "c"});
   CHECK(find("frequency", "1 Hz").metrics.at(0).second.conditions == 1);
+  std::vector<std::string> frequencies;
+  for (const calib::Group& group : all) {
+    if (group.by == "frequency") frequencies.push_back(group.label);
+  }
+  CHECK(frequencies == std::vector<std::string>{"1 Hz", "10 Hz"});
   CHECK(find("leak_level", "66 %").conditions == std::vector<std::string>{"a", "b"});
   const calib::GroupScore use = find("use", "fit").metrics.at(0).second;
   CHECK(use.conditions == 2);

@@ -110,4 +110,42 @@ TEST_CASE("bootstrap: the bias is mean of the replicates minus estimate", "[cali
   CHECK_THAT(spread.freedom, WithinRel(40.0, 1e-12));
 }
 
+TEST_CASE("bootstrap: the degrees of freedom of equal conditions add up", "[calib]") {
+  OffsetAlone rig;
+  rig.twin.add("again", datasets::Waveform::sine, 5.0, 0.01);
+  rig.records = rig.twin.records(50, 500.0, 1);
+  rig.found.scatter.push_back(rig.found.scatter[0]);
+  // (v + v)^2 / (v^2 / 40 + v^2 / 40)
+  CHECK_THAT(rig.draw(20).freedom, WithinRel(80.0, 1e-12));
+}
+
+TEST_CASE("bootstrap: residuals that belong together are drawn together", "[calib]") {
+  OffsetAlone rig;
+  constexpr double kResidual = 1e-3;
+  auto& measured = rig.position().mean;
+  for (std::size_t t = 0; t < 50; ++t) measured[t] += t < 25 ? kResidual : -kResidual;
+  rig.found.scatter[0].noise[0] = {{0.9}, 1.0};
+  REQUIRE(block_length(rig.found.scatter[0].noise[0], 50) == 18);
+  // Of a square wave of +-1 with a period of 50, the sum of 18 samples from a random one on has a
+  // mean square of 169.0, that of 14 samples 123.2. A replicate has two blocks of 18 and one of 14,
+  // so the standard deviation of its mean is sqrt(461.2) / 50 = 0.43. Drawn one by one, it is
+  // 1 / sqrt(50) = 0.14.
+  CHECK_THAT(rig.draw(300).standard_error, WithinRel(0.43 * kResidual, 0.2));
+}
+
+TEST_CASE("bootstrap: an interval ends at the limit of its parameter", "[calib]") {
+  OffsetAlone rig;
+  rig.twin.setting("position_offset").fit = false;
+  rig.twin.free("leakage_coefficient", 0.002, 0.0, 2.0);
+  rig.twin.truth = rig.twin.campaign;
+  rig.twin.noise_sd_m = 5e-4;
+  rig.records = rig.twin.records(50, 500.0, 1);
+  rig.fit.parameters[0].value = 0.002;
+  // The noise is so large that many replicates find no leak. Widened by t for 40 degrees of freedom
+  // over the normal quantile, their distance from the estimate would lead below zero.
+  const BootstrapSpread spread = rig.draw(40);
+  CHECK(spread.standard_error > 0.002);
+  CHECK(spread.ci95->low == 0.0);
+}
+
 }  // namespace rigcal::calib

@@ -20,6 +20,20 @@ using Catch::WithinRel;
 using datasets::Scope;
 using datasets::Waveform;
 
+/// Returns the estimates of a fit as a place in the unit box.
+std::vector<double> place_of(const Problem& problem, const Fit& found) {
+  std::vector<double> z;
+  for (std::size_t j = 0; j < problem.map.unknowns().size(); ++j)
+    z.push_back(problem.map.to_unit(static_cast<int>(j), found.parameters[j].value));
+  return z;
+}
+
+void without_errors(FittedParameter& parameter) {
+  parameter.ci95_if_exact.reset();
+  parameter.standard_error.reset();
+  parameter.robust_standard_error.reset();
+}
+
 }  // namespace
 
 TEST_CASE("profile: where the cost is all but quadratic it ends where the interval does",
@@ -61,10 +75,7 @@ TEST_CASE("profile: one that was stopped, or cut off by a bound, says nothing of
   const auto records = twin.records(250, 500.0, 3);
   const Problem problem = problem_of(twin, records);
   Fit found = fit(twin.campaign, records, {});
-  std::vector<double> z;
-  for (std::size_t j = 0; j < problem.map.unknowns().size(); ++j)
-    z.push_back(problem.map.to_unit(static_cast<int>(j), found.parameters[j].value));
-  const Evaluation optimum = evaluate_at(problem, z, 1);
+  const Evaluation optimum = evaluate_at(problem, place_of(problem, found), 1);
   const std::atomic<bool> cancel{true};
   FitOptions options;
   Budget budget(&cancel);
@@ -107,15 +118,15 @@ TEST_CASE("profile: without an interval it ends where the cost says 95 %", "[cal
   const Problem problem = problem_of(twin, records);
   const Fit found = fit(twin.campaign, records, {});
   Fit bare = found;
-  std::vector<double> z;
-  for (std::size_t j = 0; j < problem.map.unknowns().size(); ++j) {
-    bare.parameters[j].ci95_if_exact.reset();
-    bare.parameters[j].standard_error.reset();
-    bare.parameters[j].robust_standard_error.reset();
-    z.push_back(problem.map.to_unit(static_cast<int>(j), found.parameters[j].value));
-  }
+  for (FittedParameter& each : bare.parameters) without_errors(each);
+  const std::vector<double> z = place_of(problem, found);
+  const Evaluation optimum = evaluate_at(problem, z, 1);
   Budget budget;
-  profiles(problem, records, evaluate_at(problem, z, 1), {}, bare, budget);
+  profiles(problem, records, optimum, {}, bare, budget);
+  // If the model lacks something, its residuals are larger than the noise: here twice as large.
+  Fit lacking = bare;
+  lacking.reduced_chi_square = 4.0 * std::max(1.0, found.reduced_chi_square);
+  profiles(problem, records, optimum, {}, lacking, budget);
   for (std::size_t j = 0; j < z.size(); ++j) {
     const double error = found.parameters[j].standard_error.value();
     const Profile& profile = bare.parameters[j].profile.value();
@@ -123,6 +134,52 @@ TEST_CASE("profile: without an interval it ends where the cost says 95 %", "[cal
                WithinRel(1.96 * error, 0.03));
     CHECK_THAT(found.parameters[j].value - profile.low.value.value(),
                WithinRel(1.96 * error, 0.03));
+    CHECK_THAT(lacking.parameters[j].profile->high.value.value() - found.parameters[j].value,
+               WithinRel(2.0 * 1.96 * error, 0.05));
+  }
+}
+
+TEST_CASE("profile: an interval that is cut off below leaves the upper end where it is",
+          "[calib]") {
+  const Twin twin = one_square();
+  const auto records = twin.records(250, 500.0, 3);
+  const Problem problem = problem_of(twin, records);
+  Fit found = fit(twin.campaign, records, {});
+  for (FittedParameter& each : found.parameters) {
+    if (each.fitted) each.ci95_if_exact->low = 0.5 * (each.ci95_if_exact->low + each.value);
+  }
+  Budget budget;
+  profiles(problem, records, evaluate_at(problem, place_of(problem, found), 1), {}, found, budget);
+  for (const auto* key : {"mass", "valve_gain"}) {
+    const FittedParameter& p = parameter(found, key);
+    CHECK_THAT(p.profile->high.value.value() - p.value,
+               WithinRel(p.ci95_if_exact->high - p.value, 0.1));
+  }
+}
+
+TEST_CASE("profile: one that is open below is complete only if no value is smaller", "[calib]") {
+  // The rig has no leak, so every smaller leak fits as well as the estimate.
+  for (const double lower : {0.0, 1e-4}) {
+    CAPTURE(lower);
+    Twin twin = one_square();
+    twin.free("leakage_coefficient", 0.1, lower, 2.0);
+    twin.offsets["square"] = {Twin::index("leakage_coefficient"), 0.0};
+    const auto records = twin.records(250, 500.0, 3);
+    const Problem problem = problem_of(twin, records);
+    Fit found = fit(twin.campaign, records, {});
+    for (FittedParameter& each : found.parameters) {
+      without_errors(each);
+      each.identifiability = Identifiability::identified;
+    }
+    Budget budget;
+    profiles(problem, records, evaluate_at(problem, place_of(problem, found), 1), {}, found,
+             budget);
+    const FittedParameter& leak = parameter(found, "leakage_coefficient");
+    CAPTURE(leak.value, leak.reason);
+    CHECK_FALSE(leak.profile->low.value.has_value());
+    CHECK(leak.profile->high.value.has_value());
+    CHECK(leak.identifiability ==
+          (lower > 0.0 ? Identifiability::not_identifiable : Identifiability::identified));
   }
 }
 
@@ -131,16 +188,14 @@ TEST_CASE("profile: a lower cost than that of the fit is told", "[calib]") {
   const auto records = twin.records(250, 500.0, 3);
   const Problem problem = problem_of(twin, records);
   Fit found = fit(twin.campaign, records, {});
-  std::vector<double> z;
   for (std::size_t j = 0; j < problem.map.unknowns().size(); ++j) {
     FittedParameter& each = found.parameters[j];
     each.value += 5.0 * each.standard_error.value();
     each.ci95_if_exact->low += 5.0 * each.standard_error.value();
     each.ci95_if_exact->high += 5.0 * each.standard_error.value();
-    z.push_back(problem.map.to_unit(static_cast<int>(j), each.value));
   }
   Budget budget;
-  profiles(problem, records, evaluate_at(problem, z, 1), {}, found, budget);
+  profiles(problem, records, evaluate_at(problem, place_of(problem, found), 1), {}, found, budget);
   for (const auto* key : {"mass", "valve_gain"}) {
     CHECK(parameter(found, key).profile->lower_cost_found);
     CHECK_THAT(parameter(found, key).reason, Contains("its profile finds a lower cost"));

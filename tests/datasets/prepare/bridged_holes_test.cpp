@@ -30,6 +30,19 @@ Repeat torn(const std::string& name, int first, int last) {
   return repeat;
 }
 
+/// Lacks a long part first, then a short one.
+Repeat torn_twice() {
+  Repeat repeat = torn("twice.csv", 45, 52);
+  constexpr std::ptrdiff_t kRow = 70 - 8;
+  const auto erase = [](std::vector<double>& x) {
+    x.erase(x.begin() + kRow, x.begin() + kRow + 3);
+  };
+  erase(repeat.time_s);
+  for (auto& [channel, values] : repeat.values) erase(values);
+  repeat.holes = time_holes(repeat.time_s);
+  return repeat;
+}
+
 Campaign bridging(double longest_s) {
   Campaign campaign;
   campaign.rig.controller = model::ControllerKind::none;
@@ -66,6 +79,14 @@ TEST_CASE("bridge_holes: what is missing is put in and marked", "[datasets]") {
   CHECK_THAT(bridged_notes({repeat})[0],
              Contains("a.csv: holes bridged: 4 samples are missing in 1 place") &&
                  Contains("between 4.4 s and 4.9 s"));
+  CHECK_THAT(bridged_notes({bridged(torn_twice())}).at(0),
+             Contains("11 samples are missing in 2 places, the longest between 4.4 s and 5.3 s"));
+  // An input that is linear between its samples is so in a hole, too.
+  Campaign linear = bridging(1.0);
+  linear.channels[Channel::command].interpolation = Interpolation::linear;
+  Repeat ramp = torn("b.csv", 47, 52);
+  bridge_holes(linear, ramp);
+  CHECK(std::abs(ramp.values.at(Channel::command)[47] - (1.0 - 2.0 / 7.0)) < 1e-12);
 }
 
 TEST_CASE("bridge_holes: only on request, and no further than it", "[datasets]") {
@@ -113,6 +134,10 @@ TEST_CASE("average: what no repeat has is in no record, and its drive is a guess
   CHECK_THAT(guessed_drive_warning(bridging(2.0), Condition(), record),
              Contains("command in 1 hole") && Contains("between 4.6 s and 5.3 s") &&
                  Contains("its last value"));
+  Record twice;
+  twice.time_s = torn_twice().time_s;
+  CHECK_THAT(guessed_drive_warning(bridging(2.0), Condition(), twice),
+             Contains("command in 2 holes, the longest between 4.4 s and 5.3 s"));
   Condition generated;
   generated.waveform = Waveform::sine;
   CHECK(guessed_drive_warning(bridging(2.0), generated, record).empty());

@@ -68,6 +68,11 @@ TEST_CASE("load_record: a second column is taken off the first before units", "[
   // A column that the repeat itself names has no `minus`.
   condition.repeats[0].columns[Channel::load_pressure] = "c";
   CHECK_THAT(load_at(0), WithinRel(9e5 + 10.0, 1e-12));
+  // Both columns must be in the unit of the campaign.
+  files.write("units.csv", "t,x,a [bar],b [psi]\n0,1,5,2\n10,2,6,2.5\n20,4,7,1\n");
+  campaign.channels[Channel::load_pressure].stated.unit = "bar";
+  CHECK_THROWS_WITH(load_record(campaign, condition_of("units", "units.csv")),
+                    Contains("column 'b [psi]' is in psi"));
 }
 
 TEST_CASE("load_record: a number that nothing can measure is refused", "[datasets]") {

@@ -70,6 +70,8 @@ TEST_CASE("require_stated_unit: a gain that converts, and what the campaign igno
   CHECK(is_taken(unit, "p [psi]"));
   unit.gain = -0.0689476;
   CHECK(is_taken(unit, "p [psi]"));
+  unit.gain = 0.08;  // 16 % too much
+  CHECK_FALSE(is_taken(unit, "p [psi]"));
   unit.gain = -1.0;
   CHECK_FALSE(is_taken(unit, "p [psi]"));
   CHECK(is_taken(unit, "p [bar]"));
@@ -83,5 +85,6 @@ TEST_CASE("require_stated_unit: a gain that converts, and what the campaign igno
   StatedUnit kelvin = stated_unit("K");
   kelvin.has_offset = true;
   CHECK(is_taken(kelvin, "T [degC]"));
+  CHECK_FALSE(is_taken(kelvin, "T [mK]"));
   CHECK(is_taken({}, "p [psi]"));  // raw counts of a converter
 }

@@ -68,6 +68,10 @@ TEST_CASE("record_reader: CSV and MAT by the same calls", "[datasets]") {
     CHECK_THROWS_AS(record_reader(file).load(file, {{"x"}, "t"}), std::invalid_argument);
     CHECK_THROWS_AS(record_reader(file).load(file, {{"y"}, ""}), InputError);
   }
+  // Without the separator of the request, the names would be 't' and 'a,x'.
+  const auto two = folder.write("two.csv", "t;a,x\n0;n,1.5\n1;n,2.5\n");
+  CHECK(record_reader(two).load(two, {{"x"}, "", ','}).columns ==
+        std::vector<std::vector<double>>{{1.5, 2.5}});
   const auto cut = folder.write("cut.csv", "t,x\n0,1.5\n0.5,2.25\n1.0,2");
   CHECK_THAT(record_reader(cut).load(cut, {{"t", "x"}, "t"}).warning,
              Catch::Contains("ends without a newline"));
@@ -88,6 +92,7 @@ TEST_CASE("record_reader: formats that are not read are named, with what to expo
            Row{"a.rsp", "x", "RPC III"},
            Row{"c.dat", std::string("FORMAT\0\0\0", 9), "RPC III"},
            Row{"a.txt", "    -1\n    58b     1\n", "pyuff"},
+           Row{"b.txt", "    -1\n   151\n", "pyuff"},
            Row{"a.npy", "\x93NUMPY..", "numpy.savetxt"},
            Row{"a.csv.gz", "\x1f\x8b..", "gunzip"},
        }) {

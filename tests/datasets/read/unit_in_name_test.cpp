@@ -36,6 +36,7 @@ TEST_CASE("unit_in_name: in brackets, or behind a word", "[datasets]") {
                                 {"p_bar_min", "bar", false},  // the least pressure
                                 {"p_bar_s_pa", "bar", false},
                                 {"x_in", "in", false},
+                                {"x_in_1", "in", false},
                                 {"p_pa", "Pa", false},
                                 {"p (in)", "in", false},
                                 {"t (min)", "min", false}};

@@ -100,8 +100,9 @@ TEST_CASE("estimate_leak: every source of error is in the interval", "[diagnosis
   const auto mean = estimated(fit, errors, 4, 0);
   CHECK_THAT(mean.standard_error,
              WithinRel(std::sqrt(0.03 * 0.03 + 0.04 * 0.04 + 0.06 * 0.06 + 0.05 * 0.05), 1e-9));
-  CHECK(single.freedom > 16.0);
-  CHECK(single.freedom < 100.0);
+  // Welch and Satterthwaite: only the contribution of the repeats has few degrees of freedom.
+  CHECK_THAT(single.freedom,
+             WithinRel(std::pow(single.standard_error, 4) / (std::pow(0.12, 4) / 16.0), 1e-5));
 }
 
 TEST_CASE("coefficient_error: clusters count where the signal has misfit and the record shows it",
@@ -146,6 +147,22 @@ TEST_CASE("estimate_leak: a leak is detected from the level of false alarms on",
   CHECK_FALSE(estimated(fit_of(0.232, 0.1)).leak_detected);
   CHECK(estimated(fit_of(0.233, 0.1)).leak_detected);
   CHECK_THAT(estimated(fit_of(0.233, 0.1)).leak_score, WithinRel(2.33, 1e-12));
+}
+
+TEST_CASE("estimate_leak: few degrees of freedom take a larger score, and widen the share",
+          "[diagnosis]") {
+  LeakFit fit = fit_of(0.0, 0.1);
+  fit.white_freedom = 4;
+  // With 4 degrees of freedom, the quantile of t for 1 % false alarms is 3.747.
+  fit.coefficient = 0.37;
+  CHECK_FALSE(estimated(fit).leak_detected);
+  fit.coefficient = 0.38;
+  CHECK(estimated(fit).leak_detected);
+  // For the ends of the interval, it is 2.776.
+  fit.coefficient = 1.5;
+  fit.white_se = 0.02;
+  CHECK_THAT(estimated(fit).share_ci95.low, WithinAbs(0.15 - 2.776 * 0.002, 3e-4));
+  CHECK_THAT(estimated(fit).share_ci95.high, WithinAbs(0.15 + 2.776 * 0.002, 3e-4));
 }
 
 TEST_CASE("estimate_leak: the rig's error blurs the share", "[diagnosis]") {
@@ -202,6 +219,8 @@ TEST_CASE("detection_limit: Currie's sum of both quantiles", "[diagnosis]") {
   // The sum of the quantiles is 2.3263 + 1.6449.
   const CoefficientError error = coefficient_error(fit_of(0.0, 0.01), {}, 1, 0);
   CHECK_THAT(detection_limit(error, kSettings), WithinRel(0.039712, 1e-4));
+  // With 4 degrees of freedom, it is 3.74695 + 2.13185.
+  CHECK_THAT(detection_limit({0.01, 0.0, 4.0, 0.0}, kSettings), WithinRel(0.0587880, 1e-5));
 }
 
 TEST_CASE("error_of_averages: from the spread between repeats, of both means", "[diagnosis]") {
@@ -215,6 +234,12 @@ TEST_CASE("error_of_averages: from the spread between repeats, of both means", "
   REQUIRE(error);
   CHECK_THAT(error->own_se, WithinRel(0.12 * std::sqrt(1.0 / 5.0 + 1.0 / 3.0), 1e-12));
   CHECK_THAT(error->freedom, WithinRel(4.0, 1e-12));
+  CHECK(error->rig_se == 0.0);
+  LeakFit of_unsure_rig = reference;
+  of_unsure_rig.rig_se = 0.05;
+  const auto more = error_of_averages(of_unsure_rig, errors, 5, 3);
+  REQUIRE(more);
+  CHECK(more->rig_se == 0.05);
 }
 
 TEST_CASE("keep_larger: the limit of the larger flow, whatever comes first", "[diagnosis]") {

@@ -244,6 +244,34 @@ TEST_CASE("equations: a cylinder with a load-sensing pump and friction with pre-
   CHECK(indicators[11] == Approx(x[1]));
 }
 
+TEST_CASE("equations: a step that was planned at rest is repeated when the drive jumps",
+          "[model]") {
+  const ExportedRig rig = rig_with({});
+  const auto equations = make_equations(rig);
+  RigInputs inputs;
+  inputs.supply_pressure_pa.value = rig.values["supply_pressure"];
+  equations->set(rig.values, inputs, 1.0);
+  const std::vector<double> rest = equations->initial();
+  inputs.drive.value = 0.01;
+  equations->set(rig.values, inputs, 1.0);
+  for (const double length_s : {2e-4, 2.5e-4, 3e-4}) {
+    const auto moved = [&](double planned_step_s, double tolerance) {
+      std::vector<double> x = rest;
+      StepMemory memory;
+      memory.planned_step_s = planned_step_s;
+      equations->advance(x, memory, 0.0, length_s, tolerance);
+      return x;
+    };
+    const std::vector<double> exact = moved(1e-6, 1e-10);
+    const std::vector<double> coarse = moved(length_s, 1e-3);
+    // A single step would miss the tolerance by a factor of two.
+    for (std::size_t i = 0; i < 3; ++i) {
+      CAPTURE(length_s, i);
+      CHECK(coarse[i] == Approx(exact[i]).epsilon(1e-3));
+    }
+  }
+}
+
 TEST_CASE("equations: states that leave the numbers are an error", "[model]") {
   const ExportedRig rig = rig_with({});
   const auto equations = make_equations(rig);

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "model/fmi/references.hpp"
-#include "tests/model/rig.hpp"
+#include "tests/model/two_chamber_rig.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 // Tests which calls an importer may make to an instance, when, and with which values.
@@ -28,6 +28,15 @@ ExportedRig exported(double sample_time_s = 0.0) {
   rig.values.set("external_force", 30.0);
   rig.tolerance = 1e-5;
   if (sample_time_s > 0.0) rig.values.set("sample_time", sample_time_s);
+  return rig;
+}
+
+ExportedRig with_tank_input() {
+  ExportedRig rig;
+  rig.guid = "{1}";
+  rig.rig = single_rod_rig().rig;
+  rig.values = single_rod_rig().values;
+  rig.values.set("tank_pressure", 2e5);
   return rig;
 }
 
@@ -90,12 +99,7 @@ TEST_CASE("fmu instance: it starts from the rig's own values", "[model]") {
   CHECK(importer.instance.real(parameter("mass")) == exported().values["mass"]);
   CHECK_THAT(complaint([&] { importer.instance.real(kTank); }),
              Contains("no input has the value reference 3"));
-  ExportedRig two;
-  two.guid = "{1}";
-  two.rig = {PlantKind::two_chamber, ControllerKind::none, InitialState::rest};
-  two.values = ParameterValues::defaults(PlantKind::two_chamber);
-  two.values.set("tank_pressure", 2e5);
-  Importer with_tank(false, two);
+  Importer with_tank(false, with_tank_input());
   CHECK(with_tank.instance.real(kTank) == 2e5);
 }
 
@@ -293,6 +297,21 @@ TEST_CASE("fmu instance: the slope of an input holds for one step, from where it
   instance.step(0.5, 0.5);
   CHECK(instance.real(kReference) == Approx(0.005));
   CHECK(instance.real(kForce) == Approx(27.5));
+  // Outputs are those of the end of the step, even if they were read before it.
+  const unsigned command = kOutputReference + static_cast<unsigned>(Output::command);
+  instance.set_input_derivative(kReference, 1, 0.01);
+  const double before = instance.real(command);
+  instance.step(1.0, 0.1);
+  CHECK(instance.real(command) ==
+        Approx(exported().values["kp"] * (0.006 - instance.real(kStateReference))));
+  CHECK(instance.real(command) != before);
+  Importer with_tank(false, with_tank_input());
+  with_tank.start();
+  with_tank.instance.set_input_derivative(kTank, 1, 1e4);
+  for (const double begin_s : {0.0, 0.5}) {
+    with_tank.instance.step(begin_s, 0.5);
+    CHECK(with_tank.instance.real(kTank) == Approx(2.05e5));
+  }
   for (const int order : {0, 2, -1})
     CHECK_THAT(complaint([&] { instance.set_input_derivative(kForce, order, 1.0); }),
                Contains("found order " + std::to_string(order) + ", expected 1"));
@@ -398,11 +417,13 @@ TEST_CASE("fmu instance: it goes back to what it was", "[model]") {
   instance.step(0.0, 0.02);
   const InstanceState kept = instance.state();
   const double there = instance.real(kStateReference);
+  const double acceleration = instance.real(kDerivativeReference + 1);
   instance.set_real(parameter("mass"), 500.0);
   instance.step(0.02, 0.02);
   CHECK(instance.real(kStateReference) != there);
   instance.restore(kept);
   CHECK(instance.real(kStateReference) == there);
+  CHECK(instance.real(kDerivativeReference + 1) == acceleration);
   CHECK(instance.real(parameter("mass")) == exported().values["mass"]);
   CHECK(instance.state().time_s == Approx(0.02));
   instance.reset();
@@ -414,6 +435,7 @@ TEST_CASE("fmu instance: it goes back to what it was", "[model]") {
 TEST_CASE("fmu instance: the initial state follows what is set before it is left", "[model]") {
   ExportedRig rig = exported();
   rig.rig.initial = InitialState::given;
+  rig.values.set("initial_position", 0.0);
   Importer importer(false, rig);
   FmuInstance& instance = importer.instance;
   instance.enter_initialization();
@@ -423,6 +445,8 @@ TEST_CASE("fmu instance: the initial state follows what is set before it is left
   CHECK(instance.real(kStateReference + 2) - before ==
         Approx(570.0 / exported().values["piston_area"]).epsilon(1e-9));
   instance.exit_initialization();
+  CHECK_THAT(complaint([&] { instance.set_real(parameter("initial_position"), 0.001); }),
+             Contains("expected instantiated or in initialization mode"));
   const double held = instance.real(kStateReference + 2);
   instance.set_real(kForce, 30.0);
   CHECK(instance.real(kStateReference + 2) == held);
@@ -463,6 +487,10 @@ TEST_CASE("equations: two chambers have the edges of four orifices and two stops
   rig.values.set("supply_pressure", 7e6);
   rig.values.set("stroke", 0.2);
   rig.values.set("valve_dead_band", 0.1);
+  rig.values.set("overlap_supply_to_a", 0.01);
+  rig.values.set("overlap_a_to_tank", 0.02);
+  rig.values.set("overlap_supply_to_b", 0.03);
+  rig.values.set("overlap_b_to_tank", 0.04);
   const auto equations = make_equations(rig);
   RigInputs inputs;
   inputs.drive.value = 0.25;
@@ -470,11 +498,13 @@ TEST_CASE("equations: two chambers have the edges of four orifices and two stops
   equations->set(rig.values, inputs, 1.0);
   const auto found = equations->indicators(equations->initial());
   REQUIRE(found.size() == 6);
-  CHECK(found[0] == Approx(0.15));
-  CHECK(found[1] == Approx(-0.35));
-  CHECK(found[2] == Approx(-0.35));
-  CHECK(found[3] == Approx(0.15));
-  CHECK(found[4] + found[5] == Approx(0.2));
+  CHECK(found[0] == Approx(0.25 - 0.1 - 0.01));
+  CHECK(found[1] == Approx(-0.25 - 0.1 - 0.02));
+  CHECK(found[2] == Approx(-0.25 - 0.1 - 0.03));
+  CHECK(found[3] == Approx(0.25 - 0.1 - 0.04));
+  // Zero is the middle of the stroke, unless the retracted position is given.
+  CHECK(found[4] == Approx(0.1));
+  CHECK(found[5] == Approx(0.1));
 }
 
 TEST_CASE("equations: every state with the unit and size of what it is", "[model]") {

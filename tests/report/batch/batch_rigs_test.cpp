@@ -94,6 +94,23 @@ TEST_CASE("run_rig: after a signal no rig begins", "[report][batch]") {
   CHECK(test::text_of(scripted.folder / "bench/fit.json") == "earlier");
 }
 
+TEST_CASE("run_rig: after a signal during the fit no diagnosis begins", "[report][batch]") {
+  ScriptedRig scripted;
+  bool diagnosed = false;
+  RigVerbs verbs;
+  verbs.fit = [&](const BatchRig&) -> VerbEnd {
+    scripted.cancel = true;
+    return {ExitCode::done, "", 2.0};
+  };
+  verbs.diagnose = [&](const BatchRig&) -> VerbEnd {
+    diagnosed = true;
+    return {};
+  };
+  const RigEnd end = run_rig(scripted.rig, scripted.folder.path(), verbs, scripted.cancel);
+  CHECK_FALSE(diagnosed);
+  CHECK(end.code == ExitCode::done);
+}
+
 TEST_CASE("rig_end_of: as it went", "[report][batch]") {
   const RigEnd end = rig_end_of(bytes_of({ExitCode::verdict_fail, true, false, 1.25, "why \xff"}));
   CHECK(end.code == ExitCode::verdict_fail);
@@ -111,6 +128,14 @@ TEST_CASE("find_rigs: by the order of their folders, but for those among the res
   std::vector<std::string> rigs;
   for (const BatchRig& rig : find_rigs(folder / "lab", folder / "lab/out")) rigs.push_back(rig.rig);
   CHECK(rigs == std::vector<std::string>{"a", "b", "lab"});
+}
+
+TEST_CASE("find_rigs: two rigs of one name would write into one folder", "[report][batch]") {
+  const test::TemporaryFolder folder;
+  folder.write("lab/campaign.toml", "");  // takes the name of the folder
+  folder.write("lab/lab/campaign.toml", "");
+  CHECK_THROWS_WITH(find_rigs(folder / "lab", folder / "out"),
+                    Catch::Contains("would go to the same folder lab"));
 }
 
 }  // namespace

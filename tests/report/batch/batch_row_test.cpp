@@ -8,6 +8,7 @@
 #include "report/batch/batch.hpp"
 #include "report/document/render_terminal.hpp"
 #include "report/page/page_batch.hpp"
+#include "report/page/page_parts.hpp"
 #include "tests/report/stored_fixture.hpp"
 
 // Tests for the row of a rig and the summary of all rows.
@@ -288,6 +289,48 @@ TEST_CASE("batch: on the terminal a line for each rig, then what is wrong with i
   CHECK_THAT(text, Contains("agreement: beyond") && Contains("adequacy: misfit"));
   CHECK_THAT(text, !Contains("message of fails"));
   CHECK_THAT(text, Contains("message of stopped") && Contains("message of diagnosed"));
+}
+
+TEST_CASE("batch: a verdict of FAIL is a result, a run that failed leaves the batch incomplete",
+          "[report]") {
+  StoredBatch batch;
+  const auto words = [&](int exit_code, std::optional<Verdict> verdict) {
+    batch.exit_code = exit_code;
+    batch.rigs = {rig_of("a", FitStatus::converged, verdict, exit_code)};
+    return batch_headline(batch).badge.words;
+  };
+  CHECK(words(0, Verdict::pass) == "PASS");
+  CHECK(words(0, Verdict::warn) == "WARN");
+  CHECK(words(0, std::nullopt) == "DONE");
+  CHECK(words(1, Verdict::fail) == "FAIL");
+  CHECK(words(2, std::nullopt) == "INCOMPLETE");
+  CHECK(words(4, Verdict::pass) == "INCOMPLETE");
+}
+
+TEST_CASE("batch: the line of a trend is drawn where it is", "[report]") {
+  // Two points on the line, whose days count from 1970.
+  StoredRigTrend trend = trend_of("rig", 1e-3, true);
+  trend.series.along_date.intercept = -19.7;
+  for (const double day : {20000.0, 20050.0}) {
+    StoredTrendPoint& point = trend.series.points.emplace_back();
+    point.day = day;
+    point.value = 1e-3 * day - 19.7;
+  }
+  StoredBatch batch;
+  batch.rigs = {rig_of("a", FitStatus::converged, Verdict::pass, 0)};
+  batch.rigs.front().trends = {trend};
+  const auto figures = batch_figures(batch);
+  REQUIRE(figures.size() == 1);
+  const auto trace_of = [&](Trace::Kind kind) {
+    for (const Trace& each : figures.front().plot.traces)
+      if (each.kind == kind) return each;
+    return Trace{};
+  };
+  const Trace points = trace_of(Trace::Kind::points);
+  const Trace line = trace_of(Trace::Kind::line);
+  REQUIRE(points.y.size() == 2);
+  CHECK(line.x == points.x);
+  for (std::size_t i = 0; i < 2; ++i) CHECK_THAT(line.y.at(i), Catch::WithinAbs(points.y[i], 1e-9));
 }
 
 TEST_CASE("batch: a CSV line for each rig, columns for every estimate of any", "[report]") {

@@ -25,6 +25,7 @@ TEST_CASE("fit choices: what nobody asked for is the campaign's", "[report][run]
   CHECK(settings.threads == 3);
   CHECK(settings.cancel == &cancel);
   CHECK(recorded(FitChoices{}).empty());
+  CHECK(arguments_of(FitChoices{}).empty());
 
   FitChoices choices;
   choices.starts = 2;
@@ -51,6 +52,10 @@ TEST_CASE("fit choices: what nobody asked for is the campaign's", "[report][run]
                                                          {"profiles", "true"},
                                                          {"posterior", "300"},
                                                          {"cross_validate", "true"}});
+  CHECK(arguments_of(choices) ==
+        std::vector<std::string>{"--starts", "2", "--seed", "9", "--bootstrap", "5", "--profiles",
+                                 "--posterior", "300", "--cross-validate", "--max-time", "1.5",
+                                 "--max-evaluations", "100"});
 }
 
 TEST_CASE("fit choices: a provenance names inputs and what the starts rest on", "[report][run]") {

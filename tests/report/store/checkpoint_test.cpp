@@ -11,6 +11,8 @@ using Catch::Contains;
 using rigcal::InputError;
 using rigcal::calib::Checkpoint;
 using rigcal::report::checkpoint_text;
+using rigcal::report::fit_identity;
+using rigcal::report::Provenance;
 using rigcal::report::read_checkpoint;
 using rigcal::test::replaced;
 using rigcal::test::TemporaryFolder;
@@ -43,6 +45,18 @@ TEST_CASE("checkpoint: reads back to the same text", "[report]") {
   const std::string text = checkpoint_text(two_starts(), {});
   const Checkpoint again = read_checkpoint(folder.write("c.json", text), {});
   CHECK(checkpoint_text(again, {}) == text);
+}
+
+TEST_CASE("checkpoint: a fit of other records does not go on with it", "[report]") {
+  const TemporaryFolder folder;
+  Provenance these;
+  these.inputs = {{"run.csv", "a"}};
+  Provenance others;
+  others.inputs = {{"run.csv", "b"}};
+  const auto file = folder.write("c.json", checkpoint_text(two_starts(), these));
+  CHECK_NOTHROW(read_checkpoint(file, these));
+  CHECK_THROWS_WITH(read_checkpoint(file, others), Contains("its inputs differ"));
+  CHECK(fit_identity(these) != fit_identity(others));
 }
 
 TEST_CASE("checkpoint: forged numbers are refused", "[report]") {

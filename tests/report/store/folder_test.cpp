@@ -98,6 +98,17 @@ TEST_CASE("write_results: all or none", "[report]") {
   CHECK(folder.files() == before);
 }
 
+TEST_CASE("write_results: a first run that fails leaves no manifest", "[report]") {
+  const test::CommandFolder folder;
+  const std::vector<InputFile> no_inputs;
+  HeldFolder held(folder.work(), {"fit"});
+  ResultsInWriting writing(held, no_inputs);
+  writing.add({"a", "x"});
+  std::filesystem::create_directory(folder.work() / "a");  // in the way of the result
+  CHECK_THROWS_AS(writing.move_into_place(), WriteError);
+  CHECK_FALSE(folder.has(kManifestFile));
+}
+
 TEST_CASE("write_results: never over an input, and then nothing", "[report]") {
   const test::CommandFolder folder;
   folder.write("run.csv", "record");
@@ -156,6 +167,10 @@ TEST_CASE("HeldFolder: what is changed while a run lasts is kept", "[report]") {
   CHECK_THROWS_WITH(write_results(held, {{"a", "y"}, {"b", "y"}}, {}), Contains("b: not written"));
   CHECK(folder.read("a") == "x");
   CHECK(folder.read("b") == "mine");
+  folder.write("a", "mine");
+  CHECK_THROWS_WITH(write_results(held, {{"a", "y"}}, {}),
+                    Contains("a: changed since rigcal wrote it"));
+  CHECK(folder.read("a") == "mine");
 }
 
 TEST_CASE("write_results: what an earlier run left goes where it is as it was written",
@@ -203,11 +218,12 @@ TEST_CASE("HeldFolder: a manifest lists each file with the hash of what stands",
 
 TEST_CASE("HeldFolder: a manifest that is none takes force", "[report]") {
   const test::CommandFolder folder;
-  for (
-      const char* text :
-      {"", "{}", R"({"schema": "rigcal.manifest/2", "version": "9", "files": []})",
-       R"({"schema": "rigcal.manifest/1", "version": "0", "files": [{"path": "../a", "sha256": "", "verb": ""}]})",
-       R"({"schema": "rigcal.manifest/1", "version": "0", "files": [{"path": "/a", "sha256": "", "verb": ""}]})"}) {
+  std::vector<std::string> texts{"", "{}",
+                                 R"({"schema": "rigcal.manifest/2", "version": "9", "files": []})"};
+  for (const char* path : {"../a", "/a", "a/../../b"})
+    texts.push_back(manifest_text({{path, "", ""}}));
+  for (const std::string& text : texts) {
+    CAPTURE(text);
     folder.write(kManifestFile, text);
     CHECK_THROWS_AS(HeldFolder(folder.work(), {"fit"}), UsageError);
     CHECK_THROWS_WITH(HeldFolder(folder.work(), {"fit"}),

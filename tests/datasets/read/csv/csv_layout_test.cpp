@@ -42,10 +42,14 @@ TEST_CASE("csv_layout: lines of text above the header", "[datasets]") {
            std::string("Pruefstand;3\nDatum;12.3.2024\n\nt;x\n0;1,5\n0,1;2,5\n0,2;3,5\n"),
            std::string("Rate,1000\nGain,3.5\nt,x\n\n0,1.5\n0.1,2.5\n0.2,3.5\n"),
            std::string("# numpy\n# t,x\n0,1.5\n0.1,2.5\n0.2,3.5\n"),
+           std::string("% from MATLAB\n% t,x\n0,1.5\n0.1,2.5\n0.2,3.5\n"),
        }) {
     CAPTURE(text);
     CHECK(ReadText(text).table("t", "x").columns == kNumbers);
   }
+  std::string notes;
+  for (int i = 0; i < 490; ++i) notes += "note\n";
+  CHECK(ReadText(notes + "t,x\n0,1.5\n0.1,2.5\n0.2,3.5\n").table("t", "x").columns == kNumbers);
 }
 
 TEST_CASE("csv_layout: LabVIEW's .lvm", "[datasets]") {
@@ -82,6 +86,7 @@ TEST_CASE("csv_layout: a row of units", "[datasets]") {
   CHECK(table.first_data_line == 4);
   CHECK(table.labels[1].unit == "mm");
   CHECK(table.labels[1].line == 3);
+  CHECK(ReadText("t,x\n[s],[mm]\n\n0,1.5\n0.1,2.5\n0.2,3.5\n").table("t", "x").labels[1].line == 2);
   CHECK(csv_record_columns(units.path) ==
         std::vector<RecordColumn>{{"t", "s", false, false}, {"x", "mm", false, false}});
   CHECK(ReadText("t;x;note\ns;mm;-\n0;1.5;0\n0.1;2.5;0\n0.2;3.5;1\n").table("t", "x").columns ==
@@ -96,10 +101,11 @@ TEST_CASE("csv_layout: rows that dSPACE labels", "[datasets]") {
 }
 
 TEST_CASE("csv_layout: what is no header is none", "[datasets]") {
-  // A row with a number is not a header, there must be at least as many names as fields, and a
-  // column of states is not a column of numbers.
+  // A row with a number is not a header, there must be as many names as fields (only a column of
+  // comments may be left out), and a column of states is not a column of numbers.
   CHECK_FALSE(find_layout(std::vector<std::string>{"0,1,ok", "1,2,3", "2,3,4"}, true, 0));
   CHECK_FALSE(find_layout(std::vector<std::string>{"t,x", "0,5,1,5", "1,5,2,5"}, true, 0));
+  CHECK_FALSE(find_layout(std::vector<std::string>{"t,x,y", "0,1", "1,2"}, true, 0));
   CHECK_FALSE(find_layout(std::vector<std::string>{"text", "1,2", "more"}, true, 0));
   CHECK_FALSE(find_layout(std::vector<std::string>{"a b", "1,2", "3,4"}, true, ';'));
   const auto found = find_layout(std::vector<std::string>{"title", "a b", "1 2"}, true, 0);

@@ -331,11 +331,16 @@ TEST_CASE("load_hdf5: what was written in part only is refused", "[datasets]") {
     const Hdf5Writer file(path);
     file.partly_written("/whole", {1, 2, 3, 4, 5}, 5, 2);
     file.partly_written("/half", {1, 2, 3}, 7, 2);
+    file.partly_written("/end", {1, 2, 3, 4}, 5, 2);
+    file.first_column("/m", {1, 2, 3}, 2);
     file.partly_written("/torn", {1, 2, 3}, 4, 4, &fill);
     file.partly_written("/zero", {1, 2, 3}, 4, 4);
   }
   CHECK(read_columns(path, {"/whole"}) == Table{{1, 2, 3, 4, 5}});
   CHECK_THAT(read_refusal(path, {"/half"}), Contains("rows 5 to 6 of '/half' were never written"));
+  CHECK_THAT(read_refusal(path, {"/end"}), Contains("rows 5 to 5 of '/end' were never written"));
+  CHECK(read_columns(path, {"/m(:,1)"}) == Table{{1, 2, 3}});
+  CHECK_THAT(read_refusal(path, {"/m(:,2)"}), Contains("of '/m(:,2)' were never written"));
   CHECK_THAT(read_refusal(path, {"/torn"}), Contains("row 4 of '/torn' is 3.25, which means"));
   // A zero may be a real value.
   CHECK(read_columns(path, {"/zero"}) == Table{{1, 2, 3, 0}});
@@ -351,9 +356,11 @@ TEST_CASE("load_hdf5: how the columns are labelled", "[datasets]") {
     file.array("/m", {1, 2, 3, 4, 5, 6}, {3, 2});
     file.text("/x", "units", "psi");
     file.texts("/m", "units", {"bar", "mm"});
+    file.number("/x", "dt", 0.5);
   }
-  const auto table = record_reader(path).load(path, {{"t", "/x", "/m(:,2)"}, "t"});
-  REQUIRE(table.labels.size() == 3);
+  const auto table = record_reader(path).load(path, {{"t", "/x", "/m(:,2)", "/x@dt"}, "t"});
+  REQUIRE(table.labels.size() == 4);
+  CHECK(table.labels[3].unit == "s");
   CHECK(table.labels[0].unit.empty());
   CHECK(table.labels[1].name == "/x");
   CHECK(table.labels[1].unit == "psi");

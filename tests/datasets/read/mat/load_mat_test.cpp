@@ -102,6 +102,35 @@ TEST_CASE("load_mat: variables, fields and columns of a matrix", "[datasets]") {
                                             "log.signals(2).values(:,2)", "log.time", "t", "x"});
 }
 
+TEST_CASE("load_mat: an element of a matrix of structs", "[datasets]") {
+  const auto format = GENERATE(MatFormat::v7, MatFormat::v73);
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "run.mat";
+  const auto element = [](double value) {
+    return std::vector<matvar_t*>{mat_array("x", Numbers{value})};
+  };
+  write_mat(path, format,
+            {mat_struct("run", {element(11), element(21), element(12), element(22)}, {2, 2})});
+  for (const int row : {1, 2}) {
+    for (const int column : {1, 2}) {
+      const auto table = load_mat(path, {{fmt::format("run({},{}).x", row, column)}, ""});
+      CHECK(table[0] == Numbers{10.0 * row + column});
+    }
+  }
+}
+
+TEST_CASE("load_mat: 12 million numbers of one file, those of other columns counted",
+          "[datasets]") {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "run.mat";
+  write_mat(path, MatFormat::v7, {mat_array("x", std::vector<std::int8_t>(100'000, 1))});
+  std::vector<std::string> columns(120, "x");
+  CHECK(load_mat(path, {columns, ""}).size() == 120);
+  columns.emplace_back("x");
+  CHECK_THAT(message_of(path, {columns, ""}),
+             Contains("'x' has 100000 elements, which with the 12000000 of other columns"));
+}
+
 TEST_CASE("load_mat: every real number class", "[datasets]") {
   const auto format = GENERATE(MatFormat::v7, MatFormat::v73);
   const TemporaryFolder folder;
@@ -116,8 +145,9 @@ TEST_CASE("load_mat: every real number class", "[datasets]") {
   CHECK(table[1] == Numbers{-128, 127});
   CHECK(table[2] == Numbers{0, 65535});
   CHECK(table[3] == Numbers{-9007199254740992.0, 3});
-  CHECK_THAT(message_of({mat_array("big", std::vector<std::int64_t>{1, 9007199254740995})}, "big"),
-             Contains("element 2 of 'big' is 9007199254740995, more than a double can hold"));
+  CHECK_THAT(
+      message_of({mat_array("big", std::vector<std::int64_t>{1, 9007199254740995})}, "big", format),
+      Contains("element 2 of 'big' is 9007199254740995, more than a double can hold"));
 }
 
 TEST_CASE("load_mat: what is no column of numbers", "[datasets]") {
@@ -135,6 +165,7 @@ TEST_CASE("load_mat: what is no column of numbers", "[datasets]") {
       {"log.signals(3).values", {"'log.signals' is a struct of 1 x 2, and element 3"}},
       {"log.signals(2).values", {"has 3 x 2 elements", "log.signals(2).values(:,1)"}},
       {"log.signals(2).values(:,3)", {"is outside of 'values', which has 3 x 2"}},
+      {"wide(:,1)", {"is outside of 'wide', which has 2 x 1 x 3"}},
       {"log.blockName", {"is a text; expected real numbers"}},
       {"position.x", {"'position' is a number and has no field 'x'"}},
       {"hole", {"element 3 of 'hole' is nan; expected a finite number"}},
@@ -147,10 +178,10 @@ TEST_CASE("load_mat: what is no column of numbers", "[datasets]") {
       {".position", {"lacks the name of a variable"}}};
   const TemporaryFolder folder;
   const auto path = folder.path() / "run.mat";
-  write_mat(
-      path, format,
-      {mat_array("position", Numbers{1, 2, 3}), mat_array("hole", Numbers{1, 2, nan}),
-       mat_array("edge", Numbers{-std::numeric_limits<double>::infinity(), 2}), logged("log")});
+  write_mat(path, format,
+            {mat_array("position", Numbers{1, 2, 3}), mat_array("hole", Numbers{1, 2, nan}),
+             mat_array("edge", Numbers{-std::numeric_limits<double>::infinity(), 2}),
+             mat_array("wide", Numbers{1, 2, 3, 4, 5, 6}, {2, 1, 3}), logged("log")});
   for (const Case& each : cases) {
     CAPTURE(each.column);
     const std::string message = message_of(path, {{each.column}, ""});
