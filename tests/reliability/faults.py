@@ -32,6 +32,8 @@ def repeatable(folder):
 
 def study(rigcal, folder, size, kinds=("memory", "files")):
     library = rigcal.parent / "tests" / "libfail_nth.so"
+    if not library.is_file():
+        raise SystemExit(f"reliability: {library} is missing; expected a program in a build of the tests")
     must(rigcal, ["synthesize", SMALL_RIG, "--seed", "1", "--out", folder / "twin", "--quiet"])
     campaign = folder / "twin" / "campaign.toml"
     must(rigcal, ["fit", campaign, "--out", folder / "earlier", "--seed", "2", "--quiet"])
