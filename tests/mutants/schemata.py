@@ -248,7 +248,7 @@ def changed(mutant, tokens, at):
         begin = tokens[at + front].begin if front < len(original) else tokens[at + front - 1].end
         return begin, begin, f" {instead} "
     if not mutated and original[-1].text == ";":
-        instead = ";"  # a loop without braces keeps a statement
+        instead = "{;}"  # a loop or condition without braces keeps a statement, without a warning
     return tokens[at + front].begin, tokens[at + last - 1].end, instead
 
 

@@ -43,9 +43,9 @@ class Schemata(unittest.TestCase):
         self.assertEqual(inserted("x = 1 + f(a, b);", ("f(a, b)", "f(b, a)")), "x = (M0 ? (1 + f(b, a)) : (1 + f(a, b)));")
 
     def test_statements(self):
-        self.assertEqual(inserted("{ a = 1; b = 2; }", ("b = 2;", "")), "{ a = 1; if (M0) { ; } else { b = 2; } }")
+        self.assertEqual(inserted("{ a = 1; b = 2; }", ("b = 2;", "")), "{ a = 1; if (M0) { {;} } else { b = 2; } }")
         self.assertEqual(inserted("{ for (a : b) c(a); }", ("c(a);", "")),
-                         "{ if (M0) { for (a : b) ; } else { for (a : b) c(a); } }")
+                         "{ if (M0) { for (a : b) {;} } else { for (a : b) c(a); } }")
         self.assertEqual(inserted("{ if (c) a += b; }", ("a += b", "a -= b")),
                          "{ if (M0) { if (c) a -= b; } else { if (c) a += b; } }")
 
