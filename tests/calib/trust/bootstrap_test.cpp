@@ -126,7 +126,7 @@ TEST_CASE("bootstrap: residuals that belong together are drawn together", "[cali
   for (std::size_t t = 0; t < 50; ++t) measured[t] += t < 25 ? kResidual : -kResidual;
   rig.found.scatter[0].noise[0] = {{0.9}, 1.0};
   REQUIRE(block_length(rig.found.scatter[0].noise[0], 50) == 18);
-  // Of a square wave of +-1 with a period of 50, the sum of 18 samples from a random one on has a
+  // In a square wave of +-1 with a period of 50, the sum of 18 samples from a random one on has a
   // mean square of 169.0, that of 14 samples 123.2. A replicate has two blocks of 18 and one of 14,
   // so the standard deviation of its mean is sqrt(461.2) / 50 = 0.43. Drawn one by one, it is
   // 1 / sqrt(50) = 0.14.
