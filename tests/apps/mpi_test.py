@@ -86,8 +86,8 @@ class Processes(unittest.TestCase):
                 self.assertLess(time.monotonic(), deadline, "nothing was kept")
                 self.assertIsNone(group.poll(), "it ended before anything was kept")
                 time.sleep(0.002)
-            # The leader is paused first of all, and mpirun wakes it up itself to end it: neither a slow test nor a slow
-            # mpirun leaves it the time to finish.
+            # The leader is paused at once and stays so until mpirun wakes it to end it. So a slow test or a slow mpirun
+            # does not leave it the time to finish.
             leader = process_of(0, group.pid)
             os.kill(leader, signal.SIGSTOP)
             self.assertTrue(kept.exists(), "it ended before a process was killed")

@@ -97,8 +97,7 @@ class Hdf5Writer {
     H5Pclose(plan);
   }
 
-  /// Writes a matrix of doubles, each column a chunk of its own, of which only the first is
-  /// written.
+  /// Creates a matrix of doubles in which each column is a chunk, and writes only the first column.
   void first_column(const std::string& path, const std::vector<double>& values,
                     hsize_t columns) const {
     const std::vector<hsize_t> column{values.size(), 1};

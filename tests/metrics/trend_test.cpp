@@ -130,8 +130,8 @@ TEST_CASE("trend: an error that all points share is none of the slope", "[metric
 }
 
 TEST_CASE("trend: a common error that differs between points adds to the freedom", "[metrics]") {
-  // It moves each point in proportion to x, so the slope as well: by as much as the errors of the
-  // two ends do. Of twice their variance, their 8 degrees of freedom count four times.
+  // The common error moves each point in proportion to x, and the slope by as much as the errors of
+  // the two ends do. The variance doubles, so their 8 degrees of freedom count four times.
   const Eigen::Vector3d move(0.0, 1.0, 2.0);
   const double own = 0.3 * 0.3 / 2.0;
   const Trend trend = weighted_trend(Values{0, 1, 2}, Values{0, 1, 2}, Errors(3, {0.3, 4.0}),

@@ -115,7 +115,7 @@ TEST_CASE("bootstrap: the degrees of freedom of equal conditions add up", "[cali
   rig.twin.add("again", datasets::Waveform::sine, 5.0, 0.01);
   rig.records = rig.twin.records(50, 500.0, 1);
   rig.found.scatter.push_back(rig.found.scatter[0]);
-  // (v + v)^2 / (v^2 / 40 + v^2 / 40)
+  // Satterthwaite: (v + v)^2 / (v^2 / 40 + v^2 / 40)
   CHECK_THAT(rig.draw(20).freedom, WithinRel(80.0, 1e-12));
 }
 

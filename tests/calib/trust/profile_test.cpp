@@ -20,7 +20,7 @@ using Catch::WithinRel;
 using datasets::Scope;
 using datasets::Waveform;
 
-/// Returns the estimates of a fit as a place in the unit box.
+/// Returns the estimates of a fit as a point in the unit box.
 std::vector<double> place_of(const Problem& problem, const Fit& found) {
   std::vector<double> z;
   for (std::size_t j = 0; j < problem.map.unknowns().size(); ++j)
