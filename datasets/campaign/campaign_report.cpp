@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "datasets/campaign/campaign_sections.hpp"
@@ -11,6 +13,10 @@
 
 namespace rigcal::datasets {
 namespace {
+
+/// Keys that say nothing without another one.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kReportNeeds{
+    {{"revision", "number"}, {"replaces", "number"}, {"approver_function", "approver"}}};
 
 template <std::size_t count>
 ReportSettings::Fields read_fields(const TomlNode& node,
@@ -128,6 +134,10 @@ const std::vector<CampaignKey>& report_keys() {
 
 ReportSettings read_report(const TomlNode& node) {
   node.allow_only(names_of(report_keys()));
+  for (const auto& [key, needed] : kReportNeeds) {
+    const auto given = node.find(key);
+    if (given && !node.find(needed)) given->fail(fmt::format("needs '{}' in [report]", needed));
+  }
   ReportSettings settings;
   settings.fields = read_fields(node, kReportFields);
   const auto sensors = node.find("sensor");

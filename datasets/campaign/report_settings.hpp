@@ -15,21 +15,36 @@ struct ReportField {
   std::string_view label;  ///< on the page
   std::string_view doc;    ///< for schema and documents
   bool is_date = false;
+  bool is_fact = true;  ///< listed with item and method, not at the top or beside a signature
 };
 
 /// What a test report must state in addition to results (ISO/IEC 17025:2017, 7.8.2), in the order
 /// on the page.
 inline constexpr std::array kReportFields{
-    ReportField{"number", "Report number", "Number of the report"},
-    ReportField{"issued", "Date of issue", "Date on which the report is issued", true},
-    ReportField{"laboratory", "Laboratory", "Who made the test"},
-    ReportField{"customer", "Customer", "For whom it was made"},
+    ReportField{"number", "Report number", "Number of the report", false, false},
+    ReportField{"revision", "Revision", "Revision of the report; needs `number`", false, false},
+    ReportField{"replaces", "Replaces", "The report that this one replaces; needs `number`", false,
+                false},
+    ReportField{"issued", "Date of issue", "Date on which the report is issued", true, false},
+    ReportField{"laboratory", "Laboratory", "Who made the test", false, false},
+    ReportField{"laboratory_address", "Address of the laboratory", "Address of the laboratory"},
+    ReportField{"place", "Place of the test",
+                "Where the test was made, if not at the laboratory's address"},
+    ReportField{"customer", "Customer", "For whom it was made", false, false},
+    ReportField{"customer_contact", "Contact of the customer", "Address or person of the customer"},
     ReportField{"rig", "Rig", "The rig that was tested"},
     ReportField{"specimen", "Specimen", "What was tested on it"},
     ReportField{"serial_number", "Serial number", "Serial number of the specimen"},
+    ReportField{"received", "Received", "Date on which the specimen was received", true},
+    ReportField{"specimen_condition", "Condition of the specimen",
+                "Condition in which the specimen was tested"},
     ReportField{"method", "Method", "The procedure of the test"},
-    ReportField{"operator", "Operator", "Who made the measurements"},
-    ReportField{"approver", "Approved by", "Who approves the report"},
+    ReportField{"deviations", "Deviations from the method",
+                "What was added to the procedure, left out or done otherwise"},
+    ReportField{"operator", "Operator", "Who made the measurements", false, false},
+    ReportField{"approver", "Approved by", "Who approves the report", false, false},
+    ReportField{"approver_function", "Function", "Function of the approver; needs `approver`",
+                false, false},
     ReportField{"remarks", "Remarks", "Anything else that a reader has to know"},
 };
 

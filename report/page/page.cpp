@@ -106,6 +106,7 @@ void add_top(const Part& first, bool synthetic, std::string& page) {
     page += "<p class=\"issue\">";
     if (!identity.number.empty())
       page += "Report number <strong>" + escaped(identity.number) + "</strong>";
+    if (!identity.replaces.empty()) page += "<br>replaces " + escaped(identity.replaces);
     if (!identity.issued.empty())
       page +=
           std::string(identity.number.empty() ? "" : "<br>") + "issued " + escaped(identity.issued);

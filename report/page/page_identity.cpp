@@ -34,6 +34,9 @@ Identity identity_of(const Json& report) {
   Identity identity;
   if (!report.is_object()) return identity;
   identity.number = text_of(report, "number");
+  if (const std::string revision = text_of(report, "revision"); !revision.empty())
+    identity.number += ", revision " + revision;
+  identity.replaces = text_of(report, "replaces");
   identity.issued = text_of(report, "issued");
   identity.laboratory = text_of(report, "laboratory");
   identity.customer = text_of(report, "customer");
@@ -51,11 +54,7 @@ Identity identity_of(const Json& report) {
     add("Tested", first == last ? first : fmt::format("{} to {}", first, last));
   }
   for (const datasets::ReportField& field : datasets::kReportFields) {
-    // These fields appear at the top of the page or in the signatures at the bottom.
-    if (field.key == "number" || field.key == "issued" || field.key == "laboratory" ||
-        field.key == "customer" || field.key == "operator" || field.key == "approver")
-      continue;
-    add(field.label, text_of(report, std::string(field.key)));
+    if (field.is_fact) add(field.label, text_of(report, std::string(field.key)));
   }
   for (const Json& sensor : report.at("sensors")) {
     const std::string channel = text_of(sensor, "channel");
@@ -65,7 +64,9 @@ Identity identity_of(const Json& report) {
   }
   // The operator signs for the test.
   const std::string tester = text_of(report, "operator");
-  const std::string approver = text_of(report, "approver");
+  std::string approver = text_of(report, "approver");
+  if (const std::string function = text_of(report, "approver_function"); !function.empty())
+    approver += ", " + function;
   if (!tester.empty() || !approver.empty())
     identity.signatures.rows = {{"Tested by", tester}, {"Approved by", approver}};
   return identity;

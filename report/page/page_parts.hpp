@@ -75,7 +75,8 @@ doc::Verdict verdict_without_result(LeakStatus status, const std::string& senten
 
 /// What the campaign states about the test and its report (`report` in a result).
 struct Identity {
-  std::string number, issued, laboratory, customer, rig;  ///< empty if not stated
+  /// Empty if not stated. The number includes the revision.
+  std::string number, replaces, issued, laboratory, customer, rig;
   doc::Facts facts;  ///< test item and method, then a row for each sensor
   doc::Signatures signatures;
 };

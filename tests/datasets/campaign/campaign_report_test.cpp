@@ -40,10 +40,14 @@ TEST_CASE("load_campaign: a wrong report names key and line", "[datasets]") {
     const char* to;
     const char* says;
   };
-  for (const Row& row : {Row{"approver = \"A. Head\"", "aprover = \"A. Head\"", "approver"},
-                         Row{"issued = 2026-03-02", "issued = \"yesterday\"", "issued"},
-                         Row{"number = \"2026-041\"", "number = 41", "number"},
-                         Row{"due = 2027-01-31", "until = 2027-01-31", "until"}}) {
+  for (const Row& row :
+       {Row{"approver = \"A. Head\"", "aprover = \"A. Head\"", "approver"},
+        Row{"issued = 2026-03-02", "issued = \"yesterday\"", "issued"},
+        Row{"number = \"2026-041\"", "number = 41", "number"},
+        Row{"due = 2027-01-31", "until = 2027-01-31", "until"},
+        Row{"number = \"2026-041\"", "revision = \"B\"", "needs 'number'"},
+        Row{"number = \"2026-041\"", "replaces = \"12\"", "needs 'number'"},
+        Row{"approver = \"A. Head\"", "approver_function = \"Head\"", "needs 'approver'"}}) {
     CAPTURE(row.to);
     const std::string text = test::replaced(kExample + kReport, row.from, row.to);
     try {

@@ -224,6 +224,28 @@ TEST_CASE("page: opens with what the report is of, and who signs it", "[report]"
   CHECK_THAT(page(json), Contains("class=\"signatures\"") && Contains("Approved by A. Head"));
 }
 
+TEST_CASE("page: a report that replaces another one says so", "[report]") {
+  Json json = stored_result();
+  json["report"] = {{"number", "2026-041"},
+                    {"revision", "B"},
+                    {"replaces", "2026-041, revision A"},
+                    {"received", "2026-02-24"},
+                    {"specimen_condition", "rod scored"},
+                    {"deviations", "without preload"},
+                    {"approver", "A. Head"},
+                    {"approver_function", "head of laboratory"},
+                    {"test_dates", nullptr},
+                    {"sensors", Json::array()}};
+  const std::string html = page(json);
+  CHECK_THAT(html,
+             Contains("<strong>2026-041, revision B</strong><br>replaces 2026-041, revision A"));
+  // The foot of every sheet tells the revisions apart.
+  CHECK_THAT(html.substr(html.find("@bottom-left"), 200), Contains("2026-041, revision B"));
+  CHECK_THAT(html, Contains("<dt>Received</dt><dd>2026-02-24</dd>") && Contains("rod scored") &&
+                       Contains("without preload") &&
+                       Contains("Approved by A. Head, head of laboratory"));
+}
+
 TEST_CASE("page: says at its top what cannot be trusted", "[report]") {
   CHECK_THAT(word_of(page(stored_result())), Contains("PASS"));
   Json json = stored_result();
