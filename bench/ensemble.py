@@ -1,7 +1,8 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Measures effective draws per CPU second of emcee's affine-invariant ensemble sampler for the posterior of the six signals.
 
-Needs emcee (Debian: python3-emcee). The density is computed by the code of `fit --posterior`, without gradients
+Needs Debian's python3-emcee, which scripts/setup does not install, and `scripts/build release --target
+rigcal_posterior_study`. The density is computed by the code of `fit --posterior`, without gradients
 (build/release/bench/rigcal_posterior_study --replay). Only its CPU time counts, not that of Python, so that a
 comparison with `scripts/posterior-study --speed` is one of samplers, not of languages.
 
@@ -12,8 +13,12 @@ import pathlib
 import subprocess
 import sys
 
-import emcee
-import numpy
+try:
+    import emcee
+    import numpy
+except ModuleNotFoundError as missing:
+    sys.exit(f"ensemble.py: {sys.executable} has no module {missing.name}: install Debian's package "
+             f"python3-{missing.name} and run bench/ensemble.py by /usr/bin/python3")
 
 STUDY = pathlib.Path(__file__).resolve().parent.parent / "build/release/bench/rigcal_posterior_study"
 WALKERS = 32
@@ -21,6 +26,8 @@ WALKERS = 32
 
 def main():
     steps = int(sys.argv[1]) if len(sys.argv) > 1 else 3000
+    if not STUDY.exists():
+        sys.exit(f"ensemble.py: no {STUDY.name}: build it with scripts/build release --target {STUDY.name}")
     with subprocess.Popen([STUDY, "--replay"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as study:
 
         def ask(line):

@@ -98,7 +98,8 @@ class Scripts(unittest.TestCase):
         self.assertIn("rigcal_diagnosis_study smallest 3 3 disturbed\n", printed)
 
     def test_posterior_study(self):
-        self.assertEqual(self.run_script("posterior-study", "7", "2"), "rigcal_posterior_study 7 2\n")
+        self.assertEqual(self.run_script("posterior-study", "7", "2", "1", "ranks.txt"),
+                         "rigcal_posterior_study 7 2 1 ranks.txt\n")
 
     def test_fuzz(self):
         for name in ("mat", "csv"):

@@ -217,6 +217,14 @@ std::optional<calib::Verdict> StoredCondition::verdict_of(const std::string& cha
   return found == nullptr ? std::nullopt : std::optional(*found);
 }
 
+const metrics::Agreement* StoredCondition::printed_uncertainty_of(
+    const std::string& channel) const {
+  const auto& all = two_sided_uncertainty ? two_sided_uncertainty : expanded_uncertainty;
+  if (!all) return nullptr;
+  const auto* found = report::find(*all, channel);
+  return found != nullptr && found->has_value() ? &**found : nullptr;
+}
+
 void as_of_now(std::string_view schema, std::vector<StoredParameter>& parameters) {
   if (schema == kFitSchema) return;
   for (StoredParameter& each : parameters) {

@@ -166,7 +166,7 @@ struct StoredCondition {
   Keyed<std::optional<metrics::NoiseFloor>> noise_floor;
   /// One-sided, for each score; used as the guard band of its limit.
   Omittable<Keyed<std::optional<metrics::Agreement>>> expanded_uncertainty;
-  Omittable<Keyed<std::optional<metrics::Agreement>>> two_sided_uncertainty;  ///< printed after +-
+  Omittable<Keyed<std::optional<metrics::Agreement>>> two_sided_uncertainty;
   Keyed<std::optional<StoredResidualTests>> residual_tests;
   Later<std::vector<calib::LimitCheck>> limit_checks;
   Later<Keyed<calib::Verdict>> channel_verdicts;
@@ -180,6 +180,11 @@ struct StoredCondition {
 
   /// Returns the verdict on a channel; std::nullopt without a limit.
   std::optional<calib::Verdict> verdict_of(const std::string& channel) const;
+
+  /// Returns the two-sided expanded uncertainty of each score of a channel, which is what a page
+  /// prints after "±" and "U"; null if unknown. Files from earlier versions only have the one-sided
+  /// uncertainty, which is returned instead.
+  const metrics::Agreement* printed_uncertainty_of(const std::string& channel) const;
 };
 
 struct StoredFit {

@@ -1,8 +1,16 @@
 #include "datasets/prepare/single_repeats.hpp"
 
+#include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <string>
 #include <vector>
+
+#include "datasets/prepare/repeatability.hpp"
+#include "datasets/synthetic/noise.hpp"
+#include "model/simulate.hpp"
+#include "tests/support/paper_rig.hpp"
 
 using namespace rigcal::datasets;
 using Catch::WithinAbs;
@@ -24,6 +32,31 @@ Repeat starting_at(double first_s, double level) {
     repeat.values[Channel::position].push_back(slope_and_ring(t) + level);
     repeat.values[Channel::command].push_back(t < 0.2 ? 0.0 : 1.0);
   }
+  return repeat;
+}
+
+constexpr double kStepNoise_m = 5e-5;
+
+/// A square wave of 10 mm on the paper's rig at a fraction of its supply pressure, with noise.
+Repeat square_at_supply(double fraction, const std::string& source) {
+  namespace model = rigcal::model;
+  auto values = model::ParameterValues::defaults(model::PlantKind::load_pressure);
+  for (const auto& [key, value] : rigcal::test::kPaperRig) values.set(key, value);
+  values.set("supply_pressure", fraction * values["supply_pressure"]);
+  values.set("kp", 400.0);  // the piston arrives within a half period
+  Repeat repeat;
+  repeat.source = source;
+  for (std::size_t i = 0; i < kSingleSamples; ++i)
+    repeat.time_s.push_back(1e-3 * static_cast<double>(i));
+  model::SimulationInputs inputs;
+  inputs.drive = model::Signal::square(0.01, 4.0);
+  const auto outputs = std::to_array({model::Output::position});
+  const auto run = model::simulate(model::Rig{}, values, {}, inputs, repeat.time_s, outputs);
+  REQUIRE(run.ok());
+  auto stream = random_stream(1, {source});
+  for (std::size_t i = 0; i < kSingleSamples; ++i)
+    repeat.values[Channel::position].push_back(run.outputs(static_cast<Eigen::Index>(i), 0) +
+                                               normal(stream, kStepNoise_m));
   return repeat;
 }
 
@@ -55,6 +88,46 @@ TEST_CASE("repeat_records: a repeat far from the others is left out on request o
              Catch::Contains("the bad one") && Catch::Contains("left out"));
   CHECK_THAT(all.average.warnings.front(),
              Catch::Contains("the bad one") && Catch::Contains("stays in the mean"));
+}
+
+TEST_CASE("repeat_records: a repeat at 10 % less supply is named, and left out on request",
+          "[datasets]") {
+  Campaign campaign;
+  Condition condition;
+  condition.id = "c";
+  // The supply of the others varies by as much as a regulated one does.
+  const std::vector<Repeat> good{square_at_supply(1.002, "first"),
+                                 square_at_supply(0.997, "second"), square_at_supply(1.0, "third"),
+                                 square_at_supply(1.004, "fifth")};
+  std::vector<Repeat> repeats = good;
+  repeats.insert(repeats.begin() + 3, square_at_supply(0.9, "fourth"));
+  const auto distance_from_good = [&](const Record& record) {
+    const std::vector<double> truth =
+        repeat_records(campaign, condition, good).average.channels.at(Channel::position).mean;
+    const std::vector<double>& mean = record.channels.at(Channel::position).mean;
+    double largest = 0.0;
+    for (std::size_t i = 20; i + 20 < std::min(mean.size(), truth.size()); ++i)
+      largest = std::max(largest, std::abs(mean[i] - truth[i]));
+    return largest;
+  };
+  const Record all = repeat_records(campaign, condition, repeats).average;
+  CHECK(outliers(all) == std::vector<std::string>{"fourth"});
+  REQUIRE(all.warnings.size() == 1);
+  CHECK_THAT(all.warnings[0], Catch::Contains("fourth") && Catch::Contains("stays in the mean"));
+  CHECK(all.repeats == 5);
+  CHECK(distance_from_good(all) > kStepNoise_m);  // the noise of the mean is half of it
+
+  campaign.leave_out_outliers = true;
+  const RepeatRecords without = repeat_records(campaign, condition, repeats);
+  CHECK(without.average.repeats == 4);
+  CHECK(without.singles.size() == 4);
+  CHECK_THAT(without.average.warnings.at(0),
+             Catch::Contains("fourth") && Catch::Contains("left out"));
+  CHECK(distance_from_good(without.average) == 0.0);
+
+  const RepeatRecords nothing_bad = repeat_records(campaign, condition, good);
+  CHECK(nothing_bad.average.repeats == 4);
+  CHECK(outliers(nothing_bad.average).empty());
 }
 
 TEST_CASE("repeat_records: each repeat on the time base of the average, with the sd of one",

@@ -617,6 +617,23 @@ TEST_CASE("page: page one is what is signed", "[report]") {
   CHECK_THAT(first, !Contains("Before you sign"));
 }
 
+TEST_CASE("page: a score has its two-sided uncertainty wherever it is printed", "[report]") {
+  Json json = stored_result();
+  Json& condition = json["conditions"][0];
+  for (const auto& [key, half] :
+       {std::pair("expanded_uncertainty", 0.00077), std::pair("two_sided_uncertainty", 0.00033)}) {
+    condition[key]["position"] = condition["metrics"]["position"];
+    condition[key]["position"]["rho2"] = half;
+  }
+  const std::string html = page(json);
+  CHECK_THAT(html, Contains("± <data value=\"0.00033\">") &&
+                       Contains("U <data value=\"0.00033\">") && Contains("U 0.00033<"));
+  CHECK_THAT(html, !Contains("value=\"0.00077\""));
+  // A file from an earlier version has only the other.
+  condition.erase("two_sided_uncertainty");
+  CHECK_THAT(page(json), Contains("± <data value=\"0.00077\">"));
+}
+
 TEST_CASE("page: every kind of doubt is told before one signs", "[report]") {
   Json json = stored_result();
   json["verdict"] = "WARN";
