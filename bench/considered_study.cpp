@@ -285,7 +285,7 @@ datasets::Record record_of(const datasets::Campaign& campaign, const datasets::C
 
 /// Motion of a rig in one condition, without noise.
 struct Motion {
-  std::vector<double> readings;  ///< of the rig's sensor [m]
+  std::vector<double> readings;  ///< readings of the rig's sensor [m]
   std::vector<double> position;  ///< as an ideal sensor reads it [m]
 };
 
