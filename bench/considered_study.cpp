@@ -1,11 +1,14 @@
 // Measures how often 95 % intervals cover the truth if the rig has a small effect that the fitted
 // model lacks, and how often the verdict is a plain PASS although an interval misses the truth by
-// more than three half-widths (false assurance). The records come from bench/foreign_rig.hpp, which
-// has no code in common with the product. Prints the second table of docs/uncertainty.md.
+// more than three half-widths (false assurance). Also measures how often residual tests of the
+// validation record reject, and how often the two-sided uncertainty of a score covers the score
+// against the true motion. The records come from bench/foreign_rig.hpp, which has no code in common
+// with the product. Prints the second table of docs/uncertainty.md.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/normal_distribution.hpp>
 #include <boost/random/uniform_real_distribution.hpp>
@@ -24,10 +27,12 @@
 #include <vector>
 
 #include "bench/foreign_campaign.hpp"
+#include "bench/foreign_day.hpp"
 #include "calib/fit.hpp"
 #include "common/parallel.hpp"
 #include "common/significant.hpp"
 #include "datasets/prepare/load_record.hpp"
+#include "metrics/metric_table.hpp"
 
 namespace rigcal::bench {
 namespace {
@@ -117,6 +122,13 @@ const std::vector<ForeignEffect> kOthers{
      [](ForeignRig& r, double s) { r.reference_lag_s = s; }},
     {"steps of the converter", 0.1e-3, true, [](ForeignRig& r, double s) { r.quantum_m = s; }}};
 
+/// Days of a row whose validation record has another date than the other records. The campaign
+/// states the sizes.
+struct RowDays {
+  DaySizes stated;
+  bool of_fit = false;  ///< the day of the fitted records differs from the stated values, too
+};
+
 struct Row {
   std::string name;
   std::string effect;  ///< the effect that should be named; empty if there are none or several, or
@@ -124,6 +136,7 @@ struct Row {
   std::function<void(ForeignRig&, boost::random::mt19937_64&)> apply;
   bool drawn = false;  ///< the effect is drawn anew for each campaign
   bool fresh = false;  ///< rig, amplitudes and seeds are drawn as well
+  std::optional<RowDays> days = std::nullopt;
 };
 
 /// A row in which the size of the effect is a multiple of the detectable size. The latter is
@@ -180,6 +193,10 @@ std::vector<Row> rows() {
                      [apply = each.apply](ForeignRig& rig, auto&) { apply(rig); }, fresh, fresh});
     }
   }
+  for (const bool of_fit : {false, true}) {
+    all.push_back({of_fit ? "fresh: days, of all records" : "fresh: days, of the validation record",
+                   "", [](ForeignRig&, auto&) {}, true, true, RowDays{kUsualDaySizes, of_fit}});
+  }
   for (const ForeignEffect& each : kEffects) {
     for (const double factor : {0.3, 1.0, 3.0}) {
       all.push_back(
@@ -195,11 +212,13 @@ struct Estimate {
   const char* key;
   double ForeignRig::*truth;
 };
-const std::vector<Estimate> kEstimates{{"mass", &ForeignRig::mass_kg},
-                                       {"damping", &ForeignRig::damping_n_s_per_m},
-                                       {"bulk_modulus", &ForeignRig::bulk_modulus_pa},
-                                       {"valve_gain", &ForeignRig::valve_gain_m_per_v},
-                                       {"leakage_coefficient", &ForeignRig::leak_coefficient}};
+constexpr std::size_t kEstimateCount = 5;
+const std::array<Estimate, kEstimateCount> kEstimates{
+    {{"mass", &ForeignRig::mass_kg},
+     {"damping", &ForeignRig::damping_n_s_per_m},
+     {"bulk_modulus", &ForeignRig::bulk_modulus_pa},
+     {"valve_gain", &ForeignRig::valve_gain_m_per_v},
+     {"leakage_coefficient", &ForeignRig::leak_coefficient}}};
 
 int row_of(const std::string& key) {
   return model::parameter_index(model::PlantKind::load_pressure, key);
@@ -218,7 +237,8 @@ datasets::Condition condition_of(const Reference& reference, datasets::Use use) 
 }
 
 /// Returns the campaign as its user would write it: exact except for the effects in the rig.
-datasets::Campaign campaign_of(const Bench& bench) {
+datasets::Campaign campaign_of(const Bench& bench,
+                               const std::optional<RowDays>& days = std::nullopt) {
   const ForeignRig& rig = bench.rig;
   datasets::Campaign campaign = foreign_campaign(rig);
   for (const Estimate& each : kEstimates) {
@@ -234,6 +254,11 @@ datasets::Campaign campaign_of(const Bench& bench) {
   for (const Reference& each : bench.fitted)
     campaign.conditions.push_back(condition_of(each, datasets::Use::fit));
   campaign.conditions.push_back(condition_of(bench.validated, datasets::Use::validate));
+  if (days) {
+    campaign.between_days = stated_days(rig, days->stated);
+    for (datasets::Condition& each : campaign.conditions)
+      each.date = date_of(each.use == datasets::Use::fit ? 0 : 7);
+  }
   campaign.acceptance = {{Channel::position, "rho2", 0.99, 0.995},
                          {Channel::position, "ccc", 0.99, std::nullopt},
                          {Channel::position, "absolute_error_percent", 1.0, std::nullopt}};
@@ -258,23 +283,50 @@ datasets::Record record_of(const datasets::Campaign& campaign, const datasets::C
   return datasets::average_of(campaign, condition, all, true);
 }
 
-/// Returns the readings for each condition, in the order of the campaign.
-std::vector<std::vector<double>> readings_of_all(const Bench& bench) {
-  std::vector<std::vector<double>> all;
-  for (const Reference& reference : bench.fitted)
-    all.push_back(foreign_readings(bench.rig, reference));
-  all.push_back(foreign_readings(bench.rig, bench.validated));
+/// Motion of a rig in one condition, without noise.
+struct Motion {
+  std::vector<double> readings;  ///< readings of the rig's sensor [m]
+  std::vector<double> position;  ///< as an ideal sensor reads it [m]
+};
+
+Motion motion_of(const ForeignRig& rig, const Reference& reference) {
+  ForeignRig ideal = rig;
+  bool same = true;
+  for (double ForeignRig::*value :
+       {&ForeignRig::sensor_lag_s, &ForeignRig::sensor_gain, &ForeignRig::sensor_offset_m,
+        &ForeignRig::sensor_bow_m, &ForeignRig::sensor_wave_m, &ForeignRig::sensor_hysteresis_m}) {
+    same = same && rig.*value == 0.0;
+    ideal.*value = 0.0;
+  }
+  Motion motion;
+  motion.readings = foreign_readings(rig, reference);
+  motion.position = same ? motion.readings : foreign_readings(ideal, reference);
+  return motion;
+}
+
+/// Returns the motion in each condition, in the order of the campaign.
+///
+/// @param fitted, validated  the rig on the days of these records
+std::vector<Motion> motions_of_all(const Bench& bench, const ForeignRig& fitted,
+                                   const ForeignRig& validated) {
+  std::vector<Motion> all;
+  for (const Reference& reference : bench.fitted) all.push_back(motion_of(fitted, reference));
+  all.push_back(motion_of(validated, bench.validated));
   return all;
 }
 
+std::vector<Motion> motions_of_all(const Bench& bench) {
+  return motions_of_all(bench, bench.rig, bench.rig);
+}
+
 std::vector<datasets::Record> records_of(const datasets::Campaign& campaign,
-                                         const std::vector<std::vector<double>>& readings,
-                                         int repeats, boost::random::mt19937_64& stream,
+                                         const std::vector<Motion>& motions, int repeats,
+                                         boost::random::mt19937_64& stream,
                                          double quantum_m = 0.0) {
   std::vector<datasets::Record> records;
   for (std::size_t c = 0; c < campaign.conditions.size(); ++c)
-    records.push_back(
-        record_of(campaign, campaign.conditions[c], readings[c], repeats, stream, quantum_m));
+    records.push_back(record_of(campaign, campaign.conditions[c], motions[c].readings, repeats,
+                                stream, quantum_m));
   return records;
 }
 
@@ -291,7 +343,7 @@ const std::map<std::string, double>& detectable_sizes(int repeats) {
     const Bench bench;
     const datasets::Campaign campaign = campaign_of(bench);
     const auto fit =
-        calib::fit(campaign, records_of(campaign, readings_of_all(bench), repeats, stream), {});
+        calib::fit(campaign, records_of(campaign, motions_of_all(bench), repeats, stream), {});
     std::map<std::string, double> sizes;
     for (const calib::ConsideredEffect& each : fit.considered.value().effects)
       if (each.alone_error) sizes[each.key] = kFound * *each.alone_error;
@@ -308,7 +360,7 @@ double cost_of(const Bench& bench, int repeats) {
   campaign.considered.none = true;
   campaign.channels.at(Channel::position).sd = kNoise_m;
   const auto records =
-      records_of(campaign, readings_of_all(bench), repeats, stream, bench.rig.quantum_m);
+      records_of(campaign, motions_of_all(bench), repeats, stream, bench.rig.quantum_m);
   return calib::fit(campaign, records, {}).cost;
 }
 
@@ -357,48 +409,137 @@ std::optional<Row> with_size(const SizedRow& row, int repeats) {
              true, true};
 }
 
+struct EstimateOutcome {
+  bool has_interval = false;
+  bool holds = false, exact = false;  ///< whether `ci95` and `ci95_if_exact` include the truth
+  double half_width = 0.0;            ///< relative to the true value; 0 without an interval
+  double error = 0.0;                 ///< relative to the true value
+};
+
+/// Number of trials, and how many of them had a certain outcome.
+struct Tally {
+  int trials = 0, hits = 0;
+  void add(bool hit) {
+    ++trials;
+    hits += hit ? 1 : 0;
+  }
+};
+
+constexpr std::array kTests{"autocorrelation", "cross-correlation", "periodogram", "normality",
+                            "drift"};
+
 struct StudyOutcome {
   bool converged = false;
-  std::vector<bool> holds, exact;
-  std::vector<double> half_width, error;  ///< relative to the true value
+  std::array<EstimateOutcome, kEstimateCount> estimates{};
   /// Largest distance of a missed truth from the centre of its interval, in half-widths.
   double worst = 0.0;
   calib::Verdict verdict = calib::Verdict::fail;
   std::string named;  ///< the effect that the residuals indicate first
+  /// For each residual test of the validation record, whether it rejects; only if it was judged.
+  std::array<Tally, kTests.size()> rejected{};
+  /// For each metric, how many scores differ from those of the true motion by at most the two-sided
+  /// uncertainty.
+  std::array<Tally, metrics::kMetrics.size()> covered{};
 };
 
-StudyOutcome outcome_of(const ForeignRig& rig, const calib::Fit& fit) {
+/// Compares an estimate with the truth.
+///
+/// @param days_error  standard error due to the day of the fit, by which the interval is widened
+EstimateOutcome compared(const calib::FittedParameter& parameter, double truth, double days_error,
+                         double& worst) {
+  EstimateOutcome result;
+  const double value = parameter.value;
+  result.error = (value - truth) / truth;
+  if (const auto& exact = parameter.ci95_if_exact)
+    result.exact = exact->low <= truth && truth <= exact->high;
+  const auto& ci95 = parameter.ci95;
+  if (!ci95 || !std::isfinite(ci95->low) || !std::isfinite(ci95->high)) return result;
+  constexpr double kNormal95 = 1.959964;
+  const double low = value - std::hypot(value - ci95->low, kNormal95 * days_error);
+  const double high = value + std::hypot(ci95->high - value, kNormal95 * days_error);
+  result.has_interval = true;
+  result.holds = low <= truth && truth <= high;
+  const double half = (high - low) / 2.0;
+  result.half_width = half / truth;
+  const double outside = std::max({low - truth, truth - high, 0.0});
+  if (outside > 0.0) worst = std::max(worst, outside / half + 1.0);
+  return result;
+}
+
+void count_tests(const metrics::ResidualTests& tests, StudyOutcome& outcome) {
+  const metrics::CrossCorrelation none;
+  const std::array<const metrics::Judged*, kTests.size()> judged{
+      &tests.autocorrelation, tests.cross_correlation ? &*tests.cross_correlation : &none,
+      &tests.periodogram, &tests.normality, &tests.drift};
+  for (std::size_t i = 0; i < judged.size(); ++i)
+    if (judged[i]->outcome != metrics::TestOutcome::not_judged)
+      outcome.rejected[i].add(judged[i]->failed());
+}
+
+void count_scores(const calib::ConditionScore& condition, const calib::ChannelScore& channel,
+                  const std::vector<double>& position, StudyOutcome& outcome) {
+  if (!channel.agreement || !channel.two_sided_uncertainty) return;
+  const std::vector<double>& simulated = condition.series.at(channel.channel).second;
+  const metrics::Agreement truth = metrics::agreement(position, simulated);
+  for (std::size_t m = 0; m < metrics::kMetrics.size(); ++m) {
+    const auto metric = metrics::kMetrics[m].value;
+    const double distance = std::abs(truth.*metric - (*channel.agreement).*metric);
+    outcome.covered[m].add(distance <= (*channel.two_sided_uncertainty).*metric);
+  }
+}
+
+/// @param rig      true values, without the deviations of a day
+/// @param motions  one per condition
+StudyOutcome outcome_of(const Row& row, const ForeignRig& rig, const std::vector<Motion>& motions,
+                        const calib::Fit& fit) {
   StudyOutcome result;
   result.converged = fit.status == calib::FitStatus::converged;
   if (!result.converged) return result;
-  for (const Estimate& each : kEstimates) {
-    const auto found =
-        std::find_if(fit.parameters.begin(), fit.parameters.end(),
-                     [&](const auto& parameter) { return parameter.index == row_of(each.key); });
-    const auto [low, high] = found->ci95.value();
-    const auto exact = found->ci95_if_exact.value();
-    const double truth = rig.*each.truth;
-    result.holds.push_back(low <= truth && truth <= high);
-    result.exact.push_back(exact.low <= truth && truth <= exact.high);
-    const double half = (high - low) / 2.0;
-    result.half_width.push_back(half / truth);
-    result.error.push_back((found->value - truth) / truth);
-    const double outside = std::max({low - truth, truth - high, 0.0});
-    result.worst = std::max(result.worst, outside > 0.0 ? outside / half + 1.0 : 0.0);
+  for (std::size_t j = 0; j < kEstimates.size(); ++j) {
+    const auto found = std::find_if(
+        fit.parameters.begin(), fit.parameters.end(),
+        [&](const auto& parameter) { return parameter.index == row_of(kEstimates[j].key); });
+    const bool other_day = row.days && row.days->of_fit;
+    result.estimates[j] =
+        compared(*found, rig.*kEstimates[j].truth,
+                 other_day ? found->between_days_error.value_or(0.0) : 0.0, result.worst);
   }
-  result.verdict = fit.verdict.value();
+  result.verdict = fit.verdict.value_or(calib::Verdict::fail);
   if (fit.considered && !fit.considered->missing.empty())
     result.named = fit.considered->missing.front();
+  for (std::size_t c = 0; c < fit.conditions.size(); ++c) {
+    const calib::ConditionScore& condition = fit.conditions[c];
+    for (const calib::ChannelScore& channel : condition.channels) {
+      count_scores(condition, channel, motions[c].position, result);
+      if (condition.use == datasets::Use::validate && channel.residual_tests)
+        count_tests(*channel.residual_tests, result);
+    }
+  }
   return result;
 }
+
+/// First line of a file with results. The number is the version of its lines.
+constexpr const char* kFileVersion = "rigcal_considered_study 2";
 
 /// Stores the results, one line per campaign, so that a study that was stopped can continue.
 class OutcomeFile {
  public:
+  /// @throws std::invalid_argument  if the file has another version
   explicit OutcomeFile(std::string path) : path_(std::move(path)) {
     if (path_.empty()) return;
     std::ifstream in(path_);
-    for (std::string line; std::getline(in, line);) {
+    std::string line;
+    if (!std::getline(in, line)) {
+      std::ofstream(path_, std::ios::app) << kFileVersion << '\n';
+      return;
+    }
+    if (line != kFileVersion)
+      throw std::invalid_argument(
+          fmt::format("{}: the first line is \"{}\", expected \"{}\"; results of other versions "
+                      "lack columns, so "
+                      "state a new file",
+                      path_, line, kFileVersion));
+    while (std::getline(in, line)) {
       const auto end = line.rfind('\t');
       if (end != std::string::npos) lines_[line.substr(0, end)] = line.substr(end + 1);
     }
@@ -413,18 +554,13 @@ class OutcomeFile {
     in >> result.converged >> verdict >> result.worst >> result.named;
     result.verdict = static_cast<calib::Verdict>(verdict);
     if (result.named == "-") result.named.clear();
-    for (std::size_t j = 0; j < kEstimates.size() && result.converged; ++j) {
-      bool holds = false;
-      bool exact = false;
-      double half = 0.0;
-      double error = 0.0;
-      in >> holds >> exact >> half >> error;
-      result.holds.push_back(holds);
-      result.exact.push_back(exact);
-      result.half_width.push_back(half);
-      result.error.push_back(error);
-    }
-    return in ? std::optional(result) : std::nullopt;  // ignores an incomplete line
+    for (EstimateOutcome& each : result.estimates)
+      in >> each.has_interval >> each.holds >> each.exact >> each.half_width >> each.error;
+    for (Tally& each : result.rejected) in >> each.trials >> each.hits;
+    for (Tally& each : result.covered) in >> each.trials >> each.hits;
+    std::string end;
+    in >> end;
+    return end == kEndOfLine ? std::optional(result) : std::nullopt;  // ignores an incomplete line
   }
 
   void add(const std::string& key, const StudyOutcome& outcome) {
@@ -432,15 +568,18 @@ class OutcomeFile {
     std::string line =
         fmt::format("{}\t{:d} {} {} {}", key, outcome.converged, static_cast<int>(outcome.verdict),
                     outcome.worst, outcome.named.empty() ? "-" : outcome.named);
-    for (std::size_t j = 0; j < outcome.holds.size(); ++j) {
-      line += fmt::format(" {:d} {:d} {} {}", bool(outcome.holds[j]), bool(outcome.exact[j]),
-                          outcome.half_width[j], outcome.error[j]);
-    }
+    for (const EstimateOutcome& each : outcome.estimates)
+      line += fmt::format(" {:d} {:d} {:d} {} {}", each.has_interval, each.holds, each.exact,
+                          each.half_width, each.error);
+    for (const Tally& each : outcome.rejected)
+      line += fmt::format(" {} {}", each.trials, each.hits);
+    for (const Tally& each : outcome.covered) line += fmt::format(" {} {}", each.trials, each.hits);
     const std::lock_guard lock(mutex_);
-    std::ofstream(path_, std::ios::app) << line << '\n';
+    std::ofstream(path_, std::ios::app) << line << ' ' << kEndOfLine << '\n';
   }
 
  private:
+  static constexpr const char* kEndOfLine = "end";
   std::string path_;
   std::map<std::string, std::string> lines_;
   std::mutex mutex_;
@@ -456,7 +595,33 @@ struct StudyExtent {
 };
 
 std::string percent(std::size_t count, std::size_t of) {
+  if (of == 0) return "-";
   return fmt::format("{:.1f}", 100.0 * static_cast<double>(count) / static_cast<double>(of));
+}
+
+std::string ratio(const std::optional<double>& value, double unit) {
+  return value ? significant(*value / unit, 2) : "-";
+}
+
+/// Returns the rate of hits in percent, for all tallies together and then for each of them.
+template <typename Tallies>
+std::string rates(const std::vector<StudyOutcome>& outcomes, Tallies StudyOutcome::*member) {
+  const auto in_percent = [](const Tally& tally) {
+    return percent(static_cast<std::size_t>(tally.hits), static_cast<std::size_t>(tally.trials));
+  };
+  Tally all;
+  std::string text;
+  for (std::size_t i = 0; i < Tallies{}.size(); ++i) {
+    Tally one;
+    for (const StudyOutcome& each : outcomes) {
+      one.trials += (each.*member)[i].trials;
+      one.hits += (each.*member)[i].hits;
+    }
+    all.trials += one.trials;
+    all.hits += one.hits;
+    text += " " + in_percent(one);
+  }
+  return fmt::format("{};{}", in_percent(all), text);
 }
 
 template <typename Each>
@@ -471,11 +636,11 @@ void study_row(const Row& row, const StudyExtent& extent, OutcomeFile& file) {
   const int repeats = extent.repeats;
   std::vector<StudyOutcome> outcomes(asked);
   Bench same;
-  std::vector<std::vector<double>> same_readings;
+  std::vector<Motion> same_motions;
   if (!row.drawn) {
     boost::random::mt19937_64 unused;
     row.apply(same.rig, unused);
-    same_readings = readings_of_all(same);
+    same_motions = motions_of_all(same);
   }
   parallel_for(asked, extent.threads, [&](std::size_t k) {
     const std::size_t i = extent.first + k;
@@ -487,41 +652,55 @@ void study_row(const Row& row, const StudyExtent& extent, OutcomeFile& file) {
     boost::random::mt19937_64 stream(row.fresh ? kFreshSeed + i : i + 1);
     Bench bench = row.fresh ? drawn_bench(stream) : same;
     if (row.drawn) row.apply(bench.rig, stream);
-    const datasets::Campaign campaign = campaign_of(bench);
-    const auto records = records_of(campaign, row.drawn ? readings_of_all(bench) : same_readings,
-                                    repeats, stream, bench.rig.quantum_m);
-    outcomes[k] = outcome_of(bench.rig, calib::fit(campaign, records, {}));
+    ForeignRig fitted = bench.rig;
+    ForeignRig validated = bench.rig;
+    if (row.days) {
+      if (row.days->of_fit) fitted = rig_of_day(bench.rig, row.days->stated, stream);
+      validated = rig_of_day(bench.rig, row.days->stated, stream);
+    }
+    const datasets::Campaign campaign = campaign_of(bench, row.days);
+    const std::vector<Motion> motions =
+        row.drawn ? motions_of_all(bench, fitted, validated) : same_motions;
+    const auto records = records_of(campaign, motions, repeats, stream, bench.rig.quantum_m);
+    outcomes[k] = outcome_of(row, bench.rig, motions, calib::fit(campaign, records, {}));
     file.add(key, outcomes[k]);
   });
   std::erase_if(outcomes, [](const StudyOutcome& each) { return !each.converged; });
   const std::size_t campaigns = outcomes.size();
-  if (campaigns == 0) throw std::runtime_error("no fit of this row has converged");
   const auto count = [&](const auto& holds) {
     return static_cast<std::size_t>(std::count_if(outcomes.begin(), outcomes.end(), holds));
   };
-  const auto covered = [&](std::vector<bool> StudyOutcome::*member) {
+  const auto covered = [&](bool EstimateOutcome::*member) {
     return of_each([&](std::size_t j) {
-      return percent(count([&](const StudyOutcome& each) { return bool((each.*member)[j]); }),
+      return percent(count([&](const StudyOutcome& each) { return each.estimates[j].*member; }),
                      campaigns);
     });
   };
-  const auto median = [&](std::size_t j) {
+  const auto median = [&](std::size_t j) -> std::optional<double> {
     std::vector<double> widths;
-    for (const StudyOutcome& each : outcomes) widths.push_back(each.half_width[j]);
-    std::nth_element(widths.begin(), widths.begin() + static_cast<std::ptrdiff_t>(campaigns / 2),
-                     widths.end());
-    return widths[campaigns / 2];
+    for (const StudyOutcome& each : outcomes)
+      if (each.estimates[j].has_interval) widths.push_back(each.estimates[j].half_width);
+    if (widths.empty()) return std::nullopt;
+    const auto middle = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
+    std::nth_element(widths.begin(), middle, widths.end());
+    return *middle;
   };
   const auto rms = [&](std::size_t j) {
     double sum = 0.0;
-    for (const StudyOutcome& each : outcomes) sum += each.error[j] * each.error[j];
+    for (const StudyOutcome& each : outcomes)
+      sum += each.estimates[j].error * each.estimates[j].error;
     return std::sqrt(sum / static_cast<double>(campaigns));
   };
-  const auto verdicts = fmt::format(
-      "{}/{}/{}{}", count([](const StudyOutcome& o) { return o.verdict == calib::Verdict::pass; }),
-      count([](const StudyOutcome& o) { return o.verdict == calib::Verdict::warn; }),
-      count([](const StudyOutcome& o) { return o.verdict == calib::Verdict::fail; }),
-      campaigns == asked ? "" : fmt::format(", {} not converged", asked - campaigns));
+  std::size_t without = 0;
+  for (const StudyOutcome& each : outcomes)
+    for (const EstimateOutcome& estimate : each.estimates) without += estimate.has_interval ? 0 : 1;
+  const auto verdicts =
+      fmt::format("{}/{}/{}{}{}",
+                  count([](const StudyOutcome& o) { return o.verdict == calib::Verdict::pass; }),
+                  count([](const StudyOutcome& o) { return o.verdict == calib::Verdict::warn; }),
+                  count([](const StudyOutcome& o) { return o.verdict == calib::Verdict::fail; }),
+                  campaigns == asked ? "" : fmt::format(", {} not converged", asked - campaigns),
+                  without == 0 ? "" : fmt::format(", {} estimates without an interval", without));
   const std::size_t falsely = count(
       [](const StudyOutcome& o) { return o.verdict == calib::Verdict::pass && o.worst > 3.0; });
   const std::size_t named =
@@ -531,13 +710,14 @@ void study_row(const Row& row, const StudyExtent& extent, OutcomeFile& file) {
     if (!each.named.empty() && each.named != row.effect) ++others[each.named];
   std::string other;
   for (const auto& [name, times] : others) other += fmt::format(" `{}` {}", name, times);
-  std::cout << fmt::format(
-                   "| {} | {} | {} | {} | {} | {} | {} | {}{} |\n", row.name,
-                   covered(&StudyOutcome::holds), covered(&StudyOutcome::exact),
-                   of_each([&](std::size_t j) { return significant(100.0 * median(j), 2); }),
-                   of_each([&](std::size_t j) { return significant(median(j) / rms(j), 2); }),
-                   verdicts, percent(falsely, campaigns), percent(named, campaigns),
-                   other.empty() ? "" : ";" + other)
+  std::cout << fmt::format("| {} | {} | {} | {} | {} | {} | {} | {}{} | {} | {} |\n", row.name,
+                           covered(&EstimateOutcome::holds), covered(&EstimateOutcome::exact),
+                           of_each([&](std::size_t j) { return ratio(median(j), 0.01); }),
+                           of_each([&](std::size_t j) { return ratio(median(j), rms(j)); }),
+                           verdicts, percent(falsely, campaigns), percent(named, campaigns),
+                           other.empty() ? "" : ";" + other,
+                           rates(outcomes, &StudyOutcome::rejected),
+                           rates(outcomes, &StudyOutcome::covered))
             << std::flush;
 }
 
@@ -562,13 +742,23 @@ int main(int argc, char** argv) {
   }
   extent.campaigns = static_cast<std::size_t>(campaigns);
   extent.first = static_cast<std::size_t>(first);
-  rigcal::bench::OutcomeFile file(argc > 6 ? argv[6] : "");
+  std::optional<rigcal::bench::OutcomeFile> kept;
+  try {
+    kept.emplace(argc > 6 ? argv[6] : "");
+  } catch (const std::invalid_argument& wrong) {
+    std::cerr << "rigcal_considered_study: " << wrong.what() << "\n";
+    return 2;
+  }
+  rigcal::bench::OutcomeFile& file = *kept;
+  std::string metrics;
+  for (const auto& metric : rigcal::metrics::kMetrics) metrics += fmt::format(" {}", metric.name);
   std::cout << fmt::format(
       "| {} campaigns each, {} repeats | intervals with the truth, % (mass, damping, "
       "bulk modulus, valve gain, leak) | `ci95_if_exact`, % | median half width, % | over the rms "
-      "error | PASS/WARN/FAIL | false assurance, % | named first, %; others |\n"
-      "| --- | --- | --- | --- | --- | --- | --- | --- |\n",
-      campaigns, extent.repeats);
+      "error | PASS/WARN/FAIL | false assurance, % | named first, %; others | residual tests of "
+      "validation that reject, % (all; {}) | scores with the truth within U, % (all;{}) |\n"
+      "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n",
+      campaigns, extent.repeats, fmt::join(rigcal::bench::kTests, ", "), metrics);
   for (const auto& row : rigcal::bench::rows()) {
     if (row.name.find(only) != std::string::npos) rigcal::bench::study_row(row, extent, file);
   }

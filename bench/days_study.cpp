@@ -25,6 +25,7 @@
 #include <vector>
 
 #include "bench/foreign_campaign.hpp"
+#include "bench/foreign_day.hpp"
 #include "calib/fit.hpp"
 #include "common/parallel.hpp"
 #include "datasets/prepare/load_record.hpp"
@@ -41,37 +42,19 @@ constexpr int kRepeats = 5;
 constexpr int kOtherDays = 4;
 /// Coefficient of a worn seal, which either stays constant or is the start of a trend.
 constexpr double kWornSeal = 0.1;
-constexpr double kStandardErrors = 4.0;  ///< slope of the trend in standard errors
+/// Slope of the trend in standard errors, which are those of a seal that stays constant.
+constexpr double kStandardErrors = 4.0;
+constexpr int kDaysApart = 7;
 const std::vector<Reference> kDaySignals{
     {"square", 1.0, 0.05, 2.0}, {"sine", 5.0, 0.02, 1.0}, {"sine", 2.0, 0.05, 1.0}};
 
-/// Standard deviations between days.
-struct DaySizes {
-  double supply = 0.0;        ///< relative to the supply pressure
-  double bulk_modulus = 0.0;  ///< relative to the bulk modulus
-  double zero_m = 0.0;
-  double trigger_s = 0.0;
-};
-
-/// The usual sizes for this rig (docs/diagnosis.md).
-constexpr DaySizes kUsual{5e-3, 0.03, 2e-4 * 0.1524, 0.5e-3};
-
-DaySizes times(double factor, const DaySizes& sizes) {
-  return {factor * sizes.supply, factor * sizes.bulk_modulus, factor * sizes.zero_m,
-          factor * sizes.trigger_s};
-}
-
 using DaysStream = boost::random::mt19937_64;
 
-ForeignRig rig_of_day(const DaySizes& sizes, DaysStream& stream) {
-  boost::random::normal_distribution<double> normal;
+/// Returns the rig without a leak, as it is on one day.
+ForeignRig healthy_rig_of_day(const DaySizes& sizes, DaysStream& stream) {
   ForeignRig rig;
   rig.leak_coefficient = 0.0;
-  rig.supply_pa *= 1.0 + sizes.supply * normal(stream);
-  rig.bulk_modulus_pa *= 1.0 + sizes.bulk_modulus * normal(stream);
-  rig.sensor_offset_m = sizes.zero_m * normal(stream);
-  rig.delay_s = sizes.trigger_s * normal(stream);
-  return rig;
+  return rig_of_day(rig, sizes, stream);
 }
 
 struct DaysRow {
@@ -87,7 +70,7 @@ const std::vector<DaysRow>& days_rows() {
   static const std::vector<DaysRow> rows = [] {
     std::vector<DaysRow> all;
     all.push_back({"the day of the reference", {}, true});
-    all.push_back({"other days, usual sizes", kUsual});
+    all.push_back({"other days, usual sizes", kUsualDaySizes});
     DaysRow supply{"other days, the supply alone, stated", {5e-3, 0.0, 0.0, 0.0}};
     supply.state = [](datasets::BetweenDaysSettings& days) {
       days.sds["supply_pressure"] = 31e3;
@@ -98,10 +81,11 @@ const std::vector<DaysRow>& days_rows() {
     ignored.name = "other days, the supply alone, between_days = false";
     ignored.state = [](datasets::BetweenDaysSettings& days) { days.none = true; };
     all.push_back(ignored);
-    DaysRow dates{"other days, twice the usual sizes, six healthy dates", times(2.0, kUsual)};
+    DaysRow dates{"other days, twice the usual sizes, six healthy dates",
+                  times(2.0, kUsualDaySizes)};
     dates.healthy_dates = 6;
     all.push_back(dates);
-    DaysRow trend{"trend over four dates, usual sizes", kUsual};
+    DaysRow trend{"trend over four dates, fresh days, usual sizes", kUsualDaySizes};
     trend.trend = true;
     all.push_back(trend);
     return all;
@@ -140,10 +124,6 @@ datasets::Campaign days_campaign(const DaysRow& row) {
   campaign.considered.none = true;  // the intervals of the fit are not used
   row.state(campaign.between_days);
   return campaign;
-}
-
-std::string date_of(int day) {
-  return fmt::format("2026-{:02d}-{:02d}", 1 + day / 28, 1 + day % 28);
 }
 
 /// A campaign to which conditions are added one by one, with their records.
@@ -251,7 +231,7 @@ DaysCounts counts_of(const DaysRow& row, std::uint64_t seed) {
   DaysStream stream(seed);
   DaysCounts counts;
   DaysMade made{days_campaign(row), {}};
-  const ForeignRig first = rig_of_day(row.drawn, stream);
+  const ForeignRig first = healthy_rig_of_day(row.drawn, stream);
   made.add(first, "healthy", 0, datasets::Use::fit, kRepeats, stream);
   std::vector<datasets::Record> fitted;
   for (const auto& each : made.records) fitted.push_back(each.average);
@@ -259,11 +239,16 @@ DaysCounts counts_of(const DaysRow& row, std::uint64_t seed) {
   if (!fit.usable()) throw std::runtime_error("the fit failed: " + fit.message);
   const diagnosis::RigFit rig = diagnosis::rig_fit_of(fit);
   for (int day = 1; day < row.healthy_dates; ++day)
-    made.add(rig_of_day(row.drawn, stream), "healthy", day, datasets::Use::validate, 0, stream);
+    made.add(healthy_rig_of_day(row.drawn, stream), "healthy", day, datasets::Use::validate, 0,
+             stream);
 
   std::vector<ForeignRig> others;
-  for (int i = 0; i < kOtherDays; ++i)
-    others.push_back(row.same_day ? first : rig_of_day(row.drawn, stream));
+  const auto draw_others = [&] {
+    others.clear();
+    for (int i = 0; i < kOtherDays; ++i)
+      others.push_back(row.same_day ? first : healthy_rig_of_day(row.drawn, stream));
+  };
+  draw_others();
   const auto with_others = [&](const std::string& level, const std::function<double(int)>& leak,
                                const std::vector<double>& leaks) {
     DaysMade all = made;
@@ -271,24 +256,25 @@ DaysCounts counts_of(const DaysRow& row, std::uint64_t seed) {
       ForeignRig own = others[static_cast<std::size_t>(i)];
       own.leak_coefficient = leak(i);
       const std::string name = row.same_day ? fmt::format("{}{}", level, i) : level;
-      all.add(own, name, row.same_day ? 0 : 10 + 7 * i, datasets::Use::diagnose, row.trend ? 0 : 1,
-              stream, leaks);
+      all.add(own, name, row.same_day ? 0 : 10 + kDaysApart * i, datasets::Use::diagnose,
+              row.trend ? 0 : 1, stream, leaks);
     }
     return all.diagnosed(rig);
   };
   if (row.trend) {
-    const auto constant = with_others("seal", [](int) { return kWornSeal; }, {}).trends;
-    counts.trends = static_cast<int>(constant.size());
-    counts.significant = constant.front().significant ? 1 : 0;
-    const auto& [low, high] = constant.front().share_per_day_ci95;
-    const double error = (high - low) / 2.0 / 1.96 * constant.front().coefficient_per_day /
-                         constant.front().share_per_day;
-    const auto rising =
-        with_others("seal", [&](int i) { return kWornSeal + kStandardErrors * error * 7.0 * i; },
-                    {})
-            .trends;
+    const auto trend_with = [&](double coefficient_per_day) {
+      const auto worn = [=](int i) { return kWornSeal + coefficient_per_day * kDaysApart * i; };
+      const auto trends = with_others("seal", worn, {}).trends;
+      if (trends.size() != 1) throw std::runtime_error("expected one trend over the dates");
+      return trends.front();
+    };
+    const diagnosis::LeakTrend constant = trend_with(0.0);
+    counts.trends = 1;
+    counts.significant = constant.significant ? 1 : 0;
+    draw_others();  // the same days would repeat the error of the slope
     counts.slopes = 1;
-    counts.slopes_found = rising.front().significant ? 1 : 0;
+    counts.slopes_found =
+        trend_with(kStandardErrors * constant.coefficient_per_day_error).significant ? 1 : 0;
     return counts;
   }
   const diagnosis::Diagnosis healthy = with_others("unknown", [](int) { return 0.0; }, {});

@@ -424,7 +424,8 @@ Diagnosis diagnose(const Campaign& campaign, const std::vector<datasets::RepeatR
   }
   result.states = machine_states(problem, rig, prepared, result.records, errors,
                                  {between.variance, between.freedom});
-  result.trends = leak_trends(result.states, rig.covariance, campaign.diagnosis, between.variance);
+  result.trends = leak_trends(result.states, rig.covariance, campaign.diagnosis,
+                              {between.variance, between.freedom});
   for (RecordDiagnosis& record : result.records) set_truth(campaign, record);
   classify_by_features(result.records);
   const auto by_leak = [](const RecordDiagnosis& record) { return record.leak_class; };

@@ -44,7 +44,7 @@ std::vector<DatedMachine> dated_machines(const std::vector<MachineState>& states
 }
 
 metrics::Trend line_through(const std::vector<DatedState>& states,
-                            const Eigen::MatrixXd& rig_covariance, double days_factor) {
+                            const Eigen::MatrixXd& rig_covariance, const DayVariance& variance) {
   std::vector<double> days, coefficients;
   std::vector<metrics::EstimateError> errors;
   Eigen::MatrixXd moves(static_cast<Eigen::Index>(states.size()), rig_covariance.rows());
@@ -62,9 +62,12 @@ metrics::Trend line_through(const std::vector<DatedState>& states,
   }
   // Errors in the rig's parameters shift the coefficients of all dates together, and so does the
   // deviation on the day of the reference. In addition, each date has its own deviation.
-  return metrics::weighted_trend(
-      days, coefficients, errors,
-      moves * rig_covariance * moves.transpose() + days_factor * day_moves * day_moves.transpose());
+  metrics::DaysOfPoints between;
+  between.covariance = variance.factor * day_moves * day_moves.transpose();
+  between.freedom = variance.freedom;
+  between.counted = between.covariance.trace() > 0.0;
+  return metrics::weighted_trend(days, coefficients, errors,
+                                 moves * rig_covariance * moves.transpose(), between);
 }
 
 /// Predicts when the line reaches the next limit.
@@ -83,8 +86,8 @@ void foresee(const MachineState& last, const datasets::DiagnosisSettings& settin
 }
 
 LeakTrend trend_of(const DatedMachine& machine, const Eigen::MatrixXd& rig_covariance,
-                   const datasets::DiagnosisSettings& settings, double days_factor) {
-  const metrics::Trend line = line_through(machine.states, rig_covariance, days_factor);
+                   const datasets::DiagnosisSettings& settings, const DayVariance& variance) {
+  const metrics::Trend line = line_through(machine.states, rig_covariance, variance);
   const MachineState& last = *machine.states.back().state;
   LeakTrend trend;
   trend.leak_level = machine.leak_level;
@@ -94,6 +97,7 @@ LeakTrend trend_of(const DatedMachine& machine, const Eigen::MatrixXd& rig_covar
   trend.last_day = machine.states.back().day;
   trend.dates = static_cast<int>(machine.states.size());
   trend.coefficient_per_day = line.slope;
+  trend.coefficient_per_day_error = line.slope_standard_error / line.widened;
   trend.share_per_day = last.share_slope * line.slope;
   trend.share_per_day_ci95 = {last.share_slope * line.ci95_low, last.share_slope * line.ci95_high};
   trend.p = line.p_value;
@@ -110,11 +114,11 @@ LeakTrend trend_of(const DatedMachine& machine, const Eigen::MatrixXd& rig_covar
 std::vector<LeakTrend> leak_trends(const std::vector<MachineState>& states,
                                    const Eigen::MatrixXd& rig_covariance,
                                    const datasets::DiagnosisSettings& settings,
-                                   double days_factor) {
+                                   const DayVariance& variance) {
   std::vector<LeakTrend> trends;
   for (const DatedMachine& machine : dated_machines(states)) {
     if (machine.states.size() >= metrics::kLeastTrendPoints)
-      trends.push_back(trend_of(machine, rig_covariance, settings, days_factor));
+      trends.push_back(trend_of(machine, rig_covariance, settings, variance));
   }
   return trends;
 }

@@ -18,6 +18,8 @@ struct LeakTrend {
   int first_day = 0, last_day = 0;   ///< days since 1970-01-01
   int dates = 0;
   double coefficient_per_day = 0.0;
+  /// Standard error of coefficient_per_day due to the errors of the states, without `widened`.
+  double coefficient_per_day_error = 0.0;
   double share_per_day = 0.0;  ///< slope of the share at the duty, close to the last date
   Range share_per_day_ci95{};
   double p = 1.0;            ///< two-sided p-value for no change
@@ -40,14 +42,14 @@ struct LeakTrend {
 ///
 /// The trend is metrics::weighted_trend() of the coefficients. Each coefficient has its own error,
 /// and all share the error due to the rig's parameters. The covariance also includes day-to-day
-/// differences.
+/// differences. If it does, the trend counts as one whose days are counted.
 ///
 /// @param rig_covariance  covariance of the rig's parameters, shape (rig_moves)^2
-/// @param days_factor     variance between days, relative to the squares of PooledLeak::day_moves
+/// @param variance        variance between days, relative to the squares of PooledLeak::day_moves
 std::vector<LeakTrend> leak_trends(const std::vector<MachineState>& states,
                                    const Eigen::MatrixXd& rig_covariance,
                                    const datasets::DiagnosisSettings& settings,
-                                   double days_factor = 0.0);
+                                   const DayVariance& variance = {});
 
 /// Lists, in words, the machines that were diagnosed on only two dates. They get no trend, because
 /// the difference could be the usual one between two days.

@@ -135,10 +135,13 @@ EstimateTrend trend_of(const std::vector<PlacedEstimate>& estimates, bool shared
   EstimateTrend result;
   std::vector<double> x, y;
   std::vector<metrics::EstimateError> errors;
+  metrics::DaysOfPoints days;
+  days.counted = !estimates.empty();
   for (const PlacedEstimate& each : estimates) {
     x.push_back(each.place);
     y.push_back(each.value);
     errors.push_back(each.error);
+    days.counted = days.counted && each.days_counted;
   }
   result.points = static_cast<long>(x.size());
   const auto [low, high] = std::minmax_element(x.begin(), x.end());
@@ -153,7 +156,7 @@ EstimateTrend trend_of(const std::vector<PlacedEstimate>& estimates, bool shared
   }
   metrics::Trend trend;
   try {
-    trend = metrics::weighted_trend(x, y, errors);
+    trend = metrics::weighted_trend(x, y, errors, {}, days);
   } catch (const std::domain_error&) {  // possible if a file was edited by hand
     result.reason = "the errors of the estimates are too far apart for a line";
     return result;

@@ -117,9 +117,12 @@ struct PlacedEstimate {
   double place = 0.0;
   double value = 0.0;
   metrics::EstimateError error;
+  bool days_counted = false;  ///< whether the error includes day-to-day differences
 };
 
-/// Fits a line to a series of estimates, and tests its slope.
+/// Fits a line to a series of estimates, and tests its slope. The test relies on the errors more
+/// than on the variation about the line if every error includes day-to-day differences
+/// (metrics::weighted_trend()).
 ///
 /// @param shared  whether results in the series share records
 EstimateTrend trend_of(const std::vector<PlacedEstimate>& estimates, bool shared);

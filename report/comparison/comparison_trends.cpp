@@ -44,7 +44,8 @@ calib::EstimateTrend trend_along(const std::vector<StoredTrendPoint>& points,
     placed.push_back(
         {*(point.*place),
          *point.value,
-         {*point.standard_error, point.degrees_of_freedom.value_or(metrics::kManyDegrees)}});
+         {*point.standard_error, point.degrees_of_freedom.value_or(metrics::kManyDegrees)},
+         point.between_days_error.value_or(0.0) > 0.0});
   }
   return calib::trend_of(placed, shared);
 }

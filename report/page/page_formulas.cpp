@@ -107,8 +107,9 @@ constexpr std::array kFormulas{
     Formula{
         "trend",
         "weighted least squares, tested by the errors of the points; where chi-square about the "
-        "line is beyond its upper quartile, the error is widened by the root of reduced "
-        "chi-square and tested by t with n - 2 degrees of freedom"},
+        "line is beyond its upper quartile (beyond 10 % if the errors count the days), the error "
+        "is widened by the root of reduced chi-square and tested by t with n - 2 degrees of "
+        "freedom"},
     Formula{"sign test", "exact binomial, two-sided, over the conditions that both results have"},
 };
 

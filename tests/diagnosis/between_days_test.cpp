@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <functional>
+#include <random>
 
 #include "diagnosis/leak_trend.hpp"
 #include "diagnosis/machine_state.hpp"
@@ -30,6 +32,34 @@ BetweenDays days(const std::vector<std::string>& names) {
   between.days = names;
   between.quantities = {{"supply_pressure", "supply", "Pa", 31e3, "0.5 % of the supply", 0}};
   return between;
+}
+
+/// Coefficients of four dates, a week apart. Each has an error of 0.01, and each day shifts it by
+/// `day_effect` per standard deviation, as does the reference's day.
+std::vector<diagnosis::MachineState> four_weeks(double day_effect,
+                                                const std::function<double(int)>& coefficient) {
+  std::vector<diagnosis::MachineState> states;
+  for (int i = 0; i < 4; ++i) {
+    diagnosis::MachineState& state = states.emplace_back();
+    state.key = {"seal", "", "2026-01-" + std::to_string(10 + 7 * i)};
+    state.members.emplace_back();
+    state.pooled.coefficient = coefficient(i);
+    state.pooled.error.own_se = 0.01;
+    state.pooled.error.freedom = 1e6;
+    state.pooled.rig_moves = Eigen::VectorXd::Zero(0);
+    state.pooled.day_moves = Eigen::VectorXd::Zero(5);
+    state.pooled.day_moves(0) = -day_effect;
+    state.pooled.day_moves(1 + i) = day_effect;
+    state.share_slope = 0.2;
+  }
+  return states;
+}
+
+diagnosis::LeakTrend only_trend(const std::vector<diagnosis::MachineState>& states,
+                                const diagnosis::DayVariance& variance) {
+  const auto trends = diagnosis::leak_trends(states, Eigen::MatrixXd::Zero(0, 0), {}, variance);
+  REQUIRE(trends.size() == 1);
+  return trends.front();
 }
 
 }  // namespace
@@ -168,7 +198,7 @@ TEST_CASE("leak_trends: each date has a day of its own, and all share the refere
       state.share_slope = 0.2;
     }
     const auto trends =
-        diagnosis::leak_trends(states, Eigen::MatrixXd::Zero(0, 0), {}, days_factor);
+        diagnosis::leak_trends(states, Eigen::MatrixXd::Zero(0, 0), {}, {days_factor});
     REQUIRE(trends.size() == 1);
     return trends.front();
   };
@@ -183,6 +213,58 @@ TEST_CASE("leak_trends: each date has a day of its own, and all share the refere
   CHECK(trend_with(true, 0.0).significant);
   CHECK_THAT(square_with(4.0) - square_with(0.0),
              WithinRel(4.0 * (square_with(1.0) - square_with(0.0)), 1e-6));
+}
+
+TEST_CASE("leak_trends: with the days counted, a slope of four errors is found over four dates",
+          "[diagnosis]") {
+  // Day and record contribute equally to the error. 88 % is expected, with a standard deviation of
+  // 0.7 %, and without a slope 4.5 %, with one of 0.5 %.
+  constexpr int kTrials = 2000;
+  const double error_per_week = 0.01 * std::sqrt(2.0 / 5.0);
+  const auto share_found = [&](double slope_in_errors) {
+    std::mt19937_64 random(58);
+    std::normal_distribution<double> normal(0.0, 0.01);
+    int found = 0;
+    for (int trial = 0; trial < kTrials; ++trial) {
+      const double reference = normal(random);
+      const auto states = four_weeks(0.01, [&](int week) {
+        return 0.3 + slope_in_errors * error_per_week * week + normal(random) + normal(random) -
+               reference;
+      });
+      found += only_trend(states, {1.0}).significant ? 1 : 0;
+    }
+    return static_cast<double>(found) / kTrials;
+  };
+  const double falsely = share_found(0.0);
+  const double found = share_found(4.0);
+  CAPTURE(falsely, found);
+  CHECK(falsely > 0.02);
+  CHECK(falsely < 0.065);
+  CHECK(found > 0.85);
+}
+
+TEST_CASE("leak_trends: the level of the scatter depends on whether days are counted",
+          "[diagnosis]") {
+  // Chi-square is 3.2 with 2 degrees of freedom: 20 %. Errors and days add up to 0.01 sqrt(1 + f).
+  const auto widened = [](double day_effect, double factor, double apart) {
+    const auto states =
+        four_weeks(day_effect, [&](int week) { return week % 2 == 0 ? 0.3 : 0.3 + apart; });
+    return only_trend(states, {factor}).widened;
+  };
+  CHECK_THAT(widened(0.01, 0.0, 0.02), WithinRel(std::sqrt(1.6), 1e-9));
+  CHECK_THAT(widened(0.0, 1.0, 0.02), WithinRel(std::sqrt(1.6), 1e-9));
+  CHECK(widened(0.01, 1.0, 0.02 * std::sqrt(2.0)) == 1.0);
+  CHECK(widened(0.01, 3.0, 0.04) == 1.0);
+}
+
+TEST_CASE("leak_trends: sizes from few healthy dates widen the interval by t", "[diagnosis]") {
+  const auto states = four_weeks(0.01, [](int week) { return 0.3 + 0.02 * week; });
+  const auto half = [&](double freedom) {
+    const diagnosis::LeakTrend trend = only_trend(states, {1.0, freedom});
+    return trend.share_per_day_ci95.high - trend.share_per_day;
+  };
+  // Half of the variance has three degrees of freedom, so the sum has twelve: 2.1788 for 1.9600.
+  CHECK_THAT(half(3.0) / half(metrics::kManyDegrees), WithinRel(2.178813 / 1.959964, 1e-4));
 }
 
 TEST_CASE("fit_leak: a supply of another day moves the coefficient as it says", "[diagnosis]") {

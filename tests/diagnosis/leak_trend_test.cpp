@@ -131,6 +131,8 @@ TEST_CASE("leak_trends: dates that lie off a line widen its error", "[diagnosis]
   CHECK_THAT(trend.chi_squared, WithinRel(28.8, 1e-9));
   CHECK(trend.freedom == 2.0);
   CHECK_THAT(trend.widened, WithinRel(std::sqrt(14.4), 1e-9));
+  // The error of the slope without that factor: sum (x - 1.5)^2 = 5.
+  CHECK_THAT(trend.coefficient_per_day_error, WithinRel(0.01 / std::sqrt(5.0), 1e-9));
   CHECK_FALSE(trend.significant);
 }
 

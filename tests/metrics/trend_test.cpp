@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <iostream>
 #include <random>
 #include <stdexcept>
 #include <vector>
@@ -17,10 +18,11 @@ using Errors = std::vector<EstimateError>;
 
 constexpr int kTrials = 4000;
 
-/// Fraction of kTrials in which a trend is significant at 5 %. Points at 0, 1, 2, ... have an error
-/// of 1, a day effect with standard deviation `day_sd` that the errors do not include, and a slope
-/// of `slope_in_errors` times its standard error.
-double share_found(std::size_t points, double day_sd, double slope_in_errors) {
+/// Fraction of `trials` in which a trend is significant at 5 %. Points at 0, 1, 2, ... have an
+/// error of 1, a day effect with standard deviation `day_sd` that the errors do not include, and a
+/// slope of `slope_in_errors` times its standard error.
+double share_found(std::size_t points, double day_sd, double slope_in_errors,
+                   bool days_counted = false, int trials = kTrials) {
   std::mt19937_64 random(4);
   std::normal_distribution<double> normal;
   Values x;
@@ -32,14 +34,16 @@ double share_found(std::size_t points, double day_sd, double slope_in_errors) {
   double squares = 0.0;
   for (const double each : x) squares += (each - middle) * (each - middle);
   const double slope = slope_in_errors / std::sqrt(squares);
+  DaysOfPoints days;
+  days.counted = days_counted;
   int found = 0;
-  for (int i = 0; i < kTrials; ++i) {
+  for (int i = 0; i < trials; ++i) {
     Values y;
     for (const double each : x)
       y.push_back(slope * each + std::hypot(1.0, day_sd) * normal(random));
-    found += weighted_trend(x, y, Errors(points, {1.0})).p_value < 0.05 ? 1 : 0;
+    found += weighted_trend(x, y, Errors(points, {1.0}), {}, days).p_value < 0.05 ? 1 : 0;
   }
-  return static_cast<double>(found) / kTrials;
+  return static_cast<double>(found) / trials;
 }
 
 }  // namespace
@@ -85,6 +89,41 @@ TEST_CASE("trend: a steep line is found from three points on", "[metrics]") {
   CHECK(share_found(3, 0.0, 6.0) > 0.7);
   CHECK(share_found(4, 0.0, 6.0) > 0.8);
   CHECK(share_found(5, 0.0, 6.0) > 0.9);
+}
+
+TEST_CASE("trend: where days are counted, a slope of four errors is found", "[metrics]") {
+  // The expected values are 4.5 % without a slope, and 88, 88 and 89 % with one. Their standard
+  // deviations are 0.3 and 0.5 %.
+  const std::size_t points = GENERATE(3U, 4U, 5U);
+  const double falsely = share_found(points, 0.0, 0.0, true);
+  const double found = share_found(points, 0.0, 4.0, true);
+  CAPTURE(points, falsely, found);
+  CHECK(falsely > 0.033);
+  CHECK(falsely < 0.058);
+  CHECK(found > 0.86);
+  CHECK(found < 0.92);
+}
+
+TEST_CASE("trend: days that are counted too small make few false trends", "[metrics]") {
+  // Days that differ by another error each: 11.4 % is expected of four points.
+  const double found = share_found(4, 1.0, 0.0, true);
+  CAPTURE(found);
+  CHECK(found < 0.13);
+}
+
+TEST_CASE("trend: less scatter widens where no error counts the days", "[metrics]") {
+  // Points at 0, a, 0, a have a chi-square of 0.8 a^2, with a probability of exp(-0.4 a^2).
+  const auto widened = [](double a, bool days_counted) {
+    DaysOfPoints days;
+    days.counted = days_counted;
+    return weighted_trend(Values{0, 1, 2, 3}, Values{0, a, 0, a}, Errors(4, {1.0}), {}, days)
+        .widened;
+  };
+  CHECK(widened(1.8, false) == 1.0);                                  // 27 %
+  CHECK_THAT(widened(2.0, false), WithinRel(std::sqrt(1.6), 1e-12));  // 20 %
+  CHECK(widened(2.0, true) == 1.0);
+  CHECK(widened(2.3, true) == 1.0);                                  // 12 %
+  CHECK_THAT(widened(2.5, true), WithinRel(std::sqrt(2.5), 1e-12));  // 8 %
 }
 
 TEST_CASE("trend: the scatter of many points tells errors that are stated too small", "[metrics]") {
@@ -140,6 +179,17 @@ TEST_CASE("trend: a common error that differs between points adds to the freedom
   CHECK_THAT(trend.freedom, WithinRel(32.0, 1e-4));
 }
 
+TEST_CASE("trend: the days add their variance, with its degrees of freedom", "[metrics]") {
+  // The days double the variance of the slope. Half of it has three degrees of freedom.
+  DaysOfPoints days;
+  days.counted = true;
+  days.covariance = 0.09 * Eigen::Matrix3d::Identity();
+  days.freedom = 3.0;
+  const Trend trend = weighted_trend(Values{0, 1, 2}, Values{0, 1, 2}, Errors(3, {0.3}), {}, days);
+  CHECK_THAT(trend.slope_standard_error, WithinRel(0.3, 1e-9));
+  CHECK_THAT(trend.freedom, WithinRel(12.0, 1e-4));
+}
+
 TEST_CASE("trend: of errors that are too far apart there is none", "[metrics]") {
   for (const double size : {1e-160, 1e-170}) {
     CAPTURE(size);
@@ -159,6 +209,25 @@ TEST_CASE("trend: needs three points at different places", "[metrics]") {
   CHECK_THROWS_AS(weighted_trend(Values{0, 1, 2}, Values{0, 1, 2}, Errors(3, {1.0}),
                                  Eigen::MatrixXd::Zero(2, 2)),
                   std::invalid_argument);
+  DaysOfPoints two;
+  two.covariance = Eigen::MatrixXd::Zero(2, 2);
+  CHECK_THROWS_AS(weighted_trend(Values{0, 1, 2}, Values{0, 1, 2}, Errors(3, {1.0}), {}, two),
+                  std::invalid_argument);
   CHECK_THROWS_AS(weighted_trend(Values{1, 1, 1}, Values{0, 1, 2}, Errors(3, {1.0})),
                   std::domain_error);
+}
+
+// Prints the tables of docs/diagnosis.md and docs/decisions/0058-trends-whose-days-are-counted.md:
+// metrics_tests "[trend-study]"
+TEST_CASE("trend: size and power", "[.][trend-study]") {
+  constexpr int kMany = 200000;
+  for (const bool counted : {false, true}) {
+    for (const std::size_t points : {3U, 4U, 5U, 8U}) {
+      std::cout << (counted ? "days counted, " : "days not counted, ") << points << " points: size "
+                << share_found(points, 0.0, 0.0, counted, kMany) << ", a slope of four errors "
+                << share_found(points, 0.0, 4.0, counted, kMany) << ", uncounted days of one error "
+                << share_found(points, 1.0, 0.0, counted, kMany) << ", of two "
+                << share_found(points, 2.0, 0.0, counted, kMany) << "\n";
+    }
+  }
 }

@@ -164,6 +164,25 @@ TEST_CASE("comparison: a difference between two dates contains two days", "[repo
   CHECK_THAT(*points.at(0).standard_error, WithinRel(std::hypot(0.3, 1.2), 1e-12));
 }
 
+TEST_CASE("comparison: a trend knows whether its points count their days", "[report]") {
+  // Chi-square is 3.2 with 2 degrees of freedom: 20 %, which widens where days are not counted.
+  const double error = std::hypot(0.3, 1.2);
+  const auto widened = [&](double own_error, double days_error) {
+    std::vector<ComparedJson> fits;
+    for (int i = 0; i < 4; ++i) {
+      ComparedJson& fit = fits.emplace_back(fit_of(std::string(1, static_cast<char>('a' + i)),
+                                                   85.0 + 2.0 * error * (i % 2), own_error));
+      fit.result["parameters"][0]["between_days_error"] = days_error;
+      for (Json& condition : fit.result["conditions"])
+        condition["date"] = "2026-03-0" + std::to_string(1 + i);
+    }
+    const auto list = trends(compared_all(fits), "mass");
+    return list.at(0).along_date.widened.value();
+  };
+  CHECK(widened(0.3, 1.2) == 1.0);
+  CHECK_THAT(widened(error, 0.0), WithinRel(std::sqrt(1.6), 1e-6));
+}
+
 TEST_CASE("comparison: a known value has no error, and is not fitted to anything", "[report]") {
   ComparedJson known = fit_of("known", 80.0);
   known.result["parameters"][0]["fitted"] = false;
