@@ -18,7 +18,7 @@ Eigen::VectorXd lagged(const std::vector<double>& samples_s, F x) {
   auto values = paper_rig();
   values.set("position_lag", kLag_s);
   const std::vector outputs{Output::position};
-  const SensorTimes at = *sensor_times(outputs, values, samples_s);
+  const SensorTimes at = *sensor_times(outputs, values, {}, samples_s);
   Simulation run;
   run.outputs.resize(static_cast<Eigen::Index>(at.times_s.size()), 1);
   for (std::size_t i = 0; i < at.times_s.size(); ++i) {
@@ -76,10 +76,10 @@ TEST_CASE("sensors: gain and offset make the reading, and the start is read back
 TEST_CASE("sensors: more times than the samples are needed with a lag only", "[model]") {
   const auto times = grid(0.0, 1.0, 11);
   const std::vector outputs{Output::position, Output::velocity};
-  CHECK_FALSE(sensor_times(outputs, paper_rig(), times));
+  CHECK_FALSE(sensor_times(outputs, paper_rig(), {}, times));
   auto values = paper_rig();
   values.set("position_lag", 1e6);
-  const auto at = sensor_times(outputs, values, times);
+  const auto at = sensor_times(outputs, values, {}, times);
   REQUIRE(at);
   CHECK(at->times_s == times);
   CHECK(at->sample.back() == 10);
@@ -114,7 +114,7 @@ TEST_CASE("sensors: the shortest lag is followed by eight times and more", "[mod
   values.set("position_lag", 0.1);
   values.set("load_pressure_lag", 0.0021);
   const std::vector outputs{Output::position, Output::load_pressure};
-  const auto at = sensor_times(outputs, values, grid(0.0, 0.1, 11));
+  const auto at = sensor_times(outputs, values, {}, grid(0.0, 0.1, 11));
   REQUIRE(at);
   // There are 10 ms between samples: 8 * 10 / 2.1 = 38.1 pieces per interval.
   CHECK(at->times_s.size() == 10 * 39 + 1);
