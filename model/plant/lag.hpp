@@ -6,8 +6,8 @@
 
 namespace rigcal::model {
 
-/// Shortest lag that the states of a rig resolve. No recorder tells it from none: its corner is at
-/// 160 kHz. A shorter one would only cost steps after each jump of the drive.
+/// Shortest lag that the states of a rig resolve. No recorder separates it from none: its corner
+/// is at 160 kHz. A shorter one would only cost steps after each jump of the drive.
 inline constexpr double kLeastLag_s = 1e-6;
 
 /// Replaces a shorter lag by the shortest resolved one. The derivative with respect to the lag

@@ -64,7 +64,7 @@ std::vector<double> lags_to_follow(std::span<const Output> outputs, const Parame
 void append_between(double from_s, double to_s, std::span<const double> lags_s,
                     std::vector<double>& times_s) {
   const double h = to_s - from_s;
-  double shortest_s = std::numeric_limits<double>::infinity();  // of those that pieces follow
+  double shortest_s = std::numeric_limits<double>::infinity();  // long enough for pieces
   double too_short_s = std::numeric_limits<double>::infinity();
   for (const double lag_s : lags_s) {
     double& least_s = kTimesPerLag * h > kMostBetweenSamples * lag_s ? too_short_s : shortest_s;
@@ -75,7 +75,7 @@ void append_between(double from_s, double to_s, std::span<const double> lags_s,
   for (int piece = 1; piece < pieces; ++piece) times_s.push_back(from_s + h * piece / pieces);
   if (std::isinf(too_short_s)) return;
   const double nearest_s = kFirstBeforeSample * too_short_s;
-  for (double before_s = nearest_s; before_s < h; before_s *= kFartherFromSample)
+  for (double before_s = nearest_s; before_s + nearest_s < h; before_s *= kFartherFromSample)
     times_s.push_back(to_s - before_s);
   const auto begin = times_s.begin() + static_cast<std::ptrdiff_t>(first);
   std::sort(begin, times_s.end());
