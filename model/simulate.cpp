@@ -285,7 +285,7 @@ Simulation simulate_either(const Eigen::VectorXd* state, const Rig& rig,
     result.reason = "an input changes faster than the times of its samples are resolved";
     return result;
   }
-  const std::optional<SensorTimes> at = sensor_times(outputs, parameters, times_s);
+  const std::optional<SensorTimes> at = sensor_times(outputs, parameters, free, times_s);
   const std::span<const double> at_s = at ? std::span<const double>(at->times_s) : times_s;
   const auto samples = static_cast<Eigen::Index>(at_s.size());
   // Left uninitialised, because a successful simulation writes all elements.

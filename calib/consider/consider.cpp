@@ -722,6 +722,11 @@ VectorXd unexplained_moves(const Problem& problem, const std::vector<ScoreRows>&
   return squares.cwiseSqrt();
 }
 
+/// Returns true if a value cannot be zero, by its nature or, for a lag, by the bounds of the fit.
+bool is_above_zero(const model::ParameterSpec& spec, const Unknown& unknown) {
+  return spec.lower > 0.0 || (model::is_lag(spec) && unknown.lower > 0.0);
+}
+
 /// Returns the upper end of the interval of a value that cannot be zero, if its logarithm is linear
 /// in the effects. Such a value is known up to a factor.
 ///
@@ -755,7 +760,7 @@ void widen(const Problem& problem, std::size_t unknown, Budget95 budget, double 
     low = std::min(low, averaged.value - half);
     high = std::max(high, averaged.value + half);
   }
-  if (spec.lower > 0.0 && budget.contribution("effect") > 0.0 &&
+  if (is_above_zero(spec, problem.map.unknowns()[unknown]) && budget.contribution("effect") > 0.0 &&
       high - parameter.value > kWeak * parameter.value) {
     // The factor overflows for a huge uncertainty. If the parameter has no upper limit either, the
     // linear end stays, because a result needs a finite number.

@@ -43,8 +43,8 @@ bool zero_is_arbitrary(const ParameterSpec& spec, const Unknown& unknown) {
 }
 
 bool may_be_absent(const ParameterSpec& spec) {
-  return spec.lower == 0.0 &&
-         (spec.kind == ParameterKind::term || spec.key == "leakage_coefficient");
+  return spec.lower == 0.0 && (spec.kind == ParameterKind::term ||
+                               spec.key == "leakage_coefficient" || model::is_lag(spec));
 }
 
 std::string number(const ParameterSpec& spec, double value) {

@@ -227,6 +227,30 @@ void check_values(const Campaign& campaign) {
   }
 }
 
+namespace {
+
+/// Returns true if no fit and no uncertainty moves a parameter from its value in a condition.
+bool is_fixed(const Campaign& campaign, const Condition& condition, int index) {
+  const Overrides* level = level_overrides(campaign, condition);
+  if (has_entry(condition.overrides, index) || (level != nullptr && has_entry(*level, index)))
+    return true;
+  const ParameterSetting* setting = campaign.setting(index);
+  return setting == nullptr || (!setting->fit && !setting->prior);
+}
+
+/// Leaves out a valve lag that is zero and stays zero, so that the rig has no state for it. What
+/// acts on that state keeps it.
+void leave_out_zero_lag(const Campaign& campaign, const Condition& condition,
+                        model::ParameterValues& values) {
+  const int lag = model::parameter_index(campaign.rig.plant, "valve_time_constant");
+  const auto at = static_cast<std::size_t>(lag);
+  if (!values.given[at] || values.value[at] != 0.0) return;
+  if (values.is_given("valve_rate_limit") || values.is_given("main_spool_gain")) return;
+  if (is_fixed(campaign, condition, lag)) values.given[at] = false;
+}
+
+}  // namespace
+
 model::ParameterValues values_in(const Campaign& campaign, const Condition& condition) {
   auto values = model::ParameterValues::defaults(campaign.rig.plant);
   for (const ParameterSetting& setting : campaign.parameters) {
@@ -239,6 +263,7 @@ model::ParameterValues values_in(const Campaign& campaign, const Condition& cond
   if (condition.temperature_k && values.is_given("reference_temperature") &&
       !values.is_given("oil_temperature"))
     values.set("oil_temperature", *condition.temperature_k);
+  leave_out_zero_lag(campaign, condition, values);
   return values;
 }
 

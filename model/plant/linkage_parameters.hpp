@@ -85,7 +85,7 @@ constexpr auto angle_rows() {
   return std::array{
       // clang-format off
       F{&P::angle_gain, {"angle_gain", "angle_gain", "s_theta", "1", "recorded angle per angle", "docs/model.md", K::sensor, 0.1, 10, 1.0}},
-      F{&P::angle_lag_s, {"angle_lag", "angle_lag_s", "tau_theta", "s", "first-order lag of the angle sensor", "docs/model.md", K::sensor, 1e-6, 10, 0.0}},
+      F{&P::angle_lag_s, {"angle_lag", "angle_lag_s", "tau_theta", "s", "first-order lag of the angle sensor", "docs/model.md", K::sensor, 0, 10, 0.0}},
       F{&P::angle_maximum_rad, {"angle_maximum", "angle_maximum_rad", "max_theta", "rad", "largest angle that its sensor and converter can show", "docs/model.md", K::sensor, -1000, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(), false}},
       F{&P::angle_offset_rad, {"angle_offset", "angle_offset_rad", "theta_off", "rad", "recorded angle minus angle", "docs/model.md", K::sensor, -1000, 1000, 0.0}},
       F{&P::initial_angle_rad, {"initial_angle", "initial_angle_rad", "theta(0)", "rad", "recorded angle at the first sample", "docs/model.md", K::initial, -1000, 1000, 0.0}},

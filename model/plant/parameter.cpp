@@ -68,6 +68,10 @@ std::string_view to_string(ParameterKind kind) {
   return "";
 }
 
+bool is_lag(const ParameterSpec& spec) {
+  return spec.key == "valve_time_constant" || spec.key.ends_with("_lag");
+}
+
 std::optional<PlantKind> plant_from_name(std::string_view name) {
   for (std::size_t i = 0; i < kPlants.size(); ++i) {
     if (kPlants[i].name == name) return static_cast<PlantKind>(i);

@@ -34,6 +34,9 @@ struct ParameterSpec {
   bool can_be_fitted = true;  ///< false if the model is not differentiable with respect to it
 };
 
+/// Returns true for a lag of first order, of the valve or a sensor. A lag of zero is none.
+bool is_lag(const ParameterSpec& spec);
+
 /// Index in the list of plants (plants.hpp), for code that refers to a plant by name.
 enum class PlantKind { load_pressure, two_chamber, linkage };
 

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
+
+#include "model/plant/lag.hpp"
 
 namespace rigcal::model {
 namespace {
@@ -10,9 +13,16 @@ namespace {
 /// Minimum number of times per lag. Linear interpolation between them is then accurate to 1e-3 of
 /// any signal that the sensor can follow.
 constexpr double kTimesPerLag = 8.0;
-/// Maximum number of pieces of a sample interval. A lag that would need more has no noticeable
-/// effect.
+/// Maximum number of equal pieces of a sample interval. A lag that would need more remembers only
+/// the end of the interval, so the times then become denser towards each sample.
 constexpr double kMostBetweenSamples = 256.0;
+/// Ratio of the distances of two such times from the sample. Linear interpolation between them is
+/// off by 0.04 lag^2 x'', which is at most 4e-3 of the lag's effect on any sampled signal.
+constexpr double kFartherFromSample = 1.5;
+/// The first such time, in lags before the sample.
+constexpr double kFirstBeforeSample = 0.5;
+/// Two times closer than this fraction of that distance are one.
+constexpr double kSameTime = 0.1;
 
 std::string_view sensor_name(Output output) {
   switch (output) {
@@ -37,7 +47,46 @@ std::string_view sensor_name(Output output) {
   }
 }
 
-/// Solves y' = (x - y) / lag exactly, with x linear between two times, and computes dy / d lag.
+/// The lags that a run has to follow, at least kLeastLag_s each. A free lag of zero is one of them,
+/// because its sensitivity needs the slope of the quantity.
+std::vector<double> lags_to_follow(std::span<const Output> outputs, const ParameterValues& values,
+                                   std::span<const int> free) {
+  std::vector<double> lags_s;
+  for (const Output output : outputs) {
+    const Sensor sensor = sensor_of(output, values);
+    if (sensor.follows(free)) lags_s.push_back(std::max(sensor.lag_s, kLeastLag_s));
+  }
+  return lags_s;
+}
+
+/// Appends the times between two samples in ascending order: equal pieces for the lags that they
+/// can follow, and times that become denser towards the later sample for shorter lags.
+void append_between(double from_s, double to_s, std::span<const double> lags_s,
+                    std::vector<double>& times_s) {
+  const double h = to_s - from_s;
+  double shortest_s = std::numeric_limits<double>::infinity();  // long enough for pieces
+  double too_short_s = std::numeric_limits<double>::infinity();
+  for (const double lag_s : lags_s) {
+    double& least_s = kTimesPerLag * h > kMostBetweenSamples * lag_s ? too_short_s : shortest_s;
+    least_s = std::min(least_s, lag_s);
+  }
+  const std::size_t first = times_s.size();
+  const int pieces = std::max(1, static_cast<int>(std::ceil(kTimesPerLag * h / shortest_s)));
+  for (int piece = 1; piece < pieces; ++piece) times_s.push_back(from_s + h * piece / pieces);
+  if (std::isinf(too_short_s)) return;
+  const double nearest_s = kFirstBeforeSample * too_short_s;
+  for (double before_s = nearest_s; before_s + nearest_s < h; before_s *= kFartherFromSample)
+    times_s.push_back(to_s - before_s);
+  const auto begin = times_s.begin() + static_cast<std::ptrdiff_t>(first);
+  std::sort(begin, times_s.end());
+  const auto same = [same_s = kSameTime * nearest_s](double earlier, double later) {
+    return later - earlier < same_s;
+  };
+  times_s.erase(std::unique(begin, times_s.end(), same), times_s.end());
+}
+
+/// Solves y' = (x - y) / lag exactly, with x linear between two times, and computes dy / d lag. For
+/// a lag of zero y is x, and the derivative is -x'.
 void follow(const Eigen::VectorXd& x, std::span<const double> times_s, double lag_s,
             Eigen::VectorXd& y, Eigen::VectorXd& y_by_lag) {
   y.resize(x.size());
@@ -46,8 +95,8 @@ void follow(const Eigen::VectorXd& x, std::span<const double> times_s, double la
   for (Eigen::Index k = 1; k < x.size(); ++k) {
     const auto i = static_cast<std::size_t>(k);
     const double h = times_s[i] - times_s[i - 1];
-    const double decay = std::exp(-h / lag_s);
-    const double decay_by_lag = decay * h / (lag_s * lag_s);
+    const double decay = lag_s > 0.0 ? std::exp(-h / lag_s) : 0.0;
+    const double decay_by_lag = decay > 0.0 ? decay * h / (lag_s * lag_s) : 0.0;
     const double slope = (x(k) - x(k - 1)) / h;
     y(k) = decay * (y(k - 1) - x(k - 1)) + x(k) - slope * lag_s * (1.0 - decay);
     y_by_lag(k) = decay * y_by_lag(k - 1) + decay_by_lag * (y(k - 1) - x(k - 1)) -
@@ -66,6 +115,10 @@ Eigen::MatrixXd at_samples(const SensorTimes& at, const Eigen::MatrixXd& all) {
 
 }  // namespace
 
+bool Sensor::follows(std::span<const int> free) const {
+  return lag_s > 0.0 || (lag >= 0 && std::find(free.begin(), free.end(), lag) != free.end());
+}
+
 Sensor sensor_of(Output output, const ParameterValues& values) {
   const std::string name(sensor_name(output));
   if (name.empty()) return {};
@@ -78,24 +131,13 @@ Sensor sensor_of(Output output, const ParameterValues& values) {
 }
 
 std::optional<SensorTimes> sensor_times(std::span<const Output> outputs,
-                                        const ParameterValues& values,
+                                        const ParameterValues& values, std::span<const int> free,
                                         std::span<const double> samples_s) {
-  double shortest_s = 0.0;
-  for (const Output output : outputs) {
-    const double lag_s = sensor_of(output, values).lag_s;
-    if (lag_s > 0.0 && (shortest_s == 0.0 || lag_s < shortest_s)) shortest_s = lag_s;
-  }
-  if (shortest_s == 0.0) return std::nullopt;
+  const std::vector<double> lags_s = lags_to_follow(outputs, values, free);
+  if (lags_s.empty()) return std::nullopt;
   SensorTimes result;
   for (std::size_t i = 0; i < samples_s.size(); ++i) {
-    if (i > 0) {
-      const double h = samples_s[i] - samples_s[i - 1];
-      const double wanted = std::ceil(kTimesPerLag * h / shortest_s);
-      const int pieces = static_cast<int>(std::clamp(wanted, 1.0, kMostBetweenSamples));
-      for (int piece = 1; piece < pieces; ++piece) {
-        result.times_s.push_back(samples_s[i - 1] + h * piece / pieces);
-      }
-    }
+    if (i > 0) append_between(samples_s[i - 1], samples_s[i], lags_s, result.times_s);
     result.sample.push_back(result.times_s.size());
     result.times_s.push_back(samples_s[i]);
   }
@@ -110,7 +152,8 @@ void read_sensors(const std::optional<SensorTimes>& at, std::span<const Output> 
     auto column = run.outputs.col(static_cast<Eigen::Index>(k));
     Eigen::MatrixXd& by = run.sensitivities[k];
     Eigen::VectorXd by_lag;
-    if (sensor.lag_s > 0.0) {
+    const bool follows = sensor.follows(free);
+    if (follows) {
       Eigen::VectorXd y;
       Eigen::VectorXd unused;
       for (Eigen::Index j = 0; j < by.cols(); ++j) {
@@ -127,7 +170,7 @@ void read_sensors(const std::optional<SensorTimes>& at, std::span<const Output> 
       auto direction = by.col(static_cast<Eigen::Index>(j));
       if (free[j] == sensor.gain) direction += column;
       if (free[j] == sensor.offset) direction.array() += 1.0;
-      if (free[j] == sensor.lag && sensor.lag_s > 0.0) direction += gain * by_lag;
+      if (follows && free[j] == sensor.lag) direction += gain * by_lag;
     }
     if (gain != 1.0 || offset != 0.0) column = (gain * column.array() + offset).matrix();
     const double maximum = values.value[static_cast<std::size_t>(sensor.maximum)];

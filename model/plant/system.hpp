@@ -9,6 +9,7 @@
 
 #include "model/arithmetic/state.hpp"
 #include "model/plant/controller.hpp"
+#include "model/plant/lag.hpp"
 #include "model/plant/layout.hpp"
 #include "model/plant/plant_input.hpp"
 #include "model/plant/warm_oil.hpp"
@@ -316,6 +317,7 @@ class System {
         (parameters.*(field.member)).derivative.set(j, 1.0);
       }
     }
+    parameters.valve_time_constant_s = resolved_lag(parameters.valve_time_constant_s);
     if (layout_.pid) take_gains(layout_.feedback, parameters);
     if (layout_.terms.temperature && !oil_temperature_)
       warm_oil(parameters, parameters.oil_temperature_k);

@@ -159,6 +159,44 @@ TEST_CASE("fit: leakage at zero has a one-sided interval", "[calib]") {
   CHECK_THAT(leakage.reason, Contains("not significantly different from zero"));
 }
 
+TEST_CASE("fit: a lag starts at zero, and is believed there", "[calib]") {
+  for (const char* key : {"valve_time_constant", "position_lag"}) {
+    Twin twin = small_twin();
+    twin.free(key, 0.0, 0.0, 10.0);  // the bounds of a campaign that gives none
+    const Fit found = fit(twin.campaign, twin.records(250, 500.0, 3), {});
+    CAPTURE(key, found.message);
+    REQUIRE(found.status == FitStatus::converged);
+    const FittedParameter& lag = parameter(found, key);
+    CAPTURE(lag.value, lag.reason, lag.ci95.value().low, lag.ci95.value().high);
+    CHECK(lag.identifiability == Identifiability::bounded);
+    CHECK(lag.ci95->low == 0.0);
+    CHECK(lag.ci95->high > 0.0);
+    CHECK(lag.ci95_if_exact.value().high < 1e-3);
+    CHECK_THAT(lag.reason, Contains("not significantly different from zero: at most"));
+    CHECK(errors_off(found, "mass", 85.0) < 3.5);
+    CHECK(errors_off(found, "valve_gain", 0.0406e-3) < 3.5);
+  }
+}
+
+TEST_CASE("fit: a lag of a millisecond is found from zero", "[calib]") {
+  for (const char* key : {"valve_time_constant", "position_lag"}) {
+    Twin twin = small_twin();
+    twin.free(key, 0.0, 0.0, 10.0);
+    twin.truth.parameters.push_back(known(Twin::index(key), 1e-3));
+    const Fit found = fit(twin.campaign, twin.records(250, 500.0, 3), {});
+    CAPTURE(key, found.message);
+    REQUIRE(found.status == FitStatus::converged);
+    const FittedParameter& lag = parameter(found, key);
+    CAPTURE(lag.value, lag.reason);
+    const auto interval = lag.ci95_if_exact.value();
+    CHECK(interval.low > 0.0);
+    CHECK(interval.low <= 1e-3);
+    CHECK(interval.high >= 1e-3);
+    CHECK(errors_off(found, "mass", 85.0) < 3.5);
+    CHECK(errors_off(found, "valve_gain", 0.0406e-3) < 3.5);
+  }
+}
+
 TEST_CASE("fit: where the only start finds no minimum others are tried", "[calib]") {
   Twin twin = small_twin();
   twin.noise_sd_m = 1e-7;

@@ -375,3 +375,63 @@ TEST_CASE("sensitivity: at the tolerance of a fit good to a percent", "[model]")
     CHECK(peak(loose.sensitivities[0].col(j) - expected) < 0.02 * peak(expected));
   }
 }
+
+TEST_CASE("sensitivity: a lag of zero is known by what a lag would change", "[model]") {
+  constexpr double kStep_s = 2e-5;   // truncation in the ringing: (587 rad/s 2e-5 s)^2 / 3 = 5e-5
+  constexpr double kLeast_s = 1e-6;  // the valve's state follows with at least that
+  for (const Signal& drive : {Signal::sine(0.006, 9.0), Signal::square(0.004, 8.0)}) {
+    for (const char* key : {"valve_time_constant", "position_lag", "load_pressure_lag"}) {
+      Experiment e;
+      e.inputs.drive = drive;
+      e.times_s = grid(0.00131, 0.12528, 50);  // avoids every edge
+      e.times_s.insert(e.times_s.begin(), 0.0);
+      e.options.tolerance = 1e-9;
+      e.options.method = Method::rosenbrock;
+      const auto outputs_at = [&e, key](double lag_s) {
+        Experiment there = e;
+        const Simulation run = there.set(key, lag_s)();
+        REQUIRE(run.ok());
+        return run.outputs;
+      };
+      const Eigen::MatrixXd expected =
+          (4.0 * outputs_at(kLeast_s + kStep_s) - 3.0 * outputs_at(kLeast_s) -
+           outputs_at(kLeast_s + 2.0 * kStep_s)) /
+          (2.0 * kStep_s);
+      for (const double lag_s : {0.0, kLeast_s}) {
+        Experiment free = e;
+        free.set(key, lag_s);
+        free.free = {parameter_index(PlantKind::load_pressure, key)};
+        const Simulation run = free();
+        INFO(run.reason);
+        REQUIRE(run.ok());
+        CHECK(difference(outputs_at(lag_s), run.outputs) < 1e-6);
+        bool has_effect = false;
+        for (std::size_t k = 0; k < 2; ++k) {
+          const auto column = static_cast<Eigen::Index>(k);
+          const Eigen::VectorXd exact = run.sensitivities[k].col(0);
+          const double noise = 5e-8 * peak(run.outputs.col(column)) / kStep_s;
+          CAPTURE(key, lag_s, k, peak(exact));
+          CHECK(peak(exact - expected.col(column)) < 5e-3 * peak(exact) + noise);
+          has_effect = has_effect || peak(exact) > 100.0 * noise;
+        }
+        CHECK(has_effect);
+      }
+    }
+  }
+}
+
+TEST_CASE("sensitivity: a free lag of zero leaves the run as it is without one", "[model]") {
+  Experiment e;
+  e.inputs.drive = Signal::sine(0.006, 9.0);
+  const Simulation plain = e();
+  REQUIRE(plain.ok());
+  for (const char* key : {"valve_time_constant", "position_lag"}) {
+    Experiment at_zero = e;
+    at_zero.set(key, 0.0);
+    at_zero.free = {parameter_index(PlantKind::load_pressure, key)};
+    const Simulation run = at_zero();
+    REQUIRE(run.ok());
+    CAPTURE(key);
+    CHECK(difference(plain.outputs, run.outputs) < 1e-3);  // 1 us of the ringing, at 587 rad/s
+  }
+}

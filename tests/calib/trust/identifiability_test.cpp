@@ -52,6 +52,17 @@ TEST_CASE("identifiability: a fifth of the value is weak, all of it nothing", "[
   CHECK(Graded(101.0 / 1.96).graded().identifiability == Identifiability::not_identifiable);
 }
 
+TEST_CASE("identifiability: a lag may be absent", "[calib]") {
+  const auto table = model::parameter_table(model::PlantKind::load_pressure);
+  for (const char* key : {"valve_time_constant", "position_lag", "force_lag"}) {
+    const auto& lag = table[static_cast<std::size_t>(Twin::index(key))];
+    CAPTURE(key);
+    CHECK(grade_of(lag, 1e-4, 1.1e-4, false) == Identifiability::bounded);
+    CHECK(grade_of(lag, 0.0, 1.1e-4, false) == Identifiability::bounded);
+    CHECK(grade_of(lag, 1e-4, 0.9e-4, false) == Identifiability::weak);
+  }
+}
+
 TEST_CASE("identifiability: an interval ends where the parameter does", "[calib]") {
   const auto inside = Graded(10.0).graded().ci95.value();
   CHECK_THAT(inside.low, WithinRel(100.0 - 19.6, 1e-3));

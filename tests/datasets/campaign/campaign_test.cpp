@@ -395,11 +395,39 @@ TEST_CASE("set_free: refuses and leaves the campaign as it was", "[datasets]") {
   Campaign campaign = load_text(kExample);
   CHECK_THROWS_WITH(set_free(campaign, {"bulk", "mass"}), Catch::Contains("unknown parameter"));
   CHECK_THROWS_WITH(set_free(campaign, {"leakage_smoothing"}), Catch::Contains("cannot be fitted"));
-  CHECK_THROWS_WITH(set_free(campaign, {"valve_time_constant"}),
+  CHECK_THROWS_WITH(set_free(campaign, {"valve_frequency"}),
                     Catch::Contains("no value to start from"));
   CHECK(setting_of(campaign, "damping").fit);
-  CHECK(campaign.setting(model::parameter_index(campaign.rig.plant, "valve_time_constant")) ==
-        nullptr);
+  CHECK(campaign.setting(model::parameter_index(campaign.rig.plant, "valve_frequency")) == nullptr);
+}
+
+TEST_CASE("set_free: a lag that the campaign does not have starts at zero", "[datasets]") {
+  Campaign campaign = load_text(kExample);
+  set_free(campaign, {"valve_time_constant", "position_lag"});
+  for (const char* key : {"valve_time_constant", "position_lag"}) {
+    const ParameterSetting& lag = setting_of(campaign, key);
+    CHECK(lag.value == 0.0);
+    CHECK(lag.lower == 0.0);
+    CHECK(lag.upper == 10.0);
+  }
+  CHECK(values_in(campaign, campaign.conditions.front()).is_given("valve_time_constant"));
+}
+
+TEST_CASE("values_in: a valve lag that stays zero is none", "[datasets]") {
+  const auto is_given = [](const std::string& lines) {
+    const Campaign campaign =
+        load_text(replaced(kExample, "stiffness = \"0 N/m\"", "stiffness = \"0 N/m\"\n" + lines));
+    return values_in(campaign, campaign.conditions.front()).is_given("valve_time_constant");
+  };
+  CHECK_FALSE(is_given("valve_time_constant = \"0 s\""));
+  CHECK(is_given("valve_time_constant = \"1 us\""));
+  CHECK(is_given("valve_time_constant = { start = \"0 s\", fit = true }"));
+  CHECK(is_given(
+      "valve_time_constant = { start = \"0 s\", prior = \"0 s\", prior_sd = \"1 ms\" }"));  // its
+                                                                                            // uncertainty
+                                                                                            // counts
+  // A limit of the spool's rate needs the spool's state.
+  CHECK(is_given("valve_time_constant = \"0 s\"\nvalve_rate_limit = \"100 V/s\""));
 }
 
 TEST_CASE("load_campaign: the example of the documentation", "[datasets]") {

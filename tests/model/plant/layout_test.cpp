@@ -61,3 +61,11 @@ TEST_CASE("layout_of: a leak of zero takes part only where it is free", "[model]
   values.set("leakage_coefficient", 0.15);
   CHECK(layout_of({}, values, {}, 3).terms.orifice_leak);
 }
+
+TEST_CASE("layout_of: the valve has its state at a lag of zero, free or not", "[model]") {
+  auto values = paper_rig();
+  const std::vector<int> free{parameter_index(values.plant, "valve_time_constant")};
+  values.set("valve_time_constant", 0.0);
+  CHECK(layout_of({}, values, {}, 3).states == 4);
+  CHECK(layout_of({}, values, free, 3).states == 4);
+}

@@ -1,6 +1,8 @@
 #include "model/plant/sensors.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <functional>
 
 #include "tests/model/two_chamber_rig.hpp"
 
@@ -18,7 +20,7 @@ Eigen::VectorXd lagged(const std::vector<double>& samples_s, F x) {
   auto values = paper_rig();
   values.set("position_lag", kLag_s);
   const std::vector outputs{Output::position};
-  const SensorTimes at = *sensor_times(outputs, values, samples_s);
+  const SensorTimes at = *sensor_times(outputs, values, {}, samples_s);
   Simulation run;
   run.outputs.resize(static_cast<Eigen::Index>(at.times_s.size()), 1);
   for (std::size_t i = 0; i < at.times_s.size(); ++i) {
@@ -76,10 +78,10 @@ TEST_CASE("sensors: gain and offset make the reading, and the start is read back
 TEST_CASE("sensors: more times than the samples are needed with a lag only", "[model]") {
   const auto times = grid(0.0, 1.0, 11);
   const std::vector outputs{Output::position, Output::velocity};
-  CHECK_FALSE(sensor_times(outputs, paper_rig(), times));
+  CHECK_FALSE(sensor_times(outputs, paper_rig(), {}, times));
   auto values = paper_rig();
   values.set("position_lag", 1e6);
-  const auto at = sensor_times(outputs, values, times);
+  const auto at = sensor_times(outputs, values, {}, times);
   REQUIRE(at);
   CHECK(at->times_s == times);
   CHECK(at->sample.back() == 10);
@@ -114,8 +116,65 @@ TEST_CASE("sensors: the shortest lag is followed by eight times and more", "[mod
   values.set("position_lag", 0.1);
   values.set("load_pressure_lag", 0.0021);
   const std::vector outputs{Output::position, Output::load_pressure};
-  const auto at = sensor_times(outputs, values, grid(0.0, 0.1, 11));
+  const auto at = sensor_times(outputs, values, {}, grid(0.0, 0.1, 11));
   REQUIRE(at);
   // There are 10 ms between samples: 8 * 10 / 2.1 = 38.1 pieces per interval.
   CHECK(at->times_s.size() == 10 * 39 + 1);
+}
+
+TEST_CASE("sensors: a free lag of zero reads the quantity, and its slope is the sensitivity",
+          "[model]") {
+  const double omega = 100.0;
+  auto values = paper_rig();
+  values.set("position_lag", 0.0);
+  const std::vector outputs{Output::position};
+  const std::vector<int> free{parameter_index(values.plant, "position_lag")};
+  const auto samples_s = grid(0.0, 0.2, 21);
+  CHECK_FALSE(sensor_times(outputs, values, {}, samples_s));
+  const auto at = sensor_times(outputs, values, free, samples_s);
+  REQUIRE(at);
+  Simulation run;
+  run.outputs.resize(static_cast<Eigen::Index>(at->times_s.size()), 1);
+  for (Eigen::Index i = 0; i < run.outputs.rows(); ++i)
+    run.outputs(i, 0) = std::sin(omega * at->times_s[static_cast<std::size_t>(i)]);
+  run.sensitivities.assign(1, Eigen::MatrixXd::Zero(run.outputs.rows(), 1));
+  read_sensors(at, outputs, values, free, run);
+  REQUIRE(run.outputs.rows() == 21);
+  for (Eigen::Index i = 1; i < 21; ++i) {
+    const double t = samples_s[static_cast<std::size_t>(i)];
+    CHECK(run.outputs(i, 0) == std::sin(omega * t));
+    // The slope is that over the last half microsecond: 1e4 / 2 times that.
+    CHECK_THAT(run.sensitivities[0](i, 0), WithinAbs(-omega * std::cos(omega * t), 5e-3));
+  }
+}
+
+TEST_CASE("sensors: a lag of a fraction of the sampling interval is as good as any", "[model]") {
+  const double omega = 100.0;
+  const auto samples_s = grid(0.0, 0.2, 21);
+  const std::vector outputs{Output::position, Output::load_pressure};
+  for (const auto& [position_s, pressure_s] :
+       {std::pair{1e-5, 2e-4}, std::pair{2e-4, 1e-5}, std::pair{1e-6, 5e-3}}) {
+    auto values = paper_rig();
+    values.set("position_lag", position_s);
+    values.set("load_pressure_lag", pressure_s);
+    const auto at = sensor_times(outputs, values, {}, samples_s);
+    REQUIRE(at);
+    CHECK(std::is_sorted(at->times_s.begin(), at->times_s.end(), std::less_equal<>()));
+    Simulation run;
+    run.outputs.resize(static_cast<Eigen::Index>(at->times_s.size()), 2);
+    for (Eigen::Index i = 0; i < run.outputs.rows(); ++i)
+      run.outputs.row(i).setConstant(std::sin(omega * at->times_s[static_cast<std::size_t>(i)]));
+    run.sensitivities.assign(2, Eigen::MatrixXd(run.outputs.rows(), 0));
+    read_sensors(at, outputs, values, {}, run);
+    for (Eigen::Index k = 0; k < 2; ++k) {
+      const double lag_s = k == 0 ? position_s : pressure_s;
+      const double gain = 1.0 / std::sqrt(1.0 + std::pow(omega * lag_s, 2));
+      for (Eigen::Index i = 11; i < 21; ++i) {
+        const double t = samples_s[static_cast<std::size_t>(i)];
+        const double expected = gain * std::sin(omega * t - std::atan(omega * lag_s));
+        CAPTURE(lag_s, t);
+        CHECK_THAT(run.outputs(i, k), WithinAbs(expected, 8e-3 * omega * lag_s));
+      }
+    }
+  }
 }

@@ -25,7 +25,7 @@ TEST_CASE("missing_terms: a line for each term that a campaign may estimate", "[
   const auto terms = missing_terms(model::PlantKind::load_pressure, considered);
   REQUIRE(terms.size() == 4);
   CHECK(terms[0].line ==
-        "valve_time_constant = { start = \"0.0002 s\", lower = \"1e-06 s\", upper = \"0.0022 s\", "
+        "valve_time_constant = { start = \"0.0002 s\", lower = \"0 s\", upper = \"0.0022 s\", "
         "fit = true }");
   CHECK_FALSE(terms[0].of_controller);
   CHECK(terms[1].line ==
