@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <utility>
 
 #include "common/error.hpp"
 #include "datasets/campaign/campaign_sections.hpp"
+#include "diagnosis/duty.hpp"
 #include "diagnosis/judgement.hpp"
 #include "diagnosis/signal_name.hpp"
 
@@ -16,25 +16,12 @@ namespace {
 using datasets::Campaign;
 using datasets::Condition;
 
-bool is_sine(const Condition& condition) { return condition.waveform == datasets::Waveform::sine; }
-
-/// Returns the duty for which the shares of states are stated. This is the campaign's own choice,
-/// or otherwise the slowest generated sine (the largest, if several are equally slow), or otherwise
-/// the first condition.
+/// Returns the duty for which the shares of states are stated.
 const Prepared& duty_of(const Campaign& campaign, const std::vector<Prepared>& all) {
   const std::string& wanted = campaign.diagnosis.duty;
-  const Prepared* best = &all.front();
-  for (const Prepared& each : all) {
-    const Condition& c = *each.condition;
-    if (!wanted.empty() && c.id == wanted) return each;
-    if (!is_sine(c)) continue;
-    const Condition& b = *best->condition;
-    const auto slowness = [](const Condition& x) {
-      return std::pair(-x.frequency_hz.value_or(1e9), x.amplitude.value_or(0.0));
-    };
-    if (!is_sine(b) || slowness(c) > slowness(b)) best = &each;
-  }
-  if (wanted.empty()) return *best;
+  std::vector<const Condition*> conditions;
+  for (const Prepared& each : all) conditions.push_back(each.condition);
+  if (const auto duty = duty_among(conditions, wanted)) return all[*duty];
   throw InputError(
       {campaign.file.string()},
       fmt::format("diagnosis.duty: no condition \"{}\" that can be diagnosed: expected "

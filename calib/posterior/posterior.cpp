@@ -395,7 +395,9 @@ void sample_posterior(const Problem& problem, const Evaluation& optimum, const U
     };
   }
   if (!stop()) result.limits = kept_limits(problem, points, change, options.threads, left.cancel());
-  if (!result.limits.empty()) result.simulated = static_cast<int>(points.size());
+  if (!stop() && options.shares) result.shares = options.shares(problem, points, left);
+  if (!result.limits.empty() || !result.shares.empty())
+    result.simulated = static_cast<int>(points.size());
   result.message = how_drawn(result, stopped);
 }
 

@@ -12,7 +12,7 @@ inline constexpr int kPosteriorChains = 4;
 inline constexpr int kPosteriorWarmUp = 300;
 /// Number of draws per chain that are stored together; a stopped run loses at most one such group.
 inline constexpr int kPosteriorStretch = 250;
-/// Number of draws that are simulated to judge limits.
+/// Largest number of draws that are simulated to judge limits and to compute leak shares.
 inline constexpr int kPosteriorSimulated = 200;
 
 /// Samples the posterior of a fit with four chains. Each starts from its own point close to the

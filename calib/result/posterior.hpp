@@ -34,6 +34,18 @@ struct KeptLimit {
   RIGCAL_DESCRIBE(condition, channel, metric, limit, probability, median)
 };
 
+/// Distribution of the share of the servo flow that leaks, over the draws.
+struct DrawnShare {
+  std::string level;                ///< leak level or condition with the leak; empty for the rig
+  std::string condition;            ///< condition for whose motion the share is simulated
+  int draws = 0;                    ///< number of draws that could be simulated
+  double leak_share_percent = 0.0;  ///< median
+  std::optional<Range> leak_share_ci95_percent;  ///< 2.5 % and 97.5 % quantiles
+  Keyed<double> class_probabilities;             ///< fraction of the draws in each leak class
+  RIGCAL_DESCRIBE(level, condition, draws, leak_share_percent, leak_share_ci95_percent,
+                  class_probabilities)
+};
+
 /// Thinned draws for plots of parameter pairs: one in `every` draws, SI.
 struct Pairs {
   std::vector<std::string> names;
@@ -59,13 +71,14 @@ struct Posterior {
   /// Variance of the weighted residuals in directions that do not affect the estimates.
   double noise_variance = 1.0;
   bool effects = false;  ///< whether the small effects that the model omits were sampled as well
-  int simulated = 0;     ///< number of draws simulated to judge the limits
+  int simulated = 0;     ///< number of draws simulated for the limits and the shares
   std::vector<KeptLimit> limits;
+  Later<std::vector<DrawnShare>> shares;  ///< one for each free leakage coefficient
   Pairs pairs;
   std::string message;  ///< how the chains were drawn, and any problem with them, in words
   RIGCAL_DESCRIBE(chains, warm_up, draws, asked, evaluations, diverged, longest, energy_fraction,
-                  r_hat, least_draws, worst, noise_variance, effects, simulated, limits, pairs,
-                  message)
+                  r_hat, least_draws, worst, noise_variance, effects, simulated, limits, shares,
+                  pairs, message)
 
   std::vector<std::string> names;           ///< names of the unknowns
   std::vector<std::vector<double>> values;  ///< all draws of each unknown, chain by chain, SI

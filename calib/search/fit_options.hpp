@@ -4,6 +4,9 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <vector>
+
+#include "calib/result/posterior.hpp"
 
 namespace rigcal {
 class TaskFarm;  // common/task_farm.hpp
@@ -11,7 +14,9 @@ class TaskFarm;  // common/task_farm.hpp
 
 namespace rigcal::calib {
 
+class Budget;       // budget.hpp
 struct Checkpoint;  // checkpoint.hpp
+struct Problem;     // calib/problem/problem.hpp
 
 /// Options of a fit in addition to the campaign and its records.
 struct FitOptions {
@@ -45,6 +50,12 @@ struct FitOptions {
   /// Called during bootstrap, profiles, posterior and cross-validation with their name ("replicates
   /// of the bootstrap"), the number done and the total number. May be called from any thread.
   std::function<void(const char*, int, int)> beside;
+  /// Computes the leak shares over draws of the posterior, which are unit-box coordinates, shape
+  /// (draws, unknowns). If the budget is interrupted, the result is empty. A share is defined by
+  /// the diagnosis, on which the calibration does not depend. If null, no shares are computed.
+  std::function<std::vector<DrawnShare>(
+      const Problem&, const std::vector<std::vector<double>>& draws, const Budget&)>
+      shares;
 
   void validate() const;
 };

@@ -5,12 +5,14 @@
 #include <filesystem>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "calib/search/checkpoint.hpp"
 #include "common/error.hpp"
 #include "common/file.hpp"
 #include "common/memory.hpp"
 #include "datasets/prepare/load_record.hpp"
+#include "diagnosis/drawn_shares.hpp"
 #include "report/job/job.hpp"
 #include "report/run/validation.hpp"
 #include "report/store/checkpoint.hpp"
@@ -241,6 +243,11 @@ JobResult fit_job(std::shared_ptr<const datasets::Campaign> campaign, const FitR
   watch(terms, settings,
         settings.starts > 1 ? fmt::format("start {{}} of {}", settings.starts)
                             : std::string("start {}"));
+  settings.shares = [threads = terms.threads](const calib::Problem& problem,
+                                              const std::vector<std::vector<double>>& draws,
+                                              const calib::Budget& left) {
+    return diagnosis::drawn_shares(problem, draws, threads, left);
+  };
   if (terms.out.empty()) {
     run->fit = calib::fit(*run->campaign, run->records, settings);
     return finished(std::move(run), request.strict);

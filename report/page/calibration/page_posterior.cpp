@@ -82,6 +82,25 @@ doc::Table limits_table(const calib::Posterior& found) {
   return table;
 }
 
+doc::Table shares_table(const calib::Posterior& found) {
+  doc::Table table{"How probable it is that a leak is in each class"};
+  table.columns = {{"Leak of"},
+                   {"Motion of"},
+                   {"Share, % of the servo flow", Kind::number},
+                   {"95 % of the draws", Kind::number}};
+  for (const auto& [name, probability] : found.shares.front().class_probabilities)
+    table.columns.push_back({name, Kind::number, 0, "probability"});
+  for (const calib::DrawnShare& each : found.shares) {
+    doc::Row row{{each.level.empty() ? std::string("the rig") : each.level, each.condition,
+                  doc::in_unit(each.leak_share_percent, 1.0, 3),
+                  range_line(each.leak_share_ci95_percent, RowUnit{})}};
+    for (const auto& [name, probability] : each.class_probabilities)
+      row.cells.push_back({fmt::format("{:.3g}", probability)});
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
 /// Returns the column name of a parameter in posterior.csv, which includes its scope.
 std::string named_as(const StoredParameter& p) { return parameter_label(p.name, p.scope, p.level); }
 
@@ -170,6 +189,13 @@ void add_posterior(const StoredFit& fit, doc::Blocks& blocks) {
     blocks.emplace_back(limits_table(found));
     blocks.emplace_back(doc::reading(
         fmt::format("Each limit was judged by simulations of {} draws, spread over all chains.",
+                    found.simulated)));
+  }
+  if (!found.shares.empty()) {
+    blocks.emplace_back(shares_table(found));
+    blocks.emplace_back(doc::reading(
+        fmt::format("Each share was simulated for {} draws, spread over all chains, for the same "
+                    "motion. A probability is the fraction of the draws in a class.",
                     found.simulated)));
   }
   add_pairs(fit, found.pairs, blocks);

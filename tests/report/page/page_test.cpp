@@ -634,6 +634,32 @@ TEST_CASE("page: a score has its two-sided uncertainty wherever it is printed", 
   CHECK_THAT(page(json), Contains("± <data value=\"0.00077\">"));
 }
 
+TEST_CASE("page: the posterior says how probable each leak class is", "[report]") {
+  rigcal::calib::Posterior found;
+  found.chains = 4;
+  found.draws = 250;
+  found.simulated = 200;
+  found.message = "4 chains";
+  Json json = stored_result();
+  json["posterior"] = json_of(found);
+  CHECK_THAT(page(json), !Contains("leak is in each class"));
+  rigcal::calib::DrawnShare worn;
+  worn.level = "worn seal";
+  worn.condition = "sine";
+  worn.draws = 200;
+  worn.leak_share_percent = 9.25;
+  worn.leak_share_ci95_percent = {7.5, 11.125};
+  worn.class_probabilities = {{"normal", 0.0}, {"slight", 0.815}, {"medium", 0.185}};
+  found.shares = {worn};
+  json["posterior"] = json_of(found);
+  CHECK_THAT(page(json), Contains("leak is in each class") && Contains("worn seal") &&
+                             Contains(">9.25<") && Contains(">11.125<") && Contains("0.815") &&
+                             Contains("0.185") && Contains("simulated for 200 draws"));
+  // A file from an earlier version has no shares.
+  json["posterior"].erase("shares");
+  CHECK_THAT(page(json), !Contains("leak is in each class"));
+}
+
 TEST_CASE("page: every kind of doubt is told before one signs", "[report]") {
   Json json = stored_result();
   json["verdict"] = "WARN";
