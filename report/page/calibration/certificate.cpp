@@ -423,13 +423,10 @@ void add_score(const Judged& signal, doc::Cell& cell) {
   cell.line = {check.metric == "absolute_error_percent" ? "error % " : spaced(check.metric) + " ",
                doc::score(check.metric, check.value)};
   Line limit;
-  const auto& two_sided = signal.condition->two_sided_uncertainty;
-  // Files from earlier versions only have the one-sided uncertainty.
-  const auto& all = two_sided ? two_sided : signal.condition->expanded_uncertainty;
-  const auto* known = all ? find(*all, signal.channel) : nullptr;
-  if (known != nullptr && *known) {
+  const metrics::Agreement* known = signal.condition->printed_uncertainty(signal.channel);
+  if (known != nullptr) {
     for (const metrics::MetricSpec& metric : metrics::kMetrics) {
-      const double half = (**known).*metric.value;
+      const double half = known->*metric.value;
       if (metric.name != check.metric || !std::isfinite(half)) continue;
       limit = {"U ", doc::in_unit(half, 1.0, kErrorDigits), ", "};
     }

@@ -19,24 +19,15 @@ namespace {
 
 using Kind = doc::Column::Kind;
 
-/// Returns the uncertainty of the scores for a channel, or null if it is unknown.
-const metrics::Agreement* uncertainty_of(const StoredCondition& condition,
-                                         const std::string& channel) {
-  if (!condition.expanded_uncertainty) return nullptr;
-  const auto* found = find(*condition.expanded_uncertainty, channel);
-  return found != nullptr && found->has_value() ? &**found : nullptr;
-}
-
 void add_scores(const StoredCondition& condition, doc::Blocks& blocks) {
   if (condition.metrics.empty()) return;
   const bool uncertain = std::any_of(
       condition.metrics.begin(), condition.metrics.end(),
-      [&](const auto& each) { return uncertainty_of(condition, each.first) != nullptr; });
+      [&](const auto& each) { return condition.printed_uncertainty(each.first) != nullptr; });
   if (uncertain)
     blocks.emplace_back(
         doc::reading("± expanded uncertainty of a score (95 %), from the variation between repeats "
-                     "and the stated "
-                     "uncertainty of the sensors."));
+                     "and the uncertainty of the sensors."));
   doc::Table table{"Scores of " + condition.id};
   table.columns = {{"Channel"}};
   for (doc::Column& column : score_columns()) table.columns.push_back(std::move(column));
@@ -48,7 +39,7 @@ void add_scores(const StoredCondition& condition, doc::Blocks& blocks) {
     const bool has_floor = floor != nullptr && floor->has_value();
     doc::Row row{{doc::Line{doc::Mark{verdict.state, verdict.words}, " " + channel}}};
     for (doc::Cell& cell :
-         score_cells(scores, uncertainty_of(condition, channel), channel_unit(channel)))
+         score_cells(scores, condition.printed_uncertainty(channel), channel_unit(channel)))
       row.cells.push_back(std::move(cell));
     for (doc::Quantity quantity :
          {doc::agreement(has_floor ? std::optional((*floor)->rho2) : std::nullopt),
@@ -161,6 +152,7 @@ doc::Article facts_article(const StoredCondition& condition) {
   for (const std::string& text : condition.warnings) doubts.items.push_back({"Recording: " + text});
   blocks.emplace_back(std::move(doubts));
   add_scores(condition, blocks);
+  add_score_budgets(condition, blocks);
   return article;
 }
 

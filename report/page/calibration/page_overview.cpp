@@ -85,12 +85,9 @@ std::string whose(const Extreme& worst, const std::string& metric,
     text += fmt::format(", limit {:.6g}", *check->limit);
   else
     text += ", no limit";
-  const auto& all = condition.two_sided_uncertainty ? condition.two_sided_uncertainty
-                                                    : condition.expanded_uncertainty;
-  if (!all) return text;
-  const auto* uncertainty = find(*all, worst.channel);
-  if (uncertainty != nullptr && *uncertainty && std::isfinite((**uncertainty).*value))
-    text += fmt::format(", U {}", significant((**uncertainty).*value, kErrorDigits));
+  const metrics::Agreement* uncertainty = condition.printed_uncertainty(worst.channel);
+  if (uncertainty != nullptr && std::isfinite(uncertainty->*value))
+    text += fmt::format(", U {}", significant(uncertainty->*value, kErrorDigits));
   return text;
 }
 

@@ -156,6 +156,10 @@ StoredCondition stored(const Result& result, const calib::ConditionScore& score)
     condition.noise_floor.emplace_back(key, channel.noise_floor);
     condition.expanded_uncertainty->emplace_back(key, channel.expanded_uncertainty);
     condition.two_sided_uncertainty->emplace_back(key, channel.two_sided_uncertainty);
+    if (!channel.budgets.empty()) {
+      if (!condition.score_budgets) condition.score_budgets.emplace();
+      condition.score_budgets->emplace_back(key, channel.budgets);
+    }
     std::optional<StoredResidualTests> tests;
     if (channel.residual_tests)
       tests = report::stored(*channel.residual_tests, info(channel.channel).unit);
@@ -215,6 +219,12 @@ std::optional<calib::Verdict> StoredCondition::verdict_of(const std::string& cha
   if (failure) return verdict;
   const calib::Verdict* found = find(channel_verdicts, channel);
   return found == nullptr ? std::nullopt : std::optional(*found);
+}
+
+const metrics::Agreement* StoredCondition::printed_uncertainty(const std::string& channel) const {
+  const auto& all = two_sided_uncertainty ? two_sided_uncertainty : expanded_uncertainty;
+  const auto* found = all ? find(*all, channel) : nullptr;
+  return found != nullptr && found->has_value() ? &**found : nullptr;
 }
 
 void as_of_now(std::string_view schema, std::vector<StoredParameter>& parameters) {
