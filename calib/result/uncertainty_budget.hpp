@@ -12,10 +12,10 @@ namespace rigcal::calib {
 
 /// One contribution to the uncertainty of a result.
 struct BudgetLine {
-  /// "noise", "repeats", "noise_left", the key of a known value or an effect, or "nonlinearity" (in
-  /// the effects).
+  /// "noise", "repeats", the key of a known value or an effect and the like, see
+  /// docs/uncertainty.md.
   std::string source;
-  std::string kind;                    ///< "records", "known_value" or "effect"
+  std::string kind;                    ///< "records", "known_value", "effect" or "days"
   double uncertainty = 0.0;            ///< contribution to the standard uncertainty of the result
   Omittable<double> sensitivity = {};  ///< change in an estimate per unit of an effect's size, SI
   RIGCAL_DESCRIBE(source, kind, uncertainty, sensitivity)

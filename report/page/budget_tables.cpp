@@ -18,15 +18,33 @@ std::string freedom_text(double freedom) {
   return freedom > kMany ? std::string("many") : fmt::format("{:.0f}", freedom);
 }
 
-doc::Row budget_row(const BudgetOf& of, bool shifted) {
+/// Columns that only some results have.
+struct FurtherColumns {
+  bool days = false;
+  bool shift = false;
+};
+
+FurtherColumns further_columns(const std::vector<BudgetOf>& budgets) {
+  FurtherColumns columns;
+  for (const BudgetOf& each : budgets) {
+    columns.days = columns.days || each.budget->contribution("days") > 0.0;
+    columns.shift = columns.shift || each.budget->shift != 0.0;
+  }
+  return columns;
+}
+
+doc::Row budget_row(const BudgetOf& of, const FurtherColumns& further) {
   const calib::Budget95& budget = *of.budget;
   const auto number = [&](double value) { return doc::in_unit(value, of.unit.si, kBudgetDigits); };
   const calib::BudgetLine* largest = budget.largest_effect();
   doc::Row row{{of.name, of.unit.name, number(budget.contribution("records")),
-                number(budget.contribution("known_value")), number(budget.contribution("effect")),
-                number(budget.combined), freedom_text(budget.degrees_of_freedom),
-                doc::decimals(budget.coverage_factor, 2), number(budget.expanded)}};
-  if (shifted) row.cells.push_back(number(budget.shift));
+                number(budget.contribution("known_value")), number(budget.contribution("effect"))}};
+  if (further.days) row.cells.push_back(number(budget.contribution("days")));
+  for (doc::Cell cell :
+       {doc::Cell(number(budget.combined)), doc::Cell(freedom_text(budget.degrees_of_freedom)),
+        doc::Cell(doc::decimals(budget.coverage_factor, 2)), doc::Cell(number(budget.expanded))})
+    row.cells.push_back(std::move(cell));
+  if (further.shift) row.cells.push_back(number(budget.shift));
   row.cells.push_back(largest == nullptr ? std::string("–") : spaced(largest->source));
   return row;
 }
@@ -57,20 +75,18 @@ void add_lines(const BudgetOf& of, std::vector<doc::Row>& rows) {
 doc::Table budget_table(const std::string& what, const std::vector<BudgetOf>& budgets) {
   doc::Table table{"Uncertainty budget"};
   table.caption = {"Uncertainty budget: standard uncertainties u, of which the squares add up"};
+  const FurtherColumns further = further_columns(budgets);
   table.columns = {{what},
                    {"Unit"},
                    {"Records", Kind::number},
                    {"Known values", Kind::number},
-                   {"Effects left out", Kind::number},
-                   {"u", Kind::number},
-                   {"Degrees of freedom", Kind::number},
-                   {"k", Kind::number},
-                   {"U = k u", Kind::number}};
-  const bool shifted = std::any_of(budgets.begin(), budgets.end(),
-                                   [](const BudgetOf& each) { return each.budget->shift != 0.0; });
-  if (shifted) table.columns.push_back({"Shift", Kind::number});
+                   {"Effects left out", Kind::number}};
+  if (further.days) table.columns.push_back({"Days", Kind::number});
+  for (const char* title : {"u", "Degrees of freedom", "k", "U = k u"})
+    table.columns.push_back({title, Kind::number});
+  if (further.shift) table.columns.push_back({"Shift", Kind::number});
   table.columns.push_back({"Largest effect"});
-  for (const BudgetOf& each : budgets) table.rows.push_back(budget_row(each, shifted));
+  for (const BudgetOf& each : budgets) table.rows.push_back(budget_row(each, further));
   return table;
 }
 
