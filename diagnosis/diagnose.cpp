@@ -13,6 +13,7 @@
 #include "diagnosis/feature_clusters.hpp"
 #include "diagnosis/healthy_reference.hpp"
 #include "diagnosis/judgement.hpp"
+#include "diagnosis/leak/leak_budget.hpp"
 #include "diagnosis/leak/residual_rms.hpp"
 #include "diagnosis/machine_states.hpp"
 #include "diagnosis/obstacles.hpp"
@@ -230,18 +231,21 @@ void estimate(const LeakProblem& problem, const RigFit& rig, const Prepared& pre
     const LeakCurve curve =
         leak_curve_of(problem, *prepared.condition, average, record.fit.coefficient,
                       std::max(error.half_width(), least), *prepared.leaks);
-    const double share_rig_se = share_rig_error(
-        problem, rig, *prepared.condition, average, record.fit,
-        curve.share_slope(record.fit.coefficient), prepared.negligible(), prepared.effects.get());
     const double share_slope = curve.share_slope(record.fit.coefficient);
+    const Eigen::VectorXd share_moves =
+        share_rig_moves(problem, rig, *prepared.condition, average, record.fit, share_slope,
+                        prepared.negligible(), prepared.effects.get());
     const double share_days_se =
         distance > 0.0 ? between.error(distance, share_day_effects(problem, *prepared.condition,
                                                                    average, record.fit, share_slope,
                                                                    prepared.negligible()))
                        : 0.0;
-    record.estimate =
-        estimate_leak(record.fit.coefficient, error, curve, std::hypot(share_rig_se, share_days_se),
-                      problem.campaign.diagnosis);
+    record.estimate = estimate_leak(record.fit.coefficient, error, curve,
+                                    std::hypot(rig.error(share_moves), share_days_se),
+                                    problem.campaign.diagnosis);
+    record.estimate.budget = coefficient_budget(error, rig.contributions(record.fit.rig_moves));
+    record.estimate.share_budget =
+        share_budget(error, share_slope, rig.contributions(share_moves), share_days_se);
     if (!prepared.is_healthy) return;
     // A record that is its own reference has no error relative to it, so the error of an average is
     // used.

@@ -96,6 +96,11 @@ PooledLeak pooled_leak(const std::vector<StateMember>& members,
   const double rig_variance =
       std::max(0.0, pooled.rig_moves.dot(rig_covariance * pooled.rig_moves));
   pooled.error.own_se = pooled.widened * std::sqrt(variance);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const StateMember& member = members[static_cast<std::size_t>(i)];
+    pooled.error.own.push_back(
+        {member.condition, "records", pooled.widened * std::abs(weights(i)) * member.own_se});
+  }
   pooled.error.rig_se = pooled.widened * std::sqrt(rig_variance);
   const double days_variance = days.factor * pooled.day_moves.squaredNorm();
   squares += square_of(days_variance) / days.freedom;

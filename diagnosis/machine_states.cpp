@@ -8,6 +8,7 @@
 #include "datasets/campaign/campaign_sections.hpp"
 #include "diagnosis/duty.hpp"
 #include "diagnosis/judgement.hpp"
+#include "diagnosis/leak/leak_budget.hpp"
 #include "diagnosis/signal_name.hpp"
 
 namespace rigcal::diagnosis {
@@ -79,13 +80,20 @@ void judge_state(const LeakProblem& problem, const RigFit& rig, const Prepared& 
     const LeakCurve curve =
         leak_curve_of(problem, *duty.condition, average, leak.coefficient, reach, *duty.leaks);
     state.share_slope = curve.share_slope(leak.coefficient);
-    const double share_rig_se =
-        share_rig_error(problem, rig, *duty.condition, average, leak, state.share_slope,
+    const Eigen::VectorXd share_moves =
+        share_rig_moves(problem, rig, *duty.condition, average, leak, state.share_slope,
                         duty.negligible(), duty.effects.get());
-    const double share_se =
-        std::hypot(share_rig_se, share_days_error(problem, duty, days, leak, state));
-    state.estimate = estimate_leak(leak.coefficient, state.pooled.error, curve,
+    const double share_days_se = share_days_error(problem, duty, days, leak, state);
+    const double share_se = std::hypot(rig.error(share_moves), share_days_se);
+    const PooledLeak& pooled = state.pooled;
+    state.estimate = estimate_leak(leak.coefficient, pooled.error, curve,
                                    state.pooled.widened * share_se, campaign.diagnosis);
+    // A disagreement between members widens every contribution by the same factor.
+    state.estimate.budget =
+        coefficient_budget(pooled.error, rig.contributions(pooled.widened * pooled.rig_moves));
+    state.estimate.share_budget = share_budget(pooled.error, state.share_slope,
+                                               rig.contributions(pooled.widened * share_moves),
+                                               pooled.widened * share_days_se);
   } catch (const NoResultError& failure) {
     state.failure = failure.what();
     return;

@@ -7,6 +7,7 @@
 
 #include "metrics/distributions.hpp"
 #include "metrics/metric_table.hpp"
+#include "metrics/significance.hpp"
 
 namespace rigcal::metrics {
 namespace {
@@ -86,30 +87,45 @@ double half_with_bias(const std::vector<Agreement>& without, const Agreement& fo
   return half + away * (repeats - 1.0);
 }
 
-/// Scores after the sensor's uncertainty has changed the mean, with one list per cause.
-using Changed = std::vector<std::vector<Agreement>>;
+/// Scores after a cause has changed the mean by one standard uncertainty, one for each direction or
+/// shape of the change. Empty if the cause does not act.
+using Changed = std::vector<Agreement>;
 
-Changed changed_by_sensor(const MeasuredMean& measured, std::span<const double> simulated) {
+/// Largest change in a score that a cause makes.
+double largest_change(const Changed& cause, const Agreement& found, double Agreement::*score) {
+  double change = 0.0;
+  for (const Agreement& each : cause)
+    change = std::max(change, std::abs(each.*score - found.*score));
+  return change;
+}
+
+/// Effects of the sensor's uncertainty on the scores.
+struct ChangedBySensor {
+  Changed by_gain, by_offset;
+  std::vector<Changed> by_others;  ///< one per item of MeasuredMean::changes
+};
+
+ChangedBySensor changed_by_sensor(const MeasuredMean& measured, std::span<const double> simulated) {
   const auto score = [&](double gain, double offset) {
     std::vector<double> changed(measured.mean.begin(), measured.mean.end());
     for (double& y : changed) y = gain * y + offset;
     return agreement(changed, simulated);
   };
-  Changed result;
+  ChangedBySensor result;
   if (const double sd = measured.gain_sd; sd > 0.0)
-    result.push_back({score(1.0 + sd, 0.0), score(1.0 - sd, 0.0)});
+    result.by_gain = {score(1.0 + sd, 0.0), score(1.0 - sd, 0.0)};
   if (const double sd = measured.offset_sd; sd > 0.0) {
-    result.push_back({score(1.0, sd), score(1.0, -sd)});
+    result.by_offset = {score(1.0, sd), score(1.0, -sd)};
     // The offset may also change from one end of the range to the other. rho2 and R, which are
     // insensitive to a constant, respond to this.
     const auto [low, high] = std::minmax_element(measured.mean.begin(), measured.mean.end());
     const double middle = 0.5 * (*low + *high);
     const double share = sd / (0.5 * (*high - *low));
-    result.back().push_back(score(1.0 + share, -share * middle));
-    if (share < 1.0) result.back().push_back(score(1.0 - share, share * middle));
+    result.by_offset.push_back(score(1.0 + share, -share * middle));
+    if (share < 1.0) result.by_offset.push_back(score(1.0 - share, share * middle));
   }
   for (const std::vector<double>& change : measured.changes) {
-    std::vector<Agreement>& both = result.emplace_back();
+    Changed& both = result.by_others.emplace_back();
     for (const double sign : {1.0, -1.0}) {
       std::vector<double> changed(measured.mean.begin(), measured.mean.end());
       for (std::size_t i = 0; i < changed.size(); ++i) changed[i] += sign * change[i];
@@ -134,26 +150,36 @@ std::optional<ScoreUncertainty> agreement_uncertainty(const MeasuredMean& measur
   } catch (const std::domain_error&) {
     return std::nullopt;
   }
-  const Changed changed = changed_by_sensor(measured, simulated);
+  const ChangedBySensor changed = changed_by_sensor(measured, simulated);
   const double freedom = static_cast<double>(deviations.size()) - 1.0;
   ScoreUncertainty result;
+  ScoreContributions& parts = result.contributions;
+  parts.changes.resize(changed.by_others.size());
   for (const MetricSpec& metric : kMetrics) {
     const auto score = metric.value;
     const double by_repeats = jackknife_variance(without, score);
     double variance = by_repeats;
-    for (const std::vector<Agreement>& cause : changed) {
-      double change = 0.0;
-      for (const Agreement& each : cause)
-        change = std::max(change, std::abs(each.*score - found.*score));
+    const auto add = [&](const Changed& cause, Agreement& part) {
+      const double change = largest_change(cause, found, score);
       variance += change * change;
-    }
+      part.*score = change;
+    };
+    add(changed.by_gain, parts.gain);
+    add(changed.by_offset, parts.offset);
+    for (std::size_t i = 0; i < parts.changes.size(); ++i)
+      add(changed.by_others[i], parts.changes[i]);
     const double share = variance > 0.0 ? by_repeats / variance : 1.0;
-    const double factor =
-        share > 0.0 ? student_t_quantile(0.975, freedom / (share * share)) : normal_quantile(0.975);
+    const double degrees = share > 0.0 ? freedom / (share * share) : kManyDegrees;
+    const double factor = share > 0.0 ? student_t_quantile(0.975, degrees) : normal_quantile(0.975);
     const double half = factor * std::sqrt(variance);
-    result.one_sided.*score = half;
-    result.two_sided.*score =
+    const double both =
         half_with_bias(without, found, score, largest_noise(measured), half, factor);
+    result.one_sided.*score = half;
+    result.two_sided.*score = both;
+    parts.repeats.*score = std::sqrt(by_repeats);
+    parts.noise_left.*score = std::sqrt(std::max(0.0, both * both - half * half)) / factor;
+    parts.degrees_of_freedom.*score = std::min(degrees, kManyDegrees);
+    parts.coverage_factor.*score = factor;
   }
   return result;
 }

@@ -19,6 +19,18 @@ struct MeasuredMean {
   std::vector<std::vector<double>> changes = {};
 };
 
+/// Contributions to the standard uncertainty of each score. Together with the coverage factor they
+/// give the two-sided interval: its half width is the factor times the root of the sum of squares.
+/// Without `noise_left` they give the one-sided interval.
+struct ScoreContributions {
+  Agreement repeats;               ///< variation between repeats
+  Agreement noise_left;            ///< noise in the mean, which makes a score worse
+  Agreement gain, offset;          ///< the sensor's certificate; 0 if none is stated
+  std::vector<Agreement> changes;  ///< one per item of MeasuredMean::changes
+  Agreement degrees_of_freedom;    ///< effective; at most kManyDegrees
+  Agreement coverage_factor;
+};
+
 /// Expanded uncertainties of each score of a given model, relative to the mean of infinitely many
 /// repeats measured by an ideal sensor.
 struct ScoreUncertainty {
@@ -28,6 +40,7 @@ struct ScoreUncertainty {
   /// The score differs from the true one by no more than this, in either direction, in 95 % of
   /// cases. This is printed after +-.
   Agreement two_sided;
+  ScoreContributions contributions = {};
 };
 
 /// Computes the expanded uncertainty of each score.

@@ -56,6 +56,33 @@ void bind_posterior(py::module_& module) {
                     "Effective sample size for the ends of intervals.");
 }
 
+void bind_budget(py::module_& module) {
+  using calib::Budget95;
+  using calib::BudgetLine;
+  py::class_<BudgetLine>(module, "BudgetLine", "One contribution to an uncertainty.")
+      .def_readonly("source", &BudgetLine::source, "\"noise\", \"repeats\", a key...")
+      .def_readonly("kind", &BudgetLine::kind, "\"records\", \"known_value\" or \"effect\".")
+      .def_readonly("uncertainty", &BudgetLine::uncertainty,
+                    "Standard uncertainty, in the unit of the result.")
+      .def_property_readonly(
+          "sensitivity",
+          [](const BudgetLine& self) -> std::optional<double> { return self.sensitivity; },
+          "Change of an estimate per unit of an effect's size; or None.")
+      .def("__repr__", [](const BudgetLine& self) {
+        return fmt::format("<rigcal.BudgetLine {}: {:g}>", self.source, self.uncertainty);
+      });
+  py::class_<Budget95>(module, "UncertaintyBudget",
+                       "Contributions to the uncertainty of an estimate or a score, in its unit.")
+      .def_readonly("lines", &Budget95::lines, "The contributions; their squares add up.")
+      .def_readonly("combined", &Budget95::combined, "Standard uncertainty.")
+      .def_readonly("degrees_of_freedom", &Budget95::degrees_of_freedom,
+                    "Effective ones, of `combined`.")
+      .def_readonly("coverage_factor", &Budget95::coverage_factor, "k, for 95 %.")
+      .def_readonly("expanded", &Budget95::expanded, "U, `coverage_factor` times `combined`.")
+      .def_readonly("shift", &Budget95::shift,
+                    "Of the middle of the interval from the estimate, by effects.");
+}
+
 void bind_profile(py::module_& module) {
   using calib::Profile;
   using calib::ProfileEnd;
@@ -85,6 +112,7 @@ void bind_fitted_parameters(py::module_& module) {
   using Self = FittedParameter;
   bind_bootstrap(module);
   bind_posterior(module);
+  bind_budget(module);
   bind_profile(module);
   py::class_<Self> parameter(module, "FittedParameter",
                              "One parameter of a result, fitted or known; SI.");
@@ -142,6 +170,8 @@ void bind_fitted_parameters(py::module_& module) {
       .def_property_readonly(
           "degrees_of_freedom", field(&Self::value, &calib::FittedParameter::degrees_of_freedom),
           "With which the error that `ci95_if_exact` rests on is known; or None.")
+      .def_property_readonly("budget", field(&Self::value, &calib::FittedParameter::budget),
+                             "Contributions to `ci95`; None where no effects were considered.")
       .def_property_readonly("bootstrap", field(&Self::value, &calib::FittedParameter::bootstrap),
                              "Its spread, where the fit was asked for one.")
       .def_property_readonly("posterior", field(&Self::value, &calib::FittedParameter::posterior),

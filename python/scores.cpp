@@ -61,6 +61,12 @@ std::optional<py::dict> expanded_uncertainty_of(const ScoredChannel& self) {
   return by_name(self.score.expanded_uncertainty);
 }
 
+py::dict budgets_of(const ScoredChannel& self) {
+  py::dict budgets;
+  for (const auto& [metric, budget] : self.score.budgets) budgets[py::str(metric)] = budget;
+  return budgets;
+}
+
 std::optional<py::dict> noise_floor_of(const ScoredChannel& self) {
   if (!self.score.noise_floor) return std::nullopt;
   py::dict floor;
@@ -123,6 +129,9 @@ void bind_scored_channel(py::module_& module) {
       .def_property_readonly("expanded_uncertainty", &expanded_uncertainty_of,
                              "Of each of `metrics`, 95 %, by repeats and sensor; None with fewer\n"
                              "than two repeats.")
+      .def_property_readonly("budgets", &budgets_of,
+                             "Contributions to the two-sided uncertainty of each of `metrics`, by\n"
+                             "name; empty with fewer than two repeats.")
       .def_property_readonly(
           "gain_ratio", field(&ScoredChannel::score, &calib::ChannelScore::gain_ratio),
           "Simulated over measured amplitude of the fundamental; None where there is none.")

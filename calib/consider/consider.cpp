@@ -626,17 +626,6 @@ std::optional<AveragedEstimate> averaged_over(const Problem& problem, std::size_
   return result;
 }
 
-/// Returns the contributions of the effects to the variance of an estimate, none of them negative.
-/// If the records cannot separate some effects, their joint contribution is divided in proportion
-/// to their terms.
-VectorXd variances_by_effect(const VectorXd& moves, const MatrixXd& covariance) {
-  const VectorXd along = covariance * moves;
-  const double all = std::max(0.0, moves.dot(along));
-  const VectorXd parts = (moves.array() * along.array()).max(0.0);
-  const double sum = parts.sum();
-  return sum > 0.0 ? VectorXd(parts * (all / sum)) : VectorXd::Zero(moves.size());
-}
-
 /// Returns the uncertainty budget of one estimate, based on the error that it would have if the
 /// model were exact. If an effect was refitted, the averaged estimate provides a correction that
 /// does not rely on a linear model. Its difference from the linear correction is a contribution

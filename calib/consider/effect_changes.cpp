@@ -71,17 +71,18 @@ std::vector<EffectChanges> predicted_changes(const Problem& problem, std::span<c
   return result;
 }
 
-std::vector<std::vector<double>> sensor_changes(datasets::Channel channel,
-                                                const std::vector<Effect>& acting,
-                                                const EffectSpread& effects,
-                                                std::span<const double> simulated,
-                                                std::span<const double> time_s) {
-  std::vector<std::vector<double>> result;
+std::vector<SensorChange> sensor_changes(datasets::Channel channel,
+                                         const std::vector<Effect>& acting,
+                                         const EffectSpread& effects,
+                                         std::span<const double> simulated,
+                                         std::span<const double> time_s) {
+  std::vector<SensorChange> result;
   for (const Effect& effect : acting) {
     const std::string& key = effect.about.key;
     const double size = effects.size(key);
     if (sensor_channel(key) != channel || !(size > 0.0)) continue;
-    std::vector<double>& change = result.emplace_back(simulated.size(), size);
+    std::vector<double>& change =
+        result.emplace_back(SensorChange{key, std::vector<double>(simulated.size(), size)}).change;
     if (effect.is_of_sensor()) {
       const Eigen::Map<const Eigen::VectorXd> reading(simulated.data(),
                                                       static_cast<Eigen::Index>(simulated.size()));

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "calib/consider/catalogue.hpp"
@@ -31,16 +32,22 @@ std::vector<EffectChanges> predicted_changes(const Problem& problem, std::span<c
                                              const EffectSpread& effects, int threads,
                                              const std::atomic<bool>* cancel);
 
+/// Change in the readings of one channel due to an effect of its sensor.
+struct SensorChange {
+  std::string key;             ///< key of the effect
+  std::vector<double> change;  ///< shape (samples), unit of the channel
+};
+
 /// Returns the changes in the readings of one channel due to each effect of its sensor, at the size
 /// that follows from prior and records. In a score, they are the uncertainty of the measured side
 /// in addition to noise.
 ///
 /// @param acting     from considered_in()
 /// @param simulated  simulated values of the channel at `time_s`
-std::vector<std::vector<double>> sensor_changes(datasets::Channel channel,
-                                                const std::vector<Effect>& acting,
-                                                const EffectSpread& effects,
-                                                std::span<const double> simulated,
-                                                std::span<const double> time_s);
+std::vector<SensorChange> sensor_changes(datasets::Channel channel,
+                                         const std::vector<Effect>& acting,
+                                         const EffectSpread& effects,
+                                         std::span<const double> simulated,
+                                         std::span<const double> time_s);
 
 }  // namespace rigcal::calib

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "calib/result/model_error.hpp"
+#include "calib/result/uncertainty_budget.hpp"
 #include "common/describe.hpp"
 #include "datasets/campaign/campaign.hpp"
 #include "datasets/record.hpp"
@@ -28,6 +29,9 @@ struct ChannelScore {
   std::optional<metrics::Agreement> expanded_uncertainty;
   /// Two-sided uncertainty, as printed after +-.
   std::optional<metrics::Agreement> two_sided_uncertainty;
+  /// Contributions to the two-sided uncertainty of each metric, in the order of the metrics; empty
+  /// if the uncertainty is unknown.
+  Keyed<Budget95> budgets;
   std::optional<double> gain_ratio, phase_deg, delay_s;  ///< at the fundamental (sine, square)
   std::string problem;                                   ///< why a metric is missing, in words
   /// Tests of the residual (measured minus simulated) over the longest window; absent if the window

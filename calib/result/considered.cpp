@@ -1,25 +1,8 @@
 #include "calib/result/considered.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace rigcal::calib {
-
-double Budget95::contribution(std::string_view of_kind) const {
-  double squares = 0.0;
-  for (const BudgetLine& line : lines)
-    if (line.kind == of_kind) squares += line.uncertainty * line.uncertainty;
-  return std::sqrt(squares);
-}
-
-const BudgetLine* Budget95::largest_effect() const {
-  const BudgetLine* largest = nullptr;
-  for (const BudgetLine& line : lines) {
-    const bool counts = line.kind == "effect" && line.uncertainty > 0.0;
-    if (counts && (largest == nullptr || line.uncertainty > largest->uncertainty)) largest = &line;
-  }
-  return largest;
-}
 
 const ConsideredEffect* Considered::find(std::string_view key) const {
   const auto found = std::find_if(effects.begin(), effects.end(),

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calib/result/posterior.hpp"
+#include "calib/result/uncertainty_budget.hpp"
 #include "common/describe.hpp"
 #include "datasets/campaign/campaign.hpp"
 
@@ -37,35 +38,6 @@ struct ConsideredEffect {
   Omittable<PosteriorSpread> posterior = {};  ///< draws of its size, jointly with all unknowns
   RIGCAL_DESCRIBE(key, meaning, unit, size_from, size, one_sided, problem, estimate, standard_error,
                   alone, alone_half_width, p_value, p_of_all, explains, posterior)
-};
-
-/// One contribution to the uncertainty of an estimate.
-struct BudgetLine {
-  /// "noise", "repeats", the key of a known value or an effect, or "nonlinearity" (in the effects).
-  std::string source;
-  std::string kind;          ///< "records", "known_value" or "effect"
-  double uncertainty = 0.0;  ///< contribution to the standard uncertainty of the estimate, SI
-  Omittable<double> sensitivity = {};  ///< change in the estimate per unit of an effect's size, SI
-  RIGCAL_DESCRIBE(source, kind, uncertainty, sensitivity)
-};
-
-/// Uncertainty budget of an estimate (JCGM 100:2008, 5.1 and annex G). The squared contributions
-/// add up to the square of the combined standard uncertainty.
-struct Budget95 {
-  std::vector<BudgetLine> lines;
-  double combined = 0.0;            ///< standard uncertainty, SI
-  double degrees_of_freedom = 0.0;  ///< effective degrees of freedom of `combined`
-  double coverage_factor = 0.0;
-  double expanded = 0.0;  ///< `coverage_factor` times `combined`, SI
-  /// Offset of the interval's centre from the estimate due to the effects, SI. The estimate itself
-  /// is not corrected for them.
-  double shift = 0.0;
-  RIGCAL_DESCRIBE(lines, combined, degrees_of_freedom, coverage_factor, expanded, shift)
-
-  /// Combined contribution of all lines of one kind: the root of the sum of their squares.
-  double contribution(std::string_view of_kind) const;
-  /// The line of the effect with the largest contribution; null if no effect contributes.
-  const BudgetLine* largest_effect() const;
 };
 
 /// A repeated fit in which effects that the residuals call for are additional unknowns.

@@ -58,6 +58,15 @@ void add_own(std::vector<EstimateSpread::Estimate> estimates, const std::vector<
   for (Eigen::Index k = 0; k < count; ++k) own.root(k, k) = errors[static_cast<std::size_t>(k)];
 }
 
+Eigen::VectorXd variances_by_effect(const Eigen::VectorXd& moves,
+                                    const Eigen::MatrixXd& covariance) {
+  const Eigen::VectorXd along = covariance * moves;
+  const double all = std::max(0.0, moves.dot(along));
+  const Eigen::VectorXd parts = (moves.array() * along.array()).max(0.0);
+  const double sum = parts.sum();
+  return sum > 0.0 ? Eigen::VectorXd(parts * (all / sum)) : Eigen::VectorXd::Zero(moves.size());
+}
+
 double EffectSpread::size(std::string_view key) const {
   const auto found = std::find(keys.begin(), keys.end(), key);
   return found == keys.end() ? 0.0 : root.row(found - keys.begin()).norm();

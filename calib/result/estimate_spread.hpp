@@ -32,6 +32,15 @@ struct EffectSpread {
 EffectSpread effect_spread(const Considered& considered,
                            const std::vector<const Budget95*>& budgets);
 
+/// Returns the variance that each effect contributes to a result; they add up to moves^T C moves.
+/// If the records cannot separate some effects, their joint contribution is divided in proportion
+/// to their terms.
+///
+/// @param moves       change in the result per unit of each effect's size
+/// @param covariance  C, the second moments of these sizes
+Eigen::VectorXd variances_by_effect(const Eigen::VectorXd& moves,
+                                    const Eigen::MatrixXd& covariance);
+
 /// Joint covariance of the estimates of a fit, for predictions.
 struct EstimateSpread {
   /// Identifies one estimate, so that a condition can find those that apply to it.

@@ -9,6 +9,7 @@
 #include "calib/consider/effect_changes.hpp"
 #include "calib/score/acceptance.hpp"
 #include "calib/search/late_flag.hpp"
+#include "calib/trust/known_uncertainty.hpp"
 #include "calib/trust/lack_of_fit.hpp"
 #include "common/parallel.hpp"
 #include "metrics/agreement_uncertainty.hpp"
@@ -95,6 +96,38 @@ metrics::MeasuredMean measured_mean(const datasets::Campaign& campaign,
   return result;
 }
 
+/// Returns the uncertainty budget of each score, in the order of the metrics. A score has no shift,
+/// because the effects of a sensor change it by as much in either direction.
+///
+/// @param effects  effects of the sensor, one per item of MeasuredMean::changes
+Keyed<Budget95> budgets_of(datasets::Channel channel, const metrics::MeasuredMean& mean,
+                           const metrics::ScoreUncertainty& found,
+                           const std::vector<SensorChange>& effects) {
+  const metrics::ScoreContributions& parts = found.contributions;
+  const std::string_view key = datasets::info(channel).key;
+  Keyed<Budget95> budgets;
+  for (const metrics::MetricSpec& metric : metrics::kMetrics) {
+    const auto score = metric.value;
+    Budget95 budget;
+    budget.lines = {{"repeats", "records", parts.repeats.*score},
+                    {"noise_left", "records", parts.noise_left.*score}};
+    const auto add_stated = [&](const char* what, double sd, double uncertainty) {
+      if (sd > 0.0)
+        budget.lines.push_back({certificate_name(what, key), "known_value", uncertainty});
+    };
+    add_stated("gain", mean.gain_sd, parts.gain.*score);
+    add_stated("offset", mean.offset_sd, parts.offset.*score);
+    for (std::size_t i = 0; i < effects.size(); ++i)
+      budget.lines.push_back({effects[i].key, "effect", parts.changes[i].*score});
+    budget.degrees_of_freedom = parts.degrees_of_freedom.*score;
+    budget.coverage_factor = parts.coverage_factor.*score;
+    budget.expanded = found.two_sided.*score;
+    budget.combined = budget.expanded / budget.coverage_factor;
+    budgets.emplace_back(metric.name, std::move(budget));
+  }
+  return budgets;
+}
+
 /// Effects that a fit considered, and those of them that act in a problem.
 struct ScoredEffects {
   const EffectSpread& spread;
@@ -111,11 +144,13 @@ ChannelScore score_channel(const datasets::Campaign& campaign, const ProblemCond
     metrics::MeasuredMean mean = measured_mean(campaign, condition, channel);
     std::vector<double> times_s;
     for (const std::size_t row : condition.rows) times_s.push_back(condition.record->time_s[row]);
-    mean.changes =
+    const std::vector<SensorChange> changes =
         sensor_changes(channel.channel, effects.acting, effects.spread, simulated, times_s);
+    for (const SensorChange& each : changes) mean.changes.push_back(each.change);
     if (const auto found = metrics::agreement_uncertainty(mean, simulated)) {
       score.expanded_uncertainty = found->one_sided;
       score.two_sided_uncertainty = found->two_sided;
+      score.budgets = budgets_of(channel.channel, mean, *found, changes);
     }
   } catch (const std::logic_error& error) {  // constant channel, or fewer than two samples
     add_problem(score, error.what());

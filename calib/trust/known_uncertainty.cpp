@@ -32,7 +32,7 @@ void add_sensor(const Problem& problem, const datasets::ChannelSetting& channel,
     const auto* setting = index < 0 ? nullptr : problem.campaign->setting(index);
     const bool elsewhere = setting != nullptr && (setting->fit || setting->prior);
     if (!(sd > 0.0) || index < 0 || elsewhere) return;
-    result.push_back({fmt::format("{}_sd of {}", what, key), index, sd, true});
+    result.push_back({certificate_name(what, key), index, sd, true});
   };
   const auto* gain = problem.campaign->setting(
       model::parameter_index(problem.campaign->rig.plant, fmt::format("{}_gain", key)));
@@ -95,6 +95,10 @@ Eigen::MatrixXd known_sensitivities(const Problem& problem, std::size_t conditio
     }
   }
   return rows;
+}
+
+std::string certificate_name(std::string_view what, std::string_view channel) {
+  return fmt::format("{}_sd of {}", what, channel);
 }
 
 std::vector<std::string> uncertain_names(const Problem& problem) {

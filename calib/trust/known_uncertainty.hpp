@@ -4,6 +4,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "calib/problem/evaluation.hpp"
@@ -19,6 +20,11 @@ struct KnownUncertainty {
   /// -(J^T J)^-1 J^T J_known sd. Shape (unknowns, names).
   Eigen::MatrixXd response;
 };
+
+/// Returns the name, for messages and budgets, of what the certificate of a sensor states.
+///
+/// @param what  "gain" or "offset"
+std::string certificate_name(std::string_view what, std::string_view channel);
 
 /// Returns the names, for messages, of known values with a stated uncertainty.
 std::vector<std::string> uncertain_names(const Problem& problem);

@@ -155,23 +155,31 @@ CoefficientError coefficient_error(const LeakFit& fit, const SignalErrors& error
                                    int reference) {
   const bool coloured = errors.misfit && exceeds_noise(squared(fit.cluster_se),
                                                        squared(fit.white_se), fit.cluster_freedom);
+  CoefficientError error;
   std::vector<metrics::ErrorPart> parts;
+  double own_variance = 0.0;
+  const auto add = [&](const char* source, const metrics::ErrorPart& part) {
+    parts.push_back(part);
+    own_variance += part.variance;
+    error.own.push_back({source, "records", std::sqrt(part.variance)});
+  };
   if (coloured) {
-    parts.push_back({squared(fit.cluster_se), static_cast<double>(fit.cluster_freedom)});
+    add("lack_of_fit", {squared(fit.cluster_se), static_cast<double>(fit.cluster_freedom)});
   } else {
-    parts.push_back({squared(fit.white_se), static_cast<double>(fit.white_freedom)});
+    add("noise", {squared(fit.white_se), static_cast<double>(fit.white_freedom)});
   }
   if (errors.between_m && fit.effect_m > 0.0) {
     const double means = 1.0 / repeats + (reference > 0 ? 1.0 / reference : 0.0);
-    parts.push_back({squared(*errors.between_m / fit.effect_m) * means,
-                     static_cast<double>(std::max(1, errors.repeat_freedom))});
+    add("repeats", {squared(*errors.between_m / fit.effect_m) * means,
+                    static_cast<double>(std::max(1, errors.repeat_freedom))});
   }
   if (errors.healthy_m && reference == 0 && fit.effect_m > 0.0)
-    parts.push_back({squared(*errors.healthy_m / fit.effect_m)});
-  double own_variance = 0.0;
-  for (const metrics::ErrorPart& part : parts) own_variance += part.variance;
+    add("healthy_records", {squared(*errors.healthy_m / fit.effect_m)});
   parts.push_back({squared(fit.rig_se)});
-  return {std::sqrt(own_variance), fit.rig_se, metrics::effective_freedom(parts)};
+  error.own_se = std::sqrt(own_variance);
+  error.rig_se = fit.rig_se;
+  error.freedom = metrics::effective_freedom(parts);
+  return error;
 }
 
 std::optional<CoefficientError> error_of_averages(const LeakFit& fit, const SignalErrors& errors,

@@ -3,7 +3,9 @@
 #include <array>
 #include <optional>
 #include <utility>
+#include <vector>
 
+#include "calib/result/uncertainty_budget.hpp"
 #include "common/range.hpp"
 #include "datasets/campaign/diagnosis_settings.hpp"
 #include "diagnosis/leak/leak_curve.hpp"
@@ -40,6 +42,9 @@ struct LeakEstimate {
   LeakClass most_probable = LeakClass::normal;
   double leak_score = 0.0;     ///< coefficient divided by its standard error
   bool leak_detected = false;  ///< at the false-alarm rate in the settings
+  calib::Budget95 budget;      ///< contributions to `standard_error`
+  /// Contributions to the standard error of the share, to first order, in percentage points.
+  calib::Budget95 share_budget;
 
   /// Returns true if the share is possible: the leak cannot exceed the servo flow.
   bool has_share() const { return share <= 1.0; }
@@ -58,6 +63,7 @@ struct CoefficientError {
   /// Standard error due to differences between the day of the record and the days of its reference
   /// (with_days()).
   double days_se = 0.0;
+  std::vector<calib::BudgetLine> own = {};  ///< contributions to own_se
   double total() const;
   /// Returns the half-width of the 95 % interval.
   double half_width() const;

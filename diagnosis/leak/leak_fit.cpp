@@ -303,7 +303,7 @@ void describe(const calib::Problem& problem, const RigFit& rig, const LeakProble
     if (reference > 0) rig_jacobian -= linearise(problem, healthy).rig_jacobian;
     fit.rig_moves(rig_columns) = -(rig_jacobian.transpose() * weight);
   }
-  fit.rig_se = std::sqrt(std::max(0.0, fit.rig_moves.dot(rig.covariance * fit.rig_moves)));
+  fit.rig_se = rig.error(fit.rig_moves);
   const Eigen::VectorXd effect = run.sensitivities[position].col(leak);
   double squares = 0.0;
   for (const std::size_t row : condition.rows) {
@@ -426,6 +426,28 @@ void RigFit::consider(const calib::EstimateSpread& spread) {
   both << covariance + effects.moves * moments * effects.moves.transpose(), effects.moves * moments,
       moments * effects.moves.transpose(), moments;
   covariance = std::move(both);
+}
+
+double RigFit::error(const Eigen::VectorXd& moves) const {
+  return std::sqrt(std::max(0.0, moves.dot(covariance * moves)));
+}
+
+std::vector<calib::BudgetLine> RigFit::contributions(const Eigen::VectorXd& moves) const {
+  if (covariance.rows() == 0) return {};
+  const auto count = static_cast<Eigen::Index>(effects.keys.size());
+  Eigen::VectorXd by_effect = Eigen::VectorXd::Zero(0);
+  if (count > 0) {
+    const Eigen::VectorXd through_values =
+        effects.moves.transpose() * moves.head(moves.size() - count);
+    by_effect = calib::variances_by_effect(moves.tail(count) + through_values,
+                                           effects.root * effects.root.transpose());
+  }
+  const double all = error(moves);
+  std::vector<calib::BudgetLine> lines{
+      {"rig_parameters", "known_value", std::sqrt(std::max(0.0, all * all - by_effect.sum()))}};
+  for (Eigen::Index k = 0; k < count; ++k)
+    lines.push_back({effects.keys[static_cast<std::size_t>(k)], "effect", std::sqrt(by_effect(k))});
+  return lines;
 }
 
 std::shared_ptr<const LeakEffects> leak_effects_of(const LeakProblem& leak_problem,
@@ -579,10 +601,11 @@ LeakPoint leak_point_of(const LeakProblem& leak_problem, const Condition& condit
   });
 }
 
-double share_rig_error(const LeakProblem& leak_problem, const RigFit& rig,
-                       const Condition& condition, const Record& average, const LeakFit& fit,
-                       double share_slope, double negligible, const LeakEffects* effects) {
-  if (rig.covariance.rows() == 0) return 0.0;
+Eigen::VectorXd share_rig_moves(const LeakProblem& leak_problem, const RigFit& rig,
+                                const Condition& condition, const Record& average,
+                                const LeakFit& fit, double share_slope, double negligible,
+                                const LeakEffects* effects) {
+  if (rig.covariance.rows() == 0) return Eigen::VectorXd::Zero(0);
   Eigen::VectorXd moves = share_slope * fit.rig_moves;
   const auto of_rig = static_cast<Eigen::Index>(rig.indices.size());
   if (effects != nullptr && effects->share.size() == moves.size() - of_rig)
@@ -597,7 +620,7 @@ double share_rig_error(const LeakProblem& leak_problem, const RigFit& rig,
     moves.head(of_rig) +=
         steady_leak(problem, prepared, values, rig.indices, leak_problem.cancel).share_slope;
   }
-  return std::sqrt(std::max(0.0, moves.dot(rig.covariance * moves)));
+  return moves;
 }
 
 Eigen::VectorXd share_day_effects(const LeakProblem& leak_problem, const Condition& condition,

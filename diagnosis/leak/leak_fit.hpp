@@ -33,6 +33,11 @@ struct RigFit {
   /// Adds the effects from a fit. An effect is correlated with the change in a value for which the
   /// fit has mistaken it.
   void consider(const calib::EstimateSpread& spread);
+  /// Returns the standard error of a result that changes by `moves`, shape: rows of `covariance`.
+  double error(const Eigen::VectorXd& moves) const;
+  /// Returns the contributions to that error: one for all values of the rig together, and one for
+  /// each effect, including its action through these values.
+  std::vector<calib::BudgetLine> contributions(const Eigen::VectorXd& moves) const;
 };
 
 /// How the effects that a fit considered change a record of a condition and its leak share, close
@@ -186,17 +191,18 @@ LeakPoint leak_point_of(const LeakProblem& leak_problem, const datasets::Conditi
                         const datasets::Record& average, double coefficient, double reach,
                         LeakMemo& memo);
 
-/// Returns the standard error of the share due to the rig's parameters, if the coefficient is
-/// refitted. It combines their direct effect on the share with their effect through the
-/// coefficient.
+/// Returns the change in the share per unit of error in each of the rig's parameters, then in each
+/// effect, if the coefficient is refitted. It combines their direct action on the share with that
+/// through the coefficient. Shape: rows of RigFit::covariance.
 ///
 /// @param negligible  below this coefficient the leak is not simulated
 /// @param effects     effects in the same condition; if null, effects act only through the
 ///                    coefficient
-double share_rig_error(const LeakProblem& leak_problem, const RigFit& rig,
-                       const datasets::Condition& condition, const datasets::Record& average,
-                       const LeakFit& fit, double share_slope, double negligible = 0.0,
-                       const LeakEffects* effects = nullptr);
+Eigen::VectorXd share_rig_moves(const LeakProblem& leak_problem, const RigFit& rig,
+                                const datasets::Condition& condition,
+                                const datasets::Record& average, const LeakFit& fit,
+                                double share_slope, double negligible = 0.0,
+                                const LeakEffects* effects = nullptr);
 
 /// Returns the change in the share with each day quantity, per standard deviation between days,
 /// both directly and through the coefficient, which changes by `day_effects`.

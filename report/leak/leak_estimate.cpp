@@ -19,6 +19,7 @@ StoredLeak stored(const diagnosis::LeakEstimate& estimate,
   }
   if (!ok) return leak;
   leak.standard_error = estimate.standard_error;
+  if (estimate.standard_error > 0.0) leak.budget = estimate.budget;
   leak.compatible_with_model = std::optional(!estimate.incompatible);
   if (estimate.incompatible) return leak;
   leak.leakage_coefficient = std::max(0.0, estimate.coefficient);
@@ -30,6 +31,7 @@ StoredLeak stored(const diagnosis::LeakEstimate& estimate,
   leak.leak_share_ci95_percent = scaled_ends(estimate.share_ci95, kInPercent);
   if (const auto& limit = estimate.share_upper_limit)
     leak.leak_share_upper_limit_percent = kInPercent * *limit;
+  if (estimate.share_budget.combined > 0.0) leak.share_budget = estimate.share_budget;
   leak.class_ = leak_class;
   return leak;
 }

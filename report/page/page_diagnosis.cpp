@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "report/document/words.hpp"
+#include "report/page/budget_tables.hpp"
 #include "report/page/page_parts.hpp"
 #include "report/text/gathered_warnings.hpp"
 #include "report/text/readable.hpp"
@@ -433,6 +434,28 @@ void add_repeats(const StoredDiagnosis& diagnosis, doc::Blocks& blocks) {
   if (!table.rows.empty()) blocks.emplace_back(doc::Fold{"Every repeat", {std::move(table)}});
 }
 
+/// Adds the contributions to the uncertainty of the shares of states and averages.
+void add_share_budgets(const StoredDiagnosis& diagnosis, doc::Blocks& blocks) {
+  const RowUnit points{"%", 1.0};
+  std::vector<BudgetOf> budgets;
+  for (const StoredState& state : diagnosis.states)
+    if (state.leak.share_budget)
+      budgets.push_back({state.state, points, &*state.leak.share_budget});
+  for (const StoredDiagnosedRecord& record : diagnosis.records)
+    if (record.is_average() && record.leak.share_budget)
+      budgets.push_back({record.condition, points, &*record.leak.share_budget});
+  if (budgets.empty()) return;
+  doc::Fold fold{"Uncertainty budgets of the shares", {}};
+  fold.blocks.emplace_back(doc::reading(
+      "To first order about the share found. The interval of a share follows from its whole "
+      "distribution, which ends at zero. The lines of a state are its conditions."));
+  fold.blocks.emplace_back(budget_table("Share of", budgets));
+  doc::Fold one_by_one = contributions("Share of", budgets);
+  one_by_one.style = "screen";  // a line for each effect of each record would fill sheets of paper
+  fold.blocks.emplace_back(std::move(one_by_one));
+  blocks.emplace_back(std::move(fold));
+}
+
 }  // namespace
 
 std::vector<doc::Section> diagnosis_sections(const StoredDiagnosis& diagnosis) {
@@ -447,6 +470,7 @@ std::vector<doc::Section> diagnosis_sections(const StoredDiagnosis& diagnosis) {
       blocks.emplace_back(doc::reading(trend.sentence));
   }
   add_averages(diagnosis, blocks);
+  add_share_budgets(diagnosis, blocks);
   add_methods(diagnosis.methods, blocks);
   if (!diagnosis.class_limits.empty())
     blocks.emplace_back(doc::Fold{"Limits of the classes, by the leak table",

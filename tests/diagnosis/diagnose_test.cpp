@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "calib/published/leak_table.hpp"
 #include "datasets/prepare/single_repeats.hpp"
@@ -235,6 +236,22 @@ TEST_CASE("diagnose: a supply half a percent lower on another day is no leak", "
   CHECK(limits.smallest_leak_same_day->coefficient ==
         same.signals.front().smallest_leak->coefficient);
   CHECK(limits.smallest_leak->coefficient > 2.0 * limits.smallest_leak_same_day->coefficient);
+  // The budgets of records and states add up to the errors, and the day has a line.
+  const auto check = [](const diagnosis::LeakEstimate& estimate) {
+    for (const auto* budget : {&estimate.budget, &estimate.share_budget}) {
+      double squares = 0.0;
+      for (const auto& line : budget->lines) squares += line.uncertainty * line.uncertainty;
+      CHECK_THAT(std::sqrt(squares), Catch::WithinRel(budget->combined, 1e-9));
+      CHECK(budget->contribution("days") > 0.0);
+      CHECK(budget->contribution("records") > 0.0);
+    }
+    CHECK(estimate.budget.combined == estimate.standard_error);
+    CHECK(estimate.budget.degrees_of_freedom == estimate.freedom);
+  };
+  check(other.records.at(4).estimate);
+  check(other.states.at(1).estimate);
+  CHECK(other.states.at(1).estimate.budget.lines.front().source == campaign.conditions[1].id);
+  CHECK(same.records.at(4).estimate.budget.contribution("days") == 0.0);
   // The day affects the share, too.
   CHECK(other.records.at(4).estimate.share_ci95.high > same.records.at(4).estimate.share_ci95.high);
 

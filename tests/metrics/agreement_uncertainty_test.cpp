@@ -237,6 +237,47 @@ TEST_CASE("agreement_uncertainty: another cause counts as a gain of the same eff
   CHECK(other->one_sided.rmse > 1.05 * without->one_sided.rmse);
 }
 
+TEST_CASE("agreement_uncertainty: the contributions add up by hand", "[metrics]") {
+  const std::vector<double> truth = sine(500, 1.0);
+  std::mt19937_64 random(5);
+  const Repeats repeats = draw(truth, 5, 0.01, 0.01, random);
+  MeasuredMean with = measured(repeats);
+  with.gain_sd = 0.01;
+  with.offset_sd = 0.02;
+  with.changes.emplace_back(truth.size(), 0.03);
+  const auto found = agreement_uncertainty(with, truth);
+  REQUIRE(found.has_value());
+  const ScoreContributions& parts = found->contributions;
+  REQUIRE(parts.changes.size() == 1);
+  double noise_left = 0.0;
+  for (const MetricSpec& metric : kMetrics) {
+    CAPTURE(metric.name);
+    const auto score = metric.value;
+    const double sensor = std::hypot(parts.gain.*score, parts.offset.*score);
+    const double lasting = std::hypot(parts.repeats.*score, sensor, parts.changes[0].*score);
+    const double factor = parts.coverage_factor.*score;
+    CHECK_THAT(factor * lasting, WithinRel(found->one_sided.*score, 1e-9));
+    CHECK_THAT(factor * std::hypot(lasting, parts.noise_left.*score),
+               WithinRel(found->two_sided.*score, 1e-9));
+    CHECK_THAT(student_t_quantile(0.975, parts.degrees_of_freedom.*score), WithinRel(factor, 1e-5));
+    CHECK(parts.degrees_of_freedom.*score >= 4.0 * (1.0 - 1e-9));
+    noise_left += parts.noise_left.*score;
+  }
+  CHECK(noise_left > 0.0);
+  CHECK(parts.repeats.rmse > 0.0);
+  CHECK(parts.gain.rmse > 0.0);
+  // Constant changes of the mean; the larger one moves the RMSE further.
+  CHECK(parts.changes[0].rmse > parts.offset.rmse);
+  // Without a certificate there is no such contribution, and the others stay.
+  with.gain_sd = 0.0;
+  with.offset_sd = 0.0;
+  const auto without = agreement_uncertainty(with, truth);
+  CHECK(without->contributions.gain.rmse == 0.0);
+  CHECK(without->contributions.offset.rmse == 0.0);
+  CHECK(without->contributions.repeats.rmse == parts.repeats.rmse);
+  CHECK(without->contributions.changes[0].rmse == parts.changes[0].rmse);
+}
+
 TEST_CASE("agreement_uncertainty: one repeat and copies tell nothing", "[metrics]") {
   const std::vector<double> truth = sine(100, 1.0);
   Repeats repeats{truth, {}};

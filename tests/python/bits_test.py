@@ -191,6 +191,15 @@ def assert_same_numbers(ours: rigcal.Fit, out: pathlib.Path, file: str) -> None:
         assert_same_condition(ours.conditions[other["id"]], other, table(out / "residuals" / (other["id"] + ".csv")))
 
 
+def assert_same_budget(ours: rigcal.UncertaintyBudget, theirs: dict[str, Any]) -> None:
+    for name in ("combined", "degrees_of_freedom", "coverage_factor", "expanded", "shift"):
+        assert same(getattr(ours, name), theirs[name]), name
+    for line, other in zip(ours.lines, theirs["lines"], strict=True):
+        assert (line.source, line.kind) == (other["source"], other["kind"])
+        assert same(line.uncertainty, other["uncertainty"])
+        assert line.sensitivity == other.get("sensitivity")
+
+
 def assert_same_parameter(ours: rigcal.FittedParameter, theirs: dict[str, Any]) -> None:
     for name in ("key", "name", "symbol", "unit", "scope", "level", "fitted", "nuisance", "at_bound",
                  "identifiability", "ci95_from"):
@@ -198,6 +207,9 @@ def assert_same_parameter(ours: rigcal.FittedParameter, theirs: dict[str, Any]) 
     for name in ("value", "start", "lower", "upper", "standard_error", "robust_standard_error"):
         assert same(getattr(ours, name), theirs[name]), f"{name} of {ours.key}"
     assert ours.ci95 == (tuple(theirs["ci95"]) if theirs["ci95"] else None)
+    assert (ours.budget is not None) == ("budget" in theirs)
+    if ours.budget:
+        assert_same_budget(ours.budget, theirs["budget"])
     assert (ours.bootstrap is not None) == ("bootstrap" in theirs)
     if ours.bootstrap:
         assert list(ours.bootstrap.ci95) == theirs["bootstrap"]["ci95"]
@@ -229,6 +241,10 @@ def assert_same_condition(ours: rigcal.ScoredCondition, theirs: dict[str, Any],
         assert channel.noise_floor == theirs["noise_floor"][key]
         assert channel.expanded_uncertainty == theirs["expanded_uncertainty"][key]
         assert channel.expanded_uncertainty is not None
+        assert list(channel.budgets) == list(channel.metrics)
+        for name, budget in channel.budgets.items():
+            assert_same_budget(budget, theirs["score_budgets"][key][name])
+            assert same(budget.expanded, theirs["two_sided_uncertainty"][key][name])
         of_channel = [title for title in columns if title.startswith(f"measured_{key}_")]
         assert len(of_channel) == 1
         column = of_channel[0].removeprefix("measured_")

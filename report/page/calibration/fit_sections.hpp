@@ -23,6 +23,9 @@ doc::Section parameters_section(const std::vector<StoredParameter>& parameters,
 /// Adds the contributions to the uncertainty of each estimate. Adds nothing if no effects were
 /// considered.
 void add_budget(const std::vector<StoredParameter>& parameters, doc::Blocks& blocks);
+/// Adds the contributions to the uncertainty of each score of a condition. Adds nothing if they are
+/// unknown.
+void add_score_budgets(const StoredCondition& condition, doc::Blocks& blocks);
 /// Returns one article for each condition, with its description, scores, plots and residual tests.
 ///
 /// @param curves  whether plots and residual tests are drawn

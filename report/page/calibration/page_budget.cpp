@@ -6,7 +6,9 @@
 #include <string_view>
 
 #include "common/significant.hpp"
+#include "metrics/metric_table.hpp"
 #include "report/document/quantity.hpp"
+#include "report/page/budget_tables.hpp"
 #include "report/page/calibration/fit_sections.hpp"
 #include "report/page/page_parts.hpp"
 #include "report/text/readable.hpp"
@@ -16,48 +18,6 @@ namespace {
 
 using doc::Line;
 using Kind = doc::Column::Kind;
-
-constexpr int kBudgetDigits = 3;
-
-std::string freedom_text(double freedom) {
-  constexpr double kMany = 1000.0;
-  return freedom > kMany ? std::string("many") : fmt::format("{:.0f}", freedom);
-}
-
-doc::Row budget_row(const StoredParameter& p) {
-  const RowUnit unit = unit_of(p);
-  const calib::Budget95& budget = *p.budget;
-  const auto number = [&](double value) { return doc::in_unit(value, unit.si, kBudgetDigits); };
-  const calib::BudgetLine* largest = budget.largest_effect();
-  return {{parameter_label(p), unit.name, number(budget.contribution("records")),
-           number(budget.contribution("known_value")), number(budget.contribution("effect")),
-           number(budget.combined), freedom_text(budget.degrees_of_freedom),
-           doc::decimals(budget.coverage_factor, 2), number(budget.expanded), number(budget.shift),
-           largest == nullptr ? std::string("–") : spaced(largest->source)}};
-}
-
-/// Adds the rows of one uncertainty budget. Negligible contributions are combined in one row.
-void add_lines(const StoredParameter& p, std::vector<doc::Row>& rows) {
-  constexpr double kHardly = 1e-3;  // as a fraction of the variance
-  const RowUnit unit = unit_of(p);
-  const calib::Budget95& budget = *p.budget;
-  const double whole = budget.combined * budget.combined;
-  double others = 0.0;
-  const auto add = [&](const std::string& source, double squares) {
-    rows.push_back(
-        {{parameter_label(p), source, doc::in_unit(std::sqrt(squares), unit.si, kBudgetDigits),
-          unit.name, doc::decimals(whole > 0.0 ? 100.0 * squares / whole : 0.0, 1)}});
-  };
-  for (const calib::BudgetLine& line : budget.lines) {
-    const double square = line.uncertainty * line.uncertainty;
-    if (line.kind == "records" || square >= kHardly * whole) {
-      add(spaced(line.source), square);
-    } else {
-      others += square;
-    }
-  }
-  if (others > 0.0) add("all others", others);
-}
 
 /// Formats the size or an estimate of an effect in a suitable unit.
 Line effect_number(const std::optional<double>& value, const std::optional<double>& half_width,
@@ -145,40 +105,39 @@ doc::Row stability_row(const calib::StabilityCheck& check) {
 }  // namespace
 
 void add_budget(const std::vector<StoredParameter>& parameters, doc::Blocks& blocks) {
-  doc::Table table{"Uncertainty budget"};
-  table.caption = {"Uncertainty budget: standard uncertainties u, of which the squares add up"};
-  table.columns = {{"Parameter"},
-                   {"Unit"},
-                   {"Records", Kind::number},
-                   {"Known values", Kind::number},
-                   {"Effects left out", Kind::number},
-                   {"u", Kind::number},
-                   {"Degrees of freedom", Kind::number},
-                   {"k", Kind::number},
-                   {"U = k u", Kind::number},
-                   {"Shift", Kind::number},
-                   {"Largest effect"}};
-  doc::Table lines{"Contributions one by one"};
-  lines.style = "dense";
-  lines.columns = {{"Parameter"},
-                   {"Source"},
-                   {"u", Kind::number},
-                   {"Unit", Kind::unit},
-                   {"Share of the variance, %", Kind::number}};
-  for (const StoredParameter& p : parameters) {
-    if (!p.budget) continue;
-    table.rows.push_back(budget_row(p));
-    add_lines(p, lines.rows);
-  }
-  if (table.rows.empty()) return;
-  blocks.emplace_back(std::move(table));
+  std::vector<BudgetOf> budgets;
+  for (const StoredParameter& p : parameters)
+    if (p.budget) budgets.push_back({parameter_label(p), unit_of(p), &*p.budget});
+  if (budgets.empty()) return;
+  blocks.emplace_back(budget_table("Parameter", budgets));
   blocks.emplace_back(doc::reading(
       "The 95 % interval extends by U beyond the value as it is, beyond value + shift, beyond the "
       "value that the likeliest sizes of the effects would give, and beyond the estimate over the "
       "models with a missing effect. If the interval then extends more than a fifth above a value "
       "that cannot be zero, its upper end is a factor of the value where that is further out."));
-  const std::string summary = fmt::format("Contributions one by one ({})", lines.rows.size());
-  blocks.emplace_back(doc::Fold{summary, {std::move(lines)}});
+  blocks.emplace_back(contributions("Parameter", budgets));
+}
+
+void add_score_budgets(const StoredCondition& condition, doc::Blocks& blocks) {
+  if (!condition.score_budgets) return;
+  std::vector<BudgetOf> budgets;
+  for (const auto& [channel, by_metric] : *condition.score_budgets) {
+    const StoredScore* scores = find(condition.metrics, channel);
+    for (const metrics::MetricSpec& metric : metrics::kMetrics) {
+      const calib::Budget95* budget = find(by_metric, std::string(metric.name));
+      if (budget == nullptr || scores == nullptr) continue;
+      RowUnit unit{metric.unit == "1" ? std::string() : std::string(metric.unit), 1.0};
+      if (metric.unit == "channel") unit = row_unit(scores->*metric.value, channel_unit(channel));
+      budgets.push_back(
+          {fmt::format("{} of {}", metric.title, spaced(channel)), std::move(unit), budget});
+    }
+  }
+  if (budgets.empty()) return;
+  doc::Fold fold{"Uncertainty budgets of the scores", {}};
+  fold.style = "screen";  // seven scores of each channel would fill sheets of paper
+  fold.blocks.emplace_back(budget_table("Score", budgets));
+  fold.blocks.emplace_back(contributions("Score", budgets));
+  blocks.emplace_back(std::move(fold));
 }
 
 void add_considered(const StoredFit& fit, doc::Blocks& blocks) {

@@ -152,6 +152,7 @@ doc::Article facts_article(const StoredCondition& condition) {
   for (const std::string& text : condition.warnings) doubts.items.push_back({"Recording: " + text});
   blocks.emplace_back(std::move(doubts));
   add_scores(condition, blocks);
+  add_score_budgets(condition, blocks);
   return article;
 }
 

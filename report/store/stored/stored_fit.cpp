@@ -156,6 +156,10 @@ StoredCondition stored(const Result& result, const calib::ConditionScore& score)
     condition.noise_floor.emplace_back(key, channel.noise_floor);
     condition.expanded_uncertainty->emplace_back(key, channel.expanded_uncertainty);
     condition.two_sided_uncertainty->emplace_back(key, channel.two_sided_uncertainty);
+    if (!channel.budgets.empty()) {
+      if (!condition.score_budgets) condition.score_budgets.emplace();
+      condition.score_budgets->emplace_back(key, channel.budgets);
+    }
     std::optional<StoredResidualTests> tests;
     if (channel.residual_tests)
       tests = report::stored(*channel.residual_tests, info(channel.channel).unit);

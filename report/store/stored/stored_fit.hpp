@@ -162,11 +162,14 @@ struct StoredCondition {
   Later<std::vector<std::string>> warnings;
   Later<std::optional<std::string>> not_scored;
   std::optional<std::string> failure;
-  Keyed<StoredScore> metrics;  ///< by channel, as are the next four
+  Keyed<StoredScore> metrics;  ///< by channel, as are the next five
   Keyed<std::optional<metrics::NoiseFloor>> noise_floor;
   /// One-sided, for each score; used as the guard band of its limit.
   Omittable<Keyed<std::optional<metrics::Agreement>>> expanded_uncertainty;
-  Omittable<Keyed<std::optional<metrics::Agreement>>> two_sided_uncertainty;
+  Omittable<Keyed<std::optional<metrics::Agreement>>> two_sided_uncertainty;  ///< printed after +-
+  /// Contributions to the two-sided uncertainty, by channel and metric. Channels whose uncertainty
+  /// is unknown are left out.
+  Omittable<Keyed<Keyed<calib::Budget95>>> score_budgets;
   Keyed<std::optional<StoredResidualTests>> residual_tests;
   Later<std::vector<calib::LimitCheck>> limit_checks;
   Later<Keyed<calib::Verdict>> channel_verdicts;
@@ -175,8 +178,8 @@ struct StoredCondition {
   RIGCAL_DESCRIBE(id, waveform, frequency_hz, amplitude_m, amplitude_v, amplitude_n, amplitude_pa,
                   amplitude_m_per_s2, leak_level, use, temperature_k, date, samples, record_sha256,
                   windows_s, notes, acceptance, not_judged, warnings, not_scored, failure, metrics,
-                  noise_floor, expanded_uncertainty, two_sided_uncertainty, residual_tests,
-                  limit_checks, channel_verdicts, verdict, reasons)
+                  noise_floor, expanded_uncertainty, two_sided_uncertainty, score_budgets,
+                  residual_tests, limit_checks, channel_verdicts, verdict, reasons)
 
   /// Returns the verdict on a channel; std::nullopt without a limit.
   std::optional<calib::Verdict> verdict_of(const std::string& channel) const;

@@ -446,9 +446,9 @@ TEST_CASE("sensor_changes: gain, offset and lag of a sensor, each by its size", 
   REQUIRE(changes.size() == 3);
   double gain = 0.0, offset = 0.0, lag = 0.0;
   for (const auto& each : changes) {
-    if (each[0] == 0.0) gain = each[2];
-    if (each[0] > 0.0) offset = each[2];
-    if (each[0] < 0.0) lag = each[1];
+    if (each.key == "position_gain") gain = each.change[2];
+    if (each.key == "position_offset") offset = each.change[2];
+    if (each.key == "position_lag") lag = each.change[1];
   }
   CHECK_THAT(gain, WithinRel(2e-3 * 0.04, 1e-12));
   CHECK_THAT(offset, WithinRel(1e-5, 1e-12));

@@ -3,6 +3,12 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "diagnosis/between_days.hpp"
+#include "diagnosis/leak/leak_budget.hpp"
 
 using namespace rigcal::diagnosis;
 using Catch::WithinAbs;
@@ -105,6 +111,50 @@ TEST_CASE("estimate_leak: every source of error is in the interval", "[diagnosis
              WithinRel(std::pow(single.standard_error, 4) / (std::pow(0.12, 4) / 16.0), 1e-5));
 }
 
+TEST_CASE("leak budgets: the contributions to coefficient and share add up by hand",
+          "[diagnosis]") {
+  LeakFit fit = fit_of(1.5, 0.03);
+  fit.rig_se = 0.05;
+  SignalErrors errors;
+  errors.between_m = 0.12e-3;  // 0.12 in terms of the coefficient
+  errors.repeat_freedom = 16;
+  errors.healthy_m = 0.05e-3;
+  const CoefficientError error = with_days(coefficient_error(fit, errors, 1, 0), 0.02, 1e6);
+  const std::vector<rigcal::calib::BudgetLine> of_rig{{"rig_parameters", "known_value", 0.03},
+                                                      {"ki", "effect", 0.04}};
+  const auto budget = coefficient_budget(error, of_rig);
+  std::vector<std::pair<std::string, double>> lines;
+  for (const auto& line : budget.lines) lines.emplace_back(line.source, line.uncertainty);
+  const std::vector<std::pair<std::string, double>> expected{
+      {"noise", 0.03},          {"repeats", 0.12}, {"healthy_records", 0.05},
+      {"rig_parameters", 0.03}, {"ki", 0.04},      {"days", 0.02}};
+  REQUIRE(lines.size() == expected.size());
+  double squares = 0.0;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    CHECK(lines[i].first == expected[i].first);
+    CHECK_THAT(lines[i].second, WithinRel(expected[i].second, 1e-12));
+    squares += lines[i].second * lines[i].second;
+  }
+  CHECK(budget.combined == error.total());
+  CHECK_THAT(std::sqrt(squares), WithinRel(budget.combined, 1e-12));
+  CHECK_THAT(budget.expanded, WithinRel(error.half_width(), 1e-12));
+  // The share is a tenth of the coefficient, and its budget is in percentage points.
+  const std::vector<rigcal::calib::BudgetLine> of_share{{"rig_parameters", "known_value", 0.003},
+                                                        {"ki", "effect", 0.004}};
+  const auto share = share_budget(error, 0.1, of_share, 0.002);
+  REQUIRE(share.lines.size() == budget.lines.size());
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    CHECK(share.lines[i].source == budget.lines[i].source);
+    CHECK_THAT(share.lines[i].uncertainty, WithinRel(10.0 * budget.lines[i].uncertainty, 1e-12));
+  }
+  CHECK_THAT(share.combined, WithinRel(10.0 * budget.combined, 1e-12));
+  // Far from zero it is the interval of the distribution.
+  const auto estimate =
+      estimate_leak(1.5, error, straight(), std::hypot(0.003, 0.004, 0.002), kSettings);
+  const double half = 50.0 * (estimate.share_ci95.high - estimate.share_ci95.low);
+  CHECK_THAT(share.expanded, WithinRel(half, 0.03));
+}
+
 TEST_CASE("coefficient_error: clusters count where the signal has misfit and the record shows it",
           "[diagnosis]") {
   LeakFit fit = fit_of(1.5, 0.03);
@@ -117,6 +167,8 @@ TEST_CASE("coefficient_error: clusters count where the signal has misfit and the
   };
   CHECK(with(false, 0.09).own_se == 0.03);
   CHECK(with(true, 0.09).own_se == 0.09);
+  CHECK(with(true, 0.09).own.front().source == "lack_of_fit");
+  CHECK(with(false, 0.09).own.front().source == "noise");
   CHECK_THAT(with(true, 0.09).freedom, WithinRel(9.0, 1e-9));
   // The upper quartile of chi-square divided by its 9 degrees of freedom is 1.265.
   CHECK(with(true, 0.03 * std::sqrt(1.25)).own_se == 0.03);

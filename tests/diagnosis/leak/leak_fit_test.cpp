@@ -218,6 +218,20 @@ TEST_CASE("RigFit: an effect and what the fit has mistaken for it go together", 
       -60.0, 4.0 + 100.0, 20.0,          //
       -12.0, 20.0, 4.0;
   CHECK((rig.covariance - expected).norm() < 1e-12);
+
+  // The effect acts by itself and through both values: 0.5 - 3 * 0.1 + 5 * 0.2 = 1.2, times its
+  // size of 2. The values alone have the variances 9 and 4.
+  const Eigen::Vector3d moves(0.1, 0.2, 0.5);
+  const auto lines = rig.contributions(moves);
+  REQUIRE(lines.size() == 2);
+  CHECK(lines[0].kind == "known_value");
+  CHECK_THAT(lines[0].uncertainty, WithinRel(std::sqrt(0.01 * 9.0 + 0.04 * 4.0), 1e-9));
+  CHECK(lines[1].source == "ki");
+  CHECK(lines[1].kind == "effect");
+  CHECK_THAT(lines[1].uncertainty, WithinRel(2.4, 1e-9));
+  CHECK_THAT(std::hypot(lines[0].uncertainty, lines[1].uncertainty),
+             WithinRel(rig.error(moves), 1e-12));
+  CHECK(diagnosis::RigFit{}.contributions(Eigen::VectorXd::Zero(0)).empty());
 }
 
 TEST_CASE("fit_leak: an effect that the model lacks moves a coefficient as far as is stated",
@@ -255,7 +269,7 @@ TEST_CASE("fit_leak: an effect that the model lacks moves a coefficient as far a
   CHECK_THAT(fit(made, 0).rig_se, WithinRel(std::abs(without.rig_moves(1)) * kSize, 1e-9));
 }
 
-TEST_CASE("share_rig_error: an effect that leaks itself changes the true share, too",
+TEST_CASE("share_rig_moves: an effect that leaks itself changes the true share, too",
           "[diagnosis]") {
   constexpr double kSize = 1e-12;
   const HealthySine made = healthy_sine(0.3);
@@ -287,8 +301,8 @@ TEST_CASE("share_rig_error: an effect that leaks itself changes the true share, 
   const double seen = slope * fit.rig_moves(1) * kSize;
   const double itself = share(fit.coefficient, kSize) - share(fit.coefficient, 0.0);
   REQUIRE(itself > 0.0);
-  const double error = diagnosis::share_rig_error(problem, rig, condition, made.record, fit, slope,
-                                                  0.0, effects.get());
+  const double error = rig.error(diagnosis::share_rig_moves(problem, rig, condition, made.record,
+                                                            fit, slope, 0.0, effects.get()));
   CHECK_THAT(error, WithinAbs(std::abs(seen - itself), 0.2 * itself));
 }
 
@@ -305,7 +319,7 @@ TEST_CASE("fit_leak: the noise of the reference is not the record's own", "[diag
   CHECK_THAT(noise_se(0) / noise_se(4), WithinRel(std::sqrt(1.25), 1e-9));
 }
 
-TEST_CASE("share_rig_error: what the rig moves, with the coefficient and by itself",
+TEST_CASE("share_rig_moves: what the rig moves, with the coefficient and by itself",
           "[diagnosis]") {
   const HealthySine made = healthy_sine();
   const diagnosis::RigFit rig = rig_of(made.campaign);
@@ -327,7 +341,8 @@ TEST_CASE("share_rig_error: what the rig moves, with the coefficient and by itse
   const double share_slope = 0.5;
   fit.rig_moves = Eigen::VectorXd::Zero(1);
   const auto error = [&] {
-    return diagnosis::share_rig_error(problem, rig, condition, made.record, fit, share_slope);
+    return rig.error(
+        diagnosis::share_rig_moves(problem, rig, condition, made.record, fit, share_slope));
   };
   CHECK_THAT(error(), WithinRel(std::abs(itself) * sd, 1e-3));
   fit.rig_moves(0) = 3.0 * itself / share_slope;
@@ -361,7 +376,7 @@ TEST_CASE("leaks: whatever simulates them ends with the flag", "[diagnosis]") {
     diagnosis::LeakMemo memo;
     check([&] { diagnosis::leak_scan_of(problem, condition, made.record); });
     check([&] { diagnosis::leak_curve_of(problem, condition, made.record, 0.2, 0.01, memo); });
-    check([&] { diagnosis::share_rig_error(problem, rig, condition, made.record, leak, 0.5); });
+    check([&] { diagnosis::share_rig_moves(problem, rig, condition, made.record, leak, 0.5); });
     check([&] { diagnosis::healthy_residuals(problem, condition, made.record, {&made.record}); });
     check([&] {
       diagnosis::share_at(problem.campaign, condition, made.record, rig.values, problem.cancel);

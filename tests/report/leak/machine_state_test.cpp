@@ -109,11 +109,18 @@ TEST_CASE("machine_state: numbers of a verdict, nothing without one", "[report]"
   const auto json = report::json_of(told);
   CHECK(json["class"] == "medium");  // one of the keys of the state itself
   CHECK(json["class_probabilities"]["medium"] == 0.98);
+  CHECK_FALSE(json.contains("share_budget"));  // nothing is known about it
+  state.estimate.budget = {{{"sine", "records", 0.025}}, 0.025, 10.0, 2.2, 0.055};
+  state.estimate.share_budget = {{{"sine", "records", 0.5}}, 0.5, 10.0, 2.2, 1.1};
+  const auto with_budgets = report::json_of(report::stored(state));
+  CHECK(with_budgets["budget"]["combined"] == with_budgets["standard_error"]);
+  CHECK(with_budgets["share_budget"]["lines"][0]["uncertainty"] == 0.5);
   state.failure = "it did not run";
   const auto failed = report::json_of(report::stored(state));
   CHECK(failed["class"].is_null());
   CHECK(failed["class_probabilities"]["medium"].is_null());
   CHECK(failed["leak_share_percent"].is_null());
+  CHECK_FALSE(failed.contains("budget"));
   CHECK(failed["nearest_limit"].is_null());
   CHECK(failed["failure"] == "it did not run");
 }

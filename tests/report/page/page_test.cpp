@@ -514,6 +514,34 @@ TEST_CASE("page: both uncertainties, the budget, the effects and the second esti
   CHECK_THAT(html, Contains("Estimates from the validation records alone") && Contains("differs"));
 }
 
+TEST_CASE("page: the budget of a score, and the U that it adds up to", "[report]") {
+  Json json = stored_result();
+  CHECK_THAT(page(json), !Contains("Uncertainty budgets of the scores"));
+  Json& condition = json["conditions"][0];
+  condition["expanded_uncertainty"]["position"] = condition["metrics"]["position"];
+  condition["two_sided_uncertainty"]["position"] = condition["metrics"]["position"];
+  condition["two_sided_uncertainty"]["position"]["rho2"] = 0.00125;
+  condition["score_budgets"]["position"]["rho2"] = {
+      {"lines",
+       {{{"source", "repeats"}, {"kind", "records"}, {"uncertainty", 3e-4}},
+        {{"source", "noise_left"}, {"kind", "records"}, {"uncertainty", 0.0}},
+        {{"source", "position_gain"}, {"kind", "effect"}, {"uncertainty", 4e-4}}}},
+      {"combined", 5e-4},
+      {"degrees_of_freedom", 14.0},
+      {"coverage_factor", 2.5},
+      {"expanded", 0.00125},
+      {"shift", 0.0}};
+  const std::string html = page(json);
+  const std::size_t begin = html.find("Uncertainty budgets of the scores");
+  REQUIRE(begin != std::string::npos);
+  const std::string budgets = html.substr(begin, html.find("</details>", begin) - begin);
+  CHECK_THAT(budgets, Contains("rho2 of position") && Contains("value=\"0.00125\"") &&
+                          Contains("noise left") && Contains("position gain") &&
+                          !Contains("Shift"));
+  // The table of scores shows the same U, not the one-sided uncertainty.
+  CHECK_THAT(html.substr(0, begin), Contains("± <data value=\"0.00125\""));
+}
+
 TEST_CASE("page: the band of prediction lies around model and residual", "[report]") {
   const auto drawn = [](const std::string& titles, const std::string& fields) {
     const ReadFile read = [&](const std::filesystem::path& path) -> std::optional<std::string> {
