@@ -276,6 +276,7 @@ std::string mismatch(const Unit& from, std::string_view from_text, const Unit& t
                        "here",
                        from_text);
   }
+  if (from_text == "%") return "'%' is a share, without a dimension";
   if (from.powers.empty()) return "a unit is missing";
   const Kind* kind = kind_of(from);
   return kind != nullptr ? fmt::format("'{}' is the unit of {}", from_text, kind->name)

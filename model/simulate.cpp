@@ -44,8 +44,8 @@ constexpr std::array kOutputNames{
 };
 
 /// Describes the first parameter in use that is not finite or outside its limits; empty if there is
-/// none. A second-order valve needs its damping ratio, a derivative action its filter, and oil that
-/// follows its temperature a temperature: none of them has a default.
+/// none. A second-order valve needs its damping ratio, a derivative action its filter, oil that
+/// follows its temperature a temperature, and a joint its lever: none of them has a default.
 std::string bad_parameter(const ParameterValues& values, const Layout& layout,
                           const SimulationInputs& inputs) {
   const auto table = parameter_table(values.plant);
@@ -57,6 +57,9 @@ std::string bad_parameter(const ParameterValues& values, const Layout& layout,
         (layout.payload >= 0 && spec.key == "payload_frequency") ||
         (layout.filter >= 0 && spec.key == "derivative_filter") ||
         (layout.terms.temperature && !inputs.oil_temperature_k && spec.key == "oil_temperature") ||
+        (spec.key == "lever" && !values.is_given("triangle_base") &&
+         !values.is_given("travel_table_to")) ||
+        (spec.key == "triangle_arm" && values.is_given("triangle_base")) ||
         (layout.generator &&
          (spec.key == "reference_frequency" || spec.key == "reference_damping_ratio"));
     if (!in_use) continue;

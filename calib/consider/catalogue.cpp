@@ -8,6 +8,8 @@
 #include <numbers>
 #include <optional>
 
+#include "model/plant/piston_travel.hpp"
+
 namespace rigcal::calib {
 namespace {
 
@@ -283,6 +285,17 @@ double shortest_interval(const Problem& problem) {
   return least;
 }
 
+/// Lever of a linkage at the reference angle or, by a triangle or a table, its mean between the
+/// stops [m/rad].
+double usual_lever(const model::ParameterValues& values) {
+  if (values.is_given("lever")) return values["lever"];
+  const double lower_rad = values["lower_stop"];
+  const double upper_rad = values["upper_stop"];
+  return (model::piston_travel(values, upper_rad).travel_m -
+          model::piston_travel(values, lower_rad).travel_m) /
+         (upper_rad - lower_rad);
+}
+
 RigScale scale_of(const Problem& problem, std::span<const double> z) {
   const model::ParameterValues values = problem.values_at(0, z);
   const auto get = [&](std::string_view key) { return value_of_key(problem, values, key); };
@@ -298,8 +311,9 @@ RigScale scale_of(const Problem& problem, std::span<const double> z) {
   if (problem.campaign->rig.plant == model::PlantKind::linkage) {
     rig.turn_rad = get("upper_stop") - get("lower_stop");
     rig.middle_rad = 0.5 * (get("upper_stop") + get("lower_stop"));
-    rig.travel_m = get("lever") * rig.turn_rad;
-    rig.moment_n_m = rig.force_n * get("lever");
+    const double lever = usual_lever(values);
+    rig.travel_m = lever * rig.turn_rad;
+    rig.moment_n_m = rig.force_n * lever;
   }
   if (problem.campaign->rig.pilot) {
     rig.command_v = get("pilot_dead_band") + get("pilot_range");

@@ -69,9 +69,21 @@ struct StatedUnit {
   std::string unit;            ///< "bar"; empty: raw converter counts, which have no unit
   std::optional<double> gain;  ///< physical value in `unit` = gain * number
   bool has_offset = false;
+  /// Reading in `unit` at which a command in % or mA counts as kFullCommand_v; 0: the unit is a
+  /// voltage.
+  double full_scale = 0.0;
   std::string ignored;  ///< `ignore_unit`: a wrong unit in the file; usually empty
   Location where;
 };
+
+/// Voltage at the full scale of a command in % or mA: that of the amplifiers of
+/// servo and proportional valves.
+inline constexpr double kFullCommand_v = 10.0;
+
+/// Conversion from the stated unit to that of a channel, without gain and offset.
+///
+/// @throws QuantityError  if a unit is unknown, or if the dimensions differ
+UnitConversion stated_conversion(const StatedUnit& stated, std::string_view si_unit);
 
 /// One entry of [recording.channels].
 struct ChannelSetting {

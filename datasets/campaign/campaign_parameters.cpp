@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <span>
 
 #include "datasets/campaign/keys/key_table.hpp"
 
@@ -433,6 +435,110 @@ std::optional<ParameterConflict> find_metering_conflict(const model::Rig& rig,
   return find_pump_conflict(values);
 }
 
+/// Parameters that belong together: the first that was given, and the first that was not.
+struct Completeness {
+  const char* present = nullptr;
+  const char* absent = nullptr;
+};
+
+Completeness completeness(const model::ParameterValues& values, std::span<const char* const> keys) {
+  Completeness found;
+  for (const char* key : keys) {
+    const char*& first = values.is_given(key) ? found.present : found.absent;
+    if (first == nullptr) first = key;
+  }
+  return found;
+}
+
+constexpr std::array kPolynomialKeys{"lever", "lever_gradient", "lever_curvature"};
+constexpr std::array kTriangleKeys{"triangle_base", "triangle_arm", "triangle_angle"};
+constexpr std::array kTravelKeys{"travel_0",  "travel_20", "travel_40",
+                                 "travel_60", "travel_80", "travel_100"};
+constexpr std::array kTravelTableKeys{"travel_table_from", "travel_table_to", "travel_0",
+                                      "travel_20",         "travel_40",       "travel_60",
+                                      "travel_80",         "travel_100"};
+
+/// Checks that exactly one law gives the travel of the piston over the angle, and that it is
+/// complete.
+std::optional<ParameterConflict> find_travel_law_conflict(const model::ParameterValues& values) {
+  struct Law {
+    const char* name;
+    const char* needs;
+    Completeness keys;
+  };
+  const std::array laws{
+      Law{"a polynomial", "lever", completeness(values, kPolynomialKeys)},
+      Law{"a triangle", "triangle_base, triangle_arm and triangle_angle",
+          completeness(values, kTriangleKeys)},
+      Law{"a table",
+          "travel_table_from, travel_table_to and the travels travel_0, travel_20, travel_40, "
+          "travel_60, travel_80 and travel_100",
+          completeness(values, kTravelTableKeys)}};
+  const Law* chosen = nullptr;
+  for (const Law& law : laws) {
+    if (law.keys.present == nullptr) continue;
+    if (chosen != nullptr)
+      return ParameterConflict{
+          law.keys.present,
+          fmt::format("{} (the travel of the piston by {}) is combined with {} (by {}): expected "
+                      "one of them",
+                      law.keys.present, law.name, chosen->keys.present, chosen->name)};
+    chosen = &law;
+  }
+  if (chosen == nullptr)
+    return ParameterConflict{
+        "",
+        "how far the piston travels per angle is unknown: expected lever, or a triangle "
+        "(triangle_base, triangle_arm, triangle_angle), or a table (travel_table_from, "
+        "travel_table_to, travel_0 to travel_100)"};
+  const bool whole =
+      chosen == laws.data() ? values.is_given("lever") : chosen->keys.absent == nullptr;
+  if (whole) return std::nullopt;
+  return ParameterConflict{
+      chosen->keys.present,
+      fmt::format("the travel of the piston by {} needs {}: expected {} as well", chosen->name,
+                  chosen->needs, chosen == laws.data() ? "lever" : chosen->keys.absent)};
+}
+
+/// Checks that the angle of the triangle stays between 0 and pi, where the cylinder is shortest and
+/// longest.
+std::optional<ParameterConflict> find_triangle_conflict(const model::ParameterValues& values) {
+  constexpr double kPi = std::numbers::pi;
+  const double sign = values["triangle_angle"] < 0.0 ? -1.0 : 1.0;
+  for (const char* stop : {"lower_stop", "upper_stop"}) {
+    const double psi = values["triangle_angle"] + values[stop] - values["reference_angle"];
+    if (sign * psi > 0.0 && sign * psi < kPi) continue;
+    return ParameterConflict{
+        "triangle_angle",
+        fmt::format(
+            "the angle between triangle_base and triangle_arm is {:g} rad at {}: expected "
+            "one between {:g} and {:g} rad from stop to stop, where the cylinder has a "
+            "lever{}",
+            psi, stop, std::min(0.0, sign * kPi), std::max(0.0, sign * kPi),
+            sign > 0.0 ? " (a negative triangle_angle if it shortens as the angle grows)" : "")};
+  }
+  return std::nullopt;
+}
+
+/// Checks that the travel by a table rises from each value to the next.
+std::optional<ParameterConflict> find_travel_table_conflict(const model::ParameterValues& values) {
+  if (!(values["travel_table_to"] > values["travel_table_from"]))
+    return ParameterConflict{
+        "travel_table_to",
+        fmt::format("travel_table_to = {:g} rad is not above travel_table_from = {:g} rad",
+                    values["travel_table_to"], values["travel_table_from"])};
+  for (std::size_t i = 1; i < kTravelKeys.size(); ++i) {
+    const char* const before = kTravelKeys[i - 1];
+    if (values[kTravelKeys[i]] > values[before]) continue;
+    return ParameterConflict{
+        kTravelKeys[i],
+        fmt::format("{} = {:g} m is not above {} = {:g} m: expected a travel that grows with the "
+                    "angle (chamber A is the one that raises the angle)",
+                    kTravelKeys[i], values[kTravelKeys[i]], before, values[before])};
+  }
+  return std::nullopt;
+}
+
 /// Checks that the lever is positive everywhere between the stops.
 std::optional<ParameterConflict> find_joint_conflict(const model::ParameterValues& values) {
   const double lower = values["lower_stop"];
@@ -441,6 +547,9 @@ std::optional<ParameterConflict> find_joint_conflict(const model::ParameterValue
     return ParameterConflict{
         "upper_stop",
         fmt::format("upper_stop = {:g} rad is not above lower_stop = {:g} rad", upper, lower)};
+  if (const auto conflict = find_travel_law_conflict(values)) return conflict;
+  if (values.is_given("triangle_base")) return find_triangle_conflict(values);
+  if (values.is_given("travel_table_to")) return find_travel_table_conflict(values);
   const double d1 = values["lever_gradient"];
   const double d2 = values["lever_curvature"];
   std::vector<double> angles{lower, upper};
@@ -490,15 +599,7 @@ std::optional<ParameterConflict> find_payload_conflict(const model::ParameterVal
 std::optional<ParameterConflict> find_load_conflict(const model::ParameterValues& values) {
   constexpr std::array kKeys{"load_table_from", "load_table_to", "load_0",  "load_20",
                              "load_40",         "load_60",       "load_80", "load_100"};
-  const char* present = nullptr;
-  const char* absent = nullptr;
-  for (const char* key : kKeys) {
-    if (values.is_given(key)) {
-      if (present == nullptr) present = key;
-    } else if (absent == nullptr) {
-      absent = key;
-    }
-  }
+  const auto [present, absent] = completeness(values, kKeys);
   if (present == nullptr) return std::nullopt;
   if (absent != nullptr)
     return ParameterConflict{

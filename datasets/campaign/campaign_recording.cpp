@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "common/quantity.hpp"
 #include "datasets/campaign/campaign_sections.hpp"
@@ -18,26 +19,57 @@ bool is_in_counts(const TomlNode& node) {
 
 /// Reads a channel in converter counts. Counts have no unit, so they are not converted.
 UnitConversion read_counts(const TomlNode& node) {
-  for (const char* key : {"gain", "offset", "sd", "gain_sd", "offset_sd", "ignore_unit"}) {
+  for (const char* key :
+       {"gain", "offset", "sd", "gain_sd", "offset_sd", "ignore_unit", "full_scale"}) {
     if (const auto entry = node.find(key))
       entry->fail("has no meaning for counts: expected the unit that the gain leads to");
   }
   return {};
 }
 
+bool is_convertible(std::string_view from, std::string_view to) {
+  try {
+    unit_conversion(from, to);
+    return true;
+  } catch (const QuantityError&) {
+    return false;
+  }
+}
+
+/// Reads the full scale of a command in % or mA, in that unit; 0 for any other channel and unit.
+double read_full_scale(const TomlNode& node, Channel channel, const std::string& unit) {
+  const auto entry = node.find("full_scale");
+  const bool share = is_convertible(unit, "1");
+  if (channel != Channel::command || !(share || is_convertible(unit, "A"))) {
+    if (entry) entry->fail("has a meaning only for a command in % or mA: expected it left out");
+    return 0.0;
+  }
+  if (share && !entry) return unit_conversion("1", unit).scale;  // 100 %
+  return node
+      .require("full_scale", fmt::format("the current at which the valve is fully open, such as "
+                                         "\"40 mA\": it counts as {:g} V",
+                                         kFullCommand_v))
+      .difference(unit, kSizes);
+}
+
 /// Reads the conversion SI = conversion(gain * raw + offset). The offset is in the channel's unit.
-UnitConversion read_conversion(const TomlNode& node, std::string_view si_unit, StatedUnit& stated) {
+///
+/// @param channel  std::nullopt: the time
+UnitConversion read_conversion(const TomlNode& node, std::optional<Channel> channel,
+                               StatedUnit& stated) {
+  const std::string_view si_unit = channel ? info(*channel).unit : "s";
   const TomlNode unit =
       node.require("unit", fmt::format("the unit of the column, such as \"{}\"", si_unit));
   const std::string name = unit.name("a unit in quotes");
+  stated.unit = name;
+  stated.where = unit.where();
+  if (channel) stated.full_scale = read_full_scale(node, *channel, name);
   UnitConversion conversion;
   try {
-    conversion = unit_conversion(name, si_unit);
+    conversion = stated_conversion(stated, si_unit);
   } catch (const QuantityError& error) {
     unit.fail(error.what());
   }
-  stated.unit = name;
-  stated.where = unit.where();
   if (const auto entry = node.find("gain")) {
     stated.gain = entry->number();
     if (stated.gain == 0.0) entry->fail_type("a number other than zero");
@@ -134,6 +166,10 @@ KeyTable<ChannelSetting> channel_keys(std::string_view unit) {
                               .otherwise = "none",
                               .example = "\"x_2\""}));
   const std::vector more{
+      Row::described("full_scale", plain_form(KeyForm::Kind::quantity),
+                     {.doc = "For a `command` in % or mA: the number at which it counts as 10 V",
+                      .otherwise = "`\"100 %\"`; needed for a current",
+                      .example = "\"40 mA\""}),
       Row::number(
           "gain_sd", &ChannelSetting::gain_sd,
           NumberLimits{
@@ -188,8 +224,8 @@ ChannelSetting read_channel(const TomlNode& node, Channel channel, Channel drive
       minus->fail("nothing to take this column off: expected a column as well");
   }
   setting.in_counts = is_in_counts(node);
-  setting.to_si = setting.in_counts ? read_counts(node)
-                                    : read_conversion(node, info(channel).unit, setting.stated);
+  setting.to_si =
+      setting.in_counts ? read_counts(node) : read_conversion(node, channel, setting.stated);
   setting.role = default_role(channel, drive);
   keys.read_rows(node, setting);
   if (const auto sd = node.find("gain_sd")) setting.gain_sd_where = sd->where();
@@ -211,7 +247,7 @@ void read_channels(const TomlNode& table, Campaign& campaign) {
       campaign.time_in_counts = is_in_counts(node);
       campaign.time_to_s = campaign.time_in_counts
                                ? read_counts(node)
-                               : read_conversion(node, "s", campaign.stated_time);
+                               : read_conversion(node, std::nullopt, campaign.stated_time);
       continue;
     }
     if (!channel_from_key(key)) {
@@ -361,6 +397,11 @@ Channel read_channel_key(const TomlNode& table, const std::string& key) {
   std::vector<std::string> known;
   for (const ChannelInfo& row : channel_table()) known.emplace_back(row.key);
   table.fail_unknown(key, "channel", known);
+}
+
+UnitConversion stated_conversion(const StatedUnit& stated, std::string_view si_unit) {
+  if (stated.full_scale > 0.0) return {kFullCommand_v / stated.full_scale, 0.0};
+  return unit_conversion(stated.unit, si_unit);
 }
 
 std::vector<Channel> output_channels(const Campaign& campaign) {

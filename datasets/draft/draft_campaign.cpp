@@ -439,6 +439,12 @@ constexpr std::array<std::string_view, 15> kLinkageTerms{
     "gain_b_to_tank",  "make_up_conductance", "supply_resistance",
     "supply_capacity", "pump_flow",           "air_fraction"};
 
+/// Travel of the piston by a triangle or a table, in place of the lever.
+constexpr std::array<std::string_view, 11> kTravelTerms{
+    "triangle_base",   "triangle_arm", "triangle_angle", "travel_table_from",
+    "travel_table_to", "travel_0",     "travel_20",      "travel_40",
+    "travel_60",       "travel_80",    "travel_100"};
+
 /// Terms for the pump and check valves of a two-chamber cylinder behind a pilot-operated valve.
 constexpr std::array<std::string_view, 6> kPumpTerms{"relief_pressure",     "supply_resistance",
                                                      "supply_capacity",     "pump_flow",
@@ -476,7 +482,10 @@ std::string terms_text(model::PlantKind plant, const RecordedSigns& signs) {
   std::vector<std::string_view> terms(kLoadPressureTerms.begin(), kLoadPressureTerms.end());
   if (plant == model::PlantKind::two_chamber)
     terms.assign(kTwoChamberTerms.begin(), kTwoChamberTerms.end());
-  if (plant == model::PlantKind::linkage) terms.assign(kLinkageTerms.begin(), kLinkageTerms.end());
+  if (plant == model::PlantKind::linkage) {
+    terms.assign(kLinkageTerms.begin(), kLinkageTerms.end());
+    terms.insert(terms.end(), kTravelTerms.begin(), kTravelTerms.end());
+  }
   if (signs.pilot && plant == model::PlantKind::two_chamber) {
     // A dead band in volts does not apply to this valve.
     terms.erase(std::remove(terms.begin(), terms.end(), "valve_dead_band"), terms.end());
@@ -520,8 +529,10 @@ std::string rig_text(model::PlantKind plant, std::optional<model::Feedback> loop
       "[rig.parameters]\n";
   for (const model::ParameterSpec& spec : model::parameter_table(plant)) {
     // A valve with four metering edges has one of two gains, depending on what drives it.
-    const bool needed = plant != model::PlantKind::load_pressure &&
-                        spec.key == std::string_view(signs.pilot ? "pilot_gain" : "valve_gain");
+    // A linkage may have a triangle or a table in place of its lever.
+    const bool needed = spec.key == "lever" ||
+                        (plant != model::PlantKind::load_pressure &&
+                         spec.key == std::string_view(signs.pilot ? "pilot_gain" : "valve_gain"));
     if (!needed && (spec.kind != model::ParameterKind::plant || spec.default_value)) continue;
     const std::string blank = spec.unit == "1"
                                   ? toml_quoted(kBlank)

@@ -136,5 +136,13 @@ inline Dual<N> tanh(const Dual<N>& a) {
   const double f = std::tanh(a.value);
   return chain(a, f, 1.0 - f * f);
 }
+template <int N>
+inline Dual<N> sin(const Dual<N>& a) {
+  return chain(a, std::sin(a.value), std::cos(a.value));
+}
+template <int N>
+inline Dual<N> cos(const Dual<N>& a) {
+  return chain(a, std::cos(a.value), -std::sin(a.value));
+}
 
 }  // namespace rigcal::model

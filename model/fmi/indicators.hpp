@@ -100,6 +100,11 @@ void plant_indicators(const LinkagePlant::Coefficients<double>& p, const Present
   indicators.push_back(-out - p.dead_band);
   indicators.push_back(x[Plant::angle] - p.lower_stop_rad);
   indicators.push_back(p.upper_stop_rad - x[Plant::angle]);
+  if (p.law == TravelLaw::table) {  // the lever bends in the middle of each piece
+    const double range_rad = p.travel_table_to_rad - p.travel_table_from_rad;
+    for (const double place : {0.1, 0.3, 0.5, 0.7, 0.9})
+      indicators.push_back(x[Plant::angle] - p.travel_table_from_rad - place * range_rad);
+  }
   chamber_indicators(p, terms, x, spool, indicators);
 }
 

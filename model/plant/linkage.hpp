@@ -7,6 +7,7 @@
 
 #include "model/plant/chambers.hpp"
 #include "model/plant/linkage_parameters.hpp"
+#include "model/plant/piston_travel.hpp"
 #include "model/plant/plant_input.hpp"
 #include "model/plant/terms.hpp"
 
@@ -34,13 +35,15 @@ struct LinkagePlant : Chambers {
   /// Parameters and quantities that depend only on them.
   template <typename C>
   struct Coefficients : ChamberCoefficients<Parameters<C>> {
+    TravelLaw law = TravelLaw::polynomial;
     C inverse_inertia{};  ///< [1/(kg m2)]
-    C retracted_m{};      ///< travel at the lower stop, from the reference angle
+    C retracted_m{};      ///< travel at the lower stop
     C extended_m{};       ///< travel at the upper stop
 
     Coefficients() = default;
     explicit Coefficients(const Parameters<C>& p)
         : ChamberCoefficients<Parameters<C>>(p),
+          law(travel_law(p)),
           inverse_inertia(1.0 / p.inertia_kg_m2),
           retracted_m(travel(C(p.lower_stop_rad), *this)),
           extended_m(travel(C(p.upper_stop_rad), *this)) {}
@@ -68,19 +71,35 @@ struct LinkagePlant : Chambers {
   /// Piston travel per angle [m/rad].
   template <typename X, typename C>
   static X lever(const X& theta, const Coefficients<C>& p) {
+    if (p.law != TravelLaw::polynomial) return other_travel(theta, p).lever_m_per_rad;
     const X from = theta - p.reference_angle_rad;
     return (from * p.lever_curvature_m_per_rad3 + p.lever_gradient_m_per_rad2) * from +
            p.lever_m_per_rad;
   }
 
-  /// Piston travel from the reference angle [m]: the integral of the lever.
+  /// Piston travel [m]: the integral of the lever from the reference angle, or the table.
   template <typename X, typename C>
-  static X travel(const X& theta, const Parameters<C>& p) {
+  static X travel(const X& theta, const Coefficients<C>& p) {
+    if (p.law != TravelLaw::polynomial) return other_travel(theta, p).travel_m;
+    return polynomial_travel(theta, p);
+  }
+
+  /// Piston travel by the polynomial [m].
+  template <typename X, typename C>
+  static X polynomial_travel(const X& theta, const Coefficients<C>& p) {
     const X from = theta - p.reference_angle_rad;
     return ((from * (p.lever_curvature_m_per_rad3 / 3.0) + p.lever_gradient_m_per_rad2 * 0.5) *
                 from +
             p.lever_m_per_rad) *
            from;
+  }
+
+  /// Change of the lever per angle [m/rad2].
+  template <typename X, typename C>
+  static X lever_slope(const X& theta, const Coefficients<C>& p) {
+    if (p.law != TravelLaw::polynomial) return other_travel(theta, p).slope_m_per_rad2;
+    const X from = theta - p.reference_angle_rad;
+    return from * (2.0 * p.lever_curvature_m_per_rad3) + p.lever_gradient_m_per_rad2;
   }
 
   /// Moment of the load, directed against positive angles [N m].
@@ -120,7 +139,15 @@ struct LinkagePlant : Chambers {
   /// the arm is pressed into a stop.
   template <typename X, typename C>
   static std::array<X, 2> volumes(const X& theta, const Coefficients<C>& p) {
-    const X x = travel(theta, p);
+    // A choice between two travels would keep the compiler from joining the last product of the
+    // polynomial with the difference below, and change the last bit of a result.
+    if (p.law != TravelLaw::polynomial) return volumes_at(X(other_travel(theta, p).travel_m), p);
+    return volumes_at(polynomial_travel(theta, p), p);
+  }
+
+  /// @param x  travel of the piston [m]
+  template <typename X, typename C>
+  static std::array<X, 2> volumes_at(const X& x, const Coefficients<C>& p) {
     const double least = 1e-3 * value_of(X(p.extended_m - p.retracted_m));
     return {at_least(X((x - p.retracted_m) * p.area_a_m2 + p.dead_volume_a_m3),
                      least * value_of(p.area_a_m2)),
@@ -161,12 +188,9 @@ struct LinkagePlant : Chambers {
         return travel(x[angle], p);
       case Output::velocity:
         return lever(x[angle], p) * omega;
-      case Output::acceleration: {
-        const X from = x[angle] - p.reference_angle_rad;
-        const X slope = from * (2.0 * p.lever_curvature_m_per_rad3) + p.lever_gradient_m_per_rad2;
-        return slope * omega * omega +
+      case Output::acceleration:
+        return lever_slope(x[angle], p) * omega * omega +
                lever(x[angle], p) * derivative(x, in, p, terms)[angular_velocity];
-      }
       case Output::load_pressure:
         return x[pressure_a] - x[pressure_b];
       case Output::pressure_a:
@@ -211,6 +235,13 @@ struct LinkagePlant : Chambers {
   }
 
  private:
+  /// Travel by a triangle or a table.
+  template <typename X, typename C>
+  static PistonTravel<X> other_travel(const X& theta, const Coefficients<C>& p) {
+    if (p.law == TravelLaw::table) return table_travel(theta, p);
+    return triangle_travel(X(theta - p.reference_angle_rad), p);
+  }
+
   /// Fills in the pressures that are not given. If the reading puts the arm beyond a stop, moves it
   /// onto the stop, pressed in as far as the unbalanced pressures push it.
   template <typename C>

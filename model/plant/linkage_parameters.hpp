@@ -22,6 +22,17 @@ struct LinkageParameters : TwoChamberParameters<T> {
   T reference_angle_rad{};
   T lever_gradient_m_per_rad2{};
   T lever_curvature_m_per_rad3{};
+  T triangle_base_m{};
+  T triangle_arm_m{};
+  T triangle_angle_rad{};
+  T travel_table_from_rad{};
+  T travel_table_to_rad{};
+  T travel_0_m{};
+  T travel_20_m{};
+  T travel_40_m{};
+  T travel_60_m{};
+  T travel_80_m{};
+  T travel_100_m{};
   T gravity_moment_n_m{};
   T gravity_moment_gradient_n_m_per_rad{};
   T gravity_moment_curvature_n_m_per_rad2{};
@@ -47,9 +58,32 @@ constexpr auto joint_rows() {
       // clang-format off
       F{&P::inertia_kg_m2, {"inertia", "inertia_kg_m2", "J", "kg m2", "moment of inertia about the joint", "docs/model.md", K::plant, 1e-6, 1e9}},
       F{&P::joint_damping_n_m_s_per_rad, {"joint_damping", "joint_damping_n_m_s_per_rad", "c", "N m s/rad", "viscous friction of joint and cylinder", "docs/model.md", K::plant, 0, 1e12}},
-      F{&P::lever_m_per_rad, {"lever", "lever_m_per_rad", "D_0", "m/rad", "travel of the piston per angle, at the reference angle: the lever of its force", "docs/model.md", K::plant, 1e-4, 100}},
+      F{&P::lever_m_per_rad, {"lever", "lever_m_per_rad", "D_0", "m/rad", "travel of the piston per angle, at the reference angle: the lever of its force", "docs/model.md", K::term, 1e-4, 100, 0.0}},
       F{&P::lower_stop_rad, {"lower_stop", "lower_stop_rad", "theta_1", "rad", "angle of the stop or support at which the piston is retracted", "docs/model.md", K::plant, -1000, 1000}},
       F{&P::upper_stop_rad, {"upper_stop", "upper_stop_rad", "theta_2", "rad", "angle of the stop at which the piston is extended", "docs/model.md", K::plant, -1000, 1000}},
+      // clang-format on
+  };
+}
+
+/// Travel of the piston over the angle by a triangle or a table, instead of the polynomial.
+template <typename T>
+constexpr auto travel_rows() {
+  using P = LinkageParameters<T>;
+  using K = ParameterKind;
+  using F = ParameterField<P, T>;
+  return std::array{
+      // clang-format off
+      F{&P::triangle_base_m, {"triangle_base", "triangle_base_m", "a", "m", "distance from the joint to the pivot of the cylinder's body: the lever by a triangle", "docs/model.md", K::term, 1e-3, 1000, 0.0}},
+      F{&P::triangle_arm_m, {"triangle_arm", "triangle_arm_m", "b", "m", "distance from the joint to the pivot of the rod, on the arm", "docs/model.md", K::term, 1e-3, 1000, 0.0}},
+      F{&P::triangle_angle_rad, {"triangle_angle", "triangle_angle_rad", "psi_0", "rad", "angle between these two at the reference angle; negative where the cylinder shortens as the angle grows", "docs/model.md", K::term, -3.1416, 3.1416, 0.0}},
+      F{&P::travel_table_from_rad, {"travel_table_from", "travel_table_from_rad", "theta_T0", "rad", "angle at which the table of the travel begins", "docs/model.md", K::term, -1000, 1000, 0.0, false}},
+      F{&P::travel_table_to_rad, {"travel_table_to", "travel_table_to_rad", "theta_T1", "rad", "angle at which it ends; the travel of the piston by a table over the angle", "docs/model.md", K::term, -1000, 1000, 0.0, false}},
+      F{&P::travel_0_m, {"travel_0", "travel_0_m", "S_0", "m", "travel of the piston where the table begins", "docs/model.md", K::term, -100, 100, 0.0}},
+      F{&P::travel_20_m, {"travel_20", "travel_20_m", "S_20", "m", "the same at 20 % of the way to its end", "docs/model.md", K::term, -100, 100, 0.0}},
+      F{&P::travel_40_m, {"travel_40", "travel_40_m", "S_40", "m", "the same at 40 % of the way to its end", "docs/model.md", K::term, -100, 100, 0.0}},
+      F{&P::travel_60_m, {"travel_60", "travel_60_m", "S_60", "m", "the same at 60 % of the way to its end", "docs/model.md", K::term, -100, 100, 0.0}},
+      F{&P::travel_80_m, {"travel_80", "travel_80_m", "S_80", "m", "the same at 80 % of the way to its end", "docs/model.md", K::term, -100, 100, 0.0}},
+      F{&P::travel_100_m, {"travel_100", "travel_100_m", "S_100", "m", "the same where it ends", "docs/model.md", K::term, -100, 100, 0.0}},
       // clang-format on
   };
 }
@@ -62,7 +96,7 @@ constexpr auto linkage_term_rows() {
   using F = ParameterField<P, T>;
   return std::array{
       // clang-format off
-      F{&P::reference_angle_rad, {"reference_angle", "reference_angle_rad", "theta_0", "rad", "angle from which lever and gravity moment count their change", "docs/model.md", K::term, -1000, 1000, 0.0, false}},
+      F{&P::reference_angle_rad, {"reference_angle", "reference_angle_rad", "theta_0", "rad", "angle from which lever and gravity moment count their change, and at which a triangle has triangle_angle", "docs/model.md", K::term, -1000, 1000, 0.0, false}},
       F{&P::lever_gradient_m_per_rad2, {"lever_gradient", "lever_gradient_m_per_rad2", "D_1", "m/rad2", "what the lever grows by per angle", "docs/model.md", K::term, -100, 100, 0.0}},
       F{&P::lever_curvature_m_per_rad3, {"lever_curvature", "lever_curvature_m_per_rad3", "D_2", "m/rad3", "what the lever grows by per square of the angle", "docs/model.md", K::term, -100, 100, 0.0}},
       F{&P::gravity_moment_n_m, {"gravity_moment", "gravity_moment_n_m", "M_0", "N m", "moment of the load against positive angle, at the reference angle", "docs/model.md", K::term, -1e9, 1e9, 0.0}},
@@ -152,8 +186,8 @@ constexpr auto linkage_fields() {
                 electric_gain_rows<LinkageParameters, T>(), valve_rows<LinkageParameters, T>(),
                 rows_without(load_rows<LinkageParameters, T>(), kOtherLoads),
                 rows_without(chamber_term_rows<LinkageParameters, T>(), kOtherTerms),
-                linkage_term_rows<T>(), metering_rows<LinkageParameters, T>(), angle_rows<T>(),
-                rows_without(sensor_rows<LinkageParameters, T>(), kOtherSensors),
+                linkage_term_rows<T>(), travel_rows<T>(), metering_rows<LinkageParameters, T>(),
+                angle_rows<T>(), rows_without(sensor_rows<LinkageParameters, T>(), kOtherSensors),
                 chamber_initial_rows<LinkageParameters, T>());
 }
 
@@ -161,7 +195,7 @@ template <typename T>
 inline constexpr auto kLinkageFields = linkage_fields<T>();
 
 static_assert((joint_rows<double>().size() + linkage_term_rows<double>().size() +
-               angle_rows<double>().size()) *
+               travel_rows<double>().size() + angle_rows<double>().size()) *
                       sizeof(double) ==
                   sizeof(LinkageParameters<double>) - sizeof(TwoChamberParameters<double>),
               "a parameter was added to the struct but not to the table");

@@ -98,28 +98,56 @@ X varying_load(const X& x, const C& gradient_n_per_m, const C& curvature_n_per_m
   return (x * curvature_n_per_m2 + gradient_n_per_m) * x;
 }
 
-/// Load from a table over the travel [N]. It interpolates linearly between six values at equal
-/// distances, and extrapolates the first and the last piece. A parabola over a quarter of a piece
-/// to either side of a corner replaces the corner, so the slope is continuous.
+constexpr double kTablePieces = 5.0;  ///< between the six values of a table
+
+/// Corner of a table that is closest to a place: one of its four inner values.
+inline std::size_t closest_corner(double place) {
+  const double nearest = std::round(place);
+  return nearest > 1.0 ? static_cast<std::size_t>(std::min(nearest, kTablePieces - 1.0))
+                       : std::size_t{1};
+}
+
+/// Interpolates linearly between six values at equal distances, and extrapolates the first and the
+/// last piece. A parabola replaces each corner, so the slope is continuous.
+///
+/// @param place    0 at the first value, 5 at the last
+/// @param rounded  fraction of a piece that the parabola covers to either side of its corner, up to
+///                 0.5
+template <typename X, typename C>
+X rounded_table(const X& place, const std::array<C, 6>& values, double rounded) {
+  const std::size_t corner = closest_corner(value_of(place));
+  const C before = values[corner] - values[corner - 1];
+  const C after = values[corner + 1] - values[corner];
+  const X past = place - static_cast<double>(corner);
+  if (value_of(past) >= rounded) return past * after + values[corner];
+  const X value = past * before + values[corner];
+  if (value_of(past) <= -rounded) return value;
+  const X within = past + rounded;
+  return value + within * within * ((after - before) * (0.25 / rounded));
+}
+
+/// Slope of rounded_table() per piece, and the change of that slope per piece.
+template <typename X, typename C>
+std::array<X, 2> rounded_table_slopes(const X& place, const std::array<C, 6>& values,
+                                      double rounded) {
+  const std::size_t corner = closest_corner(value_of(place));
+  const C before = values[corner] - values[corner - 1];
+  const C after = values[corner + 1] - values[corner];
+  const X past = place - static_cast<double>(corner);
+  if (value_of(past) >= rounded) return {X(after), X(0.0)};
+  if (value_of(past) <= -rounded) return {X(before), X(0.0)};
+  const C bend = (after - before) * (0.5 / rounded);
+  return {(past + rounded) * bend + before, X(bend)};
+}
+
+/// Load from a table over the travel [N]: rounded_table() with corners of a quarter of a piece.
 ///
 /// @param from_m, to_m  x at the first and at the last value, to_m > from_m
 /// @param load_n        load at from_m, at 20, 40, 60 and 80 % of the way, and at to_m
 template <typename X, typename C>
 X table_load(const X& x, const C& from_m, const C& to_m, const std::array<C, 6>& load_n) {
-  constexpr double kPieces = 5.0;
-  constexpr double kRounded = 0.25;  // fraction of a piece, to either side
-  const X place = (x - from_m) * (kPieces / (to_m - from_m));
-  const double nearest = std::round(value_of(place));
-  const auto corner =
-      nearest > 1.0 ? static_cast<std::size_t>(std::min(nearest, kPieces - 1.0)) : std::size_t{1};
-  const C before_n = load_n[corner] - load_n[corner - 1];
-  const C after_n = load_n[corner + 1] - load_n[corner];
-  const X past = place - static_cast<double>(corner);
-  if (value_of(past) >= kRounded) return past * after_n + load_n[corner];
-  const X load = past * before_n + load_n[corner];
-  if (value_of(past) <= -kRounded) return load;
-  const X within = past + kRounded;
-  return load + within * within * ((after_n - before_n) * (0.25 / kRounded));
+  constexpr double kRounded = 0.25;
+  return rounded_table(X((x - from_m) * (kTablePieces / (to_m - from_m))), load_n, kRounded);
 }
 
 /// Opening of a metering edge that leaks while it is covered: c + y if it is open, c^2 / (c - y) if

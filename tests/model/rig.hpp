@@ -48,6 +48,13 @@ struct Experiment {
     values.set(key, value);
     return *this;
   }
+  /// Takes a parameter away, as if it had never been given.
+  Experiment& unset(std::string_view key) {
+    const auto index = static_cast<std::size_t>(parameter_index(values.plant, key));
+    values.value.at(index) = parameter_table(values.plant)[index].default_value.value_or(0.0);
+    values.given.at(index) = false;
+    return *this;
+  }
   Simulation operator()() const {
     return simulate(rig, values, free, inputs, times_s, outputs, options);
   }

@@ -57,11 +57,7 @@ inline Experiment pilot_rig() {
 inline Experiment proportional_rig() {
   Experiment e = pilot_rig();
   e.rig.pilot = false;
-  for (const char* key : {"pilot_gain", "pilot_dead_band"}) {
-    const auto index = static_cast<std::size_t>(parameter_index(PlantKind::two_chamber, key));
-    e.values.value[index] = 0.0;
-    e.values.given[index] = false;
-  }
+  e.unset("pilot_gain").unset("pilot_dead_band");
   e.set("valve_gain", 2e-6).set("valve_dead_band", 0.5);
   e.inputs.drive = Signal::constant(5.5);
   return e;

@@ -18,8 +18,9 @@ DriveUnit drive_unit(const Campaign& campaign) {
   const ChannelInfo& channel = info(drive_channel(campaign));
   const auto setting = campaign.channels.find(channel.channel);
   const bool stated = setting != campaign.channels.end() && !setting->second.stated.unit.empty();
-  const std::string name = stated ? setting->second.stated.unit : std::string(channel.unit);
-  return {name, unit_conversion(name, channel.unit)};
+  if (!stated) return {std::string(channel.unit), {}};
+  const StatedUnit& unit = setting->second.stated;
+  return {unit.unit, stated_conversion(unit, channel.unit)};
 }
 
 std::string drive_csv(const Campaign& campaign, const std::vector<double>& time_s,

@@ -147,6 +147,61 @@ TEST_CASE("load_campaign: what does not go together on a linkage", "[datasets]")
   }
 }
 
+namespace {
+
+const char* const kLever = "lever = \"12 mm/deg\"";
+const std::string kTriangle =
+    "triangle_base = \"1.9 m\"\ntriangle_arm = \"800 mm\"\ntriangle_angle = \"95 deg\"";
+const std::string kTravel =
+    "travel_table_from = \"-160 deg\"\ntravel_table_to = \"-20 deg\"\ntravel_0 = \"0 "
+    "mm\"\ntravel_20 = \"0.3 m\"\ntravel_40 = \"0.65 m\"\ntravel_60 = \"1.05 m\"\ntravel_80 = "
+    "{ start = \"1.4 m\", lower = \"1.2 m\", upper = \"1.6 m\", fit = true }\ntravel_100 = "
+    "\"1.7 m\"";
+
+}  // namespace
+
+TEST_CASE("load_campaign: the lever of a linkage by a triangle, or the travel by a table",
+          "[datasets]") {
+  const Campaign triangle = load_text(replaced(kArm, kLever, kTriangle));
+  CHECK(value(triangle, "triangle_arm") == Approx(0.8));
+  CHECK(value(triangle, "triangle_angle") == Approx(95.0 * 3.14159265358979 / 180.0));
+  // The cylinder may be on the other side of the joint.
+  CHECK_NOTHROW(load_text(replaced(kArm, kLever, replaced(kTriangle, "95 deg", "-95 deg"))));
+  const Campaign travel = load_text(replaced(kArm, kLever, kTravel));
+  CHECK(value(travel, "travel_table_to") == Approx(-20.0 * 3.14159265358979 / 180.0));
+  CHECK(value(travel, "travel_80") == Approx(1.4));
+}
+
+TEST_CASE("load_campaign: exactly one law gives the travel of a linkage", "[datasets]") {
+  struct Row {
+    std::string with;
+    const char* message;
+  };
+  const std::string lever = kLever;
+  for (const Row& row :
+       {Row{"", "how far the piston travels per angle is unknown: expected lever, or a triangle"},
+        Row{"lever_gradient = \"1 m/rad2\"", "by a polynomial needs lever: expected lever as well"},
+        Row{lever + "\n" + kTriangle,
+            "triangle_base (the travel of the piston by a triangle) is combined with lever"},
+        Row{kTriangle + "\n" + kTravel,
+            "travel_table_from (the travel of the piston by a table) is combined with "
+            "triangle_base (by a triangle)"},
+        Row{replaced(kTriangle, "triangle_arm = \"800 mm\"", ""),
+            "needs triangle_base, triangle_arm and triangle_angle: expected triangle_arm as well"},
+        Row{replaced(kTravel, "travel_40 = \"0.65 m\"", ""), "expected travel_40 as well"},
+        Row{replaced(kTravel, "\"-20 deg\"", "\"-170 deg\""), "is not above travel_table_from"},
+        Row{replaced(kTravel, "0.65 m", "0.3 m"), "travel_40 = 0.3 m is not above travel_20 = 0.3"},
+        Row{replaced(kTriangle, "95 deg", "50 deg"),
+            "between triangle_base and triangle_arm is -0.174533 rad at lower_stop: expected one "
+            "between 0 and 3.14159 rad from stop to stop"},
+        Row{replaced(kTriangle, "95 deg", "125 deg"), "rad at upper_stop"},
+        Row{replaced(kTriangle, "95 deg", "-50 deg"),
+            "rad at upper_stop: expected one between -3.14159 and 0 rad"}}) {
+    CAPTURE(row.with);
+    CHECK_THROWS_WITH(load_text(replaced(kArm, kLever, row.with)), Catch::Contains(row.message));
+  }
+}
+
 TEST_CASE("load_campaign: a load that slides has no angle", "[datasets]") {
   CHECK_THROWS_WITH(
       load_text(replaced(

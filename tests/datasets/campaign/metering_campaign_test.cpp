@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "datasets/campaign/campaign_parameters.hpp"
+#include "datasets/campaign/design/drive_file.hpp"
 #include "tests/datasets/campaign_fixture.hpp"
 
 using namespace rigcal;
@@ -197,4 +198,56 @@ TEST_CASE("load_campaign: a rig with more states than its solver has room for is
       Catch::Contains("the rig has 13 states, and the solver of the plant two_chamber has room for "
                       "12: expected fewer of hose_yield, payload_mass, pump_second_flow, "
                       "bristle_stiffness"));
+}
+
+TEST_CASE("load_campaign: a command in % or mA counts as 10 V at its full scale", "[datasets]") {
+  const auto conversion = [](const std::string& keys) {
+    const Campaign campaign = load_text(replaced(electric(), "unit = \"V\" }", keys + " }"));
+    return campaign.channels.at(Channel::command).to_si;
+  };
+  CHECK(conversion("unit = \"%\"")(40.0) == Approx(4.0));
+  CHECK(conversion("unit = \"1\"")(-0.4) == Approx(-4.0));
+  CHECK(conversion("unit = \"%\", full_scale = \"80 %\"")(80.0) == Approx(10.0));
+  CHECK(conversion("unit = \"mA\", full_scale = \"40 mA\"")(-20.0) == Approx(-5.0));
+  CHECK(conversion("unit = \"mA\", full_scale = \"0.04 A\"")(20.0) == Approx(5.0));
+  CHECK(conversion("unit = \"%\", gain = -1.0")(40.0) == Approx(-4.0));
+  // A current of 4 to 20 mA, with the spool in the middle at 12 mA.
+  const auto live_zero = conversion("unit = \"mA\", full_scale = \"8 mA\", offset = \"-12 mA\"");
+  CHECK(live_zero(4.0) == Approx(-10.0));
+  CHECK(live_zero(12.0) == Approx(0.0).margin(1e-12));
+  CHECK(live_zero(20.0) == Approx(10.0));
+  // A voltage needs no full scale.
+  CHECK(conversion("unit = \"mV\"")(500.0) == Approx(0.5));
+}
+
+TEST_CASE("load_campaign: a full scale belongs to a command in % or mA", "[datasets]") {
+  struct Row {
+    const char* part;
+    const char* with;
+    const char* message;
+  };
+  const char* const command = "unit = \"V\" }";
+  const char* const position = "position = { column = \"x_mm\", unit = \"mm\"";
+  for (const Row& row :
+       {Row{command, "unit = \"mA\" }", "the current at which the valve is fully open"},
+        Row{command, "unit = \"mA\", full_scale = \"0 mA\" }", "full_scale"},
+        Row{command, "unit = \"mA\", full_scale = \"10 V\" }", "full_scale"},
+        Row{command, "unit = \"V\", full_scale = \"10 V\" }",
+            "has a meaning only for a command in % or mA"},
+        Row{position, "position = { column = \"x_mm\", unit = \"mm\", full_scale = \"1 m\"",
+            "has a meaning only for a command in % or mA"},
+        Row{position, "position = { column = \"x_mm\", unit = \"%\"",
+            "'%' is a share, without a dimension"},
+        Row{command, "unit = \"bar\" }", "is the unit of a pressure"}}) {
+    CAPTURE(row.with);
+    CHECK_THROWS_WITH(load_text(replaced(electric(), row.part, row.with)),
+                      Catch::Contains(row.message));
+  }
+}
+
+TEST_CASE("drive_csv: a designed command has the unit of the recorded one", "[datasets]") {
+  const Campaign campaign =
+      load_text(replaced(electric(), "unit = \"V\" }", "unit = \"mA\", full_scale = \"40 mA\" }"));
+  CHECK(drive_csv(campaign, {0.0, 0.5}, {0.0, 2.5}) == "time_s,command_mA\n0,0\n0.5,10\n");
+  CHECK(written_drive(drive_unit(campaign), 2.5) == Approx(2.5));
 }

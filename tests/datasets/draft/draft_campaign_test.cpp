@@ -50,6 +50,7 @@ std::string filled(std::string text, model::PlantKind plant = model::PlantKind::
                           : fmt::format("{} = \"{:e}{}\"", spec.key, value, unit));
   }
   fill("kp = \"FILL IN V/m\"", "kp = \"100 V/m\"");
+  fill("lever = \"FILL IN m/rad\"", "lever = \"0.3 m/rad\"");
   fill("valve_gain = \"FILL IN m/V\"", "valve_gain = \"0.1 mm/V\"");
   fill("pilot_gain = \"FILL IN m/Pa\"", "pilot_gain = \"0.1 mm/bar\"");
   return text;

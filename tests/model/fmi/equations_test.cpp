@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tests/model/linkage_rig.hpp"
+#include "tests/model/sensitivity.hpp"
 
 using namespace rigcal::model;
 
@@ -198,6 +199,53 @@ TEST_CASE("equations: an arm moves as it is simulated, and its kinks have indica
   CHECK(indicators[0] == Approx(x[6] - 1e6));
   CHECK(indicators[4] == Approx(1e6 + 2.5e6 - x[6]));
   CHECK(indicators[3] == Approx(1.0 - x[0]));
+}
+
+TEST_CASE("equations: an arm on a triangle, and one with a table, move as they are simulated",
+          "[model]") {
+  struct Row {
+    NamedValues travel;
+    std::size_t indicators;  ///< both directions of the spool, both stops, corners of the lever
+  };
+  for (const Row& row :
+       {Row{{{"triangle_base", 1.2}, {"triangle_arm", 0.35}, {"triangle_angle", 1.3}}, 4},
+        Row{{{"travel_table_from", -1.2},
+             {"travel_table_to", 1.3},
+             {"travel_0", 0.0},
+             {"travel_20", 0.10},
+             {"travel_40", 0.24},
+             {"travel_60", 0.40},
+             {"travel_80", 0.52},
+             {"travel_100", 0.61}},
+            9}}) {
+    Experiment e = arm_rig().unset("lever");
+    for (const auto& [key, value] : row.travel) e.set(key, value);
+    e.inputs.drive = Signal::constant(1.3e6);
+    e.times_s = {0.0, 0.4};
+    e.outputs = {Output::angle, Output::position, Output::acceleration};
+    e.options.tolerance = 1e-10;
+    const Simulation run = e();
+    INFO(run.reason);
+    REQUIRE(run.ok());
+    ExportedRig rig;
+    rig.rig = e.rig;
+    rig.values = e.values;
+    const auto equations = make_equations(rig);
+    RigInputs inputs;
+    inputs.drive.value = 1.3e6;
+    inputs.supply_pressure_pa.value = 2e7;
+    inputs.tank_pressure_pa.value = 2e5;
+    equations->set(rig.values, inputs, 1.0);
+    std::vector<double> x = equations->initial();
+    StepMemory memory;
+    equations->advance(x, memory, 0.0, 0.4, 1e-10);
+    REQUIRE(run.outputs(1, 0) > 0.02);
+    CHECK(x[0] == Approx(run.outputs(1, 0)).epsilon(1e-6));
+    CHECK(equations->output(Output::position, x) == Approx(run.outputs(1, 1)).epsilon(1e-6));
+    const std::vector<double> indicators = equations->indicators(x);
+    REQUIRE(indicators.size() == row.indicators);
+    if (indicators.size() == 9) CHECK(indicators[6] == Approx(x[0] - 0.05));
+  }
 }
 
 TEST_CASE("equations: a cylinder with a load-sensing pump and friction with pre-sliding",

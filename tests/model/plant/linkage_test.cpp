@@ -332,6 +332,17 @@ TEST_CASE("linkage: sensitivities are exact against differences, every parameter
         arm_rig());
   check({"pilot valve and pump", Signal::sine(3e6, 8.0), valve, none}, arm_rig());
   check({"open centre", Signal::sine(3e6, 8.0), centre, none}, arm_rig());
+  const NamedValues triangle{{"triangle_base", 1.2},
+                             {"triangle_arm", 0.35},
+                             {"triangle_angle", 1.3},
+                             {"reference_angle", -0.1},
+                             {"gravity_moment", 3e3}};
+  check({"triangle", Signal::sine(3e6, 8.0), triangle, none}, arm_rig().unset("lever"));
+  const NamedValues travel{{"travel_table_from", -1.2}, {"travel_table_to", 1.3},
+                           {"travel_0", 0.05},          {"travel_20", 0.15},
+                           {"travel_40", 0.29},         {"travel_60", 0.45},
+                           {"travel_80", 0.57},         {"travel_100", 0.66}};
+  check({"travel by a table", Signal::sine(3e6, 8.0), travel, none}, arm_rig().unset("lever"));
   Experiment pressed = arm_rig();
   pressed.set("lower_stop", -0.01).set("upper_stop", 0.005).set("stop_stiffness", 5e6);
   check({"into both stops", Signal::sine(4e6, 8.0), {{"stop_damping", 2.0}}, none}, pressed);
@@ -341,11 +352,7 @@ TEST_CASE("linkage: sensitivities are exact against differences, every parameter
   Experiment electric = arm_rig();
   electric.rig.pilot = false;
   electric.values.set("valve_gain", 2e-4);
-  for (const char* key : {"pilot_gain", "pilot_dead_band"}) {
-    const auto index = static_cast<std::size_t>(parameter_index(PlantKind::linkage, key));
-    electric.values.value[index] = 0.0;
-    electric.values.given[index] = false;
-  }
+  electric.unset("pilot_gain").unset("pilot_dead_band");
   check({"electric valve of second order",
          Signal::sine(4.0, 10.0),
          {{"valve_dead_band", 0.3},
