@@ -14,18 +14,15 @@
 #include <boost/random/normal_distribution.hpp>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <functional>
 #include <iostream>
-#include <map>
-#include <mutex>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "bench/foreign_campaign.hpp"
 #include "bench/foreign_day.hpp"
+#include "bench/kept_counts.hpp"
 #include "calib/fit.hpp"
 #include "common/parallel.hpp"
 #include "datasets/prepare/load_record.hpp"
@@ -297,67 +294,12 @@ DaysCounts counts_of(const DaysRow& row, std::uint64_t seed) {
   return counts;
 }
 
-/// Stores the results of the campaigns so far in a text file: row, seed and counts.
-class KeptCounts {
- public:
-  explicit KeptCounts(std::string file) : file_(std::move(file)) {
-    std::ifstream in(file_);
-    std::string line;
-    while (std::getline(in, line)) {
-      const auto bar = line.find('|');
-      if (bar == std::string::npos) continue;
-      std::istringstream numbers(line.substr(bar + 1));
-      std::uint64_t seed = 0;
-      DaysCounts counts;
-      numbers >> seed;
-      counts.for_each([&](auto& each) { numbers >> each; });
-      if (numbers) kept_[line.substr(0, bar)][seed] = counts;
-    }
-  }
-
-  DaysCounts of(const DaysRow& row, std::uint64_t seed) {
-    {
-      const std::lock_guard lock(mutex_);
-      const auto found = kept_[row.name].find(seed);
-      if (found != kept_[row.name].end()) return found->second;
-    }
-    DaysCounts counts = counts_of(row, seed);
-    if (file_.empty()) return counts;
-    std::string line = fmt::format("{}|{}", row.name, seed);
-    counts.for_each([&](auto& each) { line += fmt::format(" {}", each); });
-    const std::lock_guard lock(mutex_);
-    std::ofstream(file_, std::ios::app) << line << "\n";
-    return counts;
-  }
-
- private:
-  std::string file_;
-  std::map<std::string, std::map<std::uint64_t, DaysCounts>> kept_;
-  std::mutex mutex_;
-};
-
-/// Formats a rate in percent, with its standard error estimated from the variation between
-/// campaigns.
-std::string rate_of(const std::vector<DaysCounts>& all, int DaysCounts::*hits,
-                    int DaysCounts::*trials) {
-  double hit = 0.0;
-  double tried = 0.0;
-  for (const DaysCounts& each : all) {
-    hit += each.*hits;
-    tried += each.*trials;
-  }
-  if (tried == 0.0) return "-";
-  const double rate = hit / tried;
-  double squares = 0.0;
-  for (const DaysCounts& each : all) squares += std::pow(each.*hits - rate * each.*trials, 2);
-  return fmt::format("{:.1f} +- {:.1f} ({:.0f} of {:.0f})", 100.0 * rate,
-                     100.0 * std::sqrt(squares) / tried, hit, tried);
-}
-
 std::vector<DaysCounts> study(const DaysRow& row, int campaigns, std::uint64_t first, int threads,
-                              KeptCounts& kept) {
+                              KeptCounts<DaysCounts>& kept) {
   std::vector<DaysCounts> all(static_cast<std::size_t>(campaigns));
-  parallel_for(all.size(), threads, [&](std::size_t i) { all[i] = kept.of(row, first + i); });
+  parallel_for(all.size(), threads, [&](std::size_t i) {
+    all[i] = kept.of(row.name, first + i, [&](std::uint64_t seed) { return counts_of(row, seed); });
+  });
   return all;
 }
 
@@ -397,7 +339,7 @@ int main(int argc, char** argv) {
                  "name] [file that keeps]\n";
     return 2;
   }
-  KeptCounts kept(argc > 5 ? argv[5] : "");
+  KeptCounts<DaysCounts> kept(argc > 5 ? argv[5] : "");
   std::cout << fmt::format(
       "| {} campaigns from seed {} | alarms of healthy averages, % | of single repeats, % | of "
       "states, % | incompatible averages, % | smallest leak, L/min | found at that size, % | "

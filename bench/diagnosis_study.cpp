@@ -5,6 +5,11 @@
 //   rigcal_diagnosis_study classes FIRST LAST     classes, seeds FIRST to LAST
 //   rigcal_diagnosis_study smallest FIRST LAST    smallest leak with a 0.1 Hz sine
 //   rigcal_diagnosis_study coefficients           coefficients of the campaign's leaks
+//   rigcal_diagnosis_study laws FIRST LAST [ROW] [FILE]       laminar and orifice leaks told from
+//                                                             none by position and pressures
+//   rigcal_diagnosis_study hopsan DIR FIRST LAST [FILE]       the same in records of Hopsan
+//
+// The files store the counts of each campaign, so that a study that was stopped can continue.
 //
 // The rig matches the model. With "disturbed" as the last argument, it also has friction, a valve
 // lag and a supply that varies between repeats. The fit to its healthy records then estimates the
@@ -21,6 +26,7 @@
 #include <string>
 #include <thread>
 
+#include "bench/leak_law_study.hpp"
 #include "calib/fit.hpp"
 #include "common/parallel.hpp"
 #include "datasets/campaign/campaign_parameters.hpp"
@@ -594,6 +600,33 @@ void print_coefficients(Campaign campaign) {
   }
 }
 
+/// Starts a study of leak laws: `laws FIRST LAST [ROW] [FILE]`, `hopsan DIR FIRST LAST [FILE]`.
+void study_laws(const std::vector<std::string>& arguments) {
+  const bool other = arguments[0] == "hopsan";
+  const auto argument = [&](std::size_t i) {
+    return i < arguments.size() ? arguments[i] : std::string();
+  };
+  const auto seed = [&](std::size_t i) {
+    return static_cast<std::uint64_t>(std::max(1, std::atoi(argument(i).c_str())));
+  };
+  const std::size_t first = other ? 2 : 1;
+  bench::StudyRange range{seed(first), std::max(seed(first), seed(first + 1)), threads, {}};
+  range.file = argument(4);
+  if (other) {
+    bench::study_other_simulator(argument(1), range);
+  } else {
+    bench::study_leak_laws(range, argument(3));
+  }
+}
+
+int usage() {
+  fmt::print(stderr,
+             "usage: rigcal_diagnosis_study coverage RECORDS, classes|smallest FIRST LAST, or "
+             "coefficients, and \"disturbed\" after it; or laws FIRST LAST [ROW] [FILE], or hopsan "
+             "DIR FIRST LAST [FILE]\n");
+  return 2;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -616,13 +649,13 @@ int main(int argc, char** argv) {
     study_coverage(campaign, first);
   } else if (what == "smallest") {
     study_smallest(campaign, first, last);
+  } else if (what == "laws" || what == "hopsan") {
+    if (what == "hopsan" && arguments.size() < 2) return usage();
+    study_laws(arguments);
   } else if (what == "coefficients") {
     print_coefficients(campaign);
   } else {
-    fmt::print(stderr,
-               "usage: rigcal_diagnosis_study coverage RECORDS, classes|smallest FIRST LAST, or "
-               "coefficients, and \"disturbed\" after it\n");
-    return 2;
+    return usage();
   }
   return 0;
 }

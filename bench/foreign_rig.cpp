@@ -21,19 +21,6 @@ struct Memory {
   double held = 0.0;    ///< command of a sampled controller
 };
 
-double straightened_root(double pressure, double below) {
-  return pressure / std::pow(pressure * pressure + below * below, 0.25);
-}
-
-double reference_at(const Reference& reference, double t) {
-  if (t < 0.0) return 0.0;
-  const double phase = reference.frequency_hz * t;
-  if (reference.waveform == "sine")
-    return reference.amplitude_m * std::sin(2.0 * std::numbers::pi * phase);
-  const double within = phase - std::floor(phase);
-  return within < 0.5 ? reference.amplitude_m : -reference.amplitude_m;
-}
-
 double without_band(double volts, double half_width) {
   if (volts > half_width) return volts - half_width;
   return volts < -half_width ? volts + half_width : 0.0;
@@ -174,6 +161,19 @@ void tick(const ForeignRig& rig, double reference, ForeignState& s, Memory& memo
 }
 
 }  // namespace
+
+double straightened_root(double pressure, double below) {
+  return pressure / std::pow(pressure * pressure + below * below, 0.25);
+}
+
+double reference_at(const Reference& reference, double t) {
+  if (t < 0.0) return 0.0;
+  const double phase = reference.frequency_hz * t;
+  if (reference.waveform == "sine")
+    return reference.amplitude_m * std::sin(2.0 * std::numbers::pi * phase);
+  const double within = phase - std::floor(phase);
+  return within < 0.5 ? reference.amplitude_m : -reference.amplitude_m;
+}
 
 std::vector<double> foreign_readings(const ForeignRig& rig, const Reference& reference) {
   const auto samples = static_cast<std::size_t>(reference.duration_s * 1000.0 + 1.5);

@@ -46,6 +46,12 @@ struct ForeignRig {
   double quantum_m = 0.0;  ///< resolution of the converter; the noise includes its quantisation
 };
 
+/// Returns the signed root of a pressure, which is straight well below `below` [Pa].
+double straightened_root(double pressure, double below);
+
+/// Returns the reference at a time [m]; 0 before the record begins.
+double reference_at(const Reference& reference, double t);
+
 /// Returns the noise-free readings of the position sensor at 1 kHz, starting from rest.
 std::vector<double> foreign_readings(const ForeignRig& rig, const Reference& reference);
 

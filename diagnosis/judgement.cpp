@@ -17,7 +17,8 @@ constexpr double kTooMuch = 1.0 / 3.0;
 
 /// Adds warnings to a record. For the healthy reference, there is only a note that it is the
 /// reference.
-void warn(RecordDiagnosis& record, const SignalErrors& errors, double healthy_m) {
+void warn(RecordDiagnosis& record, const SignalErrors& errors, double healthy_m,
+          datasets::LeakLaw law) {
   if (record.is_reference) {
     record.warnings.emplace_back(
         "the healthy reference of its signal: its leak is zero by construction");
@@ -67,10 +68,12 @@ void warn(RecordDiagnosis& record, const SignalErrors& errors, double healthy_m)
     record.warnings.emplace_back(
         "no repeats of this signal: how one run varies from the next is not in the interval");
   if (!errors.healthy_m && record.reference_repeats == 0)
-    record.warnings.emplace_back(
+    record.warnings.push_back(fmt::format(
         "no healthy record of this signal: what the model lacks is not in the interval. If a leak "
-        "level is healthy, say so: --healthy LEVEL, or level_class = { \"LEVEL\" = \"normal\" } in "
-        "[diagnosis], or parameters = { leakage_coefficient = 0 } in [leak_level.\"LEVEL\"]");
+        "level is healthy, say so: --healthy LEVEL, or level_class = {{ \"LEVEL\" = \"normal\" }} "
+        "in "
+        "[diagnosis], or parameters = {{ {} = 0 }} in [leak_level.\"LEVEL\"]",
+        datasets::leak_parameter(law)));
 }
 
 }  // namespace
@@ -82,7 +85,7 @@ void judge(RecordDiagnosis& record, const SignalErrors& errors, double healthy_m
   if (!record.unexplained && !record.is_reference && record.estimate.has_class() &&
       record.estimate.probability[best] >= settings.least_probability)
     record.leak_class = record.estimate.most_probable;
-  warn(record, errors, healthy_m);
+  warn(record, errors, healthy_m, settings.leak_law);
 }
 
 }  // namespace rigcal::diagnosis

@@ -87,7 +87,8 @@ struct MachineState {
   bool is_reference = false;
   std::string failure;  ///< why there is no verdict; the members below are then meaningless
   PooledLeak pooled;
-  double leak_area_m2 = 0.0;            ///< coefficient times leakage area
+  /// Coefficient times leakage area; absent if the leak is laminar.
+  std::optional<double> leak_area_m2;
   std::string duty;                     ///< signal whose share is stated
   LeakEstimate estimate;                ///< leak at that duty
   double share_slope = 0.0;             ///< d share / d coefficient at that duty

@@ -68,8 +68,9 @@ void judge_state(const LeakProblem& problem, const RigFit& rig, const Prepared& 
   if (state.members.empty()) return;
   const Campaign& campaign = problem.campaign;
   state.pooled = pooled_leak(state.members, rig.covariance, days);
-  state.leak_area_m2 =
-      state.pooled.coefficient * datasets::values_in(campaign, *duty.condition)["leakage_area"];
+  if (campaign.diagnosis.leak_law == datasets::LeakLaw::orifice)
+    state.leak_area_m2 =
+        state.pooled.coefficient * datasets::values_in(campaign, *duty.condition)["leakage_area"];
   state.duty = signal_name(campaign, *duty.condition);
   LeakFit leak;
   leak.coefficient = state.pooled.coefficient;

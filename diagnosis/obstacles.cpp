@@ -96,7 +96,8 @@ bool is_healthy(const Campaign& campaign, const Condition& condition) {
     return known->second == datasets::LeakClass::normal;
   const auto level = campaign.leak_levels.find(*condition.leak_level);
   if (level == campaign.leak_levels.end()) return false;
-  const int leak = model::parameter_index(campaign.rig.plant, "leakage_coefficient");
+  const int leak = model::parameter_index(campaign.rig.plant,
+                                          datasets::leak_parameter(campaign.diagnosis.leak_law));
   return std::any_of(level->second.begin(), level->second.end(), [leak](const auto& entry) {
     return entry.first == leak && entry.second == 0.0;
   });

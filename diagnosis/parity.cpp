@@ -272,9 +272,10 @@ class Work {
     if (references.size() < kLeastHealthyRecords) {
       signal.reason = fmt::format(
           "{} healthy record{} of this signal: expected {} or more. Healthy is a leak level whose "
-          "leakage_coefficient is known to be 0, that [diagnosis] calls normal, or that --healthy "
+          "{} is known to be 0, that [diagnosis] calls normal, or that --healthy "
           "names",
-          references.size(), references.size() == 1 ? "" : "s", kLeastHealthyRecords);
+          references.size(), references.size() == 1 ? "" : "s", kLeastHealthyRecords,
+          datasets::leak_parameter(campaign_.diagnosis.leak_law));
       return;
     }
     scatter_ = scatter_of(references, signal.window_s);

@@ -13,6 +13,12 @@ std::vector<std::pair<std::string, LeakClass>> class_choices() {
   return choices;
 }
 
+std::vector<std::pair<std::string, LeakLaw>> law_choices() {
+  std::vector<std::pair<std::string, LeakLaw>> choices;
+  for (const LeakLaw each : kLeakLaws) choices.emplace_back(to_string(each), each);
+  return choices;
+}
+
 std::vector<std::string> bounded_classes() {
   std::vector<std::string> bounded;
   for (std::size_t i = 0; i < DiagnosisSettings().limits.size(); ++i)
@@ -59,6 +65,12 @@ std::string_view to_string(LeakClass leak_class) {
   return "";
 }
 
+std::string_view to_string(LeakLaw law) { return law == LeakLaw::laminar ? "laminar" : "orifice"; }
+
+const char* leak_parameter(LeakLaw law) {
+  return law == LeakLaw::laminar ? "laminar_leakage" : "leakage_coefficient";
+}
+
 LeakClass class_of(const DiagnosisSettings& settings, double share) {
   const auto above = std::upper_bound(settings.limits.begin(), settings.limits.end(), share);
   return kLeakClasses[static_cast<std::size_t>(above - settings.limits.begin())];
@@ -74,6 +86,10 @@ const KeyTable<DiagnosisSettings>& diagnosis_keys() {
                            "Upper limit of this class, in percent of the servo flow",
                            fmt::format("{:g}", 100.0 * usual.limits[i])});
   static const KeyTable<DiagnosisSettings> keys({
+      Row::word<LeakLaw>(
+          "leak_law", &DiagnosisSettings::leak_law, law_choices(),
+          {.doc = "Law of the leak that is fitted to each record: `orifice` estimates "
+                  "`leakage_coefficient`, `laminar` estimates `laminar_leakage`"}),
       Row::custom("limits_percent", limits, read_class_limits,
                   {.doc = "Upper limit of each class as the share of the servo flow that leaks, in "
                           "percent; what is above the last is supercritical",

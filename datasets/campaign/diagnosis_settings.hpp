@@ -14,8 +14,19 @@ inline constexpr std::array kLeakClasses{LeakClass::normal, LeakClass::slight, L
                                          LeakClass::critical, LeakClass::supercritical};
 std::string_view to_string(LeakClass leak_class);
 
+/// Law of the leak that a diagnosis fits: through an orifice, proportional to the root of the
+/// pressure, or laminar, proportional to the pressure.
+enum class LeakLaw { orifice, laminar };
+
+inline constexpr std::array kLeakLaws{LeakLaw::orifice, LeakLaw::laminar};
+std::string_view to_string(LeakLaw law);
+
+/// Returns the key of the parameter that a diagnosis with this law fits.
+const char* leak_parameter(LeakLaw law);
+
 /// Settings in [diagnosis]; all are optional.
 struct DiagnosisSettings {
+  LeakLaw leak_law = LeakLaw::orifice;
   /// Upper limit of every class except the last, as a fraction of the servo flow. 10, 20 and 30 %
   /// are from the paper; 1 % for a machine without a leak is our choice.
   std::array<double, kLeakClasses.size() - 1> limits{0.01, 0.10, 0.20, 0.30};

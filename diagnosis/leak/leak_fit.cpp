@@ -24,13 +24,16 @@ using datasets::Campaign;
 using datasets::Condition;
 using datasets::Record;
 
-constexpr const char* kLeak = "leakage_coefficient";
 /// Maximum number of iterations. It is sufficient for one leak and a few nuisance parameters if the
 /// fit starts from the best point of a scan. A fit that needs more is reported as not converged.
 constexpr int kIterations = 40;
 /// Minimum leak at which the effects are simulated, as a fraction of the largest coefficient in a
 /// scan.
 constexpr double kLeastOfLargest = 0.1;
+
+double leak_in(const model::ParameterValues& values, const LeakProblem& leak_problem) {
+  return values.value[static_cast<std::size_t>(leak_problem.leak)];
+}
 
 void erase_value(datasets::Overrides& overrides, int index) {
   std::erase_if(overrides, [index](const auto& entry) { return entry.first == index; });
@@ -211,7 +214,7 @@ LeakRuns run_both(const calib::Problem& problem, const RigFit& rig, const LeakPr
     return model::simulate(condition.rig, at, rows, condition.inputs, condition.record->time_s,
                            outputs_and_position(condition), problem.simulation_options(cancel));
   };
-  runs.leaking = simulated(values[kLeak], runs.free);
+  runs.leaking = simulated(leak_in(values, leak_problem), runs.free);
   runs.healthy = healthy != nullptr ? *healthy : simulated(0.0, without_days);
   runs.time_s = condition.record->time_s;
   runs.driving = driving_channels(condition);
@@ -259,7 +262,8 @@ void describe(const calib::Problem& problem, const RigFit& rig, const LeakProble
   }
   const Eigen::VectorXd step = svd.step(system.residual);
   const Eigen::MatrixXd root = svd.root();
-  fit.coefficient = values[kLeak] + step(leak);
+  const double simulated_leak = leak_in(values, leak_problem);
+  fit.coefficient = simulated_leak + step(leak);
   const Eigen::MatrixXd bread = root.lazyProduct(root.transpose());
   const Eigen::VectorXd left = linear.residual + linear.jacobian * step;
   const auto [covariance, freedom] =
@@ -282,7 +286,7 @@ void describe(const calib::Problem& problem, const RigFit& rig, const LeakProble
   // continuation, but this step must not be long. A record that is its own reference may have no
   // residual, so the error for white noise of unit variance is also an allowed length.
   const double error = std::max({fit.white_se, fit.cluster_se, root.row(leak).norm()});
-  if (values[kLeak] > 0.0 && std::abs(step(leak)) > error + 1e-3 * values[kLeak]) {
+  if (simulated_leak > 0.0 && std::abs(step(leak)) > error + 1e-3 * simulated_leak) {
     fit.failure = fmt::format("the leak did not converge: a step of {:.2g} standard errors is left",
                               std::abs(step(leak)) / error);
     return;
@@ -350,7 +354,7 @@ const Condition& own_condition(const LeakProblem& leak_problem, const Condition&
 
 }  // namespace
 
-RigFit rig_fit_of(const calib::Fit& fit) {
+RigFit rig_fit_of(const calib::Fit& fit, datasets::LeakLaw law) {
   RigFit rig;
   std::vector<Eigen::Index> rows;
   std::vector<double> errors;
@@ -393,17 +397,17 @@ RigFit rig_fit_of(const calib::Fit& fit) {
     budgets.push_back(p.budget ? &*p.budget : nullptr);
   }
   spread.effects = calib::effect_spread(*fit.considered, budgets);
-  rig.consider(spread);
+  rig.consider(spread, law);
   return rig;
 }
 
-void RigFit::consider(const calib::EstimateSpread& spread) {
+void RigFit::consider(const calib::EstimateSpread& spread, datasets::LeakLaw law) {
   // The leak itself is estimated, so it is not an effect that the model omits.
   const calib::EffectSpread& all = spread.effects;
   std::vector<Eigen::Index> kept;
   effects = {};
   for (std::size_t e = 0; e < all.keys.size(); ++e) {
-    if (all.keys[e] == kLeak) continue;
+    if (all.keys[e] == datasets::leak_parameter(law)) continue;
     kept.push_back(static_cast<Eigen::Index>(e));
     effects.keys.push_back(all.keys[e]);
   }
@@ -493,7 +497,9 @@ std::shared_ptr<const LeakEffects> leak_effects_of(const LeakProblem& leak_probl
 }
 
 LeakProblem::LeakProblem(const Campaign& original, const RigFit& rig)
-    : campaign(original), leak(model::parameter_index(original.rig.plant, kLeak)) {
+    : campaign(original),
+      leak(model::parameter_index(original.rig.plant,
+                                  datasets::leak_parameter(original.diagnosis.leak_law))) {
   const datasets::ParameterSetting setting = free_leak(campaign, leak);
   std::erase_if(campaign.parameters, [&](const auto& each) { return each.index == leak; });
   campaign.parameters.push_back(setting);

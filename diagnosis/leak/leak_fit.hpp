@@ -32,7 +32,10 @@ struct RigFit {
 
   /// Adds the effects from a fit. An effect is correlated with the change in a value for which the
   /// fit has mistaken it.
-  void consider(const calib::EstimateSpread& spread);
+  ///
+  /// @param law  law of the leak that is diagnosed. Its own parameter is no effect
+  void consider(const calib::EstimateSpread& spread,
+                datasets::LeakLaw law = datasets::LeakLaw::orifice);
   /// Returns the standard error of a result that changes by `moves`, shape: rows of `covariance`.
   double error(const Eigen::VectorXd& moves) const;
   /// Returns the contributions to that error: one for all values of the rig together, and one for
@@ -49,15 +52,18 @@ struct LeakEffects {
 };
 
 /// Returns the rig parameters from a fit in this process.
-RigFit rig_fit_of(const calib::Fit& fit);
+RigFit rig_fit_of(const calib::Fit& fit, datasets::LeakLaw law = datasets::LeakLaw::orifice);
 
 /// The campaign in the form that a diagnosis needs. The leakage coefficient is unknown in every
 /// condition, with a lower bound of 0, and anything that the campaign or a fit states about it is
 /// ignored. Other nuisance parameters (offsets) remain unknown.
+///
+/// "Coefficient" here and below is the parameter of the campaign's leak law
+/// (DiagnosisSettings::leak_law): of a laminar leak it is the conductance [m3/(s Pa)].
 struct LeakProblem {
   datasets::Campaign campaign;
   std::vector<datasets::FittedValue> values;  ///< values of the rig
-  int leak = 0;                               ///< table row of the leakage coefficient
+  int leak = 0;  ///< table row of the leakage coefficient, or of the conductance of a laminar leak
   const std::atomic<bool>* cancel = nullptr;  ///< becomes true to end the simulations
   /// Quantities that differ between days; may be empty.
   std::vector<calib::DayQuantity> day_quantities;

@@ -27,7 +27,8 @@ using datasets::Condition;
 /// found.
 void warn_of_validity(const Campaign& campaign, const calib::Validity& covered,
                       diagnosis::Diagnosis& found) {
-  const int leak = model::parameter_index(campaign.rig.plant, "leakage_coefficient");
+  const int leak = model::parameter_index(campaign.rig.plant,
+                                          datasets::leak_parameter(campaign.diagnosis.leak_law));
   for (diagnosis::RecordDiagnosis& record : found.records) {
     if (!record.fit.ok()) continue;
     Campaign alone = campaign;
@@ -65,6 +66,12 @@ void warn_of_recordings(const std::vector<datasets::Record>& averages,
 /// diagnosis.
 std::vector<TableLimit> take_table(const std::filesystem::path& file, const EarlierFit& earlier,
                                    Campaign& campaign) {
+  if (campaign.diagnosis.leak_law != datasets::LeakLaw::orifice)
+    throw InputError(
+        {campaign.file.string()},
+        fmt::format("diagnosis.leak_law: \"{}\" with the leak table {}: its "
+                    "coefficients are of an orifice; expected \"orifice\" or no --table",
+                    to_string(campaign.diagnosis.leak_law), file.string()));
   const EarlierLeakTable table = read_leak_table(file, campaign.rig.plant);
   const auto differences = rig_differences(table, campaign, earlier.values);
   if (!differences.empty()) {
@@ -171,7 +178,7 @@ JobResult diagnosis_job(Campaign campaign, const DiagnosisRequest& request, cons
   const LeakRecords records = load_leak_records(campaign, settings.threads);
   provenance.inputs = hash_inputs(campaign, records.averages(), more_inputs);
   diagnosis::RigFit rig{earlier.values, earlier.indices, earlier.covariance};
-  if (earlier.spread) rig.consider(*earlier.spread);
+  if (earlier.spread) rig.consider(*earlier.spread, campaign.diagnosis.leak_law);
   found = diagnosis::diagnose(campaign, records.conditions, rig, settings);
   found.warnings.insert(found.warnings.end(), records.left_out.begin(), records.left_out.end());
   warn_of_validity(campaign, earlier.validity, found);

@@ -83,7 +83,8 @@ StoredBetweenDays stored(const diagnosis::BetweenDays& between,
 
 StoredDiagnosisSettings stored(const datasets::DiagnosisSettings& settings) {
   StoredDiagnosisSettings told{
-      {}, settings.least_probability, settings.false_alarms, settings.detection};
+      {}, settings.least_probability, settings.false_alarms, settings.detection, {}};
+  if (settings.leak_law != datasets::LeakLaw::orifice) told.leak_law = settings.leak_law;
   for (std::size_t i = 0; i < settings.limits.size(); ++i) {
     told.limits_percent.emplace_back(to_string(datasets::kLeakClasses[i]),
                                      kInPercent * settings.limits[i]);

@@ -61,7 +61,7 @@ std::string state_sentence(const MachineState& state) {
   const diagnosis::LeakEstimate& e = state.estimate;
   if (e.incompatible) {
     return fmt::format(
-        "{}: incompatible with the model: the leakage coefficient would be {:.3g} ({:.3g} to "
+        "{}: incompatible with the model: the coefficient would be {:.3g} ({:.3g} to "
         "{:.3g}), below zero by more than its error, so supply or valve are not as they were in "
         "the "
         "fit.{}",
@@ -69,7 +69,7 @@ std::string state_sentence(const MachineState& state) {
   }
   if (!e.has_share()) {
     return fmt::format(
-        "{}: undecided: a leakage coefficient of {:.3g} would leak more than the servo valve "
+        "{}: undecided: a coefficient of {:.3g} would leak more than the servo valve "
         "delivers at {}.{}",
         name, e.coefficient, state.duty, agreement_of(state));
   }
@@ -113,9 +113,11 @@ StoredState stored(const MachineState& state) {
   told.duty = unless_empty(state.duty);
   if (!state.ok()) return told;
   if (e.incompatible) return told;
-  const double area = e.coefficient != 0.0 ? state.leak_area_m2 / e.coefficient : 0.0;
-  told.leak_area_m2 = std::max(0.0, state.leak_area_m2);
-  if (e.standard_error > 0.0) told.leak_area_ci95_m2 = scaled_ends(e.ci95, area);
+  if (state.leak_area_m2) {
+    const double area = e.coefficient != 0.0 ? *state.leak_area_m2 / e.coefficient : 0.0;
+    told.leak_area_m2 = std::max(0.0, *state.leak_area_m2);
+    if (e.standard_error > 0.0) told.leak_area_ci95_m2 = scaled_ends(e.ci95, area);
+  }
   if (e.has_share())
     told.nearest_limit = {state.limit.above, kInPercent * state.limit.limit,
                           kInPercent * state.limit.distance, state.limit.on_limit};

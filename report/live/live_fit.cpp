@@ -254,7 +254,8 @@ std::optional<Json> live_diagnosis(const datasets::Campaign& campaign,
                                    const std::vector<datasets::Record>& averages,
                                    const std::vector<datasets::FittedValue>& healthy,
                                    const diagnosis::Diagnosis& found) {
-  const int leak = model::parameter_index(campaign.rig.plant, "leakage_coefficient");
+  const int leak = model::parameter_index(campaign.rig.plant,
+                                          datasets::leak_parameter(campaign.diagnosis.leak_law));
   std::vector<const diagnosis::RecordDiagnosis*> shown;
   for (const diagnosis::RecordDiagnosis& record : found.records)
     if (!record.repeat && record.fit.ok() && !record.estimate.incompatible)

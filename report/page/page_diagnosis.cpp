@@ -239,7 +239,12 @@ std::string agreement_text_of(const std::optional<StoredSignalsAgreement>& agree
                      p_value_text(agreement->p));
 }
 
-doc::Table state_table(const std::vector<StoredState>& states) {
+/// Returns the heading of the column of fitted leaks.
+std::string coefficient_heading(const StoredDiagnosisSettings& settings) {
+  return settings.is_laminar() ? "Conductance, m³/(s Pa)" : "Coefficient";
+}
+
+doc::Table state_table(const StoredDiagnosis& diagnosis) {
   constexpr double kSquareMillimetre = 1e-6;
   doc::Table table{"State of the machine"};
   table.style = "states";
@@ -249,11 +254,11 @@ doc::Table state_table(const std::vector<StoredState>& states) {
                    {"Class"},
                    {"Share, %", Kind::number, 0, "95 % interval"},
                    {"At the duty"},
-                   {"Coefficient", Kind::number, 0, "95 % interval"},
+                   {coefficient_heading(diagnosis.settings), Kind::number, 0, "95 % interval"},
                    {"Leak area, mm²", Kind::number, 0, "95 % interval"},
                    {"Nearest limit"},
                    {"Signals"}};
-  for (const StoredState& state : states) {
+  for (const StoredState& state : diagnosis.states) {
     doc::Row row{{state.state, state_badge(state),
                   value_cell(state.leak.leak_share_percent, state.leak.leak_share_ci95_percent),
                   state.duty.value_or(""),
@@ -336,7 +341,7 @@ void add_averages(const StoredDiagnosis& diagnosis, doc::Blocks& blocks) {
                    {"Class"},
                    {"Share, %", Kind::number, 0, "95 % interval"},
                    {"Leak, L/min", Kind::number},
-                   {"Coefficient", Kind::number, 0, "95 % interval"}};
+                   {coefficient_heading(diagnosis.settings), Kind::number, 0, "95 % interval"}};
   std::vector<std::string> classes;
   if (!diagnosis.records.empty()) {
     for (const auto& [name, value] : diagnosis.records.front().leak.class_probabilities)
@@ -426,7 +431,7 @@ void add_repeats(const StoredDiagnosis& diagnosis, doc::Blocks& blocks) {
                    {"Share, %", Kind::number},
                    {"95 % interval", Kind::number},
                    {"Leak, L/min", Kind::number},
-                   {"Coefficient", Kind::number},
+                   {coefficient_heading(diagnosis.settings), Kind::number},
                    {"By features"},
                    {"Known"}};
   for (const StoredDiagnosedRecord& record : diagnosis.records)
@@ -463,7 +468,7 @@ std::vector<doc::Section> diagnosis_sections(const StoredDiagnosis& diagnosis) {
   doc::Blocks& blocks = section.blocks;
   if (diagnosis.status != LeakStatus::done)
     blocks.emplace_back(list_of(diagnosis.reasons, doc::State::warn));
-  if (!diagnosis.states.empty()) blocks.emplace_back(state_table(diagnosis.states));
+  if (!diagnosis.states.empty()) blocks.emplace_back(state_table(diagnosis));
   if (!diagnosis.trends.empty()) {
     blocks.emplace_back(doc::Heading{{"Trend"}});
     for (const StoredLeakTrend& trend : diagnosis.trends)

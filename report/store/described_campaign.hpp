@@ -44,6 +44,11 @@ inline std::vector<datasets::DesignCriterion> every() {
   return {datasets::DesignCriterion::determinant, datasets::DesignCriterion::worst};
 }
 template <>
+inline std::vector<datasets::LeakLaw> every() {
+  return {datasets::kLeakLaws.begin(), datasets::kLeakLaws.end()};
+}
+
+template <>
 inline std::vector<datasets::LeakClass> every() {
   return {datasets::kLeakClasses.begin(), datasets::kLeakClasses.end()};
 }

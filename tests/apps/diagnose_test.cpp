@@ -167,6 +167,42 @@ TEST_CASE("diagnose: classes end where the rows of a leak table of the same rig 
   CHECK_THAT(none.err, Contains("rigcal.leak_table/1"));
 }
 
+TEST_CASE("diagnose: the law of the leak is stated in the campaign and in the result", "[apps]") {
+  const CommandFolder folder;
+  const std::string laminar =
+      edited(kDiagnosed, {{"leakage_coefficient = 0.15", "laminar_leakage = \"2e-11 m3/(s Pa)\""}});
+  folder.write("campaign.toml", laminar +
+                                    "[diagnosis]\nleak_law = \"laminar\"\n"
+                                    "level_class = { none = \"normal\" }\n" +
+                                    kSynthetic);
+  REQUIRE(folder.run({"synthesize", "campaign.toml", "--seed", "1", "--out", "made", "--quiet"})
+              .exit_code == 0);
+  REQUIRE(folder.run({"fit", "made/campaign.toml", "--out", "fit", "--quiet"}).exit_code == 0);
+  const Outcome outcome =
+      folder.run({"diagnose", "made/campaign.toml", "--fit", "fit/fit.json", "--out", "out"});
+  CAPTURE(outcome.out, outcome.err);
+  REQUIRE(outcome.exit_code == 0);
+  const json result = json::parse(folder.read("out/diagnosis.json"));
+  CHECK(violations(result, "diagnosis") == "");
+  CHECK(result["settings"]["leak_law"] == "laminar");
+  REQUIRE(result["states"].size() == 2);
+  const json& leaking = result["states"][1];
+  CHECK(leaking["ci95"][0] < 2e-11);
+  CHECK(leaking["ci95"][1] > 2e-11);
+  CHECK(leaking["leak_area_m2"].is_null());
+  CHECK_THAT(folder.read("out/report.html"), Contains("Conductance, m³/(s Pa)"));
+
+  // The coefficients of a leak table are of an orifice.
+  REQUIRE(folder
+              .run({"leak-table", "made/campaign.toml", "--fit", "fit/fit.json", "--out", "table",
+                    "--targets", "3,6,9"})
+              .exit_code == 0);
+  const Outcome table = folder.run({"diagnose", "made/campaign.toml", "--fit", "fit/fit.json",
+                                    "--out", "out", "--table", "table/leak_table.json"});
+  CHECK(table.exit_code == 2);
+  CHECK_THAT(table.err, Contains("leak_law") && Contains("orifice"));
+}
+
 TEST_CASE("diagnose: --healthy names the level that the campaign does not know", "[apps]") {
   const CommandFolder folder;
   folder.write(

@@ -398,6 +398,44 @@ TEST_CASE("diagnose: without the area of a leak no coefficient can be told", "[d
   CHECK_THAT(found.records.front().fit.failure, Catch::Contains("leakage_area is 0 m2"));
 }
 
+TEST_CASE("diagnose: a laminar leak as a conductance, without the area of an orifice",
+          "[diagnosis]") {
+  Campaign campaign = small_campaign();
+  campaign.conditions.resize(3);
+  campaign.diagnosis.leak_law = datasets::LeakLaw::laminar;
+  const int area = row_of(campaign, "leakage_area");
+  for (auto& setting : campaign.parameters)
+    if (setting.index == area) setting.value = 0.0;
+  const std::vector<double> conductances{0.0, 2e-11, 1e-10};
+  const int leak = row_of(campaign, "laminar_leakage");
+  for (std::size_t i = 0; i < conductances.size(); ++i)
+    campaign.conditions[i].overrides = {{leak, conductances[i]}};
+  diagnosis::RigFit rig = known_rig(campaign);
+  std::erase_if(rig.values, [&](const auto& each) { return each.index == area; });
+  diagnosis::DiagnosisOptions options;
+  options.truth = rig.values;
+  for (const Condition& condition : campaign.conditions)
+    options.truth->push_back(
+        {leak, datasets::Scope::condition, condition.id, condition.overrides.front().second});
+  const Diagnosis found = diagnosis::diagnose(campaign, records_of(campaign), rig, options);
+  int leaking = 0;
+  for (const auto& record : found.records) {
+    CAPTURE(record.condition, record.repeat.value_or(0), record.fit.failure);
+    REQUIRE(record.fit.ok());
+    if (record.repeat || record.is_reference) continue;
+    ++leaking;
+    const double truth = campaign.find(record.condition)->overrides.front().second;
+    // Five standard errors: the noise is of one seed.
+    CHECK(std::abs(record.fit.coefficient - truth) < 5.0 * record.estimate.standard_error);
+    CHECK(record.estimate.standard_error < 0.2 * truth);
+    CHECK(record.estimate.leak_detected);
+    CHECK_THAT(record.estimate.share, Catch::WithinRel(record.true_share.value(), 0.2));
+  }
+  CHECK(leaking == 2);
+  // An area belongs to the law of an orifice.
+  for (const auto& state : found.states) CHECK_FALSE(state.leak_area_m2.has_value());
+}
+
 TEST_CASE("diagnose: a record of one sample is told to be too short", "[diagnosis]") {
   Campaign campaign = small_campaign();
   campaign.conditions.resize(1);

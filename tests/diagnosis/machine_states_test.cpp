@@ -72,7 +72,7 @@ TEST_CASE("machine_states: one state of all signals, at the slowest sine", "[dia
   CHECK(state.members.size() == 2);
   CHECK(state.duty == scene.found[1].signal);
   CHECK_THAT(state.pooled.coefficient, WithinRel(0.3, 1e-12));
-  CHECK_THAT(state.leak_area_m2, WithinRel(0.3 * 4.456e-6, 1e-9));
+  CHECK_THAT(state.leak_area_m2.value(), WithinRel(0.3 * 4.456e-6, 1e-9));
   CHECK(state.share_slope > 0.0);
   REQUIRE(state.leak_class);
   CHECK(*state.leak_class == state.estimate.most_probable);

@@ -93,6 +93,12 @@ TEST_CASE("is_healthy: class normal, or a coefficient that is known to be 0", "[
   CHECK_FALSE(healthy("[leak_level.x]\nparameters = { mass = \"50 kg\" }\n"));
   CHECK(healthy("[diagnosis]\nlevel_class = { x = \"normal\" }\n"));
   CHECK_FALSE(healthy("[diagnosis]\nlevel_class = { x = \"slight\" }\n" + level("0")));
+  // Of a laminar leak, its own parameter tells.
+  const std::string laminar = "[diagnosis]\nleak_law = \"laminar\"\n";
+  const std::string none = "[leak_level.x]\nparameters = { laminar_leakage = \"0 m3/(s Pa)\" }\n";
+  CHECK(healthy(laminar + none));
+  CHECK_FALSE(healthy(laminar + level("0")));
+  CHECK_FALSE(healthy(none));
 }
 
 TEST_CASE("confounded: level with specimen and date, but not where both appear", "[diagnosis]") {

@@ -19,7 +19,12 @@ inline constexpr const char* kDiagnosisSchema = "rigcal.diagnosis/1";
 struct StoredDiagnosisSettings {
   Keyed<double> limits_percent;  ///< upper limit of every class except the last
   double least_probability = 0.0, false_alarms = 0.0, detection = 0.0;
-  RIGCAL_DESCRIBE(limits_percent, least_probability, false_alarms, detection)
+  /// Present if the leak is laminar. Each `leakage_coefficient` of the file is then the conductance
+  /// of the leak [m3/(s Pa)].
+  Omittable<datasets::LeakLaw> leak_law;
+  RIGCAL_DESCRIBE(limits_percent, least_probability, false_alarms, detection, leak_law)
+
+  bool is_laminar() const { return leak_law == datasets::LeakLaw::laminar; }
 };
 
 /// A row of a leak table that serves as a class limit.

@@ -499,7 +499,8 @@ TEST_CASE("campaign keys: tables as the documents have them", "[datasets]") {
       markdown_of(*find_campaign_table("acceptance")),
       Catch::Contains("| `r` | number, -1 to 1 | ") && Catch::Contains("100 mean \\|e\\| / (max"));
   CHECK_THAT(markdown_of(*find_campaign_table("diagnosis")),
-             Catch::Contains("| `detection` | number, above 0 to below 1 | `0.95` |"));
+             Catch::Contains("| `detection` | number, above 0 to below 1 | `0.95` |") &&
+                 Catch::Contains("| `leak_law` | `\"orifice\"`, `\"laminar\"` | `\"orifice\"` |"));
   CHECK_THAT(text, Catch::Contains("| `outputs` | list of channels | all outputs | "));
   CHECK(find_campaign_table("fit.loss") == nullptr);
   CHECK(find_campaign_table("fits") == nullptr);

@@ -210,6 +210,7 @@ TEST_CASE("RigFit: an effect and what the fit has mistaken for it go together", 
   spread.effects.moves.row(0) << 100.0, 5.0;
   spread.effects.moves.row(1) << 100.0, 100.0;
   spread.effects.moves.row(2) << 100.0, -3.0;
+  const diagnosis::RigFit before = rig;
   rig.consider(spread);
   // The leak is what a diagnosis looks for, so it is not one of the effects.
   REQUIRE(rig.effects.keys == std::vector<std::string>{"ki"});
@@ -232,6 +233,12 @@ TEST_CASE("RigFit: an effect and what the fit has mistaken for it go together", 
   CHECK_THAT(std::hypot(lines[0].uncertainty, lines[1].uncertainty),
              WithinRel(rig.error(moves), 1e-12));
   CHECK(diagnosis::RigFit{}.contributions(Eigen::VectorXd::Zero(0)).empty());
+
+  // If the diagnosed leak is laminar, a leak through an orifice is an effect like others.
+  diagnosis::RigFit laminar = before;
+  spread.effects.keys = {"leakage_coefficient", "laminar_leakage"};
+  laminar.consider(spread, datasets::LeakLaw::laminar);
+  CHECK(laminar.effects.keys == std::vector<std::string>{"leakage_coefficient"});
 }
 
 TEST_CASE("fit_leak: an effect that the model lacks moves a coefficient as far as is stated",
