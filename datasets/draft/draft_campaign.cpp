@@ -148,8 +148,7 @@ FileColumns columns_of(const fs::path& file) {
     const bool own_word = guess_column(name).channel && !guess_column(numbered.stem).channel;
     const bool repeated = several && !own_word;
     const std::string shown = repeated ? numbered.stem : name;
-    ColumnGuess guess = guess_column(shown);
-    if (!column.unit.empty()) guess.unit = column.unit;
+    ColumnGuess guess = guess_column(shown, column.unit);
     if (column.is_time) guess = {true, {}, guess.unit};
     if (guess.is_time && found.time.empty()) {
       found.time = name;
@@ -323,7 +322,7 @@ std::string range_text(const std::vector<double>& values, const std::string& uni
   const bool increases =
       values.size() > 2 &&
       std::adjacent_find(values.begin(), values.end(), std::greater_equal<>()) == values.end();
-  const auto channel = guess_by_unit(unit, has_position);
+  const auto channel = guess_by_unit(unit, {});
   std::string guess;
   if (channel) guess = fmt::format(", perhaps {}", info(*channel).key);
   if (!channel && increases) guess = ", perhaps time";
