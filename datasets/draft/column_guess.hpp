@@ -1,27 +1,36 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 
 #include "datasets/record.hpp"
 
 namespace rigcal::datasets {
 
-/// Meaning of a column, guessed only from its name.
+/// Meaning of a column, guessed from its name and unit.
 struct ColumnGuess {
   bool is_time = false;
   std::optional<Channel> channel;
-  std::string unit;  ///< unit in the name: "mm" in "x_mm" and "x [mm]"; else empty
+  /// Unit that the file gives, or else that in the name: "mm" in "x_mm" and "x [mm]"; else empty.
+  std::string unit;
+  /// What the column contains if that is known but no channel: "a velocity". Else empty.
+  std::string_view other{};
 };
 
-/// Guesses from names such as "t_s", "ref_mm", "x [mm]", "pA_bar_03", "log.time" and "u_V": a known
-/// word, followed by a unit in brackets or between underscores.
-ColumnGuess guess_column(const std::string& name);
-
-/// Guesses the channel of a column from its unit, if the name is not recognised.
+/// Guesses from names such as "t_s", "x_cmd_mm", "x [mm]", "pA_bar_03", "log.time" and
+/// "Sollkraft_kN". Words of the name give the quantity, its place and its part in a loop
+/// (name_words.hpp). The unit decides about the quantity where it contradicts them.
 ///
-/// @param has_position  whether another column is the position, so that a second length is its
-///                      reference
-std::optional<Channel> guess_by_unit(const std::string& unit, bool has_position);
+/// @param unit  given by the file separately from the name; may be empty
+ColumnGuess guess_column(const std::string& name, const std::string& unit = {});
+
+/// Guesses the channel of a column from its unit alone.
+///
+/// @param taken  channels that other columns have: a second length is a reference, a second
+///               pressure that of the other chamber
+/// @return  std::nullopt if no channel has the unit, or if all that have it are taken
+std::optional<Channel> guess_by_unit(const std::string& unit, std::span<const Channel> taken);
 
 }  // namespace rigcal::datasets

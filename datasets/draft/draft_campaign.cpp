@@ -148,8 +148,7 @@ FileColumns columns_of(const fs::path& file) {
     const bool own_word = guess_column(name).channel && !guess_column(numbered.stem).channel;
     const bool repeated = several && !own_word;
     const std::string shown = repeated ? numbered.stem : name;
-    ColumnGuess guess = guess_column(shown);
-    if (!column.unit.empty()) guess.unit = column.unit;
+    ColumnGuess guess = guess_column(shown, column.unit);
     if (column.is_time) guess = {true, {}, guess.unit};
     if (guess.is_time && found.time.empty()) {
       found.time = name;
@@ -196,7 +195,15 @@ std::vector<std::vector<ChannelColumns>> column_sets(const FileColumns& columns)
 
 // ---- Text ----------------------------------------------------------------------------------
 
-std::string comment(const std::string& text) { return "  # " + text; }
+/// Returns a text for a comment. A control character, as some files have in their names, would end
+/// it or be invalid.
+std::string in_comment(std::string text) {
+  for (char& c : text)
+    if ((c >= 0 && c < ' ') || c == '\x7F') c = ' ';
+  return text;
+}
+
+std::string comment(const std::string& text) { return "  # " + in_comment(text); }
 
 /// Returns one line of [recording.channels]. If the dimension of the column differs from that of
 /// the channel, the line needs a gain.
@@ -315,7 +322,7 @@ std::string range_text(const std::vector<double>& values, const std::string& uni
   const bool increases =
       values.size() > 2 &&
       std::adjacent_find(values.begin(), values.end(), std::greater_equal<>()) == values.end();
-  const auto channel = guess_by_unit(unit, has_position);
+  const auto channel = guess_by_unit(unit, {});
   std::string guess;
   if (channel) guess = fmt::format(", perhaps {}", info(*channel).key);
   if (!channel && increases) guess = ", perhaps time";
@@ -341,7 +348,43 @@ std::string unknown_columns_text(const fs::path& file, const FileColumns& column
   const std::string more = columns.unknown.size() > names.size()
                                ? fmt::format(" and {} more", columns.unknown.size() - names.size())
                                : std::string();
-  return fmt::format("# not used: {}{}\n", fmt::join(names, ", "), more);
+  return in_comment(fmt::format("# not used: {}{}", fmt::join(names, ", "), more)) + "\n";
+}
+
+/// Returns one line for each recognised channel. A channel occurs once; further columns that look
+/// like it are comments.
+std::string known_channels_text(const FileColumns& columns) {
+  std::string text;
+  std::vector<Channel> done;
+  for (const ChannelColumns& column : columns.channels) {
+    if (column.channel == Channel::pilot_pressure && !has_pilot(columns)) {
+      text +=
+          fmt::format("# '{}' looks like a pilot pressure, which drives no rig with a controller\n",
+                      in_comment(column.stem));
+      continue;
+    }
+    if (column.channel == Channel::command && has_pilot(columns)) {
+      text += fmt::format(
+          "# '{}' also looks like a drive: the pilot pressure is nearer to the "
+          "spool\n",
+          in_comment(column.stem));
+      continue;
+    }
+    const bool again = std::find(done.begin(), done.end(), column.channel) != done.end();
+    if (!again) {
+      done.push_back(column.channel);
+      const auto ways = one_each_way(columns, column.channel);
+      if (ways && (column.channel == Channel::command || column.channel == Channel::pilot_pressure))
+        text += channel_line(column.channel, ways->out, column.unit, ways->in);
+      else
+        text +=
+            channel_line(column.channel, column.numbers.empty() ? column.stem : "", column.unit);
+    } else if (column.numbers.empty() && !one_each_way(columns, column.channel)) {
+      text += fmt::format("# '{}' also looks like {}\n", in_comment(column.stem),
+                          info(column.channel).key);
+    }
+  }
+  return text;
 }
 
 /// Returns the text for a file in which no channel, or not even a time, is recognised.
@@ -352,8 +395,7 @@ std::string blank_channels_text(const fs::path& file, const FileColumns& columns
                             comment("one of the columns below"))
               : fmt::format("time = {{ column = {}, unit = {} }}\n", toml_quoted(columns.time),
                             toml_quoted(columns.time_unit.empty() ? "s" : columns.time_unit));
-  for (const ChannelColumns& column : columns.channels)
-    text += channel_line(column.channel, column.numbers.empty() ? column.stem : "", column.unit);
+  text += known_channels_text(columns);
   if (columns.channels.empty()) {
     text += fmt::format("position = {{ column = \"{0}\", unit = \"{0}\" }}\n", kBlank);
     text += fmt::format("command = {{ column = \"{0}\", unit = \"{0}\" }}{1}\n", kBlank,
@@ -368,35 +410,7 @@ std::string channels_text(const fs::path& file, const FileColumns& columns) {
   text += fmt::format("time = {{ column = {}, unit = {} }}{}\n", toml_quoted(columns.time),
                       toml_quoted(columns.time_unit.empty() ? "s" : columns.time_unit),
                       columns.time_unit.empty() ? comment("assumed: its name has no unit") : "");
-  std::vector<Channel> done;
-  for (const ChannelColumns& column : columns.channels) {
-    if (column.channel == Channel::pilot_pressure && !has_pilot(columns)) {
-      text +=
-          fmt::format("# '{}' looks like a pilot pressure, which drives no rig with a controller\n",
-                      column.stem);
-      continue;
-    }
-    if (column.channel == Channel::command && has_pilot(columns)) {
-      text += fmt::format(
-          "# '{}' also looks like a drive: the pilot pressure is nearer to the "
-          "spool\n",
-          column.stem);
-      continue;
-    }
-    const bool again = std::find(done.begin(), done.end(), column.channel) != done.end();
-    if (!again) {
-      done.push_back(column.channel);
-      const auto ways = one_each_way(columns, column.channel);
-      if (ways && (column.channel == Channel::command || column.channel == Channel::pilot_pressure))
-        text += channel_line(column.channel, ways->out, column.unit, ways->in);
-      else
-        text +=
-            channel_line(column.channel, column.numbers.empty() ? column.stem : "", column.unit);
-    } else if (column.numbers.empty() && !one_each_way(columns, column.channel)) {
-      text += fmt::format("# '{}' also looks like {}\n", column.stem, info(column.channel).key);
-    }
-  }
-  return text + unknown_columns_text(file, columns);
+  return text + known_channels_text(columns) + unknown_columns_text(file, columns);
 }
 
 /// Lists unnamed lines with their ranges, from which the user can identify them.
@@ -412,8 +426,9 @@ std::string rows_text(const fs::path& file, const FileColumns& columns) {
   for (const std::string& row : columns.rows) {
     const auto values = read(file, columns.time, row).at(1);
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
-    text += fmt::format("# {}: {:.6g} to {:.6g}\n", row, *low, *high);
+    text += fmt::format("# {}: {:.6g} to {:.6g}\n", in_comment(row), *low, *high);
   }
+  if (motion_of(columns) != nullptr) return text;
   return text + fmt::format("position = {{ column = {0}, unit = {0} }}{1}\n", toml_quoted(kBlank),
                             comment(columns.time.ends_with("(1,:)") ? "one of these rows"
                                                                     : "one of these columns"));
@@ -791,9 +806,10 @@ std::vector<FileGroup> groups_of(std::vector<Recording> recordings) {
   std::vector<std::string> ids;
   for (auto& [key, group] : groups) {
     if (group.files.size() == 1) group.id = id_of(group.files[0].file.stem().string());
-    const auto same = std::count(ids.begin(), ids.end(), group.id);
+    const std::string own = group.id;
+    for (int i = 2; std::find(ids.begin(), ids.end(), group.id) != ids.end(); ++i)
+      group.id = fmt::format("{}-{}", own, i);
     ids.push_back(group.id);
-    if (same > 0) group.id += fmt::format("-{}", same + 1);
     result.push_back(group);
   }
   return result;
@@ -857,7 +873,8 @@ Draft draft_campaign(const std::vector<fs::path>& files, const fs::path& folder)
       "# rigcal check on this file. docs/campaign-file.md explains every key.\n"
       "schema = \"rigcal.campaign/1\"\nname = \"New rig\"\n\n",
       kSchemaFile, kBlank);
-  for (const std::string& file : left_out) text += fmt::format("# left out: {}\n", file);
+  for (const std::string& file : left_out)
+    text += fmt::format("# left out: {}\n", in_comment(file));
   if (!left_out.empty()) text += "\n";
   auto plant = chambers || has_pilot(columns) ? model::PlantKind::two_chamber
                                               : model::PlantKind::load_pressure;

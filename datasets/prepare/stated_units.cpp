@@ -25,7 +25,8 @@ struct NamedUnit {
 std::optional<NamedUnit> named_unit(const ColumnLabel& label) {
   if (!label.unit.empty()) {
     const std::string unit = unit_of_text(label.unit);
-    return unit.empty() ? std::nullopt : std::optional(NamedUnit{unit, true});
+    // A "g" may be grams, and the gravity of an acceleration.
+    return unit.empty() ? std::nullopt : std::optional(NamedUnit{unit, unit != "g"});
   }
   const auto found = unit_in_name(label.name);
   return found ? std::optional(NamedUnit{found->unit, found->is_certain}) : std::nullopt;

@@ -11,10 +11,17 @@
 namespace rigcal::datasets {
 namespace {
 
-constexpr std::array<std::string_view, 30> kUnits{
-    "s",  "ms",  "us",   "min",  "V",   "mV",  "m",    "cm",  "mm",  "um",
-    "in", "bar", "mbar", "Pa",   "kPa", "MPa", "psi",  "N",   "kN",  "lbf",
+constexpr std::array<std::string_view, 34> kUnits{
+    "s",  "ms",  "us",   "min",  "V",   "mV",  "m",    "cm",  "mm",  "um",  "%",   "lpm",
+    "in", "bar", "mbar", "Pa",   "kPa", "MPa", "psi",  "N",   "kN",  "lbf", "gpm", "rpm",
     "K",  "C",   "degC", "degF", "mA",  "A",   "inch", "hPa", "deg", "rad"};
+
+/// Numerators and denominators of units that names split: "v_mm_s", "a_m_s2", "Q_l/min".
+constexpr std::array<std::string_view, 7> kMoving{"m",    "mm",  "cm", "um",
+                                                  "inch", "deg", "rad"};  // "in" is a word
+constexpr std::array<std::string_view, 2> kLitres{"l", "L"};
+constexpr std::array<std::string_view, 2> kPerSecond{"s", "sec"};
+constexpr std::array<std::string_view, 3> kPerSecondSquared{"s2", "s^2", "s\u00b2"};
 
 /// Common spellings of units, in lower case, with the units that they mean.
 constexpr std::array kSpellings{std::pair<std::string_view, std::string_view>{"c", "degC"},
@@ -28,11 +35,14 @@ constexpr std::array kSpellings{std::pair<std::string_view, std::string_view>{"c
                                 std::pair<std::string_view, std::string_view>{"bar(a)", "bar"},
                                 std::pair<std::string_view, std::string_view>{"kg/cm2", "kgf/cm2"},
                                 std::pair<std::string_view, std::string_view>{"kg/cm^2", "kgf/cm2"},
-                                std::pair<std::string_view, std::string_view>{"lbs", "lbf"}};
+                                std::pair<std::string_view, std::string_view>{"lbs", "lbf"},
+                                std::pair<std::string_view, std::string_view>{"pct", "%"},
+                                std::pair<std::string_view, std::string_view>{"percent", "%"},
+                                std::pair<std::string_view, std::string_view>{"prozent", "%"}};
 
 /// After one of these words, an isolated A means a chamber, not amperes.
-constexpr std::array<std::string_view, 5> kChamberWords{"p", "pressure", "chamber", "druck",
-                                                        "kammer"};
+constexpr std::array<std::string_view, 8> kChamberWords{"p",      "pressure", "chamber", "druck",
+                                                        "kammer", "port",     "side",    "seite"};
 
 /// Units that are also words, or names of chambers and gauges.
 constexpr std::array<std::string_view, 6> kWords{"in", "min", "A", "at", "h", "d"};
@@ -154,6 +164,22 @@ bool is_number(std::string_view name, const Part& part) {
                      [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
+/// Returns the unit that a part of a name and the one behind it spell together, such as "mm/s" for
+/// "mm" and "s"; empty if they do not. A unit ends the name, but for a number.
+std::string joined_unit(std::string_view name, const std::vector<Part>& parts, std::size_t i) {
+  if (i + 1 >= parts.size()) return {};
+  if (i + 2 < parts.size() && !is_number(name, parts[i + 2])) return {};
+  const auto text_of = [&](const Part& part) {
+    return name.substr(part.begin, part.end - part.begin);
+  };
+  const std::string_view above = text_of(parts[i]);
+  const std::string_view below = text_of(parts[i + 1]);
+  if (is_among(kLitres, above) && below == "min") return "L/min";
+  if (!is_among(kMoving, above)) return {};
+  if (is_among(kPerSecond, below)) return std::string(above) + "/s";
+  return is_among(kPerSecondSquared, below) ? std::string(above) + "/s2" : std::string();
+}
+
 /// Returns the last unit with the highest priority. A "pa" at the end of a name counts as a unit. A
 /// unit that is also a word counts only if nothing but a number follows, unlike the "in" of
 /// "duty_in_pct".
@@ -164,11 +190,14 @@ std::optional<UnitInName> behind_a_word(std::string_view name) {
   std::optional<UnitInName> found;
   int most = 0;
   for (std::size_t i = 1; i < parts.size(); ++i) {
+    if (const std::string joined = joined_unit(name, parts, i); !joined.empty())
+      return UnitInName{joined, parts[i].begin, parts[i + 1].end, false};
     const std::string_view text = name.substr(parts[i].begin, parts[i].end - parts[i].begin);
     const std::string_view before =
         name.substr(parts[i - 1].begin, parts[i - 1].end - parts[i - 1].begin);
     const bool is_pascal = text == "pa" && i + 1 == parts.size();
-    if (!is_pascal && (!is_among(kUnits, text) || is_chamber(text, before))) continue;
+    const bool is_usual = is_among(kUnits, text) || text == "Nm" || unit_of_text(text) == "%";
+    if (!is_pascal && (!is_usual || is_chamber(text, before))) continue;
     if (is_among(kWords, text) && i + 1 < parts.size() && !is_number(name, parts[i + 1])) continue;
     const int weight = weight_of(text);
     if (weight < most) continue;
@@ -183,6 +212,7 @@ std::optional<UnitInName> behind_a_word(std::string_view name) {
 std::string unit_of_text(std::string_view text) {
   text = without_spaces(text.substr(0, text.find(" since ")));
   if (text.empty()) return {};
+  if (text == "Nm") return "N m";  // nanometres are "nm"
   const std::string small = lower_case(text);
   for (const auto& [spelling, unit] : kSpellings)
     if (small == spelling && (text.size() > 1 || text == "C")) return std::string(unit);

@@ -39,7 +39,7 @@ TEST_CASE("guess_column: channels and units by name", "[datasets]") {
                                 {"force_norm", Channel::force, ""},
                                 {"setpoint_bar", Channel::load_pressure_reference, "bar"},
                                 {"acc_x", Channel::acceleration, ""},
-                                {"acc_base_g", Channel::base_acceleration, ""},
+                                {"acc_base_g", Channel::base_acceleration, "gravity"},
                                 {"ground acceleration [m/s2]", Channel::base_acceleration, "m/s2"},
                                 {"log.position", Channel::position, ""},
                                 {"F_kN", Channel::force, "kN"},
@@ -59,7 +59,7 @@ TEST_CASE("guess_column: channels and units by name", "[datasets]") {
                                 {"drive_V", Channel::command, "V"},
                                 {"dem_mm", Channel::reference, "mm"},
                                 {"target_mm", Channel::reference, "mm"},
-                                {"duty_arm_in_pct", Channel::command, ""},
+                                {"duty_arm_in_pct", Channel::command, "%"},
                                 {"block", std::nullopt, ""},
                                 {"data(:,2)", std::nullopt, ""},
                                 {"", std::nullopt, ""}};
@@ -82,11 +82,114 @@ TEST_CASE("guess_column: the time", "[datasets]") {
   CHECK(guess_column("t_ms").unit == "ms");
 }
 
+TEST_CASE("guess_column: the part in a loop is apart from the quantity", "[datasets]") {
+  const auto channel = [](const char* name) { return guess_column(name).channel; };
+  for (const char* name :
+       {"x_cmd_mm", "x_des_mm", "pos_cmd_mm", "pos_ref_mm", "Weg_Soll_mm", "Position_soll_mm",
+        "Displacement Command (mm)", "Axial Displacement Command", "Wegsoll", "target position",
+        "refpos", "xref", "x_d_mm", "u_mm", "r_mm", "Position Setpoint [mm]", "x_cmd_V"}) {
+    CAPTURE(name);
+    CHECK(channel(name) == Channel::reference);
+  }
+  for (const char* name :
+       {"Kraft_Soll_kN", "Sollkraft", "target load kN", "Axial Force Command", "Fsoll_N"}) {
+    CAPTURE(name);
+    CHECK(channel(name) == Channel::force_reference);
+  }
+  for (const char* name : {"acc_ref_g", "a_soll_g", "Beschleunigung Soll [m/s2]"}) {
+    CAPTURE(name);
+    CHECK(channel(name) == Channel::acceleration_reference);
+  }
+  for (const char* name : {"valve command", "spool_cmd_V", "Steuerspannung", "Ventilstrom_mA",
+                           "servo cmd [V]", "cmd_v", "u_soll_V", "Stellgröße"}) {
+    CAPTURE(name);
+    CHECK(channel(name) == Channel::command);
+  }
+  for (const char* name : {"act_mm", "actual_mm", "fb_mm", "Istweg", "xist", "Kolbenposition [mm]",
+                           "Zylinderweg", "LVDT1", "rod_mm", "x_r_mm", "x_l_mm"}) {
+    CAPTURE(name);
+    CHECK(channel(name) == Channel::position);
+  }
+  CHECK(channel("p_ref_bar") == Channel::load_pressure_reference);
+  CHECK(channel("Istkraft") == Channel::force);
+  CHECK(channel("feedback_kN") == Channel::force);
+}
+
+TEST_CASE("guess_column: where a pressure is", "[datasets]") {
+  struct Case {
+    const char* name;
+    std::optional<Channel> channel;
+  };
+  for (const Case& each :
+       {Case{"Druck Kolbenseite [bar]", Channel::pressure_a},
+        Case{"Druck Stangenseite [bar]", Channel::pressure_b},
+        Case{"Ringseite_bar", Channel::pressure_b}, Case{"Head Pressure", Channel::pressure_a},
+        Case{"Rod Pressure", Channel::pressure_b}, Case{"Cap Pressure [bar]", Channel::pressure_a},
+        Case{"Bore Pressure", Channel::pressure_a}, Case{"Pressure Port A", Channel::pressure_a},
+        Case{"Pressure Port B [bar]", Channel::pressure_b},
+        Case{"Piston Side Pressure", Channel::pressure_a}, Case{"p_1_bar", Channel::pressure_a},
+        Case{"Pumpendruck", Channel::supply_pressure},
+        Case{"Return pressure_bar", Channel::tank_pressure},
+        Case{"load_bar", Channel::load_pressure}, Case{"deltap_bar", Channel::load_pressure},
+        Case{"p_x_bar", std::nullopt}, Case{"p_bar_01", std::nullopt},
+        Case{"p_A_ref_bar", std::nullopt},  // no loop controls one side
+        Case{"oil pressure_bar", std::nullopt}}) {
+    CAPTURE(each.name);
+    CHECK(guess_column(each.name).channel == each.channel);
+  }
+}
+
+TEST_CASE("guess_column: what no channel records", "[datasets]") {
+  struct Case {
+    const char* name;
+    std::string_view other;
+  };
+  for (const Case& each :
+       {Case{"v_mm_s", "a velocity"}, Case{"v_mm/s", "a velocity"},
+        Case{"Geschwindigkeit_mm/s", "a velocity"}, Case{"Durchfluss_l/min", "a flow"},
+        Case{"Drehmoment_Nm", "a torque"}, Case{"n_rpm", ""}, Case{"y_%", ""},
+        Case{"err_mm", "an error of control"}, Case{"valve_position_mm", "the position of a spool"},
+        Case{"ref_deg", "the reference of an angle, which no loop controls"},
+        Case{"supply voltage [V]", ""}, Case{"start", ""}, Case{"offset", ""},
+        Case{"Untitled 1", ""}}) {
+    CAPTURE(each.name);
+    const ColumnGuess guess = guess_column(each.name);
+    CHECK_FALSE(guess.is_time);
+    CHECK_FALSE(guess.channel);
+    CHECK(guess.other == each.other);
+  }
+}
+
+TEST_CASE("guess_column: units of several parts, and capital umlauts", "[datasets]") {
+  CHECK(guess_column("a_m/s2").channel == Channel::acceleration);
+  CHECK(guess_column("acc_g").unit == "gravity");
+  CHECK(guess_column("acc [g]").unit == "gravity");
+  CHECK(guess_column("acc", "g").unit == "gravity");
+  CHECK(guess_column("Öltemperatur [degC]").channel == Channel::temperature);
+  CHECK(guess_column("STELLGRÖSSE").channel == std::nullopt);  // SS is not lowered to ß
+  CHECK(guess_column("Rücklaufdruck").channel == Channel::tank_pressure);
+  CHECK(guess_column("RÜCKLAUFDRUCK").channel == Channel::tank_pressure);
+}
+
+TEST_CASE("guess_column: a unit that the file gives decides like one in the name", "[datasets]") {
+  CHECK(guess_column("cmd", "mm").channel == Channel::reference);
+  CHECK(guess_column("cmd", "V").channel == Channel::command);
+  CHECK(guess_column("Axial Displacement Command", "mm").channel == Channel::reference);
+  CHECK(guess_column("x", "bar").channel == std::nullopt);
+  CHECK(guess_column("p", "PSI").unit == "psi");
+  CHECK(guess_column("x", "counts").unit == "counts");
+}
+
 TEST_CASE("guess_by_unit: where the name tells nothing", "[datasets]") {
-  CHECK(guess_by_unit("mm", false) == Channel::position);
-  CHECK(guess_by_unit("mm", true) == Channel::reference);
-  CHECK(guess_by_unit("bar", true) == Channel::pressure_a);
-  CHECK(guess_by_unit("mV", true) == Channel::command);
-  CHECK_FALSE(guess_by_unit("", true));
-  CHECK_FALSE(guess_by_unit("rpm", true));
+  const auto guess = [](const char* unit, std::vector<Channel> taken) {
+    return guess_by_unit(unit, taken);
+  };
+  CHECK(guess("mm", {}) == Channel::position);
+  CHECK(guess("mm", {Channel::position}) == Channel::reference);
+  CHECK(guess("bar", {Channel::position}) == Channel::pressure_a);
+  CHECK(guess("bar", {Channel::pressure_a}) == Channel::pressure_b);
+  CHECK(guess("mV", {}) == Channel::command);
+  CHECK_FALSE(guess("mm", {Channel::position, Channel::reference}));
+  CHECK_FALSE(guess("", {}));
+  CHECK_FALSE(guess("rpm", {}));
 }

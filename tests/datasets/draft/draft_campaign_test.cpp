@@ -1,6 +1,7 @@
 #include "datasets/draft/draft_campaign.hpp"
 
 #include <fmt/format.h>
+#include <toml++/toml.h>
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -277,6 +278,79 @@ TEST_CASE("draft_campaign: a summary beside the recordings is left out", "[datas
   CHECK_THAT(draft, Contains("# left out: summary.csv (no column looks like a time"));
   CHECK_THAT(draft, !Contains("id = \"summary\"") && Contains("\"sine_1.csv\""));
   CHECK_THAT(draft, Contains("model = \"load_pressure\""));
+}
+
+TEST_CASE("draft_campaign: every draft is TOML and has each channel once", "[datasets]") {
+  const std::vector<std::string> headers{
+      "sample,ref_mm,x_l_mm,x_r_mm",  // two positions and no time
+      "t,ref_mm,x_l_mm,x_r_mm",
+      "t,u_V,x_mm,y_mm,pA_bar,p1_bar,p_cap_bar",
+      "sample,cmd,lvdt",
+      "sample,ref,cmd,drive",
+      "t_s,pilot_out_bar,pilot_in_bar,u_V,x_mm",
+      "n,pilot_out_bar,pilot_in_bar,u_V,x_mm",
+      "n,u_up_V,u_down_V,angle_deg,theta",
+      "n,ref_mm,pilot_bar,x_mm",
+      "t,\"a \"\"quoted\"\" name\",x\\y_mm,\x01 [mm]",
+      "t_s,x_1,x_2,x_3",
+      "n,x_1,x_2,x_3",
+      "n,x_1,x_2,y_1,y_2",
+      "Zeit;Soll;Ist;Weg",
+      "a,b,c",
+      "X_Axis,ref_mm,pos_mm",
+      "t,F_kN,force_N,load_N,ref_kN,cmd_kN",
+      "t,t_2,time,x",
+      "t,T_degC,temp,x_mm,acc_x,acc_y,acc_base_x,acc_base_y"};
+  for (const std::string& header : headers) {
+    CAPTURE(header);
+    const TemporaryFolder folder;
+    std::string text = header + "\n";
+    const char separator = header.find(';') == std::string::npos ? ',' : ';';
+    const auto columns = std::count(header.begin(), header.end(), separator) + 1;
+    for (int i = 0; i < 20; ++i)
+      for (long k = 0; k < columns; ++k)
+        text += fmt::format("{}{}", k == 0 ? 0.5 * i : std::sin(0.3 * i + static_cast<double>(k)),
+                            k + 1 < columns ? separator : '\n');
+    std::string draft;
+    try {
+      draft = draft_campaign({folder.write("a.csv", text)}, folder.path()).text;
+    } catch (const InputError&) {
+      continue;  // refused, as a header with control characters is
+    }
+    // A channel that occurs twice, or a comment that has ended, is invalid.
+    CHECK_NOTHROW(toml::parse(draft));
+  }
+}
+
+TEST_CASE("draft_campaign: names with control characters do not end a comment", "[datasets]") {
+  const TemporaryFolder folder;
+  std::vector<double> values;
+  for (int i = 0; i < 20; ++i) values.push_back(0.1 * i);
+  const fs::path path = folder.path() / "run.h5";
+  {
+    const Hdf5Writer file(path);
+    for (const char* name : {"/t", "/x", "/x\ny", "/odd\nname = 1"})
+      file.array(name, values, {values.size()});
+  }
+  CHECK_NOTHROW(toml::parse(draft_campaign({path}, folder.path()).text));
+}
+
+TEST_CASE("draft_campaign: conditions have ids of their own", "[datasets]") {
+  const TemporaryFolder folder;
+  const std::string text = sine_csv(0.1);
+  const std::string draft =
+      draft_campaign({folder.write("a-.csv", text), folder.write("a-.txt", text),
+                      folder.write("a-2x.csv", text), folder.write("a-2x.txt", text),
+                      folder.write("a-2x-2.csv", text)},
+                     folder.path())
+          .text;
+  const auto parsed = toml::parse(draft);
+  std::vector<std::string> ids;
+  for (const auto& condition : *parsed["condition"].as_array())
+    ids.push_back(condition.at_path("id").value_or(std::string()));
+  REQUIRE(ids.size() == 5);
+  std::sort(ids.begin(), ids.end());
+  CHECK(std::adjacent_find(ids.begin(), ids.end()) == ids.end());
 }
 
 TEST_CASE("draft_campaign: a file whose time restarts is left out", "[datasets]") {

@@ -36,6 +36,8 @@ TEST_CASE("require_stated_unit: a contradiction names both units and both places
                  Contains("ignore_unit = \"psi\""));
   CHECK_THAT(unit_refusal(stated_unit("bar"), {"/run/p", "kPa", "attribute of its unit", 0}),
              Contains("run.csv: attribute of its unit: column '/run/p' is in kPa"));
+  // A "g" of an acceleration is no gram.
+  CHECK(unit_refusal(stated_unit("gravity"), {"acc", "g", "row of units", 2}) == "no error");
   const std::vector<std::pair<std::string, std::string>> contradictions{
       {"mm", "x [m]"},   {"mm", "x_mm (m)"}, {"s", "t_s [ms]"},     {"mm", "x_m"},
       {"K", "T [degC]"}, {"mm", "x [V]"},    {"bar", "p [kgf/cm2]"}};

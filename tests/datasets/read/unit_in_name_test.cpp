@@ -39,7 +39,20 @@ TEST_CASE("unit_in_name: in brackets, or behind a word", "[datasets]") {
                                 {"x_in_1", "in", false},
                                 {"p_pa", "Pa", false},
                                 {"p (in)", "in", false},
-                                {"t (min)", "min", false}};
+                                {"t (min)", "min", false},
+                                {"v_mm_s", "mm/s", false},
+                                {"v_mm/s", "mm/s", false},
+                                {"v_mm_s_03", "mm/s", false},
+                                {"acc_m_s2", "m/s2", false},
+                                {"a_m/s^2", "m/s2", false},
+                                {"q_l/min", "L/min", false},
+                                {"omega_deg_s", "deg/s", false},
+                                {"x_mm_s_filtered", "mm", false},  // "s" may be anything here
+                                {"p_bar_s", "bar", false},         // of the supply
+                                {"duty_pct", "%", false},
+                                {"y_%", "%", false},
+                                {"M_Nm", "N m", false},
+                                {"n_rpm", "rpm", false}};
   for (const Case& each : cases) {
     CAPTURE(each.name);
     const auto found = unit_in_name(each.name);
@@ -49,7 +62,7 @@ TEST_CASE("unit_in_name: in brackets, or behind a word", "[datasets]") {
   }
   for (const char* name :
        {"x", "x (ist)", "p (A)", "pressure (g)", "x [-]", "x [1]", "data(:,3)", "ans(2,:)", "p_A",
-        "/s/x", "run (2)", "", "[mm]", "x [", "log.s.values"}) {
+        "/s/x", "run (2)", "Pressure Port A", "", "[mm]", "x [", "log.s.values"}) {
     CAPTURE(name);
     CHECK_FALSE(unit_in_name(name));
   }
@@ -61,6 +74,9 @@ TEST_CASE("unit_of_text: what UDUNITS calls it", "[datasets]") {
   CHECK(unit_of_text("BAR") == "bar");
   CHECK(unit_of_text("S") == "s");
   CHECK(unit_of_text("Volt") == "Volt");
+  CHECK(unit_of_text("Nm") == "N m");
+  CHECK(unit_of_text("nm") == "nm");
+  CHECK(unit_of_text("percent") == "%");
   for (const char* text : {"", "raw", "2 mm", "see note", "-"}) {
     CAPTURE(text);
     CHECK(unit_of_text(text).empty());
