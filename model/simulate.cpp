@@ -243,11 +243,15 @@ bool too_fast(const SimulationInputs& inputs, std::span<const double> times_s) {
          fast(inputs.base_acceleration_m_per_s2) || fast(inputs.oil_temperature_k);
 }
 
-/// @param state  start of the run; null: the rig's initial state
-Simulation simulate_either(const Eigen::VectorXd* state, const Rig& rig,
-                           const ParameterValues& parameters, std::span<const int> free,
-                           const SimulationInputs& inputs, std::span<const double> times_s,
-                           std::span<const Output> outputs, const SimulationOptions& options) {
+}  // namespace
+
+StateCount count_states(const Rig& rig, const ParameterValues& parameters) {
+  return {layout_of(rig, parameters, {}, plant_states(rig.plant)).states, largest_room(rig.plant)};
+}
+
+Simulation simulate(const Rig& rig, const ParameterValues& parameters, std::span<const int> free,
+                    const SimulationInputs& inputs, std::span<const double> times_s,
+                    std::span<const Output> outputs, const SimulationOptions& options) {
   const auto started = std::chrono::steady_clock::now();
   options.validate();
   const auto table = parameter_table(rig.plant);
@@ -268,11 +272,6 @@ Simulation simulate_either(const Eigen::VectorXd* state, const Rig& rig,
   const Layout layout = layout_of(
       rig, parameters, free, plant_states(rig.plant),
       inputs.external_force_n.has_value() || inputs.base_acceleration_m_per_s2.has_value());
-  if (state != nullptr) {
-    require(state->size() == layout.states, "the state is that of another rig");
-    require(state->allFinite(), "the state must be finite");
-    require(!layout.sampled(), "a sampled controller cannot go on from a state");
-  }
   result.reason = bad_parameter(parameters, layout, inputs);
   if (!result.reason.empty()) {
     result.status = SimulationStatus::bad_parameters;
@@ -291,14 +290,10 @@ Simulation simulate_either(const Eigen::VectorXd* state, const Rig& rig,
   // Left uninitialised, because a successful simulation writes all elements.
   result.outputs.resize(samples, static_cast<Eigen::Index>(outputs.size()));
   result.sensitivities.resize(outputs.size());
-  const Eigen::Index columns =
-      static_cast<Eigen::Index>(free.size()) + (state != nullptr ? layout.states : 0);
-  for (Eigen::MatrixXd& each : result.sensitivities) each.resize(samples, columns);
   // Allocated here and not in the solver: memory that code for AVX2 allocates must not be freed by
   // code for other processors.
-  result.end_state.resize(layout.states);
-  result.state_floor.resize(layout.states);
-  result.end_sensitivities.resize(layout.states, columns);
+  for (Eigen::MatrixXd& each : result.sensitivities)
+    each.resize(samples, static_cast<Eigen::Index>(free.size()));
   std::optional<SampledPeriod> period;
   if (options.periodic_steady_state) {
     const std::optional<double> tick_s =
@@ -314,13 +309,12 @@ Simulation simulate_either(const Eigen::VectorXd* state, const Rig& rig,
         parameters["transport_delay"] > 0.5 * period->duration_s)
       period.reset();
   }
-  dispatch({layout, rig.initial, rig.before, state, parameters, free, inputs, at_s, outputs,
-            options, period, started},
+  dispatch({layout, rig.initial, rig.before, parameters, free, inputs, at_s, outputs, options,
+            period, started},
            result);
   if (result.ok()) read_sensors(at, outputs, parameters, free, result);
   const bool finite =
-      all_finite(result.outputs) && all_finite(result.end_state) &&
-      all_finite(result.end_sensitivities) &&
+      all_finite(result.outputs) &&
       std::all_of(result.sensitivities.begin(), result.sensitivities.end(), all_finite);
   if (result.ok() && !finite) {
     result.status = SimulationStatus::not_finite;
@@ -330,29 +324,8 @@ Simulation simulate_either(const Eigen::VectorXd* state, const Rig& rig,
   if (!result.ok()) {
     result.outputs.resize(0, 0);
     result.sensitivities.clear();
-    result.end_state.resize(0);
-    result.end_sensitivities.resize(0, 0);
   }
   return result;
-}
-
-}  // namespace
-
-StateCount count_states(const Rig& rig, const ParameterValues& parameters) {
-  return {layout_of(rig, parameters, {}, plant_states(rig.plant)).states, largest_room(rig.plant)};
-}
-
-Simulation simulate(const Rig& rig, const ParameterValues& parameters, std::span<const int> free,
-                    const SimulationInputs& inputs, std::span<const double> times_s,
-                    std::span<const Output> outputs, const SimulationOptions& options) {
-  return simulate_either(nullptr, rig, parameters, free, inputs, times_s, outputs, options);
-}
-
-Simulation simulate_from(const Eigen::VectorXd& state, const Rig& rig,
-                         const ParameterValues& parameters, std::span<const int> free,
-                         const SimulationInputs& inputs, std::span<const double> times_s,
-                         std::span<const Output> outputs, const SimulationOptions& options) {
-  return simulate_either(&state, rig, parameters, free, inputs, times_s, outputs, options);
 }
 
 }  // namespace rigcal::model

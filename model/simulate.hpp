@@ -170,11 +170,6 @@ struct Simulation {
   Eigen::MatrixXd outputs;   ///< shape (samples, outputs), SI
   /// d outputs / d parameter: one matrix of shape (samples, free) per output, SI.
   std::vector<Eigen::MatrixXd> sensitivities;
-  /// State at the last sample: plant, hoses, supply, second mass, valve and controller, in the
-  /// order of Layout.
-  Eigen::VectorXd end_state;
-  Eigen::MatrixXd end_sensitivities;  ///< shape (states, columns of `sensitivities`)
-  Eigen::VectorXd state_floor;        ///< size below which the error control treats a state as zero
   long steps = 0;
   long rejected_steps = 0;
   bool ok() const { return status == SimulationStatus::ok; }
@@ -208,18 +203,5 @@ StateCount count_states(const Rig& rig, const ParameterValues& parameters);
 Simulation simulate(const Rig& rig, const ParameterValues& parameters, std::span<const int> free,
                     const SimulationInputs& inputs, std::span<const double> times_s,
                     std::span<const Output> outputs, const SimulationOptions& options = {});
-
-/// Simulates from a state in the middle of a longer run instead of the rig's initial state. If
-/// `state` is the `end_state` of a run that ended at the first of `times_s`, the simulation
-/// continues that run. Sensor lags start anew.
-///
-/// @param state  shape (states), at the first of `times_s`. All sensitivities have one column per
-///               state after the columns of `free`.
-/// @throws std::invalid_argument  under the conditions of simulate(), and if the controller has a
-///                                `sample_time`, because the phase of its ticks is unknown
-Simulation simulate_from(const Eigen::VectorXd& state, const Rig& rig,
-                         const ParameterValues& parameters, std::span<const int> free,
-                         const SimulationInputs& inputs, std::span<const double> times_s,
-                         std::span<const Output> outputs, const SimulationOptions& options = {});
 
 }  // namespace rigcal::model

@@ -16,7 +16,6 @@ struct SizedRequest {
   const Layout& layout;
   InitialState initial;
   Before before;
-  const Eigen::VectorXd* state;  ///< start of the run; null: start from `initial`
   const ParameterValues& parameters;
   std::span<const int> free;
   const SimulationInputs& inputs;
