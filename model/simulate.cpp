@@ -12,36 +12,13 @@
 #include "model/arithmetic/subnormals.hpp"
 #include "model/plant/layout.hpp"
 #include "model/plant/plants.hpp"
-#include "model/plant/sensors.hpp"
 #include "model/signal/same_instant.hpp"
-#include "model/signal/sampled_period.hpp"
+#include "model/solver/sampled_period.hpp"
+#include "model/solver/sensors.hpp"
 #include "model/solver/simulate_sized.hpp"
 
 namespace rigcal::model {
 namespace {
-
-struct OutputName {
-  Output output;
-  std::string_view name;
-};
-constexpr std::array kOutputNames{
-    OutputName{Output::position, "position_m"},
-    OutputName{Output::velocity, "velocity_m_per_s"},
-    OutputName{Output::load_pressure, "load_pressure_pa"},
-    OutputName{Output::pressure_a, "pressure_a_pa"},
-    OutputName{Output::pressure_b, "pressure_b_pa"},
-    OutputName{Output::force, "force_n"},
-    OutputName{Output::command, "command_v"},
-    OutputName{Output::spool, "spool_m"},
-    OutputName{Output::servo_flow, "servo_flow_m3_per_s"},
-    OutputName{Output::leakage_flow, "leakage_flow_m3_per_s"},
-    OutputName{Output::work_flow, "work_flow_m3_per_s"},
-    OutputName{Output::acceleration, "acceleration_m_per_s2"},
-    OutputName{Output::payload_acceleration, "payload_acceleration_m_per_s2"},
-    OutputName{Output::angle, "angle_rad"},
-    OutputName{Output::angular_velocity, "angular_velocity_rad_per_s"},
-    OutputName{Output::pilot_pressure, "pilot_pressure_pa"},
-};
 
 /// Describes the first parameter in use that is not finite or outside its limits; empty if there is
 /// none. A second-order valve needs its damping ratio, a derivative action its filter, and oil that
@@ -159,58 +136,6 @@ InstructionSet best_instruction_set() {
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return InstructionSet::avx2;
 #endif
   return InstructionSet::base;
-}
-
-std::string_view output_name(Output output) {
-  for (const OutputName& row : kOutputNames) {
-    if (row.output == output) return row.name;
-  }
-  return "";
-}
-
-bool has_output(const ParameterValues& values, Output output) {
-  switch (output) {
-    case Output::payload_acceleration:
-      return values.is_given("payload_mass");
-    case Output::angle:
-    case Output::angular_velocity:
-      return values.plant == PlantKind::linkage;
-    case Output::pilot_pressure:
-      return values.is_given("pilot_gain");
-    case Output::command:
-      return !values.is_given("pilot_gain");
-    default:
-      return true;
-  }
-}
-
-std::string_view to_string(SimulationStatus status) {
-  switch (status) {
-    case SimulationStatus::ok:
-      return "ok";
-    case SimulationStatus::bad_parameters:
-      return "bad parameters";
-    case SimulationStatus::not_finite:
-      return "not finite";
-    case SimulationStatus::step_too_small:
-      return "step too small";
-    case SimulationStatus::too_many_steps:
-      return "too many steps";
-    case SimulationStatus::out_of_time:
-      return "out of time";
-    case SimulationStatus::cancelled:
-      return "cancelled";
-    case SimulationStatus::no_equilibrium:
-      return "no equilibrium";
-  }
-  return "";
-}
-
-void SimulationOptions::validate() const {
-  require(tolerance > 0.0 && tolerance < 0.1, "tolerance must lie between 0 and 0.1");
-  require(sensitivity_looseness > 0.0, "sensitivity_looseness must be positive");
-  require(max_steps > 0, "max_steps must be positive");
-  require(max_seconds > 0.0, "max_seconds must be positive");
 }
 
 namespace {

@@ -9,15 +9,16 @@
 #include <span>
 #include <vector>
 
+#include "model/plant/rig.hpp"
 #include "model/plant/system.hpp"
 #include "model/signal/known_periods.hpp"
 #include "model/signal/same_instant.hpp"
-#include "model/signal/sampled_period.hpp"
-#include "model/simulate.hpp"
 #include "model/solver/dormand_prince.hpp"
 #include "model/solver/error_norm.hpp"
 #include "model/solver/repeated_steps.hpp"
 #include "model/solver/rosenbrock.hpp"
+#include "model/solver/sampled_period.hpp"
+#include "model/solver/simulation.hpp"
 #include "model/solver/steady_state.hpp"
 
 namespace rigcal::model {

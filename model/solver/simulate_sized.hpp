@@ -4,8 +4,9 @@
 #include <span>
 
 #include "model/plant/layout.hpp"
-#include "model/signal/sampled_period.hpp"
-#include "model/simulate.hpp"
+#include "model/plant/rig.hpp"
+#include "model/solver/sampled_period.hpp"
+#include "model/solver/simulation.hpp"
 
 namespace rigcal::model {
 

@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "model/arithmetic/state.hpp"
-#include "model/signal/sampled_period.hpp"
 #include "model/solver/error_norm.hpp"
+#include "model/solver/sampled_period.hpp"
 
 namespace rigcal::model {
 

@@ -25,7 +25,7 @@ std::string freedom_text(double freedom) {
 }
 
 doc::Row budget_row(const StoredParameter& p) {
-  const RowUnit unit = unit_of(p);
+  const ReadableUnit unit = unit_of(p);
   const calib::Budget95& budget = *p.budget;
   const auto number = [&](double value) { return doc::in_unit(value, unit.si, kBudgetDigits); };
   const calib::BudgetLine* largest = budget.largest_effect();
@@ -39,7 +39,7 @@ doc::Row budget_row(const StoredParameter& p) {
 /// Adds the rows of one uncertainty budget. Negligible contributions are combined in one row.
 void add_lines(const StoredParameter& p, std::vector<doc::Row>& rows) {
   constexpr double kHardly = 1e-3;  // as a fraction of the variance
-  const RowUnit unit = unit_of(p);
+  const ReadableUnit unit = unit_of(p);
   const calib::Budget95& budget = *p.budget;
   const double whole = budget.combined * budget.combined;
   double others = 0.0;
@@ -61,7 +61,7 @@ void add_lines(const StoredParameter& p, std::vector<doc::Row>& rows) {
 
 /// Formats the size or an estimate of an effect in a suitable unit.
 Line effect_number(const std::optional<double>& value, const std::optional<double>& half_width,
-                   const RowUnit& unit) {
+                   const ReadableUnit& unit) {
   Line line{doc::in_unit(value, unit.si, kBudgetDigits)};
   if (value && half_width) {
     line.emplace_back(" ± ");
@@ -71,7 +71,7 @@ Line effect_number(const std::optional<double>& value, const std::optional<doubl
 }
 
 doc::Row effect_row(const calib::ConsideredEffect& effect, bool missing) {
-  const RowUnit unit = row_unit(effect.size, effect.unit);
+  const ReadableUnit unit = readable_unit(effect.size, effect.unit);
   doc::Row row{{{Line{effect.key, " ", doc::Soft{effect.meaning}}},
                 doc::in_unit(effect.size, unit.si, kBudgetDigits),
                 {effect_number(effect.estimate, effect.standard_error, unit)},
@@ -90,8 +90,8 @@ std::string refit_sizes(const calib::Considered& considered, const calib::Refitt
   std::vector<std::string> words;
   for (std::size_t i = 0; i < std::min(model.effects.size(), model.sizes.size()); ++i) {
     const calib::ConsideredEffect* effect = considered.find(model.effects[i]);
-    const RowUnit unit =
-        effect == nullptr ? row_unit(model.sizes[i], "1") : row_unit(effect->size, effect->unit);
+    const ReadableUnit unit = effect == nullptr ? readable_unit(model.sizes[i], "1")
+                                                : readable_unit(effect->size, effect->unit);
     words.push_back(fmt::format("{} {}{}{}", model.effects[i],
                                 significant(model.sizes[i] / unit.si, kBudgetDigits),
                                 unit.name.empty() ? "" : " ", unit.name));
@@ -123,7 +123,7 @@ void add_refits(const StoredFit& fit, doc::Blocks& blocks) {
                       {"Unit", Kind::unit}};
   for (const StoredParameter& p : fit.parameters) {
     if (!p.averaged) continue;
-    const RowUnit unit = unit_of(p);
+    const ReadableUnit unit = unit_of(p);
     averaged.rows.push_back(
         {{parameter_label(p), doc::in_unit(p.value, unit.si),
           doc::in_unit(p.averaged->value, unit.si),
@@ -133,7 +133,7 @@ void add_refits(const StoredFit& fit, doc::Blocks& blocks) {
 }
 
 doc::Row stability_row(const calib::StabilityCheck& check) {
-  const RowUnit unit = row_unit(check.value, check.unit);
+  const ReadableUnit unit = readable_unit(check.value, check.unit);
   return {{check.level ? fmt::format("{} ({})", check.key, *check.level) : check.key,
            doc::in_unit(check.value, unit.si),
            doc::in_unit(check.difference, unit.si, kBudgetDigits),
