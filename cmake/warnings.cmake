@@ -10,6 +10,8 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # else.
   target_compile_options(rigcal_warnings INTERFACE -Wno-dangling-reference)
 endif()
+# A state, rule or verdict without words does not compile (docs/decisions/0031).
+target_compile_options(rigcal_warnings INTERFACE -Werror=switch)
 if(RIGCAL_WERROR)
   target_compile_options(rigcal_warnings INTERFACE -Werror)
 endif()

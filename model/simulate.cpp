@@ -12,36 +12,13 @@
 #include "model/arithmetic/subnormals.hpp"
 #include "model/plant/layout.hpp"
 #include "model/plant/plants.hpp"
-#include "model/plant/sensors.hpp"
 #include "model/signal/same_instant.hpp"
-#include "model/signal/sampled_period.hpp"
+#include "model/solver/sampled_period.hpp"
+#include "model/solver/sensors.hpp"
 #include "model/solver/simulate_sized.hpp"
 
 namespace rigcal::model {
 namespace {
-
-struct OutputName {
-  Output output;
-  std::string_view name;
-};
-constexpr std::array kOutputNames{
-    OutputName{Output::position, "position_m"},
-    OutputName{Output::velocity, "velocity_m_per_s"},
-    OutputName{Output::load_pressure, "load_pressure_pa"},
-    OutputName{Output::pressure_a, "pressure_a_pa"},
-    OutputName{Output::pressure_b, "pressure_b_pa"},
-    OutputName{Output::force, "force_n"},
-    OutputName{Output::command, "command_v"},
-    OutputName{Output::spool, "spool_m"},
-    OutputName{Output::servo_flow, "servo_flow_m3_per_s"},
-    OutputName{Output::leakage_flow, "leakage_flow_m3_per_s"},
-    OutputName{Output::work_flow, "work_flow_m3_per_s"},
-    OutputName{Output::acceleration, "acceleration_m_per_s2"},
-    OutputName{Output::payload_acceleration, "payload_acceleration_m_per_s2"},
-    OutputName{Output::angle, "angle_rad"},
-    OutputName{Output::angular_velocity, "angular_velocity_rad_per_s"},
-    OutputName{Output::pilot_pressure, "pilot_pressure_pa"},
-};
 
 /// Describes the first parameter in use that is not finite or outside its limits; empty if there is
 /// none. A second-order valve needs its damping ratio, a derivative action its filter, oil that
@@ -164,58 +141,6 @@ InstructionSet best_instruction_set() {
   return InstructionSet::base;
 }
 
-std::string_view output_name(Output output) {
-  for (const OutputName& row : kOutputNames) {
-    if (row.output == output) return row.name;
-  }
-  return "";
-}
-
-bool has_output(const ParameterValues& values, Output output) {
-  switch (output) {
-    case Output::payload_acceleration:
-      return values.is_given("payload_mass");
-    case Output::angle:
-    case Output::angular_velocity:
-      return values.plant == PlantKind::linkage;
-    case Output::pilot_pressure:
-      return values.is_given("pilot_gain");
-    case Output::command:
-      return !values.is_given("pilot_gain");
-    default:
-      return true;
-  }
-}
-
-std::string_view to_string(SimulationStatus status) {
-  switch (status) {
-    case SimulationStatus::ok:
-      return "ok";
-    case SimulationStatus::bad_parameters:
-      return "bad parameters";
-    case SimulationStatus::not_finite:
-      return "not finite";
-    case SimulationStatus::step_too_small:
-      return "step too small";
-    case SimulationStatus::too_many_steps:
-      return "too many steps";
-    case SimulationStatus::out_of_time:
-      return "out of time";
-    case SimulationStatus::cancelled:
-      return "cancelled";
-    case SimulationStatus::no_equilibrium:
-      return "no equilibrium";
-  }
-  return "";
-}
-
-void SimulationOptions::validate() const {
-  require(tolerance > 0.0 && tolerance < 0.1, "tolerance must lie between 0 and 0.1");
-  require(sensitivity_looseness > 0.0, "sensitivity_looseness must be positive");
-  require(max_steps > 0, "max_steps must be positive");
-  require(max_seconds > 0.0, "max_seconds must be positive");
-}
-
 namespace {
 
 /// Does what Eigen's allFinite() does, but faster: allFinite() tests one number at a time. Eigen's
@@ -246,11 +171,15 @@ bool too_fast(const SimulationInputs& inputs, std::span<const double> times_s) {
          fast(inputs.base_acceleration_m_per_s2) || fast(inputs.oil_temperature_k);
 }
 
-/// @param state  start of the run; null: the rig's initial state
-Simulation simulate_either(const Eigen::VectorXd* state, const Rig& rig,
-                           const ParameterValues& parameters, std::span<const int> free,
-                           const SimulationInputs& inputs, std::span<const double> times_s,
-                           std::span<const Output> outputs, const SimulationOptions& options) {
+}  // namespace
+
+StateCount count_states(const Rig& rig, const ParameterValues& parameters) {
+  return {layout_of(rig, parameters, {}, plant_states(rig.plant)).states, largest_room(rig.plant)};
+}
+
+Simulation simulate(const Rig& rig, const ParameterValues& parameters, std::span<const int> free,
+                    const SimulationInputs& inputs, std::span<const double> times_s,
+                    std::span<const Output> outputs, const SimulationOptions& options) {
   const auto started = std::chrono::steady_clock::now();
   options.validate();
   const auto table = parameter_table(rig.plant);
@@ -271,11 +200,6 @@ Simulation simulate_either(const Eigen::VectorXd* state, const Rig& rig,
   const Layout layout = layout_of(
       rig, parameters, free, plant_states(rig.plant),
       inputs.external_force_n.has_value() || inputs.base_acceleration_m_per_s2.has_value());
-  if (state != nullptr) {
-    require(state->size() == layout.states, "the state is that of another rig");
-    require(state->allFinite(), "the state must be finite");
-    require(!layout.sampled(), "a sampled controller cannot go on from a state");
-  }
   result.reason = bad_parameter(parameters, layout, inputs);
   if (!result.reason.empty()) {
     result.status = SimulationStatus::bad_parameters;
@@ -294,14 +218,10 @@ Simulation simulate_either(const Eigen::VectorXd* state, const Rig& rig,
   // Left uninitialised, because a successful simulation writes all elements.
   result.outputs.resize(samples, static_cast<Eigen::Index>(outputs.size()));
   result.sensitivities.resize(outputs.size());
-  const Eigen::Index columns =
-      static_cast<Eigen::Index>(free.size()) + (state != nullptr ? layout.states : 0);
-  for (Eigen::MatrixXd& each : result.sensitivities) each.resize(samples, columns);
   // Allocated here and not in the solver: memory that code for AVX2 allocates must not be freed by
   // code for other processors.
-  result.end_state.resize(layout.states);
-  result.state_floor.resize(layout.states);
-  result.end_sensitivities.resize(layout.states, columns);
+  for (Eigen::MatrixXd& each : result.sensitivities)
+    each.resize(samples, static_cast<Eigen::Index>(free.size()));
   std::optional<SampledPeriod> period;
   if (options.periodic_steady_state) {
     const std::optional<double> tick_s =
@@ -317,13 +237,12 @@ Simulation simulate_either(const Eigen::VectorXd* state, const Rig& rig,
         parameters["transport_delay"] > 0.5 * period->duration_s)
       period.reset();
   }
-  dispatch({layout, rig.initial, rig.before, state, parameters, free, inputs, at_s, outputs,
-            options, period, started},
+  dispatch({layout, rig.initial, rig.before, parameters, free, inputs, at_s, outputs, options,
+            period, started},
            result);
   if (result.ok()) read_sensors(at, outputs, parameters, free, result);
   const bool finite =
-      all_finite(result.outputs) && all_finite(result.end_state) &&
-      all_finite(result.end_sensitivities) &&
+      all_finite(result.outputs) &&
       std::all_of(result.sensitivities.begin(), result.sensitivities.end(), all_finite);
   if (result.ok() && !finite) {
     result.status = SimulationStatus::not_finite;
@@ -333,29 +252,8 @@ Simulation simulate_either(const Eigen::VectorXd* state, const Rig& rig,
   if (!result.ok()) {
     result.outputs.resize(0, 0);
     result.sensitivities.clear();
-    result.end_state.resize(0);
-    result.end_sensitivities.resize(0, 0);
   }
   return result;
-}
-
-}  // namespace
-
-StateCount count_states(const Rig& rig, const ParameterValues& parameters) {
-  return {layout_of(rig, parameters, {}, plant_states(rig.plant)).states, largest_room(rig.plant)};
-}
-
-Simulation simulate(const Rig& rig, const ParameterValues& parameters, std::span<const int> free,
-                    const SimulationInputs& inputs, std::span<const double> times_s,
-                    std::span<const Output> outputs, const SimulationOptions& options) {
-  return simulate_either(nullptr, rig, parameters, free, inputs, times_s, outputs, options);
-}
-
-Simulation simulate_from(const Eigen::VectorXd& state, const Rig& rig,
-                         const ParameterValues& parameters, std::span<const int> free,
-                         const SimulationInputs& inputs, std::span<const double> times_s,
-                         std::span<const Output> outputs, const SimulationOptions& options) {
-  return simulate_either(&state, rig, parameters, free, inputs, times_s, outputs, options);
 }
 
 }  // namespace rigcal::model

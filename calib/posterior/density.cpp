@@ -228,7 +228,7 @@ LogDensity PosteriorDensity::evaluate(const VectorXd& y, const VectorXd& e,
       constexpr std::size_t kBlock = 512;  // small enough to stay in the cache
       for (std::size_t begin = 0; begin < samples; begin += kBlock) {
         const std::size_t end = std::min(begin + kBlock, samples);
-        const MatrixXd weighted = weighted_rows(condition, k, {begin, end, 0}, run, box_slopes,
+        const MatrixXd weighted = weighted_rows(condition, k, {begin, end}, run, box_slopes,
                                                 problem_.campaign->fit, unused);
         const auto before = conditions_[i].jacobian.middleRows(
             static_cast<Index>(k * samples + begin), weighted.rows());

@@ -79,13 +79,13 @@ Eigen::MatrixXd weighted_rows(const ProblemCondition& condition, std::size_t cha
     }
   };
   if (count == 0) return rows;
-  const auto first = static_cast<Eigen::Index>(condition.rows[range.begin] - range.first_sample);
+  const auto first = static_cast<Eigen::Index>(condition.rows[range.begin]);
   if (condition.rows[range.end - 1] - condition.rows[range.begin] + 1 == range.end - range.begin) {
     fill(Eigen::seqN(first, count));  // without gaps, Eigen can use vector registers
   } else {
     std::vector<Eigen::Index> samples;
     for (std::size_t i = range.begin; i < range.end; ++i)
-      samples.push_back(static_cast<Eigen::Index>(condition.rows[i] - range.first_sample));
+      samples.push_back(static_cast<Eigen::Index>(condition.rows[i]));
     fill(samples);
   }
   return rows;
@@ -158,7 +158,7 @@ ConditionEvaluation evaluate_run(const Problem& problem, std::size_t condition,
     for (std::size_t begin = 0; begin < count; begin += RFactor::kBlock) {
       const std::size_t end = std::min(begin + RFactor::kBlock, count);
       Eigen::MatrixXd weighted =
-          weighted_rows(data, k, {begin, end, 0}, run, slopes, campaign.fit, square_sum);
+          weighted_rows(data, k, {begin, end}, run, slopes, campaign.fit, square_sum);
       if (rows != nullptr) {
         const Eigen::Index first =
             static_cast<Eigen::Index>(k) * samples + static_cast<Eigen::Index>(begin);

@@ -34,12 +34,10 @@ struct ConditionRows {
   Eigen::VectorXd residual;
 };
 
-/// A range of the samples that count in a condition, [begin, end) in its `rows`, and the index of
-/// the first simulated sample in the record.
+/// A range of the samples that count in a condition, [begin, end) in its `rows`.
 struct RowRange {
   std::size_t begin = 0;
   std::size_t end = 0;
-  std::size_t first_sample = 0;
 };
 
 /// Returns [J r] for one channel over a range. J is the derivative with respect to the coordinates

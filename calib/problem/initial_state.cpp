@@ -55,31 +55,6 @@ double initial_mean(const Record& record, const std::vector<double>& signal, dou
   return sum / count;
 }
 
-/// Returns the value and slope, at an instant, of a line fitted to the finite samples within
-/// `half_width_s` of it. Returns std::nullopt if there are no such samples.
-std::optional<std::pair<double, double>> line_at(const Record& record,
-                                                 const std::vector<double>& signal, double time_s,
-                                                 double half_width_s) {
-  double count = 0.0;
-  double t = 0.0;
-  double y = 0.0;
-  double tt = 0.0;
-  double ty = 0.0;
-  for (std::size_t i = 0; i < signal.size(); ++i) {
-    const double from = record.time_s[i] - time_s;
-    if (std::abs(from) > half_width_s || !std::isfinite(signal[i])) continue;
-    count += 1.0;
-    t += from;
-    y += signal[i];
-    tt += from * from;
-    ty += from * signal[i];
-  }
-  if (count == 0.0) return std::nullopt;
-  const double spread = tt - t * t / count;
-  const double slope = spread > 0.0 ? (ty - t * y / count) / spread : 0.0;
-  return std::pair{(y - slope * t) / count, slope};
-}
-
 double peak_to_peak(const std::vector<double>& signal) {
   const auto [low, high] = std::minmax_element(signal.begin(), signal.end());
   return *high - *low;
@@ -94,16 +69,15 @@ double fastest_change(const Record& record, const std::vector<double>& signal) {
   return fastest;
 }
 
-/// Keys of the initial value and rate of the motion, and of the gain of the motion sensor.
+/// Keys of the initial value and rate of the motion.
 struct InitialKeys {
   std::string_view value;
   std::string_view rate;
-  std::string_view gain;
 };
 InitialKeys initial_keys(const Campaign& campaign) {
   if (motion_channel(campaign) == Channel::angle)
-    return {"initial_angle", "initial_angular_velocity", "angle_gain"};
-  return {"initial_position", "initial_velocity", "position_gain"};
+    return {"initial_angle", "initial_angular_velocity"};
+  return {"initial_position", "initial_velocity"};
 }
 
 /// An initial_* parameter, with its value from the record and its allowed deviation.
@@ -197,30 +171,6 @@ std::string moving_start(const Campaign& campaign, const std::vector<const Condi
       "initial = \"fit\"",
       info(motion_channel(campaign)).key, farthest, info(motion_channel(campaign)).unit,
       campaign.initial_window_s, fmt::join(moving, ", "), more);
-}
-
-datasets::Overrides recorded_state(const Campaign& campaign, const Record& record,
-                                   const model::ParameterValues& values, double time_s,
-                                   double half_width_s) {
-  datasets::Overrides state;
-  const auto add = [&](std::string_view key, double value) {
-    const int index = model::parameter_index(campaign.rig.plant, key);
-    if (index >= 0) state.emplace_back(index, value);
-  };
-  const auto line = [&](const std::vector<double>& signal) {
-    return line_at(record, signal, time_s, half_width_s);
-  };
-  const InitialKeys keys = initial_keys(campaign);
-  if (const auto position = line(recorded(record, motion_channel(campaign)))) {
-    add(keys.value, position->first);
-    add(keys.rate, position->second / values[keys.gain]);
-  }
-  if (const auto p = line(load_pressure(record, values))) add("initial_load_pressure", p->first);
-  if (const auto p = line(recorded(record, Channel::pressure_a)))
-    add("initial_pressure_a", p->first);
-  if (const auto p = line(recorded(record, Channel::pressure_b)))
-    add("initial_pressure_b", p->first);
-  return state;
 }
 
 }  // namespace rigcal::calib

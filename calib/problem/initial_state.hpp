@@ -40,14 +40,4 @@ std::string moving_start(const datasets::Campaign& campaign,
                          const std::vector<const datasets::Condition*>& conditions,
                          const std::vector<datasets::Record>& records);
 
-/// Values of the initial_* parameters for a run that begins in the middle of a record. Position,
-/// velocity and recorded pressures come from straight lines fitted to the samples within
-/// `half_width_s` of that instant. Empty if no position was recorded.
-///
-/// @param values  values in the condition, including the gains and offsets of the sensors
-datasets::Overrides recorded_state(const datasets::Campaign& campaign,
-                                   const datasets::Record& record,
-                                   const model::ParameterValues& values, double time_s,
-                                   double half_width_s);
-
 }  // namespace rigcal::calib

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "calib/search/multiple_shooting.hpp"
-
 namespace rigcal::calib {
 namespace {
 
@@ -46,10 +44,6 @@ bool Search::approach(std::vector<double> z) {
 SolveResult Search::run_stages(std::vector<double> z, bool polished) {
   evaluator_.set_fidelity(problem_.of_starts());
   ends_ = {z};
-  if (const auto interval_s = problem_.campaign->fit.shooting_interval_s) {
-    z = shoot(std::move(z), *interval_s);
-    if (evaluator_.budget().spent()) return stopped();
-  }
   const Evaluation first = evaluator_.evaluate(z);
   if (!first.ok) return no_start(problem_, evaluator_, first);
   z_ = begin_ = before_ = std::move(z);
@@ -116,17 +110,6 @@ bool Search::enter(const Stage& stage) {
   const Evaluation& there = evaluator_.evaluate(next);
   if (there.ok && there.cost <= kWorseStep * coarse.cost) z_ = next;
   return true;
-}
-
-/// Returns the end point of multiple shooting if whole records fit better there than at z;
-/// otherwise returns z. Multiple shooting gets at most half of the iterations.
-std::vector<double> Search::shoot(std::vector<double> z, double interval_s) {
-  const Evaluation first = evaluator_.evaluate(z);
-  const ShootingResult found =
-      multiple_shooting(problem_, evaluator_, z, interval_s, iterations_.left() / 2, iterations_);
-  ends_.push_back(found.z);
-  const Evaluation& there = evaluator_.evaluate(found.z);
-  return there.ok && (!first.ok || there.cost < first.cost) ? found.z : z;
 }
 
 SolveResult Search::polish(std::vector<double> z) {

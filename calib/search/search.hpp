@@ -19,9 +19,8 @@ class Search {
         options_(options),
         iterations_(options, start, before) {}
 
-  /// Runs multiple shooting if the campaign asks for it, then the stages of plan_schedule(). If the
-  /// search is stopped, the best point is the stage end point with the lowest cost over whole
-  /// records.
+  /// Runs the stages of plan_schedule(). If the search is stopped, the best point is the stage end
+  /// point with the lowest cost over whole records.
   SolveResult run(std::vector<double> z);
 
   /// Runs all stages except the last. The best point is the one with the lowest cost over whole
@@ -34,7 +33,6 @@ class Search {
   SolveResult polish(std::vector<double> z);
 
  private:
-  std::vector<double> shoot(std::vector<double> z, double interval_s);
   SolveResult run_stages(std::vector<double> z, bool polished);
   bool enter(const Stage& stage);
   OptimumCheck full_steps();

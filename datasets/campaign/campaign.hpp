@@ -188,8 +188,6 @@ struct FitSettings {
   int posterior = 0;                  ///< draws per chain; 0: no posterior
   std::optional<double> max_seconds;  ///< limit for the whole fit
   std::vector<Channel> outputs;       ///< channels to compare with the model; empty: every output
-  /// Length of the intervals for multiple shooting before a start; absent: no multiple shooting.
-  std::optional<double> shooting_interval_s;
 };
 
 /// [synthetic]: a known rig, and the disturbances in its records.

@@ -312,16 +312,16 @@ const KeyTable<FitSettings>& fit_keys() {
                      {.doc = "What is compared with the model",
                       .otherwise = "all outputs",
                       .example = "[\"position\"]"}),
-      Row::quantity("shooting_interval", &FitSettings::shooting_interval_s, "s", kDurations_s,
-                    {.doc = "Every start goes through multiple shooting with pieces of this length",
-                     .otherwise = "none",
-                     .example = "\"0.2 s\""}),
   });
   return keys;
 }
 
 FitSettings read_fit(const TomlNode& node, const Campaign& campaign) {
   FitSettings fit;
+  if (const auto removed = node.find("shooting_interval"))
+    removed->fail(
+        "was removed with multiple shooting: expected `starts`, which searches from "
+        "further first values");
   fit_keys().read(node, fit);
   const auto outputs = node.find("outputs");
   if (!outputs) return fit;

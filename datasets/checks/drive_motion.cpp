@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "datasets/prepare/median.hpp"
+#include "datasets/checks/median.hpp"
 
 namespace rigcal::datasets {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "datasets/prepare/equal_runs.hpp"
+#include "datasets/checks/equal_runs.hpp"
 
 namespace rigcal::datasets {
 

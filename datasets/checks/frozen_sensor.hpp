@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "datasets/prepare/equal_runs.hpp"
+#include "datasets/checks/equal_runs.hpp"
 
 namespace rigcal::datasets {
 

@@ -1,6 +1,6 @@
 #include "datasets/checks/identical_repeats.hpp"
 
-#include "datasets/prepare/equal_runs.hpp"
+#include "datasets/checks/equal_runs.hpp"
 
 namespace rigcal::datasets {
 std::vector<std::size_t> first_identical(const std::vector<Repeat>& repeats,

@@ -9,9 +9,9 @@
 #include <optional>
 #include <stdexcept>
 
-#include "datasets/prepare/equal_runs.hpp"
+#include "datasets/checks/equal_runs.hpp"
+#include "datasets/checks/median.hpp"
 #include "datasets/prepare/lag.hpp"
-#include "datasets/prepare/median.hpp"
 
 namespace rigcal::datasets {
 namespace {

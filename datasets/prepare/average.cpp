@@ -9,10 +9,10 @@
 #include "datasets/checks/coarse_steps.hpp"
 #include "datasets/checks/identical_repeats.hpp"
 #include "datasets/checks/mains_hum.hpp"
+#include "datasets/checks/median.hpp"
 #include "datasets/prepare/alignment.hpp"
 #include "datasets/prepare/bridged_holes.hpp"
 #include "datasets/prepare/lag.hpp"
-#include "datasets/prepare/median.hpp"
 #include "datasets/prepare/resample.hpp"
 
 namespace rigcal::datasets {

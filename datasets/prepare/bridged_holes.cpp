@@ -11,7 +11,7 @@
 
 #include "common/error.hpp"
 #include "datasets/campaign/campaign_sections.hpp"
-#include "datasets/prepare/median.hpp"
+#include "datasets/checks/median.hpp"
 #include "datasets/prepare/time_holes.hpp"
 
 namespace rigcal::datasets {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "datasets/prepare/median.hpp"
+#include "datasets/checks/median.hpp"
 
 namespace rigcal::datasets {
 namespace {

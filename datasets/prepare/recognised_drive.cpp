@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "datasets/campaign/campaign_sections.hpp"
-#include "datasets/prepare/equal_runs.hpp"
+#include "datasets/checks/equal_runs.hpp"
 #include "datasets/prepare/waveform_guess.hpp"
 
 namespace rigcal::datasets {

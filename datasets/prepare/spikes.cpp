@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "datasets/prepare/median.hpp"
+#include "datasets/checks/median.hpp"
 
 namespace rigcal::datasets {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "common/error.hpp"
 #include "datasets/campaign/campaign_sections.hpp"
-#include "datasets/prepare/median.hpp"
+#include "datasets/checks/median.hpp"
 
 namespace rigcal::datasets {
 namespace {

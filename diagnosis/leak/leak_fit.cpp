@@ -96,7 +96,7 @@ Linear linearise(const calib::Problem& problem, const model::Simulation& run) {
   double square_sum = 0.0;
   for (std::size_t k = 0; k < condition.channels.size(); ++k) {
     rows.middleRows(static_cast<Eigen::Index>(k) * samples, samples) =
-        calib::weighted_rows(condition, k, {0, condition.rows.size(), 0}, run,
+        calib::weighted_rows(condition, k, {0, condition.rows.size()}, run,
                              Eigen::VectorXd::Ones(all), problem.campaign->fit, square_sum);
   }
   return {rows.leftCols(own), rows.middleCols(own, all - own), rows.col(all), {}, {}};

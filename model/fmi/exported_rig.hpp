@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "model/simulate.hpp"
+#include "model/plant/rig.hpp"
 
 namespace rigcal::model {
 

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "model/plant/parameter.hpp"
-#include "model/simulate.hpp"
+#include "model/plant/rig.hpp"
 
 namespace rigcal::model {
 

@@ -12,9 +12,9 @@
 #include "model/plant/lag.hpp"
 #include "model/plant/layout.hpp"
 #include "model/plant/plant_input.hpp"
+#include "model/plant/rig.hpp"
 #include "model/plant/warm_oil.hpp"
 #include "model/signal/input_track.hpp"
-#include "model/simulate.hpp"
 
 namespace rigcal::model {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "model/signal/sampled_period.hpp"
+#include "model/solver/sampled_period.hpp"
 
 namespace rigcal::model {
 

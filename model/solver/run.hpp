@@ -9,15 +9,16 @@
 #include <span>
 #include <vector>
 
+#include "model/plant/rig.hpp"
 #include "model/plant/system.hpp"
 #include "model/signal/known_periods.hpp"
 #include "model/signal/same_instant.hpp"
-#include "model/signal/sampled_period.hpp"
-#include "model/simulate.hpp"
 #include "model/solver/dormand_prince.hpp"
 #include "model/solver/error_norm.hpp"
 #include "model/solver/repeated_steps.hpp"
 #include "model/solver/rosenbrock.hpp"
+#include "model/solver/sampled_period.hpp"
+#include "model/solver/simulation.hpp"
 #include "model/solver/steady_state.hpp"
 
 namespace rigcal::model {
@@ -59,9 +60,8 @@ class Run {
     for_each_track([this](InputTrack& track) { h_max_ = std::min(h_max_, track.max_step()); });
   }
 
-  /// Writes the outputs at every sample, and the state at the last one, into `result`, whose
-  /// matrices already have their sizes. Sensitivities go into `columns` columns from
-  /// `first_column` on.
+  /// Writes the outputs at every sample into `result`, whose matrices already have their sizes.
+  /// Sensitivities go into `columns` columns from `first_column` on.
   /// @param start  state at the first sample
   void operator()(const X& start, Simulation& result, int first_column, int columns) {
     result_ = &result;
@@ -81,8 +81,10 @@ class Run {
       emit_present();
       if (at(steady_state_.next_look_s(), t_) && steady_state_.look(x_, norm_)) go_on_as_foreseen();
     }
-    store_end();
   }
+
+  /// State at the last sample, unless the end of the run was extrapolated.
+  const X& state() const { return x_; }
 
   /// Size below which each state counts as zero.
   static std::array<double, static_cast<std::size_t>(N)> floors(const Layout& layout) {
@@ -334,7 +336,6 @@ class Run {
       if (first_column_ == 0) continue_periods(known, share, values);
     }
     next_sample_ = times_s_.size();
-    x_ = steady_state_.at_end();
   }
 
   static std::span<double> column(Eigen::MatrixXd& m, int j) {
@@ -377,21 +378,6 @@ class Run {
       Eigen::MatrixXd& sensitivities = result_->sensitivities[output];
       for (int j = 0; j < columns_; ++j) {
         sensitivities(row, first_column_ + j) = value.derivative[static_cast<std::size_t>(j)];
-      }
-    }
-  }
-
-  void store_end() {
-    const auto floor = floors(system_.layout());
-    for (Eigen::Index i = 0; i < result_->end_state.size(); ++i) {
-      const auto state = static_cast<std::size_t>(i);
-      result_->state_floor(i) = floor[state];
-      if (first_column_ == 0) result_->end_state(i) = value_of(x_[state]);
-      if constexpr (P > 0) {
-        for (int j = 0; j < columns_; ++j) {
-          result_->end_sensitivities(i, first_column_ + j) =
-              x_[state].derivative[static_cast<std::size_t>(j)];
-        }
       }
     }
   }

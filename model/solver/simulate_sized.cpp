@@ -15,9 +15,6 @@
 namespace rigcal::model {
 namespace {
 
-/// Typical size of a state near zero, as a multiple of its floor.
-constexpr double kFloorsOfAState = 1e3;
-
 /// Typical size of a parameter, which scales the error of its sensitivity.
 double scale_of(const ParameterSpec& spec, double value) {
   if (value != 0.0) return std::abs(value);
@@ -25,27 +22,7 @@ double scale_of(const ParameterSpec& spec, double value) {
   return std::isfinite(range) && range > 0.0 ? 1e-3 * range : 1.0;
 }
 
-/// The state from which a run continues. Each component whose sensitivity column is within
-/// [first, first + count) is an independent variable.
-template <int N, int P>
-State<N, P> state_to_go_on_from(const SizedRequest& request, int first, int count) {
-  State<N, P> x;
-  x.fill(Active<P>(0.0));
-  const Eigen::VectorXd& state = *request.state;
-  const auto parameters = static_cast<int>(request.free.size());
-  for (int i = 0; i < static_cast<int>(state.size()); ++i) {
-    Active<P>& each = x[static_cast<std::size_t>(i)];
-    each = Active<P>(state(i));
-    const int column = parameters + i - first;
-    if constexpr (P > 0) {
-      if (column >= 0 && column < count) each.derivative.set(static_cast<std::size_t>(column), 1.0);
-    }
-  }
-  return x;
-}
-
-/// Makes one pass with at most P sensitivity columns. The free parameters come first, then the
-/// state from which the run continues.
+/// Makes one pass with at most P sensitivity columns.
 template <typename Plant, int N, int P>
 void pass(const SizedRequest& request, int first, int count, Simulation& result) {
   const double start_s = request.times_s.front();
@@ -63,11 +40,8 @@ void pass(const SizedRequest& request, int first, int count, Simulation& result)
   if (request.inputs.base_acceleration_m_per_s2)
     base = track(*request.inputs.base_acceleration_m_per_s2);
   if (request.inputs.oil_temperature_k) temperature = track(*request.inputs.oil_temperature_k);
-  const auto of_parameters = static_cast<int>(request.free.size());
-  const int begin = std::min(first, of_parameters);
-  const int end = std::min(first + count, of_parameters);
   const auto free =
-      request.free.subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin));
+      request.free.subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count));
   std::array<double, static_cast<std::size_t>(P)> scale;
   scale.fill(1.0);
   const auto table = parameter_table(request.parameters.plant);
@@ -76,12 +50,6 @@ void pass(const SizedRequest& request, int first, int count, Simulation& result)
     scale[j] = scale_of(table[index], request.parameters.value[index]);
   }
   using ThisRun = Run<Plant, N, P>;
-  const auto floors = ThisRun::floors(request.layout);
-  for (int column = std::max(first, of_parameters); column < first + count; ++column) {
-    const int i = column - of_parameters;
-    scale[static_cast<std::size_t>(column - first)] = std::max(
-        std::abs((*request.state)(i)), kFloorsOfAState * floors[static_cast<std::size_t>(i)]);
-  }
   System<Plant, N, P> system(
       request.layout, request.parameters, free,
       InputTrack(request.inputs.drive, start_s, request.parameters["transport_delay"],
@@ -89,15 +57,13 @@ void pass(const SizedRequest& request, int first, int count, Simulation& result)
       std::move(force), std::move(supply), std::move(tank), std::move(spool_error), std::move(base),
       std::move(temperature));
   State<N, P> start = system.initial(request.initial, request.before, 0.0);
-  if (request.state != nullptr) {
-    start = state_to_go_on_from<N, P>(request, first, count);
-  } else if (request.before == Before::steady && !settle(system, floors, start)) {
+  if (request.before == Before::steady && !settle(system, ThisRun::floors(request.layout), start)) {
     result.status = SimulationStatus::no_equilibrium;
     result.failed_at_s = start_s;
     result.reason = "the rig does not settle at the first value of its drive";
     return;
   }
-  if (request.state == nullptr) system.forget_hoses(start, 0.0);
+  system.forget_hoses(start, 0.0);
   ThisRun run(std::move(system), scale, request.times_s, request.outputs, request.options,
               request.period, request.started);
   run(start, result, first, count);
@@ -120,8 +86,7 @@ int next_pass(const SizedRequest& request, int first, int left, Simulation& resu
 /// Makes passes until all sensitivity columns are computed.
 template <typename Plant, int N>
 void passes(const SizedRequest& request, Simulation& result) {
-  const int columns = static_cast<int>(request.free.size()) +
-                      (request.state != nullptr ? request.layout.states : 0);
+  const auto columns = static_cast<int>(request.free.size());
   if (columns == 0) return pass<Plant, N, 0>(request, 0, 0, result);
   for (int first = 0; first < columns && result.ok();)
     first += next_pass<Plant, N, RIGCAL_WIDTHS>(request, first, columns - first, result);

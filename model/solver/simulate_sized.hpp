@@ -4,8 +4,9 @@
 #include <span>
 
 #include "model/plant/layout.hpp"
-#include "model/signal/sampled_period.hpp"
-#include "model/simulate.hpp"
+#include "model/plant/rig.hpp"
+#include "model/solver/sampled_period.hpp"
+#include "model/solver/simulation.hpp"
 
 namespace rigcal::model {
 
@@ -16,7 +17,6 @@ struct SizedRequest {
   const Layout& layout;
   InitialState initial;
   Before before;
-  const Eigen::VectorXd* state;  ///< start of the run; null: start from `initial`
   const ParameterValues& parameters;
   std::span<const int> free;
   const SimulationInputs& inputs;

@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "model/arithmetic/state.hpp"
-#include "model/signal/sampled_period.hpp"
 #include "model/solver/error_norm.hpp"
+#include "model/solver/sampled_period.hpp"
 
 namespace rigcal::model {
 
@@ -18,8 +18,7 @@ namespace rigcal::model {
 /// mode does (docs/decisions/0012). If a half period reverses the inputs, the states are compared
 /// with those of half a period earlier with the opposite sign.
 ///
-/// The detector checks a few times per period, at whole fractions of a period before the end, so
-/// that the final state either is a checked one or follows from one.
+/// The detector checks a few times per period, at whole fractions of a period before the end.
 template <int N, int P>
 class SteadyState {
  public:
@@ -73,17 +72,6 @@ class SteadyState {
   }
   std::size_t samples() const { return samples_; }  ///< samples in one period
   double sign() const { return sign_; }             ///< factor from one period to the next
-  /// State at the end of the run, once the rest of it can be extrapolated.
-  [[gnu::cold]] X at_end() const {
-    // Counts from the last check at this phase of a period.
-    const long periods = std::lround(std::ceil(periods_left_));
-    X x = seen_[0];
-    if (!reached_) {
-      const C share = growth(periods);
-      for (std::size_t i = 0; i < N; ++i) x[i] = x[i] + change_[0][i] * share;
-    }
-    return periods % 2 == 0 ? next(x) : x;
-  }
 
  private:
   /// Number of checks per whole period. A half period gets four, so that steps are cut short

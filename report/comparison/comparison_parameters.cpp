@@ -110,7 +110,7 @@ std::vector<StoredComparedParameter> compared_parameters(const std::vector<Compa
   return list;
 }
 
-std::string change_text(const calib::EstimateDifference& difference, const RowUnit& unit) {
+std::string change_text(const calib::EstimateDifference& difference, const ReadableUnit& unit) {
   if (difference.percent) return fmt::format("{:+.3g} %", *difference.percent);
   if (!difference.difference) return {};
   return fmt::format("{:+.2g}{}{}", *difference.difference / unit.si, unit.name.empty() ? "" : " ",
@@ -125,11 +125,11 @@ bool worth_a_row(const StoredComparedParameter& parameter) {
              [](const auto& each) { return each && each->difference.value_or(0.0) != 0.0; });
 }
 
-RowUnit unit_of_estimates(const StoredComparedParameter& parameter) {
+ReadableUnit unit_of_estimates(const StoredComparedParameter& parameter) {
   double size = 0.0;
   for (const auto& estimate : parameter.estimates)
     if (estimate) size = std::max(size, std::abs(estimate->value.value_or(0.0)));
-  return row_unit(size, parameter.unit);
+  return readable_unit(size, parameter.unit);
 }
 
 }  // namespace rigcal::report

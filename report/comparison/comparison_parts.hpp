@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "report/comparison/comparison.hpp"
-#include "report/page/page_parts.hpp"
+#include "report/text/estimate_text.hpp"
+#include "report/text/readable.hpp"
 
 namespace rigcal::report {
 
@@ -66,11 +67,11 @@ std::vector<StoredSeries> trends(const std::vector<Compared>& results, std::stri
 
 /// Writes a difference from the first result in percent, or in `unit` if the first value is zero or
 /// not significantly different from zero. Returns an empty text if either value is missing.
-std::string change_text(const calib::EstimateDifference& difference, const RowUnit& unit);
+std::string change_text(const calib::EstimateDifference& difference, const ReadableUnit& unit);
 /// Whether a table should list a parameter: a result estimates it, or its known values differ.
 bool worth_a_row(const StoredComparedParameter& parameter);
 /// Chooses the unit in which the largest estimate of a parameter needs few digits.
-RowUnit unit_of_estimates(const StoredComparedParameter& parameter);
+ReadableUnit unit_of_estimates(const StoredComparedParameter& parameter);
 inline std::string parameter_label(const StoredComparedParameter& p) {
   return parameter_label(p.key, p.scope, p.level);
 }

@@ -17,7 +17,7 @@ inline constexpr int kBudgetDigits = 3;
 /// An uncertainty budget and the result that it belongs to.
 struct BudgetOf {
   std::string name;  ///< name of the result
-  RowUnit unit;
+  ReadableUnit unit;
   const calib::Budget95* budget;
 };
 

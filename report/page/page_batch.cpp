@@ -52,7 +52,7 @@ doc::Cell score_lines(const StoredRig& rig) {
 doc::Cell estimate_lines(const StoredRig& rig) {
   doc::Cell cell;
   for (const StoredRigEstimate& each : rig.parameters) {
-    const RowUnit unit = row_unit(each.value, each.unit);
+    const ReadableUnit unit = readable_unit(each.value, each.unit);
     const doc::Estimate shown = doc::estimate(each.value, each.ci95, unit.si);
     doc::Quantity value = shown.value;
     value.unit = unit.name;
@@ -87,7 +87,7 @@ std::optional<Plot> rig_trend_plot(const StoredRig& rig, const StoredRigTrend& t
     ++dated;
   }
   if (dated < 2) return std::nullopt;
-  const RowUnit unit = row_unit(largest, trend.unit);
+  const ReadableUnit unit = readable_unit(largest, trend.unit);
   Trace spans = empty_trace(Trace::Kind::intervals, "model");
   Trace middles = empty_trace(Trace::Kind::points, "model");
   for (const StoredTrendPoint& point : points) {

@@ -7,6 +7,7 @@
 #include "common/calendar.hpp"
 #include "report/comparison/comparison_parts.hpp"
 #include "report/document/words.hpp"
+#include "report/page/page_parts.hpp"
 #include "report/text/readable.hpp"
 
 namespace rigcal::report {
@@ -17,7 +18,7 @@ using Kind = doc::Column::Kind;
 
 /// Returns the change from the first result, or std::nullopt if there is nothing to report.
 std::optional<doc::Line> change_line(const std::optional<calib::EstimateDifference>& difference,
-                                     const RowUnit& unit) {
+                                     const ReadableUnit& unit) {
   if (!difference) return std::nullopt;
   const std::string by = change_text(*difference, unit);
   if (by.empty()) return std::nullopt;
@@ -36,7 +37,7 @@ std::optional<doc::Line> change_line(const std::optional<calib::EstimateDifferen
 }
 
 doc::Cell estimate_cell(const std::optional<calib::ComparedEstimate>& estimate,
-                        const RowUnit& unit) {
+                        const ReadableUnit& unit) {
   if (!estimate) return doc::Cell("–");
   const doc::Estimate shown = doc::estimate(estimate->value, estimate->ci95, unit.si);
   doc::Cell cell{Line{shown.value}};
@@ -60,7 +61,7 @@ doc::Table parameter_table_of(const StoredComparison& comparison) {
   add_result_columns(comparison, Kind::number, table);
   for (const StoredComparedParameter& parameter : comparison.parameters) {
     if (!worth_a_row(parameter)) continue;
-    const RowUnit unit = unit_of_estimates(parameter);
+    const ReadableUnit unit = unit_of_estimates(parameter);
     doc::Row row{{parameter_label(parameter), unit.name.empty() ? std::string("1") : unit.name}};
     for (std::size_t i = 0; i < parameter.estimates.size(); ++i) {
       doc::Cell& cell = row.cells.emplace_back(estimate_cell(parameter.estimates[i], unit));
@@ -76,7 +77,7 @@ doc::Table parameter_table_of(const StoredComparison& comparison) {
 std::vector<Figure> parameter_figures(const StoredComparison& comparison) {
   std::vector<Figure> figures;
   for (const StoredComparedParameter& parameter : comparison.parameters) {
-    const RowUnit unit = unit_of_estimates(parameter);
+    const ReadableUnit unit = unit_of_estimates(parameter);
     Trace spans = empty_trace(Trace::Kind::intervals, "model");
     Trace middles = empty_trace(Trace::Kind::points, "model");
     double number = 0.0;

@@ -77,7 +77,7 @@ doc::Table prediction_table(const StoredDesign& design) {
                    {"Own signals, same time", Kind::number},
                    {"Own over this", Kind::number}};
   for (const calib::DesignedParameter& parameter : design.parameters) {
-    const RowUnit unit = row_unit(parameter.value, parameter.unit);
+    const ReadableUnit unit = readable_unit(parameter.value, parameter.unit);
     const auto own = half_width_percent(parameter.sd_own_signals, parameter.value);
     const auto now = half_width_percent(parameter.sd, parameter.value);
     table.rows.push_back(
@@ -97,8 +97,8 @@ doc::Table limit_table(const StoredDesign& design) {
                    {"Unit", Kind::unit},
                    {"Used, %", Kind::number}};
   for (const StoredDesignLimit& limit : design.limits) {
-    const RowUnit unit =
-        row_unit(std::max(std::abs(limit.limit), std::abs(limit.reached)), limit.unit);
+    const ReadableUnit unit =
+        readable_unit(std::max(std::abs(limit.limit), std::abs(limit.reached)), limit.unit);
     table.rows.push_back({{limit.words, doc::in_unit(limit.limit, unit.si, 4),
                            doc::in_unit(limit.reached, unit.si, 4), unit.name,
                            fmt::format("{:.1f}", limit.share_percent)}});

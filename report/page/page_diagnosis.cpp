@@ -441,7 +441,7 @@ void add_repeats(const StoredDiagnosis& diagnosis, doc::Blocks& blocks) {
 
 /// Adds the contributions to the uncertainty of the shares of states and averages.
 void add_share_budgets(const StoredDiagnosis& diagnosis, doc::Blocks& blocks) {
-  const RowUnit points{"%", 1.0};
+  const ReadableUnit points{"%", 1.0};
   std::vector<BudgetOf> budgets;
   for (const StoredState& state : diagnosis.states)
     if (state.leak.share_budget)

@@ -10,13 +10,8 @@
 #include "datasets/record.hpp"
 #include "metrics/metric_table.hpp"
 #include "report/text/estimate_text.hpp"
-#include "report/text/readable.hpp"
 
 namespace rigcal::report {
-RowUnit row_unit(double value_si, std::string_view si_unit) {
-  const ReadableUnit unit = readable_unit(value_si, si_unit);
-  return {std::string(unit.name), unit.si};
-}
 
 void add_reason(doc::Verdict& verdict, const std::string& text, const std::string& link) {
   constexpr std::size_t kReasonsShown = 3;

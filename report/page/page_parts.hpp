@@ -15,6 +15,7 @@
 #include "report/store/stored.hpp"
 #include "report/store/table.hpp"
 #include "report/text/estimate_text.hpp"
+#include "report/text/readable.hpp"
 
 // Functions used by the pages for several kinds of results. They only use the stored results.
 
@@ -23,15 +24,10 @@ namespace rigcal::report {
 using doc::Interval;
 using doc::Number;
 
-/// A readable unit that suits a whole row, so that its values are easy to compare. The unit "1" has
-/// an empty name.
-struct RowUnit {
-  std::string name;
-  double si = 1.0;
-};
-/// Chooses the unit for a parameter value and values of similar size.
-RowUnit row_unit(double value_si, std::string_view si_unit);
-inline RowUnit unit_of(const StoredParameter& p) { return row_unit(p.value.value_or(0.0), p.unit); }
+/// Chooses a readable unit for the row of a parameter.
+inline ReadableUnit unit_of(const StoredParameter& p) {
+  return readable_unit(p.value.value_or(0.0), p.unit);
+}
 
 /// Returns the larger distance from the value to an end of the 95 % interval, divided by the value.
 /// The larger distance is used because a bound may cut off the other side. Infinite without an

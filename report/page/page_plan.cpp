@@ -112,7 +112,7 @@ doc::Section records_section(const StoredPlan& plan) {
                     {"sd, planned ones too", Kind::number},
                     {"What would determine it"}};
   for (const calib::PlannedParameter& parameter : plan.parameters) {
-    const RowUnit unit = row_unit(finite(parameter.value).value_or(0.0), parameter.unit);
+    const ReadableUnit unit = readable_unit(finite(parameter.value).value_or(0.0), parameter.unit);
     totals.rows.push_back(
         {{parameter.label(), doc::in_unit(finite(parameter.value), unit.si, 5),
           unit.name.empty() ? std::string("1") : unit.name,

@@ -261,7 +261,7 @@ std::optional<double> coverage_factor(const StoredParameter& p) {
 
 /// Formats the uncertainty as "± 0.05", or as both ends if the interval is asymmetric.
 Line uncertainty_line(const StoredParameter& p, const doc::Interval& interval,
-                      const RowUnit& unit) {
+                      const ReadableUnit& unit) {
   if (const auto half = expanded_uncertainty(p, interval))
     return {"± ", doc::Quantity{half, matched(*half / unit.si, *half / unit.si)}};
   const doc::Estimate estimate =
@@ -272,7 +272,7 @@ Line uncertainty_line(const StoredParameter& p, const doc::Interval& interval,
 
 /// @param both  whether to include the uncertainty that would apply if the model were exact
 doc::Row value_row(const StoredParameter& p, bool judged, bool both) {
-  const RowUnit unit = unit_of(p);
+  const ReadableUnit unit = unit_of(p);
   const doc::Estimate estimate =
       doc::estimate(p.value, judged ? p.ci95 : std::nullopt, unit.si,
                     {p.lower.value_or(kAnywhere.low), p.upper.value_or(kAnywhere.high)});

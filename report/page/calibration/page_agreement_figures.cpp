@@ -214,11 +214,6 @@ std::vector<ChannelAgreement> channel_agreements(const std::string& condition,
   return channels;
 }
 
-std::optional<double> periodic_frequency(const StoredCondition& condition) {
-  if (!condition.waveform || !datasets::is_periodic(*condition.waveform)) return std::nullopt;
-  return condition.frequency_hz;
-}
-
 doc::Blocks agreement_blocks(const std::string& condition, std::optional<double> frequency_hz,
                              const Table& series) {
   doc::Blocks blocks;

@@ -26,9 +26,6 @@ std::vector<ChannelAgreement> channel_agreements(const std::string& condition,
                                                  std::optional<double> frequency_hz,
                                                  const Table& series);
 
-/// Returns the drive frequency of a condition from its entry in fit.json, if the drive is periodic.
-std::optional<double> periodic_frequency(const StoredCondition& condition);
-
 /// Returns the figures of every channel with explanations.
 doc::Blocks agreement_blocks(const std::string& condition, std::optional<double> frequency_hz,
                              const Table& series);

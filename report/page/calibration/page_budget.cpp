@@ -21,7 +21,7 @@ using Kind = doc::Column::Kind;
 
 /// Formats the size or an estimate of an effect in a suitable unit.
 Line effect_number(const std::optional<double>& value, const std::optional<double>& half_width,
-                   const RowUnit& unit) {
+                   const ReadableUnit& unit) {
   Line line{doc::in_unit(value, unit.si, kBudgetDigits)};
   if (value && half_width) {
     line.emplace_back(" ± ");
@@ -31,7 +31,7 @@ Line effect_number(const std::optional<double>& value, const std::optional<doubl
 }
 
 doc::Row effect_row(const calib::ConsideredEffect& effect, bool missing) {
-  const RowUnit unit = row_unit(effect.size, effect.unit);
+  const ReadableUnit unit = readable_unit(effect.size, effect.unit);
   doc::Row row{{{Line{effect.key, " ", doc::Soft{effect.meaning}}},
                 doc::in_unit(effect.size, unit.si, kBudgetDigits),
                 {effect_number(effect.estimate, effect.standard_error, unit)},
@@ -50,8 +50,8 @@ std::string refit_sizes(const calib::Considered& considered, const calib::Refitt
   std::vector<std::string> words;
   for (std::size_t i = 0; i < std::min(model.effects.size(), model.sizes.size()); ++i) {
     const calib::ConsideredEffect* effect = considered.find(model.effects[i]);
-    const RowUnit unit =
-        effect == nullptr ? row_unit(model.sizes[i], "1") : row_unit(effect->size, effect->unit);
+    const ReadableUnit unit = effect == nullptr ? readable_unit(model.sizes[i], "1")
+                                                : readable_unit(effect->size, effect->unit);
     words.push_back(fmt::format("{} {}{}{}", model.effects[i],
                                 significant(model.sizes[i] / unit.si, kBudgetDigits),
                                 unit.name.empty() ? "" : " ", unit.name));
@@ -83,7 +83,7 @@ void add_refits(const StoredFit& fit, doc::Blocks& blocks) {
                       {"Unit", Kind::unit}};
   for (const StoredParameter& p : fit.parameters) {
     if (!p.averaged) continue;
-    const RowUnit unit = unit_of(p);
+    const ReadableUnit unit = unit_of(p);
     averaged.rows.push_back(
         {{parameter_label(p), doc::in_unit(p.value, unit.si),
           doc::in_unit(p.averaged->value, unit.si),
@@ -93,7 +93,7 @@ void add_refits(const StoredFit& fit, doc::Blocks& blocks) {
 }
 
 doc::Row stability_row(const calib::StabilityCheck& check) {
-  const RowUnit unit = row_unit(check.value, check.unit);
+  const ReadableUnit unit = readable_unit(check.value, check.unit);
   return {{check.level ? fmt::format("{} ({})", check.key, *check.level) : check.key,
            doc::in_unit(check.value, unit.si),
            doc::in_unit(check.difference, unit.si, kBudgetDigits),
@@ -126,7 +126,7 @@ void add_score_budgets(const StoredCondition& condition, doc::Blocks& blocks) {
     for (const metrics::MetricSpec& metric : metrics::kMetrics) {
       const calib::Budget95* budget = find(by_metric, std::string(metric.name));
       if (budget == nullptr || scores == nullptr) continue;
-      RowUnit unit{metric.unit == "1" ? std::string() : std::string(metric.unit), 1.0};
+      ReadableUnit unit{metric.unit == "1" ? std::string() : std::string(metric.unit), 1.0};
       if (metric.unit == "channel") unit = row_unit(scores->*metric.value, channel_unit(channel));
       budgets.push_back(
           {fmt::format("{} of {}", metric.title, spaced(channel)), std::move(unit), budget});

@@ -25,7 +25,7 @@ Range bounds_of(const StoredParameter& p) {
 /// Returns a cell with a standard error and the 95 % interval based only on this error, assuming a
 /// normal distribution.
 doc::Cell error_cell(const StoredParameter& p, const std::optional<double>& error,
-                     const RowUnit& unit) {
+                     const ReadableUnit& unit) {
   constexpr double kNormalQuantile = 1.96;
   doc::Cell cell{Line{doc::in_unit(error, unit.si, kErrorDigits)}};
   if (!p.value || !error) return cell;
@@ -37,7 +37,7 @@ doc::Cell error_cell(const StoredParameter& p, const std::optional<double>& erro
 /// @param judged  whether the search converged
 /// @param reason  a reason that applies only to this estimate
 doc::Row fitted_row(const StoredParameter& p, bool judged, const std::string& reason) {
-  const RowUnit unit = unit_of(p);
+  const ReadableUnit unit = unit_of(p);
   const doc::Estimate estimate = doc::estimate(p.value, p.ci95, unit.si, bounds_of(p));
   Line name{p.key, " ", doc::Soft{p.symbol}};
   if (p.nuisance) name.emplace_back(doc::Soft{" nuisance"});
@@ -67,7 +67,7 @@ doc::Row fitted_row(const StoredParameter& p, bool judged, const std::string& re
 }
 
 doc::Row known_row(const StoredParameter& p) {
-  const RowUnit unit = unit_of(p);
+  const ReadableUnit unit = unit_of(p);
   return {{Line{p.key, " ", doc::Soft{p.symbol}}, p.level.value_or("rig"),
            doc::in_unit(p.value, unit.si, 6), unit.name, p.reason}};
 }

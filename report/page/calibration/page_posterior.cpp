@@ -12,7 +12,7 @@ namespace {
 using doc::Line;
 using Kind = doc::Column::Kind;
 
-Line range_line(const std::optional<Range>& range, const RowUnit& unit) {
+Line range_line(const std::optional<Range>& range, const ReadableUnit& unit) {
   return Line{doc::in_unit(range ? std::optional(range->low) : std::nullopt, unit.si, 5), " … ",
               doc::in_unit(range ? std::optional(range->high) : std::nullopt, unit.si, 5)};
 }
@@ -35,7 +35,7 @@ doc::Table draws_table(const StoredFit& fit, const calib::Posterior& found) {
                    {"Effective draws", Kind::number}};
   for (const StoredParameter& p : fit.parameters) {
     if (!p.posterior) continue;
-    const RowUnit unit = unit_of(p);
+    const ReadableUnit unit = unit_of(p);
     const calib::PosteriorSpread& spread = *p.posterior;
     table.rows.push_back(
         {{parameter_label(p), doc::in_unit(spread.median, unit.si, 6), unit.name,
@@ -55,7 +55,7 @@ doc::Table effects_table(const calib::Considered& considered) {
                    {"Unit"},   {"95 % of the draws", Kind::number}, {"R-hat", Kind::number}};
   for (const calib::ConsideredEffect& each : considered.effects) {
     if (!each.posterior) continue;
-    const RowUnit unit = row_unit(each.size, each.unit);
+    const ReadableUnit unit = readable_unit(each.size, each.unit);
     table.rows.push_back(
         {{each.meaning, doc::in_unit(each.size, unit.si, 3),
           doc::in_unit(each.posterior->median, unit.si, 3), unit.name,
@@ -93,7 +93,7 @@ doc::Table shares_table(const calib::Posterior& found) {
   for (const calib::DrawnShare& each : found.shares) {
     doc::Row row{{each.level.empty() ? std::string("the rig") : each.level, each.condition,
                   doc::in_unit(each.leak_share_percent, 1.0, 3),
-                  range_line(each.leak_share_ci95_percent, RowUnit{})}};
+                  range_line(each.leak_share_ci95_percent, ReadableUnit{})}};
     for (const auto& [name, probability] : each.class_probabilities)
       row.cells.push_back({fmt::format("{:.3g}", probability)});
     table.rows.push_back(std::move(row));
@@ -111,15 +111,15 @@ const StoredParameter* named(const StoredFit& fit, const std::string& name) {
   return found == fit.parameters.end() ? nullptr : &*found;
 }
 
-std::string axis_label(const std::string& name, const RowUnit& unit) {
+std::string axis_label(const std::string& name, const ReadableUnit& unit) {
   return unit.name.empty() ? name : fmt::format("{} [{}]", name, unit.name);
 }
 
 Plot pair_plot(const StoredFit& fit, const calib::Pairs& pairs, std::size_t a, std::size_t b) {
   const StoredParameter* const first = named(fit, pairs.names[a]);
   const StoredParameter* const second = named(fit, pairs.names[b]);
-  const RowUnit x = first != nullptr ? unit_of(*first) : RowUnit{};
-  const RowUnit y = second != nullptr ? unit_of(*second) : RowUnit{};
+  const ReadableUnit x = first != nullptr ? unit_of(*first) : ReadableUnit{};
+  const ReadableUnit y = second != nullptr ? unit_of(*second) : ReadableUnit{};
   Plot plot;
   plot.title = fmt::format("Draws of {} and {}", pairs.names[a], pairs.names[b]);
   plot.x_label = axis_label(first != nullptr ? parameter_label(*first) : pairs.names[a], x);

@@ -16,7 +16,7 @@ using Kind = doc::Column::Kind;
 
 constexpr double kHighestRise = 4.0;
 
-std::string end_words(const calib::ProfileEnd& end, const RowUnit& unit, const char* which) {
+std::string end_words(const calib::ProfileEnd& end, const ReadableUnit& unit, const char* which) {
   const auto text = [&](double value) {
     return fmt::format("{:.5g}{}{}", value / unit.si, unit.name.empty() ? "" : " ", unit.name);
   };
@@ -33,7 +33,7 @@ std::string end_words(const calib::ProfileEnd& end, const RowUnit& unit, const c
 /// Plots the increase in cost when a parameter is fixed at each value. The 95 % interval ends where
 /// the increase is 1.
 Plot profile_plot(const StoredParameter& parameter, const calib::Profile& profile) {
-  const RowUnit unit = unit_of(parameter);
+  const ReadableUnit unit = unit_of(parameter);
   Plot plot;
   plot.title = fmt::format("Profile of {}", parameter_label(parameter));
   plot.x_label = unit.name.empty() ? parameter_label(parameter)
@@ -59,13 +59,13 @@ Plot profile_plot(const StoredParameter& parameter, const calib::Profile& profil
 }
 
 std::string profile_reading(const StoredParameter& parameter, const calib::Profile& profile) {
-  const RowUnit unit = unit_of(parameter);
+  const ReadableUnit unit = unit_of(parameter);
   return fmt::format("{}: {}, {}.", parameter_label(parameter),
                      end_words(profile.low, unit, "lower"), end_words(profile.high, unit, "upper"));
 }
 
 doc::Row bootstrap_row(const StoredParameter& parameter, const calib::BootstrapSpread& bootstrap) {
-  const RowUnit unit = unit_of(parameter);
+  const ReadableUnit unit = unit_of(parameter);
   const auto& ci95 = bootstrap.ci95;
   return {{parameter_label(parameter), doc::in_unit(parameter.value, unit.si, 6), unit.name,
            Line{doc::in_unit(ci95 ? std::optional(ci95->low) : std::nullopt, unit.si, 5), " … ",

@@ -274,6 +274,11 @@ StoredFit as_fit(const StoredTablesFit& tables) {
   return fit;
 }
 
+std::optional<double> periodic_frequency(const StoredCondition& condition) {
+  if (!condition.waveform || !datasets::is_periodic(*condition.waveform)) return std::nullopt;
+  return condition.frequency_hz;
+}
+
 const StoredCondition* StoredFit::find(const std::string& condition) const {
   const auto found = std::find_if(conditions.begin(), conditions.end(),
                                   [&](const auto& each) { return each.id == condition; });

@@ -248,6 +248,9 @@ struct StoredFit {
   const StoredCondition* find(const std::string& condition) const;
 };
 
+/// Returns the drive frequency of a condition, if its drive is periodic.
+std::optional<double> periodic_frequency(const StoredCondition& condition);
+
 /// Converts a fit or validation to its stored form.
 StoredFit stored(const Result& result);
 

@@ -23,7 +23,6 @@ TEST_CASE("load_campaign: a quantity that sizes a loop has a range", "[datasets]
            Row{"sample_rate", in_condition, {"1e12 Hz", "1e20 Hz", "1e300 Hz", "1e-300 Hz"}},
            Row{"duration", in_condition, times},
            Row{"decimate_to", "[recording]\n", {"1e12 Hz", "1e300 Hz", "1e-300 Hz"}},
-           Row{"shooting_interval", "[fit]\n", times},
            Row{"max_time", "[fit]\n", times},
        }) {
     std::string text = kExample;

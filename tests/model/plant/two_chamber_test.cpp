@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
-#include <span>
 #include <vector>
 
+#include "tests/model/end_of_run.hpp"
 #include "tests/model/two_chamber_rig.hpp"
 #include "tests/support/sanitized.hpp"
 
@@ -36,10 +36,7 @@ struct Powers {
       0.0;  ///< the component of `lost` from the slip of the hoses; positive on average [W]
 };
 
-constexpr std::size_t kMostStates = 12;
-using States = std::array<double, kMostStates>;
-
-Powers powers(const States& x, double spool_v, const Layout& layout,
+Powers powers(const TwoChamberState& x, double spool_v, const Layout& layout,
               const Plant::Coefficients<double>& p) {
   const PresentTerms& terms = layout.terms;
   const auto at = [&](int state) { return x[static_cast<std::size_t>(state)]; };
@@ -106,24 +103,19 @@ Powers powers(const States& x, double spool_v, const Layout& layout,
 Powers energies(const Experiment& e) {
   const Layout layout = layout_of(e.rig, e.values, {}, Plant::kStates);
   const auto p = coefficients(e.values);
-  Eigen::VectorXd state;
+  Experiment part = e;
+  part.outputs = {Output::spool};
+  TwoChamberState state{};
   Powers sum;
   Powers before;
   for (std::size_t i = 0; i < e.times_s.size(); ++i) {
-    // Simulates from sample to sample, because states are available only at the end of a run.
-    const std::size_t from = i == 0 ? 0 : i - 1;
-    const auto times = std::span(e.times_s).subspan(from, i - from + 1);
-    const std::vector<Output> outputs{Output::spool};
-    const Simulation run =
-        i == 0 ? simulate(e.rig, e.values, {}, e.inputs, times, outputs, e.options)
-               : simulate_from(state, e.rig, e.values, {}, e.inputs, times, outputs, e.options);
-    REQUIRE(run.ok());
-    state = run.end_state;
-    States x{};
-    std::copy(state.begin(), state.end(), x.begin());
-    const double spool_v =
-        run.outputs(run.outputs.rows() - 1, 0) / p.valve_gain_m_per_v - p.valve_offset_v;
-    const Powers now = powers(x, spool_v, layout, p);
+    // Runs from sample to sample, because states are available only at the end of a run.
+    part.times_s = {e.times_s[i]};
+    if (i > 0) part.times_s.insert(part.times_s.begin(), e.times_s[i - 1]);
+    const EndOfRun run = end_of_run(part, i > 0 ? &state : nullptr);
+    state = run.state;
+    const double spool_v = run.outputs(0) / p.valve_gain_m_per_v - p.valve_offset_v;
+    const Powers now = powers(state, spool_v, layout, p);
     CHECK(now.lost - now.hose_lost >= 0.0);
     const double half = i == 0 ? 0.0 : 0.5 * (e.times_s[i] - e.times_s[i - 1]);
     sum.in += half * (before.in + now.in);

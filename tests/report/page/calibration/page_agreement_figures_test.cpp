@@ -78,17 +78,3 @@ TEST_CASE("channel_agreements: none of a few samples, or of no model", "[report]
   CHECK(channel_agreements("c", 2.0, driven(0.3, 2.0)).empty());
   CHECK(channel_agreements("c", 2.0, Table{}).empty());
 }
-
-TEST_CASE("periodic_frequency: of sine and square alone", "[report]") {
-  using rigcal::datasets::Waveform;
-  const auto frequency = [](Waveform waveform, std::optional<double> frequency_hz) {
-    StoredCondition condition;
-    condition.waveform = std::optional(waveform);
-    condition.frequency_hz = frequency_hz;
-    return periodic_frequency(condition);
-  };
-  CHECK(frequency(Waveform::sine, 2.0) == 2.0);
-  CHECK(frequency(Waveform::square, 0.1) == 0.1);
-  CHECK(frequency(Waveform::chirp, 2.0) == std::nullopt);
-  CHECK(frequency(Waveform::sine, std::nullopt) == std::nullopt);
-}

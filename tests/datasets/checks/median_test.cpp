@@ -1,4 +1,4 @@
-#include "datasets/prepare/median.hpp"
+#include "datasets/checks/median.hpp"
 
 #include <catch2/catch.hpp>
 

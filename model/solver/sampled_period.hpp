@@ -4,7 +4,7 @@
 #include <optional>
 #include <span>
 
-#include "model/simulate.hpp"
+#include "model/plant/rig.hpp"
 
 namespace rigcal::model {
 

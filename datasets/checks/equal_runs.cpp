@@ -1,11 +1,11 @@
-#include "datasets/prepare/equal_runs.hpp"
+#include "datasets/checks/equal_runs.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <utility>
 
-#include "datasets/prepare/median.hpp"
+#include "datasets/checks/median.hpp"
 
 namespace rigcal::datasets {
 namespace {

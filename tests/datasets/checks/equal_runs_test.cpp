@@ -1,4 +1,4 @@
-#include "datasets/prepare/equal_runs.hpp"
+#include "datasets/checks/equal_runs.hpp"
 
 #include <catch2/catch.hpp>
 #include <limits>

@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "model/plant/parameter.hpp"
-#include "model/simulate.hpp"
+#include "model/plant/rig.hpp"
+#include "model/solver/simulation.hpp"
 
 namespace rigcal::model {
 

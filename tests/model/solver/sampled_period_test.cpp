@@ -1,4 +1,4 @@
-#include "model/signal/sampled_period.hpp"
+#include "model/solver/sampled_period.hpp"
 
 #include <catch2/catch.hpp>
 

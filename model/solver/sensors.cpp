@@ -1,4 +1,4 @@
-#include "model/plant/sensors.hpp"
+#include "model/solver/sensors.hpp"
 
 #include <algorithm>
 #include <cmath>
