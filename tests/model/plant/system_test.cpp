@@ -1,5 +1,6 @@
 #include "model/plant/system.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <vector>
 
@@ -70,6 +71,29 @@ TEST_CASE("system: after a jump of the drive the rows of controller and valve ar
     values.set("derivative_filter", 100.0);
     check_jump<7>(rig, values, {row("kp"), row("ki"), row("kd"), row("valve_rate_limit")},
                   Signal::square(0.05, 1.0));
+  }
+}
+
+TEST_CASE("system: a valve lag below a microsecond acts as one, and keeps its derivative",
+          "[model]") {
+  Rig rig;
+  rig.controller = ControllerKind::none;
+  Values<4> x{0.01, 0.0, 1e6, 0.5};
+  const double lacks_v = 1.0 - x[3];
+  const std::vector<int> free{row("valve_time_constant")};
+  for (const double lag_s : {0.0, 1e-7, 1e-6, 3e-6}) {
+    ParameterValues values = paper_rig();
+    values.set("valve_time_constant", lag_s);
+    const Layout layout = layout_of(rig, values, free, LoadPressurePlant::kStates);
+    REQUIRE(layout.states == 4);
+    System<LoadPressurePlant, 4, 4> system(layout, values, free,
+                                           InputTrack(Signal::constant(1.0), 0.0, 0.0), {}, {}, {});
+    const auto found = system.linearise(x, 0.0);
+    const double acting_s = std::max(lag_s, 1e-6);
+    CAPTURE(lag_s);
+    CHECK_THAT(found.f[3], Catch::WithinRel(lacks_v / acting_s, 1e-12));
+    CHECK_THAT(found.f_p[3][0], Catch::WithinRel(-lacks_v / (acting_s * acting_s), 1e-12));
+    CHECK_THAT(system.derivative_of_values(x, 0.0)[3], Catch::WithinRel(found.f[3], 1e-12));
   }
 }
 
