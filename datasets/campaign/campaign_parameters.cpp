@@ -641,6 +641,18 @@ std::optional<ParameterConflict> find_bristle_conflict(const model::ParameterVal
   if (values.is_given("bristle_damping") && !values.is_given("bristle_stiffness"))
     return ParameterConflict{"bristle_damping",
                              "bristle_damping without pre-sliding: expected bristle_stiffness"};
+  constexpr std::array kFilm{"film_velocity",   "film_growth_time",  "film_decay_time",
+                             "film_dwell_time", "bristle_stiffness", "stribeck_friction"};
+  const auto [film, absent] = completeness(values, std::span(kFilm).first(4));
+  if (film != nullptr) {
+    const char* lacks = absent != nullptr ? absent : completeness(values, kFilm).absent;
+    if (lacks != nullptr)
+      return ParameterConflict{
+          film, fmt::format("friction that follows the lubricant film needs film_velocity, "
+                            "film_growth_time, film_decay_time and film_dwell_time, beside "
+                            "bristle_stiffness and stribeck_friction: expected {} as well",
+                            lacks)};
+  }
   if (!values.is_given("bristle_stiffness")) return std::nullopt;
   if (!values.is_given("coulomb_friction"))
     return ParameterConflict{"bristle_stiffness",
@@ -655,15 +667,10 @@ std::optional<ParameterConflict> find_room_conflict(const model::Rig& rig,
                                                     const model::ParameterValues& values) {
   const model::StateCount count = model::count_states(rig, values);
   if (count.needed <= count.room) return std::nullopt;
-  constexpr std::array kTerms{"hose_yield",
-                              "hose_yield_ratio",
-                              "payload_mass",
-                              "pump_second_flow",
-                              "main_spool_gain",
-                              "bristle_stiffness",
-                              "acceleration_feedforward",
-                              "velocity_feedforward",
-                              "sample_time"};
+  constexpr std::array kTerms{
+      "hose_yield",           "hose_yield_ratio",  "payload_mass",  "pump_second_flow",
+      "main_spool_gain",      "bristle_stiffness", "film_velocity", "acceleration_feedforward",
+      "velocity_feedforward", "sample_time"};
   std::vector<std::string_view> present;
   for (const char* key : kTerms) {
     if (values.is_given(key)) present.emplace_back(key);

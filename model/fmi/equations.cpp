@@ -78,7 +78,7 @@ class SizedEquations final : public Equations {
     std::vector<double> indicators;
     plant_indicators(p, layout_.terms, state, system_.derivative_of_values(state, 0.0), spool_v,
                      indicators);
-    friction_indicators<Plant>(layout_.terms, state, indicators);
+    friction_indicators<Plant>(p, layout_.terms, state, indicators);
     loop_indicators(p, layout_, state, system_.control(state, 0.0).wanted, command_v, indicators);
     return indicators;
   }

@@ -108,11 +108,16 @@ void plant_indicators(const LinkagePlant::Coefficients<double>& p, const Present
   chamber_indicators(p, terms, x, spool, indicators);
 }
 
-/// Appends the velocity, because the bristle force has a kink where the velocity changes sign.
-template <typename Plant, std::size_t N>
-void friction_indicators(const PresentTerms& terms, const std::array<double, N>& x,
+/// Appends the velocity, because the bristle force has a kink where the velocity changes sign, and
+/// what the lubricant film lacks of its steady thickness: it grows at another rate than it decays.
+template <typename Plant, typename P, std::size_t N>
+void friction_indicators(const P& p, const PresentTerms& terms, const std::array<double, N>& x,
                          std::vector<double>& indicators) {
   if (terms.bristles >= 0) indicators.push_back(x[Plant::velocity]);
+  if (terms.film >= 0)
+    indicators.push_back(
+        steady_film(x[Plant::velocity], p.film_velocity_m_per_s, p.friction_smoothing_m_per_s) -
+        x[static_cast<std::size_t>(terms.film)]);
 }
 
 /// Appends the indicators for the limits of controller output and spool rate.

@@ -18,6 +18,7 @@ struct PresentTerms {
   bool seal_friction = false;    ///< friction grows with the pressure across the piston
   bool shaped_friction = false;  ///< friction depends on the pressure, or has pre-sliding
   int bristles = -1;  ///< index of the force of the bristles; -1: friction without pre-sliding
+  int film = -1;      ///< index of the thickness of the lubricant film; -1: steady friction
   bool orifice_leak = false;    ///< the leakage coefficient is not zero, or is free
   bool leak_line = false;       ///< the leak is laminar at low pressure: its resistance was given
   bool laminar_leak = false;    ///< the laminar leakage was given
@@ -105,6 +106,8 @@ inline constexpr StateRow kPumpDemand{"pump_demand", "s",
                                       "time for which the pump has been asked for flow", 1e-3, 1.0};
 inline constexpr StateRow kBristleForce{
     "bristle_force", "N", "force of seals and contacts before they slide", 0.1, 100.0};
+inline constexpr StateRow kFilmThickness{
+    "film_thickness", "1", "lubricant film of the seals, relative to the thickest", 1e-3, 1.0};
 inline constexpr StateRow kIntegral{"controller_integral", "V", "integral action", 1e-3, 1.0};
 inline constexpr StateRow kFilteredReference{"controller_filtered_reference", "m",
                                              "filtered reference", 1e-6, 0.01};
@@ -128,6 +131,7 @@ struct Layout {
   int pump = -1;        ///< demand time: how long the valve has demanded flow from the pump [s]
   int payload = -1;     ///< position [m] and velocity [m/s] of the second mass
   int bristles = -1;    ///< force of the bristles [N]
+  int film = -1;        ///< thickness of the lubricant film [1]
   int valve_order = 0;  ///< 0: the spool follows the command; 1, 2: order of its lag
   int valve = -1;       ///< first valve state: spool signal [V], then its rate [V/s]
   /// The valve has two stages: its first state is the main spool, and the lag of `valve_order` that
@@ -204,6 +208,7 @@ inline Layout layout_of(const Rig& rig, const ParameterValues& values, std::span
     layout.add(kPayloadVelocity);
   }
   if (given("bristle_stiffness")) layout.bristles = layout.add(kBristleForce);
+  if (given("film_velocity")) layout.film = layout.add(kFilmThickness);
   layout.terms.pilot = given("pilot_gain");
   if (given("valve_frequency")) {
     layout.valve_order = 2;
@@ -235,7 +240,8 @@ inline Layout layout_of(const Rig& rig, const ParameterValues& values, std::span
   }
   layout.terms.stribeck = given("stribeck_friction");
   layout.terms.seal_friction = given("seal_friction");
-  layout.terms.shaped_friction = layout.terms.seal_friction || layout.bristles >= 0;
+  layout.terms.shaped_friction =
+      layout.terms.seal_friction || layout.bristles >= 0 || layout.film >= 0;
   layout.terms.friction = layout.terms.shaped_friction || layout.terms.stribeck ||
                           given("coulomb_friction") || given("joint_friction");
   layout.terms.orifice_leak = acts("leakage_coefficient");
@@ -279,6 +285,7 @@ inline Layout layout_of(const Rig& rig, const ParameterValues& values, std::span
   layout.terms.hoses = layout.hoses;
   layout.terms.payload = layout.payload;
   layout.terms.bristles = layout.bristles;
+  layout.terms.film = layout.film;
   layout.terms.valve_rate_limit = given("valve_rate_limit");
   layout.terms.retracted_position = given("retracted_position");
   layout.terms.initial_load_pressure = given("initial_load_pressure");

@@ -98,6 +98,12 @@ struct LinkagePlant : Chambers {
   template <typename X, typename C>
   static X lever_slope(const X& theta, const Coefficients<C>& p) {
     if (p.law != TravelLaw::polynomial) return other_travel(theta, p).slope_m_per_rad2;
+    return polynomial_slope(theta, p);
+  }
+
+  /// Change of the polynomial's lever per angle [m/rad2].
+  template <typename X, typename C>
+  static X polynomial_slope(const X& theta, const Coefficients<C>& p) {
     const X from = theta - p.reference_angle_rad;
     return from * (2.0 * p.lever_curvature_m_per_rad3) + p.lever_gradient_m_per_rad2;
   }
@@ -188,9 +194,15 @@ struct LinkagePlant : Chambers {
         return travel(x[angle], p);
       case Output::velocity:
         return lever(x[angle], p) * omega;
-      case Output::acceleration:
-        return lever_slope(x[angle], p) * omega * omega +
+      case Output::acceleration: {
+        if (p.law != TravelLaw::polynomial) {
+          const PistonTravel<X> at = other_travel(x[angle], p);
+          return at.slope_m_per_rad2 * omega * omega +
+                 at.lever_m_per_rad * derivative(x, in, p, terms)[angular_velocity];
+        }
+        return polynomial_slope(x[angle], p) * omega * omega +
                lever(x[angle], p) * derivative(x, in, p, terms)[angular_velocity];
+      }
       case Output::load_pressure:
         return x[pressure_a] - x[pressure_b];
       case Output::pressure_a:

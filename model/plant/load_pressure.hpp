@@ -63,11 +63,12 @@ struct LoadPressurePlant {
   }
 
   /// Whether reversing the inputs reverses the states and this output. All terms are odd functions,
-  /// except those that act in one direction only. The chamber pressures swap instead of changing
-  /// sign.
+  /// except those that act in one direction only and the lubricant film, which has no direction.
+  /// The chamber pressures swap instead of changing sign.
   static bool reversible(Output output, const PresentTerms& terms) {
     return !terms.external_force && !terms.curved_load && !terms.load_table &&
-           !terms.valve_offset && output != Output::pressure_a && output != Output::pressure_b;
+           !terms.valve_offset && terms.film < 0 && output != Output::pressure_a &&
+           output != Output::pressure_b;
   }
 
   /// Spool travel [m], eq. 6: x_v = k_sv u, with null shift and overlap.

@@ -53,6 +53,10 @@ struct CommonParameters {
   T seal_friction_m2{};
   T bristle_stiffness_n_per_m{};
   T bristle_damping_n_s_per_m{};
+  T film_velocity_m_per_s{};
+  T film_growth_time_s{};
+  T film_decay_time_s{};
+  T film_dwell_time_s{};
   T external_force_n{};
   T load_gradient_n_per_m{};
   T load_curvature_n_per_m2{};
@@ -223,6 +227,10 @@ constexpr auto load_rows() {
       F{&P::seal_friction_m2, {"seal_friction", "seal_friction_m2", "mu_p", "m2", "what dry friction grows by per pressure across the piston (N/Pa)", "docs/model.md", K::term, 0, 10, 0.0}},
       F{&P::bristle_stiffness_n_per_m, {"bristle_stiffness", "bristle_stiffness_n_per_m", "sigma_0", "N/m", "stiffness of seals and contacts before they slide: dry friction with pre-sliding", "docs/model.md", K::term, 1e2, 1e12, 0.0}},
       F{&P::bristle_damping_n_s_per_m, {"bristle_damping", "bristle_damping_n_s_per_m", "sigma_1", "N s/m", "damping of that micro-motion", "docs/model.md", K::term, 0, 1e9, 0.0}},
+      F{&P::film_velocity_m_per_s, {"film_velocity", "film_velocity_m_per_s", "v_b", "m/s", "velocity from which the lubricant film of the seals is as thick as it gets: friction at breakaway that follows the film", "docs/model.md", K::term, 1e-6, 100, 0.0}},
+      F{&P::film_growth_time_s, {"film_growth_time", "film_growth_time_s", "tau_hp", "s", "time constant of that film while it grows", "docs/model.md", K::term, 1e-6, 1e4, 0.0}},
+      F{&P::film_decay_time_s, {"film_decay_time", "film_decay_time_s", "tau_hn", "s", "the same while it shrinks in motion", "docs/model.md", K::term, 1e-6, 1e4, 0.0}},
+      F{&P::film_dwell_time_s, {"film_dwell_time", "film_dwell_time_s", "tau_h0", "s", "the same at rest: below friction_smoothing", "docs/model.md", K::term, 1e-6, 1e6, 0.0}},
       F{&P::external_force_n, {"external_force", "external_force_n", "F_ext", "N", "constant load against positive travel", "docs/model.md", K::term, -1e8, 1e8, 0.0}},
       F{&P::load_gradient_n_per_m, {"load_gradient", "load_gradient_n_per_m", "k_F", "N/m", "what the load grows by per travel; negative where it falls", "docs/model.md", K::term, -1e12, 1e12, 0.0}},
       F{&P::load_curvature_n_per_m2, {"load_curvature", "load_curvature_n_per_m2", "c_F", "N/m2", "what the load grows by per square of travel", "docs/model.md", K::term, -1e12, 1e12, 0.0}},

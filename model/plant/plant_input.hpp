@@ -41,18 +41,40 @@ X internal_leak(const X& load_pressure_pa, const P& p, const PresentTerms& terms
   return laminar + orifice_leakage(load_pressure_pa, p.leak_conductance, p.leakage_smoothing_pa);
 }
 
-/// Magnitude of the dry friction in steady sliding [N]. Seal friction grows with the pressure that
-/// energises the seals.
+/// Sliding friction where the part above Coulomb's fades with the film [N]. Not inlined, to keep
+/// the code of rigs without a film short.
+template <typename X, typename C>
+[[gnu::noinline]] X lubricated(const X& sliding_n, const X& film, const CommonParameters<C>& p) {
+  return (sliding_n - p.coulomb_friction_n) * (1.0 - film) + p.coulomb_friction_n;
+}
+
+/// Time derivative of the relative thickness of the lubricant film [1/s].
+template <typename Plant, typename X, std::size_t M, typename C>
+[[gnu::noinline]] X film_rate_of(const std::array<X, M>& x, const CommonParameters<C>& p,
+                                 const PresentTerms& terms) {
+  const X& film = x[static_cast<std::size_t>(terms.film)];
+  const X& v = x[static_cast<std::size_t>(Plant::velocity)];
+  const X steady = steady_film(v, p.film_velocity_m_per_s, p.friction_smoothing_m_per_s);
+  const bool grows = value_of(film) < value_of(steady);
+  return film_rate(film, steady, v, grows ? p.film_growth_time_s : p.film_decay_time_s,
+                   p.film_dwell_time_s, p.friction_smoothing_m_per_s);
+}
+
+/// Magnitude of the dry friction while the piston slides [N]. Seal friction grows with the pressure
+/// that energises the seals.
 ///
 /// @tparam Plant  provides the velocity and the pressure across the piston
 template <typename Plant, typename X, std::size_t M, typename C>
 X sliding_friction_of(const std::array<X, M>& x, const CommonParameters<C>& p,
                       const PresentTerms& terms) {
   const X& v = x[static_cast<std::size_t>(Plant::velocity)];
-  const X sliding_n = terms.stribeck
-                          ? sliding_friction(v, p.coulomb_friction_n, p.stribeck_friction_n,
-                                             p.stribeck_velocity_m_per_s)
-                          : X(p.coulomb_friction_n);
+  X sliding_n = terms.stribeck ? sliding_friction(v, p.coulomb_friction_n, p.stribeck_friction_n,
+                                                  p.stribeck_velocity_m_per_s)
+                               : X(p.coulomb_friction_n);
+  if constexpr (M > static_cast<std::size_t>(Plant::kStates)) {
+    if (terms.film >= 0)
+      sliding_n = lubricated(sliding_n, x[static_cast<std::size_t>(terms.film)], p);
+  }
   if (!terms.seal_friction) return sliding_n;
   const X P_L = Plant::pressure_across(x);
   return sliding_n + (value_of(P_L) < 0.0 ? X(-P_L) : P_L) * p.seal_friction_m2;

@@ -219,9 +219,12 @@ class System {
       states[payload] = states[Plant::position];
       states[payload + 1] = states[Plant::velocity];
     }
-    if (layout_.bristles >= 0)  // starts as if the motion had been steady for long
-      states[static_cast<std::size_t>(layout_.bristles)] =
-          friction(states[Plant::velocity], p, layout_.terms);
+    // Film and bristles start as if the motion had been steady for long.
+    if (layout_.film >= 0)
+      states[static_cast<std::size_t>(layout_.film)] = steady_film(
+          states[Plant::velocity], p.film_velocity_m_per_s, p.friction_smoothing_m_per_s);
+    if (layout_.bristles >= 0)
+      states[static_cast<std::size_t>(layout_.bristles)] = starting_friction(states, p);
     if (given && layout_.integral >= 0)
       states[static_cast<std::size_t>(layout_.integral)] = p.initial_integral_v;
     if (layout_.reference >= 0)  // the filtered rate begins at zero
@@ -245,6 +248,16 @@ class System {
       }
     }
     return states;
+  }
+
+  /// Force of the bristles in steady motion at the velocity of the states [N].
+  C starting_friction(const X& states, const Coefficients<C>& p) const {
+    const C& v = states[Plant::velocity];
+    const C force_n = friction(v, p, layout_.terms);
+    if (layout_.film < 0) return force_n;
+    const C coulomb_n = p.coulomb_friction_n * smooth_sign(v, p.friction_smoothing_m_per_s);
+    return coulomb_n +
+           (force_n - coulomb_n) * (1.0 - states[static_cast<std::size_t>(layout_.film)]);
   }
 
   /// Sets the memory of the hoses to its value after an instantaneous rise to their present
@@ -702,6 +715,8 @@ class System {
       if (layout_.bristles >= 0)
         dx[static_cast<std::size_t>(layout_.bristles)] =
             bristle_rate_of<Plant>(x, p, layout_.terms);
+      if (layout_.film >= 0)
+        dx[static_cast<std::size_t>(layout_.film)] = film_rate_of<Plant>(x, p, layout_.terms);
     }
     if constexpr (requires { Plant::kHoses; }) {
       if (layout_.hoses >= 0) {

@@ -81,6 +81,38 @@ X bristle_rate(const X& bristle_n, const X& velocity_m_per_s, const X& sliding_n
   return (velocity_m_per_s - speed * bristle_n / at_least(sliding_n, kLeast_n)) * stiffness_n_per_m;
 }
 
+/// Thickness of the lubricant film in steady motion, relative to the thickest:
+/// min(|v| / v_b, 1)^(2/3). The root is rounded within v_0.
+///
+/// @source  film_rate()
+template <typename X, typename C>
+X steady_film(const X& velocity_m_per_s, const C& film_velocity_m_per_s,
+              const C& smoothing_m_per_s) {
+  using std::exp;
+  using std::log;
+  const X square = velocity_m_per_s * velocity_m_per_s;
+  const X rounded = (square + smoothing_m_per_s * smoothing_m_per_s) * film_velocity_m_per_s;
+  const X film = square * exp(X(log(rounded) * (-2.0 / 3.0)));
+  return value_of(film) < 1.0 ? film : X(1.0);
+}
+
+/// Time derivative of the relative thickness of the lubricant film [1/s]: h' = (h_ss - h) / tau.
+/// tau is that of growth or decay in motion and, within v_0, that at rest.
+///
+/// @param steady    h_ss, steady_film()
+/// @param moving_s  time constant of growth if h < h_ss, else that of decay in motion
+/// @source   H. Yanada and Y. Sekikawa, Modeling of dynamic behaviors of friction, Mechatronics 18
+///           (2008) 330-339. Their h is 1 - F_c / F_s times this one, F_s = F_c + F_st, so that
+///           their (1 - h) F_s - F_c is F_st (1 - h) here. They have tau at rest only for v = 0
+template <typename X, typename C>
+X film_rate(const X& film, const X& steady, const X& velocity_m_per_s, const C& moving_s,
+            const C& dwell_s, const C& smoothing_m_per_s) {
+  using std::exp;
+  const X ratio = velocity_m_per_s / smoothing_m_per_s;
+  const X still = exp(X(-(ratio * ratio)));
+  return (steady - film) * (still / dwell_s + (1.0 - still) / moving_s);
+}
+
 /// Acceleration of a second mass on a spring and a damper [m/s2]:
 /// omega_2^2 (x - x_2) + 2 zeta_2 omega_2 (x' - x_2').
 ///

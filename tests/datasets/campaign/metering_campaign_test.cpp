@@ -113,6 +113,10 @@ TEST_CASE("load_campaign: what does not go together behind a valve of two chambe
            Row{"bypass_range = \"80 bar\"", "bypass_range without a bypass"},
            Row{"bristle_stiffness = \"1 N/um\"", "expected coulomb_friction as well"},
            Row{"bristle_damping = \"1 N s/m\"", "expected bristle_stiffness"},
+           Row{"film_velocity = \"0.1 m/s\"", "expected film_growth_time as well"},
+           Row{"film_velocity = \"0.1 m/s\"\nfilm_growth_time = \"20 ms\"\nfilm_decay_time = "
+               "\"0.2 s\"\nfilm_dwell_time = \"20 s\"",
+               "expected bristle_stiffness as well"},
        }) {
     CAPTURE(row.lines);
     CHECK_THROWS_WITH(load_text(replaced(kSlide, kGain, kGain + row.lines + "\n")),

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "model/plant/terms.hpp"
 #include "tests/model/linkage_rig.hpp"
 #include "tests/model/sensitivity.hpp"
 
@@ -255,6 +256,8 @@ TEST_CASE("equations: a cylinder with a load-sensing pump and friction with pre-
   e.set("supply_resistance", 1e9).set("supply_capacity", 1e-11).set("accumulator_volume", 1e-4);
   e.set("accumulator_precharge", 1e6).set("relief_pressure", 1.5e7);
   e.set("relief_conductance", 1e-10).set("coulomb_friction", 2e3).set("bristle_stiffness", 1e7);
+  e.set("stribeck_friction", 1e3).set("film_velocity", 0.1).set("film_growth_time", 0.05);
+  e.set("film_decay_time", 0.2).set("film_dwell_time", 5.0);
   e.set("external_force", 0.0).inputs.external_force_n = Signal::constant(1e4);
   e.times_s = {0.0, 0.5};
   const Simulation run = e();
@@ -264,9 +267,10 @@ TEST_CASE("equations: a cylinder with a load-sensing pump and friction with pre-
   rig.rig = e.rig;
   rig.values = e.values;
   CHECK(names(rig) == std::vector<std::string>{"position", "velocity", "pressure_a", "pressure_b",
-                                               "valve_supply_pressure", "bristle_force"});
+                                               "valve_supply_pressure", "bristle_force",
+                                               "film_thickness"});
   const auto equations = make_equations(rig);
-  CHECK(describe_states(rig, equations->layout()).back().unit == "N");
+  CHECK(describe_states(rig, equations->layout())[5].unit == "N");
   RigInputs inputs;
   inputs.drive.value = 2e6;
   inputs.external_force_n.value = 1e4;
@@ -282,14 +286,15 @@ TEST_CASE("equations: a cylinder with a load-sensing pump and friction with pre-
   CHECK(equations->output(Output::pilot_pressure, x) == 2e6);
   CHECK(equations->output(Output::command, x) == 0.0);
   // One indicator each for four edges, both stops, compensators on both sides, both relief valves,
-  // the pressure limit of the pump, and the reversal of the bristles.
+  // the pressure limit of the pump, the reversal of the bristles, and the growth of the film.
   const std::vector<double> indicators = equations->indicators(x);
-  REQUIRE(indicators.size() == 12);
+  REQUIRE(indicators.size() == 13);
   CHECK(indicators[0] == Approx(1e6));
   CHECK(indicators[6] == Approx(x[4] - x[2] - 8e5));
   CHECK(indicators[8] == Approx(1.5e7 - x[2]));
   CHECK(indicators[10] == Approx(2e5 + 2e6 + (x[2] - 2e5) - 2e7));
   CHECK(indicators[11] == Approx(x[1]));
+  CHECK(indicators[12] == Approx(steady_film(x[1], 0.1, 1e-3) - x[6]).margin(1e-12));
 }
 
 TEST_CASE("equations: a step that was planned at rest is repeated when the drive jumps",

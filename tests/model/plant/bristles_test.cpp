@@ -194,3 +194,132 @@ TEST_CASE("bristles: a record that begins in motion begins with bent bristles", 
     CHECK_THAT(end_of_run(e).state[4], WithinRel(std::copysign(60.0, v), 1e-12));
   }
 }
+
+TEST_CASE("film: in steady motion it grows with the velocity to the power of two thirds",
+          "[model]") {
+  for (const double v : {0.01, -0.04, 0.1})
+    CHECK_THAT(steady_film(v, 0.2, 1e-4), WithinRel(std::pow(std::abs(v) / 0.2, 2.0 / 3.0), 1e-4));
+  CHECK(steady_film(0.5, 0.2, 1e-3) == 1.0);
+  CHECK(steady_film(0.0, 0.2, 1e-3) == 0.0);
+  CHECK_THAT(steady_film(1e-3, 0.2, 1e-3), WithinRel(std::pow(0.5 * 1e-3 / 0.2, 2.0 / 3.0), 0.4));
+  // In motion at one time constant, at rest at the other.
+  CHECK_THAT(film_rate(0.3, 0.7, 0.1, 0.05, 20.0, 1e-3), WithinRel(0.4 / 0.05, 1e-12));
+  CHECK_THAT(film_rate(0.3, 0.0, 0.0, 0.05, 20.0, 1e-3), WithinRel(-0.3 / 20.0, 1e-12));
+}
+
+namespace {
+
+/// pushed_piston() with a film that grows within 20 ms, decays within 60 ms and dwells for 0.5 s.
+Experiment lubricated_piston(const Signal& load, std::vector<double> times_s) {
+  Experiment e = pushed_piston(load, std::move(times_s));
+  e.set("stribeck_velocity", 0.05).set("stribeck_friction", 250.0);
+  e.set("friction_smoothing", 2e-3).set("film_velocity", 0.08).set("film_growth_time", 0.02);
+  return e.set("film_decay_time", 0.06).set("film_dwell_time", 0.5);
+}
+
+}  // namespace
+
+TEST_CASE("film: stick and slip on a film follow an integrator of another kind", "[model]") {
+  Experiment e = lubricated_piston(Signal::ripple(0.0, 900.0, 2.0, 0.0), grid(0.0, 1.0, 21));
+  const Simulation run = e();
+  INFO(run.reason);
+  REQUIRE(run.ok());
+  using PistonState = std::array<double, 4>;  // position, velocity, bristles, film
+  const double mass = e.values["mass"];
+  const double area = e.values["piston_area"];
+  const auto bristles = [](const PistonState& x) {
+    const double v = x[1];
+    const double sliding = 200.0 + 250.0 * (1.0 - x[3]) * std::exp(-v * v / (0.05 * 0.05));
+    return 1e6 * (v - std::abs(v) * x[2] / sliding);
+  };
+  const auto film = [](const PistonState& x) {
+    const double v = x[1];
+    const double root = v * v / std::pow(v * v + 4e-6, 2.0 / 3.0);
+    const double steady = std::min(root / std::pow(0.08, 2.0 / 3.0), 1.0);
+    const double still = std::exp(-v * v / 4e-6);
+    return (steady - x[3]) * (still / 0.5 + (1.0 - still) / (x[3] < steady ? 0.02 : 0.06));
+  };
+  // As above, the pressure follows the speed immediately.
+  const auto rates = [&](const PistonState& x, double t) -> PistonState {
+    const double friction_n = x[2] + 500.0 / 1e6 * bristles(x);
+    const double force = -area * area * x[1] / 1e-5 - 2e3 * x[1] - 2e4 * x[0] - friction_n -
+                         900.0 * std::sin(4.0 * kPi * t);
+    return {x[1], force / mass, bristles(x), film(x)};
+  };
+  const Eigen::MatrixXd other = runge_kutta(PistonState{}, e.times_s, 20000, rates);
+  REQUIRE(peak(other.col(0)) > 0.01);
+  REQUIRE(peak(other.col(3)) > 0.8);
+  CHECK(difference(run.outputs.leftCols(2), other.leftCols(2)) < 1e-4);
+  CHECK_THAT(run.end_state(4), WithinAbs(other(20, 3), 1e-4));
+  // Without the film the piston moves differently.
+  for (const char* key :
+       {"film_velocity", "film_growth_time", "film_decay_time", "film_dwell_time"})
+    e.unset(key);
+  CHECK(difference(run.outputs, e().outputs) > 0.02);
+}
+
+TEST_CASE("film: where it follows at once, friction falls to Coulomb's at its velocity",
+          "[model]") {
+  Experiment e = lubricated_piston(Signal::constant(0.0), {0.0, 8.0});
+  e.inputs.external_force_n.reset();
+  e.set("film_growth_time", 1e-4).set("film_decay_time", 1e-4).set("stribeck_velocity", 10.0);
+  e.set("laminar_leakage", 0.0).set("stiffness", 0.0);
+  e.outputs = {Output::velocity, Output::load_pressure};
+  for (const double command : {0.3, -0.3, 6.0}) {
+    e.inputs.drive = Signal::constant(command);
+    const Simulation run = e();
+    REQUIRE(run.ok());
+    const double v = run.outputs(1, 0);
+    const double film = std::min(std::pow(std::abs(v) / 0.08, 2.0 / 3.0), 1.0);
+    REQUIRE(std::abs(v) > 0.01);
+    const double friction_n = 200.0 + 250.0 * (1.0 - film);
+    CAPTURE(v);
+    CHECK_THAT(1.62e-3 * run.outputs(1, 1),
+               WithinRel(2e3 * v + std::copysign(friction_n, v), 3e-3));
+  }
+}
+
+TEST_CASE("film: a record that begins in motion begins with its film", "[model]") {
+  Experiment e = lubricated_piston(Signal::constant(0.0), {0.0});
+  e.rig.initial = InitialState::given;
+  e.set("initial_velocity", -0.03);
+  const Simulation run = e();
+  REQUIRE(run.ok());
+  const double film = std::pow(0.03 / 0.08, 2.0 / 3.0);
+  CHECK_THAT(run.end_state(4), WithinRel(film, 5e-3));
+  const double sliding = 200.0 + 250.0 * (1.0 - film) * std::exp(-0.36);
+  CHECK_THAT(run.end_state(3), WithinRel(-sliding, 5e-3));
+}
+
+TEST_CASE("film: sensitivities are exact against differences", "[model]") {
+  Experiment e = lubricated_piston(Signal::constant(0.0), {0.0});
+  e.inputs.external_force_n.reset();
+  std::set<int> seen;
+  const NamedValues values{{"laminar_leakage", 2e-11},   {"stiffness", 2e4},
+                           {"stribeck_friction", 800.0}, {"stribeck_velocity", 0.2},
+                           {"friction_smoothing", 0.03}, {"film_dwell_time", 0.03}};
+  Scenario scenario{"film", Signal::sine(1.0, 9.0), values, ControllerKind::none};
+  check_sensitivities(experiment(scenario, e), seen, {{Output::force, 1e4}});
+  for (const char* key :
+       {"film_velocity", "film_growth_time", "film_decay_time", "film_dwell_time"}) {
+    CAPTURE(key);
+    CHECK(seen.count(parameter_index(PlantKind::load_pressure, key)) == 1);
+  }
+}
+
+TEST_CASE("film: both halves of a period are simulated, since a film has no direction", "[model]") {
+  Experiment e;
+  e.rig.controller = ControllerKind::pid;
+  e.set("kp", 900.0).set("coulomb_friction", 150.0).set("stribeck_friction", 300.0);
+  e.set("stribeck_velocity", 0.05).set("bristle_stiffness", 2e6).set("film_velocity", 0.1);
+  e.set("film_growth_time", 0.02).set("film_decay_time", 0.05).set("film_dwell_time", 1.0);
+  e.inputs.drive = Signal::sine(0.01, 5.0);
+  e.times_s = grid(0.0, 12.0, 2401);
+  const Simulation early = e();
+  e.options.periodic_steady_state = false;
+  const Simulation whole = e();
+  REQUIRE(early.ok());
+  REQUIRE(whole.ok());
+  CHECK(early.steps < whole.steps / 3);
+  CHECK(difference(whole.outputs, early.outputs) < 1e-4);
+}
