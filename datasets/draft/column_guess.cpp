@@ -332,8 +332,9 @@ ColumnGuess guess_column(const std::string& name, const std::string& unit) {
   std::vector<std::string> parts = parts_of(own);
   if (parts.size() > 1 && parts[0] == "x" && parts[1] == "value") parts = {"time"};  // of LabVIEW
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    // "x_r" may be at the right, "r_mm" is a reference.
+    // "x_r" may be at the right, "r_mm" is a reference. The "X_Axis" of a logger is no position.
     if (i > 0 && parts[i] == "r") continue;
+    if (parts[i] == "x" && i + 1 < parts.size() && parts[i + 1] == "axis") continue;
     // "x_d" is what is desired.
     const bool desired = i + 1 < parts.size() && parts[i] == "x" && parts[i + 1] == "d";
     const auto tokens = tokens_of(desired ? "xd" : parts[i], reading.tokens);

@@ -17,7 +17,10 @@
 #include "common/quantity.hpp"
 #include "datasets/campaign/keys/campaign_keys.hpp"
 #include "datasets/campaign/toml/toml_reader.hpp"
-#include "datasets/draft/column_guess.hpp"
+#include "datasets/draft/channels_text.hpp"
+#include "datasets/draft/draft_comment.hpp"
+#include "datasets/draft/file_columns.hpp"
+#include "datasets/draft/rig_text.hpp"
 #include "datasets/draft/start_motion.hpp"
 #include "datasets/prepare/waveform_guess.hpp"
 #include "datasets/read/record_reader.hpp"
@@ -28,565 +31,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A text split at the number that ends it: "run_03" into "run_" and "03".
-struct Numbered {
-  std::string stem;
-  std::string number;
-};
-
-Numbered split_number(const std::string& text) {
-  std::size_t at = text.size();
-  while (at > 0 && text[at - 1] >= '0' && text[at - 1] <= '9') --at;
-  return {text.substr(0, at), text.substr(at)};
-}
-
-std::vector<std::vector<double>> read(const fs::path& file, const std::string& time,
-                                      const std::string& column) {
-  return record_reader(file).load(file, {{time, column}, time}).columns;
-}
-
-// ---- Columns -------------------------------------------------------------------------------
-
-/// Columns of one channel in a file: a single column, or several numbered ones that are repeats.
-struct ChannelColumns {
-  Channel channel = Channel::position;
-  std::string stem;                  ///< name, without its number if there are several columns
-  std::vector<std::string> numbers;  ///< empty for a single column
-  std::string unit;
-};
-
-struct FileColumns {
-  std::string time;
-  std::string time_unit;
-  std::vector<ChannelColumns> channels;
-  std::vector<std::string> unknown;
-  std::map<std::string, std::string> units;  ///< units of `unknown`, if the file gives them
-  /// Unnamed lines of a matrix after its time: rows of an array from Simulink's "To File", or
-  /// columns.
-  std::vector<std::string> rows;
-  std::string lacks;  ///< why the file is not a recording, in words; empty if it is one
-};
-
-/// Returns the rows or columns of the first matrix in the file that begins with a time. Simulink's
-/// "To File" block with the format "Array" saves such rows; arrays in HDF5 usually have columns.
-/// Empty if there is no such matrix.
-std::vector<std::string> timed_lines(const fs::path& file,
-                                     const std::vector<RecordColumn>& columns) {
-  constexpr int kMostTried = 10;
-  int tried = 0;
-  const auto matrix_of = [](const std::string& name) { return name.substr(0, name.rfind('(')); };
-  for (std::size_t i = 0; i < columns.size() && tried < kMostTried; ++i) {
-    const std::string& first = columns[i].name;
-    if (!columns[i].is_matrix_line || !(first.ends_with("(1,:)") || first.ends_with("(:,1)")))
-      continue;
-    std::vector<std::string> lines;
-    for (std::size_t k = i; k < columns.size() && columns[k].is_matrix_line; ++k) {
-      if (matrix_of(columns[k].name) != matrix_of(first)) break;
-      lines.push_back(columns[k].name);
-    }
-    if (lines.size() < 2) continue;
-    ++tried;
-    try {
-      read(file, lines[0], lines[1]);
-      return lines;
-    } catch (const InputError&) {
-      continue;  // its first line is not a time
-    }
-  }
-  return {};
-}
-
-std::string names_text(const std::vector<RecordColumn>& columns) {
-  constexpr std::size_t kMostNamed = 40;
-  std::vector<std::string_view> names;
-  for (const RecordColumn& column : columns)
-    if (names.size() < kMostNamed) names.push_back(column.name);
-  const std::string more = columns.size() > kMostNamed
-                               ? fmt::format(" and {} more", columns.size() - kMostNamed)
-                               : std::string();
-  return fmt::format("{}{}", fmt::join(names, ", "), more);
-}
-
-/// Handles a file without a time column. Either a matrix contains the times, or the file is not a
-/// recording, and the reason is noted.
-void without_time(const fs::path& file, const std::vector<RecordColumn>& columns,
-                  FileColumns& found) {
-  found.rows = timed_lines(file, columns);
-  if (!found.rows.empty()) {
-    found.time = found.rows.front();
-    const auto time = std::find_if(columns.begin(), columns.end(), [&](const RecordColumn& each) {
-      return each.name == found.time;
-    });
-    found.time_unit = time->unit.empty() ? "s" : time->unit;  // Simulink uses no other unit
-    found.rows.erase(found.rows.begin());
-    std::erase_if(found.unknown, [&](const std::string& name) {
-      return name == found.time ||
-             std::find(found.rows.begin(), found.rows.end(), name) != found.rows.end();
-    });
-    return;
-  }
-  found.lacks = columns.empty()
-                    ? fmt::format("it contains no vector or matrix of numbers; {}",
-                                  record_reader(file).if_empty)
-                    : fmt::format("no column looks like a time (t, time, ...); the columns are {}",
-                                  names_text(columns));
-}
-
-FileColumns columns_of(const fs::path& file) {
-  const std::vector<RecordColumn> columns = record_reader(file).columns(file);
-  std::map<std::string, std::vector<std::string>> numbers;  // numbers by stem
-  for (const RecordColumn& column : columns) {
-    const Numbered numbered = split_number(column.name);
-    if (!numbered.number.empty()) numbers[numbered.stem].push_back(numbered.number);
-  }
-  FileColumns found;
-  for (const RecordColumn& column : columns) {
-    const std::string& name = column.name;
-    const Numbered numbered = split_number(name);
-    const bool several = !numbered.number.empty() && numbers[numbered.stem].size() > 1;
-    // "p1" and "p2" are two pressures, not two repeats.
-    const bool own_word = guess_column(name).channel && !guess_column(numbered.stem).channel;
-    const bool repeated = several && !own_word;
-    const std::string shown = repeated ? numbered.stem : name;
-    ColumnGuess guess = guess_column(shown, column.unit);
-    if (column.is_time) guess = {true, {}, guess.unit};
-    if (guess.is_time && found.time.empty()) {
-      found.time = name;
-      found.time_unit = guess.unit;
-    } else if (guess.channel) {
-      const bool known = std::any_of(found.channels.begin(), found.channels.end(),
-                                     [&](const ChannelColumns& c) { return c.stem == shown; });
-      if (!known)
-        found.channels.push_back({*guess.channel, shown,
-                                  repeated ? numbers[numbered.stem] : std::vector<std::string>{},
-                                  guess.unit});
-    } else {
-      found.unknown.push_back(name);
-      if (!guess.unit.empty()) found.units[name] = guess.unit;
-    }
-  }
-  if (found.time.empty()) {
-    without_time(file, columns, found);
-  } else if (found.channels.empty()) {
-    found.lacks = fmt::format(
-        "no column looks like a channel (reference, command, position, "
-        "pressure_a, ...); the columns are {}",
-        names_text(columns));
-  }
-  return found;
-}
-
-/// Groups the columns that belong to the same repeats. A new set begins when a channel occurs
-/// again.
-std::vector<std::vector<ChannelColumns>> column_sets(const FileColumns& columns) {
-  std::vector<std::vector<ChannelColumns>> sets;
-  for (const ChannelColumns& column : columns.channels) {
-    if (column.numbers.empty()) continue;
-    const bool again =
-        !sets.empty() &&
-        (sets.back().front().numbers != column.numbers ||
-         std::any_of(sets.back().begin(), sets.back().end(),
-                     [&](const ChannelColumns& c) { return c.channel == column.channel; }));
-    if (sets.empty() || again) sets.emplace_back();
-    sets.back().push_back(column);
-  }
-  return sets;
-}
-
 // ---- Text ----------------------------------------------------------------------------------
-
-/// Returns a text for a comment. A control character, as some files have in their names, would end
-/// it or be invalid.
-std::string in_comment(std::string text) {
-  for (char& c : text)
-    if ((c >= 0 && c < ' ') || c == '\x7F') c = ' ';
-  return text;
-}
-
-std::string comment(const std::string& text) { return "  # " + in_comment(text); }
-
-/// Returns one line of [recording.channels]. If the dimension of the column differs from that of
-/// the channel, the line needs a gain.
-/// @param minus  column for the opposite direction; empty if there is none
-std::string channel_line(Channel channel, const std::string& column, const std::string& unit,
-                         const std::string& minus = {}) {
-  const ChannelInfo& about = info(channel);
-  std::string shown_unit = unit.empty() ? kBlank : unit;
-  std::string remark;
-  if (unit.empty()) {
-    remark = comment(fmt::format("the unit of the column, such as \"{}\"", about.unit));
-  } else {
-    try {
-      unit_conversion(unit, about.unit);
-    } catch (const QuantityError&) {
-      shown_unit = kBlank;
-      remark = comment(fmt::format(
-          "the column is in {0}: a unit such as \"{1}\", with gain = ... in that unit per {0}",
-          unit, about.unit));
-    }
-  }
-  std::string name = column.empty() ? "" : fmt::format("column = {}, ", toml_quoted(column));
-  if (!minus.empty()) name += fmt::format("minus = {}, ", toml_quoted(minus));
-  return fmt::format("{} = {{ {}unit = {} }}{}\n", about.key, name, toml_quoted(shown_unit),
-                     remark);
-}
-
-const ChannelColumns* find(const FileColumns& columns, Channel channel) {
-  const auto found = std::find_if(columns.channels.begin(), columns.channels.end(),
-                                  [&](const ChannelColumns& c) { return c.channel == channel; });
-  return found == columns.channels.end() ? nullptr : &*found;
-}
-
-/// Returns the columns with the motion of the rig: the angle of a joint, or else the position of a
-/// piston.
-const ChannelColumns* motion_of(const FileColumns& columns) {
-  const ChannelColumns* angle = find(columns, Channel::angle);
-  return angle != nullptr ? angle : find(columns, Channel::position);
-}
-
-/// Returns the controlled quantity of the loop whose reference is recorded; std::nullopt if no
-/// reference is recorded.
-std::optional<model::Feedback> loop_of(const FileColumns& columns) {
-  if (find(columns, Channel::angle) != nullptr) return std::nullopt;  // a joint has no controller
-  for (std::size_t i = 0; i < model::kFeedbackCount; ++i) {
-    const model::Rig rig{{}, model::ControllerKind::pid, {}, static_cast<model::Feedback>(i)};
-    if (find(columns, drive_channel(rig)) != nullptr) return rig.feedback;
-  }
-  return std::nullopt;
-}
-
-/// Whether a pilot pressure drives the rig. A controller would drive it with a voltage instead.
-bool has_pilot(const FileColumns& columns) {
-  return find(columns, Channel::pilot_pressure) != nullptr && !loop_of(columns);
-}
-
-/// Returns the direction in which a drive column moves the machine, according to a word in its
-/// name: 1 out or up, -1 in or down, 0 unknown.
-int direction_of(const std::string& name) {
-  using Words = std::array<std::string_view, 9>;
-  constexpr Words kOut{"up", "out", "extend", "raise", "open", "forward", "fwd", "auf", "aus"};
-  constexpr Words kIn{"down", "dn", "in", "retract", "close", "reverse", "rev", "ab", "ein"};
-  std::string part;
-  for (const char c : name + "_") {
-    if (std::isalpha(static_cast<unsigned char>(c)) != 0) {
-      part += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-      continue;
-    }
-    if (std::find(kOut.begin(), kOut.end(), part) != kOut.end()) return 1;
-    if (std::find(kIn.begin(), kIn.end(), part) != kIn.end()) return -1;
-    part.clear();
-  }
-  return 0;
-}
-
-/// Columns of a drive that has a separate column for each direction.
-struct OneEachWay {
-  std::string out;
-  std::string in;
-};
-
-std::optional<OneEachWay> one_each_way(const FileColumns& columns, Channel drive) {
-  OneEachWay found;
-  for (const ChannelColumns& column : columns.channels) {
-    if (column.channel != drive || !column.numbers.empty()) continue;
-    const int direction = direction_of(column.stem);
-    if (direction > 0 && found.out.empty()) found.out = column.stem;
-    if (direction < 0 && found.in.empty()) found.in = column.stem;
-  }
-  if (found.out.empty() || found.in.empty()) return std::nullopt;
-  return found;
-}
-
-/// Reads the named columns; those that cannot be read are empty.
-std::vector<std::vector<double>> columns_or_none(const fs::path& file,
-                                                 const std::vector<std::string>& names) {
-  try {
-    return record_reader(file).load(file, {names, {}}).columns;
-  } catch (const InputError&) {
-  }
-  std::vector<std::vector<double>> columns(names.size());
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    try {
-      columns[i] = std::move(record_reader(file).load(file, {{names[i]}, {}}).columns.at(0));
-    } catch (const InputError&) {
-    }
-  }
-  return columns;
-}
-
-/// Describes the range of a column and its possible meaning, in brackets.
-std::string range_text(const std::vector<double>& values, const std::string& unit,
-                       bool has_position) {
-  if (values.empty()) return {};
-  const auto [low, high] = std::minmax_element(values.begin(), values.end());
-  const bool increases =
-      values.size() > 2 &&
-      std::adjacent_find(values.begin(), values.end(), std::greater_equal<>()) == values.end();
-  const auto channel = guess_by_unit(unit, {});
-  std::string guess;
-  if (channel) guess = fmt::format(", perhaps {}", info(*channel).key);
-  if (!channel && increases) guess = ", perhaps time";
-  return fmt::format(" ({:.6g} to {:.6g}{}{}{})", *low, *high, unit.empty() ? "" : " ", unit,
-                     guess);
-}
-
-/// Lists the columns that were not recognised, with their ranges.
-std::string unknown_columns_text(const fs::path& file, const FileColumns& columns) {
-  constexpr std::size_t kMostShown = 40;
-  std::vector<std::string> names = columns.unknown;
-  if (names.empty()) return {};
-  if (names.size() > kMostShown) names.resize(kMostShown);
-  const bool has_position =
-      std::any_of(columns.channels.begin(), columns.channels.end(),
-                  [](const ChannelColumns& c) { return c.channel == Channel::position; });
-  const auto values = columns_or_none(file, names);
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto unit = columns.units.find(names[i]);
-    names[i] += range_text(values[i], unit == columns.units.end() ? std::string() : unit->second,
-                           has_position);
-  }
-  const std::string more = columns.unknown.size() > names.size()
-                               ? fmt::format(" and {} more", columns.unknown.size() - names.size())
-                               : std::string();
-  return in_comment(fmt::format("# not used: {}{}", fmt::join(names, ", "), more)) + "\n";
-}
-
-/// Returns one line for each recognised channel. A channel occurs once; further columns that look
-/// like it are comments.
-std::string known_channels_text(const FileColumns& columns) {
-  std::string text;
-  std::vector<Channel> done;
-  for (const ChannelColumns& column : columns.channels) {
-    if (column.channel == Channel::pilot_pressure && !has_pilot(columns)) {
-      text +=
-          fmt::format("# '{}' looks like a pilot pressure, which drives no rig with a controller\n",
-                      in_comment(column.stem));
-      continue;
-    }
-    if (column.channel == Channel::command && has_pilot(columns)) {
-      text += fmt::format(
-          "# '{}' also looks like a drive: the pilot pressure is nearer to the "
-          "spool\n",
-          in_comment(column.stem));
-      continue;
-    }
-    const bool again = std::find(done.begin(), done.end(), column.channel) != done.end();
-    if (!again) {
-      done.push_back(column.channel);
-      const auto ways = one_each_way(columns, column.channel);
-      if (ways && (column.channel == Channel::command || column.channel == Channel::pilot_pressure))
-        text += channel_line(column.channel, ways->out, column.unit, ways->in);
-      else
-        text +=
-            channel_line(column.channel, column.numbers.empty() ? column.stem : "", column.unit);
-    } else if (column.numbers.empty() && !one_each_way(columns, column.channel)) {
-      text += fmt::format("# '{}' also looks like {}\n", in_comment(column.stem),
-                          info(column.channel).key);
-    }
-  }
-  return text;
-}
-
-/// Returns the text for a file in which no channel, or not even a time, is recognised.
-std::string blank_channels_text(const fs::path& file, const FileColumns& columns) {
-  std::string text = "[recording.channels]\n# No column was recognised: see those below.\n";
-  text += columns.time.empty()
-              ? fmt::format("time = {{ column = \"{}\", unit = \"s\" }}{}\n", kBlank,
-                            comment("one of the columns below"))
-              : fmt::format("time = {{ column = {}, unit = {} }}\n", toml_quoted(columns.time),
-                            toml_quoted(columns.time_unit.empty() ? "s" : columns.time_unit));
-  text += known_channels_text(columns);
-  if (columns.channels.empty()) {
-    text += fmt::format("position = {{ column = \"{0}\", unit = \"{0}\" }}\n", kBlank);
-    text += fmt::format("command = {{ column = \"{0}\", unit = \"{0}\" }}{1}\n", kBlank,
-                        comment("or reference, in a position loop"));
-  }
-  return text + unknown_columns_text(file, columns);
-}
-
-std::string channels_text(const fs::path& file, const FileColumns& columns) {
-  if (!columns.lacks.empty()) return blank_channels_text(file, columns);
-  std::string text = "[recording.channels]\n";
-  text += fmt::format("time = {{ column = {}, unit = {} }}{}\n", toml_quoted(columns.time),
-                      toml_quoted(columns.time_unit.empty() ? "s" : columns.time_unit),
-                      columns.time_unit.empty() ? comment("assumed: its name has no unit") : "");
-  return text + known_channels_text(columns) + unknown_columns_text(file, columns);
-}
-
-/// Lists unnamed lines with their ranges, from which the user can identify them.
-std::string rows_text(const fs::path& file, const FileColumns& columns) {
-  if (columns.rows.empty()) return {};
-  std::string text = columns.time.ends_with("(1,:)")
-                         ? "# An array of Simulink's \"To File\": time in its first row, and "
-                           "nothing names the others.\n"
-                           "# Give each channel its row"
-                         : "# A matrix with a time in its first column, and nothing names the "
-                           "others.\n# Give each channel its column";
-  text += " and unit, reference = { ... } too if one drives a controller:\n";
-  for (const std::string& row : columns.rows) {
-    const auto values = read(file, columns.time, row).at(1);
-    const auto [low, high] = std::minmax_element(values.begin(), values.end());
-    text += fmt::format("# {}: {:.6g} to {:.6g}\n", in_comment(row), *low, *high);
-  }
-  if (motion_of(columns) != nullptr) return text;
-  return text + fmt::format("position = {{ column = {0}, unit = {0} }}{1}\n", toml_quoted(kBlank),
-                            comment(columns.time.ends_with("(1,:)") ? "one of these rows"
-                                                                    : "one of these columns"));
-}
-
-/// Optional terms that most two-chamber cylinders have.
-constexpr std::array<std::string_view, 15> kTwoChamberTerms{
-    "retracted_position", "valve_dead_band",    "valve_time_constant", "transport_delay",
-    "gain_b_to_tank",     "valve_null_leakage", "laminar_leakage",     "gravity",
-    "external_force",     "load_gradient",      "coulomb_friction",    "bristle_stiffness",
-    "air_fraction",       "stop_stiffness",     "make_up_conductance"};
-
-/// Optional terms for a servo valve with a symmetric cylinder.
-constexpr std::array<std::string_view, 8> kLoadPressureTerms{
-    "valve_offset",       "valve_dead_band", "valve_time_constant", "transport_delay",
-    "valve_null_leakage", "laminar_leakage", "external_force",      "coulomb_friction"};
-
-/// Optional terms for a joint.
-constexpr std::array<std::string_view, 15> kLinkageTerms{
-    "reference_angle", "lever_gradient",      "lever_curvature",
-    "gravity_moment",  "joint_friction",      "gravity_moment_gradient",
-    "stop_stiffness",  "valve_time_constant", "gain_a_to_tank",
-    "gain_b_to_tank",  "make_up_conductance", "supply_resistance",
-    "supply_capacity", "pump_flow",           "air_fraction"};
-
-/// Travel of the piston by a triangle or a table, in place of the lever.
-constexpr std::array<std::string_view, 11> kTravelTerms{
-    "triangle_base",   "triangle_arm", "triangle_angle", "travel_table_from",
-    "travel_table_to", "travel_0",     "travel_20",      "travel_40",
-    "travel_60",       "travel_80",    "travel_100"};
-
-/// Terms for the pump and check valves of a two-chamber cylinder behind a pilot-operated valve.
-constexpr std::array<std::string_view, 6> kPumpTerms{"relief_pressure",     "supply_resistance",
-                                                     "supply_capacity",     "pump_flow",
-                                                     "load_sensing_margin", "compensator_pressure"};
-
-/// Terms for a valve that is driven by a pilot pressure.
-constexpr std::array<std::string_view, 6> kPilotTerms{
-    "pilot_dead_band",     "pilot_exponent",         "return_exponent",
-    "return_line_opening", "return_line_resistance", "bypass_opening"};
-
-/// A load by a table, proposed if position and both chamber pressures were recorded: they show how
-/// the load varies with the travel.
-constexpr std::array<std::string_view, 8> kLoadTableTerms{
-    "load_table_from", "load_table_to", "load_0",  "load_20",
-    "load_40",         "load_60",       "load_80", "load_100"};
-
-/// Optional terms for a rig with a payload, proposed if an acceleration was recorded.
-constexpr std::array<std::string_view, 3> kPayloadTerms{"payload_mass", "payload_frequency",
-                                                        "payload_damping_ratio"};
-
-/// Oil that follows its temperature, proposed if a temperature was recorded.
-constexpr std::array<std::string_view, 4> kWarmOilTerms{"reference_temperature", "viscosity_decay",
-                                                        "thermal_expansion", "bulk_modulus_decay"};
-
-/// What the recorded channels say about the terms of a rig.
-struct RecordedSigns {
-  bool payload = false;      ///< an acceleration was recorded
-  bool load_table = false;   ///< position and both chamber pressures were recorded
-  bool pilot = false;        ///< the drive is a pilot pressure
-  bool temperature = false;  ///< a temperature was recorded
-};
-
-/// Lists optional terms, as comments.
-std::string terms_text(model::PlantKind plant, const RecordedSigns& signs) {
-  std::vector<std::string_view> terms(kLoadPressureTerms.begin(), kLoadPressureTerms.end());
-  if (plant == model::PlantKind::two_chamber)
-    terms.assign(kTwoChamberTerms.begin(), kTwoChamberTerms.end());
-  if (plant == model::PlantKind::linkage) {
-    terms.assign(kLinkageTerms.begin(), kLinkageTerms.end());
-    terms.insert(terms.end(), kTravelTerms.begin(), kTravelTerms.end());
-  }
-  if (signs.pilot && plant == model::PlantKind::two_chamber) {
-    // A dead band in volts does not apply to this valve.
-    terms.erase(std::remove(terms.begin(), terms.end(), "valve_dead_band"), terms.end());
-    terms.insert(terms.end(), kPumpTerms.begin(), kPumpTerms.end());
-  }
-  if (signs.pilot) terms.insert(terms.end(), kPilotTerms.begin(), kPilotTerms.end());
-  if (signs.load_table) terms.insert(terms.end(), kLoadTableTerms.begin(), kLoadTableTerms.end());
-  if (signs.payload) terms.insert(terms.end(), kPayloadTerms.begin(), kPayloadTerms.end());
-  if (signs.temperature) terms.insert(terms.end(), kWarmOilTerms.begin(), kWarmOilTerms.end());
-  std::string text = "# Terms that are absent unless given (rigcal params lists all):\n";
-  for (const std::string_view key : terms) {
-    const int row = model::parameter_index(plant, key);
-    const model::ParameterSpec& spec = model::parameter_table(plant)[static_cast<std::size_t>(row)];
-    text += fmt::format("# {} = {}{}\n", key,
-                        spec.unit == "1" ? "..." : fmt::format("\"... {}\"", spec.unit),
-                        comment(fmt::format("{}: {}", spec.symbol, spec.meaning)));
-  }
-  return text;
-}
-
-std::string model_text(model::PlantKind plant) {
-  switch (plant) {
-    case model::PlantKind::load_pressure:
-      return "model = \"load_pressure\"  # a symmetric cylinder on one servo-valve\n";
-    case model::PlantKind::two_chamber:
-      return "model = \"two_chamber\"  # single-rod or double-rod, with both chamber pressures\n";
-    case model::PlantKind::linkage:
-      return "model = \"linkage\"  # a cylinder that turns an arm; chamber A is the one whose "
-             "pressure raises the angle\n";
-  }
-  return {};
-}
-
-/// @param loop  controlled quantity; nullopt if the command was recorded
-std::string rig_text(model::PlantKind plant, std::optional<model::Feedback> loop,
-                     const RecordedSigns& signs) {
-  std::string text = "[rig]\n" + model_text(plant);
-  text +=
-      "# What no data sheet gives is fitted: { start = ..., lower = ..., upper = ..., fit = "
-      "true }\n"
-      "[rig.parameters]\n";
-  for (const model::ParameterSpec& spec : model::parameter_table(plant)) {
-    // A valve with four metering edges has one of two gains, depending on what drives it.
-    // A linkage may have a triangle or a table in place of its lever.
-    const bool needed = spec.key == "lever" ||
-                        (plant != model::PlantKind::load_pressure &&
-                         spec.key == std::string_view(signs.pilot ? "pilot_gain" : "valve_gain"));
-    if (!needed && (spec.kind != model::ParameterKind::plant || spec.default_value)) continue;
-    const std::string blank = spec.unit == "1"
-                                  ? toml_quoted(kBlank)
-                                  : toml_quoted(fmt::format("{} {}", kBlank, spec.unit));
-    text += fmt::format("{} = {}{}\n", spec.key, blank,
-                        comment(fmt::format("{}: {}{}", spec.symbol, spec.meaning,
-                                            spec.unit == "1" ? " (a plain number)" : "")));
-  }
-  text += terms_text(plant, signs);
-  if (!loop)
-    return text + fmt::format(
-                      "[rig.controller]\ntype = \"none\"  # the recorded {} drives the "
-                      "valve\n",
-                      signs.pilot ? "pilot pressure" : "command");
-  const model::FeedbackRow& row = model::gain_keys(*loop);
-  const auto unit_of = [&](std::string_view key) {
-    return model::parameter_table(
-               plant)[static_cast<std::size_t>(model::parameter_index(plant, key))]
-        .unit;
-  };
-  text += "[rig.controller]\ntype = \"pid\"\n";
-  if (*loop != model::Feedback::position)
-    text += fmt::format("feedback = \"{}\"{}\n", row.name,
-                        comment("what the loop controls; position unless given"));
-  text += fmt::format("{} = \"{} {}\"{}\n", row.kp, kBlank, unit_of(row.kp),
-                      comment("proportional gain; output_limit, sample_time if there are any"));
-  text += fmt::format("# {} = \"... {}\"{}\n", row.ki, unit_of(row.ki),
-                      comment(fmt::format("integral gain: without it a model lags where the "
-                                          "machine does not; {} likewise",
-                                          row.kd)));
-  const bool acceleration = *loop == model::Feedback::acceleration;
-  if (!signs.payload || !(acceleration || *loop == model::Feedback::position)) return text;
-  const auto& table = model::gain_keys(acceleration ? model::Feedback::three_variable_acceleration
-                                                    : model::Feedback::three_variable);
-  return text + fmt::format("# feedback = \"{}\"{}\n", table.name,
-                            comment(fmt::format("the controller of many shake tables: with {}, {}, "
-                                                "{}, reference_frequency, reference_damping_ratio",
-                                                table.kp, table.kd, table.acceleration)));
-}
 
 std::string relative_text(const fs::path& file, const fs::path& folder) {
   const fs::path absolute = fs::weakly_canonical(fs::absolute(file));
@@ -655,38 +100,12 @@ std::string id_of(const std::string& stem) {
 std::string limits_of_others(const FileColumns& columns) {
   std::string text;
   for (const Channel channel : {Channel::load_pressure, Channel::pressure_a, Channel::pressure_b}) {
-    if (find(columns, channel) == nullptr || motion_of(columns) == nullptr) continue;
+    if (column_of(columns, channel) == nullptr || motion_of(columns) == nullptr) continue;
     const auto key = info(channel).key;
     text += fmt::format(
         "# [acceptance.{0}]\n# rho2 = 0.95  # or, in [acceptance]: not_judged = [\"{0}\"]\n", key);
   }
   return text;
-}
-
-/// Returns the columns with the drive of the rig, or null if it was not recorded.
-const ChannelColumns* drive_of(const FileColumns& columns) {
-  const auto loop = loop_of(columns);
-  if (!loop) return find(columns, has_pilot(columns) ? Channel::pilot_pressure : Channel::command);
-  return find(columns, drive_channel(model::Rig{{}, model::ControllerKind::pid, {}, *loop}));
-}
-
-/// Reads the time and a channel from a file. If the channel has several columns, only the first is
-/// read.
-/// @return  nullopt if there is no time, or if its unit is not a unit of time
-std::optional<std::pair<std::vector<double>, std::vector<double>>> signal_of(
-    const fs::path& file, const FileColumns& columns, const ChannelColumns& channel) {
-  if (columns.time.empty()) return std::nullopt;
-  const std::string column =
-      channel.numbers.empty() ? channel.stem : channel.stem + channel.numbers.front();
-  auto data = read(file, columns.time, column);
-  try {
-    const double to_s =
-        unit_conversion(columns.time_unit.empty() ? "s" : columns.time_unit, "s").scale;
-    for (double& t : data[0]) t *= to_s;
-  } catch (const QuantityError&) {
-    return std::nullopt;
-  }
-  return std::pair{std::move(data[0]), std::move(data[1])};
 }
 
 /// Describes the initial state of the runs. It is taken from the record unless a run begins in
@@ -697,7 +116,12 @@ std::string initial_text(const std::vector<FileGroup>& groups) {
     const FileColumns& columns = group.files.front().columns;
     const ChannelColumns* motion = motion_of(columns);
     if (motion == nullptr) continue;
-    const auto signal = signal_of(group.files.front().file, columns, *motion);
+    std::optional<std::pair<std::vector<double>, std::vector<double>>> signal;
+    try {
+      signal = signal_of(group.files.front().file, columns, *motion);
+    } catch (const InputError&) {
+      // unreadable_rows() tells what is wrong
+    }
     if (!signal || !motion_at_start(signal->first, signal->second, window_s)) continue;
     return fmt::format(
         "initial = \"fit\"  # estimated: {} moves within its first {:g} s; \"record\": their mean, "
@@ -716,8 +140,8 @@ std::string waveform_text(const fs::path& file, const FileColumns& columns) {
   if (drive == nullptr)
     return fmt::format(
         "waveform = \"{}\"{}\n", kBlank,
-        comment("sine or square, with frequency and amplitude: neither reference nor "
-                "command was recorded"));
+        comment("\"recorded\" if a column above is the drive; else sine or square, with frequency "
+                "and amplitude"));
   const auto signal = signal_of(file, columns, *drive);
   if (!signal)
     return fmt::format(
@@ -791,6 +215,21 @@ std::vector<Recording> recordings_among(const std::vector<fs::path>& files,
   return all;
 }
 
+/// Lists what keeps a campaign from reading the first file of each group, as comments.
+std::string unreadable_text(const std::vector<FileGroup>& groups) {
+  std::string text;
+  for (const FileGroup& group : groups) {
+    const auto& [file, columns] = group.files.front();
+    const std::string rows = unreadable_rows(file, columns);
+    if (rows.empty()) continue;
+    text += "# " +
+            in_comment(fmt::format("a campaign refuses {}: {}",
+                                   file.filename().string(), rows)) +
+            "\n";
+  }
+  return text.empty() ? text : text + "\n";
+}
+
 std::vector<FileGroup> groups_of(std::vector<Recording> recordings) {
   std::vector<std::pair<std::pair<fs::path, std::string>, FileGroup>> groups;
   for (Recording& recording : recordings) {
@@ -832,7 +271,7 @@ std::vector<FileGroup> readable_among(std::vector<FileGroup> groups,
     } else if (!columns.channels.empty()) {
       any = columns.channels.front();
     } else {
-      any.stem = columns.rows.front();
+      any.stem = columns.rows.empty() ? columns.time : columns.rows.front();
     }
     try {
       signal_of(file, columns, any);
@@ -865,7 +304,8 @@ Draft draft_campaign(const std::vector<fs::path>& files, const fs::path& folder)
   if (!loop && !columns.rows.empty()) loop = model::Feedback::position;
   const bool chambers = std::any_of(groups.begin(), groups.end(), [](const FileGroup& group) {
     const FileColumns& own = group.files.front().columns;
-    return find(own, Channel::pressure_a) != nullptr || find(own, Channel::pressure_b) != nullptr;
+    return column_of(own, Channel::pressure_a) != nullptr ||
+           column_of(own, Channel::pressure_b) != nullptr;
   });
   std::string text = fmt::format(
       "#:schema ./{}\n"
@@ -876,11 +316,15 @@ Draft draft_campaign(const std::vector<fs::path>& files, const fs::path& folder)
   for (const std::string& file : left_out)
     text += fmt::format("# left out: {}\n", in_comment(file));
   if (!left_out.empty()) text += "\n";
+  const std::string unreadable = unreadable_text(groups);
+  text += unreadable;
   auto plant = chambers || has_pilot(columns) ? model::PlantKind::two_chamber
                                               : model::PlantKind::load_pressure;
-  if (find(columns, Channel::angle) != nullptr) plant = model::PlantKind::linkage;
+  if (column_of(columns, Channel::angle) != nullptr) plant = model::PlantKind::linkage;
   const bool slides = plant != model::PlantKind::linkage;
-  const auto recorded = [&own = columns](Channel channel) { return find(own, channel) != nullptr; };
+  const auto recorded = [&own = columns](Channel channel) {
+    return column_of(own, channel) != nullptr;
+  };
   text += rig_text(plant, loop,
                    {slides && recorded(Channel::acceleration),
                     slides && recorded(Channel::position) && recorded(Channel::pressure_a) &&
@@ -889,7 +333,10 @@ Draft draft_campaign(const std::vector<fs::path>& files, const fs::path& folder)
   text += "\n[recording]\n" + initial_text(groups);
   text += "# " + draft_line("recording", "before");
   text += "# " + draft_line("recording", "decimate_to");
-  text += channels_text(first, columns) + rows_text(first, columns);
+  if (!unreadable.empty())
+    text +=
+        "# holes = \"bridge\"  # with longest_hole: ignores samples that are missing from a file\n";
+  text += channels_text(first, columns);
   text += "\n[averaging]\n" + draft_line("averaging", "align") +
           "\n# [acceptance]  # what PASS means\n# rho2 = 0.99\n# absolute_error_percent = 1.0\n# " +
           draft_line("acceptance", "decision") + limits_of_others(columns);

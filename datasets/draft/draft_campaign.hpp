@@ -4,10 +4,9 @@
 #include <string>
 #include <vector>
 
-namespace rigcal::datasets {
+#include "datasets/draft/draft_comment.hpp"
 
-/// Placeholder in a draft for a value that only the user knows.
-inline constexpr const char* kBlank = "FILL IN";
+namespace rigcal::datasets {
 
 struct Draft {
   std::string text;                   ///< text of a campaign file, with comments

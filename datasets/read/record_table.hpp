@@ -30,6 +30,8 @@ struct RecordRequest {
   std::vector<std::string> columns;  ///< in the order of the result
   std::string time_column;           ///< one of `columns`, checked to increase; may be empty
   char separator = 0;                ///< for text files; 0: detected
+  /// For text files: whether to leave out rows that lack a number, rather than refuse the file.
+  bool leaves_out_rows = false;
 };
 
 /// @throws std::invalid_argument  if the time column is not among the columns
@@ -53,6 +55,7 @@ struct RecordTable {
   std::vector<std::vector<double>> columns;  ///< one per requested name, all of the same length
   std::string warning;                       ///< doubts about the file; usually empty
   std::vector<ColumnLabel> labels{};         ///< one per requested name, or none
+  std::string left_out{};                    ///< which rows were left out, in words; else empty
 };
 
 }  // namespace rigcal::datasets

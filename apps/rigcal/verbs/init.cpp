@@ -3,7 +3,9 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -30,10 +32,16 @@ struct InitRequest {
   PrintOptions print;
 };
 
-std::size_t count_of(const std::string& text, const std::string& part) {
+/// Counts the blanks of a draft. Those in lines of comments need not be filled in.
+std::size_t blanks_in(const std::string& draft) {
   std::size_t count = 0;
-  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
-    ++count;
+  std::istringstream lines(draft);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with('#')) continue;
+    const std::string_view blank = datasets::kBlank;
+    for (std::size_t at = line.find(blank); at != std::string::npos; at = line.find(blank, at + 1))
+      ++count;
+  }
   return count;
 }
 
@@ -58,8 +66,7 @@ ExitCode run_init(const InitRequest& options) {
                         {{"campaign.toml", report::with_terms(draft.text, terms)},
                          {datasets::kSchemaFile, datasets::campaign_schema()}},
                         {});
-  // The first blank is in the header, which explains what blanks are.
-  const std::size_t blanks = count_of(draft.text, datasets::kBlank) - 1;
+  const std::size_t blanks = blanks_in(draft.text);
   report::Json json;
   json["campaign"] = path.string();
   json["blanks"] = blanks;

@@ -77,12 +77,23 @@ std::vector<CsvName> names_in(std::string_view line, char separator, std::size_t
   const bool numbers = std::any_of(names.begin(), names.end(), [separator](const CsvName& name) {
     return is_number(name.full, separator);
   });
-  if ((names.size() != width && !has_comment) || !any || numbers) return {};
+  // "Column 3: displacement" between blanks are no three names.
+  const bool sentence =
+      separator == ' ' && std::any_of(names.begin(), names.end(),
+                                      [](const CsvName& name) { return name.full.ends_with(':'); });
+  if ((names.size() != width && !has_comment) || !any || numbers || sentence) return {};
   return names;
 }
 
+bool is_label_of_units(std::string_view text) {
+  return text == "Unit" || text == "Units" || text == "unit" || text == "units" ||
+         text == "Einheit" || text == "Einheiten";
+}
+
+/// Whether a row consists of units. Its first field may say so.
 bool are_units(const std::vector<CsvName>& names) {
-  return std::all_of(names.begin(), names.end(),
+  const bool labelled = names.size() > 1 && is_label_of_units(names.front().full);
+  return std::all_of(names.begin() + (labelled ? 1 : 0), names.end(),
                      [](const CsvName& name) { return is_unit_text(name.full); });
 }
 
@@ -107,7 +118,7 @@ std::optional<CsvLayout> layout_above(std::span<const std::string> lines, std::s
   std::vector<CsvName> names = names_in(lines[higher], separator, width);
   if (names.size() != layout.names.size() || are_units(names)) return layout;
   for (const CsvName& unit : layout.names) {
-    std::string_view text = unit.full;
+    std::string_view text = is_label_of_units(unit.full) ? std::string_view() : unit.full;
     if (text.size() > 1 && (text.front() == '[' || text.front() == '('))
       text = text.substr(1, text.size() - 2);
     layout.units.emplace_back(text);
@@ -116,6 +127,27 @@ std::optional<CsvLayout> layout_above(std::span<const std::string> lines, std::s
   layout.header = higher;
   layout.names = std::move(names);
   return layout;
+}
+
+/// First row of numbers.
+struct FirstRow {
+  std::size_t line = 0;
+  std::size_t width = 0;
+};
+
+/// Finds the first row of numbers that the next row, or the end of the text, confirms.
+std::optional<FirstRow> first_rows(std::span<const std::string> lines, bool is_whole,
+                                   char separator) {
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const std::size_t width = width_of_row(lines[i], separator);
+    if (width == 0) continue;
+    std::size_t next = i + 1;
+    while (next < lines.size() && trimmed_line(lines[next]).empty()) ++next;
+    const bool goes_on =
+        next < lines.size() ? width_of_row(lines[next], separator) == width : is_whole;
+    if (goes_on) return FirstRow{i, width};
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -131,17 +163,26 @@ std::optional<CsvLayout> find_layout(std::span<const std::string> lines, bool is
                                      char separator) {
   for (const char each : kSeparators) {
     if (separator != 0 && separator != each) continue;
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-      const std::size_t width = width_of_row(lines[i], each);
-      if (width == 0) continue;
-      std::size_t next = i + 1;
-      while (next < lines.size() && trimmed_line(lines[next]).empty()) ++next;
-      const bool goes_on =
-          next < lines.size() ? width_of_row(lines[next], each) == width : is_whole;
-      if (!goes_on) continue;
-      if (auto layout = layout_above(lines, i, each, width)) return layout;
-      break;  // numbers without names
-    }
+    const auto rows = first_rows(lines, is_whole, each);
+    if (!rows) continue;
+    if (auto layout = layout_above(lines, rows->line, each, rows->width)) return layout;
+  }
+  return std::nullopt;
+}
+
+std::optional<CsvLayout> find_unnamed(std::span<const std::string> lines, bool is_whole,
+                                      char separator) {
+  for (const char each : kSeparators) {
+    if (separator != 0 && separator != each) continue;
+    const auto rows = first_rows(lines, is_whole, each);
+    if (!rows) continue;
+    CsvLayout layout;
+    layout.header = rows->line;
+    layout.data = rows->line;
+    layout.separator = each;
+    for (std::size_t i = 1; i <= rows->width; ++i)
+      layout.names.push_back({std::to_string(i), std::to_string(i)});
+    return layout;
   }
   return std::nullopt;
 }

@@ -34,6 +34,11 @@ struct CsvLayout {
 std::optional<CsvLayout> find_layout(std::span<const std::string> lines, bool is_whole,
                                      char separator);
 
+/// Finds columns of numbers that no line names: two or more in each row, from the first of two
+/// lines on as find_layout() has them. They get the names "1", "2" and so on.
+std::optional<CsvLayout> find_unnamed(std::span<const std::string> lines, bool is_whole,
+                                      char separator);
+
 /// Whether a line has one number for each of `names` columns.
 bool is_row_of_numbers(std::string_view line, char separator, std::size_t names);
 

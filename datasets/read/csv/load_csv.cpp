@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
@@ -17,6 +18,8 @@
 #include "datasets/read/csv/csv_layout.hpp"
 #include "datasets/read/csv/csv_lines.hpp"
 #include "datasets/read/csv/csv_text.hpp"
+#include "datasets/read/csv/lvm_header.hpp"
+#include "datasets/read/csv/time_stamp.hpp"
 #include "datasets/read/limits.hpp"
 
 namespace rigcal::datasets {
@@ -34,7 +37,9 @@ struct Header {
   std::vector<CsvName> names;
   std::vector<std::string> units{};  ///< one per name; empty without a row of units
   long units_line = 0;
-  bool last_may_lack = false;  ///< the last column is a comment that rows may omit
+  bool last_may_lack = false;         ///< the last column is a comment that rows may omit
+  bool is_unnamed = false;            ///< no line names the columns
+  std::optional<RegularTime> time{};  ///< of a .lvm without a column of times
 };
 
 /// Lines of a file. The first lines can be inspected before they are read.
@@ -88,6 +93,11 @@ bool is_comment(std::string_view line) {
   return first != std::string_view::npos && line[first] == '#';
 }
 
+bool has_control_characters(std::string_view line) {
+  return std::any_of(line.begin(), line.end(),
+                     [](char c) { return c >= 0 && c < ' ' && c != '\t'; });
+}
+
 std::string_view separator_name(char separator) {
   return separator == '\t' ? "tab" : separator == ';' ? "';'" : separator == ' ' ? "blanks" : "','";
 }
@@ -108,6 +118,25 @@ bool header_comes_first(const std::vector<std::string>& lines, char separator) {
   return is_row_of_numbers(*row, by, names) && !is_row_of_numbers(*header, by, names);
 }
 
+/// Whether the first line that is not a comment cannot be a header: it contains numbers, or no
+/// separator.
+bool lacks_names(const std::vector<std::string>& lines, char separator) {
+  const auto first = std::find_if(lines.begin(), lines.end(),
+                                  [](const std::string& line) { return !is_comment(line); });
+  if (first == lines.end() || is_blank(*first) || has_control_characters(*first)) return false;
+  const char by = separator != 0 ? separator : find_separator(*first);
+  const std::size_t names = header_names(*first, by).size();
+  return names == 1 || is_row_of_numbers(*first, by, names);
+}
+
+/// Name by which the times of a .lvm without a column of times are requested.
+constexpr std::string_view kLvmTime = "X_Value";
+
+bool has_name(const Header& header, std::string_view wanted) {
+  return std::any_of(header.names.begin(), header.names.end(),
+                     [wanted](const CsvName& name) { return name.full == wanted; });
+}
+
 /// Finds a header below lines of text, with spaces as separators, or above a row of units; nullopt
 /// for other files.
 std::optional<Header> unusual_header(HeadedLines& lines, const std::string& file, char separator) {
@@ -120,6 +149,24 @@ std::optional<Header> unusual_header(HeadedLines& lines, const std::string& file
       0};
   header.last_may_lack = layout->last_may_lack;
   if (!header.units.empty()) header.units_line = static_cast<long>(layout->units_line) + 1;
+  const auto lvm =
+      lvm_header(std::span(head).first(layout->header), layout->separator, layout->names.size());
+  if (lvm && !has_name(header, kLvmTime)) header.time = lvm->time;
+  if (lvm && header.units.empty() && !lvm->units.empty()) {
+    header.units = lvm->units;
+    header.units_line = static_cast<long>(lvm->units_line) + 1;
+  }
+  while (lines.number() < static_cast<long>(layout->data)) lines.next();
+  return header;
+}
+
+/// Finds columns that no line names.
+std::optional<Header> unnamed_header(HeadedLines& lines, const std::string& file, char separator) {
+  const auto& head = lines.look_ahead(kMostHeadLines);
+  const auto layout = find_unnamed(head, lines.ended(), separator);
+  if (!layout || layout->names.size() > kMostColumns) return std::nullopt;
+  Header header{file, static_cast<long>(layout->data) + 1, layout->separator, layout->names};
+  header.is_unnamed = true;
   while (lines.number() < static_cast<long>(layout->data)) lines.next();
   return header;
 }
@@ -131,6 +178,8 @@ Header read_header(HeadedLines& lines, const std::string& file, char separator) 
                                          "or a blank",
                                          separator));
   if (auto header = unusual_header(lines, file, separator)) return *header;
+  if (lacks_names(lines.look_ahead(10), separator))
+    if (auto header = unnamed_header(lines, file, separator)) return *header;
   const char* text = lines.next();
   while (text != nullptr && is_comment(text)) text = lines.next();
   if (text == nullptr)
@@ -146,7 +195,7 @@ Header read_header(HeadedLines& lines, const std::string& file, char separator) 
   if (is_blank(line)) fail("is an empty line; expected the header with the names of the columns");
   if (line.find('\r') != std::string_view::npos)
     fail("lines end with a carriage return alone; expected line ends of Unix or Windows");
-  if (std::any_of(line.begin(), line.end(), [](char c) { return c >= 0 && c < ' ' && c != '\t'; }))
+  if (has_control_characters(line))
     fail("contains control characters; expected the names of the columns of a CSV file as text");
 
   Header header{file, lines.number(), separator != 0 ? separator : find_separator(line), {}};
@@ -176,13 +225,19 @@ ColumnLabel label_of(const Header& header, std::size_t field) {
 
 /// Returns the index of the column with this name, given with or without its unit.
 std::size_t find_column(const Header& header, const std::string& wanted) {
-  const Location where{header.file, header.line};
+  const Location where{header.file, header.line, header.is_unnamed ? 1 : 0};
   if (const auto found = find_column(header.names, wanted)) {
     if (found->second)
       throw InputError(where, fmt::format("columns {} and {} are both named '{}'; expected one",
                                           found->index + 1, *found->second + 1, wanted));
     return found->index;
   }
+  if (header.is_unnamed)
+    throw InputError(where,
+                     fmt::format("contains numbers; expected the header with the names of the "
+                                 "columns above them, without '#' in front and one for each, or "
+                                 "a column by its number, \"1\" to \"{}\", instead of '{}'",
+                                 header.names.size(), wanted));
   std::string message = unknown_name_message("column", wanted, short_names(header.names));
   if (header.names.size() == 1)
     message += fmt::format(
@@ -224,8 +279,7 @@ class RowReader {
                        fmt::format("more than {} numbers ({} rows of {} columns), the limit of one "
                                    "file; decimate the record, or split it into several files",
                                    kMostValues, rows_, wanted_.size()));
-    if (!read_plain(line, line_number)) read_any(line, line_number);
-    ++rows_;
+    if (read_plain(line, line_number) || read_any(line, line_number)) ++rows_;
   }
 
   /// Reserves memory for all rows at once. Growing columns would temporarily need up to three times
@@ -249,6 +303,9 @@ class RowReader {
 
   /// Returns the table, after freeing capacity that is mostly unused.
   CsvTable take() {
+    if (left_out_ > 0)
+      table_.left_out = fmt::format("{} row{} without a number: {}", left_out_,
+                                    left_out_ == 1 ? "" : "s", first_left_out_);
     for (auto& column : table_.columns)
       if (column.size() < column.capacity() / 2) column.shrink_to_fit();
     return std::move(table_);
@@ -258,7 +315,7 @@ class RowReader {
   /// Reads a row as most loggers write it: wanted numbers are directly between separators, and no
   /// field begins with a quote. Returns false for any other row, whether right or wrong.
   bool read_plain(std::string_view line, long line_number) {
-    if (header_.separator == ' ') return false;
+    if (header_.separator == ' ' || first_stamp_) return false;
     const char* at = line.data();
     const char* const end = at + line.size();
     std::size_t length = 0;  // length of the last wanted field
@@ -293,7 +350,8 @@ class RowReader {
   }
 
   /// Reads any row, or reports what is wrong with it.
-  void read_any(std::string_view line, long line_number) {
+  /// @return  false if the row is left out because it lacks a number
+  bool read_any(std::string_view line, long line_number) {
     std::size_t count = 0;
     auto next = wanted_.begin();
     std::optional<CsvField> bad;
@@ -301,13 +359,16 @@ class RowReader {
     CsvFields fields(line, header_.separator);
     for (CsvField field; fields.next(field); ++count)
       for (; next != wanted_.end() && next->field == count; ++next) {
-        const auto value = csv_number(field.text, header_.separator != ',');
+        auto value = csv_number(field.text, header_.separator != ',');
+        const bool is_stamp = next->is_time && !value;
+        if (is_stamp) value = seconds_of_stamp(field.text, next->target);
+        if (next->is_time && first_stamp_ && !is_stamp) value.reset();
         if (!value && !bad) {
           bad = field;
           bad_index = count;
         }
         if (!value || bad) continue;
-        note_decimal_sign(line, line_number, field);
+        if (!is_stamp) note_decimal_sign(line, line_number, field);
         if (count + 1 == header_.names.size()) note_last_field(field.text.size(), line_number);
         auto& column = table_.columns[next->target];
         if (!column.empty() && next->is_time && !(*value > column.back()))
@@ -318,7 +379,27 @@ class RowReader {
     const bool lacks_last =
         header_.last_may_lack && count + 1 == header_.names.size() && next == wanted_.end();
     if (count != header_.names.size() && !lacks_last) fail_on_count(line, line_number, count);
-    if (bad) fail_on_number(line, line_number, *bad, bad_index);
+    if (!bad) return true;
+    if (!request_.leaves_out_rows || is_text_only(line))
+      fail_on_number(line, line_number, *bad, bad_index);
+    for (auto& column : table_.columns) column.resize(rows_);
+    if (left_out_++ == 0)
+      first_left_out_ = fmt::format("line {} has '{}' in column '{}'", line_number,
+                                    shown(bad->text), shown(header_.names[bad_index].full));
+    return false;
+  }
+
+  /// Returns the seconds since the first time stamp. Numbers and stamps do not mix.
+  std::optional<double> seconds_of_stamp(std::string_view text, std::size_t target) {
+    const auto stamp = time_stamp(text);
+    if (!stamp || (rows_ > 0 && !first_stamp_)) return std::nullopt;
+    if (!first_stamp_) {
+      first_stamp_ = stamp;
+      table_.labels[target].unit = "s";
+      table_.labels[target].place = "time stamps";
+    }
+    return 86400.0 * static_cast<double>(stamp->day - first_stamp_->day) +
+           (stamp->time_s - first_stamp_->time_s);
   }
 
   InputError error(std::string_view line, long line_number, std::size_t byte,
@@ -414,12 +495,53 @@ class RowReader {
   std::vector<double> values_;  ///< values of the row being read, in the order of wanted_
   CsvTable table_;
   std::size_t rows_ = 0;
-  long comma_line_ = 0;  ///< line of the first decimal comma; 0: none
-  long point_line_ = 0;  ///< line of the first decimal point; 0: none
-  long last_line_ = 0;   ///< line of the last number; 0: the last column is not wanted
+  std::optional<TimeStamp> first_stamp_;
+  long comma_line_ = 0;         ///< line of the first decimal comma; 0: none
+  long point_line_ = 0;         ///< line of the first decimal point; 0: none
+  long last_line_ = 0;          ///< line of the last number; 0: the last column is not wanted
+  std::size_t left_out_ = 0;    ///< number of rows that lack a number
+  std::string first_left_out_;  ///< the first of them, in words
   std::size_t last_length_ = 0;
   std::size_t shortest_length_ = std::numeric_limits<std::size_t>::max();
 };
+
+/// Returns a request without the times that no column of the file contains. It has one column at
+/// least.
+CsvRequest without_lvm_time(CsvRequest request, const Header& header) {
+  std::erase(request.columns, kLvmTime);
+  if (request.time_column == kLvmTime) request.time_column.clear();
+  if (request.columns.empty()) request.columns.push_back(header.names.front().full);
+  return request;
+}
+
+/// Inserts the times of samples at equal distances where they were requested.
+/// @throws InputError  if the distance is too small for a double
+void insert_lvm_time(const CsvRequest& request, const Header& header, CsvTable& table) {
+  const std::size_t rows = table.columns.front().size();
+  std::vector<double> time_s(rows);
+  for (std::size_t i = 0; i < rows; ++i) {
+    time_s[i] = header.time->start_s + header.time->step_s * static_cast<double>(i);
+    if (!std::isfinite(time_s[i]) || (i > 0 && !(time_s[i] > time_s[i - 1])))
+      throw InputError({header.file, header.line},
+                       fmt::format("Delta_X is {} s, with X0 = {} s: the times do not increase; "
+                                   "expected a larger distance between samples",
+                                   header.time->step_s, header.time->start_s));
+  }
+  CsvTable with_times = std::move(table);
+  std::vector<std::vector<double>> columns;
+  std::vector<ColumnLabel> labels;
+  std::size_t next = 0;
+  for (const std::string& name : request.columns) {
+    const bool is_time = name == kLvmTime;
+    columns.push_back(is_time ? time_s : std::move(with_times.columns[next]));
+    labels.push_back(is_time ? ColumnLabel{std::string(kLvmTime), "s", "Delta_X", header.line}
+                             : with_times.labels[next]);
+    if (!is_time) ++next;
+  }
+  table = std::move(with_times);
+  table.columns = std::move(columns);
+  table.labels = std::move(labels);
+}
 
 /// Returns an upper bound on the number of rows in a file: a field takes at least two bytes,
 /// including its separator.
@@ -441,7 +563,8 @@ CsvTable load_csv(const std::filesystem::path& path, const CsvRequest& request) 
   CsvLines file(path, request.max_bytes);
   HeadedLines lines(file);
   const Header header = read_header(lines, path.string(), request.separator);
-  RowReader reader(header, request);
+  const CsvRequest in_rows = header.time ? without_lvm_time(request, header) : request;
+  RowReader reader(header, in_rows);
   reader.reserve(most_rows(path, header));
   long empty_line = 0;
   while (const char* text = lines.next()) {
@@ -461,7 +584,9 @@ CsvTable load_csv(const std::filesystem::path& path, const CsvRequest& request) 
     throw InputError({header.file, header.line},
                      "no rows after the header; expected at least one row of numbers");
   if (file.ends_without_newline()) reader.judge_end();
-  return reader.take();
+  CsvTable table = reader.take();
+  if (header.time) insert_lvm_time(request, header, table);
+  return table;
 }
 
 namespace {
@@ -475,18 +600,24 @@ Header header_of(const std::filesystem::path& path, char separator) {
 }  // namespace
 
 std::vector<std::string> csv_header(const std::filesystem::path& path, char separator) {
-  return short_names(header_of(path, separator).names);
+  const Header header = header_of(path, separator);
+  std::vector<std::string> names = short_names(header.names);
+  if (header.time) names.emplace(names.begin(), kLvmTime);
+  return names;
 }
 
 std::vector<std::string> csv_full_header(const std::filesystem::path& path, char separator) {
+  const Header header = header_of(path, separator);
   std::vector<std::string> names;
-  for (const CsvName& name : header_of(path, separator).names) names.push_back(name.full);
+  if (header.time) names.emplace_back(kLvmTime);
+  for (const CsvName& name : header.names) names.push_back(name.full);
   return names;
 }
 
 std::vector<RecordColumn> csv_record_columns(const std::filesystem::path& path) {
   const Header header = header_of(path, 0);
   std::vector<RecordColumn> columns;
+  if (header.time) columns.push_back({std::string(kLvmTime), "s", true});
   for (std::size_t i = 0; i < header.names.size(); ++i)
     columns.push_back(
         {header.names[i].full, header.units.empty() ? std::string() : header.units[i]});
@@ -498,8 +629,10 @@ RecordTable load_csv_record(const std::filesystem::path& path, const RecordReque
   wanted.columns = request.columns;
   wanted.separator = request.separator;
   wanted.time_column = request.time_column;
+  wanted.leaves_out_rows = request.leaves_out_rows;
   CsvTable table = load_csv(path, wanted);
-  return {std::move(table.columns), std::move(table.cut_short), std::move(table.labels)};
+  return {std::move(table.columns), std::move(table.cut_short), std::move(table.labels),
+          std::move(table.left_out)};
 }
 
 }  // namespace rigcal::datasets

@@ -15,6 +15,9 @@ struct CsvRequest {
   char separator = 0;                ///< 0: detected from the header (',' ';' or tab)
   std::string time_column;           ///< one of `columns`, checked to increase; may be empty
   std::size_t max_bytes = std::size_t{4} << 30;  ///< larger files are refused
+  /// Whether to leave out rows in which a wanted column has no finite number, rather than refuse
+  /// the file.
+  bool leaves_out_rows = false;
 };
 
 struct CsvTable {
@@ -25,12 +28,14 @@ struct CsvTable {
   /// empty.
   std::string cut_short;
   std::vector<ColumnLabel> labels{};  ///< one per requested name
+  std::string left_out{};             ///< which rows were left out, in words; else empty
 };
 
 /// Reads the wanted columns of a CSV file, strictly.
 ///
-/// The header is the first line that is not a comment ("#..."), or is found by find_layout(): below
-/// lines of text, with spaces as separators, or above a row of units. A unit may follow the name
+/// If no line names the columns, they are called "1", "2" and so on. The header is the first line
+/// that is not a comment ("#..."), or is found by find_layout(): below lines of text, with spaces
+/// as separators, or above a row of units. A unit may follow the name
 /// ("x [mm]", "x (mm)") and is not part of it. CRLF, a byte-order mark and a missing final newline
 /// are accepted, as is a decimal comma if the separator is ';' or tab. Anything else in a wanted
 /// column that is not a finite number is an error. Other errors are a wrong number of columns, an

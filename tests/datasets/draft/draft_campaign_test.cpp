@@ -205,7 +205,8 @@ TEST_CASE("draft_campaign: repeats, waveform and columns, and loads once it is f
   CHECK_THAT(draft, Contains("time = { column = \"t_s\", unit = \"s\" }"));
   CHECK_THAT(draft, Contains("reference = { column = \"ref_mm\", unit = \"mm\" }"));
   CHECK_THAT(draft, Contains("position = { column = \"x_mm\", unit = \"mm\" }"));
-  CHECK_THAT(draft, Contains("# not used: note"));
+  CHECK_THAT(draft, Contains("# FILL IN = { column = \"note\", unit = \"FILL IN\" }  # 0 to 0, "
+                             "constant"));
   CHECK_THAT(draft, Contains("id = \"sine\"") && Contains("waveform = \"sine\""));
   CHECK_THAT(draft, Contains("frequency = \"2 Hz\"") && Contains("amplitude = \"5 mm\""));
   CHECK_THAT(draft, Contains("400 samples at 200 Hz"));
@@ -392,7 +393,8 @@ TEST_CASE("draft_campaign: from a text as a German logger writes it", "[datasets
   CHECK_THAT(draft, Contains("time = { column = \"Zeit\", unit = \"s\" }"));
   CHECK_THAT(draft, Contains("reference = { column = \"Sollwert\", unit = \"mm\" }"));
   CHECK_THAT(draft, Contains("position = { column = \"Weg\", unit = \"mm\" }"));
-  CHECK_THAT(draft, Contains("# not used: Kanal 7 (3") && Contains("bar, perhaps pressure_a)"));
+  CHECK_THAT(draft, Contains("# FILL IN = { column = \"Kanal 7\", unit = \"bar\" }  # 3") &&
+                        Contains("bar, perhaps pressure_a"));
   CHECK_THAT(draft, Contains("# transport_delay = ") && Contains("# external_force = ") &&
                         Contains("# ki = ") && Contains("# before = \"rest\""));
   const Campaign campaign = load_campaign(folder.write("campaign.toml", filled(draft)));
@@ -408,13 +410,120 @@ TEST_CASE("draft_campaign: columns that nothing recognises, with their ranges", 
   const std::string draft = draft_campaign({folder.write("a.csv", text)}, folder.path()).text;
   CHECK_THAT(draft, Contains("time = { column = \"FILL IN\", unit = \"s\" }") &&
                         Contains("position = { column = \"FILL IN\", unit = \"FILL IN\" }"));
-  CHECK_THAT(draft, Contains("A1 (0 to 9.5, perhaps time)") &&
-                        Contains("Q [bar] (3 to 6 bar, perhaps pressure_a), note\n"));
+  CHECK_THAT(draft,
+             Contains("# perhaps 'A1' (0 to 9.5)\n") &&
+                 Contains("{ column = \"A1\", unit = \"FILL IN\" }  # 0 to 9.5, perhaps time") &&
+                 Contains("unit = \"bar\" }  # 3 to 6 bar, perhaps pressure_a") &&
+                 Contains("# not columns of numbers: note\n"));
   // If there is also a proper recording, the file does not count as one.
   const Draft both = draft_campaign(
       {folder.path() / "a.csv", folder.write("s_1.csv", sine_csv(0.1))}, folder.path());
   REQUIRE(both.left_out.size() == 1);
   CHECK_THAT(both.left_out[0], Contains("a.csv (no column looks like a time"));
+}
+
+TEST_CASE("draft_campaign: a motion or drive that no name identifies is a blank", "[datasets]") {
+  const TemporaryFolder folder;
+  const auto drafted = [&](const std::string& header) {
+    std::string text = header + "\n";
+    for (int i = 0; i < 100; ++i)
+      text += fmt::format("{},{},{},{}\n", 0.01 * i, std::sin(0.2 * i), 2.0 + std::sin(0.2 * i),
+                          0.1 * (i % 7));
+    return draft_campaign({folder.write("a.csv", text)}, folder.path()).text;
+  };
+  const std::string blank = "{ column = \"FILL IN\", unit = \"FILL IN\" }";
+  std::string draft = drafted("t_s,ref_mm,ch1 [mm],ch2 [bar]");
+  CHECK_THAT(draft, Contains("\nposition = " + blank + "  # perhaps 'ch1 [mm]' (1"));
+  CHECK_THAT(draft, !Contains("command = "));
+
+  draft = drafted("t_s,x_mm,ch1,ch2 [bar]");
+  CHECK_THAT(draft,
+             !Contains("position = { column = \"FILL IN") && Contains("\ncommand = " + blank));
+  // Filled in as its comments say, it is a campaign.
+  draft =
+      replaced(filled(draft), "command = " + blank, "command = { column = \"ch1\", unit = \"V\" }");
+  draft = replaced(draft, "waveform = \"FILL IN\"", "waveform = \"recorded\"");
+  const Campaign campaign = load_campaign(folder.write("campaign.toml", draft));
+  CHECK(load_record(campaign, campaign.conditions.at(0)).time_s.size() == 100);
+
+  // Nothing is left that could be either.
+  draft = drafted("t_s,x_mm,v_mm/s,err_mm");
+  CHECK_THAT(draft, !Contains("\ncommand = ") && Contains("mm/s, a velocity") &&
+                        Contains("an error of control"));
+}
+
+TEST_CASE("draft_campaign: a second unknown pressure is that of the other chamber", "[datasets]") {
+  const TemporaryFolder folder;
+  std::string text = "t_s,u_V,x_mm,ch 7 [bar],ch 8 [bar],ch 9 [bar]\n";
+  for (int i = 0; i < 50; ++i)
+    text += fmt::format("{},1,{},{},{},{}\n", i, i % 5, 40 + i % 7, 60 - i % 7, 100 + i % 3);
+  const std::string draft = draft_campaign({folder.write("a.csv", text)}, folder.path()).text;
+  CHECK_THAT(draft,
+             Contains("\"ch 7 [bar]\", unit = \"bar\" }  # 40 to 46 bar, perhaps pressure_a"));
+  CHECK_THAT(draft,
+             Contains("\"ch 8 [bar]\", unit = \"bar\" }  # 54 to 60 bar, perhaps pressure_b"));
+  CHECK_THAT(draft, Contains("perhaps supply_pressure"));
+}
+
+TEST_CASE("draft_campaign: numbers that nothing names", "[datasets]") {
+  const TemporaryFolder folder;
+  std::string text;
+  for (int i = 0; i < 100; ++i)
+    text += fmt::format("{:10.4f} {:10.4f} {:10.4f}\n", 0.005 * i, std::sin(0.3 * i),
+                        5.0 * std::sin(0.3 * i - 0.5));
+  std::string draft = draft_campaign({folder.write("run.dat", text)}, folder.path()).text;
+  CHECK_THAT(draft,
+             Contains("\ntime = { column = \"FILL IN\", unit = \"s\" }  # perhaps '1' (0 to "));
+  CHECK_THAT(draft, Contains("perhaps '2' (-") && Contains(" or '3' (-"));
+  draft = replaced(filled(draft), "time = { column = \"FILL IN\"", "time = { column = \"1\"");
+  draft = replaced(draft, "position = { column = \"FILL IN\", unit = \"FILL IN\"",
+                   "position = { column = \"3\", unit = \"mm\"");
+  draft = replaced(draft, "command = { column = \"FILL IN\", unit = \"FILL IN\"",
+                   "command = { column = \"2\", unit = \"V\"");
+  draft = replaced(draft, "waveform = \"FILL IN\"", "waveform = \"recorded\"");
+  const Campaign campaign = load_campaign(folder.write("campaign.toml", draft));
+  const Record record = load_record(campaign, campaign.conditions.at(0));
+  REQUIRE(record.time_s.size() == 100);
+  CHECK(record.time_s[1] == Approx(0.005));
+}
+
+TEST_CASE("draft_campaign: rows without a number are told, and the draft is made", "[datasets]") {
+  const TemporaryFolder folder;
+  std::string text = "t_s,ref_mm,x_mm\n";
+  for (int i = 0; i < 200; ++i)
+    text += i == 50 ? "0.25,1,NaN\n"
+                    : fmt::format("{},{},{}\n", 0.005 * i, i > 20 ? 1 : 0,
+                                  i == 70 ? std::string() : std::to_string(0.01 * i));
+  const std::string draft = draft_campaign({folder.write("a.csv", text)}, folder.path()).text;
+  CHECK_THAT(draft, Contains("# a campaign refuses a.csv: 2 rows without a number: line 52 has "
+                             "'NaN' in column 'x_mm'"));
+  CHECK_THAT(draft, Contains("# holes = \"bridge\"") && Contains("position = { column = \"x_mm\""));
+  const Campaign campaign = load_campaign(folder.write("campaign.toml", filled(draft)));
+  CHECK_THROWS_WITH(load_record(campaign, campaign.conditions.at(0)), Contains("a.csv:52:"));
+}
+
+TEST_CASE("draft_campaign: columns of one name cannot be read, and the draft says so",
+          "[datasets]") {
+  const TemporaryFolder folder;
+  std::string text = "t,ref_mm,x,x\n";
+  for (int i = 0; i < 50; ++i) text += fmt::format("{},{},{},{}\n", i, i % 3, i % 5, i % 7);
+  const std::string draft = draft_campaign({folder.write("a.csv", text)}, folder.path()).text;
+  CHECK_THAT(draft, Contains("# several columns are named 'x'") &&
+                        Contains("\nposition = { column = \"FILL IN\""));
+}
+
+TEST_CASE("draft_campaign: a clock as time", "[datasets]") {
+  const TemporaryFolder folder;
+  std::string text = "Timestamp,Setpoint_mm,Position_mm\n";
+  for (int i = 0; i < 100; ++i)
+    text += fmt::format("2024-02-29 23:59:59.{:03},{},{}\n", 5 * i, i > 9 ? 1 : 0, 0.01 * i);
+  text += "2024-03-01T00:00:00.000,1,1\n";
+  const std::string draft = draft_campaign({folder.write("a.csv", text)}, folder.path()).text;
+  CHECK_THAT(draft, Contains("101 samples at"));
+  const Campaign campaign = load_campaign(folder.write("campaign.toml", filled(draft)));
+  const Record record = load_record(campaign, campaign.conditions.at(0));
+  CHECK_THAT(record.time_s.at(1) - record.time_s.at(0), Catch::WithinAbs(0.005, 1e-9));
+  CHECK_THAT(record.time_s.back() - record.time_s.at(0), Catch::WithinAbs(1.0, 1e-9));
 }
 
 TEST_CASE("draft_campaign: an array of Simulink's To File has its time in the first row",

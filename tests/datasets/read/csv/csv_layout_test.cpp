@@ -63,6 +63,68 @@ TEST_CASE("csv_layout: LabVIEW's .lvm", "[datasets]") {
   CHECK(csv_full_header(lvm.path) == std::vector<std::string>{"X_Value", "Voltage", "Comment"});
 }
 
+TEST_CASE("csv_layout: units of LabVIEW's .lvm, and times that no column contains", "[datasets]") {
+  const std::string above =
+      "LabVIEW Measurement\t\nDecimal_Separator\t.\nX_Columns\tOne\n***End_of_Header***\t\n\t\n"
+      "Channels\t2\t\t\nY_Unit_Label\tmm\tVolts\t\nX_Dimension\tTime\tTime\t\nX0\t0.5\t0.5\t\n"
+      "Delta_X\t0.1\t0.1\t\n***End_of_Header***\t\t\t\nX_Value\tPosition\tSignal\tComment\n";
+  const ReadText with_times(above + "0.0\t1.5\t7\t\n0.1\t2.5\t8\n0.2\t3.5\t9\n");
+  CHECK(csv_record_columns(with_times.path) ==
+        std::vector<RecordColumn>{
+            {"X_Value", "s"}, {"Position", "mm"}, {"Signal", "Volts"}, {"Comment", ""}});
+  CHECK(with_times.table("X_Value", "Position").labels[1].unit == "mm");
+  CHECK(with_times.table("X_Value", "Position").labels[1].line == 7);
+
+  std::string text = above;
+  text.replace(text.find("One"), 3, "No");
+  text.replace(text.find("X_Value\t"), 8, "");
+  const ReadText without_times(text + "1.5\t7\t\n2.5\t8\n3.5\t9\n");
+  CHECK(csv_record_columns(without_times.path) ==
+        std::vector<RecordColumn>{
+            {"X_Value", "s", true}, {"Position", "mm"}, {"Signal", "Volts"}, {"Comment", ""}});
+  const CsvTable table = without_times.table("X_Value", "Signal");
+  REQUIRE(table.columns.size() == 2);
+  CHECK(table.columns[1] == std::vector<double>{7, 8, 9});
+  for (std::size_t i = 0; i < 3; ++i)
+    CHECK(table.columns[0].at(i) == Approx(0.5 + 0.1 * static_cast<double>(i)));
+  CHECK(table.labels[0].unit == "s");
+  CHECK(csv_full_header(without_times.path).front() == "X_Value");
+
+  // Channels with rates of their own have no common time.
+  text.replace(text.find("Delta_X\t0.1\t0.1"), 15, "Delta_X\t0.1\t0.2");
+  const ReadText rates(text + "1.5\t7\t\n2.5\t8\n3.5\t9\n");
+  CHECK_THROWS_WITH(rates.table("X_Value", "Signal"), Contains("X_Value"));
+  text.replace(text.find("Delta_X\t0.1\t0.2"), 15, "Delta_X\t1e-30\t\t");
+  CHECK_THROWS_WITH(ReadText(text + "1.5\t7\t\n2.5\t8\n3.5\t9\n").table("X_Value", "Signal"),
+                    Contains("Delta_X is 1e-30 s"));
+}
+
+TEST_CASE("csv_layout: a row of units may have a label", "[datasets]") {
+  const ReadText units("Name,t,x\nUnit,s,mm\n7,0,1.5\n8,0.1,2.5\n9,0.2,3.5\n");
+  CHECK(units.table("t", "x").columns == kNumbers);
+  CHECK(csv_record_columns(units.path) ==
+        std::vector<RecordColumn>{{"Name", ""}, {"t", "s"}, {"x", "mm"}});
+}
+
+TEST_CASE("csv_layout: columns that no line names have numbers", "[datasets]") {
+  for (const char* text : {"0,1.5\n0.1,2.5\n0.2,3.5\n", "0 1.5\n0.1 2.5\n0.2 3.5\n",
+                           "0;1,5\n0,1;2,5\n0,2;3,5\n", "# t u y\n0\t1.5\n0.1\t2.5\n0.2\t3.5\n",
+                           "time of the servo\n0.0  1.5\n0.1  2.5\n0.2  3.5\n"}) {
+    CAPTURE(text);
+    const ReadText numbers(text);
+    CHECK(numbers.table("1", "2").columns == kNumbers);
+    CHECK(csv_full_header(numbers.path) == std::vector<std::string>{"1", "2"});
+    // A campaign that names its columns is refused as ever.
+    CHECK_THROWS_WITH(numbers.table("t", "x"), Contains("contains numbers; expected the header") &&
+                                                   Contains("\"1\" to \"2\""));
+  }
+  CHECK_THROWS_WITH(
+      ReadText("% Column 1: time\n% Column 2: travel\n0 1 2\n1 2 3\n").table("t", "x"),
+      Contains("contains numbers"));
+  // One column alone is named by its header.
+  CHECK(csv_full_header(ReadText("x\n1\n2\n").path) == std::vector<std::string>{"x"});
+}
+
 TEST_CASE("csv_layout: a comment that rows omit is no number", "[datasets]") {
   const ReadText lvm("X_Value\tVoltage\tComment\n0.0\t1.5\n0.1\t2.5\n0.2\t3.5\n");
   CHECK(lvm.table("X_Value", "Voltage").columns == kNumbers);

@@ -239,6 +239,39 @@ TEST_CASE("load_csv: numbers where the header should be", "[datasets]") {
   CHECK_THAT(refusal("# a rig\n0,1\n"), StartsWith("a.csv:2:1: ") && Contains("'#'"));
 }
 
+TEST_CASE("load_csv: rows without a number are left out on request only", "[datasets]") {
+  const std::string text = "t,x,y\n0,1,2\n0.1,NaN,3\n0.2,,4\n0.3,4,5\n0.4,ok,6\n";
+  CHECK_THAT(refusal(text), StartsWith("a.csv:3:5: 'NaN' in column 'x'"));
+  auto tolerant = request({"t", "x", "y"}, "t");
+  tolerant.leaves_out_rows = true;
+  const CsvTable table = load(text, tolerant);
+  CHECK(table.columns == Columns{{0, 0.3}, {1, 4}, {2, 5}});
+  CHECK(table.left_out == "3 rows without a number: line 3 has 'NaN' in column 'x'");
+  // Only a number may be missing.
+  CHECK_THROWS_WITH(load("t,x,y\n0,1,2\n0.1,2\n", tolerant), Contains("2 columns; expected 3"));
+  CHECK_THROWS_WITH(load("t,x,y\ntime,travel,y\n0,a,2\n", tolerant),
+                    Contains("no numbers in the first row"));
+  CHECK(load("t,x,y\n0,1,2\n", tolerant).left_out.empty());
+}
+
+TEST_CASE("load_csv: a clock as time is in seconds since its first stamp", "[datasets]") {
+  const std::string text =
+      "x;clock\n1,5;2024-02-29 23:59:59.500\n2,5;2024-03-01 00:00:00.000\n3,5;2024-03-01 "
+      "00:00:01.25\n";
+  const CsvTable table = load(text, request({"clock", "x"}, "clock"));
+  CHECK(table.columns == Columns{{0, 0.5, 1.75}, {1.5, 2.5, 3.5}});
+  CHECK(table.labels[0].unit == "s");
+  CHECK(table.labels[0].place == "time stamps");
+  // It must be the time, increase, and not change its form.
+  CHECK_THROWS_WITH(load(text, request({"clock", "x"}, "x")), Contains("2024-02-29 23:59:59.500"));
+  CHECK_THROWS_WITH(load("t,x\n12:00:01,1\n12:00:00,2\n", request({"t", "x"}, "t")),
+                    Contains("does not increase: -1 comes after 0"));
+  CHECK_THROWS_WITH(load("t,x\n0.5,1\n12:00:01,2\n", request({"t", "x"}, "t")),
+                    Contains("'12:00:01' in column 't' is not a finite number"));
+  CHECK_THROWS_WITH(load("t,x\n12:00:01,1\n5,2\n", request({"t", "x"}, "t")),
+                    Contains("a.csv:3:1: '5' in column 't'"));
+}
+
 TEST_CASE("load_csv: time that does not increase", "[datasets]") {
   CHECK_THAT(refusal("x,t\n5,0\n5,0.1\n5,0.1\n"),
              StartsWith("a.csv:4:3: time 't' does not increase: 0.1 comes after 0.1"));

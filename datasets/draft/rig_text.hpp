@@ -1,0 +1,24 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "model/simulate.hpp"
+
+namespace rigcal::datasets {
+
+/// What the recorded channels say about the terms of a rig.
+struct RecordedSigns {
+  bool payload = false;      ///< an acceleration was recorded
+  bool load_table = false;   ///< position and both chamber pressures were recorded
+  bool pilot = false;        ///< the drive is a pilot pressure
+  bool temperature = false;  ///< a temperature was recorded
+};
+
+/// Returns the text of [rig]: blanks for what every rig of the plant has, and as comments the terms
+/// that the recorded channels suggest.
+/// @param loop  controlled quantity; nullopt if the command was recorded
+std::string rig_text(model::PlantKind plant, std::optional<model::Feedback> loop,
+                     const RecordedSigns& signs);
+
+}  // namespace rigcal::datasets

@@ -1,0 +1,22 @@
+#include "datasets/read/csv/time_stamp.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace rigcal::datasets;
+
+TEST_CASE("time_stamp: dates with a time of day, and times of day", "[datasets]") {
+  const auto stamp = time_stamp("2024-03-01T12:00:01.25");
+  REQUIRE(stamp);
+  CHECK(stamp->time_s == Approx(43201.25));
+  CHECK(time_stamp("2024-03-01 00:00:00")->day - time_stamp("2024-02-28 00:00:00")->day == 2);
+  CHECK(time_stamp("12:00:01,25")->time_s == Approx(43201.25));
+  CHECK(time_stamp("12:00:01")->day == 0);
+  CHECK(time_stamp("2024/03/01 12:00:01Z")->day == stamp->day);
+  CHECK(time_stamp("\"2024-03-01 12:00:01+01:00\"")->time_s == Approx(43201.0));
+  for (const char* text : {"", "2024-03-01", "2024-02-30 12:00:00", "2024-13-01 12:00:00", "12:00",
+                           "24:00:00", "12:60:00", "12:00:00 pm", "01.03.2024 12:00:00", "1:2:3",
+                           "2024-03-01 12:00:00+1", "2024-03-01  12:00:00", "12:00:00.5x"}) {
+    CAPTURE(text);
+    CHECK_FALSE(time_stamp(text));
+  }
+}
