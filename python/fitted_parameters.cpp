@@ -61,7 +61,8 @@ void bind_budget(py::module_& module) {
   using calib::BudgetLine;
   py::class_<BudgetLine>(module, "BudgetLine", "One contribution to an uncertainty.")
       .def_readonly("source", &BudgetLine::source, "\"noise\", \"repeats\", a key...")
-      .def_readonly("kind", &BudgetLine::kind, "\"records\", \"known_value\" or \"effect\".")
+      .def_readonly("kind", &BudgetLine::kind,
+                    "\"records\", \"known_value\", \"effect\", \"days\" or \"numerics\".")
       .def_readonly("uncertainty", &BudgetLine::uncertainty,
                     "Standard uncertainty, in the unit of the result.")
       .def_property_readonly(
@@ -80,7 +81,11 @@ void bind_budget(py::module_& module) {
       .def_readonly("coverage_factor", &Budget95::coverage_factor, "k, for 95 %.")
       .def_readonly("expanded", &Budget95::expanded, "U, `coverage_factor` times `combined`.")
       .def_readonly("shift", &Budget95::shift,
-                    "Of the middle of the interval from the estimate, by effects.");
+                    "Of the middle of the interval from the estimate, by effects.")
+      .def_property_readonly(
+          "beside",
+          [](const Budget95& self) { return self.beside.value_or(std::vector<BudgetLine>()); },
+          "Contributions that `combined` leaves out: days, and an upper limit for numerics.");
 }
 
 void bind_profile(py::module_& module) {

@@ -11,6 +11,7 @@
 #include "calib/consider/catalogue.hpp"
 #include "calib/consider/refit.hpp"
 #include "calib/consider/truncated_normal.hpp"
+#include "calib/problem/measured_tolerance.hpp"
 #include "calib/trust/between_repeats.hpp"
 #include "calib/trust/identifiability.hpp"
 #include "calib/trust/lack_of_fit.hpp"
@@ -674,6 +675,16 @@ Budget95 budget_of(const Uncertainty& found, std::size_t unknown, const FittedPa
   return budget;
 }
 
+/// Returns the contributions to an estimate that its interval leaves out.
+///
+/// @param by_simulation  upper limit for the error due to the simulations, SI
+std::vector<BudgetLine> beside_budget(const FittedParameter& parameter, double by_simulation) {
+  std::vector<BudgetLine> lines{{"numerics", "numerics", by_simulation}};
+  if (parameter.between_days_error)
+    lines.push_back({"days", "days", *parameter.between_days_error});
+  return lines;
+}
+
 /// Returns an upper limit on how far model error that no effect explains could move each estimate,
 /// in the unit box. If the residual without the effects is significant, the error is assumed to be
 /// as large as that residual, and everywhere in phase with the sensitivity.
@@ -829,6 +840,7 @@ void consider_effects(const Problem& problem, std::span<const double> z, const U
     sizes.covariance = MatrixXd::Zero(0, 0);
     sizes.likeliest = VectorXd::Zero(0);
   }
+  const double simulation_error = largest_simulation_error(problem);
   const VectorXd unexplained = unexplained_moves(
       problem, found.scores, seen->rows.empty() ? found.scores : seen->rows, found.root);
   for (std::size_t j = 0; j < z.size(); ++j) {
@@ -839,8 +851,11 @@ void consider_effects(const Problem& problem, std::span<const double> z, const U
     const double shift = slope * found.root.times(static_cast<Index>(j), moved)(0);
     const double likeliest = shift - moves.dot(sizes.likeliest - sizes.mean);
     parameter.averaged = averaged_over(problem, j, models, considered, scale);
-    widen(problem, j, budget_of(found, j, parameter, slope, *seen, moves, sizes, shift), likeliest,
-          parameter);
+    Budget95 budget = budget_of(found, j, parameter, slope, *seen, moves, sizes, shift);
+    const auto row = static_cast<Index>(j);
+    const double white = std::abs(slope) * std::sqrt(found.root.product(row, row));
+    budget.beside = beside_budget(parameter, simulation_error * white);
+    widen(problem, j, std::move(budget), likeliest, parameter);
     const std::string exact = fmt::format("{}: {}", problem.name(j), parameter.reason);
     grade_widened(problem, found, j, parameter);
     // The warning about an estimate must describe its new interval.

@@ -23,6 +23,12 @@ constexpr double kMuchFiner = 2.0;
 /// tolerance, because steps end at each sample.
 constexpr double kLargestMeasured = 1e-2;
 
+/// Returns the RMS error of a residual, in standard deviations, at which the errors of all
+/// residuals together are harmless.
+double harmless_error(const Problem& problem) {
+  return kHarmless / std::sqrt(static_cast<double>(problem.residual_count()));
+}
+
 /// Returns the root mean square difference between the two simulations, in standard deviations; NaN
 /// if either fails.
 double simulation_error(const Problem& problem, std::size_t i, std::span<const double> z,
@@ -58,7 +64,7 @@ bool has_recorded_drive(const ProblemCondition& condition) {
 /// Returns the measured tolerance of each condition, or 0 if none was measured.
 std::vector<double> measure_all(const Problem& problem, std::span<const double> z, int threads,
                                 const std::atomic<bool>* cancel) {
-  const double harmless = kHarmless / std::sqrt(static_cast<double>(problem.residual_count()));
+  const double harmless = harmless_error(problem);
   std::vector<double> result(problem.conditions.size(), 0.0);
   const auto& unknowns = problem.map.unknowns();
   const bool nuisance_alone =
@@ -97,6 +103,22 @@ bool refine_tolerances(Problem& problem, std::span<const double> z, int threads,
     changed = changed || problem.tolerance_of(i) < before;
   }
   return changed;
+}
+
+double largest_simulation_error(const Problem& problem) {
+  const double harmless = harmless_error(problem);
+  double squares = 0.0;
+  for (std::size_t i = 0; i < problem.conditions.size(); ++i) {
+    const ProblemCondition& condition = problem.conditions[i];
+    const double tolerance = problem.tolerance_of(i);
+    for (const ProblemChannel& channel : condition.channels) {
+      const double error = condition.measured_tolerance > 0.0
+                               ? kMuchFiner * harmless * tolerance / condition.measured_tolerance
+                               : tolerance * channel.peak_to_peak / channel.sd;
+      squares += static_cast<double>(condition.rows.size()) * error * error;
+    }
+  }
+  return std::sqrt(squares);
 }
 
 }  // namespace rigcal::calib

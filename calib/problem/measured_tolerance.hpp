@@ -24,4 +24,11 @@ void measure_tolerances(Problem& problem, std::span<const double> z, int threads
 bool refine_tolerances(Problem& problem, std::span<const double> z, int threads,
                        const std::atomic<bool>* cancel);
 
+/// Returns an upper limit for the norm of the simulation errors of all residuals at the working
+/// tolerances, each divided by its standard deviation. An estimate is off by at most this many of
+/// its standard errors for white noise. A measured tolerance may be too coarse by the factor that
+/// refine_tolerances() leaves. Elsewhere the error of a sample is at most the tolerance times the
+/// range of the signal.
+double largest_simulation_error(const Problem& problem);
+
 }  // namespace rigcal::calib

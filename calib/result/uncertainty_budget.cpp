@@ -11,6 +11,13 @@ double Budget95::contribution(std::string_view of_kind) const {
   return std::sqrt(squares);
 }
 
+std::optional<double> Budget95::beside_of(std::string_view kind) const {
+  if (!beside) return std::nullopt;
+  for (const BudgetLine& line : *beside)
+    if (line.kind == kind) return line.uncertainty;
+  return std::nullopt;
+}
+
 const BudgetLine* Budget95::largest_effect() const {
   const BudgetLine* largest = nullptr;
   for (const BudgetLine& line : lines) {

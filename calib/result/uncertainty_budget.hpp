@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,7 +16,7 @@ struct BudgetLine {
   /// "noise", "repeats", the key of a known value or an effect and the like, see
   /// docs/uncertainty.md.
   std::string source;
-  std::string kind;                    ///< "records", "known_value", "effect" or "days"
+  std::string kind;                    ///< "records", "known_value", "effect", "days" or "numerics"
   double uncertainty = 0.0;            ///< contribution to the standard uncertainty of the result
   Omittable<double> sensitivity = {};  ///< change in an estimate per unit of an effect's size, SI
   RIGCAL_DESCRIBE(source, kind, uncertainty, sensitivity)
@@ -32,7 +33,14 @@ struct Budget95 {
   /// Offset of the interval's centre from an estimate due to the effects. The estimate itself is
   /// not corrected for them.
   double shift = 0.0;
-  RIGCAL_DESCRIBE(lines, combined, degrees_of_freedom, coverage_factor, expanded, shift)
+  /// Contributions that are not in `combined`. For an estimate these are "days", because an
+  /// interval applies to the days of the records, and "numerics", an upper limit for the errors of
+  /// the simulations, which are small by choice of their tolerance.
+  Omittable<std::vector<BudgetLine>> beside = {};
+  RIGCAL_DESCRIBE(lines, combined, degrees_of_freedom, coverage_factor, expanded, shift, beside)
+
+  /// Uncertainty of one kind in `beside`; absent if there is none.
+  std::optional<double> beside_of(std::string_view kind) const;
 
   /// Combined contribution of all lines of one kind: the root of the sum of their squares.
   double contribution(std::string_view of_kind) const;

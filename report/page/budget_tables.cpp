@@ -22,6 +22,7 @@ std::string freedom_text(double freedom) {
 struct FurtherColumns {
   bool days = false;
   bool shift = false;
+  bool beside = false;
 };
 
 FurtherColumns further_columns(const std::vector<BudgetOf>& budgets) {
@@ -29,6 +30,7 @@ FurtherColumns further_columns(const std::vector<BudgetOf>& budgets) {
   for (const BudgetOf& each : budgets) {
     columns.days = columns.days || each.budget->contribution("days") > 0.0;
     columns.shift = columns.shift || each.budget->shift != 0.0;
+    columns.beside = columns.beside || each.budget->beside;
   }
   return columns;
 }
@@ -45,6 +47,10 @@ doc::Row budget_row(const BudgetOf& of, const FurtherColumns& further) {
         doc::Cell(doc::decimals(budget.coverage_factor, 2)), doc::Cell(number(budget.expanded))})
     row.cells.push_back(std::move(cell));
   if (further.shift) row.cells.push_back(number(budget.shift));
+  if (further.beside) {
+    for (const char* kind : {"days", "numerics"})
+      row.cells.push_back(doc::in_unit(budget.beside_of(kind), of.unit.si, kBudgetDigits));
+  }
   row.cells.push_back(largest == nullptr ? std::string("–") : spaced(largest->source));
   return row;
 }
@@ -85,6 +91,10 @@ doc::Table budget_table(const std::string& what, const std::vector<BudgetOf>& bu
   for (const char* title : {"u", "Degrees of freedom", "k", "U = k u"})
     table.columns.push_back({title, Kind::number});
   if (further.shift) table.columns.push_back({"Shift", Kind::number});
+  if (further.beside) {
+    table.columns.push_back({"Beside it: days", Kind::number});
+    table.columns.push_back({"Beside it: numerics, at most", Kind::number});
+  }
   table.columns.push_back({"Largest effect"});
   for (const BudgetOf& each : budgets) table.rows.push_back(budget_row(each, further));
   return table;

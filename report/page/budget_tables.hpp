@@ -22,8 +22,8 @@ struct BudgetOf {
 };
 
 /// Returns a table with one row per budget. The contributions are combined by kind; their squares
-/// add up to that of u. The columns of days and shifts are left out if no
-/// budget has them.
+/// add up to that of u. Columns that no budget needs are left out: days, shift, and the two for
+/// Budget95::beside.
 ///
 /// @param what  title of the column of names
 doc::Table budget_table(const std::string& what, const std::vector<BudgetOf>& budgets);

@@ -14,7 +14,7 @@ void add_budget(const StoredParameter& p, std::vector<std::string>& fields) {
   fields.push_back(exact ? csv_number(exact->low) : std::string());
   fields.push_back(exact ? csv_number(exact->high) : std::string());
   if (!p.budget) {
-    fields.insert(fields.end(), 7, std::string());
+    fields.insert(fields.end(), 9, std::string());
     return;
   }
   for (const char* kind : {"records", "known_value", "effect"})
@@ -22,6 +22,8 @@ void add_budget(const StoredParameter& p, std::vector<std::string>& fields) {
   for (const double number : {p.budget->combined, p.budget->degrees_of_freedom,
                               p.budget->coverage_factor, p.budget->shift})
     fields.push_back(csv_number(number));
+  for (const char* kind : {"days", "numerics"})
+    fields.push_back(csv_number(p.budget->beside_of(kind)));
 }
 
 std::string row_of(const StoredParameter& p) {
@@ -77,7 +79,9 @@ std::string parameters_csv(calib::FitStatus status, const std::string& message,
                    "u_combined",
                    "u_degrees_of_freedom",
                    "coverage_factor",
-                   "shift"});
+                   "shift",
+                   "u_days",
+                   "u_numerics"});
   for (const StoredParameter& parameter : parameters) text += row_of(parameter);
   return text;
 }

@@ -198,6 +198,9 @@ def assert_same_budget(ours: rigcal.UncertaintyBudget, theirs: dict[str, Any]) -
         assert (line.source, line.kind) == (other["source"], other["kind"])
         assert same(line.uncertainty, other["uncertainty"])
         assert line.sensitivity == other.get("sensitivity")
+    for line, other in zip(ours.beside, theirs.get("beside", []), strict=True):
+        assert line.kind == other["kind"]
+        assert same(line.uncertainty, other["uncertainty"])
 
 
 def assert_same_parameter(ours: rigcal.FittedParameter, theirs: dict[str, Any]) -> None:

@@ -97,6 +97,11 @@ TEST_CASE("considered: the budget adds up by hand", "[calib]") {
     CHECK_THAT(std::sqrt(sum), WithinRel(budget.combined, 1e-9));
     CHECK_THAT(budget.expanded, WithinRel(budget.coverage_factor * budget.combined, 1e-12));
     CHECK(budget.coverage_factor > 1.95);
+    // Beside it are the days, and the errors of the simulations, which hardly count.
+    CHECK(budget.beside_of("days") == each.between_days_error);
+    const double numerics = budget.beside_of("numerics").value();
+    CHECK(numerics > 0.0);
+    CHECK(numerics < 0.1 * each.standard_error.value());
     CHECK(each.ci95->high >= each.value + budget.shift + budget.expanded - 1e-9 * each.value);
   }
 }

@@ -3,6 +3,7 @@
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/normal_distribution.hpp>
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "calib/consider/catalogue.hpp"
 #include "calib/problem/evaluation.hpp"
@@ -84,6 +85,28 @@ TEST_CASE("measured tolerance: a recorded drive is simulated as exactly as its r
   measure_tolerances(quiet, z, 1, nullptr);
   CHECK(quiet.tolerance_of(1) < 0.5 * problem.tolerance_of(1));
   CHECK(error_at(quiet, 1, z) < 0.01);
+}
+
+TEST_CASE("largest_simulation_error: the errors of all residuals stay below it", "[calib]") {
+  RecordedTwin rig;
+  Problem problem = problem_of(rig.twin, rig.records);
+  const std::vector<double> z = problem.start();
+  measure_tolerances(problem, z, 1, nullptr);
+  const double error = std::hypot(error_at(problem, 0, z), error_at(problem, 1, z));
+  CHECK(error <= largest_simulation_error(problem));
+  CHECK(largest_simulation_error(problem) < 0.1);
+  // A measured tolerance is that of a norm of 0.005, and may be too coarse by a factor of two.
+  Problem measured = problem;
+  for (ProblemCondition& each : measured.conditions)
+    each.measured_tolerance = measured.tolerance = 1e-6;
+  CHECK_THAT(largest_simulation_error(measured), Catch::WithinRel(0.01, 1e-9));
+  // A tolerance that the campaign states is taken at its word.
+  Problem stated = problem_of(rig.twin, rig.records);
+  stated.tolerance_fixed = true;
+  stated.tolerance = 1e-6;
+  const double fine = largest_simulation_error(stated);
+  stated.tolerance = 1e-4;
+  CHECK_THAT(largest_simulation_error(stated), Catch::WithinRel(100.0 * fine, 1e-9));
 }
 
 TEST_CASE("measured tolerance: effects are simulated more coarsely, as their record allows",

@@ -19,14 +19,16 @@ std::string parameters_csv(const Json& json) {
 TEST_CASE("parameters_csv: a row per parameter, numbers with all their bits", "[report]") {
   Json json = rigcal::test::stored_result();
   json["parameters"][0]["reason"] = "one, two";
-  CHECK(parameters_csv(json) ==
-        "name,key,symbol,unit,scope,level,fitted,nuisance,start,lower,upper,value,standard_error,"
-        "robust_standard_error,ci95_low,ci95_high,at_bound,identifiability,reason,"
-        "ci95_if_exact_low,ci95_if_exact_high,u_records,u_known_values,u_effects,u_combined,"
-        "u_degrees_of_freedom,coverage_factor,shift\n"
-        "mass_kg,mass,m,kg,rig,,1,0,60,10,500,85.01139529,0.026,,84.9,85.1,0,identified,"
-        "\"one, two\",,,,,,,,,\n"
-        "supply_pressure_pa,supply_pressure,P_s,Pa,rig,,0,0,6200000,,,6200000,,,,,0,,,,,,,,,,,\n");
+  CHECK(
+      parameters_csv(json) ==
+      "name,key,symbol,unit,scope,level,fitted,nuisance,start,lower,upper,value,standard_error,"
+      "robust_standard_error,ci95_low,ci95_high,at_bound,identifiability,reason,"
+      "ci95_if_exact_low,ci95_if_exact_high,u_records,u_known_values,u_effects,u_combined,"
+      "u_degrees_of_freedom,coverage_factor,shift,"
+      "u_days,u_numerics\n"
+      "mass_kg,mass,m,kg,rig,,1,0,60,10,500,85.01139529,0.026,,84.9,85.1,0,identified,"
+      "\"one, two\",,,,,,,,,,,\n"
+      "supply_pressure_pa,supply_pressure,P_s,Pa,rig,,0,0,6200000,,,6200000,,,,,0,,,,,,,,,,,,,\n");
 }
 
 TEST_CASE("parameters_csv: of a budget what each kind of source contributes", "[report]") {
@@ -43,7 +45,11 @@ TEST_CASE("parameters_csv: of a budget what each kind of source contributes", "[
       {"expanded", 10.0125},
       {"shift", -0.5}};
   CHECK_THAT(parameters_csv(json),
-             Catch::Contains(",identified,,84.95,85.05,0.25,0,5,5.00625,40,2,-0.5\n"));
+             Catch::Contains(",identified,,84.95,85.05,0.25,0,5,5.00625,40,2,-0.5,,\n"));
+  json["parameters"][0]["budget"]["beside"] = {
+      {{"source", "numerics"}, {"kind", "numerics"}, {"uncertainty", 0.002}},
+      {{"source", "days"}, {"kind", "days"}, {"uncertainty", 1.5}}};
+  CHECK_THAT(parameters_csv(json), Catch::Contains(",40,2,-0.5,1.5,0.002\n"));
 }
 
 TEST_CASE("parameters of an earlier schema: what was an interval is that of an exact model",
