@@ -5,8 +5,8 @@
 //   rigcal_diagnosis_study classes FIRST LAST     classes, seeds FIRST to LAST
 //   rigcal_diagnosis_study smallest FIRST LAST    smallest leak with a 0.1 Hz sine
 //   rigcal_diagnosis_study coefficients           coefficients of the campaign's leaks
-//   rigcal_diagnosis_study laws FIRST LAST [ROW] [FILE]       laminar and orifice leaks told from
-//                                                             none by position and pressures
+//   rigcal_diagnosis_study laws FIRST LAST [ROW] [FILE]       small laminar and orifice leaks, by
+//                                                             position and both pressures
 //   rigcal_diagnosis_study hopsan DIR FIRST LAST [FILE]       the same in records of Hopsan
 //
 // The files store the counts of each campaign, so that a study that was stopped can continue.

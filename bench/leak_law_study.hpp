@@ -13,7 +13,7 @@ struct StudyRange {
   std::string file;  ///< kept_counts.hpp; empty: nothing is stored
 };
 
-/// Prints how often small leaks are told from none on the day of the reference, in a cylinder with
+/// Prints how often small leaks are found on the day of the reference, in a cylinder with
 /// two chambers whose position and pressures are recorded. The leak is laminar or through an
 /// orifice, and is fitted by either law.
 ///

@@ -93,7 +93,7 @@ TEST_CASE("is_healthy: class normal, or a coefficient that is known to be 0", "[
   CHECK_FALSE(healthy("[leak_level.x]\nparameters = { mass = \"50 kg\" }\n"));
   CHECK(healthy("[diagnosis]\nlevel_class = { x = \"normal\" }\n"));
   CHECK_FALSE(healthy("[diagnosis]\nlevel_class = { x = \"slight\" }\n" + level("0")));
-  // Of a laminar leak, its own parameter tells.
+  // The parameter of the campaign's law counts.
   const std::string laminar = "[diagnosis]\nleak_law = \"laminar\"\n";
   const std::string none = "[leak_level.x]\nparameters = { laminar_leakage = \"0 m3/(s Pa)\" }\n";
   CHECK(healthy(laminar + none));
