@@ -69,7 +69,7 @@ std::vector<StoredRigEstimate> estimates(const StoredFit& fit) {
   for (const StoredParameter& p : fit.parameters) {
     if (!is_shown(p)) continue;
     list.push_back({p.key, p.name, p.unit, p.scope, p.level, p.value.value_or(std::nan("")),
-                    Interval(p.ci95).ends, p.identifiability});
+                    finite_ends(p.ci95), p.identifiability});
   }
   return list;
 }
