@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cmath>
+#include <optional>
+
 namespace rigcal {
 
 /// An interval. In results, it is an array of two numbers.
@@ -8,5 +11,11 @@ struct Range {
   double high = 0.0;
   bool operator==(const Range&) const = default;
 };
+
+/// Returns the range if both ends are finite.
+inline std::optional<Range> finite_ends(const std::optional<Range>& range) {
+  const bool finite = range && std::isfinite(range->low) && std::isfinite(range->high);
+  return finite ? range : std::nullopt;
+}
 
 }  // namespace rigcal

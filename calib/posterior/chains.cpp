@@ -174,8 +174,6 @@ double tail_effective_draws(const Chains& chains) {
   return least;
 }
 
-double effective_draws(const Chains& chains) { return effective_or_nan(chains); }
-
 double energy_fraction(const std::vector<double>& energies) {
   if (energies.size() < 2) return std::numeric_limits<double>::quiet_NaN();
   const double mean = mean_of(energies);

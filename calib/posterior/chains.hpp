@@ -22,8 +22,6 @@ double bulk_effective_draws(const Chains& chains);
 /// Returns the effective sample size for intervals: the smaller of those for the fractions of draws
 /// below the 5 % quantile and below the 95 % quantile.
 double tail_effective_draws(const Chains& chains);
-/// Returns the effective sample size for the mean, computed from the untransformed draws.
-double effective_draws(const Chains& chains);
 
 /// Estimates the Bayesian fraction of missing information from the energies of one chain: how much
 /// of the variation in energy comes from new momenta (Betancourt, arXiv:1604.00695). Below 0.3 the

@@ -1,6 +1,6 @@
 #include "calib/published/period_grid.hpp"
 
-#include "metrics/leak_share.hpp"
+#include "metrics/mean_absolute.hpp"
 
 namespace rigcal::calib {
 namespace {

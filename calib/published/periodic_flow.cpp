@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "calib/published/period_grid.hpp"
-#include "metrics/leak_share.hpp"
+#include "metrics/mean_absolute.hpp"
 
 namespace rigcal::calib {
 namespace {

@@ -396,11 +396,4 @@ Record average(const std::string& condition, const std::vector<Repeat>& repeats,
   return record;
 }
 
-std::optional<double> lag_in_samples(const std::vector<double>& a, const std::vector<double>& b,
-                                     int max_lag) {
-  const auto lag = find_lag(a, b, max_lag);
-  if (!lag) return std::nullopt;
-  return lag->samples;
-}
-
 }  // namespace rigcal::datasets

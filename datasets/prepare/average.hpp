@@ -42,10 +42,4 @@ struct AverageOptions {
 Record average(const std::string& condition, const std::vector<Repeat>& repeats,
                const AverageOptions& options);
 
-/// Returns the delay of b relative to a in samples (fractional), positive if b is late. It is the
-/// lag that maximises the normalised cross-correlation. Returns std::nullopt if either signal is
-/// constant, or if the maximum is at the edge of the search range.
-std::optional<double> lag_in_samples(const std::vector<double>& a, const std::vector<double>& b,
-                                     int max_lag);
-
 }  // namespace rigcal::datasets

@@ -8,7 +8,7 @@
 
 #include "common/error.hpp"
 #include "datasets/campaign/campaign.hpp"
-#include "metrics/leak_share.hpp"
+#include "metrics/mean_absolute.hpp"
 
 namespace rigcal::diagnosis {
 namespace {

@@ -12,17 +12,8 @@ namespace {
 
 constexpr std::size_t kWorstScores = 3;
 
-/// Returns a sort key: failed simulations first, then by verdict, then by the lowest rho2.
-std::pair<int, double> badness(const StoredRigScore& score) {
-  const int rank = !score.failure.empty()                  ? 0
-                   : score.verdict == calib::Verdict::fail ? 1
-                   : score.verdict == calib::Verdict::warn ? 2
-                                                           : 3;
-  return {rank, score.rho2.value_or(-1.0)};
-}
-
 std::vector<StoredRigScore> worst_scores(const StoredFit& fit) {
-  std::vector<StoredRigScore> scores;
+  std::vector<std::pair<calib::Badness, StoredRigScore>> scores;
   for (const StoredCondition& condition : fit.conditions) {
     StoredRigScore score;
     score.condition = condition.id;
@@ -30,7 +21,7 @@ std::vector<StoredRigScore> worst_scores(const StoredFit& fit) {
     score.failure = condition.failure.value_or("");
     if (condition.failure) {
       score.verdict = condition.verdict;
-      scores.push_back(score);
+      scores.emplace_back(badness(condition), score);
       continue;
     }
     for (const auto& [channel, metrics] : condition.metrics) {
@@ -38,13 +29,15 @@ std::vector<StoredRigScore> worst_scores(const StoredFit& fit) {
       score.verdict = condition.verdict_of(channel);
       score.rho2 = finite(metrics.rho2);
       score.absolute_error_percent = finite(metrics.absolute_error_percent);
-      scores.push_back(score);
+      scores.emplace_back(badness(condition, channel), score);
     }
   }
   std::stable_sort(scores.begin(), scores.end(),
-                   [](const auto& a, const auto& b) { return badness(a) < badness(b); });
-  scores.resize(std::min(scores.size(), kWorstScores));
-  return scores;
+                   [](const auto& a, const auto& b) { return b.first < a.first; });
+  std::vector<StoredRigScore> worst;
+  for (std::size_t i = 0; i < std::min(scores.size(), kWorstScores); ++i)
+    worst.push_back(std::move(scores[i].second));
+  return worst;
 }
 
 /// Lists the reasons that keep each aspect from passing.
@@ -69,7 +62,7 @@ std::vector<StoredRigEstimate> estimates(const StoredFit& fit) {
   for (const StoredParameter& p : fit.parameters) {
     if (!is_shown(p)) continue;
     list.push_back({p.key, p.name, p.unit, p.scope, p.level, p.value.value_or(std::nan("")),
-                    Interval(p.ci95).ends, p.identifiability});
+                    finite_ends(p.ci95), p.identifiability});
   }
   return list;
 }

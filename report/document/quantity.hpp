@@ -28,9 +28,7 @@ struct Number {
 struct Interval {
   std::optional<Range> ends;  ///< absent unless both ends are known
   // NOLINTBEGIN(google-explicit-constructor): these conversions are intended
-  Interval(const std::optional<Range>& range) : ends(range) {
-    if (ends && !(std::isfinite(ends->low) && std::isfinite(ends->high))) ends.reset();
-  }
+  Interval(const std::optional<Range>& range) : ends(finite_ends(range)) {}
   Interval(const Range& range) : Interval(std::optional(range)) {}
   // NOLINTEND(google-explicit-constructor)
   double half_width() const { return 0.5 * (ends->high - ends->low); }

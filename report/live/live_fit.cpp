@@ -50,26 +50,13 @@ model::ParameterValues values_at_optimum(const datasets::Campaign& campaign,
   return values;
 }
 
-/// Returns the fraction of its tolerance that a condition uses, or its error if it has no limits.
-double used(const calib::ConditionScore& score) {
-  double most = 0.0;
-  for (const calib::LimitCheck& check : score.checks)
-    most = std::max(most, check.tolerance_used.value_or(0.0));
-  if (score.checks.empty())
-    for (const calib::ChannelScore& channel : score.channels)
-      if (channel.agreement) most = std::max(most, channel.agreement->absolute_error_percent);
-  return most;
-}
-
 std::vector<const calib::ConditionScore*> shown_first(const calib::Fit& fit) {
   std::vector<const calib::ConditionScore*> scores;
   for (const calib::ConditionScore& score : fit.conditions)
     if (score.failure.empty() && score.not_scored.empty() && score.time_s.size() > 1)
       scores.push_back(&score);
   std::stable_sort(scores.begin(), scores.end(), [](const auto* a, const auto* b) {
-    const bool held_back = a->use == datasets::Use::validate;
-    if (held_back != (b->use == datasets::Use::validate)) return held_back;
-    return used(*a) > used(*b);
+    return calib::shown_before(a->use, calib::badness(*a), b->use, calib::badness(*b));
   });
   if (scores.size() > kMostCases) scores.resize(kMostCases);
   return scores;

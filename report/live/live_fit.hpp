@@ -19,8 +19,8 @@ inline constexpr const char* kLiveDiagnosisFile = "diagnosis_live.json";
 inline constexpr const char* kLiveLeakTableFile = "leak_table_live.json";
 
 /// Builds the contents of live.json: the rig with its estimates, and the conditions with their
-/// measured means. Validation conditions come first, and the worst first among each kind. Returns
-/// std::nullopt if no condition was scored or the search did not converge.
+/// measured means, in the order of calib::shown_before(). Returns std::nullopt if no condition was
+/// scored or the search did not converge.
 std::optional<Json> live_fit(const Result& result);
 
 /// Builds the contents of diagnosis_live.json: the healthy rig with the leak found in each averaged

@@ -30,7 +30,8 @@ void read_all(const std::filesystem::path& file, const std::vector<std::string>&
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto file = fuzz::scratch_file("record.csv", fuzz::text_of_bytes(data, size));
   for (const bool leaves_out_rows : {false, true}) try {
-      const std::vector<std::string> names = csv_full_header(file);
+      std::vector<std::string> names;
+      for (const RecordColumn& column : csv_record_columns(file)) names.push_back(column.name);
       for (const bool has_time : {false, true}) read_all(file, names, has_time, leaves_out_rows);
     } catch (const InputError&) {
     }

@@ -173,9 +173,10 @@ def fundamental(generator):
     yield "fundamental.comparison", [gain_s / gain_y, degrees, -degrees / 360 / hz]
 
 
-def leak_share(generator):
+def mean_absolute_value(generator):
     time_s = rounded(numpy.cumsum(generator.uniform(0.1, 1.0, 12)))
-    servo, leak = rounded(generator.standard_normal(12)), rounded(0.2 * generator.standard_normal(12))
+    servo = rounded(generator.standard_normal(12))
+    generator.standard_normal(12)  # keeps the numbers of what follows
 
     def mean_absolute(y):
         def line(t):
@@ -186,9 +187,7 @@ def leak_share(generator):
 
     yield "leak.time_s", time_s
     yield "leak.servo", servo
-    yield "leak.leak", leak
     yield "leak.mean_absolute", mean_absolute(servo)
-    yield "leak.share", mean_absolute(leak) / mean_absolute(servo)
 
 
 def residual_features(generator):
@@ -292,7 +291,6 @@ def chains(name, draws):
     yield f"chains.{name}.r_hat", max(r_hat(normal_scores(split_draws)), r_hat(normal_scores(folded)))
     yield f"chains.{name}.bulk", effective_draws(normal_scores(split_draws))
     yield f"chains.{name}.tail", min(tails)
-    yield f"chains.{name}.mean", effective_draws(split_draws)
     yield f"chains.{name}.energy", (numpy.diff(energies) ** 2).sum() / ((energies - energies.mean()) ** 2).sum()
 
 
@@ -319,7 +317,7 @@ def cases():
     yield from autoregression("ringing", rounded(lfilter([1], [1, -1.5, 0.8], generator.standard_normal(200))), 12)
     yield from significance(generator)
     yield from fundamental(generator)
-    yield from leak_share(generator)
+    yield from mean_absolute_value(generator)
     yield from residual_features(generator)
     yield from score_scatter(generator)
     yield from several_chains(numpy.random.default_rng(20270101))

@@ -10,7 +10,7 @@
 #include "metrics/autoregression.hpp"
 #include "metrics/distributions.hpp"
 #include "metrics/fundamental.hpp"
-#include "metrics/leak_share.hpp"
+#include "metrics/mean_absolute.hpp"
 #include "metrics/residual_features.hpp"
 #include "metrics/residual_tests.hpp"
 #include "metrics/significance.hpp"
@@ -156,11 +156,9 @@ TEST_CASE("golden: fundamental of noisy, uneven samples", "[metrics]") {
   check_values({both.gain_ratio, both.phase_deg, both.delay_s}, golden("fundamental.comparison"));
 }
 
-TEST_CASE("golden: leak share and residual features", "[metrics]") {
+TEST_CASE("golden: mean absolute value and residual features", "[metrics]") {
   const std::vector<double> time_s = golden("leak.time_s");
   check_value(mean_absolute(time_s, golden("leak.servo")), golden("leak.mean_absolute").front());
-  check_value(leak_share(time_s, golden("leak.servo"), golden("leak.leak")),
-              golden("leak.share").front());
   const ResidualFeatures features = residual_features(golden("features.residual"));
   check_values({features.mean, features.rms, features.std}, golden("features.values"));
 }

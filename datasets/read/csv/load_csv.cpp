@@ -589,33 +589,10 @@ CsvTable load_csv(const std::filesystem::path& path, const CsvRequest& request) 
   return table;
 }
 
-namespace {
-
-Header header_of(const std::filesystem::path& path, char separator) {
+std::vector<RecordColumn> csv_record_columns(const std::filesystem::path& path) {
   CsvLines file(path, CsvRequest{}.max_bytes);
   HeadedLines lines(file);
-  return read_header(lines, path.string(), separator);
-}
-
-}  // namespace
-
-std::vector<std::string> csv_header(const std::filesystem::path& path, char separator) {
-  const Header header = header_of(path, separator);
-  std::vector<std::string> names = short_names(header.names);
-  if (header.time) names.emplace(names.begin(), kLvmTime);
-  return names;
-}
-
-std::vector<std::string> csv_full_header(const std::filesystem::path& path, char separator) {
-  const Header header = header_of(path, separator);
-  std::vector<std::string> names;
-  if (header.time) names.emplace_back(kLvmTime);
-  for (const CsvName& name : header.names) names.push_back(name.full);
-  return names;
-}
-
-std::vector<RecordColumn> csv_record_columns(const std::filesystem::path& path) {
-  const Header header = header_of(path, 0);
+  const Header header = read_header(lines, path.string(), 0);
   std::vector<RecordColumn> columns;
   if (header.time) columns.push_back({std::string(kLvmTime), "s", true});
   for (std::size_t i = 0; i < header.names.size(); ++i)

@@ -49,17 +49,6 @@ struct CsvTable {
 /// @throws std::invalid_argument  if time_column is not among the columns
 CsvTable load_csv(const std::filesystem::path& path, const CsvRequest& request);
 
-/// Returns the header names of a CSV file, for messages. They omit the unit unless only the unit
-/// distinguishes two columns.
-///
-/// @throws InputError  under the conditions of load_csv()
-std::vector<std::string> csv_header(const std::filesystem::path& path, char separator = 0);
-
-/// Returns the header names as they are in the file, with their units.
-///
-/// @throws InputError  under the conditions of load_csv()
-std::vector<std::string> csv_full_header(const std::filesystem::path& path, char separator = 0);
-
 /// These functions have the signatures that the table of readers requires (record_reader.hpp).
 std::vector<RecordColumn> csv_record_columns(const std::filesystem::path& path);
 RecordTable load_csv_record(const std::filesystem::path& path, const RecordRequest& request);

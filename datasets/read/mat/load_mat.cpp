@@ -117,12 +117,6 @@ Table load_mat(const std::filesystem::path& path, const MatRequest& request) {
   return table;
 }
 
-std::vector<std::string> mat_columns(const std::filesystem::path& path) {
-  std::vector<std::string> names;
-  for (RecordColumn& column : mat_record_columns(path)) names.push_back(std::move(column.name));
-  return names;
-}
-
 std::vector<RecordColumn> mat_record_columns(const std::filesystem::path& path) {
   const auto described = [](const MatSource& source) {
     std::vector<RecordColumn> columns;

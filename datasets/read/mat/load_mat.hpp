@@ -37,13 +37,9 @@ struct MatRequest {
 std::vector<std::vector<double>> load_mat(const std::filesystem::path& path,
                                           const MatRequest& request);
 
-/// Lists every column that load_mat() can read, in file order: vectors, and the columns of matrices
-/// with up to 100 columns.
-///
-/// @throws InputError  under the conditions of load_mat()
-std::vector<std::string> mat_columns(const std::filesystem::path& path);
-
-/// These functions have the signatures that the table of readers requires (record_reader.hpp).
+/// These functions have the signatures that the table of readers requires (record_reader.hpp). The
+/// first lists every column that load_mat() can read, in file order: vectors, and the columns of
+/// matrices with up to 100 columns.
 std::vector<RecordColumn> mat_record_columns(const std::filesystem::path& path);
 RecordTable load_mat_record(const std::filesystem::path& path, const RecordRequest& request);
 

@@ -43,6 +43,7 @@ struct Judged {
   std::string channel;
   const calib::LimitCheck* check = nullptr;  ///< the check that uses most of its tolerance
 
+  calib::Badness how_bad() const { return badness(*condition, channel); }
   double used() const {
     if (check == nullptr || !check->value || !check->tolerance_used) return HUGE_VAL;
     return *check->tolerance_used;
@@ -51,8 +52,7 @@ struct Judged {
   Verdict verdict() const { return check != nullptr ? check->verdict : Verdict::fail; }
 };
 
-/// Returns all judged signals: first those outside their limits, then those in validation records,
-/// then the worst first. A page that has room for some of them leaves out none that fails.
+/// Returns all judged signals in the order of calib::shown_before().
 std::vector<Judged> judged_signals(const StoredFit& fit) {
   std::vector<Judged> signals;
   for (std::size_t i = 0; i < fit.conditions.size(); ++i) {
@@ -73,12 +73,9 @@ std::vector<Judged> judged_signals(const StoredFit& fit) {
       }
     }
   }
-  const auto rank = [](const Judged& each) {
-    return std::tuple(each.verdict() == Verdict::fail, each.held_back(), each.verdict(),
-                      each.used());
-  };
-  std::stable_sort(signals.begin(), signals.end(),
-                   [&](const Judged& a, const Judged& b) { return rank(b) < rank(a); });
+  std::stable_sort(signals.begin(), signals.end(), [](const Judged& a, const Judged& b) {
+    return calib::shown_before(a.condition->use, a.how_bad(), b.condition->use, b.how_bad());
+  });
   return signals;
 }
 
@@ -160,9 +157,8 @@ doc::Verdict failed_verdict(const StoredFit& fit) {
   }
   const std::vector<Judged> signals = judged_signals(fit);
   const auto worst =
-      std::max_element(signals.begin(), signals.end(), [](const Judged& a, const Judged& b) {
-        return std::pair(a.verdict(), a.used()) < std::pair(b.verdict(), b.used());
-      });
+      std::max_element(signals.begin(), signals.end(),
+                       [](const Judged& a, const Judged& b) { return a.how_bad() < b.how_bad(); });
   if (worst != signals.end() && worst->check != nullptr && worst->check->value &&
       worst->check->limit) {
     sentence.emplace_back(fmt::format(

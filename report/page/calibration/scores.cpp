@@ -1,10 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <map>
-#include <tuple>
 
 #include "report/document/quantity.hpp"
 #include "report/document/words.hpp"
@@ -16,7 +13,6 @@ namespace {
 
 using doc::Line;
 using Kind = doc::Column::Kind;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Returns the frequency to sort by, and a name such as "sine 0.1 Hz".
 std::pair<double, std::string> signal_of(const StoredCondition& condition) {
@@ -82,14 +78,9 @@ doc::Tile summary_of(const std::vector<const StoredCondition*>& conditions,
                      const std::string& channel) {
   std::map<std::optional<calib::Verdict>, std::size_t> counts;
   const StoredCondition* worst = conditions.front();
-  const auto badness = [&](const StoredCondition& condition) {
-    const StoredScore* scores = find(condition.metrics, channel);
-    const double rho2 = scores == nullptr || std::isnan(scores->rho2) ? -kInfinity : scores->rho2;
-    return std::tuple(condition.failure.has_value(), condition.verdict_of(channel), -rho2);
-  };
   for (const StoredCondition* condition : conditions) {
     ++counts[condition->verdict_of(channel)];
-    if (badness(*worst) < badness(*condition)) worst = condition;
+    if (badness(*worst, channel) < badness(*condition, channel)) worst = condition;
   }
   doc::Tile tile = *tile_of(*worst, channel);
   std::string numbers;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <tuple>
 
 namespace rigcal::report {
 namespace {
@@ -13,18 +12,6 @@ constexpr std::size_t kMostInFull = 40;
 constexpr std::size_t kInFullOfMany = 20;
 /// Number of periods that fit in a small picture.
 constexpr double kPeriods = 2.0;
-
-/// Returns a sort key for conditions; the worst condition has the largest key.
-auto badness(const StoredCondition& condition) {
-  const bool unusable = condition.failure.has_value() || condition.not_scored.has_value();
-  double used = 0.0;
-  for (const calib::LimitCheck& check : condition.limit_checks)
-    used = std::max(used, check.tolerance_used.value_or(0.0));
-  double error_percent = 0.0;
-  for (const auto& [channel, scores] : condition.metrics)
-    error_percent = std::max(error_percent, scores.absolute_error_percent);
-  return std::tuple(unusable, condition.verdict, used, error_percent);
-}
 
 }  // namespace
 

@@ -274,6 +274,16 @@ StoredFit as_fit(const StoredTablesFit& tables) {
   return fit;
 }
 
+calib::Badness badness(const StoredCondition& condition, const std::string& channel) {
+  calib::Badness found{condition.failure || condition.not_scored,
+                       channel.empty() ? condition.verdict : condition.verdict_of(channel)};
+  for (const calib::LimitCheck& check : condition.limit_checks)
+    if (channel.empty() || info(check.channel).key == channel) found.add(check);
+  for (const auto& [key, scores] : condition.metrics)
+    if (channel.empty() || key == channel) found.add_rho2(scores.rho2);
+  return found;
+}
+
 std::optional<double> periodic_frequency(const StoredCondition& condition) {
   if (!condition.waveform || !datasets::is_periodic(*condition.waveform)) return std::nullopt;
   return condition.frequency_hz;

@@ -8,6 +8,7 @@
 #include "calib/fit.hpp"
 #include "calib/score/groups.hpp"
 #include "calib/score/validity.hpp"
+#include "calib/score/worst.hpp"
 #include "metrics/metric_table.hpp"
 #include "metrics/significance.hpp"
 #include "report/json/described.hpp"
@@ -247,6 +248,9 @@ struct StoredFit {
 
   const StoredCondition* find(const std::string& condition) const;
 };
+
+/// @param channel  empty: the whole condition
+calib::Badness badness(const StoredCondition& condition, const std::string& channel = {});
 
 /// Returns the drive frequency of a condition, if its drive is periodic.
 std::optional<double> periodic_frequency(const StoredCondition& condition);

@@ -68,7 +68,7 @@ void check_mean(const std::vector<std::vector<Draw>>& draws, const Function& fun
     }
   }
   mean /= count;
-  const double effective = effective_draws(chains);
+  const double effective = bulk_effective_draws(chains);
   CHECK(effective > 0.05 * count);
   CHECK(split_r_hat(chains) < 1.01);
   CHECK_THAT(mean,

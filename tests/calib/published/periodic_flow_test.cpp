@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "calib/published/period_grid.hpp"
-#include "metrics/leak_share.hpp"
+#include "metrics/mean_absolute.hpp"
 #include "tests/calib/leak_rig.hpp"
 
 using namespace rigcal;

@@ -6,7 +6,6 @@
 #include <numbers>
 #include <random>
 
-#include "datasets/prepare/average.hpp"
 #include "tests/support/sanitized.hpp"
 
 using namespace rigcal::datasets;
@@ -15,6 +14,13 @@ using Catch::WithinAbs;
 namespace {
 
 using Shape = std::function<double(double)>;
+
+/// Delay of b relative to a, in samples.
+std::optional<double> lag_in_samples(const std::vector<double>& a, const std::vector<double>& b,
+                                     int max_lag) {
+  const auto lag = find_lag(a, b, max_lag);
+  return lag ? std::optional(lag->samples) : std::nullopt;
+}
 
 std::vector<double> sampled(const Shape& shape, int samples, double delay, double noise_sd,
                             unsigned seed) {

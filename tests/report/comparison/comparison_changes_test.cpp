@@ -12,6 +12,7 @@
 #include "common/error.hpp"
 #include "report/comparison/comparison_parts.hpp"
 #include "report/document/render_terminal.hpp"
+#include "report/page/page_parts.hpp"
 #include "tests/report/stored_fixture.hpp"
 #include "tests/support/temporary_folder.hpp"
 

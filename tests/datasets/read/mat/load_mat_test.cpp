@@ -73,6 +73,12 @@ std::string opaque_variable() {
                          element(1, "timeseries") + reference);
 }
 
+std::vector<std::string> columns_of(const std::filesystem::path& path) {
+  std::vector<std::string> names;
+  for (const RecordColumn& column : mat_record_columns(path)) names.push_back(column.name);
+  return names;
+}
+
 }  // namespace
 
 TEST_CASE("load_mat: variables, fields and columns of a matrix", "[datasets]") {
@@ -95,7 +101,7 @@ TEST_CASE("load_mat: variables, fields and columns of a matrix", "[datasets]") {
   CHECK(table[5] == Numbers{0.0, 0.1, 0.2});
   CHECK(table[6] == Numbers{1, 2, 3});
   CHECK(table[7] == Numbers{4, 5, 6});
-  auto columns = mat_columns(path);
+  auto columns = columns_of(path);
   std::sort(columns.begin(), columns.end());
   CHECK(columns == std::vector<std::string>{"data(:,1)", "data(:,2)", "deep",
                                             "log.signals(1).values", "log.signals(2).values(:,1)",
@@ -232,7 +238,7 @@ TEST_CASE("load_mat: an object says how to save it", "[datasets]") {
   CHECK_THAT(message_of(path, {{"ts"}, ""}),
              Contains("'ts' is an object") && Contains("a timeseries") && Contains("ts.Time"));
   CHECK(load_mat(path, {{"t"}, "t"})[0] == Numbers{0, 1, 2});
-  CHECK(mat_columns(path) == std::vector<std::string>{"t"});
+  CHECK(columns_of(path) == std::vector<std::string>{"t"});
 
   // In version 7.3, an object is a reference whose class is not one of MATLAB's number classes.
   write_mat(path, MatFormat::v73,

@@ -19,7 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using datasets::load_mat;
-using datasets::mat_columns;
 
 /// A small file with everything that a MAT file may contain: vector, matrix, integers, nested
 /// struct, text.
@@ -35,10 +34,10 @@ std::string small_mat(const TemporaryFolder& folder, MatFormat format) {
 
 Ending mat_ending(const fs::path& path, bool all_columns) {
   return ending_of(path, [&] {
-    const std::vector<std::string> columns = mat_columns(path);
+    const auto columns = datasets::mat_record_columns(path);
     bool finite = true;
     for (std::size_t i = 0; all_columns && i < columns.size(); ++i)
-      finite = all_finite(load_mat(path, {{columns[i]}, ""})) && finite;
+      finite = all_finite(load_mat(path, {{columns[i].name}, ""})) && finite;
     load_mat(path, {{"t", "n(:,2)", "log.signals.values", "log.time"}, "t"});
     return finite;
   });

@@ -1,4 +1,4 @@
-#include "metrics/leak_share.hpp"
+#include "metrics/mean_absolute.hpp"
 
 #include <fmt/format.h>
 
@@ -47,22 +47,18 @@ void check(std::span<const double> time_s, std::span<const double> signal,
   }
 }
 
-Extended checked_mean(std::span<const double> time_s, std::span<const double> signal,
-                      std::string_view function, std::string_view name) {
-  check(time_s, signal, function, name);
+}  // namespace
+
+double mean_absolute(std::span<const double> time_s, std::span<const double> signal) {
+  constexpr std::string_view kFunction = "mean_absolute";
+  check(time_s, signal, kFunction, "given");
   const std::size_t lines = signal.size() - 1;
   const auto line = [&](std::size_t i) {
     return (wide(time_s[i + 1]) - wide(time_s[i])) *
            mean_along_line(wide(signal[i]), wide(signal[i + 1]));
   };
   const Extended duration = wide(time_s.back()) - wide(time_s.front());
-  return mean_of(lines, line) * static_cast<Extended>(lines) / duration;
-}
-
-}  // namespace
-
-double mean_absolute(std::span<const double> time_s, std::span<const double> signal) {
-  return to_double(checked_mean(time_s, signal, "mean_absolute", "given"), "mean_absolute");
+  return to_double(mean_of(lines, line) * static_cast<Extended>(lines) / duration, kFunction);
 }
 
 double mean_absolute_slope(std::span<const double> time_s, std::span<const double> signal,
@@ -78,17 +74,6 @@ double mean_absolute_slope(std::span<const double> time_s, std::span<const doubl
   };
   const Extended duration = wide(time_s.back()) - wide(time_s.front());
   return to_double(mean_of(lines, line) * static_cast<Extended>(lines) / duration, kFunction);
-}
-
-double leak_share(std::span<const double> time_s, std::span<const double> servo_flow,
-                  std::span<const double> leakage_flow) {
-  constexpr std::string_view kFunction = "leak_share";
-  const Extended servo = checked_mean(time_s, servo_flow, kFunction, "servo flow");
-  const Extended leak = checked_mean(time_s, leakage_flow, kFunction, "leakage flow");
-  if (servo == 0.0L) {
-    throw std::domain_error("leak_share: the servo flow is zero throughout, so there is no share");
-  }
-  return to_double(leak / servo, kFunction);
 }
 
 }  // namespace rigcal::metrics

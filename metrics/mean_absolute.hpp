@@ -23,17 +23,4 @@ double mean_absolute(std::span<const double> time_s, std::span<const double> sig
 double mean_absolute_slope(std::span<const double> time_s, std::span<const double> signal,
                            std::span<const double> slope);
 
-/// Share of the servo flow that leaks: mean |Q_leak| / mean |Q_servo|. This reproduces the
-/// percentages in the source paper, which says "of the work flow". For a periodic run, use whole
-/// periods; the caller chooses which part of the run to pass.
-///
-/// @param time_s                shape (n), n >= 2, increasing
-/// @param servo_flow            shape (n), any unit
-/// @param leakage_flow          shape (n), same unit
-/// @return                      dimensionless, >= 0
-/// @throws std::invalid_argument  under the conditions of mean_absolute()
-/// @throws std::domain_error      if there is no servo flow, so that the share is undefined
-double leak_share(std::span<const double> time_s, std::span<const double> servo_flow,
-                  std::span<const double> leakage_flow);
-
 }  // namespace rigcal::metrics

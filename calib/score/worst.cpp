@@ -1,0 +1,41 @@
+#include "calib/score/worst.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace rigcal::calib {
+namespace {
+
+constexpr double kNoValue = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+void Badness::add(const LimitCheck& check) {
+  const bool known = check.value && check.tolerance_used;
+  tolerance_used = std::max(tolerance_used, known ? *check.tolerance_used : kNoValue);
+}
+
+void Badness::add_rho2(std::optional<double> rho2) {
+  const bool known = rho2 && !std::isnan(*rho2);
+  disagreement = std::max(disagreement, known ? 1.0 - *rho2 : kNoValue);
+}
+
+Badness badness(const ConditionScore& score) {
+  Badness found{!score.failure.empty() || !score.not_scored.empty(), score.verdict};
+  for (const LimitCheck& check : score.checks) found.add(check);
+  for (const ChannelScore& channel : score.channels)
+    found.add_rho2(channel.agreement ? std::optional(channel.agreement->rho2) : std::nullopt);
+  return found;
+}
+
+bool shown_before(datasets::Use use_a, const Badness& a, datasets::Use use_b, const Badness& b) {
+  const auto kind = [](datasets::Use use, const Badness& each) {
+    return std::tuple(each.unusable || each.verdict == Verdict::fail,
+                      use == datasets::Use::validate);
+  };
+  if (kind(use_a, a) != kind(use_b, b)) return kind(use_b, b) < kind(use_a, a);
+  return b < a;
+}
+
+}  // namespace rigcal::calib
