@@ -267,7 +267,8 @@ TEST_CASE("film: where it follows at once, friction falls to Coulomb's at its ve
   e.set("film_growth_time", 1e-4).set("film_decay_time", 1e-4).set("stribeck_velocity", 10.0);
   e.set("laminar_leakage", 0.0).set("stiffness", 0.0);
   e.outputs = {Output::velocity, Output::load_pressure};
-  for (const double command : {0.3, -0.3, 6.0}) {
+  e.set("friction_smoothing", 3e-4);
+  for (const double command : {0.6, -0.6, 6.0}) {
     e.inputs.drive = Signal::constant(command);
     const Simulation run = e();
     REQUIRE(run.ok());
@@ -297,9 +298,12 @@ TEST_CASE("film: sensitivities are exact against differences", "[model]") {
   Experiment e = lubricated_piston(Signal::constant(0.0), {0.0});
   e.inputs.external_force_n.reset();
   std::set<int> seen;
-  const NamedValues values{{"laminar_leakage", 2e-11},   {"stiffness", 2e4},
-                           {"stribeck_friction", 800.0}, {"stribeck_velocity", 0.2},
-                           {"friction_smoothing", 0.03}, {"film_dwell_time", 0.03}};
+  const NamedValues values{{"laminar_leakage", 2e-11},  {"stiffness", 2e4},
+                           {"coulomb_friction", 100.0}, {"stribeck_friction", 400.0},
+                           {"stribeck_velocity", 0.1},  {"bristle_stiffness", 2e6},
+                           {"bristle_damping", 2e3},    {"friction_smoothing", 0.012},
+                           {"film_velocity", 0.04},     {"film_growth_time", 0.01},
+                           {"film_decay_time", 0.02},   {"film_dwell_time", 0.02}};
   Scenario scenario{"film", Signal::sine(1.0, 9.0), values, ControllerKind::none};
   check_sensitivities(experiment(scenario, e), seen, {{Output::force, 1e4}});
   for (const char* key :
