@@ -35,7 +35,9 @@ std::string bad_parameter(const ParameterValues& values, const Layout& layout,
         (layout.filter >= 0 && spec.key == "derivative_filter") ||
         (layout.terms.temperature && !inputs.oil_temperature_k && spec.key == "oil_temperature") ||
         (spec.key == "lever" && !values.is_given("triangle_base") &&
-         !values.is_given("travel_table_to")) ||
+         !values.is_given("travel_table_to") && !values.is_given("displacement_per_radian")) ||
+        ((spec.key == "area_a" || spec.key == "area_b") &&
+         !values.is_given("displacement_per_radian")) ||
         (spec.key == "triangle_arm" && values.is_given("triangle_base")) ||
         (layout.generator &&
          (spec.key == "reference_frequency" || spec.key == "reference_damping_ratio"));

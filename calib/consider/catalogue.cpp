@@ -285,10 +285,19 @@ double shortest_interval(const Problem& problem) {
   return least;
 }
 
+/// Area of the piston [m2]; of a rotary actuator its displacement, which is an area on a lever of 1
+/// m/rad.
+double usual_area(const Problem& problem, const model::ParameterValues& values) {
+  if (values.is_given("displacement_per_radian")) return values["displacement_per_radian"];
+  return first_finite(value_of_key(problem, values, "piston_area"),
+                      value_of_key(problem, values, "area_a"));
+}
+
 /// Lever of a linkage at the reference angle or, by a triangle or a table, its mean between the
 /// stops [m/rad].
 double usual_lever(const model::ParameterValues& values) {
   if (values.is_given("lever")) return values["lever"];
+  if (values.is_given("displacement_per_radian")) return 1.0;
   const double lower_rad = values["lower_stop"];
   const double upper_rad = values["upper_stop"];
   return (model::piston_travel(values, upper_rad).travel_m -
@@ -300,7 +309,7 @@ RigScale scale_of(const Problem& problem, std::span<const double> z) {
   const model::ParameterValues values = problem.values_at(0, z);
   const auto get = [&](std::string_view key) { return value_of_key(problem, values, key); };
   RigScale rig;
-  const double area = first_finite(get("piston_area"), get("area_a"));
+  const double area = usual_area(problem, values);
   rig.pressure_pa = get("supply_pressure");
   rig.force_n = area * rig.pressure_pa;
   const double limit = get("output_limit");
@@ -432,11 +441,7 @@ std::vector<Effect> possible_effects(const Problem& problem, std::span<const dou
       effect.middle = rig.middle_rad;
     }
     EffectSize size = row.size(rig);
-    if (is_volume(key)) {
-      const double area = first_finite(value_of_key(problem, values, "piston_area"),
-                                       value_of_key(problem, values, "area_a"));
-      size.value *= area;
-    }
+    if (is_volume(key)) size.value *= usual_area(problem, values);
     if (row.kind == EffectKind::supply_sag &&
         std::any_of(problem.conditions.begin(), problem.conditions.end(),
                     [](const auto& each) { return each.inputs.supply_pressure_pa.has_value(); }))

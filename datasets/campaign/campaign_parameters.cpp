@@ -458,6 +458,31 @@ constexpr std::array kTravelTableKeys{"travel_table_from", "travel_table_to", "t
                                       "travel_20",         "travel_40",       "travel_60",
                                       "travel_80",         "travel_100"};
 
+/// Checks that a rig that turns has either a cylinder on a linkage or a rotary actuator.
+std::optional<ParameterConflict> find_actuator_conflict(const model::ParameterValues& values) {
+  constexpr std::array kAreas{"area_a", "area_b"};
+  if (!values.is_given("displacement_per_radian")) {
+    const char* const absent = completeness(values, kAreas).absent;
+    if (absent == nullptr) return std::nullopt;
+    return ParameterConflict{
+        "", fmt::format("no value for {}: expected a known value or a start in [rig.parameters], "
+                        "or displacement_per_radian of a rotary actuator",
+                        absent)};
+  }
+  for (const auto& keys :
+       {std::span<const char* const>(kAreas), std::span<const char* const>(kPolynomialKeys),
+        std::span<const char* const>(kTriangleKeys),
+        std::span<const char* const>(kTravelTableKeys)}) {
+    const char* const present = completeness(values, keys).present;
+    if (present == nullptr) continue;
+    return ParameterConflict{
+        present, fmt::format("{} is of a cylinder on a linkage, and displacement_per_radian makes "
+                             "the rig a rotary actuator: expected one of them",
+                             present)};
+  }
+  return std::nullopt;
+}
+
 /// Checks that exactly one law gives the travel of the piston over the angle, and that it is
 /// complete.
 std::optional<ParameterConflict> find_travel_law_conflict(const model::ParameterValues& values) {
@@ -547,6 +572,8 @@ std::optional<ParameterConflict> find_joint_conflict(const model::ParameterValue
     return ParameterConflict{
         "upper_stop",
         fmt::format("upper_stop = {:g} rad is not above lower_stop = {:g} rad", upper, lower)};
+  if (const auto conflict = find_actuator_conflict(values)) return conflict;
+  if (values.is_given("displacement_per_radian")) return std::nullopt;
   if (const auto conflict = find_travel_law_conflict(values)) return conflict;
   if (values.is_given("triangle_base")) return find_triangle_conflict(values);
   if (values.is_given("travel_table_to")) return find_travel_table_conflict(values);

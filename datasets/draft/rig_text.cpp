@@ -34,11 +34,20 @@ constexpr std::array<std::string_view, 15> kLinkageTerms{
     "gain_b_to_tank",  "make_up_conductance", "supply_resistance",
     "supply_capacity", "pump_flow",           "air_fraction"};
 
-/// Travel of the piston by a triangle or a table, in place of the lever.
-constexpr std::array<std::string_view, 11> kTravelTerms{
-    "triangle_base",   "triangle_arm", "triangle_angle", "travel_table_from",
-    "travel_table_to", "travel_0",     "travel_20",      "travel_40",
-    "travel_60",       "travel_80",    "travel_100"};
+/// A rotary actuator in place of cylinder and lever, or the travel of the piston by a triangle or a
+/// table in place of the lever.
+constexpr std::array<std::string_view, 12> kTravelTerms{"displacement_per_radian",
+                                                        "triangle_base",
+                                                        "triangle_arm",
+                                                        "triangle_angle",
+                                                        "travel_table_from",
+                                                        "travel_table_to",
+                                                        "travel_0",
+                                                        "travel_20",
+                                                        "travel_40",
+                                                        "travel_60",
+                                                        "travel_80",
+                                                        "travel_100"};
 
 /// Terms for the pump and check valves of a two-chamber cylinder behind a pilot-operated valve.
 constexpr std::array<std::string_view, 6> kPumpTerms{"relief_pressure",     "supply_resistance",
@@ -117,8 +126,9 @@ std::string rig_text(model::PlantKind plant, std::optional<model::Feedback> loop
       "[rig.parameters]\n";
   for (const model::ParameterSpec& spec : model::parameter_table(plant)) {
     // A valve with four metering edges has one of two gains, depending on what drives it.
-    // A linkage may have a triangle or a table in place of its lever.
-    const bool needed = spec.key == "lever" ||
+    // A linkage may have a triangle or a table in place of its lever, or a rotary actuator in place
+    // of the cylinder.
+    const bool needed = spec.key == "lever" || spec.key == "area_a" || spec.key == "area_b" ||
                         (plant != model::PlantKind::load_pressure &&
                          spec.key == std::string_view(signs.pilot ? "pilot_gain" : "valve_gain"));
     if (!needed && (spec.kind != model::ParameterKind::plant || spec.default_value)) continue;

@@ -42,12 +42,22 @@ struct LinkagePlant : Chambers {
 
     Coefficients() = default;
     explicit Coefficients(const Parameters<C>& p)
-        : ChamberCoefficients<Parameters<C>>(p),
+        : ChamberCoefficients<Parameters<C>>(as_cylinder(p)),
           law(travel_law(p)),
           inverse_inertia(1.0 / p.inertia_kg_m2),
           retracted_m(travel(C(p.lower_stop_rad), *this)),
           extended_m(travel(C(p.upper_stop_rad), *this)) {}
   };
+  /// Returns the parameters, with a rotary actuator as a cylinder of equal areas on a lever of 1
+  /// m/rad. Its travel in m is then the angle in rad, and its force in N the moment in N m.
+  template <typename C>
+  static Parameters<C> as_cylinder(Parameters<C> p) {
+    if (!(value_of(p.displacement_m3_per_rad) > 0.0)) return p;
+    p.area_a_m2 = p.displacement_m3_per_rad;
+    p.area_b_m2 = p.displacement_m3_per_rad;
+    p.lever_m_per_rad = C(1.0);
+    return p;
+  }
   template <typename T>
   static constexpr const auto& fields() {
     return kLinkageFields<T>;

@@ -17,6 +17,7 @@ struct LinkageParameters : TwoChamberParameters<T> {
   T inertia_kg_m2{};
   T joint_damping_n_m_s_per_rad{};
   T lever_m_per_rad{};
+  T displacement_m3_per_rad{};
   T lower_stop_rad{};
   T upper_stop_rad{};
   T reference_angle_rad{};
@@ -59,6 +60,7 @@ constexpr auto joint_rows() {
       F{&P::inertia_kg_m2, {"inertia", "inertia_kg_m2", "J", "kg m2", "moment of inertia about the joint", "docs/model.md", K::plant, 1e-6, 1e9}},
       F{&P::joint_damping_n_m_s_per_rad, {"joint_damping", "joint_damping_n_m_s_per_rad", "c", "N m s/rad", "viscous friction of joint and cylinder", "docs/model.md", K::plant, 0, 1e12}},
       F{&P::lever_m_per_rad, {"lever", "lever_m_per_rad", "D_0", "m/rad", "travel of the piston per angle, at the reference angle: the lever of its force", "docs/model.md", K::term, 1e-4, 100, 0.0}},
+      F{&P::displacement_m3_per_rad, {"displacement_per_radian", "displacement_per_radian_m3_per_rad", "V_r", "m3/rad", "oil that a rotary actuator displaces per angle: a vane or rack motor in place of cylinder and lever", "docs/model.md", K::term, 1e-9, 10, 0.0}},
       F{&P::lower_stop_rad, {"lower_stop", "lower_stop_rad", "theta_1", "rad", "angle of the stop or support at which the piston is retracted", "docs/model.md", K::plant, -1000, 1000}},
       F{&P::upper_stop_rad, {"upper_stop", "upper_stop_rad", "theta_2", "rad", "angle of the stop at which the piston is extended", "docs/model.md", K::plant, -1000, 1000}},
       // clang-format on
@@ -128,12 +130,24 @@ constexpr auto angle_rows() {
   };
 }
 
+/// Returns the rows, those with the given keys as optional terms.
+template <typename F, std::size_t N, std::size_t M>
+constexpr auto with_terms(std::array<F, N> rows, const std::array<std::string_view, M>& keys) {
+  for (F& row : rows) {
+    if (std::find(keys.begin(), keys.end(), row.spec.key) == keys.end()) continue;
+    row.spec.kind = ParameterKind::term;
+    row.spec.default_value = 0.0;
+  }
+  return rows;
+}
+
 /// Rows of the linkage, in the order of `rigcal params`: its own rows, and those of oil, valve,
 /// chambers and sensors that do not concern a sliding load.
 template <typename T>
 constexpr auto linkage_fields() {
   using Keys = std::string_view;
   constexpr std::array kSlides{Keys("stroke")};
+  constexpr std::array kAreas{Keys("area_a"), Keys("area_b")};
   constexpr std::array kOtherTerms{Keys("retracted_position"),  Keys("stop_stiffness"),
                                    Keys("stop_damping"),        Keys("gravity"),
                                    Keys("overlap_supply_to_a"), Keys("overlap_a_to_tank"),
@@ -185,7 +199,8 @@ constexpr auto linkage_fields() {
                                    Keys("payload_mass"),
                                    Keys("payload_frequency"),
                                    Keys("payload_damping_ratio")};
-  return joined(joint_rows<T>(), rows_without(chamber_rows<LinkageParameters, T>(), kSlides),
+  return joined(joint_rows<T>(),
+                with_terms(rows_without(chamber_rows<LinkageParameters, T>(), kSlides), kAreas),
                 rows_without(oil_rows<LinkageParameters, T>(), kElectricGain),
                 electric_gain_rows<LinkageParameters, T>(), valve_rows<LinkageParameters, T>(),
                 rows_without(load_rows<LinkageParameters, T>(), kOtherLoads),

@@ -24,6 +24,7 @@ constexpr std::array kBaseUnits{
     BaseUnits{"m/s",        0,  1, -1,  0, 0, 0},
     BaseUnits{"m/s2",       0,  1, -2,  0, 0, 0},
     BaseUnits{"m3/s",       0,  3, -1,  0, 0, 0},
+    BaseUnits{"m3/rad",     0,  3,  0,  0, -1, 0},
     BaseUnits{"m3/s2",      0,  3, -2,  0, 0, 0},
     BaseUnits{"N",          1,  1, -2,  0, 0, 0},
     BaseUnits{"N/m",        1,  0, -2,  0, 0, 0},

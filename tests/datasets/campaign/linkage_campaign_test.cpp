@@ -202,6 +202,26 @@ TEST_CASE("load_campaign: exactly one law gives the travel of a linkage", "[data
   }
 }
 
+TEST_CASE("load_campaign: a rotary actuator has a displacement, and no linkage", "[datasets]") {
+  const std::string areas = "area_a = \"75 cm2\"\narea_b = \"150 cm2\"\n";
+  const std::string displacement = "displacement_per_radian = \"300 cm3/rad\"";
+  const std::string vane = replaced(replaced(kArm, areas, ""), kLever, displacement);
+  CHECK(value(load_text(vane), "displacement_per_radian") == Approx(3e-4));
+  for (const std::string& other :
+       {std::string("area_a = \"75 cm2\""), std::string(kLever), kTriangle, kTravel}) {
+    CAPTURE(other);
+    CHECK_THROWS_WITH(
+        load_text(replaced(vane, displacement, displacement + "\n" + other)),
+        Catch::Contains("is of a cylinder on a linkage, and displacement_per_radian makes the rig "
+                        "a rotary actuator: expected one of them"));
+  }
+  CHECK_THROWS_WITH(load_text(replaced(vane, displacement, "")),
+                    Catch::Contains("no value for area_a: expected a known value or a start in "
+                                    "[rig.parameters], or displacement_per_radian"));
+  CHECK_THROWS_WITH(load_text(replaced(kArm, "area_b = \"150 cm2\"", "")),
+                    Catch::Contains("no value for area_b"));
+}
+
 TEST_CASE("load_campaign: a load that slides has no angle", "[datasets]") {
   CHECK_THROWS_WITH(
       load_text(replaced(

@@ -52,6 +52,8 @@ std::string filled(std::string text, model::PlantKind plant = model::PlantKind::
   }
   fill("kp = \"FILL IN V/m\"", "kp = \"100 V/m\"");
   fill("lever = \"FILL IN m/rad\"", "lever = \"0.3 m/rad\"");
+  fill("area_a = \"FILL IN m2\"", "area_a = \"40 cm2\"");
+  fill("area_b = \"FILL IN m2\"", "area_b = \"24 cm2\"");
   fill("valve_gain = \"FILL IN m/V\"", "valve_gain = \"0.1 mm/V\"");
   fill("pilot_gain = \"FILL IN m/Pa\"", "pilot_gain = \"0.1 mm/bar\"");
   return text;

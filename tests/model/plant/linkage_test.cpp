@@ -343,6 +343,9 @@ TEST_CASE("linkage: sensitivities are exact against differences, every parameter
                            {"travel_40", 0.29},         {"travel_60", 0.45},
                            {"travel_80", 0.57},         {"travel_100", 0.66}};
   check({"travel by a table", Signal::sine(3e6, 8.0), travel, none}, arm_rig().unset("lever"));
+  Experiment vane = arm_rig().unset("lever").unset("area_a").unset("area_b");
+  vane.set("displacement_per_radian", 1e-3).set("gravity_moment", 3e3);
+  check({"rotary actuator", Signal::sine(3e6, 8.0), {{"laminar_leakage", 1e-11}}, none}, vane);
   Experiment pressed = arm_rig();
   pressed.set("lower_stop", -0.01).set("upper_stop", 0.005).set("stop_stiffness", 5e6);
   check({"into both stops", Signal::sine(4e6, 8.0), {{"stop_damping", 2.0}}, none}, pressed);

@@ -44,12 +44,13 @@ void check_derivatives(const Experiment& e, double angle_rad) {
              WithinAbs((above.lever_m_per_rad - below.lever_m_per_rad) / (2.0 * kStep), 1e-6));
 }
 
-/// Motion of arm_rig() with the pilot pressure 2.8 MPa sin(2 pi 0.5 t), by an integrator of another
-/// kind. Columns: angle, angular velocity, both pressures.
+/// Motion of arm_rig(), which may have other areas, with the pilot pressure 2.8 MPa sin(2 pi 0.5
+/// t), by an integrator of another kind. Columns: angle, angular velocity, both pressures.
 ///
 /// @param travel  from an angle to travel and lever
 template <typename Travel>
-Eigen::MatrixXd integrated(const Experiment& e, double a_pa, double b_pa, const Travel& travel) {
+Eigen::MatrixXd integrated(const Experiment& e, double a_pa, double b_pa, const Travel& travel,
+                           const std::array<double, 2>& area) {
   const double retracted = travel(-1.0)[0];
   const double extended = travel(1.0)[0];
   return runge_kutta(
@@ -64,17 +65,18 @@ Eigen::MatrixXd integrated(const Experiment& e, double a_pa, double b_pa, const 
         const double flow_a = edge(out, 2e7 - x[2]) - edge(-out, x[2] - 2e5);
         const double flow_b = edge(-out, 2e7 - x[3]) - edge(out, x[3] - 2e5);
         const double moment =
-            lever * (4e-3 * x[2] - 2.4e-3 * x[3]) - 1e4 * x[1] - 4e3 - 1500.0 * x[0];
+            lever * (area[0] * x[2] - area[1] * x[3]) - 1e4 * x[1] - 4e3 - 1500.0 * x[0];
         return std::array<double, 4>{
             x[1], moment / 400.0,
-            8e8 / (1e-3 + 4e-3 * (s - retracted)) * (flow_a - 4e-3 * lever * x[1]),
-            8e8 / (1e-3 + 2.4e-3 * (extended - s)) * (flow_b + 2.4e-3 * lever * x[1])};
+            8e8 / (1e-3 + area[0] * (s - retracted)) * (flow_a - area[0] * lever * x[1]),
+            8e8 / (1e-3 + area[1] * (extended - s)) * (flow_b + area[1] * lever * x[1])};
       });
 }
 
 /// Compares an arm that swings within its stops with integrated().
 template <typename Travel>
-void check_motion(Experiment e, const Travel& travel) {
+void check_motion(Experiment e, const Travel& travel,
+                  const std::array<double, 2>& area = {4e-3, 2.4e-3}) {
   e.set("joint_damping", 1e4).set("gravity_moment", 4e3).set("gravity_moment_gradient", 1500.0);
   e.inputs.drive = Signal::sine(2.8e6, 0.5);
   e.times_s = grid(0.0, 1.6, 17);
@@ -86,7 +88,7 @@ void check_motion(Experiment e, const Travel& travel) {
     const Simulation run = e();
     INFO(run.reason);
     REQUIRE(run.ok());
-    const Eigen::MatrixXd other = integrated(e, run.outputs(0, 2), run.outputs(0, 3), travel);
+    const Eigen::MatrixXd other = integrated(e, run.outputs(0, 2), run.outputs(0, 3), travel, area);
     REQUIRE(peak(other.col(0)) > 0.5);
     REQUIRE(peak(other.col(0)) < 0.99);
     CHECK(difference(run.outputs.leftCols(4), other) < 3e-5);
@@ -224,6 +226,41 @@ TEST_CASE("linkage: an arm with its travel by a table follows an integrator of a
   });
 }
 
+TEST_CASE("linkage: a rotary actuator follows an integrator of another kind", "[model]") {
+  Experiment e = arm_rig().unset("lever").unset("area_a").unset("area_b");
+  e.set("displacement_per_radian", 1.1e-3);
+  check_motion(e, [](double angle) { return std::array<double, 2>{angle, 1.0}; }, {1.1e-3, 1.1e-3});
+}
+
+TEST_CASE("linkage: a rotary actuator turns by its displacement, and holds a moment", "[model]") {
+  Experiment e = arm_rig().unset("lever").unset("area_a").unset("area_b");
+  e.set("displacement_per_radian", 5e-4);
+  e.rig.initial = InitialState::given;
+  e.inputs.drive = Signal::constant(0.0);
+  e.set("gravity_moment", 2e3).set("initial_angle", 0.3);
+  e.times_s = {0.0, 1.0};
+  e.options.tolerance = 1e-9;
+  e.outputs = {Output::angle, Output::load_pressure, Output::force};
+  const Simulation held = e();
+  REQUIRE(held.ok());
+  CHECK_THAT(held.outputs(1, 0), WithinAbs(0.3, 1e-6));
+  CHECK_THAT(held.outputs(1, 1), WithinRel(2e3 / 5e-4, 1e-5));
+  CHECK_THAT(held.outputs(1, 2), WithinRel(2e3, 1e-5));  // the moment
+  e.rig.initial = InitialState::rest;
+  e.set("lower_stop", -2.0).set("upper_stop", 20.0).set("joint_damping", 2e4);
+  e.set("pilot_gain", 1e-11).set("gravity_moment", 0.0);
+  e.inputs.drive = Signal::constant(2e6);
+  e.times_s = {0.0, 20.0};
+  e.outputs = {Output::angular_velocity, Output::pressure_a, Output::pressure_b};
+  const Simulation turns = e();
+  REQUIRE(turns.ok());
+  REQUIRE(turns.outputs(1, 0) > 0.02);
+  const double flow = 0.65 * 0.02 * 1e-5 * std::sqrt(2.0 * (2e7 - turns.outputs(1, 1)) / 870.0);
+  CHECK_THAT(turns.outputs(1, 0), WithinRel(flow / 5e-4, 1e-4));
+  CHECK_THAT(5e-4 * (turns.outputs(1, 1) - turns.outputs(1, 2)),
+             WithinRel(2e4 * turns.outputs(1, 0), 1e-4));
+}
+
 TEST_CASE("linkage: without a lever, or with half a triangle, it does not move", "[model]") {
   Experiment none = arm_rig().unset("lever");
   const Simulation run = none();
@@ -231,4 +268,5 @@ TEST_CASE("linkage: without a lever, or with half a triangle, it does not move",
   CHECK_THAT(run.reason, Catch::Contains("lever"));
   Experiment half = arm_rig().unset("lever").set("triangle_base", 1.0);
   CHECK_THAT(half().reason, Catch::Contains("triangle_arm"));
+  CHECK_THAT(arm_rig().unset("area_b")().reason, Catch::Contains("area_b"));
 }

@@ -83,11 +83,11 @@ std::vector<std::pair<Scenario, Experiment>> two_chamber_scenarios() {
                             {"seal_friction", 1e-4},
                             {"bristle_stiffness", 2e7},
                             {"bristle_damping", 2e4}};
-  const NamedValues lubricated{{"coulomb_friction", 20.0}, {"stribeck_friction", 160.0},
-                               {"stribeck_velocity", 0.2}, {"bristle_stiffness", 4e5},
-                               {"bristle_damping", 400.0}, {"friction_smoothing", 0.03},
-                               {"film_velocity", 0.15},    {"film_growth_time", 0.02},
-                               {"film_decay_time", 0.03},  {"film_dwell_time", 0.03}};
+  const NamedValues lubricated{{"coulomb_friction", 20.0}, {"stribeck_friction", 80.0},
+                               {"stribeck_velocity", 0.1}, {"bristle_stiffness", 4e5},
+                               {"bristle_damping", 400.0}, {"friction_smoothing", 0.012},
+                               {"film_velocity", 0.04},    {"film_growth_time", 0.01},
+                               {"film_decay_time", 0.02},  {"film_dwell_time", 0.02}};
   const NamedValues by_table{
       {"valve_range", 8.0},       {"opening_20", 0.1},        {"opening_40", 0.25},
       {"opening_60", 0.5},        {"opening_80", 0.75},       {"valve_gain", 3e-5},
