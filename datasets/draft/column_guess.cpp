@@ -280,7 +280,7 @@ std::string_view other_of(std::optional<Meaning> quantity, const Reading& readin
     case Meaning::angle:
       return "the reference of an angle, which no loop controls";
     case Meaning::position:
-      return "the position of a spool";
+      return kSpoolPosition;
     default:
       return {};
   }
