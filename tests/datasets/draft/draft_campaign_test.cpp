@@ -451,6 +451,23 @@ TEST_CASE("draft_campaign: a motion or drive that no name identifies is a blank"
                         Contains("an error of control"));
 }
 
+TEST_CASE("draft_campaign: a command in percent or milliamperes has a full scale", "[datasets]") {
+  const TemporaryFolder folder;
+  const auto drafted = [&](const std::string& header) {
+    std::string text = header + "\n";
+    for (int i = 0; i < 50; ++i) text += fmt::format("{},{},{}\n", i, i % 5, i % 7);
+    return draft_campaign({folder.write("a.csv", text)}, folder.path()).text;
+  };
+  CHECK_THAT(drafted("t_s,duty_pct,x_mm"),
+             Contains("command = { column = \"duty_pct\", unit = \"%\" }\n"));
+  CHECK_THAT(drafted("t_s,Ventilstrom_mA,x_mm"),
+             Contains("command = { column = \"Ventilstrom_mA\", unit = \"mA\", full_scale = "
+                      "\"FILL IN mA\" }"));
+  // No other channel has one.
+  CHECK_THAT(drafted("t_s,u_V,position_%"),
+             Contains("position = { column = \"position_%\", unit = \"FILL IN\" }"));
+}
+
 TEST_CASE("draft_campaign: a second unknown pressure is that of the other chamber", "[datasets]") {
   const TemporaryFolder folder;
   std::string text = "t_s,u_V,x_mm,ch 7 [bar],ch 8 [bar],ch 9 [bar]\n";
