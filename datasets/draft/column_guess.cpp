@@ -330,7 +330,7 @@ ColumnGuess guess_column(const std::string& name, const std::string& unit) {
   if (own.starts_with('/')) own = own.substr(own.rfind('/') + 1);
   for (const char before : {'!', '.'}) own = own.substr(own.rfind(before) + 1);
   std::vector<std::string> parts = parts_of(own);
-  if (parts.size() > 1 && parts[0] == "x" && parts[1] == "value") parts = {"time"};  // of LabVIEW
+  if (parts.size() > 1 && parts[0] == "x" && parts[1] == "value") parts = {"time"};  // LabVIEW
   for (std::size_t i = 0; i < parts.size(); ++i) {
     // "x_r" may be at the right, "r_mm" is a reference. The "X_Axis" of a logger is no position.
     if (i > 0 && parts[i] == "r") continue;

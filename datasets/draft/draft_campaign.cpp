@@ -121,7 +121,7 @@ std::string initial_text(const std::vector<FileGroup>& groups) {
     try {
       signal = signal_of(group.files.front().file, columns, *motion);
     } catch (const InputError&) {
-      // unreadable_rows() tells what is wrong
+      // unreadable_rows() describes the error
     }
     if (!signal || !motion_at_start(signal->first, signal->second, window_s)) continue;
     return fmt::format(
