@@ -56,7 +56,7 @@ std::string lower(std::string_view text) {
   return result;
 }
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_decimal_digit(char c) { return c >= '0' && c <= '9'; }
 
 /// Splits a name at separators, and letters from digits: "pA_bar_03" into "pa", "bar", "03".
 std::vector<std::string> parts_of(std::string_view name) {
@@ -64,7 +64,8 @@ std::vector<std::string> parts_of(std::string_view name) {
   std::vector<std::string> parts(1);
   for (const char c : lower(name)) {
     const bool between = kBetween.find(c) != std::string_view::npos;
-    const bool changes = !parts.back().empty() && is_digit(c) != is_digit(parts.back().back());
+    const bool changes =
+        !parts.back().empty() && is_decimal_digit(c) != is_decimal_digit(parts.back().back());
     if (between || changes) parts.emplace_back();
     if (!between) parts.back() += c;
   }
