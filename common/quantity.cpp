@@ -276,8 +276,8 @@ std::string mismatch(const Unit& from, std::string_view from_text, const Unit& t
                        "here",
                        from_text);
   }
-  if (from_text == "%") return "'%' is a share, without a dimension";
-  if (from.powers.empty()) return "a unit is missing";
+  if (from.powers.empty() && (from_text.empty() || from_text == "1")) return "a unit is missing";
+  if (from.powers.empty()) return fmt::format("'{}' is the unit of a pure number", from_text);
   const Kind* kind = kind_of(from);
   return kind != nullptr ? fmt::format("'{}' is the unit of {}", from_text, kind->name)
                          : fmt::format("'{}' has another dimension", from_text);

@@ -23,6 +23,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
+bool converts_to(const std::string& unit, std::string_view to) {
+  if (unit.empty()) return false;
+  try {
+    unit_conversion(unit, to);
+    return true;
+  } catch (const QuantityError&) {
+    return false;
+  }
+}
+
 /// Returns one line of [recording.channels]. If the dimension of the column differs from that of
 /// the channel, the line needs a gain.
 /// @param minus  column for the opposite direction; empty if there is none
@@ -31,22 +41,28 @@ std::string channel_line(Channel channel, const std::string& column, const std::
   const ChannelInfo& about = info(channel);
   std::string shown_unit = unit.empty() ? kBlank : unit;
   std::string remark;
-  if (unit.empty()) {
-    remark = comment(fmt::format("the unit of the column, such as \"{}\"", about.unit));
-  } else {
-    try {
-      unit_conversion(unit, about.unit);
-    } catch (const QuantityError&) {
-      shown_unit = kBlank;
-      remark = comment(fmt::format(
-          "the column is in {0}: a unit such as \"{1}\", with gain = ... in that unit per {0}",
-          unit, about.unit));
+  std::string full_scale;
+  // A command may be in parts of its range or a current.
+  const bool is_share = channel == Channel::command && converts_to(unit, "1");
+  const bool is_current = channel == Channel::command && converts_to(unit, "A");
+  if (is_share || is_current) {
+    if (is_current) {
+      full_scale =
+          fmt::format(", full_scale = {}", toml_quoted(fmt::format("{} {}", kBlank, unit)));
+      remark = comment("the current at which the valve is fully open");
     }
+  } else if (unit.empty()) {
+    remark = comment(fmt::format("the unit of the column, such as \"{}\"", about.unit));
+  } else if (!converts_to(unit, about.unit)) {
+    shown_unit = kBlank;
+    remark = comment(fmt::format(
+        "the column is in {0}: a unit such as \"{1}\", with gain = ... in that unit per {0}", unit,
+        about.unit));
   }
   std::string name = column.empty() ? "" : fmt::format("column = {}, ", toml_quoted(column));
   if (!minus.empty()) name += fmt::format("minus = {}, ", toml_quoted(minus));
-  return fmt::format("{} = {{ {}unit = {} }}{}\n", about.key, name, toml_quoted(shown_unit),
-                     remark);
+  return fmt::format("{} = {{ {}unit = {}{} }}{}\n", about.key, name, toml_quoted(shown_unit),
+                     full_scale, remark);
 }
 
 /// Returns the direction in which a drive column moves the machine, according to a word in its
@@ -135,14 +151,8 @@ struct Candidate {
   bool may_be(std::span<const std::string_view> units) const {
     if (!has_numbers || is_constant() || increases || !column.other.empty()) return false;
     return column.unit.empty() ||
-           std::any_of(units.begin(), units.end(), [this](std::string_view unit) {
-             try {
-               unit_conversion(column.unit, unit);
-               return true;
-             } catch (const QuantityError&) {
-               return false;
-             }
-           });
+           std::any_of(units.begin(), units.end(),
+                       [this](std::string_view unit) { return converts_to(column.unit, unit); });
   }
   std::string range() const {
     return fmt::format("{:.6g} to {:.6g}{}", low, high,

@@ -56,7 +56,7 @@ std::string lower(std::string_view text) {
   return result;
 }
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_decimal_digit(char c) { return c >= '0' && c <= '9'; }
 
 /// Splits a name at separators, and letters from digits: "pA_bar_03" into "pa", "bar", "03".
 std::vector<std::string> parts_of(std::string_view name) {
@@ -64,7 +64,8 @@ std::vector<std::string> parts_of(std::string_view name) {
   std::vector<std::string> parts(1);
   for (const char c : lower(name)) {
     const bool between = kBetween.find(c) != std::string_view::npos;
-    const bool changes = !parts.back().empty() && is_digit(c) != is_digit(parts.back().back());
+    const bool changes =
+        !parts.back().empty() && is_decimal_digit(c) != is_decimal_digit(parts.back().back());
     if (between || changes) parts.emplace_back();
     if (!between) parts.back() += c;
   }
@@ -280,7 +281,7 @@ std::string_view other_of(std::optional<Meaning> quantity, const Reading& readin
     case Meaning::angle:
       return "the reference of an angle, which no loop controls";
     case Meaning::position:
-      return "the position of a spool";
+      return kSpoolPosition;
     default:
       return {};
   }
@@ -330,7 +331,7 @@ ColumnGuess guess_column(const std::string& name, const std::string& unit) {
   if (own.starts_with('/')) own = own.substr(own.rfind('/') + 1);
   for (const char before : {'!', '.'}) own = own.substr(own.rfind(before) + 1);
   std::vector<std::string> parts = parts_of(own);
-  if (parts.size() > 1 && parts[0] == "x" && parts[1] == "value") parts = {"time"};  // of LabVIEW
+  if (parts.size() > 1 && parts[0] == "x" && parts[1] == "value") parts = {"time"};  // LabVIEW
   for (std::size_t i = 0; i < parts.size(); ++i) {
     // "x_r" may be at the right, "r_mm" is a reference. The "X_Axis" of a logger is no position.
     if (i > 0 && parts[i] == "r") continue;

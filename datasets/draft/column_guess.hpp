@@ -9,6 +9,9 @@
 
 namespace rigcal::datasets {
 
+/// What `ColumnGuess::other` says of the position of a valve's spool.
+inline constexpr std::string_view kSpoolPosition = "the position of a spool";
+
 /// Meaning of a column, guessed from its name and unit.
 struct ColumnGuess {
   bool is_time = false;

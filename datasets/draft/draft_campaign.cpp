@@ -18,6 +18,7 @@
 #include "datasets/campaign/keys/campaign_keys.hpp"
 #include "datasets/campaign/toml/toml_reader.hpp"
 #include "datasets/draft/channels_text.hpp"
+#include "datasets/draft/column_guess.hpp"
 #include "datasets/draft/draft_comment.hpp"
 #include "datasets/draft/file_columns.hpp"
 #include "datasets/draft/rig_text.hpp"
@@ -120,7 +121,7 @@ std::string initial_text(const std::vector<FileGroup>& groups) {
     try {
       signal = signal_of(group.files.front().file, columns, *motion);
     } catch (const InputError&) {
-      // unreadable_rows() tells what is wrong
+      // unreadable_rows() describes the error
     }
     if (!signal || !motion_at_start(signal->first, signal->second, window_s)) continue;
     return fmt::format(
@@ -223,8 +224,7 @@ std::string unreadable_text(const std::vector<FileGroup>& groups) {
     const std::string rows = unreadable_rows(file, columns);
     if (rows.empty()) continue;
     text += "# " +
-            in_comment(fmt::format("a campaign refuses {}: {}",
-                                   file.filename().string(), rows)) +
+            in_comment(fmt::format("a campaign refuses {}: {}", file.filename().string(), rows)) +
             "\n";
   }
   return text.empty() ? text : text + "\n";
@@ -325,11 +325,20 @@ Draft draft_campaign(const std::vector<fs::path>& files, const fs::path& folder)
   const auto recorded = [&own = columns](Channel channel) {
     return column_of(own, channel) != nullptr;
   };
-  text += rig_text(plant, loop,
-                   {slides && recorded(Channel::acceleration),
-                    slides && recorded(Channel::position) && recorded(Channel::pressure_a) &&
-                        recorded(Channel::pressure_b),
-                    has_pilot(columns), recorded(Channel::temperature)});
+  const bool both = recorded(Channel::pressure_a) && recorded(Channel::pressure_b);
+  RecordedSigns signs;
+  signs.payload = slides && recorded(Channel::acceleration);
+  signs.position = recorded(Channel::position);
+  signs.load_table = slides && signs.position && both;
+  signs.pilot = has_pilot(columns);
+  signs.temperature = recorded(Channel::temperature);
+  signs.pressures = both || recorded(Channel::load_pressure);
+  signs.supply = recorded(Channel::supply_pressure);
+  signs.command = !loop && !signs.pilot && recorded(Channel::command);
+  signs.spool =
+      std::any_of(columns.unknown.begin(), columns.unknown.end(),
+                  [](const UnknownColumn& column) { return column.other == kSpoolPosition; });
+  text += rig_text(plant, loop, signs);
   text += "\n[recording]\n" + initial_text(groups);
   text += "# " + draft_line("recording", "before");
   text += "# " + draft_line("recording", "decimate_to");

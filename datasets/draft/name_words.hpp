@@ -10,7 +10,7 @@ enum class Meaning {
   time,
   // The part that the column plays in a loop.
   reference,
-  command,   ///< of a loop, in the unit of what it controls, or else of the valve
+  command,   ///< in the unit of a controlled quantity: its reference; else a valve signal
   valve,     ///< electrical signal of the valve
   measured,  ///< says only that the quantity was measured
   error,     ///< difference of reference and measurement
@@ -49,7 +49,7 @@ struct WordRow {
 /// joined, as in "istweg" and "refforce".
 std::span<const WordRow> name_words();
 
-/// Symbols of one letter. They count only where no word tells the quantity.
+/// Symbols of one letter. They count only where no word names the quantity.
 struct Symbol {
   char letter;
   Meaning meaning;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -59,6 +60,28 @@ constexpr std::array<std::string_view, 6> kPilotTerms{
     "pilot_dead_band",     "pilot_exponent",         "return_exponent",
     "return_line_opening", "return_line_resistance", "bypass_opening"};
 
+/// Friction that grows with a pressure and a leak that a line throttles, proposed if pressures of
+/// the cylinder were recorded: they show both.
+constexpr std::array<std::string_view, 1> kLeakLineTerms{"leakage_resistance"};
+constexpr std::array<std::string_view, 1> kSealTerms{"seal_friction"};
+
+/// A load that varies along the travel, proposed if a position and pressures were recorded.
+constexpr std::array<std::string_view, 2> kLoadGradientTerms{"load_gradient", "load_curvature"};
+
+/// Terms for an electric valve whose command was recorded: its opening is not in proportion to it,
+/// or does not depend on the load. Four edges only.
+constexpr std::array<std::string_view, 7> kOpeningTerms{
+    "valve_exponent", "valve_range", "opening_20",          "opening_40",
+    "opening_60",     "opening_80",  "compensator_pressure"};
+
+/// The second stage of a valve, proposed if the position of a spool was recorded.
+constexpr std::array<std::string_view, 1> kTwoStageTerms{"main_spool_gain"};
+
+/// A supply whose pressure varies, proposed if it was recorded. Four edges only.
+constexpr std::array<std::string_view, 7> kSupplyTerms{
+    "supply_resistance",  "supply_capacity",      "pump_flow", "pump_second_flow", "pump_delay",
+    "accumulator_volume", "accumulator_precharge"};
+
 /// A load by a table, proposed if position and both chamber pressures were recorded: they show how
 /// the load varies with the travel.
 constexpr std::array<std::string_view, 8> kLoadTableTerms{
@@ -82,15 +105,28 @@ std::string terms_text(model::PlantKind plant, const RecordedSigns& signs) {
     terms.assign(kLinkageTerms.begin(), kLinkageTerms.end());
     terms.insert(terms.end(), kTravelTerms.begin(), kTravelTerms.end());
   }
+  // A key of two lists occurs once.
+  const auto add = [&terms](std::span<const std::string_view> keys) {
+    for (const std::string_view key : keys)
+      if (std::find(terms.begin(), terms.end(), key) == terms.end()) terms.push_back(key);
+  };
   if (signs.pilot && plant == model::PlantKind::two_chamber) {
     // A dead band in volts does not apply to this valve.
     terms.erase(std::remove(terms.begin(), terms.end(), "valve_dead_band"), terms.end());
     terms.insert(terms.end(), kPumpTerms.begin(), kPumpTerms.end());
   }
-  if (signs.pilot) terms.insert(terms.end(), kPilotTerms.begin(), kPilotTerms.end());
-  if (signs.load_table) terms.insert(terms.end(), kLoadTableTerms.begin(), kLoadTableTerms.end());
-  if (signs.payload) terms.insert(terms.end(), kPayloadTerms.begin(), kPayloadTerms.end());
-  if (signs.temperature) terms.insert(terms.end(), kWarmOilTerms.begin(), kWarmOilTerms.end());
+  if (signs.pilot) add(kPilotTerms);
+  const bool slides = plant != model::PlantKind::linkage;
+  const bool four_edges = plant != model::PlantKind::load_pressure;
+  if (signs.spool) add(kTwoStageTerms);
+  if (signs.command && four_edges) add(kOpeningTerms);
+  if (signs.supply && four_edges) add(kSupplyTerms);
+  if (signs.pressures) add(kLeakLineTerms);
+  if (signs.pressures && slides) add(kSealTerms);
+  if (signs.pressures && signs.position && slides) add(kLoadGradientTerms);
+  if (signs.load_table) add(kLoadTableTerms);
+  if (signs.payload) add(kPayloadTerms);
+  if (signs.temperature) add(kWarmOilTerms);
   std::string text = "# Terms that are absent unless given (rigcal params lists all):\n";
   for (const std::string_view key : terms) {
     const int row = model::parameter_index(plant, key);
@@ -161,6 +197,15 @@ std::string rig_text(model::PlantKind plant, std::optional<model::Feedback> loop
                       comment(fmt::format("integral gain: without it a model lags where the "
                                           "machine does not; {} likewise",
                                           row.kd)));
+  const auto gain = [&](std::string_view key, const char* meaning) {
+    text += fmt::format("# {} = \"... {}\"{}\n", key, unit_of(key), comment(meaning));
+  };
+  if (signs.pressures)
+    gain("pressure_feedback", "inner loop on the pressure difference, which damps");
+  if (*loop == model::Feedback::position) {
+    gain("velocity_feedforward", "of the rate of the reference");
+    gain("acceleration_feedforward", "of the rate of that rate");
+  }
   const bool acceleration = *loop == model::Feedback::acceleration;
   if (!signs.payload || !(acceleration || *loop == model::Feedback::position)) return text;
   const auto& table = model::gain_keys(acceleration ? model::Feedback::three_variable_acceleration

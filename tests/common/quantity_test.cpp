@@ -162,6 +162,7 @@ TEST_CASE("parse_quantity: errors say what was wrong and what was expected", "[c
       Case{"6.2 MPa foo", "Pa", "unknown unit 'MPa foo'"}, Case{"0x10 Pa", "Pa", "unknown unit"},
       Case{"6.2 Mpa", "Pa", "did you mean 'MPa'"}, Case{"5 hz", "Hz", "did you mean 'Hz'"},
       Case{"6.2 mm", "Pa", "'mm' is the unit of a length"},
+      Case{"5 %", "V", "'%' is the unit of a pure number"}, Case{"5", "V", "a unit is missing"},
       Case{"5 V", "V/m", "'V' is the unit of a voltage"}, Case{"0.3 m", "1", "unit of a length"},
       Case{"3 kg V", "Pa", "another dimension"}, Case{"+-5 mm", "m", "number in front"},
       Case{"- 5 mm", "m", "number in front"}, Case{"5 m/", "m", "unknown unit"},

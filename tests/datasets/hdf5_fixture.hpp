@@ -13,9 +13,14 @@ namespace rigcal::test {
 /// Writes an HDF5 file piece by piece. Creates missing groups.
 class Hdf5Writer {
  public:
-  explicit Hdf5Writer(const std::filesystem::path& path) {
+  /// @param user_block  bytes before the file's own, such as the header of a MAT file: 512 or a
+  ///                    larger power of two; 0: none
+  explicit Hdf5Writer(const std::filesystem::path& path, hsize_t user_block = 0) {
     std::filesystem::create_directories(path.parent_path());
-    file_ = checked(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));
+    const hid_t plan = checked(H5Pcreate(H5P_FILE_CREATE));
+    H5Pset_userblock(plan, user_block);
+    file_ = checked(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, plan, H5P_DEFAULT));
+    H5Pclose(plan);
     links_ = checked(H5Pcreate(H5P_LINK_CREATE));
     H5Pset_create_intermediate_group(links_, 1);
   }

@@ -39,7 +39,7 @@ struct Header {
   long units_line = 0;
   bool last_may_lack = false;         ///< the last column is a comment that rows may omit
   bool is_unnamed = false;            ///< no line names the columns
-  std::optional<RegularTime> time{};  ///< of a .lvm without a column of times
+  std::optional<RegularTime> time{};  ///< a .lvm without a column of times has it
 };
 
 /// Lines of a file. The first lines can be inspected before they are read.

@@ -18,7 +18,7 @@ struct RegularTime {
 struct LvmHeader {
   std::vector<std::string> units;   ///< one per name; empty if there is none
   std::size_t units_line = 0;       ///< line of the units, from 0
-  std::optional<RegularTime> time;  ///< of a file without a column of times
+  std::optional<RegularTime> time;  ///< set if no column contains the times
 };
 
 /// Reads the header of a .lvm above the names of its columns. Returns std::nullopt for any other

@@ -241,7 +241,7 @@ TEST_CASE("load_campaign: a full scale belongs to a command in % or mA", "[datas
         Row{position, "position = { column = \"x_mm\", unit = \"mm\", full_scale = \"1 m\"",
             "has a meaning only for a command in % or mA"},
         Row{position, "position = { column = \"x_mm\", unit = \"%\"",
-            "'%' is a share, without a dimension"},
+            "'%' is the unit of a pure number"},
         Row{command, "unit = \"bar\" }", "is the unit of a pressure"}}) {
     CAPTURE(row.with);
     CHECK_THROWS_WITH(load_text(replaced(electric(), row.part, row.with)),

@@ -454,6 +454,23 @@ TEST_CASE("draft_campaign: a motion or drive that no name identifies is a blank"
                         Contains("an error of control"));
 }
 
+TEST_CASE("draft_campaign: a command in percent or milliamperes has a full scale", "[datasets]") {
+  const TemporaryFolder folder;
+  const auto drafted = [&](const std::string& header) {
+    std::string text = header + "\n";
+    for (int i = 0; i < 50; ++i) text += fmt::format("{},{},{}\n", i, i % 5, i % 7);
+    return draft_campaign({folder.write("a.csv", text)}, folder.path()).text;
+  };
+  CHECK_THAT(drafted("t_s,duty_pct,x_mm"),
+             Contains("command = { column = \"duty_pct\", unit = \"%\" }\n"));
+  CHECK_THAT(drafted("t_s,Ventilstrom_mA,x_mm"),
+             Contains("command = { column = \"Ventilstrom_mA\", unit = \"mA\", full_scale = "
+                      "\"FILL IN mA\" }"));
+  // No other channel has one.
+  CHECK_THAT(drafted("t_s,u_V,position_%"),
+             Contains("position = { column = \"position_%\", unit = \"FILL IN\" }"));
+}
+
 TEST_CASE("draft_campaign: a second unknown pressure is that of the other chamber", "[datasets]") {
   const TemporaryFolder folder;
   std::string text = "t_s,u_V,x_mm,ch 7 [bar],ch 8 [bar],ch 9 [bar]\n";
@@ -526,6 +543,52 @@ TEST_CASE("draft_campaign: a clock as time", "[datasets]") {
   const Record record = load_record(campaign, campaign.conditions.at(0));
   CHECK_THAT(record.time_s.at(1) - record.time_s.at(0), Catch::WithinAbs(0.005, 1e-9));
   CHECK_THAT(record.time_s.back() - record.time_s.at(0), Catch::WithinAbs(1.0, 1e-9));
+}
+
+TEST_CASE("draft_campaign: the channels suggest terms of valve, supply, load and loop",
+          "[datasets]") {
+  const TemporaryFolder folder;
+  const auto drafted = [&](const std::string& header) {
+    std::string text = header + "\n";
+    const auto columns = std::count(header.begin(), header.end(), ',');
+    for (int i = 0; i < 100; ++i) {
+      text += fmt::format("{}", 0.01 * i);
+      for (long k = 0; k < columns; ++k) text += fmt::format(",{}", std::sin(0.2 * i) + 3.0);
+      text += "\n";
+    }
+    return draft_campaign({folder.write("a.csv", text)}, folder.path()).text;
+  };
+  const auto offers = [](const std::string& draft, const std::string& key) {
+    return draft.find("\n# " + key + " = ") != std::string::npos;
+  };
+  const std::string loop = drafted("t,ref_mm,x_mm,pl_bar");
+  const std::string bare_loop = drafted("t,ref_mm,x_mm");
+  for (const char* key : {"pressure_feedback", "leakage_resistance", "seal_friction",
+                          "load_gradient", "load_curvature"}) {
+    CAPTURE(key);
+    CHECK(offers(loop, key));
+    CHECK_FALSE(offers(bare_loop, key));
+  }
+  for (const char* key : {"velocity_feedforward", "acceleration_feedforward"})
+    CHECK(offers(bare_loop, key));
+
+  const std::string open = drafted("t,u_V,x_mm,pA_bar,pB_bar,ps_bar,spool_mm");
+  for (const char* key : {"valve_exponent", "opening_20", "compensator_pressure", "main_spool_gain",
+                          "accumulator_volume", "pump_second_flow", "supply_resistance",
+                          "seal_friction", "load_curvature"}) {
+    CAPTURE(key);
+    CHECK(offers(open, key));
+  }
+  CHECK(open.find("# load_gradient") == open.rfind("# load_gradient"));
+  const std::string less = drafted("t,u_V,x_mm,pA_bar");
+  for (const char* key : {"accumulator_volume", "main_spool_gain", "seal_friction"}) {
+    CAPTURE(key);
+    CHECK_FALSE(offers(less, key));
+  }
+  // A joint has no seals of a slide.
+  const std::string joint = drafted("t,u_V,angle_deg,pA_bar,pB_bar,ps_bar");
+  CHECK((offers(joint, "leakage_resistance") && offers(joint, "accumulator_volume")));
+  CHECK_FALSE((offers(joint, "seal_friction") || offers(joint, "load_curvature")));
 }
 
 TEST_CASE("draft_campaign: an array of Simulink's To File has its time in the first row",

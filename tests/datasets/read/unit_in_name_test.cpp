@@ -48,7 +48,7 @@ TEST_CASE("unit_in_name: in brackets, or behind a word", "[datasets]") {
                                 {"q_l/min", "L/min", false},
                                 {"omega_deg_s", "deg/s", false},
                                 {"x_mm_s_filtered", "mm", false},  // "s" may be anything here
-                                {"p_bar_s", "bar", false},         // of the supply
+                                {"p_bar_s", "bar", false},         // pressure of the supply
                                 {"duty_pct", "%", false},
                                 {"y_%", "%", false},
                                 {"M_Nm", "N m", false},

@@ -17,6 +17,7 @@
 #include "datasets/read/record_reader.hpp"
 #include "datasets/synthetic/noise.hpp"
 #include "tests/datasets/campaign_fixture.hpp"
+#include "tests/datasets/hdf5_fixture.hpp"
 #include "tests/datasets/mat_fixture.hpp"
 #include "tests/datasets/reading.hpp"
 
@@ -77,6 +78,15 @@ std::vector<std::string> columns_of(const std::filesystem::path& path) {
   std::vector<std::string> names;
   for (const RecordColumn& column : mat_record_columns(path)) names.push_back(column.name);
   return names;
+}
+
+/// Writes the header of version 7.3 into the first bytes of a file, as Python packages do.
+void write_mat73_header(const std::filesystem::path& path) {
+  std::string header = "MATLAB 7.3 MAT-file, Platform: CPython, Created on: Fri Nov 27 2026";
+  header.resize(124, ' ');
+  header += std::string("\x00\x02IM", 4);
+  std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
+  file.write(header.data(), static_cast<std::streamsize>(header.size()));
 }
 
 }  // namespace
@@ -250,6 +260,29 @@ TEST_CASE("load_mat: an object says how to save it", "[datasets]") {
   folder.write("object.mat", content.replace(at, 6, "string"));
   CHECK_THAT(message_of(folder.path() / "object.mat", {{"ts"}, ""}),
              Contains("'ts' is an object") && Contains("ts.Time"));
+}
+
+TEST_CASE("load_mat: a file of version 7.3 that Python wrote is read as HDF5", "[datasets]") {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "run.mat";
+  {
+    const Hdf5Writer file(path, 512);
+    file.array("/t", {0.0, 0.1, 0.2});
+    file.array("/log/x", {1.5, 2.5, 3.5}, {1, 3});
+    file.array("/p", {1, 2, 3, 4, 5, 6}, {3, 2});
+    file.text("/log/x", "units", "mm");
+  }
+  write_mat73_header(path);
+  REQUIRE(record_reader(path).name == "MAT");
+  const std::vector<RecordColumn> columns = record_reader(path).columns(path);
+  const auto x = std::find_if(columns.begin(), columns.end(),
+                              [](const RecordColumn& column) { return column.name == "/log/x"; });
+  REQUIRE(x != columns.end());
+  CHECK(x->unit == "mm");
+  CHECK(load_mat(path, {{"/t", "/log/x", "/p(:,2)"}, "/t"}) ==
+        std::vector<Numbers>{{0.0, 0.1, 0.2}, {1.5, 2.5, 3.5}, {2, 4, 6}});
+  CHECK(load_mat(path, {{"t"}, "t"}) == std::vector<Numbers>{{0.0, 0.1, 0.2}});
+  CHECK_THAT(message_of(path, {{"/y"}, ""}), Contains("run.mat") && Contains("/y"));
 }
 
 TEST_CASE("load_mat: truncated anywhere, it is refused", "[datasets]") {
