@@ -43,22 +43,6 @@ void read_class_limits(const TomlNode& node, DiagnosisSettings& settings) {
 
 }  // namespace
 
-std::string_view to_string(LeakClass leak_class) {
-  switch (leak_class) {
-    case LeakClass::normal:
-      return "normal";
-    case LeakClass::slight:
-      return "slight";
-    case LeakClass::medium:
-      return "medium";
-    case LeakClass::critical:
-      return "critical";
-    case LeakClass::supercritical:
-      return "supercritical";
-  }
-  return "";
-}
-
 LeakClass class_of(const DiagnosisSettings& settings, double share) {
   const auto above = std::upper_bound(settings.limits.begin(), settings.limits.end(), share);
   return kLeakClasses[static_cast<std::size_t>(above - settings.limits.begin())];

@@ -5,14 +5,16 @@
 #include <string>
 #include <string_view>
 
+#include "common/describe.hpp"
+
 namespace rigcal::datasets {
 
 /// Fault classes, defined by the leak share (leak flow over servo flow).
 enum class LeakClass { normal, slight, medium, critical, supercritical };
+RIGCAL_NAMES(LeakClass, normal, slight, medium, critical, supercritical)
 
 inline constexpr std::array kLeakClasses{LeakClass::normal, LeakClass::slight, LeakClass::medium,
                                          LeakClass::critical, LeakClass::supercritical};
-std::string_view to_string(LeakClass leak_class);
 
 /// Settings in [diagnosis]; all are optional.
 struct DiagnosisSettings {
