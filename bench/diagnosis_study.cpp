@@ -29,6 +29,7 @@
 #include "bench/leak_law_study.hpp"
 #include "calib/fit.hpp"
 #include "common/parallel.hpp"
+#include "common/quantity.hpp"
 #include "datasets/campaign/campaign_parameters.hpp"
 #include "datasets/prepare/load_record.hpp"
 #include "datasets/prepare/single_repeats.hpp"
@@ -45,7 +46,6 @@ using datasets::LeakClass;
 using datasets::RepeatRecords;
 
 int threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-constexpr double kLitresPerMinute = 60e3;
 
 int row_of(const Campaign& campaign, const char* key) {
   return model::parameter_index(campaign.rig.plant, key);

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -36,6 +37,27 @@
   template <typename Self, typename Visit>               \
   static void describe(Self& self, const Visit& visit) { \
     RIGCAL_AGAIN(RIGCAL_VISIT_MEMBERS(__VA_ARGS__))      \
+  }
+
+// The names of an enumeration in result files are those of its enumerators. They are listed once,
+// behind its definition. An enumerator that is missing from the list does not compile (-Wswitch).
+//
+//   enum class Use { fit, validate };
+//   RIGCAL_NAMES(Use, fit, validate)
+#define RIGCAL_NAME_CASES(name, ...) \
+  case name:                         \
+    return #name;                    \
+    __VA_OPT__(RIGCAL_NAME_REST RIGCAL_NOTHING(__VA_ARGS__))
+#define RIGCAL_NAME_REST() RIGCAL_NAME_CASES
+#define RIGCAL_NAMES(Enum, ...)                                     \
+  constexpr std::string_view to_string(Enum value) {                \
+    using enum Enum;                                                \
+    switch (value) { RIGCAL_AGAIN(RIGCAL_NAME_CASES(__VA_ARGS__)) } \
+    return {};                                                      \
+  }                                                                 \
+  inline std::vector<Enum> enumerators_like(Enum) {                 \
+    using enum Enum;                                                \
+    return {__VA_ARGS__};                                           \
   }
 // NOLINTEND(cppcoreguidelines-macro-usage)
 

@@ -7,6 +7,9 @@
 
 namespace rigcal {
 
+inline constexpr double kLitrePerMinute = 1e-3 / 60.0;  ///< m3/s per L/min
+inline constexpr double kLitresPerMinute = 60e3;        ///< L/min per m3/s
+
 /// Thrown if a string is not a quantity or has the wrong dimension. what() quotes the string and
 /// says what was expected; code that reads a file adds the location.
 class QuantityError : public std::invalid_argument {

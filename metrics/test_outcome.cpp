@@ -6,18 +6,6 @@
 
 namespace rigcal::metrics {
 
-std::string_view to_string(TestOutcome outcome) {
-  switch (outcome) {
-    case TestOutcome::passed:
-      return "passed";
-    case TestOutcome::failed:
-      return "failed";
-    case TestOutcome::not_judged:
-      break;
-  }
-  return "not_judged";
-}
-
 Judged judge(bool rejects, const Power& power) {
   if (!(power.effective_samples >= kLeastEffectiveSamples)) {
     return {TestOutcome::not_judged,

@@ -4,14 +4,14 @@
 #include <string>
 #include <string_view>
 
+#include "common/describe.hpp"
+
 namespace rigcal::metrics {
 
 /// Outcome of a significance test. A test that would hardly ever reject proves nothing by not
 /// rejecting, so this does not count as a pass.
 enum class TestOutcome { passed, failed, not_judged };
-
-/// Returns "passed", "failed" or "not_judged".
-std::string_view to_string(TestOutcome outcome);
+RIGCAL_NAMES(TestOutcome, passed, failed, not_judged)
 
 struct Judged {
   TestOutcome outcome = TestOutcome::not_judged;

@@ -24,22 +24,6 @@ int rank(AspectState state) {
 
 }  // namespace
 
-std::string_view to_string(AspectState state) {
-  switch (state) {
-    case AspectState::pass:
-      return "pass";
-    case AspectState::reservation:
-      return "reservation";
-    case AspectState::fail:
-      return "fail";
-    case AspectState::not_assessed:
-      return "not_assessed";
-    case AspectState::note:
-      return "note";
-  }
-  return "";
-}
-
 bool is_against(AspectState state) { return rank(state) > rank(AspectState::pass); }
 
 Reason reason(AspectState state, std::string code, std::string words, const std::string& subject,

@@ -18,7 +18,7 @@ enum class AspectState {
   not_assessed,  ///< the data for a judgement are missing
   note,          ///< only for reasons: shown, but does not affect the state of the aspect
 };
-std::string_view to_string(AspectState state);
+RIGCAL_NAMES(AspectState, pass, reservation, fail, not_assessed, note)
 
 /// Returns true if a reason in this state prevents its aspect from passing.
 bool is_against(AspectState state);

@@ -4,20 +4,6 @@
 
 namespace rigcal::calib {
 
-std::string_view to_string(Identifiability identifiability) {
-  switch (identifiability) {
-    case Identifiability::identified:
-      return "identified";
-    case Identifiability::weak:
-      return "weak";
-    case Identifiability::bounded:
-      return "bounded";
-    case Identifiability::not_identifiable:
-      return "not_identifiable";
-  }
-  return "";
-}
-
 std::string_view to_string(IntervalSource source) {
   switch (source) {
     case IntervalSource::none:

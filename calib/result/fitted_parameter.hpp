@@ -7,6 +7,7 @@
 
 #include "calib/result/considered.hpp"
 #include "calib/result/posterior.hpp"
+#include "common/describe.hpp"
 #include "datasets/campaign/campaign.hpp"
 
 // A parameter after a fit.
@@ -23,7 +24,7 @@ enum class Identifiability {
   bounded,           ///< cannot be distinguished from zero; only its interval is known
   not_identifiable,  ///< half-width above 100 % of the value, no interval, or an open profile
 };
-std::string_view to_string(Identifiability identifiability);
+RIGCAL_NAMES(Identifiability, identified, weak, bounded, not_identifiable)
 
 /// The standard error on which an interval is based.
 enum class IntervalSource { none, standard_error, robust_standard_error };

@@ -2,18 +2,6 @@
 
 namespace rigcal::calib {
 
-std::string_view to_string(FitStatus status) {
-  switch (status) {
-    case FitStatus::converged:
-      return "converged";
-    case FitStatus::stopped:
-      return "stopped";
-    case FitStatus::failed:
-      return "failed";
-  }
-  return "";
-}
-
 std::string_view to_string(StoppedIn stage) {
   switch (stage) {
     case StoppedIn::nothing:

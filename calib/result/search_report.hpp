@@ -18,7 +18,7 @@ enum class FitStatus {
             ///< so far
   failed,   ///< no start gave a usable result
 };
-std::string_view to_string(FitStatus status);
+RIGCAL_NAMES(FitStatus, converged, stopped, failed)
 
 /// Stage at which a job was stopped.
 enum class StoppedIn {

@@ -7,12 +7,11 @@
 
 #include "calib/problem/day_effects.hpp"
 #include "common/parallel.hpp"
+#include "metrics/distributions.hpp"
 #include "model/simulate.hpp"
 
 namespace rigcal::calib {
 namespace {
-
-constexpr double kHalf95 = 1.96;
 
 /// Returns the sum of the score covariances of all conditions and of the priors, in the coordinates
 /// of `root`.
@@ -74,8 +73,9 @@ double widening(const Problem& problem, std::span<const double> z, const Uncerta
     const auto& error = robust ? found.robust_standard_error[u] : found.standard_error[u];
     const double sd = joint.determined.row(static_cast<Eigen::Index>(k)).norm();
     if (!error || !(sd > 0.0)) continue;
-    const double stretched =
-        robust && found.robust_quantile[u] > 0.0 ? found.robust_quantile[u] / kHalf95 : 1.0;
+    const double stretched = robust && found.robust_quantile[u] > 0.0
+                                 ? found.robust_quantile[u] / metrics::kNormal95
+                                 : 1.0;
     const double in_box = *error / std::abs(problem.map.slope(static_cast<int>(u), z[u]));
     const double carried =
         found.known.names.empty()

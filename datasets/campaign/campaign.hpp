@@ -28,7 +28,7 @@ namespace rigcal::datasets {
 
 /// Scope of a fitted parameter's value.
 enum class Scope { rig, leak_level, condition };
-std::string_view to_string(Scope scope);
+RIGCAL_NAMES(Scope, rig, leak_level, condition)
 
 struct Prior {
   double mean = 0.0;
@@ -103,7 +103,7 @@ struct ChannelSetting {
 };
 
 enum class Use { fit, validate, diagnose, ignore };
-std::string_view to_string(Use use);
+RIGCAL_NAMES(Use, fit, validate, diagnose, ignore)
 
 /// One item in `repeats`: files (a pattern with * and ?), or columns in one file.
 struct RepeatPattern {
@@ -126,7 +126,7 @@ enum class DecisionRule {
   simple,      ///< the uncertainty is not taken into account
   guard_band,  ///< a margin below the expanded uncertainty gives WARN
 };
-std::string_view to_string(DecisionRule rule);
+RIGCAL_NAMES(DecisionRule, simple, guard_band)
 
 /// Requirements for acceptance without reservation, in addition to the limits on metrics.
 struct AcceptanceBounds {

@@ -49,24 +49,6 @@ void read_class_limits(const TomlNode& node, DiagnosisSettings& settings) {
 
 }  // namespace
 
-std::string_view to_string(LeakClass leak_class) {
-  switch (leak_class) {
-    case LeakClass::normal:
-      return "normal";
-    case LeakClass::slight:
-      return "slight";
-    case LeakClass::medium:
-      return "medium";
-    case LeakClass::critical:
-      return "critical";
-    case LeakClass::supercritical:
-      return "supercritical";
-  }
-  return "";
-}
-
-std::string_view to_string(LeakLaw law) { return law == LeakLaw::laminar ? "laminar" : "orifice"; }
-
 const char* leak_parameter(LeakLaw law) {
   return law == LeakLaw::laminar ? "laminar_leakage" : "leakage_coefficient";
 }

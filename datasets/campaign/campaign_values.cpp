@@ -89,42 +89,6 @@ Assignment read_assignment(const Campaign& campaign, std::string_view assignment
 
 }  // namespace
 
-std::string_view to_string(Scope scope) {
-  switch (scope) {
-    case Scope::rig:
-      return "rig";
-    case Scope::leak_level:
-      return "leak_level";
-    case Scope::condition:
-      return "condition";
-  }
-  return "";
-}
-
-std::string_view to_string(Use use) {
-  switch (use) {
-    case Use::fit:
-      return "fit";
-    case Use::validate:
-      return "validate";
-    case Use::diagnose:
-      return "diagnose";
-    case Use::ignore:
-      return "ignore";
-  }
-  return "";
-}
-
-std::string_view to_string(DecisionRule rule) {
-  switch (rule) {
-    case DecisionRule::simple:
-      return "simple";
-    case DecisionRule::guard_band:
-      return "guard_band";
-  }
-  return "";
-}
-
 const Condition* Campaign::find(std::string_view id) const {
   const auto found = std::find_if(conditions.begin(), conditions.end(),
                                   [&](const Condition& condition) { return condition.id == id; });

@@ -5,21 +5,23 @@
 #include <string>
 #include <string_view>
 
+#include "common/describe.hpp"
+
 namespace rigcal::datasets {
 
 /// Fault classes, defined by the leak share (leak flow over servo flow).
 enum class LeakClass { normal, slight, medium, critical, supercritical };
+RIGCAL_NAMES(LeakClass, normal, slight, medium, critical, supercritical)
 
 inline constexpr std::array kLeakClasses{LeakClass::normal, LeakClass::slight, LeakClass::medium,
                                          LeakClass::critical, LeakClass::supercritical};
-std::string_view to_string(LeakClass leak_class);
 
 /// Law of the leak that a diagnosis fits: through an orifice, proportional to the root of the
 /// pressure, or laminar, proportional to the pressure.
 enum class LeakLaw { orifice, laminar };
+RIGCAL_NAMES(LeakLaw, orifice, laminar)
 
 inline constexpr std::array kLeakLaws{LeakLaw::orifice, LeakLaw::laminar};
-std::string_view to_string(LeakLaw law);
 
 /// Returns the key of the parameter that a diagnosis with this law fits.
 const char* leak_parameter(LeakLaw law);

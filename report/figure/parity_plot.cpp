@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "metrics/distributions.hpp"
+
 namespace rigcal::report {
 namespace {
 
@@ -88,11 +90,10 @@ Plot parity_plot(const std::string& title, std::span<const double> measured,
   const std::size_t fullest = *std::max_element(counts.begin(), counts.end());
 
   const ResidualMoments moments = residual_moments(measured, simulated);
-  constexpr double kOfNormal95 = 1.96;
   plot.traces.push_back(diagonal(range, 0.0, "measured", "model = measured"));
   for (const double side : {-1.0, 1.0})
-    plot.traces.push_back(
-        diagonal(range, (-moments.mean + side * kOfNormal95 * moments.sd) / si, "reference", {}));
+    plot.traces.push_back(diagonal(
+        range, (-moments.mean + side * metrics::kNormal95 * moments.sd) / si, "reference", {}));
   double from = 0.0;
   for (const auto& [share, style] : kShades) {
     Trace shade = empty_trace(Trace::Kind::cells, style);

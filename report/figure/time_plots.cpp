@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "datasets/record.hpp"
+#include "metrics/distributions.hpp"
 #include "report/text/readable.hpp"
 
 namespace rigcal::report {
@@ -123,8 +124,8 @@ Trace prediction_band(const TimePlot& plot, const std::vector<double>& time_s) {
   const std::vector<double> middle =
       follows ? thinned(*plot.prediction_middle, thin) : std::vector<double>(sd.size(), 0.0);
   for (std::size_t i = 0; i < sd.size(); ++i) {
-    band.y.push_back((middle[i] - kNormal95 * sd[i]) / plot.si);
-    band.upper.push_back((middle[i] + kNormal95 * sd[i]) / plot.si);
+    band.y.push_back((middle[i] - metrics::kNormal95 * sd[i]) / plot.si);
+    band.upper.push_back((middle[i] + metrics::kNormal95 * sd[i]) / plot.si);
   }
   return band;
 }
@@ -133,8 +134,8 @@ Trace prediction_band(const TimePlot& plot, const std::vector<double>& time_s) {
 /// script on the page shows narrower bands after zooming in.
 bool shows_band(const TimePlot& plot) {
   constexpr double kLeastShare = 0.01;
-  return plot.prediction_middle == nullptr ||
-         kNormal95 * largest(*plot.prediction_sd) > kLeastShare * largest(*plot.prediction_middle);
+  return plot.prediction_middle == nullptr || metrics::kNormal95 * largest(*plot.prediction_sd) >
+                                                  kLeastShare * largest(*plot.prediction_middle);
 }
 
 }  // namespace

@@ -19,9 +19,6 @@ struct TimeLine {
   const std::vector<double>* values = nullptr;
 };
 
-/// Half-width of a 95 % band in standard deviations.
-inline constexpr double kNormal95 = 1.96;
-
 /// One set of axes over time.
 struct TimePlot {
   std::string name, title, unit;

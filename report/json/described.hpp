@@ -39,10 +39,12 @@ concept HasKeys = requires(T value) {
   KeysOf<T>::text(value);
 };
 
-/// Returns all values of an enumeration that results store as to_string(). Each enumeration has a
-/// specialisation.
+/// Returns all values of an enumeration that results store as to_string(). An enumeration without
+/// RIGCAL_NAMES has a specialisation.
 template <typename Enum>
-std::vector<Enum> every();
+std::vector<Enum> every() {
+  return enumerators_like(Enum{});
+}
 
 namespace described {
 

@@ -3,12 +3,12 @@
 #include <optional>
 #include <utility>
 
+#include "common/quantity.hpp"
 #include "diagnosis/leak/leak_estimate.hpp"
 #include "report/store/stored/stored_leak.hpp"
 
 namespace rigcal::report {
 
-inline constexpr double kLitresPerMinute = 60e3;  ///< L/min per m3/s
 inline constexpr double kInPercent = 100.0;
 
 /// Multiplies both ends of a range by `scale`.

@@ -4,13 +4,12 @@
 #include <vector>
 
 #include "calib/published/leak_table.hpp"
+#include "common/quantity.hpp"
 #include "datasets/campaign/leak_table_settings.hpp"
 #include "report/store/provenance.hpp"
 #include "report/store/stored/stored_leak_table.hpp"
 
 namespace rigcal::report {
-
-inline constexpr double kLitrePerMinute = 1e-3 / 60.0;  ///< m3/s per L/min
 
 /// A leak table with everything needed to write its files. Borrows all of it.
 struct LeakTableResult {

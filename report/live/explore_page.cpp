@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/error.hpp"
+#include "common/quantity.hpp"
 #include "report/document/assets.hpp"
 #include "report/figure/decimate.hpp"
 #include "report/figure/svg.hpp"
@@ -72,7 +73,6 @@ std::string still_pictures(const LiveCase& shown, const model::Simulation& run) 
                         : still_plot(shown, run, "Position", "mm", 1e-3, kPosition);
   if (auto reference_m = calib::reference_of(shown.task); !reference_m.empty())
     add_line(position, "reference", "reference", shown.task.time_s, std::move(reference_m), 1e-3);
-  constexpr double kLitrePerMinute = 1e-3 / 60.0;
   return still_figure(shown, turns ? "Angle" : "Position", position) +
          still_figure(shown, "Flows",
                       still_plot(shown, run, "Flow", "L/min", kLitrePerMinute, kFlows));

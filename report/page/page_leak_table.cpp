@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "common/quantity.hpp"
 #include "report/document/words.hpp"
 #include "report/figure/decimate.hpp"
 #include "report/page/page_parts.hpp"
@@ -262,13 +263,12 @@ Plot flows_plot(const std::string& level, const Table& table) {
   constexpr std::array kColumns{Column{"servo", "servo_flow_m3_per_s", "servo"},
                                 Column{"work", "work_flow_m3_per_s", "model"},
                                 Column{"leakage", "leakage_flow_m3_per_s", "leak"}};
-  constexpr double kLitresPerMinuteEach = 60e3;  ///< L/min per m3/s
   Plot plot;
   plot.title = fmt::format("Servo, work and leakage flow at the level {}, over one period", level);
   plot.x_label = "time [s]";
   plot.y_label = "flow [L/min]";
   for (const Column& each : kColumns) {
-    Trace trace = level_trace(table, each.column, kLitresPerMinuteEach);
+    Trace trace = level_trace(table, each.column, kLitresPerMinute);
     if (trace.x.empty()) continue;
     trace.name = each.name;
     trace.style = each.style;

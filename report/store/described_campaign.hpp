@@ -26,31 +26,5 @@ inline std::vector<datasets::Waveform> every() {
   for (const auto& [name, waveform] : datasets::waveforms()) all.push_back(waveform);
   return all;
 }
-template <>
-inline std::vector<datasets::Scope> every() {
-  return {datasets::Scope::rig, datasets::Scope::leak_level, datasets::Scope::condition};
-}
-template <>
-inline std::vector<datasets::Use> every() {
-  using datasets::Use;
-  return {Use::fit, Use::validate, Use::diagnose, Use::ignore};
-}
-template <>
-inline std::vector<datasets::DriveFamily> every() {
-  return {datasets::kDriveFamilies.begin(), datasets::kDriveFamilies.end()};
-}
-template <>
-inline std::vector<datasets::DesignCriterion> every() {
-  return {datasets::DesignCriterion::determinant, datasets::DesignCriterion::worst};
-}
-template <>
-inline std::vector<datasets::LeakLaw> every() {
-  return {datasets::kLeakLaws.begin(), datasets::kLeakLaws.end()};
-}
-
-template <>
-inline std::vector<datasets::LeakClass> every() {
-  return {datasets::kLeakClasses.begin(), datasets::kLeakClasses.end()};
-}
 
 }  // namespace rigcal::report

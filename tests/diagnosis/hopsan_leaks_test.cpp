@@ -20,14 +20,15 @@ using datasets::Channel;
 
 namespace {
 
-const std::string kRecords = std::string(RIGCAL_RECORDINGS_DIR) + "/sim_hopsan_leaky_servo";
+const std::string kHopsanRecords = std::string(RIGCAL_RECORDINGS_DIR) + "/sim_hopsan_leaky_servo";
 const std::string kRig = RIGCAL_SOURCE_DIR "/datasets/rigs/hopsan_leaky_servo/";
 constexpr int kRepeats = 3;
 
 /// The rig with its known values. Position and both pressures are recorded.
 Campaign known_rig() {
-  Campaign campaign = datasets::load_campaign(kRig + "two_chamber.toml", kRecords);
-  campaign.channels = datasets::load_campaign(kRig + "two_chamber_fit.toml", kRecords).channels;
+  Campaign campaign = datasets::load_campaign(kRig + "two_chamber.toml", kHopsanRecords);
+  campaign.channels =
+      datasets::load_campaign(kRig + "two_chamber_fit.toml", kHopsanRecords).channels;
   campaign.simulation.tolerance.reset();
   campaign.diagnosis.leak_law = datasets::LeakLaw::laminar;
   campaign.diagnosis.level_class["none"] = datasets::LeakClass::normal;
@@ -50,8 +51,8 @@ std::vector<datasets::Repeat> with_noise(const datasets::Repeat& clean,
 }  // namespace
 
 TEST_CASE("diagnose: small laminar leaks of another simulator are told from none", "[diagnosis]") {
-  if (!std::filesystem::exists(kRecords)) {
-    WARN("skipped: no records in " + kRecords);
+  if (!std::filesystem::exists(kHopsanRecords)) {
+    WARN("skipped: no records in " + kHopsanRecords);
     return;
   }
   struct Case {

@@ -90,30 +90,6 @@ void read_noise(const TomlNode& table, const Campaign& campaign, DesignSettings&
 
 }  // namespace
 
-std::string_view to_string(DesignCriterion criterion) {
-  switch (criterion) {
-    case DesignCriterion::determinant:
-      return "determinant";
-    case DesignCriterion::worst:
-      return "worst";
-  }
-  return "";
-}
-
-std::string_view to_string(DriveFamily family) {
-  switch (family) {
-    case DriveFamily::multisine:
-      return "multisine";
-    case DriveFamily::chirp:
-      return "chirp";
-    case DriveFamily::steps:
-      return "steps";
-    case DriveFamily::prbs:
-      return "prbs";
-  }
-  return "";
-}
-
 std::size_t DesignSettings::samples() const {
   // If the duration is a whole number of intervals, rounding must not drop the last sample.
   constexpr double kSlack = 1e-9;

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "common/describe.hpp"
 #include "common/error.hpp"
 #include "datasets/record.hpp"
 
@@ -18,13 +19,13 @@ enum class DesignCriterion {
   determinant,  ///< volume of the confidence ellipsoid of the named parameters (Ds-optimal)
   worst,        ///< largest relative interval of these parameters
 };
-std::string_view to_string(DesignCriterion criterion);
+RIGCAL_NAMES(DesignCriterion, determinant, worst)
 
 /// Kinds of drives to try.
 enum class DriveFamily { multisine, chirp, steps, prbs };
+RIGCAL_NAMES(DriveFamily, multisine, chirp, steps, prbs)
 inline constexpr std::array kDriveFamilies{DriveFamily::multisine, DriveFamily::chirp,
                                            DriveFamily::steps, DriveFamily::prbs};
-std::string_view to_string(DriveFamily family);
 
 /// A limit for the rig during the test, SI, with its place in the campaign file.
 struct StatedLimit {

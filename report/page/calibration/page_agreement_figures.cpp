@@ -8,6 +8,7 @@
 
 #include "datasets/campaign/waveform.hpp"
 #include "datasets/record.hpp"
+#include "metrics/distributions.hpp"
 #include "report/figure/histogram_plot.hpp"
 #include "report/figure/parity_plot.hpp"
 #include "report/figure/response_plot.hpp"
@@ -89,7 +90,7 @@ std::string coverage_words(const std::vector<double>& residual, const std::vecto
   for (std::size_t i = 0; i < residual.size(); ++i) {
     if (!std::isfinite(residual[i]) || !std::isfinite(sd[i])) continue;
     ++all;
-    if (std::abs(residual[i]) <= kNormal95 * sd[i]) ++within;
+    if (std::abs(residual[i]) <= metrics::kNormal95 * sd[i]) ++within;
   }
   if (all == 0) return {};
   return fmt::format("{:.1f} % of them lie within the 95 % band of prediction.",

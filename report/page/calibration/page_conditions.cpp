@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/parallel.hpp"
+#include "metrics/distributions.hpp"
 #include "report/document/quantity.hpp"
 #include "report/document/render_html.hpp"
 #include "report/document/words.hpp"
@@ -100,7 +101,7 @@ Json live_plot(const TimePlot& plot, SeriesData& data) {
        line == plot.lines.end()
            ? Json(nullptr)
            : entry["lines"][static_cast<std::size_t>(line - plot.lines.begin())]["column"]},
-      {"factor", kNormal95}};
+      {"factor", metrics::kNormal95}};
   return entry;
 }
 

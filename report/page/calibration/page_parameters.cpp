@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/significant.hpp"
+#include "metrics/distributions.hpp"
 #include "report/document/quantity.hpp"
 #include "report/document/words.hpp"
 #include "report/page/calibration/assessed.hpp"
@@ -26,10 +27,9 @@ Range bounds_of(const StoredParameter& p) {
 /// normal distribution.
 doc::Cell error_cell(const StoredParameter& p, const std::optional<double>& error,
                      const ReadableUnit& unit) {
-  constexpr double kNormalQuantile = 1.96;
   doc::Cell cell{Line{doc::in_unit(error, unit.si, kErrorDigits)}};
   if (!p.value || !error) return cell;
-  const Range range{*p.value - kNormalQuantile * *error, *p.value + kNormalQuantile * *error};
+  const Range range{*p.value - metrics::kNormal95 * *error, *p.value + metrics::kNormal95 * *error};
   cell.below = {doc::estimate(p.value, range, unit.si, bounds_of(p)).interval()};
   return cell;
 }

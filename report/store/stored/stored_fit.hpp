@@ -31,10 +31,6 @@ inline std::vector<model::PlantKind> every() {
   return all;
 }
 template <>
-inline std::vector<datasets::DecisionRule> every() {
-  return {datasets::DecisionRule::simple, datasets::DecisionRule::guard_band};
-}
-template <>
 inline std::vector<calib::StoppedIn> every() {  // except `nothing`, which is null
   using calib::StoppedIn;
   return {StoppedIn::starts,   StoppedIn::validation, StoppedIn::bootstrap,
@@ -43,18 +39,6 @@ inline std::vector<calib::StoppedIn> every() {  // except `nothing`, which is nu
 template <>
 inline std::vector<calib::Verdict> every() {
   return {calib::Verdict::pass, calib::Verdict::warn, calib::Verdict::fail};
-}
-template <>
-inline std::vector<calib::AspectState> every() {
-  using calib::AspectState;
-  return {AspectState::pass, AspectState::reservation, AspectState::fail, AspectState::not_assessed,
-          AspectState::note};
-}
-template <>
-inline std::vector<calib::Identifiability> every() {
-  using calib::Identifiability;
-  return {Identifiability::identified, Identifiability::weak, Identifiability::bounded,
-          Identifiability::not_identifiable};
 }
 template <>
 inline std::vector<calib::IntervalSource> every() {  // except `none`, which is null

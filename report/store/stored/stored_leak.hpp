@@ -15,23 +15,7 @@ namespace rigcal::report {
 /// How a leak search ended: `declined` if the records cannot answer the question, `failed` if no
 /// record gave a result.
 enum class LeakStatus { done, declined, failed };
-
-inline std::string_view to_string(LeakStatus status) {
-  switch (status) {
-    case LeakStatus::done:
-      return "done";
-    case LeakStatus::declined:
-      return "declined";
-    case LeakStatus::failed:
-      break;
-  }
-  return "failed";
-}
-
-template <>
-inline std::vector<LeakStatus> every() {
-  return {LeakStatus::done, LeakStatus::declined, LeakStatus::failed};
-}
+RIGCAL_NAMES(LeakStatus, done, declined, failed)
 
 /// A leak and its class; empty if it could not be estimated.
 struct StoredLeak {

@@ -23,17 +23,6 @@ inline bool is_fit_schema(std::string_view schema) {
 }
 inline constexpr const char* kValidationSchema = "rigcal.validation/1";
 
-template <>
-inline std::vector<calib::FitStatus> every() {
-  using calib::FitStatus;
-  return {FitStatus::converged, FitStatus::stopped, FitStatus::failed};
-}
-template <>
-inline std::vector<metrics::TestOutcome> every() {
-  using metrics::TestOutcome;
-  return {TestOutcome::passed, TestOutcome::failed, TestOutcome::not_judged};
-}
-
 /// A residual test with its verdict in words. Verdict and outcome are the last keys in JSON.
 template <typename Test>
 struct Worded : Test {

@@ -94,7 +94,7 @@ TEST_CASE("csv_layout: units of LabVIEW's .lvm, and times that no column contain
   for (std::size_t i = 0; i < 3; ++i)
     CHECK(table.columns[0].at(i) == Approx(0.5 + 0.1 * static_cast<double>(i)));
   CHECK(table.labels[0].unit == "s");
-  CHECK(csv_full_header(without_times.path).front() == "X_Value");
+  CHECK(names_in(without_times).front() == "X_Value");
 
   // Channels with rates of their own have no common time.
   text.replace(text.find("Delta_X\t0.1\t0.1"), 15, "Delta_X\t0.1\t0.2");
@@ -119,7 +119,7 @@ TEST_CASE("csv_layout: columns that no line names have numbers", "[datasets]") {
     CAPTURE(text);
     const ReadText numbers(text);
     CHECK(numbers.table("1", "2").columns == kNumbers);
-    CHECK(csv_full_header(numbers.path) == std::vector<std::string>{"1", "2"});
+    CHECK(names_in(numbers) == std::vector<std::string>{"1", "2"});
     // A campaign that names its columns is refused as ever.
     CHECK_THROWS_WITH(numbers.table("t", "x"), Contains("contains numbers; expected the header") &&
                                                    Contains("\"1\" to \"2\""));
@@ -128,7 +128,7 @@ TEST_CASE("csv_layout: columns that no line names have numbers", "[datasets]") {
       ReadText("% Column 1: time\n% Column 2: travel\n0 1 2\n1 2 3\n").table("t", "x"),
       Contains("contains numbers"));
   // One column alone is named by its header.
-  CHECK(csv_full_header(ReadText("x\n1\n2\n").path) == std::vector<std::string>{"x"});
+  CHECK(names_in(ReadText("x\n1\n2\n")) == std::vector<std::string>{"x"});
 }
 
 TEST_CASE("csv_layout: a comment that rows omit is no number", "[datasets]") {
