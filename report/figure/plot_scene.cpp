@@ -13,6 +13,7 @@ constexpr double kLeft = 64.0;
 constexpr double kRight = 10.0;
 constexpr double kTop = 22.0;
 constexpr double kBottom = 36.0;
+constexpr double kNextLine = 12.0;  ///< from one line of a name to the next
 
 struct Axis {
   double low = 0.0;
@@ -204,22 +205,72 @@ Shape trace_shape(const Trace& trace, const Axis& x, const Axis& y) {
   return line_trace(trace, x, y);
 }
 
+/// Returns the first `letters` characters of a UTF-8 text, the last one replaced by an ellipsis if
+/// the text is longer.
+std::string cut(const std::string& text, std::size_t letters) {
+  const auto begins = [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; };
+  if (static_cast<std::size_t>(std::count_if(text.begin(), text.end(), begins)) <= letters)
+    return text;
+  std::string result;
+  std::size_t begun = 0;
+  for (const char c : text) {
+    if (begins(c) && ++begun == letters) break;
+    result += c;
+  }
+  return result + "…";
+}
+
+/// Breaks a name at its last space within `letters` characters, and cuts what does not fit into two
+/// lines.
+std::vector<std::string> lines_of(const std::string& name, std::size_t letters) {
+  if (name.size() <= letters) return {name};
+  const std::size_t space = name.rfind(' ', letters);
+  if (space == std::string::npos || space == 0) return {cut(name, letters)};
+  return {name.substr(0, space), cut(name.substr(space + 1), letters)};
+}
+
+/// Writes each name below its category, with a line between categories.
+void add_names(const Plot& plot, const Axis& x, double bottom, double top,
+               std::vector<Shape>& shapes) {
+  constexpr double kLetter = 5.6;  // mean width of a letter at this font size
+  const double room = x.length / static_cast<double>(plot.x_names.size());
+  const auto letters = static_cast<std::size_t>(std::max(2.0, room / kLetter - 1.0));
+  double place = 0.0;
+  for (const std::string& name : plot.x_names) {
+    place += 1.0;
+    if (place > 1.0) {
+      const double edge = x.pixel(place - 0.5);
+      shapes.push_back(line_shape("grid", {{edge, bottom}, {edge, top}}));
+    }
+    double at = bottom + 14.0;
+    for (const std::string& line : lines_of(name, letters)) {
+      shapes.push_back(text_shape(line, {x.pixel(place), at}, Shape::Anchor::middle));
+      at += kNextLine;
+    }
+  }
+}
+
 void add_axes(const Plot& plot, const Axis& x, const Axis& y, std::vector<Shape>& shapes) {
   using Anchor = Shape::Anchor;
   const double bottom = y.start;
   const double top = y.start + y.length;
   const double right = x.start + x.length;
-  for (const Tick& tick : ticks_of(x, static_cast<int>(x.length / (x.whole ? 20.0 : 70.0)))) {
-    const double at = x.pixel(tick.value);
-    shapes.push_back(line_shape("grid", {{at, bottom}, {at, top}}));
-    shapes.push_back(text_shape(tick.text, {at, bottom + 14.0}, Anchor::middle));
+  if (plot.x_names.empty()) {
+    for (const Tick& tick : ticks_of(x, static_cast<int>(x.length / (x.whole ? 20.0 : 70.0)))) {
+      const double at = x.pixel(tick.value);
+      shapes.push_back(line_shape("grid", {{at, bottom}, {at, top}}));
+      shapes.push_back(text_shape(tick.text, {at, bottom + 14.0}, Anchor::middle));
+    }
+  } else {
+    add_names(plot, x, bottom, top, shapes);
   }
   for (const Tick& tick : ticks_of(y, std::max(2, static_cast<int>(-y.length / 24.0)))) {
     const double at = y.pixel(tick.value);
     shapes.push_back(line_shape("grid", {{x.start, at}, {right, at}}));
     shapes.push_back(text_shape(tick.text, {x.start - 5.0, at + 3.5}, Anchor::end));
   }
-  shapes.push_back(text_shape(plot.x_label, {right, bottom + 29.0}, Anchor::end));
+  const double below = bottom + 29.0 + (plot.x_names.empty() ? 0.0 : kNextLine);
+  shapes.push_back(text_shape(plot.x_label, {right, below}, Anchor::end));
   shapes.push_back(text_shape(plot.y_label, {2.0, 13.0}, Anchor::start, "axis"));
 }
 
@@ -285,7 +336,10 @@ std::vector<Shape> plot_scene(const Plot& plot) {
     leave_room(x, 0.03);
     leave_room(y, 0.03);
   } else {
-    if (x.whole) {
+    if (!plot.x_names.empty()) {
+      x.low = 0.5;
+      x.high = static_cast<double>(plot.x_names.size()) + 0.5;
+    } else if (x.whole) {
       x.low -= 0.5;
       x.high += 0.5;
     } else {
@@ -295,8 +349,9 @@ std::vector<Shape> plot_scene(const Plot& plot) {
   }
   x.start = plot.bare ? 0.0 : kLeft;
   x.length = plot.bare ? plot.width : plot.width - kLeft - kRight;
-  y.start = plot.bare ? plot.height : plot.height - kBottom;
-  y.length = plot.bare ? -plot.height : kTop + kBottom - plot.height;
+  const double bottom = kBottom + (plot.x_names.empty() ? 0.0 : kNextLine);
+  y.start = plot.bare ? plot.height : plot.height - bottom;
+  y.length = plot.bare ? -plot.height : kTop + bottom - plot.height;
 
   std::vector<Shape> shapes;
   if (!plot.bare) add_axes(plot, x, y, shapes);

@@ -39,6 +39,9 @@ struct Plot {
   bool same_axes = false;  ///< both axes have the same range
   std::vector<Trace> traces;
   std::vector<double> levels;  ///< dashed horizontal lines, in units of y
+  /// Names of the categories on the x axis, which lie at x = 1, 2, ...; empty if x is a quantity. A
+  /// name that is too long for two lines is cut.
+  std::vector<std::string> x_names;
 };
 
 /// Renders a picture as SVG. Colours come from the style sheet of the page. All text is escaped.

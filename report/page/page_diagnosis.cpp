@@ -87,30 +87,56 @@ doc::Row repeat_row(const StoredDiagnosedRecord& record) {
            class_text(record.true_class)}};
 }
 
-/// Plots the leak shares with their intervals in the order of the table, and the limits of the
-/// classes.
+/// The averages of one signal, in the order of the table.
+struct SignalRecords {
+  std::string signal;
+  std::vector<const StoredDiagnosedRecord*> records;
+};
+
+std::vector<SignalRecords> averages_by_signal(const StoredDiagnosis& diagnosis) {
+  std::vector<SignalRecords> signals;
+  for (const StoredDiagnosedRecord& record : diagnosis.records) {
+    if (!record.is_average()) continue;
+    auto found = std::find_if(signals.begin(), signals.end(), [&](const SignalRecords& each) {
+      return each.signal == record.signal;
+    });
+    if (found == signals.end()) found = signals.insert(signals.end(), {record.signal, {}});
+    found->records.push_back(&record);
+  }
+  return signals;
+}
+
+/// Plots the leak shares with their intervals by signal, and the limits of the classes. The records
+/// of a signal lie side by side, in the order of the table.
 Plot share_plot(const StoredDiagnosis& diagnosis) {
+  constexpr double kUsed = 0.8;  // of the room of a signal; the rest separates it from the next
+  const std::vector<SignalRecords> signals = averages_by_signal(diagnosis);
   Plot plot;
-  plot.title = "Share of the servo flow that leaks, with 95 % intervals, by record";
-  plot.x_label = "record of the table";
+  plot.title = fmt::format(
+      "Share of the servo flow that leaks, with 95 % intervals and the limits of the classes, by "
+      "signal ({} in all)",
+      signals.size());
+  plot.x_label = "signal";
   plot.y_label = "share of the servo flow [%]";
-  plot.height = 240.0;
-  plot.whole_x = true;
+  plot.height = 252.0;
   Trace spans = empty_trace(Trace::Kind::intervals, "model");
   Trace middles = empty_trace(Trace::Kind::points, "model", "found");
   Trace known = empty_trace(Trace::Kind::points, "residual", "known");
-  double number = 0.0;
-  for (const StoredDiagnosedRecord& record : diagnosis.records) {
-    if (!record.is_average()) continue;
-    number += 1.0;
-    if (record.true_share_percent) {
-      known.x.push_back(number);
-      known.y.push_back(*record.true_share_percent);
+  for (const SignalRecords& signal : signals) {
+    plot.x_names.push_back(signal.signal);
+    const double step = kUsed / static_cast<double>(signal.records.size());
+    double place = static_cast<double>(plot.x_names.size()) - 0.5 * (kUsed + step);
+    for (const StoredDiagnosedRecord* record : signal.records) {
+      place += step;
+      if (record->true_share_percent) {
+        known.x.push_back(place);
+        known.y.push_back(*record->true_share_percent);
+      }
+      if (!record->leak.leak_share_percent) continue;
+      middles.x.push_back(place);
+      middles.y.push_back(*record->leak.leak_share_percent);
+      add_interval(spans, place, record->leak.leak_share_ci95_percent);
     }
-    if (!record.leak.leak_share_percent) continue;
-    middles.x.push_back(number);
-    middles.y.push_back(*record.leak.leak_share_percent);
-    add_interval(spans, number, record.leak.leak_share_ci95_percent);
   }
   double most = 0.0;
   for (const double upper : spans.upper) most = std::max(most, upper);
@@ -355,9 +381,10 @@ void add_averages(const StoredDiagnosis& diagnosis, doc::Blocks& blocks) {
     if (record.is_average())
       table.rows.push_back(average_row(record, table.rows.size() + 1, classes));
   if (table.rows.empty()) return;
-  blocks.emplace_back(figure_of(share_plot(diagnosis)));
+  blocks.emplace_back(figure_of(share_plot(diagnosis), "How large is the leak by each signal?"));
   blocks.emplace_back(doc::about_picture(
-      "Dashed: limits of the classes. Class by share; shading: probability of each class."));
+      "The records of a signal are in the order of the table. Dashed: limits of the classes. Class "
+      "by share; shading: probability of each class."));
   blocks.emplace_back(std::move(table));
 }
 
