@@ -200,7 +200,7 @@ std::vector<Recording> recordings_among(const std::vector<fs::path>& files,
   std::vector<Recording> all;
   std::vector<Recording> others;
   for (const fs::path& file : files) {
-    Recording recording{file, columns_of(file)};
+    Recording recording{file, file_columns(file)};
     (recording.columns.lacks.empty() ? all : others).push_back(std::move(recording));
   }
   const bool any = !all.empty();

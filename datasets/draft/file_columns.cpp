@@ -103,7 +103,7 @@ std::vector<std::vector<double>> timed_columns(const fs::path& file, const std::
   return draft_columns(file, {time, column}, time).columns;
 }
 
-FileColumns columns_of(const fs::path& file) {
+FileColumns file_columns(const fs::path& file) {
   const std::vector<RecordColumn> columns = record_reader(file).columns(file);
   std::map<std::string, std::vector<std::string>> numbers;  // numbers by stem
   for (const RecordColumn& column : columns) {

@@ -51,7 +51,7 @@ struct FileColumns {
 
 /// Looks at the columns of a file, of which it reads no numbers unless no column is named a time.
 /// @throws InputError  if the file cannot be read
-FileColumns columns_of(const std::filesystem::path& file);
+FileColumns file_columns(const std::filesystem::path& file);
 
 /// Groups the columns that belong to the same repeats. A new set begins when a channel occurs
 /// again.
