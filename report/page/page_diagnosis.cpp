@@ -110,7 +110,8 @@ std::vector<SignalRecords> averages_by_signal(const StoredDiagnosis& diagnosis) 
 /// Plots the leak shares with their intervals by signal, and the limits of the classes. The records
 /// of a signal lie side by side, in the order of the table.
 Plot share_plot(const StoredDiagnosis& diagnosis) {
-  constexpr double kUsed = 0.8;  // of the room of a signal; the rest separates it from the next
+  // Fraction of the room of a signal; the rest separates it from the next.
+  constexpr double kUsed = 0.8;
   const std::vector<SignalRecords> signals = averages_by_signal(diagnosis);
   Plot plot;
   plot.title = fmt::format(
