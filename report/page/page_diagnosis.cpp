@@ -199,8 +199,7 @@ std::optional<Plot> leak_trend_plot(const StoredDiagnosis& diagnosis,
   const auto foreseen = foreseen_days(trend.next_limit, *first, (1.0 + kAhead) * last);
   Plot plot;
   plot.title = fmt::format(
-      "Share of the servo flow that leaks from {} to {}, and its rate with the "
-      "95 % band",
+      "Share of the servo flow that leaks from {} to {}, and its rate with the 95 % band",
       trend.first_date, trend.last_date);
   plot.x_label = "days since " + trend.first_date;
   plot.y_label = "share of the servo flow [%]";
@@ -608,9 +607,8 @@ std::vector<doc::Section> diagnosis_sections(const StoredDiagnosis& diagnosis) {
       blocks.emplace_back(std::move(gallery));
       blocks.emplace_back(doc::about_picture(
           "Line and band: the rate of the trend and its 95 % interval, drawn through the last "
-          "share. "
-          "Blue, if a limit is foreseen: the day on which it is reached, and the 95 % interval of "
-          "that day, as far as it can be foreseen."));
+          "share. Blue, if a limit is foreseen: the day on which it is reached, and the 95 % "
+          "interval of that day, as far as it can be foreseen."));
     }
   }
   add_averages(diagnosis, blocks);
