@@ -85,15 +85,22 @@ std::vector<double> autocovariance(const Autoregression& model, int lags) {
   return gamma;
 }
 
-bool is_autocovariance(std::span<const double> gamma) {
-  if (gamma.empty() || !(gamma.front() > 0.0)) return false;
+std::vector<double> partial_autocorrelations(std::span<const double> gamma) {
+  std::vector<double> result;
+  if (gamma.empty() || !(gamma.front() > 0.0)) return result;
   Autoregression model{{}, gamma.front()};
   while (model.phi.size() + 1 < gamma.size()) {
     const double partial = next_partial(model, gamma);
-    if (!(std::abs(partial) < 1.0)) return false;
+    if (!(std::abs(partial) < 1.0)) break;
     extend(model, partial);
+    result.push_back(partial);
   }
-  return true;
+  return result;
+}
+
+bool is_autocovariance(std::span<const double> gamma) {
+  if (gamma.empty() || !(gamma.front() > 0.0)) return false;
+  return partial_autocorrelations(gamma).size() + 1 == gamma.size();
 }
 
 Autoregression fit_autoregression(std::span<const double> gamma, double samples) {

@@ -26,6 +26,14 @@ inline constexpr int kLongestMemory = 5000;
 /// all partial autocorrelations are within (-1, 1). False for a series of zeros.
 bool is_autocovariance(std::span<const double> gamma);
 
+/// Partial autocorrelations at lags 1, 2, ...: the correlation that the shorter lags leave
+/// unexplained, by the Levinson-Durbin recursion. The list ends at the first value whose magnitude
+/// is 1 or more; if the values are the autocovariances of a series that does not repeat exactly, it
+/// has one value for each lag.
+///
+/// @param gamma  autocovariances or autocorrelations from lag 0 on
+std::vector<double> partial_autocorrelations(std::span<const double> gamma);
+
 /// Theoretical autocovariances of a model for lags 0..lags.
 std::vector<double> autocovariance(const Autoregression& model, int lags);
 

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "metrics/autoregression.hpp"
 #include "metrics/distributions.hpp"
 #include "metrics/shared_transform.hpp"
 
@@ -77,6 +78,9 @@ Autocorrelation test_autocorrelation(const std::vector<double>& e, const std::ve
   result.band = white_band(n);
   const std::size_t lags = shown_lags(rho, result.band);
   result.values.assign(rho.begin(), rho.begin() + static_cast<std::ptrdiff_t>(lags) + 1);
+  constexpr std::size_t kPartialLags = 50;  // enough to show the order of a model
+  result.partial =
+      partial_autocorrelations(std::span(rho).first(std::min(rho.size() / 2, kPartialLags) + 1));
   result.tested_lags = std::min<int>(kTestedLags, static_cast<int>(e.size() / 5));
   double sum = 0.0;
   for (int k = 1; k <= result.tested_lags; ++k) {
@@ -155,8 +159,17 @@ Periodogram test_periodogram(const std::vector<double>& e, double interval_s) {
   double total = 0.0;
   for (const double p : power) total += p;
   Periodogram result;
+  constexpr std::size_t kSteps = 50;  // number of steps in the cumulative curve, for plots
+  result.cumulative = {0.0};
+  result.last_frequency_hz = lines * line_hz;
   double sum = 0.0;
   for (std::size_t k = 0; k < power.size(); ++k) {
+    // Between two lines the curve is interpolated.
+    while (result.cumulative.size() <= kSteps) {
+      const double at = static_cast<double>(result.cumulative.size()) * lines / kSteps;
+      if (at > static_cast<double>(k + 1)) break;
+      result.cumulative.push_back((sum + power[k] * (at - static_cast<double>(k))) / total);
+    }
     sum += power[k];
     const double share = sum / total;
     const auto rank = static_cast<double>(k + 1);

@@ -19,7 +19,9 @@ namespace rigcal::metrics {
 struct Autocorrelation : Judged {
   std::vector<double> values;  ///< shape (lags + 1), from lag 0; biased estimate, values[0] = 1
   double band = 0.0;           ///< 95 % of the values for white noise are within +-band
-  double ljung_box = 0.0;      ///< Ljung and Box, Biometrika 65, 1978, over `tested_lags`
+  /// Partial autocorrelations from lag 1 on, at most 50; for white noise they have the same band.
+  std::vector<double> partial;
+  double ljung_box = 0.0;  ///< Ljung and Box, Biometrika 65, 1978, over `tested_lags`
   int tested_lags = 0;
   double p_value = 0.0;
   double durbin_watson = 0.0;       ///< 2 for white noise, 0 for a residual that varies only slowly
@@ -41,6 +43,11 @@ struct CrossCorrelation : Judged {
 struct Periodogram : Judged {
   std::vector<double> frequency_hz;  ///< shape (bins), logarithmic bins of the periodogram
   std::vector<double> density;       ///< mean one-sided power density, [unit^2/Hz]
+  /// Fraction of the power from zero up to equally spaced frequencies, the last of which is
+  /// `last_frequency_hz`; shape (51). For white noise, a straight line from 0 to 1, and all values
+  /// are within +-limit of it in 95 % of the records.
+  std::vector<double> cumulative;
+  double last_frequency_hz = 0.0;    ///< half the sampling rate
   double median_frequency_hz = 0.0;  ///< half of the power is below it
   double peak_frequency_hz = 0.0;    ///< frequency of the largest single line
   double peak_share = 0.0;           ///< fraction of the power in that line and its two neighbours

@@ -173,4 +173,22 @@ EstimateTrend trend_of(const std::vector<PlacedEstimate>& estimates, bool shared
   return result;
 }
 
+std::optional<double> half_width_of_band(const EstimateTrend& trend,
+                                         const std::vector<PlacedEstimate>& estimates,
+                                         double place) {
+  if (!trend.slope || !trend.ci95 || !(trend.standard_error.value_or(0.0) > 0.0))
+    return std::nullopt;
+  double weights = 0.0;
+  double middle = 0.0;
+  for (const PlacedEstimate& each : estimates) {
+    const double weight = 1.0 / (each.error.standard_error * each.error.standard_error);
+    weights += weight;
+    middle += (each.place - middle) * weight / weights;
+  }
+  if (!(weights > 0.0) || !std::isfinite(weights)) return std::nullopt;
+  const double level_error = trend.widened.value_or(1.0) / std::sqrt(weights);
+  const double quantile = (trend.ci95->high - *trend.slope) / *trend.standard_error;
+  return quantile * std::hypot(level_error, *trend.standard_error * (place - middle));
+}
+
 }  // namespace rigcal::calib

@@ -127,4 +127,13 @@ struct PlacedEstimate {
 /// @param shared  whether results in the series share records
 EstimateTrend trend_of(const std::vector<PlacedEstimate>& estimates, bool shared);
 
+/// Returns the half-width of the 95 % band of a trend's line at a place, in the unit of the
+/// estimates. The level of the line at the weighted mean of the places has an error of its own,
+/// which is independent of that of the slope. Returns std::nullopt if there is no line.
+///
+/// @param estimates  those that trend_of() was given
+std::optional<double> half_width_of_band(const EstimateTrend& trend,
+                                         const std::vector<PlacedEstimate>& estimates,
+                                         double place);
+
 }  // namespace rigcal::calib

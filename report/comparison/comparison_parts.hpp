@@ -64,6 +64,9 @@ std::vector<StoredComparedRecord> compared_records(const std::vector<Compared>& 
 ///
 /// @param key  key of the parameter
 std::vector<StoredSeries> trends(const std::vector<Compared>& results, std::string_view key);
+/// Returns the points of a series that have an error and a position. A trend is fitted to them.
+std::vector<calib::PlacedEstimate> placed_estimates(const std::vector<StoredTrendPoint>& points,
+                                                    std::optional<double> StoredTrendPoint::*place);
 
 /// Writes a difference from the first result in percent, or in `unit` if the first value is zero or
 /// not significantly different from zero. Returns an empty text if either value is missing.

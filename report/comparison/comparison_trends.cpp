@@ -35,21 +35,6 @@ std::string series_of(const StoredFit& fit, const StoredParameter& parameter) {
   return condition == nullptr ? "rig" : condition->leak_level.value_or("rig");
 }
 
-/// Fits a line through the points that have an error and a position.
-calib::EstimateTrend trend_along(const std::vector<StoredTrendPoint>& points,
-                                 std::optional<double> StoredTrendPoint::*place, bool shared) {
-  std::vector<calib::PlacedEstimate> placed;
-  for (const StoredTrendPoint& point : points) {
-    if (!(point.*place) || !point.value || !(point.standard_error.value_or(0.0) > 0.0)) continue;
-    placed.push_back(
-        {*(point.*place),
-         *point.value,
-         {*point.standard_error, point.degrees_of_freedom.value_or(metrics::kManyDegrees)},
-         point.between_days_error.value_or(0.0) > 0.0});
-  }
-  return calib::trend_of(placed, shared);
-}
-
 bool any_share_records(const std::vector<const Compared*>& results) {
   for (std::size_t i = 0; i < results.size(); ++i) {
     for (std::size_t j = i + 1; j < results.size(); ++j) {
@@ -88,6 +73,20 @@ StoredTrendPoint point_of(const Compared& compared, const StoredParameter& param
 
 }  // namespace
 
+std::vector<calib::PlacedEstimate> placed_estimates(
+    const std::vector<StoredTrendPoint>& points, std::optional<double> StoredTrendPoint::*place) {
+  std::vector<calib::PlacedEstimate> placed;
+  for (const StoredTrendPoint& point : points) {
+    if (!(point.*place) || !point.value || !(point.standard_error.value_or(0.0) > 0.0)) continue;
+    placed.push_back(
+        {*(point.*place),
+         *point.value,
+         {*point.standard_error, point.degrees_of_freedom.value_or(metrics::kManyDegrees)},
+         point.between_days_error.value_or(0.0) > 0.0});
+  }
+  return placed;
+}
+
 std::vector<StoredSeries> trends(const std::vector<Compared>& results, std::string_view key) {
   std::vector<StoredSeries> list;
   std::vector<std::vector<const Compared*>> sources;  // the results that contribute to each series
@@ -109,9 +108,11 @@ std::vector<StoredSeries> trends(const std::vector<Compared>& results, std::stri
   }
   for (std::size_t i = 0; i < list.size(); ++i) {
     const bool shared = any_share_records(sources[i]);
-    list[i].along_date = {trend_along(list[i].points, &StoredTrendPoint::day, shared)};
-    list[i].along_temperature = {
-        trend_along(list[i].points, &StoredTrendPoint::temperature_k, shared)};
+    const auto trend_along = [&](std::optional<double> StoredTrendPoint::*place) {
+      return calib::trend_of(placed_estimates(list[i].points, place), shared);
+    };
+    list[i].along_date = {trend_along(&StoredTrendPoint::day)};
+    list[i].along_temperature = {trend_along(&StoredTrendPoint::temperature_k)};
   }
   return list;
 }

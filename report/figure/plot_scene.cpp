@@ -222,7 +222,7 @@ std::string cut(const std::string& text, std::size_t letters) {
 
 /// Breaks a name at its last space within `letters` characters, and cuts what does not fit into two
 /// lines.
-std::vector<std::string> lines_of(const std::string& name, std::size_t letters) {
+std::vector<std::string> name_lines(const std::string& name, std::size_t letters) {
   if (name.size() <= letters) return {name};
   const std::size_t space = name.rfind(' ', letters);
   if (space == std::string::npos || space == 0) return {cut(name, letters)};
@@ -243,7 +243,7 @@ void add_names(const Plot& plot, const Axis& x, double bottom, double top,
       shapes.push_back(line_shape("grid", {{edge, bottom}, {edge, top}}));
     }
     double at = bottom + 14.0;
-    for (const std::string& line : lines_of(name, letters)) {
+    for (const std::string& line : name_lines(name, letters)) {
       shapes.push_back(text_shape(line, {x.pixel(place), at}, Shape::Anchor::middle));
       at += kNextLine;
     }

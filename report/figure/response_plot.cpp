@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -26,6 +27,39 @@ Plot empty_plot(const std::string& condition, const ResponseCurves& curves, cons
 struct Curve {
   std::vector<double> frequency_hz, middle, low, high;
 };
+
+void add(Curve& curve, double frequency_hz, double middle, double low, double high) {
+  curve.frequency_hz.push_back(frequency_hz);
+  curve.middle.push_back(middle);
+  curve.low.push_back(low);
+  curve.high.push_back(high);
+}
+
+/// Adds a gap, so that no line joins the points before and after it.
+void lift(Curve& curve) { add(curve, std::nan(""), std::nan(""), std::nan(""), std::nan("")); }
+
+/// Returns the phases of the records without jumps from frequency to frequency, by condition.
+std::vector<std::vector<double>> unwrapped(const std::vector<ResponseCurves>& all) {
+  struct Place {
+    double frequency_hz;
+    std::size_t condition, point;
+  };
+  std::vector<Place> order;
+  std::vector<std::vector<double>> phases(all.size());
+  for (std::size_t c = 0; c < all.size(); ++c) {
+    phases[c].resize(all[c].record.size());
+    for (std::size_t i = 0; i < phases[c].size(); ++i)
+      order.push_back({all[c].record[i].frequency_hz, c, i});
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [](const Place& a, const Place& b) { return a.frequency_hz < b.frequency_hz; });
+  double before = 0.0;
+  for (const Place& place : order) {
+    before = near(all[place.condition].record[place.point].phase_deg, before);
+    phases[place.condition][place.point] = before;
+  }
+  return phases;
+}
 
 void draw(Plot& plot, Curve record, Curve model) {
   Trace line = empty_trace(Trace::Kind::line, "model", "model");
@@ -66,45 +100,63 @@ ResponseCurves coherent(const ResponseCurves& all) {
   return kept;
 }
 
-Plot gain_plot(const std::string& condition, const ResponseCurves& curves) {
-  Plot plot = empty_plot(condition, curves, "gain");
-  plot.y_label = fmt::format("gain [{}]", curves.unit);
+Plot gain_plot(const std::string& name, const std::vector<ResponseCurves>& all) {
+  const ResponseCurves& first = all.front();
+  Plot plot = empty_plot(name, first, "gain");
+  plot.y_label = fmt::format("gain [{}]", first.unit);
   plot.log_y = true;
-  const auto curve_of = [&](const std::vector<metrics::ResponsePoint>& points) {
-    Curve curve;
+  const auto add_points = [&](const std::vector<metrics::ResponsePoint>& points, Curve& curve) {
+    if (!curve.frequency_hz.empty()) lift(curve);
     for (const metrics::ResponsePoint& point : points) {
-      curve.frequency_hz.push_back(point.frequency_hz);
-      curve.middle.push_back(point.gain / curves.si_per_unit);
       const bool known = point.interval.has_value() && point.interval->gain_low > 0.0;
-      curve.low.push_back(known ? point.interval->gain_low / curves.si_per_unit : std::nan(""));
-      curve.high.push_back(known ? point.interval->gain_high / curves.si_per_unit : std::nan(""));
+      add(curve, point.frequency_hz, point.gain / first.si_per_unit,
+          known ? point.interval->gain_low / first.si_per_unit : std::nan(""),
+          known ? point.interval->gain_high / first.si_per_unit : std::nan(""));
     }
-    return curve;
   };
-  draw(plot, curve_of(curves.record), curve_of(curves.model));
-  return plot;
-}
-
-Plot phase_plot(const std::string& condition, const ResponseCurves& curves) {
-  Plot plot = empty_plot(condition, curves, "phase");
-  plot.y_label = "phase [°]";
   Curve record;
   Curve model;
-  double before = 0.0;
-  for (std::size_t i = 0; i < curves.record.size(); ++i) {
-    const metrics::ResponsePoint& point = curves.record[i];
-    const double phase = near(point.phase_deg, before);
-    before = phase;
-    record.frequency_hz.push_back(point.frequency_hz);
-    record.middle.push_back(phase);
-    const bool known = point.interval.has_value() && point.interval->phase_half_deg < 180.0;
-    record.low.push_back(known ? phase - point.interval->phase_half_deg : std::nan(""));
-    record.high.push_back(known ? phase + point.interval->phase_half_deg : std::nan(""));
-    model.frequency_hz.push_back(curves.model[i].frequency_hz);
-    model.middle.push_back(near(curves.model[i].phase_deg, phase));
+  for (const ResponseCurves& curves : all) {
+    add_points(curves.record, record);
+    add_points(curves.model, model);
   }
   draw(plot, std::move(record), std::move(model));
   return plot;
+}
+
+Plot phase_plot(const std::string& name, const std::vector<ResponseCurves>& all) {
+  Plot plot = empty_plot(name, all.front(), "phase");
+  plot.y_label = "phase [°]";
+  const std::vector<std::vector<double>> phases = unwrapped(all);
+  Curve record;
+  Curve model;
+  for (std::size_t c = 0; c < all.size(); ++c) {
+    if (c > 0) {
+      lift(record);
+      lift(model);
+    }
+    for (std::size_t i = 0; i < all[c].record.size(); ++i) {
+      const metrics::ResponsePoint& point = all[c].record[i];
+      const double phase = phases[c][i];
+      const bool known = point.interval.has_value() && point.interval->phase_half_deg < 180.0;
+      add(record, point.frequency_hz, phase,
+          known ? phase - point.interval->phase_half_deg : std::nan(""),
+          known ? phase + point.interval->phase_half_deg : std::nan(""));
+      const metrics::ResponsePoint& simulated = all[c].model[i];
+      add(model, simulated.frequency_hz, near(simulated.phase_deg, phase), std::nan(""),
+          std::nan(""));
+    }
+  }
+  draw(plot, std::move(record), std::move(model));
+  return plot;
+}
+
+Plot gain_plot(const std::string& condition, const ResponseCurves& curves) {
+  return gain_plot(condition, std::vector{curves});
+}
+
+Plot phase_plot(const std::string& condition, const ResponseCurves& curves) {
+  return phase_plot(condition, std::vector{curves});
 }
 
 }  // namespace rigcal::report

@@ -27,4 +27,13 @@ ResponseCurves coherent(const ResponseCurves& all);
 Plot gain_plot(const std::string& condition, const ResponseCurves& curves);
 Plot phase_plot(const std::string& condition, const ResponseCurves& curves);
 
+/// Plots the responses of several conditions together, in the unit of the first. A line joins only
+/// the points of one condition. Phases are unwrapped in the order of the frequencies of all of
+/// them.
+///
+/// @param name  replaces the condition in the title
+/// @param all   of the same signals, at least one
+Plot gain_plot(const std::string& name, const std::vector<ResponseCurves>& all);
+Plot phase_plot(const std::string& name, const std::vector<ResponseCurves>& all);
+
 }  // namespace rigcal::report

@@ -16,8 +16,6 @@ using diagnosis::LeakTrend;
 
 /// Number of days over which the change is reported.
 constexpr double kDays = 30.0;
-/// Predictions are limited to this multiple of the observed time span.
-constexpr double kAhead = 3.0;
 
 std::string machine_of(const LeakTrend& trend) {
   diagnosis::StateKey key;

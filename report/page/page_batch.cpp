@@ -8,6 +8,7 @@
 
 #include "common/calendar.hpp"
 #include "report/batch/batch.hpp"
+#include "report/comparison/comparison_parts.hpp"
 #include "report/document/words.hpp"
 
 namespace rigcal::report {
@@ -97,20 +98,16 @@ std::optional<Plot> rig_trend_plot(const StoredRig& rig, const StoredRigTrend& t
     add_interval(spans, *point.day - first, point.ci95, unit.si);
   }
   Plot plot;
-  plot.title = fmt::format("{} of {} over time, with 95 % intervals", trend_name(trend), rig.rig);
+  plot.title =
+      fmt::format("{} of {} over time, with 95 % intervals and band", trend_name(trend), rig.rig);
   plot.x_label = "days since " + date_of(first);
   plot.y_label = trend_name(trend) + (unit.name.empty() ? "" : fmt::format(" [{}]", unit.name));
   plot.width = 300.0;
   plot.height = 170.0;
-  const calib::EstimateTrend& along = trend.series.along_date;
-  if (along.slope && along.intercept) {
-    Trace line = empty_trace(Trace::Kind::line, "reference");
-    for (const double day : {first, last}) {
-      line.x.push_back(day - first);
-      line.y.push_back((*along.intercept + *along.slope * day) / unit.si);
-    }
-    plot.traces.push_back(std::move(line));
-  }
+  add_trend_line(plot, trend.series.along_date, placed_estimates(points, &StoredTrendPoint::day),
+                 {first, last}, unit.si);
+  for (Trace& trace : plot.traces)
+    for (double& day : trace.x) day -= first;
   plot.traces.push_back(std::move(spans));
   plot.traces.push_back(std::move(middles));
   return plot;
@@ -147,7 +144,10 @@ doc::Section trends_section(const StoredBatch& batch) {
     doc::Gallery gallery;
     for (const StoredRigTrend& trend : rig.trends) {
       auto plot = rig_trend_plot(rig, trend);
-      if (plot) gallery.figures.push_back(figure_of(std::move(*plot), {}, trend_sentence(trend)));
+      if (plot)
+        gallery.figures.push_back(figure_of(std::move(*plot),
+                                            fmt::format("Does {} change?", trend_name(trend)),
+                                            trend_sentence(trend)));
     }
     if (!gallery.figures.empty()) {
       any = true;

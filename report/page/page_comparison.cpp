@@ -134,22 +134,19 @@ Plot trend_plot(const StoredSeries& series, const TrendAxis& axis) {
   }
   const double origin = axis.by_day ? first : 273.15;
   Plot plot;
-  plot.title = fmt::format("Leakage coefficient of {} along {}", series.of,
-                           axis.by_day ? "dates" : "temperatures");
+  plot.title = fmt::format(
+      "Leakage coefficient of {} along {}, with 95 % intervals; the line of the trend, if one "
+      "could "
+      "be tested, with its 95 % band",
+      series.of, axis.by_day ? "dates" : "temperatures");
   plot.x_label = axis.by_day
                      ? "days since " + (std::isfinite(first) ? date_of(first) : std::string())
                      : std::string("temperature [°C]");
   plot.y_label = "leakage coefficient, " + series.of;
   plot.width = 460.0;
   plot.height = 220.0;
-  const calib::EstimateTrend& trend = axis.trend_of(series);
-  if (trend.slope && trend.intercept) {
-    Trace line;
-    line.style = "reference";
-    line.x = {first, last};
-    for (const double x : line.x) line.y.push_back(*trend.intercept + *trend.slope * x);
-    plot.traces.push_back(std::move(line));
-  }
+  add_trend_line(plot, axis.trend_of(series), placed_estimates(series.points, axis.place),
+                 {first, last});
   plot.traces.push_back(std::move(spans));
   plot.traces.push_back(std::move(middles));
   for (Trace& trace : plot.traces)
@@ -442,8 +439,11 @@ std::vector<doc::Section> comparison_sections(const StoredComparison& comparison
   for (const StoredSeries& series : comparison.leak_trends) {
     for (const TrendAxis& axis : kTrendAxes) {
       if (differ(series, axis))
-        trends.figures.push_back(
-            figure_of(trend_plot(series, axis), {}, trend_reading(series, axis)));
+        trends.figures.push_back(figure_of(trend_plot(series, axis),
+                                           axis.by_day
+                                               ? "Does the leak change from date to date?"
+                                               : "Does the leak change with the temperature?",
+                                           trend_reading(series, axis)));
     }
   }
   if (!trends.figures.empty())

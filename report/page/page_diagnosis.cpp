@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "common/calendar.hpp"
 #include "report/document/words.hpp"
 #include "report/page/budget_tables.hpp"
 #include "report/page/page_parts.hpp"
@@ -109,7 +110,8 @@ std::vector<SignalRecords> averages_by_signal(const StoredDiagnosis& diagnosis) 
 /// Plots the leak shares with their intervals by signal, and the limits of the classes. The records
 /// of a signal lie side by side, in the order of the table.
 Plot share_plot(const StoredDiagnosis& diagnosis) {
-  constexpr double kUsed = 0.8;  // of the room of a signal; the rest separates it from the next
+  // Fraction of the room of a signal; the rest separates it from the next.
+  constexpr double kUsed = 0.8;
   const std::vector<SignalRecords> signals = averages_by_signal(diagnosis);
   Plot plot;
   plot.title = fmt::format(
@@ -146,6 +148,91 @@ Plot share_plot(const StoredDiagnosis& diagnosis) {
   plot.traces.push_back(std::move(spans));
   if (!known.x.empty()) plot.traces.push_back(std::move(known));
   plot.traces.push_back(std::move(middles));
+  return plot;
+}
+
+/// Days on which a trend reaches the next limit, counted from its first date.
+struct ForeseenDays {
+  double reached = 0.0, earliest = 0.0, latest = 0.0;
+};
+
+/// Returns std::nullopt if no limit is foreseen.
+///
+/// @param first  first date of the trend, in days since 1970-01-01
+/// @param end    last day that can be foreseen; replaces a later end, or one that is not known
+std::optional<ForeseenDays> foreseen_days(const std::optional<StoredNextLimit>& limit, int first,
+                                          double end) {
+  if (!limit) return std::nullopt;
+  const auto reached = day_of(limit->reached);
+  const auto earliest = day_of(limit->earliest);
+  if (!reached || !earliest || *reached - first > end) return std::nullopt;
+  const auto latest = limit->latest ? day_of(*limit->latest) : std::nullopt;
+  return ForeseenDays{static_cast<double>(*reached - first), static_cast<double>(*earliest - first),
+                      latest ? std::min<double>(*latest - first, end) : end};
+}
+
+bool is_of(const StoredState& state, const StoredLeakTrend& trend) {
+  return state.leak_level == trend.leak_level && state.specimen == trend.specimen;
+}
+
+/// Plots the shares of a machine over its dates with the rate of their change, and, if it is
+/// foreseen, when they reach the next limit. Line and band pass through the last share, because the
+/// days of the limit are counted from there. Returns std::nullopt without that share.
+std::optional<Plot> leak_trend_plot(const StoredDiagnosis& diagnosis,
+                                    const StoredLeakTrend& trend) {
+  const auto first = day_of(trend.first_date);
+  const auto last_day = day_of(trend.last_date);
+  if (!first || !last_day) return std::nullopt;
+  const double last = *last_day - *first;
+  Trace spans = empty_trace(Trace::Kind::intervals, "model");
+  Trace middles = empty_trace(Trace::Kind::points, "model", "found");
+  std::optional<double> last_share;
+  for (const StoredState& state : diagnosis.states) {
+    const auto day = state.date && is_of(state, trend) ? day_of(*state.date) : std::nullopt;
+    if (!day || !state.leak.leak_share_percent) continue;
+    if (*day == *last_day) last_share = state.leak.leak_share_percent;
+    middles.x.push_back(*day - *first);
+    middles.y.push_back(*state.leak.leak_share_percent);
+    add_interval(spans, middles.x.back(), state.leak.leak_share_ci95_percent);
+  }
+  if (!last_share) return std::nullopt;
+  const auto foreseen = foreseen_days(trend.next_limit, *first, (1.0 + kAhead) * last);
+  Plot plot;
+  plot.title = fmt::format(
+      "Share of the servo flow that leaks from {} to {}, and its rate with the 95 % band",
+      trend.first_date, trend.last_date);
+  plot.x_label = "days since " + trend.first_date;
+  plot.y_label = "share of the servo flow [%]";
+  plot.width = 460.0;
+  plot.height = 220.0;
+  const auto share_at = [&](double day, double rate) { return *last_share + rate * (day - last); };
+  Trace band = empty_trace(Trace::Kind::band, "model");
+  Trace line = empty_trace(Trace::Kind::line, "reference");
+  const Range& rates = trend.share_percent_per_day_ci95;
+  for (const double day : {0.0, last, foreseen ? foreseen->latest : last}) {
+    const double low = share_at(day, rates.low);
+    const double high = share_at(day, rates.high);
+    band.x.push_back(day);
+    band.y.push_back(std::min(low, high));
+    band.upper.push_back(std::max(low, high));
+    line.x.push_back(day);
+    line.y.push_back(share_at(day, trend.share_percent_per_day));
+  }
+  plot.traces = {std::move(band), std::move(line), std::move(spans), std::move(middles)};
+  if (!foreseen) return plot;
+  const double limit = trend.next_limit->percent;
+  plot.title += fmt::format("; it reaches {} ({:g} %) about {}",
+                            to_string(trend.next_limit->class_), limit, trend.next_limit->reached);
+  plot.levels = {limit};
+  Trace interval = empty_trace(Trace::Kind::line, "residual");
+  interval.x = {foreseen->earliest, foreseen->latest};
+  interval.y = {limit, limit};
+  Trace reached = empty_trace(Trace::Kind::points, "residual",
+                              fmt::format("reaches {}", to_string(trend.next_limit->class_)));
+  reached.x = {foreseen->reached};
+  reached.y = {limit};
+  plot.traces.push_back(std::move(interval));
+  plot.traces.push_back(std::move(reached));
   return plot;
 }
 
@@ -348,11 +435,18 @@ doc::Verdict diagnosis_headline(const StoredDiagnosis& diagnosis) {
 }
 
 std::vector<Figure> diagnosis_figures(const StoredDiagnosis& diagnosis) {
+  std::vector<Figure> figures;
   const auto& records = diagnosis.records;
-  if (std::none_of(records.begin(), records.end(),
-                   [](const auto& record) { return record.is_average(); }))
-    return {};
-  return {{"diagnosis", share_plot(diagnosis)}};
+  if (std::any_of(records.begin(), records.end(),
+                  [](const auto& record) { return record.is_average(); }))
+    figures.push_back({"diagnosis", share_plot(diagnosis)});
+  for (const StoredLeakTrend& trend : diagnosis.trends) {
+    auto plot = leak_trend_plot(diagnosis, trend);
+    if (!plot) continue;
+    const std::string machine = trend.leak_level.value_or("") + " " + trend.specimen.value_or("");
+    figures.push_back({plain_name("diagnosis_trend_" + machine), std::move(*plot)});
+  }
+  return figures;
 }
 
 namespace {
@@ -498,8 +592,24 @@ std::vector<doc::Section> diagnosis_sections(const StoredDiagnosis& diagnosis) {
   if (!diagnosis.states.empty()) blocks.emplace_back(state_table(diagnosis));
   if (!diagnosis.trends.empty()) {
     blocks.emplace_back(doc::Heading{{"Trend"}});
-    for (const StoredLeakTrend& trend : diagnosis.trends)
+    doc::Gallery gallery;
+    gallery.wide = true;
+    for (const StoredLeakTrend& trend : diagnosis.trends) {
       blocks.emplace_back(doc::reading(trend.sentence));
+      auto plot = leak_trend_plot(diagnosis, trend);
+      if (!plot) continue;
+      const bool foreseen = !plot->levels.empty();
+      gallery.figures.push_back(
+          figure_of(std::move(*plot), foreseen ? "When does the leak reach the next limit?"
+                                               : "Does the leak change?"));
+    }
+    if (!gallery.figures.empty()) {
+      blocks.emplace_back(std::move(gallery));
+      blocks.emplace_back(doc::about_picture(
+          "Line and band: the rate of the trend and its 95 % interval, drawn through the last "
+          "share. Blue, if a limit is foreseen: the day on which it is reached, and the 95 % "
+          "interval of that day, as far as it can be foreseen."));
+    }
   }
   add_averages(diagnosis, blocks);
   add_share_budgets(diagnosis, blocks);

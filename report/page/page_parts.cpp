@@ -93,6 +93,28 @@ void add_interval(Trace& intervals, double x, const Interval& interval, double s
   intervals.upper.push_back(interval.ends->high / si_per_unit);
 }
 
+void add_trend_line(Plot& plot, const calib::EstimateTrend& trend,
+                    const std::vector<calib::PlacedEstimate>& estimates, const Range& places,
+                    double si_per_unit) {
+  if (!trend.slope || !trend.intercept) return;
+  const auto value_at = [&](double place) { return *trend.intercept + *trend.slope * place; };
+  constexpr int kSteps = 32;  // the edges of the band are curved
+  Trace band = empty_trace(Trace::Kind::band, "model");
+  for (int i = 0; i <= kSteps; ++i) {
+    const double place = places.low + (places.high - places.low) * i / kSteps;
+    const std::optional<double> half = calib::half_width_of_band(trend, estimates, place);
+    if (!half) break;
+    band.x.push_back(place);
+    band.y.push_back((value_at(place) - *half) / si_per_unit);
+    band.upper.push_back((value_at(place) + *half) / si_per_unit);
+  }
+  if (!band.x.empty()) plot.traces.push_back(std::move(band));
+  Trace line = empty_trace(Trace::Kind::line, "reference");
+  line.x = {places.low, places.high};
+  for (const double place : line.x) line.y.push_back(value_at(place) / si_per_unit);
+  plot.traces.push_back(std::move(line));
+}
+
 std::string_view channel_unit(std::string_view channel) {
   const auto known = datasets::channel_from_key(channel);
   return known ? datasets::info(*known).unit : std::string_view("1");

@@ -60,6 +60,15 @@ Plot ranked_points(const std::string& title, const std::string& y_label,
 /// nothing if an end is unknown.
 void add_interval(Trace& intervals, double x, const Interval& interval, double si_per_unit = 1.0);
 
+/// Adds the line of a trend between two places and its 95 % band. Adds nothing if the trend has no
+/// line, and no band if no estimate has an error.
+///
+/// @param estimates    those that the line was fitted to
+/// @param si_per_unit  unit of the y axis in SI
+void add_trend_line(Plot& plot, const calib::EstimateTrend& trend,
+                    const std::vector<calib::PlacedEstimate>& estimates, const Range& places,
+                    double si_per_unit = 1.0);
+
 /// Adds a reason with a link to the section with id `link` (no link if empty). Only the first three
 /// reasons are shown.
 void add_reason(doc::Verdict& verdict, const std::string& text, const std::string& link);

@@ -106,4 +106,15 @@ TEST_CASE("autoregression: which sequences are autocovariances", "[metrics]") {
   CHECK_FALSE(is_autocovariance(std::vector<double>{}));
 }
 
+TEST_CASE("autoregression: partial autocorrelations end at the order of the model", "[metrics]") {
+  const auto partial =
+      partial_autocorrelations(autocovariance(Autoregression{{0.5, -0.3}, 1.0}, 5));
+  REQUIRE(partial.size() == 5);
+  CHECK_THAT(partial[0], Catch::WithinAbs(0.5 / 1.3, 1e-12));
+  CHECK_THAT(partial[1], Catch::WithinAbs(-0.3, 1e-12));
+  for (std::size_t k = 2; k < 5; ++k) CHECK_THAT(partial[k], Catch::WithinAbs(0.0, 1e-12));
+  CHECK(partial_autocorrelations(std::vector{1.0, 0.9, 0.61, 0.5}).size() == 1);
+  CHECK(partial_autocorrelations(std::vector{0.0, 0.0}).empty());
+}
+
 }  // namespace rigcal::metrics

@@ -1,5 +1,6 @@
 #include "metrics/residual_tests.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -254,4 +255,28 @@ TEST_CASE("residual_tests: refuses what has no tests", "[metrics]") {
   CHECK_THROWS_AS(residual_tests(broken, {}, 0.0), std::invalid_argument);
   broken[3] = std::numeric_limits<double>::quiet_NaN();
   CHECK_THROWS_AS(residual_tests(broken, {}, 0.01), std::invalid_argument);
+}
+
+TEST_CASE("residual tests: curves of partial autocorrelation and cumulative power", "[metrics]") {
+  const ResidualTests noise = residual_tests(white(2000, 31), {}, 0.01);
+  REQUIRE(noise.periodogram.cumulative.size() == 51);
+  CHECK(noise.periodogram.cumulative.front() == 0.0);
+  CHECK_THAT(noise.periodogram.cumulative.back(), Catch::WithinAbs(1.0, 1e-9));
+  CHECK_THAT(noise.periodogram.last_frequency_hz, Catch::WithinRel(50.0, 1e-12));
+  for (std::size_t i = 0; i < 51; ++i)
+    CHECK(std::abs(noise.periodogram.cumulative[i] - static_cast<double>(i) / 50.0) < 0.08);
+  REQUIRE(noise.autocorrelation.partial.size() == 50);
+  // A sine at 12.5 Hz, a quarter of the way to 50 Hz, has all its power in one line.
+  const auto line = residual_tests(sine(2000, 12.5, 0.01), {}, 0.01).periodogram.cumulative;
+  CHECK(line[12] < 0.01);
+  CHECK(line[13] > 0.99);
+  const auto partial =
+      residual_tests(first_order(white(4000, 32), 0.8), {}, 0.01).autocorrelation.partial;
+  CHECK_THAT(partial[0], Catch::WithinAbs(0.8, 0.05));
+  CHECK(std::abs(partial[1]) < 0.08);
+  // A short record has fewer lags, and lines between which the curve is interpolated.
+  const ResidualTests few = residual_tests(white(16, 33), {}, 0.01);
+  CHECK(few.autocorrelation.partial.size() == 8);
+  CHECK(few.periodogram.cumulative.size() == 51);
+  CHECK(std::is_sorted(few.periodogram.cumulative.begin(), few.periodogram.cumulative.end()));
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "report/document/document.hpp"
+#include "report/page/page_parts.hpp"
 #include "report/store/stored.hpp"
 
 // The sections of a fit or validation after its first page.
@@ -13,6 +14,9 @@ namespace rigcal::report {
 /// Returns three key numbers, and a small picture of measurement and model for every condition.
 /// Returns std::nullopt if no condition was scored.
 std::optional<doc::Section> overview_section(const Calibration& stored);
+/// Returns gain and phase of the rig: those of the conditions that are shown in full, together.
+/// Empty if they have fewer than two frequencies.
+std::vector<Figure> rig_response_figures(const Calibration& stored);
 /// Lists the scores for each channel by signal and leak level, followed by group means.
 ///
 /// @param unfinished  whether the search did not converge

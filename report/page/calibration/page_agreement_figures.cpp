@@ -11,7 +11,6 @@
 #include "metrics/distributions.hpp"
 #include "report/figure/histogram_plot.hpp"
 #include "report/figure/parity_plot.hpp"
-#include "report/figure/response_plot.hpp"
 #include "report/figure/time_plots.hpp"
 #include "report/text/readable.hpp"
 
@@ -213,6 +212,18 @@ std::vector<ChannelAgreement> channel_agreements(const std::string& condition,
     channels.push_back(std::move(found));
   }
   return channels;
+}
+
+std::optional<ResponseCurves> channel_response(const std::string& channel,
+                                               std::optional<double> frequency_hz,
+                                               const Table& series) {
+  const auto known = datasets::channel_from_key(channel);
+  if (!known) return std::nullopt;
+  const datasets::ChannelInfo& about = datasets::info(*known);
+  const auto* measured = series.find(fmt::format("measured_{}", about.name));
+  const auto* simulated = series.find(fmt::format("simulated_{}", about.name));
+  if (measured == nullptr || simulated == nullptr) return std::nullopt;
+  return response_of(frequency_hz, series, about, *measured, *simulated).curves;
 }
 
 doc::Blocks agreement_blocks(const std::string& condition, std::optional<double> frequency_hz,

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "report/figure/response_plot.hpp"
 #include "report/page/page_parts.hpp"
 #include "report/store/table.hpp"
 
@@ -25,6 +26,13 @@ struct ChannelAgreement {
 std::vector<ChannelAgreement> channel_agreements(const std::string& condition,
                                                  std::optional<double> frequency_hz,
                                                  const Table& series);
+
+/// Returns gain and phase of a channel; std::nullopt if the signals do not allow it.
+///
+/// @param channel  its key in the results
+std::optional<ResponseCurves> channel_response(const std::string& channel,
+                                               std::optional<double> frequency_hz,
+                                               const Table& series);
 
 /// Returns the figures of every channel with explanations.
 doc::Blocks agreement_blocks(const std::string& condition, std::optional<double> frequency_hz,

@@ -92,6 +92,7 @@ std::vector<Figure> calibration_figures(const ResultFolder& folder) {
   std::vector<Figure> figures;
   const auto* fit = std::get_if<Calibration>(&stored);
   if (fit == nullptr) return figures;
+  figures = rig_response_figures(*fit);
   for (std::size_t i = 0; i < fit->result.conditions.size(); ++i) {
     const StoredCondition& condition = fit->result.conditions[i];
     for (Figure& figure : condition_figures(condition, *fit->series(i)))

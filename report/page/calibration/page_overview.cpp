@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <optional>
 
 #include "common/significant.hpp"
 #include "report/document/words.hpp"
 #include "report/figure/decimate.hpp"
 #include "report/page/calibration/fit_sections.hpp"
+#include "report/page/calibration/page_agreement_figures.hpp"
 #include "report/page/calibration/shown_part.hpp"
 #include "report/page/page_parts.hpp"
 #include "report/text/readable.hpp"
@@ -129,7 +131,47 @@ doc::Facts three_numbers(const StoredFit& fit) {
   return numbers;
 }
 
+/// Returns the responses of the shown channel to the drive that most conditions have.
+std::vector<ResponseCurves> rig_responses(const Calibration& stored, const std::string& channel) {
+  const std::vector<StoredCondition>& conditions = stored.result.conditions;
+  std::vector<std::vector<ResponseCurves>> by_drive;
+  for (const std::size_t i : shown_in_full(conditions)) {
+    const std::shared_ptr<const Table> series = stored.series(i);
+    auto found = channel_response(channel, periodic_frequency(conditions[i]), *series);
+    if (!found) continue;
+    auto drive = std::find_if(by_drive.begin(), by_drive.end(),
+                              [&](const auto& each) { return each.front().of == found->of; });
+    if (drive == by_drive.end()) drive = by_drive.emplace(by_drive.end());
+    drive->push_back(std::move(*found));
+  }
+  const auto most =
+      std::max_element(by_drive.begin(), by_drive.end(),
+                       [](const auto& a, const auto& b) { return a.size() < b.size(); });
+  return most == by_drive.end() ? std::vector<ResponseCurves>() : std::move(*most);
+}
+
+bool has_two_frequencies(const std::vector<ResponseCurves>& all) {
+  std::optional<double> first;
+  for (const ResponseCurves& curves : all) {
+    for (const metrics::ResponsePoint& point : curves.record) {
+      if (first && *first != point.frequency_hz) return true;
+      first = point.frequency_hz;
+    }
+  }
+  return false;
+}
+
 }  // namespace
+
+std::vector<Figure> rig_response_figures(const Calibration& stored) {
+  const std::string channel = shown_channel(stored.result.conditions);
+  if (channel.empty()) return {};
+  const std::vector<ResponseCurves> all = rig_responses(stored, channel);
+  if (!has_two_frequencies(all)) return {};
+  const std::string name = fmt::format("{} condition{}", all.size(), all.size() == 1 ? "" : "s");
+  return {{"rig_" + channel + "_gain", gain_plot(name, all)},
+          {"rig_" + channel + "_phase", phase_plot(name, all)}};
+}
 
 std::optional<doc::Section> overview_section(const Calibration& stored) {
   const std::vector<StoredCondition>& conditions = stored.result.conditions;
@@ -157,6 +199,18 @@ std::optional<doc::Section> overview_section(const Calibration& stored) {
     tiles.tiles.push_back(std::move(tile));
   }
   section.blocks.emplace_back(std::move(tiles));
+  doc::Gallery response;
+  for (Figure& figure : rig_response_figures(stored))
+    response.figures.push_back(figure_of(std::move(figure.plot)));
+  if (response.figures.empty()) return section;
+  response.figures.front().caption = "How strongly does the rig respond at each frequency?";
+  response.figures.back().caption = "How late does it respond?";
+  // Not on paper, where each condition has its own gain and phase.
+  doc::Fold fold{"Gain and phase of the rig", {std::move(response)}, true, "screen"};
+  fold.blocks.emplace_back(doc::reading(
+      "The conditions above together, for the drive that most of them have; a line joins the "
+      "points of one condition. Gain and phase depend on the amplitude."));
+  section.blocks.emplace_back(std::move(fold));
   return section;
 }
 

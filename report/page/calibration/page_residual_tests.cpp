@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "report/page/calibration/fit_sections.hpp"
 #include "report/page/page_parts.hpp"
@@ -73,6 +75,47 @@ std::vector<Plot> test_plots(const StoredResidualCurves& curves,
   return plots;
 }
 
+/// Plots the fraction of the power up to each frequency, between the bounds for white noise.
+Plot cumulative_plot(const StoredCumulative& curve) {
+  Plot plot = small_plot("cumulative periodogram, with the 95 % bounds of white noise",
+                         "frequency [Hz]", "fraction of the power");
+  Trace power = empty_trace(Trace::Kind::line, "residual");
+  const auto steps = static_cast<double>(std::max<std::size_t>(curve.fraction.size(), 2) - 1);
+  for (const double fraction : curve.fraction) {
+    power.x.push_back(curve.last_frequency_hz * static_cast<double>(power.x.size()) / steps);
+    power.y.push_back(fraction);
+  }
+  for (const double offset : {-curve.limit, curve.limit}) {
+    Trace bound = empty_trace(Trace::Kind::line, "reference");
+    bound.x = {0.0, curve.last_frequency_hz};
+    bound.y = {offset, 1.0 + offset};
+    plot.traces.push_back(std::move(bound));
+  }
+  plot.traces.push_back(std::move(power));
+  return plot;
+}
+
+/// Returns the figures that show how a residual differs from white noise, folded. They are not on
+/// paper, where the autocorrelation and the periodogram stand for them.
+std::optional<doc::Fold> whiteness_fold(const StoredResidualCurves& curves) {
+  doc::Gallery gallery;
+  if (curves.partial_autocorrelation) {
+    Plot plot = correlation_plot(*curves.partial_autocorrelation, "partial autocorrelation", true);
+    plot.title += ", with the 95 % band of white noise";
+    gallery.figures.push_back(
+        figure_of(std::move(plot), "Which lags add to what the shorter ones explain?"));
+  }
+  if (curves.cumulative_periodogram)
+    gallery.figures.push_back(figure_of(cumulative_plot(*curves.cumulative_periodogram),
+                                        "At which frequencies is there too much power?"));
+  if (gallery.figures.empty()) return std::nullopt;
+  doc::Fold fold{"Partial autocorrelation and cumulative periodogram", {std::move(gallery)}};
+  fold.style = "screen";
+  fold.blocks.emplace_back(doc::reading(
+      "Dashed: 95 % bounds of white noise, for a single lag and for the whole cumulative curve."));
+  return fold;
+}
+
 doc::Mark mark_of(metrics::TestOutcome outcome) {
   switch (outcome) {
     case metrics::TestOutcome::passed:
@@ -118,6 +161,7 @@ void add_residual_tests(const StoredCondition& condition, const StoredChannelCur
     for (Plot& plot : test_plots(**found, channel_unit(channel)))
       gallery.figures.push_back(figure_of(std::move(plot)));
     blocks.emplace_back(std::move(gallery));
+    if (auto fold = whiteness_fold(**found)) blocks.emplace_back(std::move(*fold));
   }
 }
 

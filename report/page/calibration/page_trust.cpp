@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "report/document/quantity.hpp"
+#include "report/figure/monotone_curve.hpp"
 #include "report/page/calibration/fit_sections.hpp"
 #include "report/page/page_parts.hpp"
 #include "report/text/readable.hpp"
@@ -35,7 +36,8 @@ std::string end_words(const calib::ProfileEnd& end, const ReadableUnit& unit, co
 Plot profile_plot(const StoredParameter& parameter, const calib::Profile& profile) {
   const ReadableUnit unit = unit_of(parameter);
   Plot plot;
-  plot.title = fmt::format("Profile of {}", parameter_label(parameter));
+  plot.title = fmt::format("Profile of {}: the followed points, and a curve through them",
+                           parameter_label(parameter));
   plot.x_label = unit.name.empty() ? parameter_label(parameter)
                                    : fmt::format("{} [{}]", parameter_label(parameter), unit.name);
   plot.y_label = "rise of the cost; 1: end of the interval";
@@ -54,6 +56,9 @@ Plot profile_plot(const StoredParameter& parameter, const calib::Profile& profil
   Trace points = trace;
   points.kind = Trace::Kind::points;
   points.style = "model";
+  DrawnCurve curve = monotone_curve(points.x, points.y);
+  trace.x = std::move(curve.x);
+  trace.y = std::move(curve.y);
   plot.traces = {std::move(trace), std::move(points)};
   return plot;
 }
@@ -164,6 +169,7 @@ void add_profiles(const StoredFit& fit, doc::Blocks& blocks) {
   for (const StoredParameter& p : fit.parameters) {
     if (!p.profile) continue;
     doc::Figure figure{[p] { return profile_plot(p, *p.profile); }};
+    figure.caption = fmt::format("How far can {} move?", parameter_label(p));
     figure.reading = profile_reading(p, *p.profile);
     gallery.figures.push_back(std::move(figure));
   }

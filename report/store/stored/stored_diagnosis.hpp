@@ -71,6 +71,9 @@ struct StoredState {
                   left_out, leak, leak_area_m2, leak_area_ci95_m2, duty, nearest_limit, agreement)
 };
 
+/// Predictions are limited to this multiple of the observed time span.
+inline constexpr double kAhead = 3.0;
+
 /// Predicted dates at which a growing leak reaches the next class limit.
 struct StoredNextLimit {
   datasets::LeakClass class_ = datasets::LeakClass::normal;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 #include "report/text/readable.hpp"
 
@@ -116,6 +117,14 @@ StoredResidualCurves curves_of(const metrics::ResidualTests& tests) {
   }
   curves.periodogram = {tests.periodogram.frequency_hz, tests.periodogram.density};
   curves.normality = {tests.normality.normal_quantile, tests.normality.residual_quantile};
+  // Not thinned: the order of a model is the number of the last lag beyond the band.
+  StoredCorrelogram partial;
+  partial.first_lag_s = partial.lag_step_s = tests.sample_interval_s;
+  partial.band = tests.autocorrelation.band;
+  partial.values = tests.autocorrelation.partial;
+  curves.partial_autocorrelation = std::optional(std::move(partial));
+  curves.cumulative_periodogram = std::optional(StoredCumulative{
+      tests.periodogram.last_frequency_hz, tests.periodogram.limit, tests.periodogram.cumulative});
   return curves;
 }
 

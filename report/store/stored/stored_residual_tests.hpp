@@ -69,13 +69,24 @@ struct StoredQuantiles {
   RIGCAL_DESCRIBE(normal_quantile, residual_quantile)
 };
 
+/// Fraction of the power up to each frequency. The frequencies are equally spaced from zero.
+struct StoredCumulative {
+  double last_frequency_hz = 0.0;
+  double limit = 0.0;  ///< 5 % critical distance from the straight line of white noise
+  std::vector<double> fraction;
+  RIGCAL_DESCRIBE(last_frequency_hz, limit, fraction)
+};
+
 /// The curves on which the tests of one channel are based.
 struct StoredResidualCurves {
   StoredCorrelogram autocorrelation;
   std::optional<StoredCorrelogram> cross_correlation;
   StoredSpectrum periodogram;
   StoredQuantiles normality;
-  RIGCAL_DESCRIBE(autocorrelation, cross_correlation, periodogram, normality)
+  Later<std::optional<StoredCorrelogram>> partial_autocorrelation;
+  Later<std::optional<StoredCumulative>> cumulative_periodogram;
+  RIGCAL_DESCRIBE(autocorrelation, cross_correlation, periodogram, normality,
+                  partial_autocorrelation, cumulative_periodogram)
 };
 
 /// Curves by channel; null if the residual was not tested.

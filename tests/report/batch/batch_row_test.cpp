@@ -331,6 +331,35 @@ TEST_CASE("batch: the line of a trend is drawn where it is", "[report]") {
   REQUIRE(points.y.size() == 2);
   CHECK(line.x == points.x);
   for (std::size_t i = 0; i < 2; ++i) CHECK_THAT(line.y.at(i), Catch::WithinAbs(points.y[i], 1e-9));
+  CHECK(trace_of(Trace::Kind::band).x.empty());  // these points have no errors
+}
+
+TEST_CASE("batch: the line of a trend has its 95 % band", "[report]") {
+  StoredRigTrend trend = trend_of("rig", 1e-3, true);
+  trend.series.along_date.intercept = -20.0;
+  trend.series.along_date.standard_error = 2.5e-4;  // the interval is twice this error wide
+  for (const double day : {20000.0, 20050.0, 20100.0}) {
+    StoredTrendPoint& point = trend.series.points.emplace_back();
+    point.day = day;
+    point.value = 1e-3 * day - 20.0;
+    point.standard_error = 0.01;
+  }
+  StoredBatch batch;
+  batch.rigs = {rig_of("a", FitStatus::converged, Verdict::pass, 0)};
+  batch.rigs.front().trends = {trend};
+  const auto figures = batch_figures(batch);
+  REQUIRE(figures.size() == 1);
+  const Trace& band = figures.front().plot.traces.front();
+  REQUIRE(band.kind == Trace::Kind::band);
+  CHECK(band.x.front() == 0.0);
+  CHECK(band.x.back() == 100.0);
+  // At an end: 2 sqrt(0.01^2 / 3 + (2.5e-4 * 50)^2); in the middle, only the first term.
+  const auto half_at = [&](std::size_t i) { return 0.5 * (band.upper[i] - band.y[i]); };
+  const double level = 2.0 * 0.01 / std::sqrt(3.0);
+  const double scale = half_at(band.x.size() / 2) / level;  // unit of the axis
+  CHECK_THAT(half_at(0), Catch::WithinRel(scale * std::hypot(level, 2.0 * 0.0125), 1e-6));
+  CHECK_THAT(half_at(band.x.size() - 1), Catch::WithinRel(half_at(0), 1e-6));
+  CHECK_THAT(scale, Catch::WithinRel(1.0, 1e-6));
 }
 
 TEST_CASE("batch: a CSV line for each rig, columns for every estimate of any", "[report]") {

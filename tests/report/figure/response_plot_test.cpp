@@ -72,3 +72,28 @@ TEST_CASE("phase_plot: runs on beyond half a turn, and the model with it", "[rep
         std::vector<double>{-100, -170, -210, -270});
   CHECK(trace_of(plot, "model", Trace::Kind::line).y == std::vector<double>{-90, -185, -200, -260});
 }
+
+TEST_CASE("response plots: conditions together, without a line from one to the next", "[report]") {
+  ResponseCurves slow;
+  slow.unit = "mm/V";
+  slow.si_per_unit = 1e-3;
+  slow.record = {response_point(1, 2e-3, -100, 1), response_point(3, 1e-3, 150, 1)};
+  slow.model = {response_point(1, 2e-3, -90, 1), response_point(3, 1e-3, 160, 1)};
+  ResponseCurves fast = slow;
+  fast.si_per_unit = 1.0;  // the unit of the first is used
+  fast.record = {response_point(2, 1.5e-3, -170, 1)};
+  fast.model = {response_point(2, 1.4e-3, -175, 1)};
+  const std::vector<ResponseCurves> all{slow, fast};
+  const Plot gain = gain_plot("2 conditions", all);
+  CHECK_THAT(gain.title, Catch::Contains("2 conditions"));
+  const Trace& line = trace_of(gain, "model", Trace::Kind::line);
+  REQUIRE(line.x.size() == 4);
+  CHECK(std::isnan(line.x[2]));
+  CHECK_THAT(line.y[3], WithinAbs(1.4, 1e-12));
+  // 150 degrees at 3 Hz follow -170 at 2 Hz, although these belong to another condition.
+  const Plot together = phase_plot("2 conditions", all);
+  const Trace& phase = trace_of(together, "measured", Trace::Kind::points);
+  CHECK(phase.y[0] == -100.0);
+  CHECK(phase.y[1] == -210.0);
+  CHECK(phase.y[3] == -170.0);
+}

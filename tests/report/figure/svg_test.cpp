@@ -77,10 +77,10 @@ TEST_CASE("svg: categories have their names below them, cut where they do not fi
   plot.width = 274.0;  // two categories with 100 pixels each
   plot.x_label = "signal";
   plot.x_names = {"sine 2 Hz", "random noise with a very long name"};
-  plot.traces = {{"", "model", Trace::Kind::points, {1.0, 2.0}, {0.0, 1.0}, {}}};
+  plot.traces = {{"", "model", Trace::Kind::points, {1.0, 2.0}, {0.0, 0.5}, {}}};
   const std::string text = svg(plot);
   CHECK_THAT(text, Contains("x=\"114.0\"") && Contains(">sine 2 Hz</text>"));
-  CHECK_THAT(text, Contains(">random noise</text>") && Contains(">with a very lo…</text>"));
+  CHECK_THAT(text, Contains(">random noise</text>") && Contains(">with a very lon…</text>"));
   // Points are in the middle of their categories.
   CHECK_THAT(text, Contains("cx=\"114.0\"") && Contains("cx=\"214.0\""));
   CHECK_THAT(text, !Contains(">1</text>"));

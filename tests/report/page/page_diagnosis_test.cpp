@@ -46,3 +46,75 @@ TEST_CASE("diagnosis_figures: shares stand at their signals, not in the order of
   CHECK_THAT(found.x[2], WithinAbs(2.0, 1e-12));
   CHECK(trace_of(plot, Trace::Kind::intervals).x == found.x);
 }
+
+namespace {
+
+/// A leak of 4, 5 and 6 % after 0, 10 and 20 days, with a rate of 0.05 to 0.2 % per day.
+StoredDiagnosis growing_leak() {
+  StoredDiagnosis diagnosis;
+  double share = 4.0;
+  for (const char* date : {"2026-01-01", "2026-01-11", "2026-01-21"}) {
+    StoredState& state = diagnosis.states.emplace_back();
+    state.date = date;
+    state.specimen = "A";
+    state.leak.leak_share_percent = share;
+    state.leak.leak_share_ci95_percent = {share - 0.2, share + 0.2};
+    share += 1.0;
+  }
+  diagnosis.states.push_back(diagnosis.states.back());
+  diagnosis.states.back().specimen = "another machine";
+  diagnosis.states.back().leak.leak_share_percent = 50.0;
+  StoredLeakTrend& trend = diagnosis.trends.emplace_back();
+  trend.specimen = "A";
+  trend.first_date = "2026-01-01";
+  trend.last_date = "2026-01-21";
+  trend.share_percent_per_day = 0.1;
+  trend.share_percent_per_day_ci95 = {0.05, 0.2};
+  trend.next_limit = {rigcal::datasets::LeakClass::medium, 10.0, "2026-03-02", "2026-02-10",
+                      "2026-04-11"};
+  return diagnosis;
+}
+
+/// Returns the trend's figure.
+Plot trend_plot_of(const StoredDiagnosis& diagnosis) {
+  const auto figures = diagnosis_figures(diagnosis);
+  REQUIRE(figures.size() == 1);
+  CHECK(figures[0].name.starts_with("diagnosis_trend"));
+  return figures[0].plot;
+}
+
+}  // namespace
+
+TEST_CASE("diagnosis_figures: a trend leads to the limit within the foreseen days", "[report]") {
+  const Plot plot = trend_plot_of(growing_leak());
+  CHECK(plot.levels == std::vector<double>{10.0});
+  const Trace& found = trace_of(plot, Trace::Kind::points);
+  CHECK(found.x == std::vector<double>{0.0, 10.0, 20.0});
+  CHECK(found.y == std::vector<double>{4.0, 5.0, 6.0});
+  // The line reaches the limit after 60 days; the edges of the band, after 40 and 100.
+  const Trace& band = trace_of(plot, Trace::Kind::band);
+  const Trace& line = trace_of(plot, Trace::Kind::line);
+  const Trace& reached = plot.traces.back();
+  const Trace& interval = plot.traces[plot.traces.size() - 2];
+  CHECK(reached.x == std::vector<double>{60.0});
+  CHECK(interval.x == std::vector<double>{40.0, 80.0});  // 80: four times the 20 days observed
+  CHECK(band.x.back() == 80.0);
+  CHECK_THAT(band.upper.back(), WithinAbs(6.0 + 0.2 * 60.0, 1e-12));
+  CHECK_THAT(band.y.back(), WithinAbs(6.0 + 0.05 * 60.0, 1e-12));
+  CHECK_THAT(band.upper.front(), WithinAbs(6.0 - 0.05 * 20.0, 1e-12));
+  CHECK_THAT(line.y.back(), WithinAbs(12.0, 1e-12));
+}
+
+TEST_CASE("diagnosis_figures: a limit too far ahead is not drawn", "[report]") {
+  StoredDiagnosis diagnosis = growing_leak();
+  diagnosis.trends[0].next_limit->reached = "2026-03-23";  // after 81 days
+  Plot plot = trend_plot_of(diagnosis);
+  CHECK(plot.levels.empty());
+  CHECK(trace_of(plot, Trace::Kind::line).x.back() == 20.0);
+  diagnosis = growing_leak();
+  diagnosis.trends[0].next_limit->latest.reset();  // may never be reached
+  plot = trend_plot_of(diagnosis);
+  CHECK(plot.traces[plot.traces.size() - 2].x == std::vector<double>{40.0, 80.0});
+  diagnosis.states.clear();
+  CHECK(diagnosis_figures(diagnosis).empty());
+}

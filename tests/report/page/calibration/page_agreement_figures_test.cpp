@@ -2,7 +2,11 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <memory>
 #include <numbers>
+#include <string>
+
+#include "report/page/calibration/fit_sections.hpp"
 
 using namespace rigcal::report;
 using Catch::Contains;
@@ -77,4 +81,31 @@ TEST_CASE("channel_agreements: says why there is no gain and phase", "[report]")
 TEST_CASE("channel_agreements: none of a few samples, or of no model", "[report]") {
   CHECK(channel_agreements("c", 2.0, driven(0.3, 2.0)).empty());
   CHECK(channel_agreements("c", 2.0, Table{}).empty());
+}
+
+TEST_CASE("rig_response_figures: the responses of all conditions in one", "[report]") {
+  Calibration stored;
+  for (const double frequency_hz : {1.0, 2.0, 4.0}) {
+    StoredCondition& condition = stored.result.conditions.emplace_back();
+    condition.id = "sine" + std::to_string(stored.result.conditions.size());
+    condition.waveform = std::optional(rigcal::datasets::Waveform::sine);
+    condition.frequency_hz = std::optional(frequency_hz);
+    condition.metrics.emplace_back("position", StoredScore{});
+  }
+  stored.series = [](std::size_t i) {
+    return std::make_shared<const Table>(driven(5.0, std::pow(2.0, static_cast<double>(i))));
+  };
+  const auto figures = rig_response_figures(stored);
+  REQUIRE(figures.size() == 2);
+  CHECK(figures[0].name == "rig_position_gain");
+  CHECK(figures[1].name == "rig_position_phase");
+  // The model lags by 10 ms. Between conditions is a gap.
+  const Trace& model = figures[1].plot.traces.front();
+  REQUIRE(model.x.size() == 5);
+  CHECK_THAT(model.y[0], Catch::WithinAbs(-3.6, 0.01));
+  CHECK_THAT(model.y[2], Catch::WithinAbs(-7.2, 0.01));
+  CHECK_THAT(model.y[4], Catch::WithinAbs(-14.4, 0.01));
+  CHECK(std::isnan(model.x[1]));
+  stored.result.conditions.resize(1);
+  CHECK(rig_response_figures(stored).empty());  // a single frequency
 }

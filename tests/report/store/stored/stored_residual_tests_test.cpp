@@ -6,6 +6,9 @@
 #include <numbers>
 #include <random>
 
+#include "report/document/render_html.hpp"
+#include "report/page/calibration/fit_sections.hpp"
+
 using Catch::Contains;
 using rigcal::metrics::residual_tests;
 using rigcal::report::Json;
@@ -122,4 +125,42 @@ TEST_CASE("stored residual tests: the curve of the cross-correlation lies about 
   const double lag_s = curve["first_lag_s"].get<double>() +
                        static_cast<double>(peak) * curve["lag_step_s"].get<double>();
   CHECK_THAT(lag_s, Catch::WithinAbs(0.03, 1e-9));
+}
+
+TEST_CASE("stored residual tests: curves of whiteness are stored, and may be missing", "[report]") {
+  rigcal::calib::Fit fit;
+  fit.conditions.emplace_back().id = "sine";
+  const auto tests = residual_tests(white(1000, 21), white(1000, 22), 0.01);
+  fit.conditions[0].channels.emplace_back().residual_tests = tests;
+  const rigcal::datasets::Campaign campaign;
+  const std::vector<rigcal::datasets::Record> records;
+  const rigcal::report::Provenance provenance;
+  const auto curves = rigcal::report::stored_curves(
+      {rigcal::report::ResultKind::fit, campaign, records, fit, provenance});
+  Json json = json_of(curves);
+  Json& channel = json["conditions"]["sine"]["position"];
+  // Lag 1 is the first value.
+  CHECK(channel["partial_autocorrelation"]["first_lag_s"] == 0.01);
+  CHECK(channel["partial_autocorrelation"]["values"].size() == 50);
+  CHECK(channel["partial_autocorrelation"]["band"] == channel["autocorrelation"]["band"]);
+  CHECK(channel["cumulative_periodogram"]["limit"] == tests.periodogram.limit);
+  CHECK(channel["cumulative_periodogram"]["fraction"].size() == 51);
+  rigcal::report::StoredCondition condition;
+  condition.id = "sine";
+  condition.residual_tests.emplace_back("position", rigcal::report::stored(tests, "m"));
+  const auto page_with = [&](const rigcal::report::StoredChannelCurves& shown) {
+    rigcal::report::doc::Blocks blocks;
+    rigcal::report::add_residual_tests(condition, &shown, blocks);
+    std::string html;
+    rigcal::report::doc::render_html(blocks, html);
+    return html;
+  };
+  auto shown = curves.conditions[0].second;
+  CHECK_THAT(page_with(shown),
+             Contains("At which frequencies is there too much power?") &&
+                 Contains("partial autocorrelation, with the 95 % band of white noise"));
+  // Files of earlier versions have no such curves.
+  shown[0].second->partial_autocorrelation.reset();
+  shown[0].second->cumulative_periodogram.reset();
+  CHECK_THAT(page_with(shown), !Contains("too much power") && Contains("periodogram"));
 }
