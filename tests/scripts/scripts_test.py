@@ -126,6 +126,13 @@ class Scripts(unittest.TestCase):
         make_program(program, "#!/bin/sh\necho ERROR: found\nexit 77\n")
         self.assertIn("csv: found something", self.run_script("fuzz", "--seconds", "1", "csv", fails=True))
 
+    def test_minimum_study(self):
+        campaign = "excavator_dspace/boom_up_two_records.toml"
+        if not (DATA / campaign).is_file():
+            self.skipTest(f"no {campaign} in {DATA}")
+        self.assertIn("1 of 1 campaigns end within", self.run_script("minimum-study", DATA, campaign))
+        self.assertIn("no campaign unknown.toml", self.run_script("minimum-study", DATA, "unknown.toml", fails=True))
+
     def test_paper_figures(self):
         if not shutil.which("gnuplot"):
             make_program(self.programs / "gnuplot", "#!/bin/sh\nfor n in 5 8 9 10 11; do cp figure$n.csv figure$n.svg; done\n")
