@@ -260,6 +260,18 @@ TEST_CASE("export: every term that an FMU can have is in it", "[apps]") {
     folder.write("campaign.toml", edited(kTwoChamber, edits));
     require_both(folder, "command", {{"sine", sine(1.0)}, {"square", square(1.0)}});
   }
+  SECTION("pre-sliding on a lubricant film") {
+    Edits edits = kTwoChamberGeneratedRuns;
+    edits.push_back(
+        {"stroke = \"200 mm\"",
+         "stroke = \"200 mm\"\nvalve_time_constant = \"3 ms\"\ncoulomb_friction = \"20 "
+         "N\"\nstribeck_friction = \"10 N\"\nseal_friction = \"5 mm2\"\nbristle_stiffness = "
+         "\"2e5 N/m\"\nbristle_damping = \"50 N s/m\"\nfilm_velocity = \"50 "
+         "mm/s\"\nfilm_growth_time = \"50 ms\"\nfilm_decay_time = \"0.2 s\"\nfilm_dwell_time = "
+         "\"5 s\""});
+    folder.write("campaign.toml", edited(kTwoChamber, edits));
+    require_both(folder, "command", {{"sine", sine(1.0)}, {"square", square(1.0)}});
+  }
   SECTION("edges by a table, with warm oil") {
     Edits edits = kTwoChamberGeneratedRuns;
     edits.push_back({"leakage_coefficient = 0",
