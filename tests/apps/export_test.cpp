@@ -38,6 +38,10 @@ const std::string kLoadTable =
     "load_table_from = \"-15 mm\"\nload_table_to = \"16 mm\"\nload_0 = \"90 N\"\nload_20 = \"-50 "
     "N\"\nload_40 = \"70 N\"\nload_60 = \"-30 N\"\nload_80 = \"40 N\"\nload_100 = \"-60 N\"\n";
 
+const std::string kWarmOil =
+    "reference_temperature = \"40 degC\"\noil_temperature = \"55 degC\"\nviscosity_decay = "
+    "\"0.03 1/K\"\nthermal_expansion = \"7e-4 1/K\"\nbulk_modulus_decay = \"5.5e-3 1/K\"\n";
+
 /// The condition "square" of both campaigns. At 1 Hz its edges are at half seconds.
 Drive square(double amplitude) {
   return [amplitude](double t) { return std::fmod(t + 1e-9, 1.0) < 0.5 ? amplitude : -amplitude; };
@@ -228,6 +232,56 @@ TEST_CASE("export: every term that an FMU can have is in it", "[apps]") {
          "s/m3\"\nsupply_capacity = \"1e-12 m3/Pa\"\nhose_capacity_a = \"1e-13 "
          "m3/Pa\"\nhose_yield = \"5 bar\"\nstop_stiffness = \"1e6 N/m\"\nstop_damping = \"1 "
          "s/m\""});
+    folder.write("campaign.toml", edited(kTwoChamber, edits));
+    require_both(folder, "command", {{"sine", sine(1.0)}, {"square", square(1.0)}});
+  }
+  SECTION("feed-forward, inner feedback, seals and a leak in one law, with warm oil") {
+    Edits edits = kGeneratedRuns;
+    edits.push_back({"leakage_coefficient = 0.3",
+                     "leakage_coefficient = 0.3\nleakage_resistance = \"2e10 Pa "
+                     "s/m3\"\ncoulomb_friction = \"30 N\"\nseal_friction = \"20 mm2\"\n" +
+                         kWarmOil});
+    edits.push_back({"kp = \"1000 V/m\"",
+                     "kp = \"400 V/m\"\nki = \"500 V/(m s)\"\nderivative_filter = \"300 "
+                     "rad/s\"\nvelocity_feedforward = \"4 V s/m\"\nacceleration_feedforward = "
+                     "\"0.02 V s2/m\"\npressure_feedback = \"5e-8 V/Pa\"\noutput_limit = \"5 V\""});
+    folder.write("campaign.toml", edited(kCampaign, edits));
+    require_both(folder, "reference", {{"sine", sine(0.005)}, {"square", square(0.004)}});
+  }
+  SECTION("edges by a power, with seals") {
+    Edits edits = kTwoChamberGeneratedRuns;
+    edits.push_back({"leakage_coefficient = 0",
+                     "leakage_coefficient = 0.05\nleakage_resistance = \"5e11 Pa s/m3\""});
+    edits.push_back(
+        {"stroke = \"200 mm\"",
+         "stroke = \"200 mm\"\nvalve_exponent = 1.6\nvalve_range = \"2 V\"\nvalve_time_constant "
+         "= \"3 ms\"\ncoulomb_friction = \"20 N\"\nstribeck_friction = \"10 N\"\nseal_friction = "
+         "\"5 mm2\""});
+    folder.write("campaign.toml", edited(kTwoChamber, edits));
+    require_both(folder, "command", {{"sine", sine(1.0)}, {"square", square(1.0)}});
+  }
+  SECTION("pre-sliding on a lubricant film") {
+    Edits edits = kTwoChamberGeneratedRuns;
+    edits.push_back(
+        {"stroke = \"200 mm\"",
+         "stroke = \"200 mm\"\nvalve_time_constant = \"3 ms\"\ncoulomb_friction = \"20 "
+         "N\"\nstribeck_friction = \"10 N\"\nseal_friction = \"5 mm2\"\nbristle_stiffness = "
+         "\"2e5 N/m\"\nbristle_damping = \"50 N s/m\"\nfilm_velocity = \"50 "
+         "mm/s\"\nfilm_growth_time = \"50 ms\"\nfilm_decay_time = \"0.2 s\"\nfilm_dwell_time = "
+         "\"5 s\""});
+    folder.write("campaign.toml", edited(kTwoChamber, edits));
+    require_both(folder, "command", {{"sine", sine(1.0)}, {"square", square(1.0)}});
+  }
+  SECTION("edges by a table, with warm oil") {
+    Edits edits = kTwoChamberGeneratedRuns;
+    edits.push_back({"leakage_coefficient = 0",
+                     "leakage_coefficient = 0.05\nleakage_resistance = \"5e11 Pa s/m3\""});
+    edits.push_back(
+        {"stroke = \"200 mm\"",
+         "stroke = \"200 mm\"\nvalve_range = \"1.2 V\"\nopening_20 = 0.06\nopening_40 = "
+         "0.2\nopening_60 = 0.45\nopening_80 = 0.7\nvalve_time_constant = \"3 "
+         "ms\"\nexternal_leakage_a = \"1e-13 m3/(s Pa)\"\n" +
+             kWarmOil});
     folder.write("campaign.toml", edited(kTwoChamber, edits));
     require_both(folder, "command", {{"sine", sine(1.0)}, {"square", square(1.0)}});
   }

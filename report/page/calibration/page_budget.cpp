@@ -126,7 +126,8 @@ void add_score_budgets(const StoredCondition& condition, doc::Blocks& blocks) {
       const calib::Budget95* budget = find(by_metric, std::string(metric.name));
       if (budget == nullptr || scores == nullptr) continue;
       ReadableUnit unit{metric.unit == "1" ? std::string() : std::string(metric.unit), 1.0};
-      if (metric.unit == "channel") unit = row_unit(scores->*metric.value, channel_unit(channel));
+      if (metric.unit == "channel")
+        unit = readable_unit(scores->*metric.value, channel_unit(channel));
       budgets.push_back(
           {fmt::format("{} of {}", metric.title, spaced(channel)), std::move(unit), budget});
     }

@@ -1,11 +1,14 @@
 // Tests loops on position, force, load pressure and acceleration, and the inner feedback of the
-// load pressure (docs/model.md).
+// load pressure, also against an integrator of another kind (docs/model.md, section 3).
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 
 #include "model/plant/layout.hpp"
 #include "model/plant/load_pressure.hpp"
+#include "tests/model/both_methods.hpp"
+#include "tests/model/runge_kutta.hpp"
 #include "tests/model/two_chamber_rig.hpp"
 
 using namespace rigcal::model;
@@ -18,12 +21,12 @@ struct Loop {
   Feedback feedback;
   Output controlled;
   double amplitude;
-  double kp, ki;  ///< low gains
+  double kp, ki, kd;  ///< low gains
 };
-constexpr Loop kLoops[] = {{Feedback::position, Output::position, 0.01, 80.0, 400.0},
-                           {Feedback::force, Output::force, 2e3, 5e-5, 1e-3},
-                           {Feedback::load_pressure, Output::load_pressure, 1e6, 8e-8, 2e-6},
-                           {Feedback::acceleration, Output::acceleration, 20.0, 9e-3, 0.1}};
+constexpr Loop kLoops[] = {{Feedback::position, Output::position, 0.01, 80.0, 400.0, 0.3},
+                           {Feedback::force, Output::force, 2e3, 5e-5, 1e-3, 5e-8},
+                           {Feedback::load_pressure, Output::load_pressure, 1e6, 8e-8, 2e-6, 8e-11},
+                           {Feedback::acceleration, Output::acceleration, 20.0, 9e-3, 0.1, 1e-5}};
 
 Experiment loop_on(const Loop& loop, Experiment e = {}) {
   e.rig.feedback = loop.feedback;
@@ -38,6 +41,28 @@ Experiment loop_on(const Loop& loop, Experiment e = {}) {
 
 double reference(const Loop& loop, double t) {
   return loop.amplitude * std::sin(2.0 * kPi * 3.0 * t);
+}
+
+constexpr double kLoopFilter_rad_per_s = 300.0;
+constexpr double kInnerFeedback_v_per_pa = 3e-8;
+constexpr double kLoopValveLag_s = 2e-3;
+
+/// loop_on() with all gains, inner feedback and a valve that lags.
+Experiment whole_loop(const Loop& loop, const Experiment& rig) {
+  Experiment e = loop_on(loop, rig);
+  e.set(gain_keys(loop.feedback).ki, loop.ki).set(gain_keys(loop.feedback).kd, loop.kd);
+  e.set("derivative_filter", kLoopFilter_rad_per_s);
+  e.set("pressure_feedback", kInnerFeedback_v_per_pa);
+  e.set("valve_time_constant", kLoopValveLag_s);
+  e.times_s = grid(0.0, 0.6, 13);
+  return e;
+}
+
+/// Command of whole_loop(), stated for the tests.
+double own_command(const Loop& loop, double error, double integral, double filtered_error,
+                   double load_pressure_pa) {
+  return loop.kp * error + integral + loop.kd * kLoopFilter_rad_per_s * (error - filtered_error) -
+         kInnerFeedback_v_per_pa * load_pressure_pa;
 }
 
 }  // namespace
@@ -86,6 +111,104 @@ TEST_CASE("feedback: pressure feedback damps what rings", "[model]") {
   const double rings = peak(e().outputs);
   e.set("pressure_feedback", 2e-7);
   CHECK(peak(e().outputs) < 0.2 * rings);
+}
+
+TEST_CASE("feedback: a loop on any quantity follows an integrator of another kind", "[model]") {
+  for (const Loop& loop : kLoops) {
+    Experiment e = whole_loop(loop, {});
+    e.set("stiffness", 1e5).set("damping", 3000.0).set("leakage_coefficient", 0.0);
+    e.outputs = {Output::position, Output::velocity, Output::load_pressure, Output::command};
+    CAPTURE(gain_keys(loop.feedback).name);
+    using Point = std::array<double, 6>;  // ..., load pressure, valve, integral, filtered error
+    const auto acceleration = [](const Point& x) {
+      return (1.62e-3 * x[2] - 3000.0 * x[1] - 1e5 * x[0]) / 85.0;
+    };
+    const auto error = [&](const Point& x, double t) {
+      switch (loop.feedback) {
+        case Feedback::force:
+          return reference(loop, t) - 1.62e-3 * x[2];
+        case Feedback::load_pressure:
+          return reference(loop, t) - x[2];
+        case Feedback::acceleration:
+          return reference(loop, t) - acceleration(x);
+        default:
+          return reference(loop, t) - x[0];
+      }
+    };
+    const auto command = [&](const Point& x, double t) {
+      return own_command(loop, error(x, t), x[4], x[5], x[2]);
+    };
+    const auto rates = [&](const Point& x, double t) {
+      const double head = 6.2e6 - std::copysign(x[2], x[3] * x[2]);
+      const double flow = 0.6 * 0.02075 * 0.0406e-3 * x[3] * rounded_root(head) / std::sqrt(847.0);
+      return Point{x[1],
+                   acceleration(x),
+                   4.0 * 689e6 / 2.46888e-4 * (flow - 1.62e-3 * x[1]),
+                   (command(x, t) - x[3]) / kLoopValveLag_s,
+                   loop.ki * error(x, t),
+                   kLoopFilter_rad_per_s * (error(x, t) - x[5])};
+    };
+    const Eigen::MatrixXd states = runge_kutta(Point{}, e.times_s, 4000, rates);
+    Eigen::MatrixXd other(13, 4);
+    other.leftCols(3) = states.leftCols(3);
+    for (Eigen::Index i = 0; i < 13; ++i) {
+      Point x;
+      for (std::size_t k = 0; k < x.size(); ++k) x[k] = states(i, static_cast<Eigen::Index>(k));
+      other(i, 3) = command(x, e.times_s[static_cast<std::size_t>(i)]);
+    }
+    REQUIRE(peak(other.col(3)) > 0.03);
+    REQUIRE(peak(other.col(3)) < 10.0);  // below the limit
+    check_both_methods(e, other);
+  }
+}
+
+TEST_CASE("feedback: a loop on the force of unequal areas follows an integrator of another kind",
+          "[model]") {
+  const Loop loop{Feedback::force, Output::force, 8e3, 2e-4, 2e-3, 1e-6};
+  Experiment rig = proportional_rig();
+  rig.rig.controller = ControllerKind::pid;
+  rig.set("stiffness", 2e5).set("valve_dead_band", 0.0).set("output_limit", 10.0);
+  Experiment e = whole_loop(loop, rig);
+  e.outputs = {Output::position, Output::velocity, Output::pressure_a, Output::pressure_b,
+               Output::command};
+  const Simulation start = e();
+  INFO(start.reason);
+  REQUIRE(start.ok());
+  using Point = std::array<double, 7>;  // ..., both pressures, valve, integral, filtered error
+  const auto error = [&](const Point& x, double t) {
+    return reference(loop, t) - (4e-3 * x[2] - 2.4e-3 * x[3]);
+  };
+  const auto command = [&](const Point& x, double t) {
+    return own_command(loop, error(x, t), x[5], x[6], x[2] - x[3]);
+  };
+  const auto rates = [&](const Point& x, double t) {
+    const auto edge = [](double signal, double head_pa) {
+      const double opening = 2e-6 * std::max(signal, 0.0);
+      return 0.65 * 0.02 * std::sqrt(2.0 / 870.0) * opening * rounded_root(head_pa);
+    };
+    const double flow_a = edge(x[4], 2e7 - x[2]) - edge(-x[4], x[2] - 2e5);
+    const double flow_b = edge(-x[4], 2e7 - x[3]) - edge(x[4], x[3] - 2e5);
+    return Point{x[1],
+                 (4e-3 * x[2] - 2.4e-3 * x[3] - 4e4 * x[1] - 2e5 * x[0]) / 2000.0,
+                 8e8 / (1e-3 + 4e-3 * (x[0] + 0.5)) * (flow_a - 4e-3 * x[1]),
+                 8e8 / (1e-3 + 2.4e-3 * (0.5 - x[0])) * (flow_b + 2.4e-3 * x[1]),
+                 (command(x, t) - x[4]) / kLoopValveLag_s,
+                 loop.ki * error(x, t),
+                 kLoopFilter_rad_per_s * (error(x, t) - x[6])};
+  };
+  // A rig at rest starts with its valve closed, although the load pressure is not zero.
+  const Eigen::MatrixXd states = runge_kutta(
+      Point{0.0, 0.0, start.outputs(0, 2), start.outputs(0, 3)}, e.times_s, 4000, rates);
+  Eigen::MatrixXd other(13, 5);
+  other.leftCols(4) = states.leftCols(4);
+  for (Eigen::Index i = 0; i < 13; ++i) {
+    Point x;
+    for (std::size_t k = 0; k < x.size(); ++k) x[k] = states(i, static_cast<Eigen::Index>(k));
+    other(i, 4) = command(x, e.times_s[static_cast<std::size_t>(i)]);
+  }
+  REQUIRE(peak(other.col(4)) > 0.3);
+  REQUIRE(peak(other.col(4)) < 10.0);
+  check_both_methods(e, other);
 }
 
 TEST_CASE("feedback: integral action leaves no error of force and load pressure", "[model]") {

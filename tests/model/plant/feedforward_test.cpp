@@ -1,12 +1,16 @@
-// Tests the feed-forward of a position loop's reference: against closed forms for a sine, and
-// against the ticks of a sampled controller computed step by step (docs/model.md, section 3).
+// Tests the feed-forward of a position loop's reference: against closed forms for a sine, the whole
+// loop against an integrator of another kind, and against the ticks of a sampled controller
+// computed step by step (docs/model.md, section 3).
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
 #include <vector>
 
 #include "model/plant/layout.hpp"
+#include "tests/model/both_methods.hpp"
+#include "tests/model/runge_kutta.hpp"
 #include "tests/model/sensitivity.hpp"
 #include "tests/model/two_chamber_rig.hpp"
 
@@ -53,6 +57,49 @@ TEST_CASE("feedforward: of a sine it is the filtered derivative", "[model]") {
       CHECK_THAT(run.outputs(static_cast<Eigen::Index>(i), 0), WithinAbs(expected, 1e-6));
     }
   }
+}
+
+TEST_CASE("feedforward: a loop follows an integrator of another kind", "[model]") {
+  Experiment e;
+  e.set("kp", 100.0).set("ki", 500.0).set("kd", 0.3).set("derivative_filter", 250.0);
+  e.set("velocity_feedforward", 20.0).set("acceleration_feedforward", 0.08);
+  e.set("valve_time_constant", 2e-3).set("leakage_coefficient", 0.0).set("stiffness", 1e4);
+  e.inputs.drive = Signal::sine(0.008, 5.0);
+  e.times_s = grid(0.0, 0.6, 13);
+  e.outputs = {Output::position, Output::velocity, Output::load_pressure, Output::command};
+  // ..., load pressure, valve, integral, filtered error, filtered reference, its filtered rate
+  using Point = std::array<double, 8>;
+  const auto reference = [](double t) { return 0.008 * std::sin(10.0 * kPi * t); };
+  const auto rate = [&](const Point& x, double t) { return 250.0 * (reference(t) - x[6]); };
+  const auto command = [&](const Point& x, double t) {
+    const double error = reference(t) - x[0];
+    return 100.0 * error + x[4] + 0.3 * 250.0 * (error - x[5]) + 20.0 * rate(x, t) +
+           0.08 * 250.0 * (rate(x, t) - x[7]);
+  };
+  const auto rates = [&](const Point& x, double t) {
+    const double head = 6.2e6 - std::copysign(x[2], x[3] * x[2]);
+    const double flow = 0.6 * 0.02075 * 0.0406e-3 * x[3] * rounded_root(head) / std::sqrt(847.0);
+    const double error = reference(t) - x[0];
+    return Point{x[1],
+                 (1.62e-3 * x[2] - 1000.0 * x[1] - 1e4 * x[0]) / 85.0,
+                 4.0 * 689e6 / 2.46888e-4 * (flow - 1.62e-3 * x[1]),
+                 (command(x, t) - x[3]) / 2e-3,
+                 500.0 * error,
+                 250.0 * (error - x[5]),
+                 rate(x, t),
+                 250.0 * (rate(x, t) - x[7])};
+  };
+  const Eigen::MatrixXd states = runge_kutta(Point{}, e.times_s, 4000, rates);
+  Eigen::MatrixXd other(13, 4);
+  other.leftCols(3) = states.leftCols(3);
+  for (Eigen::Index i = 0; i < 13; ++i) {
+    Point x;
+    for (std::size_t k = 0; k < x.size(); ++k) x[k] = states(i, static_cast<Eigen::Index>(k));
+    other(i, 3) = command(x, e.times_s[static_cast<std::size_t>(i)]);
+  }
+  REQUIRE(peak(other.col(3)) > 1.0);
+  REQUIRE(peak(other.col(3)) < 10.0);  // below the limit
+  check_both_methods(e, other);
 }
 
 TEST_CASE("feedforward: a sampled controller takes it at its ticks", "[model]") {

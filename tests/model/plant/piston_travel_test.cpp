@@ -191,6 +191,18 @@ TEST_CASE("linkage: a polynomial follows the triangle near the reference angle",
   CHECK_THAT(error(0.1) / error(0.2), WithinAbs(1.0 / 8.0, 0.02));  // the first term left out
 }
 
+TEST_CASE("linkage: an arm with its lever by a polynomial follows an integrator of another kind",
+          "[model]") {
+  Experiment e = arm_rig();
+  e.set("lever", 0.3).set("lever_gradient", -0.12).set("lever_curvature", -0.09);
+  check_motion(e, [](double angle) {
+    // The travel is the lever's integral from 0, exactly by Simpson's rule.
+    const auto lever = [](double at) { return 0.3 - 0.12 * at - 0.09 * at * at; };
+    const double travel = angle / 6.0 * (lever(0.0) + 4.0 * lever(0.5 * angle) + lever(angle));
+    return std::array<double, 2>{travel, lever(angle)};
+  });
+}
+
 TEST_CASE("linkage: an arm on a triangle follows an integrator of another kind", "[model]") {
   // The cylinder as a vector from (1.2, 0) to the pivot on the arm: its length, and its moment by
   // the cross product.

@@ -171,6 +171,43 @@ TEST_CASE("fmu variables: states, outputs and rates by their references", "[repo
   for (const FmuVariable& each : variables) CHECK(references.insert(each.reference).second);
 }
 
+TEST_CASE("fmu variables: the rate of every state has a unit that the description knows",
+          "[report]") {
+  struct Row {
+    model::Feedback feedback;
+    std::vector<const char*> terms;
+    const char* rate;
+    const char* unit;
+  };
+  for (const Row& row : {Row{model::Feedback::position,
+                             {"coulomb_friction", "bristle_stiffness"},
+                             "der(bristle_force)",
+                             "N/s"},
+                         Row{model::Feedback::force,
+                             {"force_kp", "force_kd", "derivative_filter"},
+                             "der(controller_filtered_error)",
+                             "N/s"},
+                         Row{model::Feedback::load_pressure,
+                             {"load_pressure_kp", "load_pressure_kd", "derivative_filter"},
+                             "der(controller_filtered_error)",
+                             "Pa/s"},
+                         Row{model::Feedback::acceleration,
+                             {"acceleration_kp", "acceleration_kd", "derivative_filter"},
+                             "der(controller_filtered_error)",
+                             "m/s3"}}) {
+    model::ExportedRig rig = load_rig();
+    rig.rig.feedback = row.feedback;
+    for (const char* key : row.terms) rig.values.set(key, 1.0);
+    const auto variables = variables_of(rig);
+    CAPTURE(row.rate, row.unit);
+    CHECK(named(variables, row.rate).unit == row.unit);
+    for (const FmuVariable& each : variables) {
+      CAPTURE(each.name, each.unit);
+      CHECK_NOTHROW(report::base_units(each.unit));
+    }
+  }
+}
+
 TEST_CASE("fmu variables: what the sampled controller sets at its ticks", "[report]") {
   model::ExportedRig rig = load_rig();
   for (const char* key :
