@@ -116,6 +116,7 @@ void add_outputs(const ExportedRig& rig, std::vector<FmuVariable>& variables) {
 std::string rate_unit(const std::string& unit) {
   if (unit == "s") return "1";
   if (unit == "m/s") return "m/s2";
+  if (unit == "m/s2") return "m/s3";
   if (unit == "rad/s") return "rad/s2";
   if (unit == "Pa/s") return "Pa/s2";
   if (unit == "V/s") return "V/s2";

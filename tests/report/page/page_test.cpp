@@ -239,7 +239,7 @@ TEST_CASE("page: a report that replaces another one says so", "[report]") {
   const std::string html = page(json);
   CHECK_THAT(html,
              Contains("<strong>2026-041, revision B</strong><br>replaces 2026-041, revision A"));
-  // The foot of every sheet tells the revisions apart.
+  // The foot of every sheet names the revision.
   CHECK_THAT(html.substr(html.find("@bottom-left"), 200), Contains("2026-041, revision B"));
   CHECK_THAT(html, Contains("<dt>Received</dt><dd>2026-02-24</dd>") && Contains("rod scored") &&
                        Contains("without preload") &&
