@@ -389,8 +389,11 @@ TEST_CASE("sensitivity: at the tolerance of a fit good to a percent", "[model]")
 }
 
 TEST_CASE("sensitivity: a lag of zero is known by what a lag would change", "[model]") {
-  constexpr double kStep_s = 2e-5;   // truncation in the ringing: (587 rad/s 2e-5 s)^2 / 3 = 5e-5
+  constexpr double kStep_s = 5e-6;
   constexpr double kLeast_s = 1e-6;  // the valve's state follows with at least that
+  // After the edge of a square the pressure crosses zero, where the root of the leak has a kink.
+  // There the differences are of first order: 2.2 % at this step, 5.4 % at four times as much.
+  constexpr double kOfDifferences = 0.04;
   for (const Signal& drive : {Signal::sine(0.006, 9.0), Signal::square(0.004, 8.0)}) {
     for (const char* key : {"valve_time_constant", "position_lag", "load_pressure_lag"}) {
       Experiment e;
@@ -423,7 +426,7 @@ TEST_CASE("sensitivity: a lag of zero is known by what a lag would change", "[mo
           const Eigen::VectorXd exact = run.sensitivities[k].col(0);
           const double noise = 5e-8 * peak(run.outputs.col(column)) / kStep_s;
           CAPTURE(key, lag_s, k, peak(exact));
-          CHECK(peak(exact - expected.col(column)) < 5e-3 * peak(exact) + noise);
+          CHECK(peak(exact - expected.col(column)) < kOfDifferences * peak(exact) + noise);
           has_effect = has_effect || peak(exact) > 100.0 * noise;
         }
         CHECK(has_effect);
