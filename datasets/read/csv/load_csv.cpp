@@ -290,6 +290,8 @@ class RowReader {
   }
 
   std::size_t rows() const { return rows_; }
+  std::size_t left_out() const { return left_out_; }
+  const std::string& first_left_out() const { return first_left_out_; }
 
   /// Sets `cut_short` if the file ends without a newline in the shortest number of its column.
   void judge_end() {
@@ -581,8 +583,11 @@ CsvTable load_csv(const std::filesystem::path& path, const CsvRequest& request) 
     reader.read(line, lines.number());
   }
   if (reader.rows() == 0)
-    throw InputError({header.file, header.line},
-                     "no rows after the header; expected at least one row of numbers");
+    throw InputError(
+        {header.file, header.line},
+        (reader.left_out() > 0 ? "no row has a number in every column: " + reader.first_left_out()
+                               : std::string("no rows after the header")) +
+            "; expected at least one row of numbers");
   if (file.ends_without_newline()) reader.judge_end();
   CsvTable table = reader.take();
   if (header.time) insert_lvm_time(request, header, table);

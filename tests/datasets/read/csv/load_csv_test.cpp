@@ -253,6 +253,8 @@ TEST_CASE("load_csv: rows without a number are left out on request only", "[data
   CHECK_THROWS_WITH(load("t,x,y\ntime,travel,y\n0,a,2\n", tolerant),
                     Contains("no numbers in the first row"));
   CHECK(load("t,x,y\n0,1,2\n", tolerant).left_out.empty());
+  CHECK_THROWS_WITH(load("t,x,y\n0,a,2\n1,b,2\n", tolerant),
+                    Contains("no row has a number in every column: line 2 has 'a' in column 'x'"));
 }
 
 TEST_CASE("load_csv: a clock as time is in seconds since its first stamp", "[datasets]") {
