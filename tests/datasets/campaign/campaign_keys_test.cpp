@@ -106,6 +106,9 @@ const std::map<std::string, json>& companions() {
         {"recording.initial_window", {{"recording", {{"initial", "record"}}}}},
         {"recording.holes", {{"recording", {{"longest_hole", nullptr}}}}},
         {"recording.longest_hole", {{"recording", {{"holes", "bridge"}}}}},
+        {"report.revision", {{"report", {{"number", "17"}}}}},
+        {"report.replaces", {{"report", {{"number", "17"}}}}},
+        {"report.approver_function", {{"report", {{"approver", "A. Head"}}}}},
         {"condition.sweep", chirp},
         {"condition.end_frequency", chirp},
         {"condition.sweep_time", chirp},
@@ -348,6 +351,8 @@ TEST_CASE("campaign keys: reader and schema accept each", "[datasets]") {
     // Tables are covered by the campaigns for their keys. A position cannot be a drive.
     if (find_campaign_table(place.path) != nullptr) continue;
     if (place.path == "recording.channels.position.recognise") continue;
+    // Only a command has a full scale (tests/datasets/campaign/metering_campaign_test.cpp).
+    if (place.row->key == "full_scale") continue;
     CHECK(refusal_of(campaign) == "");
     CHECK(rules().violations(campaign) == "");
   }
