@@ -98,10 +98,10 @@ void add_trend_line(Plot& plot, const calib::EstimateTrend& trend,
                     double si_per_unit) {
   if (!trend.slope || !trend.intercept) return;
   const auto value_at = [&](double place) { return *trend.intercept + *trend.slope * place; };
-  constexpr int kSteps = 32;  // the edges of the band are curved
+  constexpr int kBandPieces = 32;  // the edges of the band are curved
   Trace band = empty_trace(Trace::Kind::band, "model");
-  for (int i = 0; i <= kSteps; ++i) {
-    const double place = places.low + (places.high - places.low) * i / kSteps;
+  for (int i = 0; i <= kBandPieces; ++i) {
+    const double place = places.low + (places.high - places.low) * i / kBandPieces;
     const std::optional<double> half = calib::half_width_of_band(trend, estimates, place);
     if (!half) break;
     band.x.push_back(place);
