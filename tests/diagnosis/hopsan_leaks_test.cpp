@@ -22,7 +22,7 @@ namespace {
 
 const std::string kHopsanRecords = std::string(RIGCAL_RECORDINGS_DIR) + "/sim_hopsan_leaky_servo";
 const std::string kRig = RIGCAL_SOURCE_DIR "/datasets/rigs/hopsan_leaky_servo/";
-constexpr int kRepeats = 3;
+constexpr int kHopsanRepeats = 3;
 
 /// The rig with its known values. Position and both pressures are recorded.
 Campaign known_rig() {
@@ -38,7 +38,7 @@ Campaign known_rig() {
 std::vector<datasets::Repeat> with_noise(const datasets::Repeat& clean,
                                          boost::random::mt19937_64& stream) {
   boost::random::normal_distribution<double> normal;
-  std::vector<datasets::Repeat> repeats(kRepeats, clean);
+  std::vector<datasets::Repeat> repeats(kHopsanRepeats, clean);
   for (datasets::Repeat& repeat : repeats) {
     for (auto& [channel, values] : repeat.values) {
       const double sd = channel == Channel::position ? 0.05e-3 : 1e4;

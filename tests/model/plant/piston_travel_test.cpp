@@ -33,15 +33,16 @@ Experiment with_travel(double from_rad, double to_rad, const std::array<double, 
 
 /// Checks lever and slope against differences of the travel.
 void check_derivatives(const Experiment& e, double angle_rad) {
-  constexpr double kStep = 1e-4;
+  constexpr double kDifference = 1e-4;
   CAPTURE(angle_rad);
   const auto at = piston_travel(e.values, angle_rad);
-  const auto above = piston_travel(e.values, angle_rad + kStep);
-  const auto below = piston_travel(e.values, angle_rad - kStep);
+  const auto above = piston_travel(e.values, angle_rad + kDifference);
+  const auto below = piston_travel(e.values, angle_rad - kDifference);
   CHECK_THAT(at.lever_m_per_rad,
-             WithinAbs((above.travel_m - below.travel_m) / (2.0 * kStep), 1e-7));
-  CHECK_THAT(at.slope_m_per_rad2,
-             WithinAbs((above.lever_m_per_rad - below.lever_m_per_rad) / (2.0 * kStep), 1e-6));
+             WithinAbs((above.travel_m - below.travel_m) / (2.0 * kDifference), 1e-7));
+  CHECK_THAT(
+      at.slope_m_per_rad2,
+      WithinAbs((above.lever_m_per_rad - below.lever_m_per_rad) / (2.0 * kDifference), 1e-6));
 }
 
 /// Motion of arm_rig(), which may have other areas, with the pilot pressure 2.8 MPa sin(2 pi 0.5
