@@ -435,7 +435,7 @@ struct StudyOutcome {
   double worst = 0.0;
   calib::Verdict verdict = calib::Verdict::fail;
   std::string named;  ///< the effect that the residuals indicate first
-  /// For each residual test of the validation record, whether it rejects; only if it was judged.
+  /// For each residual test, how many validation records it rejects of those that it can judge.
   std::array<Tally, kTests.size()> rejected{};
   /// For each metric, how many scores differ from those of the true motion by at most the two-sided
   /// uncertainty.
@@ -603,7 +603,7 @@ std::string ratio(const std::optional<double>& value, double unit) {
   return value ? significant(*value / unit, 2) : "-";
 }
 
-/// Returns the rate of hits in percent, for all tallies together and then for each of them.
+/// Formats the percentages of all tallies together, then of each.
 template <typename Tallies>
 std::string rates(const std::vector<StudyOutcome>& outcomes, Tallies StudyOutcome::*member) {
   const auto in_percent = [](const Tally& tally) {

@@ -6,7 +6,7 @@
 
 namespace rigcal::bench {
 
-/// Campaigns of a study, and where their counts are stored.
+/// Seeds of the campaigns to run, and the file that keeps their counts.
 struct StudyRange {
   std::uint64_t first = 1, last = 1;  ///< seeds; one campaign each
   int threads = 1;

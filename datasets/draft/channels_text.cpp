@@ -23,16 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool converts_to(const std::string& unit, std::string_view to) {
-  if (unit.empty()) return false;
-  try {
-    unit_conversion(unit, to);
-    return true;
-  } catch (const QuantityError&) {
-    return false;
-  }
-}
-
 /// Returns one line of [recording.channels]. If the dimension of the column differs from that of
 /// the channel, the line needs a gain.
 /// @param minus  column for the opposite direction; empty if there is none

@@ -19,7 +19,7 @@ namespace {
 /// Something that a part of a name says.
 struct Token {
   Meaning meaning;
-  bool is_symbol = false;  ///< a single letter
+  bool is_symbol = false;  ///< one letter, such as p for a pressure
 };
 
 /// Quantities, as words name them and as units have them.
@@ -133,19 +133,9 @@ std::vector<Token> tokens_of(std::string_view part, std::span<const Token> befor
 
 // ---- Meaning -------------------------------------------------------------------------------
 
-bool converts(const std::string& unit, std::string_view to) {
-  if (unit.empty()) return false;
-  try {
-    unit_conversion(unit, to);
-    return true;
-  } catch (const QuantityError&) {
-    return false;
-  }
-}
-
 std::optional<Meaning> quantity_of_unit(const std::string& unit) {
   for (const auto& [meaning, si] : kQuantities)
-    if (converts(unit, si)) return meaning;
+    if (converts_to(unit, si)) return meaning;
   return std::nullopt;
 }
 
@@ -179,7 +169,7 @@ struct Reading {
 };
 
 /// Whether a unit is that of a pure number, such as a percentage.
-bool is_share(const std::string& unit) { return converts(unit, "1"); }
+bool is_share(const std::string& unit) { return converts_to(unit, "1"); }
 
 std::optional<Meaning> quantity_in(const Reading& reading) {
   if (reading.of_unit && *reading.of_unit != Meaning::time) return reading.of_unit;
@@ -319,6 +309,16 @@ bool is_gravity(std::string_view unit, const Reading& reading) {
 
 }  // namespace
 
+bool converts_to(const std::string& unit, std::string_view to) {
+  if (unit.empty()) return false;
+  try {
+    unit_conversion(unit, to);
+    return true;
+  } catch (const QuantityError&) {
+    return false;
+  }
+}
+
 ColumnGuess guess_column(const std::string& name, const std::string& unit) {
   std::string own = name;
   Reading reading;
@@ -365,7 +365,7 @@ std::optional<Channel> guess_by_unit(const std::string& unit, std::span<const Ch
       std::pair<std::string_view, Channel>{"m/s2", Channel::acceleration},
       std::pair<std::string_view, Channel>{"K", Channel::temperature}};
   for (const auto& [si, channel] : kChannels)
-    if (converts(unit, si) && std::find(taken.begin(), taken.end(), channel) == taken.end())
+    if (converts_to(unit, si) && std::find(taken.begin(), taken.end(), channel) == taken.end())
       return channel;
   return std::nullopt;
 }

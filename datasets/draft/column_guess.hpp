@@ -12,6 +12,9 @@ namespace rigcal::datasets {
 /// What `ColumnGuess::other` says of the position of a valve's spool.
 inline constexpr std::string_view kSpoolPosition = "the position of a spool";
 
+/// Returns true if values in this unit can be converted to `to`. False if `unit` is empty.
+bool converts_to(const std::string& unit, std::string_view to);
+
 /// Meaning of a column, guessed from its name and unit.
 struct ColumnGuess {
   bool is_time = false;
