@@ -90,13 +90,7 @@ TEST_CASE("feedforward: a loop follows an integrator of another kind", "[model]"
                  250.0 * (rate(x, t) - x[7])};
   };
   const Eigen::MatrixXd states = runge_kutta(Point{}, e.times_s, 4000, rates);
-  Eigen::MatrixXd other(13, 4);
-  other.leftCols(3) = states.leftCols(3);
-  for (Eigen::Index i = 0; i < 13; ++i) {
-    Point x;
-    for (std::size_t k = 0; k < x.size(); ++k) x[k] = states(i, static_cast<Eigen::Index>(k));
-    other(i, 3) = command(x, e.times_s[static_cast<std::size_t>(i)]);
-  }
+  const Eigen::MatrixXd other = with_command<Point>(states, e.times_s, command);
   REQUIRE(peak(other.col(3)) > 1.0);
   REQUIRE(peak(other.col(3)) < 10.0);  // below the limit
   check_both_methods(e, other);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <complex>
 
+#include "tests/model/both_methods.hpp"
 #include "tests/model/runge_kutta.hpp"
 #include "tests/model/sensitivity.hpp"
 #include "tests/model/two_chamber_rig.hpp"
@@ -122,13 +123,7 @@ TEST_CASE("three_variable: a loop follows an integrator of another kind", "[mode
                    generated(x, t)};
     };
     const Eigen::MatrixXd states = runge_kutta(Point{}, e.times_s, 10000, rates);
-    Eigen::MatrixXd other(13, 4);
-    other.leftCols(3) = states.leftCols(3);
-    for (Eigen::Index i = 0; i < 13; ++i) {
-      Point x;
-      for (std::size_t k = 0; k < x.size(); ++k) x[k] = states(i, static_cast<Eigen::Index>(k));
-      other(i, 3) = command(x, e.times_s[static_cast<std::size_t>(i)]);
-    }
+    const Eigen::MatrixXd other = with_command<Point>(states, e.times_s, command);
     REQUIRE(peak(other.col(3)) > 0.5);
     REQUIRE(peak(other.col(3)) < 10.0);  // below the limit
     CHECK(difference(run.outputs, other) < 2e-5);
