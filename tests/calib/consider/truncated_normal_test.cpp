@@ -68,5 +68,27 @@ TEST_CASE("truncated normal: two correlated constraints, against draws", "[calib
   CHECK_THAT(cut.covariance(0, 0), WithinRel(squares / kept - mean * mean, 0.1));
 }
 
+TEST_CASE("truncated normal: no mean below zero, however far out and correlated", "[calib]") {
+  const Eigen::Index count = 6;
+  boost::random::mt19937_64 stream(3);
+  boost::random::normal_distribution<double> draw;
+  for (int trial = 0; trial < 200; ++trial) {
+    Eigen::MatrixXd factor(count, count);
+    for (Eigen::Index i = 0; i < count; ++i)
+      for (Eigen::Index j = 0; j < count; ++j) factor(i, j) = draw(stream);
+    // Precisions from 1e-3 to 1e9 in different directions, and means up to 1e4 below zero.
+    NormalMoments many{Eigen::VectorXd(count), Eigen::MatrixXd()};
+    Eigen::VectorXd sd(count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      many.mean(i) = -std::pow(10.0, 2.0 * draw(stream));
+      sd(i) = std::pow(10.0, 2.0 * draw(stream));
+    }
+    many.covariance = sd.asDiagonal() * (factor * factor.transpose()) * sd.asDiagonal();
+    const auto cut = cut_at_zero(many, {0, 1, 2, 3, 4, 5});
+    INFO("trial " << trial << ": " << cut.mean.transpose());
+    CHECK((cut.mean.array() >= 0.0).all());
+  }
+}
+
 }  // namespace
 }  // namespace rigcal::calib
