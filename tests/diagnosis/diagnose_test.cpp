@@ -264,7 +264,7 @@ TEST_CASE("diagnose: a supply half a percent lower on another day is no leak", "
 }
 
 TEST_CASE("diagnose: over many days alarms are as stated, and the smallest leak is found",
-          "[diagnosis]") {
+          "[diagnosis][long]") {
   // A small version of bench/days_study.cpp. The supplies are quantiles of the difference between
   // two days, one of which is the day of the reference.
   constexpr int kDays = 20;

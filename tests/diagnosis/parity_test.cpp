@@ -140,7 +140,7 @@ TEST_CASE("parity: what the model lacks is taken off", "[diagnosis]") {
   CHECK(found.conditions[2].records.front().alarm);
 }
 
-TEST_CASE("parity: false alarms on another day are as many as stated", "[diagnosis]") {
+TEST_CASE("parity: false alarms on another day are as many as stated", "[diagnosis][long]") {
   Campaign campaign = three_conditions(0.1);
   campaign.conditions.resize(2);
   diagnosis::ParityOptions options;
@@ -162,7 +162,8 @@ TEST_CASE("parity: false alarms on another day are as many as stated", "[diagnos
   CHECK(alarms < 45);
 }
 
-TEST_CASE("parity: the stated rate holds where repeats differ by their supply", "[diagnosis]") {
+TEST_CASE("parity: the stated rate holds where repeats differ by their supply",
+          "[diagnosis][long]") {
   const AlarmCounts found = alarms_of_healthy(0.05, 0.02, 1, 60);
   CAPTURE(found.alarms, found.with_cause);
   CHECK(found.records == 300);

@@ -291,7 +291,7 @@ TEST_CASE("known values: a certificate of the sensor counts as the prior of its 
 }
 
 TEST_CASE("known values: intervals hold the truth with a sensor off as its certificate allows",
-          "[calib]") {
+          "[calib][long]") {
   constexpr double kGainSd = 0.005;
   constexpr int kDraws = 24;
   boost::random::mt19937_64 random(11);
