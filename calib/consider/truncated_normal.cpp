@@ -69,7 +69,7 @@ NormalMoments cut_at_zero(NormalMoments normal, const std::vector<Eigen::Index>&
     if (moved < kSettled) break;
   }
   // The factors of other components move a mean after its own factor has cut it. Where a component
-  // is confined to zero with an uncertainty near rounding, that leaves the mean slightly below zero.
+  // is at zero with an uncertainty near rounding, that leaves the mean slightly below zero.
   for (const Eigen::Index k : never_negative) normal.mean(k) = std::max(0.0, normal.mean(k));
   return normal;
 }
