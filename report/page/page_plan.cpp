@@ -59,7 +59,7 @@ std::vector<Figure> share_figures(const StoredPlan& plan) {
     const std::optional<double>& all = parameter.sd_all;
     if (!all || !(*all > 0.0)) continue;
     Plot plot;
-    plot.title = fmt::format("{}: share of the precision of all records that each has alone",
+    plot.title = fmt::format("{}: fraction of the precision of all records that each has alone",
                              parameter.label());
     plot.x_label = "record";
     plot.y_label = fmt::format("{} [%]", parameter.label());
