@@ -29,15 +29,15 @@ void bind_assessment(py::module_& module) {
           [](const Reason& self) {
             return std::map<std::string, double>(self.numbers.begin(), self.numbers.end());
           },
-          "What it rests on, by name.")
-      .def_readonly("words", &Reason::words, "The same in words.")
+          "Numbers behind the reason, by name.")
+      .def_readonly("words", &Reason::words, "The reason as a sentence.")
       .def("__repr__",
            [](const Reason& self) { return fmt::format("<rigcal.Reason {}>", self.code); });
   py::class_<Aspect>(module, "Aspect", "One of the four separate judgements.")
       .def_property_readonly(
           "state", named(&Aspect::state),
-          "That of its gravest reason: \"pass\", \"reservation\", \"fail\" or \"not_assessed\".")
-      .def_readonly("reasons", &Aspect::reasons, "The gravest first.")
+          "State of the gravest reason: \"pass\", \"reservation\", \"fail\" or \"not_assessed\".")
+      .def_readonly("reasons", &Aspect::reasons, "Reasons for the state, the gravest first.")
       .def("__repr__", [](const Aspect& self) {
         return fmt::format("<rigcal.Aspect {}>", to_string(self.state));
       });
@@ -47,7 +47,7 @@ void bind_assessment(py::module_& module) {
       .def_readonly("validation", &Assessment::validation,
                     "The conditions that no estimate rests on, against the same limits.")
       .def_readonly("adequacy", &Assessment::adequacy,
-                    "Of the model: what it leaves, against the noise of the records.")
+                    "Size of the residuals, compared with the noise of the records.")
       .def_readonly("parameters", &Assessment::parameters,
                     "Whether the records determine what was estimated.")
       .def("__repr__", [](const Assessment& self) {

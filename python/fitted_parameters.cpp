@@ -36,14 +36,14 @@ void bind_bootstrap(py::module_& module) {
                     "Degrees of freedom with which the spread is known.")
       .def_property_readonly(
           "ci95", [](const BootstrapSpread& self) { return self.ci95.value(); },
-          "Percentiles, widened for the freedom.");
+          "Percentiles, widened for the degrees of freedom.");
 }
 
 void bind_posterior(py::module_& module) {
   using calib::PosteriorSpread;
   py::class_<PosteriorSpread>(module, "PosteriorSpread",
                               "A parameter over the draws of the posterior, in its unit.")
-      .def_readonly("median", &PosteriorSpread::median, "Of the draws.")
+      .def_readonly("median", &PosteriorSpread::median, "Median of the draws.")
       .def_readonly("sd", &PosteriorSpread::sd, "Standard deviation of the draws.")
       .def_property_readonly(
           "ci95", [](const PosteriorSpread& self) { return self.ci95.value(); },
@@ -81,7 +81,7 @@ void bind_budget(py::module_& module) {
       .def_readonly("coverage_factor", &Budget95::coverage_factor, "k, for 95 %.")
       .def_readonly("expanded", &Budget95::expanded, "U, `coverage_factor` times `combined`.")
       .def_readonly("shift", &Budget95::shift,
-                    "Of the middle of the interval from the estimate, by effects.")
+                    "Offset of the centre of the interval from the estimate, due to small effects.")
       .def_property_readonly(
           "beside",
           [](const Budget95& self) { return self.beside.value_or(std::vector<BudgetLine>()); },
@@ -106,7 +106,9 @@ void bind_profile(py::module_& module) {
           "Shape (points), ascending, in the parameter's unit.")
       .def_property_readonly(
           "rises", [](const std::shared_ptr<Profile>& self) { return view(self, self->rises); },
-          "Of twice the cost, shape (points); 1 ends the 95 % interval.")
+          "Rise of twice the cost as a fraction of the threshold, shape (points); the 95 % "
+          "interval "
+          "ends at 1.")
       .def_readonly("lower_cost_found", &Profile::lower_cost_found,
                     "Whether the fit was not at the minimum.");
 }
@@ -174,7 +176,7 @@ void bind_fitted_parameters(py::module_& module) {
           "None.")
       .def_property_readonly(
           "degrees_of_freedom", field(&Self::value, &calib::FittedParameter::degrees_of_freedom),
-          "With which the error that `ci95_if_exact` rests on is known; or None.")
+          "Degrees of freedom of the standard error behind `ci95_if_exact`; or None.")
       .def_property_readonly("budget", field(&Self::value, &calib::FittedParameter::budget),
                              "Contributions to `ci95`; None where no effects were considered.")
       .def_property_readonly("bootstrap", field(&Self::value, &calib::FittedParameter::bootstrap),

@@ -41,11 +41,12 @@ void Progress::rethrow() const {
 void bind_progress(py::module_& module) {
   py::class_<Iteration>(module, "Iteration",
                         "What a fit reports to its `progress` about one iteration.")
-      .def_readonly("start", &Iteration::start, "Which start, from 1.")
-      .def_readonly("iteration", &Iteration::iteration, "Of this call of the solver, from 0.")
+      .def_readonly("start", &Iteration::start, "Number of the start, from 1.")
+      .def_readonly("iteration", &Iteration::iteration,
+                    "Number of the iteration within this call of the solver, from 0.")
       .def_readonly("cost", &Iteration::cost, "Half the sum of squared weighted residuals.")
       .def_readonly("relative_change", &Iteration::relative_change,
-                    "Of the cost; below zero: the step was rejected.")
+                    "Relative change of the cost; below zero: the step was rejected.")
       .def("__repr__", [](const Iteration& self) {
         return fmt::format("<rigcal.Iteration {} of start {}: cost {:.6g}>", self.iteration,
                            self.start, self.cost);
@@ -53,8 +54,8 @@ void bind_progress(py::module_& module) {
   py::class_<Pieces>(module, "Pieces",
                      "What a fit reports to its `progress` about the work beside it.")
       .def_readonly("work", &Pieces::work, "\"replicates of the bootstrap\"...")
-      .def_readonly("done", &Pieces::done, "How many are done.")
-      .def_readonly("all", &Pieces::all, "Of how many.")
+      .def_readonly("done", &Pieces::done, "Number of pieces that are done.")
+      .def_readonly("all", &Pieces::all, "Number of all pieces.")
       .def("__repr__", [](const Pieces& self) {
         return fmt::format("<rigcal.Pieces: {} of {} {}>", self.done, self.all, self.work);
       });

@@ -9,8 +9,8 @@
 namespace rigcal::datasets {
 namespace {
 
-// Thresholds for the row "a clipped sensor" in docs/campaign-file.md. The test has records on both
-// sides of them.
+// Thresholds for the row "a clipped sensor" in docs/campaign-records.md. The test has records on
+// both sides of them.
 constexpr std::size_t kShortestClip = 3;
 constexpr std::size_t kFewestClipped = 8;
 constexpr double kClipDriveMotion = 0.005;

@@ -8,8 +8,8 @@
 namespace rigcal::datasets {
 namespace {
 
-// Thresholds for the row "an interrupted sensor" in docs/campaign-file.md. The test has records on
-// both sides of them.
+// Thresholds for the row "an interrupted sensor" in docs/campaign-records.md. The test has records
+// on both sides of them.
 constexpr std::size_t kShortestFreeze = 16;
 constexpr double kFreezeDriveMotion = 0.1;
 constexpr int kFreezePassages = 2;

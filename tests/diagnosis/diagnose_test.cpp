@@ -113,7 +113,7 @@ TEST_CASE("diagnose: every repeat and average in its class, by the true shares",
   const double of_single = found.signals.front().smallest_single_leak->coefficient;
   CHECK(of_average > 0.2 * of_single);
   CHECK(of_average < 1.2 * of_single);
-  // The scatter between repeats, noise included, is all that gives the error of the reference.
+  // The variation between repeats, noise included, is all that gives the error of the reference.
   const auto reference = std::find_if(found.records.begin(), found.records.end(),
                                       [](const auto& each) { return each.is_reference; });
   REQUIRE(reference != found.records.end());

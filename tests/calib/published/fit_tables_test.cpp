@@ -125,7 +125,7 @@ TEST_CASE("fit_tables: a twin's values come back from a far start, a gain from z
 
 TEST_CASE("fit_tables: identifiability has the grades of any fit", "[calib]") {
   test::LeakRig rig = small_rig();
-  // What is published scatters by a tenth about the rig without friction.
+  // The published numbers deviate by a tenth from the rig without friction.
   auto& signal = rig.settings.signals[0];
   const auto table = calib::leak_table(rig.campaign, rig.settings, quick());
   double sign = 1.0;

@@ -113,7 +113,7 @@ TEST_CASE("signal_errors: misfit is what all records together show beyond white 
   CHECK_FALSE(misfit(1.0));
   CHECK_FALSE(misfit(1.05));
   CHECK(misfit(1.07));
-  CHECK(signal_errors({}, {}, {}).misfit);  // nothing rules out a misfit
+  CHECK(signal_errors({}, {}, {}).misfit);  // nothing rules out lack of fit
 }
 
 TEST_CASE("signal_errors: residuals count as in the records, white or in clusters", "[diagnosis]") {
