@@ -13,19 +13,13 @@
 namespace rigcal::report {
 namespace {
 
-TableLimit limit_of(const StoredLeakEntry& entry, const JsonNode& node) {
-  TableLimit limit;
-  limit.waveform = entry.waveform;
-  limit.frequency_hz = entry.frequency_hz;
-  const auto amplitude = entry.amplitude_m ? entry.amplitude_m : entry.amplitude_v;
+TableLimit limit_of(const calib::LeakEntry& entry, const JsonNode& node) {
+  const std::optional<double> amplitude = entry.drive.amplitude();
   if (!amplitude) node.fail("an entry with 'amplitude_m' or 'amplitude_v'");
-  limit.amplitude = *amplitude;
-  limit.target_percent = entry.target_percent;
-  limit.coefficients = entry.coefficients;
-  if (entry.coefficients_ci95) limit.ranges_95 = *entry.coefficients_ci95;
-  if (limit.ranges_95.size() != limit.coefficients.size())
+  if (entry.coefficients_ci95.size() != entry.coefficients.size())
     node["coefficients_ci95"].fail("an interval, or null, for each coefficient");
-  return limit;
+  return {entry.drive.waveform, entry.drive.frequency_hz, *amplitude,
+          entry.target_percent, entry.coefficients,       entry.coefficients_ci95};
 }
 
 /// Compares two values up to rounding, because writing and reading a file may change the last

@@ -162,17 +162,17 @@ TEST_CASE("diagnose: a coefficient of the leak table has the table's share", "[d
     table.targets_percent = {10.0};
     const auto entry =
         calib::leak_table(datasets::true_campaign(campaign), table, {}).entries.at(0);
-    REQUIRE(entry.roots.size() == 1);
+    REQUIRE(entry.coefficients.size() == 1);
     for (Condition& condition : campaign.conditions) condition.sample_rate_hz = 100.0;
     campaign.conditions[1].overrides = {
-        {row_of(campaign, "leakage_coefficient"), entry.roots[0].coefficient}};
+        {row_of(campaign, "leakage_coefficient"), entry.coefficients[0]}};
     campaign.synthetic_settings->repeats = 3;
     diagnosis::DiagnosisOptions options;
     options.truth.emplace();
     for (const auto& [index, value] : campaign.synthetic_settings->parameters)
       options.truth->push_back({index, datasets::Scope::rig, "", value});
     options.truth->push_back({row_of(campaign, "leakage_coefficient"), datasets::Scope::condition,
-                              campaign.conditions[1].id, entry.roots[0].coefficient});
+                              campaign.conditions[1].id, entry.coefficients[0]});
     const auto found =
         diagnosis::diagnose(campaign, records_of(campaign, 1, 3000), known_rig(campaign), options);
     const auto& average = found.records.at(4);

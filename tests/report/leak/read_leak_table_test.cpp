@@ -15,12 +15,10 @@ using datasets::LeakClass;
 
 namespace {
 
-StoredLeakEntry entry(datasets::Waveform waveform, double frequency_hz, double target_percent,
-                      std::vector<double> coefficients, std::vector<std::optional<Range>> ci95) {
-  StoredLeakEntry entry;
-  entry.waveform = waveform;
-  entry.frequency_hz = frequency_hz;
-  entry.amplitude_m = 0.05;
+calib::LeakEntry entry(datasets::Waveform waveform, double frequency_hz, double target_percent,
+                       std::vector<double> coefficients, std::vector<std::optional<Range>> ci95) {
+  calib::LeakEntry entry;
+  entry.drive = calib::LeakDrive{waveform, frequency_hz, 0.05, {}};
   entry.target_percent = target_percent;
   entry.coefficients = std::move(coefficients);
   entry.coefficients_ci95 = std::move(ci95);
