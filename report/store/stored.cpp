@@ -147,7 +147,7 @@ LeakTableFiles load_leak_table(const ReadFile& read, const std::string& where) {
 ParityFiles load_parity(const ReadFile& read, const std::string& where) {
   ParityFiles stored{load<StoredParity>(read, where, "parity.json"), {}};
   const ReadFile own = files_of_run(read, stored.result.provenance, where, "parity.json");
-  for (const StoredParityRecord& record : stored.result.records) {
+  for (const diagnosis::ParityRecord& record : stored.result.records) {
     require_id(record.condition, "condition", path_in(where, "parity.json"));
     if (stored.series.contains(record.condition)) continue;
     const std::string name = "parity/" + record.condition + ".csv";
