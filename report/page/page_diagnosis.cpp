@@ -237,15 +237,15 @@ std::optional<Plot> leak_trend_plot(const StoredDiagnosis& diagnosis,
 }
 
 struct MethodName {
-  diagnosis::Accuracy StoredMethods::*accuracy;
+  diagnosis::Accuracy diagnosis::Methods::*accuracy;
   const char* name;
 };
 constexpr std::array kMethods{
-    MethodName{&StoredMethods::fitted_leak_single, "Fitted leak, single repeats"},
-    MethodName{&StoredMethods::fitted_leak_averaged, "Fitted leak, averages"},
-    MethodName{&StoredMethods::features_leave_one_repeat_out,
+    MethodName{&diagnosis::Methods::fitted_leak_single, "Fitted leak, single repeats"},
+    MethodName{&diagnosis::Methods::fitted_leak_averaged, "Fitted leak, averages"},
+    MethodName{&diagnosis::Methods::features_leave_one_repeat_out,
                "Paper's features, learned without the repeat"},
-    MethodName{&StoredMethods::features_leave_one_signal_out,
+    MethodName{&diagnosis::Methods::features_leave_one_signal_out,
                "Paper's features, learned without the signal"}};
 
 /// Returns a row with the accuracy of a classification method.
@@ -337,7 +337,7 @@ doc::Badge state_badge(const StoredState& state) {
   return {doc::State::none, state.leak.leakage_coefficient ? "undecided" : "no verdict"};
 }
 
-std::string distance_text(const std::optional<StoredNearestLimit>& limit) {
+std::string distance_text(const std::optional<diagnosis::LimitDistance>& limit) {
   if (!limit) return "";
   const double points = limit->distance_percentage_points;
   const std::string_view name = to_string(limit->class_);
@@ -346,7 +346,7 @@ std::string distance_text(const std::optional<StoredNearestLimit>& limit) {
                      points < 0.0 ? "below" : "above", name, limit->percent);
 }
 
-std::string agreement_text_of(const std::optional<StoredSignalsAgreement>& agreement) {
+std::string agreement_text_of(const std::optional<diagnosis::SignalsAgreement>& agreement) {
   if (!agreement) return "one signal";
   return fmt::format("{} ({})", agreement->agree ? "agree" : "disagree",
                      p_value_text(agreement->p));
@@ -482,7 +482,7 @@ void add_averages(const StoredDiagnosis& diagnosis, doc::Blocks& blocks) {
   blocks.emplace_back(std::move(table));
 }
 
-void add_methods(const StoredMethods& methods, doc::Blocks& blocks) {
+void add_methods(const diagnosis::Methods& methods, doc::Blocks& blocks) {
   doc::Table accuracies{"How often each method is right"};
   accuracies.columns = {{"Method"},
                         {"Right", Kind::number},

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/accuracy.hpp"
+#include "diagnosis/diagnose.hpp"
 #include "metrics/residual_features.hpp"
 #include "report/store/stored/stored_leak.hpp"
 #include "report/store/stored/stored_provenance.hpp"
@@ -37,21 +37,6 @@ struct StoredClassLimit {
   RIGCAL_DESCRIBE(signal, share_percent, class_, coefficients, coefficients_ci95)
 };
 
-struct StoredNearestLimit {
-  datasets::LeakClass class_ = datasets::LeakClass::normal;  ///< this is the lower limit of the
-                                                             ///< class
-  double percent = 0.0, distance_percentage_points = 0.0;
-  bool on_limit = false;
-  RIGCAL_DESCRIBE(class_, percent, distance_percentage_points, on_limit)
-};
-
-/// Test of whether the signals recorded in one state give the same leak.
-struct StoredSignalsAgreement {
-  double p = 1.0, chi_squared = 0.0, freedom = 0.0, widened = 1.0;
-  bool agree = true;
-  RIGCAL_DESCRIBE(p, chi_squared, freedom, widened, agree)
-};
-
 /// Verdict on one state of the machine.
 struct StoredState {
   std::string state;
@@ -65,8 +50,8 @@ struct StoredState {
   std::optional<double> leak_area_m2;
   std::optional<Range> leak_area_ci95_m2;
   std::optional<std::string> duty;  ///< signal to which the leak share refers
-  std::optional<StoredNearestLimit> nearest_limit;
-  std::optional<StoredSignalsAgreement> agreement;  ///< absent for a single signal
+  std::optional<diagnosis::LimitDistance> nearest_limit;
+  std::optional<diagnosis::SignalsAgreement> agreement;  ///< absent for a single signal
   RIGCAL_DESCRIBE(state, leak_level, specimen, date, sentence, failure, is_reference, conditions,
                   left_out, leak, leak_area_m2, leak_area_ci95_m2, duty, nearest_limit, agreement)
 };
@@ -125,13 +110,6 @@ struct StoredDiagnosedRecord {
   bool is_average() const { return !repeat; }
 };
 
-struct StoredMethods {
-  diagnosis::Accuracy fitted_leak_single, fitted_leak_averaged;
-  diagnosis::Accuracy features_leave_one_repeat_out, features_leave_one_signal_out;
-  RIGCAL_DESCRIBE(fitted_leak_single, fitted_leak_averaged, features_leave_one_repeat_out,
-                  features_leave_one_signal_out)
-};
-
 /// The smallest detectable leak of a signal [L/min].
 struct StoredSmallestLeak {
   std::string signal;
@@ -182,7 +160,7 @@ struct StoredDiagnosis {
   diagnosis::Confusion confusion;  ///< this and the accuracies: fitted leak, single repeats
   std::optional<double> accuracy;
   std::optional<Range> accuracy_ci95;
-  StoredMethods methods;
+  diagnosis::Methods methods;
   std::vector<StoredSmallestLeak> smallest_leak_l_per_min;  ///< one per signal
   Omittable<StoredBetweenDays> between_days;
   std::vector<std::string> warnings;
