@@ -110,7 +110,8 @@ StoredDiagnosis stored(const DiagnosisResult& result) {
                                  limit.coefficients, limit.coefficients_ci95});
   }
   for (const auto& state : found.states) file.states.push_back(stored(state));
-  for (const auto& trend : found.trends) file.trends.push_back(stored(trend));
+  file.trends = found.trends;
+  for (diagnosis::LeakTrend& trend : file.trends) trend.sentence = trend_sentence(trend);
   for (const auto& record : found.records) file.records.push_back(stored(record));
   file.methods = found.methods;
   const diagnosis::Accuracy& single = found.methods.fitted_leak_single;

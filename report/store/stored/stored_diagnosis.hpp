@@ -59,31 +59,6 @@ struct StoredState {
 /// Predictions are limited to this multiple of the observed time span.
 inline constexpr double kAhead = 3.0;
 
-/// Predicted dates at which a growing leak reaches the next class limit.
-struct StoredNextLimit {
-  datasets::LeakClass class_ = datasets::LeakClass::normal;
-  double percent = 0.0;
-  std::string reached, earliest;
-  std::optional<std::string> latest;  ///< absent if it may never be reached
-  RIGCAL_DESCRIBE(class_, percent, reached, earliest, latest)
-};
-
-struct StoredLeakTrend {
-  std::optional<std::string> leak_level, specimen;
-  std::string sentence;
-  int dates = 0;
-  std::string first_date, last_date, duty;
-  double coefficient_per_day = 0.0, share_percent_per_day = 0.0;
-  Range share_percent_per_day_ci95;
-  double p_value = 1.0;
-  bool significant = false;
-  double chi_squared = 0.0, freedom = 0.0, widened = 1.0;
-  std::optional<StoredNextLimit> next_limit;
-  RIGCAL_DESCRIBE(leak_level, specimen, sentence, dates, first_date, last_date, duty,
-                  coefficient_per_day, share_percent_per_day, share_percent_per_day_ci95, p_value,
-                  significant, chi_squared, freedom, widened, next_limit)
-};
-
 struct StoredDiagnosedRecord {
   std::string condition;
   std::optional<int> repeat;  ///< from 1; absent for the average
@@ -155,7 +130,7 @@ struct StoredDiagnosis {
   StoredDiagnosisSettings settings;
   std::vector<StoredClassLimit> class_limits;  ///< empty without a leak table
   std::vector<StoredState> states;
-  std::vector<StoredLeakTrend> trends;
+  std::vector<diagnosis::LeakTrend> trends;
   std::vector<StoredDiagnosedRecord> records;
   diagnosis::Confusion confusion;  ///< this and the accuracies: fitted leak, single repeats
   std::optional<double> accuracy;
