@@ -331,8 +331,10 @@ Raises:
       .def_property_readonly("starts", of_fit(&calib::Fit::starts), "One report for each.")
       .def_property_readonly("best_start", of_fit(&calib::Fit::best_start),
                              "Number of the start that counts.")
-      .def_property_readonly("bootstrap_replicates", of_fit(&calib::Fit::bootstrap_replicates),
-                             "That converged.")
+      .def_property_readonly(
+          "bootstrap_replicates",
+          [](const Self& self) { return self.fit.bootstrap ? self.fit.bootstrap->replicates : 0; },
+          "That converged.")
       .def_property_readonly(
           "draws", &draws_of,
           "From the posterior, SI, shape (chains, draws, unknowns); None where there are none.")

@@ -69,11 +69,11 @@ LeakStatus status_of(const DiagnosisResult& result) {
   return result.diagnosis.usable() ? LeakStatus::done : LeakStatus::failed;
 }
 
-std::string drive_of(const datasets::Campaign& campaign, const TableLimit& limit) {
+std::string drive_of(const datasets::Campaign& campaign, const calib::LeakDrive& drive) {
   datasets::Condition condition;
-  condition.waveform = limit.waveform;
-  condition.frequency_hz = limit.frequency_hz;
-  condition.amplitude = limit.amplitude;
+  condition.waveform = drive.waveform;
+  condition.frequency_hz = drive.frequency_hz;
+  condition.amplitude = drive.amplitude();
   return diagnosis::signal_name(campaign, condition);
 }
 

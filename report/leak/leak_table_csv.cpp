@@ -12,21 +12,15 @@
 namespace rigcal::report {
 namespace {
 
-using datasets::Feature;
-
-template <typename Value>
-std::string list(const std::vector<calib::LeakRoot>& roots, Value value) {
-  std::vector<std::string> texts;
-  for (const calib::LeakRoot& root : roots) texts.push_back(fmt::format("{}", root.*value));
-  return fmt::format("{}", fmt::join(texts, " "));
+std::string list(const std::vector<double>& values) {
+  return fmt::format("{}", fmt::join(values, " "));
 }
 
 /// Lists the lower (or upper) ends of the intervals of all roots; empty without a fit.
-std::string ends(const std::vector<calib::LeakRoot>& roots, std::size_t end) {
+std::string ends(const std::vector<std::optional<Range>>& ranges, double Range::*end) {
   std::vector<std::string> texts;
-  for (const calib::LeakRoot& root : roots) {
-    if (const auto range = root.ci95()) texts.push_back(csv_number(range->at(end)));
-  }
+  for (const auto& range : ranges)
+    if (range) texts.push_back(csv_number((*range).*end));
   return fmt::format("{}", fmt::join(texts, " "));
 }
 
@@ -40,17 +34,17 @@ std::string leak_table_csv(const LeakTableResult& result) {
                "published_coefficient", "relative_error_percent", "share_at_published_percent",
                "share_by_rounding_low_percent", "share_by_rounding_high_percent", "grade", "note"});
   for (const calib::LeakEntry& entry : result.table.entries) {
-    const auto& c = entry.comparison;
-    const auto of = [&](auto member) { return c ? csv_number((*c).*member) : std::string(); };
-    text += csv_row(
-        {std::string(to_string(entry.signal.waveform)), csv_number(entry.signal.frequency_hz),
-         csv_number(entry.signal.amplitude), csv_number(entry.target_percent),
-         list(entry.roots, &calib::LeakRoot::coefficient), ends(entry.roots, 0),
-         ends(entry.roots, 1), list(entry.roots, &calib::LeakRoot::log_slope),
-         of(&calib::LeakComparison::published), of(&calib::LeakComparison::relative_error_percent),
-         of(&calib::LeakComparison::share_percent), of(&calib::LeakComparison::share_low_percent),
-         of(&calib::LeakComparison::share_high_percent), std::string(to_string(entry.grade)),
-         csv_text(entry.note)});
+    const auto& rounded = entry.share_by_rounding_percent;
+    text +=
+        csv_row({std::string(to_string(entry.drive.waveform)), csv_number(entry.drive.frequency_hz),
+                 csv_number(entry.drive.amplitude()), csv_number(entry.target_percent),
+                 list(entry.coefficients), ends(entry.coefficients_ci95, &Range::low),
+                 ends(entry.coefficients_ci95, &Range::high), list(entry.log_slopes),
+                 csv_number(entry.published_coefficient), csv_number(entry.relative_error_percent),
+                 csv_number(entry.share_at_published_percent),
+                 rounded ? csv_number(rounded->low) : std::string(),
+                 rounded ? csv_number(rounded->high) : std::string(),
+                 std::string(to_string(entry.grade)), csv_text(entry.note)});
   }
   return text;
 }
@@ -61,19 +55,12 @@ std::string features_csv(const LeakTableResult& result) {
                "leak_flow_l_per_min", "published_leak_flow_l_per_min", "mean", "published_mean",
                "rms", "published_rms", "std", "published_std"});
   for (const calib::FeatureRow& each : result.table.features) {
-    const auto printed = [&](Feature feature, double unit) -> std::optional<double> {
-      const auto found = each.printed.printed.find(feature);
-      if (found == each.printed.printed.end()) return std::nullopt;
-      return found->second / unit;
-    };
-    text += csv_row({csv_text(each.printed.level), csv_number(each.printed.coefficient),
-                     csv_number(each.servo_flow_m3_per_s / kLitrePerMinute),
-                     csv_number(printed(Feature::servo_flow, kLitrePerMinute)),
-                     csv_number(each.leak_flow_m3_per_s / kLitrePerMinute),
-                     csv_number(printed(Feature::leak_flow, kLitrePerMinute)),
-                     csv_number(each.features.mean), csv_number(printed(Feature::mean, 1.0)),
-                     csv_number(each.features.rms), csv_number(printed(Feature::rms, 1.0)),
-                     csv_number(each.features.std), csv_number(printed(Feature::std, 1.0))});
+    text += csv_row(
+        {csv_text(each.level), csv_number(each.coefficient), csv_number(each.servo_flow_l_per_min),
+         csv_number(each.published_servo_flow_l_per_min), csv_number(each.leak_flow_l_per_min),
+         csv_number(each.published_leak_flow_l_per_min), csv_number(each.mean),
+         csv_number(each.published_mean), csv_number(each.rms), csv_number(each.published_rms),
+         csv_number(each.std), csv_number(each.published_std)});
   }
   return text;
 }
