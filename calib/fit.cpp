@@ -124,7 +124,7 @@ EffectSpread effects_beside(const Fit& fit, const EstimateSpread& spread) {
   for (const EstimateSpread::Estimate& each : spread.estimates) {
     const auto found =
         std::find_if(fit.parameters.begin(), fit.parameters.end(), [&](const auto& parameter) {
-          return parameter.fitted && parameter.is(each.index, each.scope, each.level);
+          return parameter.fitted && parameter.matches(each.index, each.scope, each.level);
         });
     const bool known = found != fit.parameters.end() && found->budget.has_value();
     budgets.push_back(known ? &*found->budget : nullptr);

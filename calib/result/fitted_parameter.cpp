@@ -15,7 +15,7 @@ void FittedParameter::name_after(const model::ParameterSpec& spec) {
   unit = spec.unit;
 }
 
-bool FittedParameter::is(int row, Scope of, const std::string& level_of) const {
+bool FittedParameter::matches(int row, Scope of, const std::string& level_of) const {
   return index == row && scope == of && level.value_or("") == level_of;
 }
 

@@ -124,7 +124,7 @@ struct FittedParameter {
   /// Takes name, key, symbol and unit from a row of a parameter table.
   void name_after(const model::ParameterSpec& spec);
   /// Returns true for the parameter with this row, scope and level (empty for the rig).
-  bool is(int row, datasets::Scope of, const std::string& level_of) const;
+  bool matches(int row, datasets::Scope of, const std::string& level_of) const;
 };
 
 /// Returns the parameter in a row of a plant's table, without a value.
