@@ -1,7 +1,5 @@
 #include "report/store/stored/stored_fit.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -13,8 +11,6 @@
 
 namespace rigcal::report {
 namespace {
-
-using datasets::Scope;
 
 std::string key_of(datasets::Channel channel) { return std::string(info(channel).key); }
 
