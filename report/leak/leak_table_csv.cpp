@@ -1,81 +1,91 @@
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
-#include <algorithm>
-#include <cmath>
 #include <optional>
 
 #include "report/leak/leak_table.hpp"
-#include "report/store/csv_fields.hpp"
+#include "report/store/csv_columns.hpp"
 #include "report/store/table.hpp"
 
 namespace rigcal::report {
 namespace {
 
+using calib::FeatureRow;
+using calib::LeakEntry;
+using calib::LeakRoot;
 using datasets::Feature;
 
-template <typename Value>
-std::string list(const std::vector<calib::LeakRoot>& roots, Value value) {
-  std::vector<std::string> texts;
-  for (const calib::LeakRoot& root : roots) texts.push_back(fmt::format("{}", root.*value));
-  return fmt::format("{}", fmt::join(texts, " "));
+/// Makes a getter that lists a value of each root that has it.
+template <typename Get>
+auto of_roots(Get get) {
+  return [get](const LeakEntry& entry) {
+    std::vector<double> values;
+    for (const LeakRoot& root : entry.roots)
+      if (const std::optional<double> value = std::invoke(get, root)) values.push_back(*value);
+    return values;
+  };
 }
 
-/// Lists the lower (or upper) ends of the intervals of all roots; empty without a fit.
-std::string ends(const std::vector<calib::LeakRoot>& roots, std::size_t end) {
-  std::vector<std::string> texts;
-  for (const calib::LeakRoot& root : roots) {
-    if (const auto range = root.ci95()) texts.push_back(csv_number(range->at(end)));
-  }
-  return fmt::format("{}", fmt::join(texts, " "));
+/// Makes a getter that lists the lower (0) or upper (1) ends of the intervals of the roots.
+auto ends(std::size_t end) {
+  return of_roots([end](const LeakRoot& root) {
+    const auto range = root.ci95();
+    return range ? std::optional(range->at(end)) : std::nullopt;
+  });
 }
+
+/// Makes a getter of a published value, which is divided by `unit`.
+auto printed(Feature feature, double unit = 1.0) {
+  return [feature, unit](const FeatureRow& row) -> std::optional<double> {
+    const auto found = row.printed.printed.find(feature);
+    if (found == row.printed.printed.end()) return std::nullopt;
+    return found->second / unit;
+  };
+}
+
+double in_litres_per_minute(double flow_m3_per_s) { return flow_m3_per_s / kLitrePerMinute; }
 
 }  // namespace
 
 std::string leak_table_csv(const LeakTableResult& result) {
+  using R = LeakEntry;
+  using calib::LeakComparison;
+  using datasets::LeakSignal;
   const bool closed_loop = result.campaign.rig.controller == model::ControllerKind::pid;
-  std::string text =
-      csv_row({"waveform", "frequency_hz", closed_loop ? "amplitude_m" : "amplitude_v",
-               "target_percent", "coefficients", "ci95_low", "ci95_high", "log_slopes",
-               "published_coefficient", "relative_error_percent", "share_at_published_percent",
-               "share_by_rounding_low_percent", "share_by_rounding_high_percent", "grade", "note"});
-  for (const calib::LeakEntry& entry : result.table.entries) {
-    const auto& c = entry.comparison;
-    const auto of = [&](auto member) { return c ? csv_number((*c).*member) : std::string(); };
-    text += csv_row(
-        {std::string(to_string(entry.signal.waveform)), csv_number(entry.signal.frequency_hz),
-         csv_number(entry.signal.amplitude), csv_number(entry.target_percent),
-         list(entry.roots, &calib::LeakRoot::coefficient), ends(entry.roots, 0),
-         ends(entry.roots, 1), list(entry.roots, &calib::LeakRoot::log_slope),
-         of(&calib::LeakComparison::published), of(&calib::LeakComparison::relative_error_percent),
-         of(&calib::LeakComparison::share_percent), of(&calib::LeakComparison::share_low_percent),
-         of(&calib::LeakComparison::share_high_percent), std::string(to_string(entry.grade)),
-         csv_text(entry.note)});
-  }
-  return text;
+  return CsvColumns<R>()
+      .add("waveform", &R::signal, &LeakSignal::waveform)
+      .add("frequency_hz", &R::signal, &LeakSignal::frequency_hz)
+      .add(closed_loop ? "amplitude_m" : "amplitude_v", &R::signal, &LeakSignal::amplitude)
+      .add("target_percent", &R::target_percent)
+      .add("coefficients", of_roots(&LeakRoot::coefficient))
+      .add("ci95_low", ends(0))
+      .add("ci95_high", ends(1))
+      .add("log_slopes", of_roots(&LeakRoot::log_slope))
+      .add("published_coefficient", &R::comparison, &LeakComparison::published)
+      .add("relative_error_percent", &R::comparison, &LeakComparison::relative_error_percent)
+      .add("share_at_published_percent", &R::comparison, &LeakComparison::share_percent)
+      .add("share_by_rounding_low_percent", &R::comparison, &LeakComparison::share_low_percent)
+      .add("share_by_rounding_high_percent", &R::comparison, &LeakComparison::share_high_percent)
+      .add("grade", &R::grade)
+      .add("note", &R::note)
+      .table(result.table.entries);
 }
 
 std::string features_csv(const LeakTableResult& result) {
-  std::string text =
-      csv_row({"level", "coefficient", "servo_flow_l_per_min", "published_servo_flow_l_per_min",
-               "leak_flow_l_per_min", "published_leak_flow_l_per_min", "mean", "published_mean",
-               "rms", "published_rms", "std", "published_std"});
-  for (const calib::FeatureRow& each : result.table.features) {
-    const auto printed = [&](Feature feature, double unit) -> std::optional<double> {
-      const auto found = each.printed.printed.find(feature);
-      if (found == each.printed.printed.end()) return std::nullopt;
-      return found->second / unit;
-    };
-    text += csv_row({csv_text(each.printed.level), csv_number(each.printed.coefficient),
-                     csv_number(each.servo_flow_m3_per_s / kLitrePerMinute),
-                     csv_number(printed(Feature::servo_flow, kLitrePerMinute)),
-                     csv_number(each.leak_flow_m3_per_s / kLitrePerMinute),
-                     csv_number(printed(Feature::leak_flow, kLitrePerMinute)),
-                     csv_number(each.features.mean), csv_number(printed(Feature::mean, 1.0)),
-                     csv_number(each.features.rms), csv_number(printed(Feature::rms, 1.0)),
-                     csv_number(each.features.std), csv_number(printed(Feature::std, 1.0))});
-  }
-  return text;
+  using R = FeatureRow;
+  using datasets::PrintedFeatures;
+  using metrics::ResidualFeatures;
+  return CsvColumns<R>()
+      .add("level", &R::printed, &PrintedFeatures::level)
+      .add("coefficient", &R::printed, &PrintedFeatures::coefficient)
+      .add("servo_flow_l_per_min", &R::servo_flow_m3_per_s, in_litres_per_minute)
+      .add("published_servo_flow_l_per_min", printed(Feature::servo_flow, kLitrePerMinute))
+      .add("leak_flow_l_per_min", &R::leak_flow_m3_per_s, in_litres_per_minute)
+      .add("published_leak_flow_l_per_min", printed(Feature::leak_flow, kLitrePerMinute))
+      .add("mean", &R::features, &ResidualFeatures::mean)
+      .add("published_mean", printed(Feature::mean))
+      .add("rms", &R::features, &ResidualFeatures::rms)
+      .add("published_rms", printed(Feature::rms))
+      .add("std", &R::features, &ResidualFeatures::std)
+      .add("published_std", printed(Feature::std))
+      .table(result.table.features);
 }
 
 std::string level_csv(const datasets::LeakSignal& signal, const calib::PeriodicSeries& series,
