@@ -110,7 +110,7 @@ StoredParity stored(const ParityResult& result) {
 }
 
 std::string parity_csv(const StoredParity& parity) {
-  using R = StoredParityRecord;
+  using R = decltype(StoredParity::records)::value_type;
   using Features = decltype(R::features);
   const auto threshold_m = [&](const R& record) -> std::optional<double> {
     for (const ParitySignal& signal : parity.signals)
