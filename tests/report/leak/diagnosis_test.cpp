@@ -9,7 +9,7 @@ using datasets::LeakClass;
 
 namespace {
 
-const std::string kHeadings =
+const std::string kDiagnosisHeadings =
     "condition,repeat,signal,leakage_coefficient,ci95_low,ci95_high,leak_share_percent,"
     "leak_share_ci95_low_percent,leak_share_ci95_high_percent,leak_flow_l_per_min,class,"
     "probability_normal,probability_slight,probability_medium,probability_critical,"
@@ -44,7 +44,7 @@ StoredDiagnosis diagnosed() {
 
 /// Returns the field of the class in the row of the only record.
 std::string class_in(const StoredDiagnosis& diagnosis) {
-  std::string text = diagnosis_csv(diagnosis).substr(kHeadings.size());
+  std::string text = diagnosis_csv(diagnosis).substr(kDiagnosisHeadings.size());
   text.erase(0, text.find("\",") + 2);  // condition, repeat and signal
   for (int i = 0; i < 7; ++i) text.erase(0, text.find(',') + 1);
   return text.substr(0, text.find(','));
@@ -54,7 +54,7 @@ std::string class_in(const StoredDiagnosis& diagnosis) {
 
 TEST_CASE("diagnosis_csv: a row per record, warnings in one field", "[report]") {
   CHECK(diagnosis_csv(diagnosed()) ==
-        kHeadings +
+        kDiagnosisHeadings +
             "sine,2,\"sine 1 Hz, 5 mm\",0.25,0.125,0.5,8,4,16,1.5,medium,0.0625,0.0625,"
             "0.75,0.0625,0.0625,0.001,0.002,0.003,normal,critical,9,\"one; two, three\"\n");
 }
@@ -68,7 +68,7 @@ TEST_CASE("diagnosis_csv: what is absent is an empty field", "[report]") {
   record.signal = "sine";
   record.is_reference = true;
   record.failure = "not simulated";
-  CHECK(diagnosis_csv(diagnosis) == "# status: failed: no record; no fit\n" + kHeadings +
+  CHECK(diagnosis_csv(diagnosis) == "# status: failed: no record; no fit\n" + kDiagnosisHeadings +
                                         "sine,,sine,,,,,,,,undecided,,,,,,,,,,,,not simulated\n");
 }
 

@@ -7,7 +7,7 @@ using namespace rigcal::report;
 
 namespace {
 
-const std::string kHeadings =
+const std::string kParityHeadings =
     "condition,repeat,signal,leak_level,healthy,sets_threshold,peak_m,threshold_m,alarm,"
     "time_to_alarm_s,feature_mean_m,feature_rms_m,feature_std_m,failure\n";
 
@@ -36,13 +36,13 @@ StoredParity with_alarm() {
 TEST_CASE("parity_csv: a row per record, with the threshold of its signal", "[report]") {
   StoredParity parity = with_alarm();
   CHECK(parity_csv(parity) ==
-        kHeadings + "sine_1,mean,sine,33 %,0,0,0.5,0.25,1,1.25,0.001,0.002,0.003,\n");
+        kParityHeadings + "sine_1,mean,sine,33 %,0,0,0.5,0.25,1,1.25,0.001,0.002,0.003,\n");
   auto& record = parity.records.front();
   record.repeat = 3;
   record.alarm = false;
   record.time_to_alarm_s.reset();
   CHECK(parity_csv(parity) ==
-        kHeadings + "sine_1,3,sine,33 %,0,0,0.5,0.25,0,,0.001,0.002,0.003,\n");
+        kParityHeadings + "sine_1,3,sine,33 %,0,0,0.5,0.25,0,,0.001,0.002,0.003,\n");
 }
 
 TEST_CASE("parity_csv: no threshold beside a record that is not judged", "[report]") {
@@ -53,7 +53,8 @@ TEST_CASE("parity_csv: no threshold beside a record that is not judged", "[repor
   record.sets_threshold = true;
   record.alarm.reset();
   record.time_to_alarm_s.reset();
-  CHECK(parity_csv(parity) == kHeadings + "sine_1,mean,sine,,1,1,0.5,,,,0.001,0.002,0.003,\n");
+  CHECK(parity_csv(parity) ==
+        kParityHeadings + "sine_1,mean,sine,,1,1,0.5,,,,0.001,0.002,0.003,\n");
   parity.status = LeakStatus::declined;
   parity.reasons = {"no healthy record"};
   CHECK(parity_csv(parity).starts_with("# status: declined: no healthy record\n"));

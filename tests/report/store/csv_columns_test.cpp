@@ -14,7 +14,7 @@ using rigcal::Range;
 
 namespace {
 
-struct Rig {
+struct BenchRow {
   std::string name;
   bool driven = false;
   long samples = 0;
@@ -26,7 +26,7 @@ struct Rig {
   RIGCAL_DESCRIBE(name, driven, samples, verdict, offsets_s, warnings)
 };
 
-std::string field_of(const Rig& rig) { return csv_field(rig, &Rig::ci95, &Range::high); }
+std::string high_end(const BenchRow& rig) { return csv_field(rig, &BenchRow::ci95, &Range::high); }
 
 }  // namespace
 
@@ -47,29 +47,29 @@ TEST_CASE("csv_field: an absent value, or one behind an absent one, is an empty 
           "[report]") {
   CHECK(csv_field(std::optional<double>()).empty());
   CHECK(csv_field(std::optional(2.5)) == "2.5");
-  Rig rig;
-  CHECK(field_of(rig).empty());
+  BenchRow rig;
+  CHECK(high_end(rig).empty());
   rig.ci95 = Range{1.0, 4.0};
-  CHECK(field_of(rig) == "4");
-  CHECK(csv_field(rig, &Rig::window, &Range::low).empty());
+  CHECK(high_end(rig) == "4");
+  CHECK(csv_field(rig, &BenchRow::window, &Range::low).empty());
   rig.name = "abc";
-  CHECK(csv_field(rig, &Rig::name, &std::string::size) == "3");
+  CHECK(csv_field(rig, &BenchRow::name, &std::string::size) == "3");
   rig.window = &*rig.ci95;
-  CHECK(csv_field(rig, &Rig::window, &Range::low) == "1");
+  CHECK(csv_field(rig, &BenchRow::window, &Range::low) == "1");
 }
 
 TEST_CASE("csv columns: members by their keys, others by their headings", "[report]") {
-  CsvColumns<Rig> columns;
-  columns.members(&Rig::samples, &Rig::name)
-      .add("ci95_low", &Rig::ci95, &Range::low)
-      .members(&Rig::driven, &Rig::verdict)
-      .add("mass[a, b]", [](const Rig& rig) { return rig.warnings.size(); });
+  CsvColumns<BenchRow> columns;
+  columns.members(&BenchRow::samples, &BenchRow::name)
+      .add("ci95_low", &BenchRow::ci95, &Range::low)
+      .members(&BenchRow::driven, &BenchRow::verdict)
+      .add("mass[a, b]", [](const BenchRow& rig) { return rig.warnings.size(); });
   CHECK(columns.table({}) == "samples,name,ci95_low,driven,verdict,\"mass[a, b]\"\n");
-  Rig rig;
+  BenchRow rig;
   rig.name = "-x";
   rig.samples = 7;
   rig.warnings = {"one"};
-  Rig other = rig;
+  BenchRow other = rig;
   other.ci95 = Range{0.25, 1.0};
   other.driven = true;
   other.verdict = rigcal::calib::Verdict::pass;
