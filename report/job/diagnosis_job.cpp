@@ -136,7 +136,7 @@ std::optional<std::vector<datasets::FittedValue>> truth_beside(const Campaign& c
 JobResult finished(const DiagnosisResult& result, const std::optional<Json>& live = {}) {
   StoredDiagnosis diagnosis = stored(result);
   JobResult job;
-  job.files = {{"diagnosis.csv", diagnosis_csv(result)}};
+  job.files = {{"diagnosis.csv", diagnosis_csv(diagnosis)}};
   if (live) job.files.push_back({kLiveDiagnosisFile, json_line(*live)});
   name_files(job.files, diagnosis.provenance);
   job.files.push_back({"diagnosis.json", json_text(json_of(diagnosis))});

@@ -29,6 +29,6 @@ std::string drive_of(const datasets::Campaign& campaign, const calib::LeakDrive&
 StoredDiagnosis stored(const DiagnosisResult& result);
 
 /// Writes diagnosis.csv with one row per record.
-std::string diagnosis_csv(const DiagnosisResult& result);
+std::string diagnosis_csv(const StoredDiagnosis& diagnosis);
 
 }  // namespace rigcal::report

@@ -1,68 +1,53 @@
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
-#include <algorithm>
-#include <cmath>
 #include <optional>
 
 #include "report/leak/leak_table.hpp"
-#include "report/store/csv_fields.hpp"
+#include "report/store/csv_columns.hpp"
 #include "report/store/table.hpp"
 
 namespace rigcal::report {
 namespace {
 
-std::string list(const std::vector<double>& values) {
-  return fmt::format("{}", fmt::join(values, " "));
-}
+using calib::LeakDrive;
+using calib::LeakEntry;
 
-/// Lists the lower (or upper) ends of the intervals of all roots; empty without a fit.
-std::string ends(const std::vector<std::optional<Range>>& ranges, double Range::*end) {
-  std::vector<std::string> texts;
-  for (const auto& range : ranges)
-    if (range) texts.push_back(csv_number((*range).*end));
-  return fmt::format("{}", fmt::join(texts, " "));
+/// Makes a getter that lists the lower or upper ends of the intervals of an entry.
+auto ends(double Range::*end) {
+  return [end](const LeakEntry& entry) {
+    std::vector<double> values;
+    for (const auto& range : entry.coefficients_ci95)
+      if (range) values.push_back((*range).*end);
+    return values;
+  };
 }
 
 }  // namespace
 
 std::string leak_table_csv(const LeakTableResult& result) {
+  using R = LeakEntry;
   const bool closed_loop = result.campaign.rig.controller == model::ControllerKind::pid;
-  std::string text =
-      csv_row({"waveform", "frequency_hz", closed_loop ? "amplitude_m" : "amplitude_v",
-               "target_percent", "coefficients", "ci95_low", "ci95_high", "log_slopes",
-               "published_coefficient", "relative_error_percent", "share_at_published_percent",
-               "share_by_rounding_low_percent", "share_by_rounding_high_percent", "grade", "note"});
-  for (const calib::LeakEntry& entry : result.table.entries) {
-    const auto& rounded = entry.share_by_rounding_percent;
-    text +=
-        csv_row({std::string(to_string(entry.drive.waveform)), csv_number(entry.drive.frequency_hz),
-                 csv_number(entry.drive.amplitude()), csv_number(entry.target_percent),
-                 list(entry.coefficients), ends(entry.coefficients_ci95, &Range::low),
-                 ends(entry.coefficients_ci95, &Range::high), list(entry.log_slopes),
-                 csv_number(entry.published_coefficient), csv_number(entry.relative_error_percent),
-                 csv_number(entry.share_at_published_percent),
-                 rounded ? csv_number(rounded->low) : std::string(),
-                 rounded ? csv_number(rounded->high) : std::string(),
-                 std::string(to_string(entry.grade)), csv_text(entry.note)});
-  }
-  return text;
+  return CsvColumns<R>()
+      .add("waveform", &R::drive, &LeakDrive::waveform)
+      .add("frequency_hz", &R::drive, &LeakDrive::frequency_hz)
+      .add(closed_loop ? "amplitude_m" : "amplitude_v", &R::drive, &LeakDrive::amplitude)
+      .members(&R::target_percent, &R::coefficients)
+      .add("ci95_low", ends(&Range::low))
+      .add("ci95_high", ends(&Range::high))
+      .members(&R::log_slopes, &R::published_coefficient, &R::relative_error_percent,
+               &R::share_at_published_percent)
+      .add("share_by_rounding_low_percent", &R::share_by_rounding_percent, &Range::low)
+      .add("share_by_rounding_high_percent", &R::share_by_rounding_percent, &Range::high)
+      .members(&R::grade, &R::note)
+      .table(result.table.entries);
 }
 
 std::string features_csv(const LeakTableResult& result) {
-  std::string text =
-      csv_row({"level", "coefficient", "servo_flow_l_per_min", "published_servo_flow_l_per_min",
-               "leak_flow_l_per_min", "published_leak_flow_l_per_min", "mean", "published_mean",
-               "rms", "published_rms", "std", "published_std"});
-  for (const calib::FeatureRow& each : result.table.features) {
-    text += csv_row(
-        {csv_text(each.level), csv_number(each.coefficient), csv_number(each.servo_flow_l_per_min),
-         csv_number(each.published_servo_flow_l_per_min), csv_number(each.leak_flow_l_per_min),
-         csv_number(each.published_leak_flow_l_per_min), csv_number(each.mean),
-         csv_number(each.published_mean), csv_number(each.rms), csv_number(each.published_rms),
-         csv_number(each.std), csv_number(each.published_std)});
-  }
-  return text;
+  using R = calib::FeatureRow;
+  return CsvColumns<R>()
+      .members(&R::level, &R::coefficient, &R::servo_flow_l_per_min,
+               &R::published_servo_flow_l_per_min, &R::leak_flow_l_per_min,
+               &R::published_leak_flow_l_per_min, &R::mean, &R::published_mean, &R::rms,
+               &R::published_rms, &R::std, &R::published_std)
+      .table(result.table.features);
 }
 
 std::string level_csv(const datasets::LeakSignal& signal, const calib::PeriodicSeries& series,

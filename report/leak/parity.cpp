@@ -1,12 +1,8 @@
 #include "report/leak/parity.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include <algorithm>
-#include <cmath>
-
-#include "report/store/csv_fields.hpp"
+#include "report/store/csv_columns.hpp"
 #include "report/store/identity.hpp"
 #include "report/store/table.hpp"
 
@@ -17,14 +13,8 @@ using diagnosis::ParityCondition;
 using diagnosis::ParityResidual;
 using diagnosis::ParitySignal;
 
-const ParitySignal* signal_of(const ParityResult& result, const diagnosis::ParityRecord& record) {
-  for (const ParitySignal& signal : result.parity.signals)
-    if (signal.signal == record.signal) return &signal;
-  return nullptr;
-}
-
-std::string repeat_name(const diagnosis::ParityRecord& record) {
-  return record.repeat ? fmt::format("{}", *record.repeat) : std::string("mean");
+std::string repeat_name(const std::optional<int>& repeat) {
+  return repeat ? fmt::format("{}", *repeat) : "mean";
 }
 
 std::filesystem::path series_file(const std::string& condition) {
@@ -38,7 +28,7 @@ std::string series_csv(const ParityCondition& condition) {
   for (const ParityResidual& record : condition.records) {
     if (record.failure) continue;
     const auto add = [&](const char* what, const std::vector<double>& values) {
-      table.add(fmt::format("{}_{}_m", what, repeat_name(record)), values);
+      table.add(fmt::format("{}_{}_m", what, repeat_name(record.repeat)), values);
     };
     add("parity", record.parity_m);
     add("residual", record.residual_m);
@@ -71,30 +61,28 @@ StoredParity stored(const ParityResult& result) {
   return file;
 }
 
-std::string parity_csv(const ParityResult& result) {
+std::string parity_csv(const StoredParity& parity) {
+  using R = decltype(StoredParity::records)::value_type;
+  using Features = decltype(R::features);
+  const auto threshold_m = [&](const R& record) -> std::optional<double> {
+    for (const ParitySignal& signal : parity.signals)
+      if (record.alarm && signal.signal == record.signal) return signal.threshold_m;
+    return std::nullopt;
+  };
+  CsvColumns<R> columns;
+  columns.members(&R::condition)
+      .add("repeat", [](const R& record) { return repeat_name(record.repeat); })
+      .members(&R::signal, &R::leak_level, &R::healthy, &R::sets_threshold, &R::peak_m)
+      .add("threshold_m", threshold_m)
+      .members(&R::alarm, &R::time_to_alarm_s)
+      .add("feature_mean_m", &R::features, &Features::mean_m)
+      .add("feature_rms_m", &R::features, &Features::rms_m)
+      .add("feature_std_m", &R::features, &Features::std_m)
+      .members(&R::failure);
   std::string text;
-  if (const LeakStatus status = status_of(result); status != LeakStatus::done) {
-    text = csv_comment(
-               fmt::format("status: {}: {}", to_string(status), fmt::join(result.reasons, "; "))) +
-           "\n";
-  }
-  text += csv_row({"condition", "repeat", "signal", "leak_level", "healthy", "sets_threshold",
-                   "peak_m", "threshold_m", "alarm", "time_to_alarm_s", "feature_mean_m",
-                   "feature_rms_m", "feature_std_m", "failure"});
-  for (const ParityCondition& condition : result.parity.conditions) {
-    for (const ParityResidual& record : condition.records) {
-      const ParitySignal* signal = signal_of(result, record);
-      text += csv_row({csv_text(record.condition), repeat_name(record), csv_text(record.signal),
-                       csv_text(record.leak_level.value_or("")), record.healthy ? "1" : "0",
-                       record.sets_threshold ? "1" : "0", csv_number(record.peak_m),
-                       record.alarm ? csv_number(signal->threshold_m) : "",
-                       record.alarm ? (*record.alarm ? "1" : "0") : "",
-                       csv_number(record.time_to_alarm_s), csv_number(record.features.mean_m),
-                       csv_number(record.features.rms_m), csv_number(record.features.std_m),
-                       csv_text(record.failure.value_or(""))});
-    }
-  }
-  return text;
+  if (parity.status != LeakStatus::done)
+    text = csv_status(to_string(parity.status), parity.reasons) + "\n";
+  return text + columns.table(parity.records);
 }
 
 PlannedFiles planned_parity(const datasets::Campaign& campaign) {
