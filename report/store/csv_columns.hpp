@@ -42,13 +42,13 @@ std::string csv_field(const T& value, const Path&... path) {
     return csv_number(value);
   } else if constexpr (std::is_integral_v<T>) {
     return fmt::format("{}", value);
-  } else if constexpr (std::is_same_v<T, std::vector<double>>) {
+  } else if constexpr (std::is_convertible_v<const T&, const std::vector<double>&>) {
     std::vector<std::string> numbers;
     for (const double number : value) numbers.push_back(csv_number(number));
     return fmt::format("{}", fmt::join(numbers, " "));
   } else {
-    static_assert(std::is_same_v<T, std::vector<std::string>>);
-    return csv_text(fmt::format("{}", fmt::join(value, "; ")));
+    const std::vector<std::string>& texts = value;
+    return csv_text(fmt::format("{}", fmt::join(texts, "; ")));
   }
 }
 

@@ -40,6 +40,7 @@ TEST_CASE("csv_field: each kind of value has its text", "[report]") {
   CHECK(csv_field("a,b") == "\"a,b\"");
   CHECK(csv_field(std::string("=A1")) == "'=A1");
   CHECK(csv_field(std::vector<double>{-0.5, 2.0}) == "-0.5 2");
+  CHECK(csv_field(rigcal::Later<std::vector<double>>{2.0}) == "2");
   CHECK(csv_field(std::vector<std::string>{"one", "two, three"}) == "\"one; two, three\"");
 }
 
