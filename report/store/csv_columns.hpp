@@ -17,6 +17,15 @@
 
 namespace rigcal::report {
 
+template <typename T>
+concept CsvText = std::is_convertible_v<const T&, std::string_view>;
+/// An optional value or a pointer to an object.
+template <typename T>
+concept MayBeAbsent = !CsvText<T> && requires(const T& value) {
+  *value;
+  static_cast<bool>(value);
+};
+
 /// Writes a value as a CSV field: a truth value as 1 or 0, an enumeration by its name, numbers of a
 /// list separated by spaces, its texts by "; ".
 ///
@@ -24,15 +33,14 @@ namespace rigcal::report {
 ///              is empty if an optional value or a pointer on the way is absent.
 template <typename T, typename... Path>
 std::string csv_field(const T& value, const Path&... path) {
-  constexpr bool is_text = std::is_convertible_v<const T&, std::string_view>;
-  if constexpr (!is_text && requires { value ? *value : *value; }) {
+  if constexpr (MayBeAbsent<T>) {
     return value ? csv_field(*value, path...) : std::string();
   } else if constexpr (sizeof...(path) > 0) {
     const auto step = [&](const auto& first, const auto&... rest) {
       return csv_field(std::invoke(first, value), rest...);
     };
     return step(path...);
-  } else if constexpr (is_text) {
+  } else if constexpr (CsvText<T>) {
     return csv_text(std::string(value));
   } else if constexpr (std::is_enum_v<T>) {
     return std::string(to_string(value));
