@@ -10,8 +10,8 @@
 namespace rigcal::datasets {
 namespace {
 
-// Thresholds for the row "a clipped sensor" in docs/campaign-file.md. The test has records on both
-// sides of them.
+// Thresholds for the row "a clipped sensor" in docs/campaign-records.md. The test has records on
+// both sides of them.
 constexpr std::size_t kShortestClip = 3;
 constexpr std::size_t kFewestClipped = 8;
 constexpr double kClipDriveMotion = 0.005;
@@ -64,8 +64,8 @@ double flat_top_fall(std::size_t length) {
   return 12.0 / n + 36.0 / (n * n);
 }
 
-// Thresholds for the row "an interrupted sensor" in docs/campaign-file.md. The test has records on
-// both sides of them.
+// Thresholds for the row "an interrupted sensor" in docs/campaign-records.md. The test has records
+// on both sides of them.
 constexpr std::size_t kShortestFreeze = 16;
 constexpr double kFreezeDriveMotion = 0.1;
 constexpr int kFreezePassages = 2;
