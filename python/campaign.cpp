@@ -60,7 +60,7 @@ CampaignPtr load_campaign(const std::filesystem::path& campaign,
 void bind_parameter(py::module_& module) {
   using model::ParameterSpec;
   py::class_<Parameter> parameter(module, "Parameter", "A parameter that the campaign gives; SI.");
-  bind_spec(parameter);
+  bind_spec(parameter, &Parameter::spec);
   parameter
       .def_property_readonly("meaning", field(&Parameter::spec, &model::ParameterSpec::meaning),
                              "In one line.")

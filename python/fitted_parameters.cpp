@@ -113,10 +113,25 @@ void bind_profile(py::module_& module) {
                     "Whether the fit was not at the minimum.");
 }
 
+/// Returns a getter for a member that is None if it is absent.
+template <typename Member>
+auto or_none(Member calib::FittedParameter::*member) {
+  return [=](const calib::FittedParameter& self) -> std::optional<typename Member::value_type> {
+    return self.*member;
+  };
+}
+/// Returns a getter for an enumerator by its name, or None if it is absent.
+template <typename Member>
+auto name_or_none(Member calib::FittedParameter::*member) {
+  return [=](const calib::FittedParameter& self) {
+    return self.*member ? std::optional(to_string(*(self.*member))) : std::nullopt;
+  };
+}
+
 }  // namespace
 
 void bind_fitted_parameters(py::module_& module) {
-  using Self = FittedParameter;
+  using Self = calib::FittedParameter;
   bind_bootstrap(module);
   bind_posterior(module);
   bind_budget(module);
@@ -125,86 +140,55 @@ void bind_fitted_parameters(py::module_& module) {
                              "One parameter of a result, fitted or known; SI.");
   bind_spec(parameter);
   parameter
-      .def_property_readonly("scope", named(&Self::value, &calib::FittedParameter::scope),
+      .def_property_readonly("scope", named(&Self::scope),
                              "Scope of the value: \"rig\", \"leak_level\" or \"condition\".")
-      .def_property_readonly(
-          "level",
-          [](const Self& self) -> std::optional<std::string> {
-            if (self.value.scope == datasets::Scope::rig) return std::nullopt;
-            return self.value.level;
-          },
-          "Its leak level or condition; None of the rig.")
-      .def_property_readonly("value", field(&Self::value, &calib::FittedParameter::value),
-                             "In `unit`.")
-      .def_property_readonly("start", field(&Self::value, &calib::FittedParameter::start),
-                             "Where the fit began, in `unit`.")
-      .def_property_readonly(
-          "lower",
-          [](const Self& self) {
-            return self.value.fitted ? std::optional(self.value.lower) : std::nullopt;
-          },
-          "Bound of the fit, in `unit`; None of a known value.")
-      .def_property_readonly(
-          "upper",
-          [](const Self& self) {
-            return self.value.fitted ? std::optional(self.value.upper) : std::nullopt;
-          },
-          "Bound of the fit, in `unit`; None of a known value.")
-      .def_property_readonly("fitted", field(&Self::value, &calib::FittedParameter::fitted),
-                             "False of a known value.")
-      .def_property_readonly("nuisance", field(&Self::value, &calib::FittedParameter::nuisance),
-                             "Fitted, but of no interest itself.")
-      .def_property_readonly(
-          "standard_error", field(&Self::value, &calib::FittedParameter::standard_error),
+      .def_readonly("level", &Self::level, "Its leak level or condition; None of the rig.")
+      .def_readonly("value", &Self::value, "In `unit`.")
+      .def_readonly("start", &Self::start, "Where the fit began, in `unit`.")
+      .def_readonly("lower", &Self::lower, "Bound of the fit, in `unit`; None of a known value.")
+      .def_readonly("upper", &Self::upper, "Bound of the fit, in `unit`; None of a known value.")
+      .def_readonly("fitted", &Self::fitted, "False of a known value.")
+      .def_readonly("nuisance", &Self::nuisance, "Fitted, but of no interest itself.")
+      .def_readonly(
+          "standard_error", &Self::standard_error,
           "As if the residuals were independent, in `unit`; None where the records do not\n"
           "determine it.")
-      .def_property_readonly("robust_standard_error",
-                             field(&Self::value, &calib::FittedParameter::robust_standard_error),
-                             "From the variation of the residuals themselves, in `unit`; or None.")
-      .def_property_readonly("ci95", field(&Self::value, &calib::FittedParameter::ci95),
-                             "95 % interval (low, high), in `unit`, with what the model leaves\n"
-                             "out; or None.")
-      .def_property_readonly("ci95_if_exact",
-                             field(&Self::value, &calib::FittedParameter::ci95_if_exact),
+      .def_readonly("robust_standard_error", &Self::robust_standard_error,
+                    "From the variation of the residuals themselves, in `unit`; or None.")
+      .def_readonly("ci95", &Self::ci95,
+                    "95 % interval (low, high), in `unit`, with what the model leaves\n"
+                    "out; or None.")
+      .def_property_readonly("ci95_if_exact", or_none(&Self::ci95_if_exact),
                              "The same if the model were exact; or None.")
       .def_property_readonly(
-          "ci95_from",
-          [](const Self& self) {
-            return self.value.ci95 ? std::optional(to_string(self.value.interval)) : std::nullopt;
-          },
+          "ci95_from", name_or_none(&Self::ci95_from),
           "What `ci95_if_exact` rests on: \"standard_error\", \"robust_standard_error\"...; or "
           "None.")
       .def_property_readonly(
-          "degrees_of_freedom", field(&Self::value, &calib::FittedParameter::degrees_of_freedom),
+          "degrees_of_freedom", or_none(&Self::degrees_of_freedom),
           "Degrees of freedom of the standard error behind `ci95_if_exact`; or None.")
-      .def_property_readonly("budget", field(&Self::value, &calib::FittedParameter::budget),
+      .def_property_readonly("budget", or_none(&Self::budget),
                              "Contributions to `ci95`; None where no effects were considered.")
-      .def_property_readonly("bootstrap", field(&Self::value, &calib::FittedParameter::bootstrap),
+      .def_property_readonly("bootstrap", or_none(&Self::bootstrap),
                              "Its spread, where the fit was asked for one.")
-      .def_property_readonly("posterior", field(&Self::value, &calib::FittedParameter::posterior),
+      .def_property_readonly("posterior", or_none(&Self::posterior),
                              "Its spread over the draws, where the fit was asked for some.")
       .def_property_readonly(
           "profile",
           [](const Self& self) -> std::shared_ptr<calib::Profile> {
-            if (!self.value.profile) return nullptr;
-            return std::make_shared<calib::Profile>(*self.value.profile);
+            if (!self.profile) return nullptr;
+            return std::make_shared<calib::Profile>(*self.profile);
           },
           "Its profile likelihood, where the fit was asked for one.")
-      .def_property_readonly("at_bound", field(&Self::value, &calib::FittedParameter::at_bound),
-                             "Whether the estimate is at one of its bounds.")
+      .def_readonly("at_bound", &Self::at_bound, "Whether the estimate is at one of its bounds.")
       .def_property_readonly(
-          "identifiability",
-          [](const Self& self) {
-            return self.value.fitted ? std::optional(to_string(self.value.identifiability))
-                                     : std::nullopt;
-          },
+          "identifiability", name_or_none(&Self::identifiability),
           "\"identified\", \"weak\", \"bounded\" or \"not_identifiable\"; None of a known value.")
-      .def_property_readonly("reason", field(&Self::value, &calib::FittedParameter::reason),
-                             "In words: why it has no error, why it is weak, at which bound it is.")
+      .def_readonly("reason", &Self::reason,
+                    "In words: why it has no error, why it is weak, at which bound it is.")
       .def("__repr__", [](const Self& self) {
-        return fmt::format("<rigcal.FittedParameter {}{}: {:g} {}>", self.spec.key,
-                           self.value.level.empty() ? "" : " of " + self.value.level,
-                           self.value.value, self.spec.unit);
+        return fmt::format("<rigcal.FittedParameter {}{}: {:g} {}>", self.key,
+                           self.level ? " of " + *self.level : "", self.value, self.unit);
       });
 }
 

@@ -1,5 +1,3 @@
-#include "report/page/page_design.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include "metrics/frequency_response.hpp"
 #include "report/figure/decimate.hpp"
 #include "report/figure/time_plots.hpp"
+#include "report/page/page_parts.hpp"
 #include "report/text/readable.hpp"
 
 namespace rigcal::report {

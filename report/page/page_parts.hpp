@@ -25,14 +25,14 @@ using doc::Interval;
 using doc::Number;
 
 /// Chooses a readable unit for the row of a parameter.
-inline ReadableUnit unit_of(const StoredParameter& p) {
-  return readable_unit(p.value.value_or(0.0), p.unit);
+inline ReadableUnit unit_of(const calib::FittedParameter& p) {
+  return readable_unit(std::isfinite(p.value) ? p.value : 0.0, p.unit);
 }
 
 /// Returns the larger distance from the value to an end of the 95 % interval, divided by the value.
 /// The larger distance is used because a bound may cut off the other side. Infinite without an
 /// interval or for a value of zero.
-double relative_half_width(const StoredParameter& parameter);
+double relative_half_width(const calib::FittedParameter& parameter);
 /// Returns true if the half-width is at most ten times the value.
 bool is_determined(double relative_half_width);
 /// Returns "± 2.1 %" or "± 220 %"; "not determined" beyond the limit of is_determined().
@@ -143,5 +143,31 @@ std::vector<doc::Section> comparison_sections(const StoredComparison& comparison
 /// Functions for batch.json: a row for each rig, and the trends of its estimates.
 doc::Verdict batch_headline(const StoredBatch& batch);
 std::vector<doc::Section> batch_sections(const StoredBatch& batch);
+
+/// Functions for average.json, which shows how well the repeats of each condition agree.
+doc::Verdict average_headline(const AverageFiles& stored);
+std::vector<doc::Section> average_sections(const AverageFiles& stored);
+/// Draws, for each output channel of a condition, the mean with the standard deviation of the
+/// repeats, and that standard deviation over time.
+std::vector<Figure> average_figures(const std::string& condition, const Table& series);
+/// Draws the figures of every condition.
+std::vector<Figure> average_figures(const AverageFiles& stored);
+/// Plots the delay of each repeat relative to the mean; no traces for a single repeat.
+Plot offset_plot(const StoredRecord& record);
+
+/// Functions for plan.json: how much information each existing or planned record gives about each
+/// parameter. With `plan --design` it also contains the designed test.
+doc::Verdict plan_headline(const PlanFiles& files);
+std::vector<doc::Section> plan_sections(const PlanFiles& files);
+/// Plots, for each parameter, the fraction of the total information (1 / variance) that each record
+/// provides on its own, followed by the figures of the design.
+std::vector<Figure> plan_figures(const PlanFiles& files);
+
+/// Functions for `design` in plan.json: the test that `plan --design` designed.
+doc::Verdict design_headline(const StoredDesign& design);
+/// @param files  must contain a design
+doc::Section design_section(const PlanFiles& files);
+/// Draws the drive, the response and the spectrum; empty without a design.
+std::vector<Figure> design_figures(const PlanFiles& files);
 
 }  // namespace rigcal::report

@@ -1,11 +1,9 @@
-#include "report/page/page_plan.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "report/page/page_design.hpp"
+#include "report/page/page_parts.hpp"
 
 namespace rigcal::report {
 namespace {

@@ -1,10 +1,8 @@
-#include "report/page/page_average.hpp"
-
 #include <catch2/catch.hpp>
 
 #include "common/error.hpp"
 #include "report/page/page.hpp"
-#include "report/page/page_plan.hpp"
+#include "report/page/page_parts.hpp"
 
 using Catch::Contains;
 using namespace rigcal::report;
