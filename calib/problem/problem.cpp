@@ -11,7 +11,6 @@
 #include "calib/problem/initial_state.hpp"
 #include "calib/problem/known_sd.hpp"
 #include "calib/problem/known_values.hpp"
-#include "calib/result/fitted_parameter.hpp"
 #include "datasets/synthetic/model_output.hpp"
 
 namespace rigcal::calib {
