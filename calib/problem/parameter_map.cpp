@@ -171,4 +171,11 @@ double ParameterMap::prior_slope(int unknown, double z) const {
   return prior ? slope(unknown, z) / prior->sd : 0.0;
 }
 
+std::string parameter_label(const std::string& name, datasets::Scope scope,
+                            const std::optional<std::string>& level) {
+  if (!level || level->empty()) return name;
+  return fmt::format("{} ({} {})", name,
+                     scope == datasets::Scope::leak_level ? "leak level" : "condition", *level);
+}
+
 }  // namespace rigcal::calib

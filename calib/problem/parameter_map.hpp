@@ -86,4 +86,8 @@ class ParameterMap {
   ArrowLayout layout_;
 };
 
+/// Returns a parameter's name or key with its level: "leakage_coefficient (leak level 33 %)".
+std::string parameter_label(const std::string& name, datasets::Scope scope,
+                            const std::optional<std::string>& level);
+
 }  // namespace rigcal::calib

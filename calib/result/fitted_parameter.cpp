@@ -1,7 +1,5 @@
 #include "calib/result/fitted_parameter.hpp"
 
-#include <fmt/format.h>
-
 #include <cmath>
 
 namespace rigcal::calib {
@@ -27,13 +25,6 @@ FittedParameter parameter_in_row(model::PlantKind plant, int index, Scope scope,
   parameter.scope = scope;
   if (scope != Scope::rig) parameter.level = level;
   return parameter;
-}
-
-std::string parameter_label(const std::string& name, Scope scope,
-                            const std::optional<std::string>& level) {
-  if (!level || level->empty()) return name;
-  return fmt::format("{} ({} {})", name, scope == Scope::leak_level ? "leak level" : "condition",
-                     *level);
 }
 
 double undetermined_sd(const std::optional<Range>& ci95, double lower, double upper) {

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "calib/problem/parameter_map.hpp"
 #include "calib/result/considered.hpp"
 #include "calib/result/posterior.hpp"
 #include "common/describe.hpp"
@@ -132,10 +133,6 @@ struct FittedParameter {
 /// @param level  leak level or condition; empty for the rig
 FittedParameter parameter_in_row(model::PlantKind plant, int index, datasets::Scope scope,
                                  const std::string& level);
-
-/// Returns a parameter's name or key with its level: "leakage_coefficient (leak level 33 %)".
-std::string parameter_label(const std::string& name, datasets::Scope scope,
-                            const std::optional<std::string>& level);
 
 /// Returns the standard deviation that later steps assume for a parameter without an error: that of
 /// a uniform distribution over its interval, or over its bounds if it has no interval.
