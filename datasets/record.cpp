@@ -28,6 +28,7 @@ const std::vector<ChannelInfo>& channel_table() {
       {Channel::pilot_pressure, "pilot_pressure", "pilot_pressure_pa", "Pa", false},
       {Channel::base_acceleration, "base_acceleration", "base_acceleration_m_per_s2", "m/s2",
        false},
+      {Channel::torque, "torque", "torque_n_m", "N m", true},
   };
   return table;
 }

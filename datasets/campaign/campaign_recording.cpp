@@ -110,11 +110,12 @@ void check_role(const TomlNode& node, Channel channel, ChannelRole role, Channel
   const bool open_loop = drive == Channel::command || drive == Channel::pilot_pressure;
   const bool can_be_output = info(channel).is_output || (channel == Channel::command && !open_loop);
   if (role == ChannelRole::input && !can_be_input) {
-    const std::string loop = drive == Channel::command ? "without a controller"
+    const std::string loop = !is_drive(channel)          ? ""
+                             : drive == Channel::command ? " without a controller"
                              : drive == Channel::pilot_pressure
-                                 ? "where pilot_gain makes the pilot pressure the drive"
-                                 : fmt::format("of a rig that follows {}", info(drive).key);
-    node.fail(fmt::format("{} cannot be an input {}: expected \"output\" or \"ignore\"",
+                                 ? " where pilot_gain makes the pilot pressure the drive"
+                                 : fmt::format(" of a rig that follows {}", info(drive).key);
+    node.fail(fmt::format("{} cannot be an input{}: expected \"output\" or \"ignore\"",
                           info(channel).key, loop));
   }
   if (role == ChannelRole::output && !can_be_output) {

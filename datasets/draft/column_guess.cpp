@@ -227,6 +227,8 @@ std::optional<Channel> measured(Meaning quantity, const Reading& reading) {
       return Channel::angle;
     case Meaning::force:
       return Channel::force;
+    case Meaning::torque:
+      return Channel::torque;
     case Meaning::pressure:
       return pressure_at(reading);
     case Meaning::acceleration:
@@ -265,7 +267,7 @@ std::string_view other_of(std::optional<Meaning> quantity, const Reading& readin
     case Meaning::flow:
       return "a flow";
     case Meaning::torque:
-      return "a torque";
+      return "the reference of a torque, which no loop controls";
     case Meaning::rotation:
       return "a speed of rotation";
     case Meaning::angle:

@@ -22,6 +22,8 @@ std::optional<model::Output> model_output(Channel channel) {
       return model::Output::payload_acceleration;
     case Channel::angle:
       return model::Output::angle;
+    case Channel::torque:
+      return model::Output::torque;
     case Channel::pilot_pressure:
       return model::Output::pilot_pressure;
     case Channel::reference:

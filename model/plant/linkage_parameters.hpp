@@ -45,6 +45,10 @@ struct LinkageParameters : TwoChamberParameters<T> {
   T angle_lag_s{};
   T angle_maximum_rad{};
   T angle_offset_rad{};
+  T torque_gain{};
+  T torque_lag_s{};
+  T torque_maximum_n_m{};
+  T torque_offset_n_m{};
   T initial_angle_rad{};
   T initial_angular_velocity_rad_per_s{};
 };
@@ -112,18 +116,23 @@ constexpr auto linkage_term_rows() {
   };
 }
 
-/// Sensor and initial state of the joint.
+/// Sensors and initial state of the joint.
 template <typename T>
 constexpr auto angle_rows() {
   using P = LinkageParameters<T>;
   using K = ParameterKind;
+  constexpr double kInf = std::numeric_limits<double>::infinity();
   using F = ParameterField<P, T>;
   return std::array{
       // clang-format off
       F{&P::angle_gain, {"angle_gain", "angle_gain", "s_theta", "1", "recorded angle per angle", "docs/model.md", K::sensor, 0.1, 10, 1.0}},
       F{&P::angle_lag_s, {"angle_lag", "angle_lag_s", "tau_theta", "s", "first-order lag of the angle sensor", "docs/model.md", K::sensor, 0, 10, 0.0}},
-      F{&P::angle_maximum_rad, {"angle_maximum", "angle_maximum_rad", "max_theta", "rad", "largest angle that its sensor and converter can show", "docs/model.md", K::sensor, -1000, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(), false}},
+      F{&P::angle_maximum_rad, {"angle_maximum", "angle_maximum_rad", "max_theta", "rad", "largest angle that its sensor and converter can show", "docs/model.md", K::sensor, -1000, kInf, kInf, false}},
       F{&P::angle_offset_rad, {"angle_offset", "angle_offset_rad", "theta_off", "rad", "recorded angle minus angle", "docs/model.md", K::sensor, -1000, 1000, 0.0}},
+      F{&P::torque_gain, {"torque_gain", "torque_gain", "s_M", "1", "recorded torque per torque", "docs/model.md", K::sensor, 0.1, 10, 1.0}},
+      F{&P::torque_lag_s, {"torque_lag", "torque_lag_s", "tau_M", "s", "first-order lag of the torque sensor", "docs/model.md", K::sensor, 0, 10, 0.0}},
+      F{&P::torque_maximum_n_m, {"torque_maximum", "torque_maximum_n_m", "max_M", "N m", "largest torque that its sensor and converter can show", "docs/model.md", K::sensor, -1e9, kInf, kInf, false}},
+      F{&P::torque_offset_n_m, {"torque_offset", "torque_offset_n_m", "M_off", "N m", "recorded torque minus torque", "docs/model.md", K::sensor, -1e9, 1e9, 0.0}},
       F{&P::initial_angle_rad, {"initial_angle", "initial_angle_rad", "theta(0)", "rad", "recorded angle at the first sample", "docs/model.md", K::initial, -1000, 1000, 0.0}},
       F{&P::initial_angular_velocity_rad_per_s, {"initial_angular_velocity", "initial_angular_velocity_rad_per_s", "omega(0)", "rad/s", "angular velocity at the first sample", "docs/model.md", K::initial, -1000, 1000, 0.0}},
       // clang-format on

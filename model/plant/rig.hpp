@@ -29,6 +29,7 @@ enum class Output {
   angle,                 ///< reading of the angle sensor of a joint [rad]; zero without a joint
   angular_velocity,      ///< angular velocity of the joint [rad/s]; zero without a joint
   pilot_pressure,        ///< pilot pressure that drives the spool [Pa]; zero without a pilot
+  torque,                ///< reading of a torque transducer at a joint [N m]; zero without a joint
 };
 
 /// Name of an output, ending in its SI unit: "position_m", "servo_flow_m3_per_s".
@@ -48,7 +49,8 @@ inline constexpr std::array kAllOutputs{Output::position,
                                         Output::payload_acceleration,
                                         Output::angle,
                                         Output::angular_velocity,
-                                        Output::pilot_pressure};
+                                        Output::pilot_pressure,
+                                        Output::torque};
 
 /// Whether a rig computes an output. Outputs that it does not compute are zero.
 bool has_output(const ParameterValues& values, Output output);

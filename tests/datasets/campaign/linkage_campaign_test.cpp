@@ -82,6 +82,28 @@ TEST_CASE("load_campaign: a linkage is in radians, and a pilot pressure drives i
         "inertia_kg_m2");
 }
 
+TEST_CASE("load_campaign: the torque of a linkage is compared, and its sensor has errors",
+          "[datasets]") {
+  const std::string text = replaced(
+      replaced(kArm, "pressure_a = {",
+               "torque = { column = \"M_kNm\", unit = \"kN m\", sd = \"50 Nm\" }\npressure_a = {"),
+      "leakage_area = \"1 mm2\"",
+      "leakage_area = \"1 mm2\"\ntorque_lag = \"2 ms\"\n"
+      "torque_offset = { start = \"0 N m\", lower = \"-1 kN m\", upper = \"1 kN m\", fit = true }");
+  const Campaign campaign = load_text(text);
+  const ChannelSetting& torque = campaign.channels.at(Channel::torque);
+  CHECK(torque.role == ChannelRole::output);
+  CHECK(torque.to_si(3.0) == Approx(3e3));
+  CHECK(*torque.sd == Approx(50.0));
+  CHECK(value(campaign, "torque_lag") == Approx(2e-3));
+  CHECK(info(Channel::torque).name == "torque_n_m");
+  CHECK_THROWS_WITH(
+      load_text(replaced(text, "sd = \"50 Nm\"", "role = \"input\"")),
+      Catch::Contains("torque cannot be an input: expected \"output\" or \"ignore\""));
+  CHECK_THROWS_WITH(load_text(replaced(text, "unit = \"kN m\"", "unit = \"kN\"")),
+                    Catch::Contains("'kN' is the unit of a force") && Catch::Contains("a torque"));
+}
+
 TEST_CASE("load_campaign: a linkage with an electric valve is driven by the command",
           "[datasets]") {
   std::string text = replaced(kArm, "pilot_gain = \"0.3 mm/bar\"\npilot_dead_band = \"12 bar\"",
@@ -137,6 +159,9 @@ TEST_CASE("load_campaign: what does not go together on a linkage", "[datasets]")
            Row{"angle = { column",
                "position = { column = \"x_m\", unit = \"m\" }\nangle = { column",
                "the plant linkage turns an arm, and its motion is the angle of the joint"},
+           Row{"angle = { column",
+               "force = { column = \"F_N\", unit = \"N\", role = \"output\" }\nangle = { column",
+               "expected the channel torque (unit \"N m\")"},
            Row{"angle = { column",
                "base_acceleration = { column = \"a\", unit = \"m/s2\" }\nangle = { column",
                "how its base moves the arm depends on lengths"},
@@ -222,10 +247,15 @@ TEST_CASE("load_campaign: a rotary actuator has a displacement, and no linkage",
                     Catch::Contains("no value for area_b"));
 }
 
-TEST_CASE("load_campaign: a load that slides has no angle", "[datasets]") {
+TEST_CASE("load_campaign: a load that slides has no angle and no torque", "[datasets]") {
   CHECK_THROWS_WITH(
       load_text(replaced(
           test::kExample, "pressure_a = { unit = \"bar\" }",
           "pressure_a = { unit = \"bar\" }\nangle = { column = \"a_deg\", unit = \"deg\" }")),
       Catch::Contains("moves a load along a line, and has no joint"));
+  CHECK_THROWS_WITH(
+      load_text(replaced(
+          test::kExample, "pressure_a = { unit = \"bar\" }",
+          "pressure_a = { unit = \"bar\" }\ntorque = { column = \"M_Nm\", unit = \"N m\" }")),
+      Catch::Contains("has no joint: expected the channel force"));
 }

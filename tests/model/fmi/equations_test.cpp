@@ -223,7 +223,7 @@ TEST_CASE("equations: an arm on a triangle, and one with a table, move as they a
     for (const auto& [key, value] : row.travel) e.set(key, value);
     e.inputs.drive = Signal::constant(1.3e6);
     e.times_s = {0.0, 0.4};
-    e.outputs = {Output::angle, Output::position, Output::acceleration};
+    e.outputs = {Output::angle, Output::position, Output::acceleration, Output::torque};
     e.options.tolerance = 1e-10;
     const Simulation run = e();
     INFO(run.reason);
@@ -243,6 +243,7 @@ TEST_CASE("equations: an arm on a triangle, and one with a table, move as they a
     REQUIRE(run.outputs(1, 0) > 0.02);
     CHECK(x[0] == Approx(run.outputs(1, 0)).epsilon(1e-6));
     CHECK(equations->output(Output::position, x) == Approx(run.outputs(1, 1)).epsilon(1e-6));
+    CHECK(equations->output(Output::torque, x) == Approx(run.outputs(1, 3)).epsilon(1e-5));
     const std::vector<double> indicators = equations->indicators(x);
     REQUIRE(indicators.size() == row.indicators);
     if (indicators.size() == 9) CHECK(indicators[6] == Approx(x[0] - 0.05));

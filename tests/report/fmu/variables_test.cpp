@@ -122,6 +122,8 @@ TEST_CASE("fmu variables: an arm is told in radians, and its pilot pressure driv
   CHECK(named(variables, "angle").unit == "rad");
   CHECK(named(variables, "angle").is_state);
   CHECK(named(variables, "position").causality == Causality::output);  // the position of the piston
+  CHECK(named(variables, "torque").unit == "N m");
+  CHECK(named(variables, "torque").causality == Causality::output);
   CHECK(named(variables, "der(pump_demand)").unit == "1");
   CHECK(named(variables, "lever_curvature").unit == "m/rad3");
   for (const char* absent : {"external_force", "command", "payload_acceleration", "stroke"})
@@ -130,7 +132,8 @@ TEST_CASE("fmu variables: an arm is told in radians, and its pilot pressure driv
     CAPTURE(each.name, each.unit);
     CHECK_NOTHROW(report::base_units(each.unit));
   }
-  CHECK_FALSE(has(variables_of(two_chamber_rig()), "angle"));
+  for (const char* of_joint : {"angle", "torque"})
+    CHECK_FALSE(has(variables_of(two_chamber_rig()), of_joint));
 }
 
 TEST_CASE("fmu variables: states, outputs and rates by their references", "[report]") {
