@@ -47,7 +47,8 @@ const KeyTable<model::Rig>& controller_keys() {
       Row::word<model::Feedback>(
           "feedback", &model::Rig::feedback, feedback_words(),
           {.doc = "The controlled quantity, which determines the gains and the channel of the "
-                  "reference"}),
+                  "reference",
+           .otherwise = "`\"position\"`; of a `\"linkage\"` `\"angle\"`"}),
   });
   return keys;
 }
@@ -61,9 +62,12 @@ void read_controller(const TomlNode& node, Campaign& campaign) {
     const std::string key(spec_of(campaign.rig.plant, settings.front().index).key);
     node.require(key, "a gain").fail("is given, but type is \"none\": expected type = \"pid\"");
   }
-  if (const auto feedback = node.find("feedback");
-      feedback && campaign.rig.controller == Kind::none)
+  const auto feedback = node.find("feedback");
+  if (feedback && campaign.rig.controller == Kind::none)
     feedback->fail("is given, but type is \"none\": expected type = \"pid\"");
+  if (!feedback && campaign.rig.controller == Kind::pid &&
+      campaign.rig.plant == model::PlantKind::linkage)
+    campaign.rig.feedback = model::Feedback::angle;
   campaign.parameters.insert(campaign.parameters.end(), settings.begin(), settings.end());
 }
 

@@ -597,13 +597,16 @@ std::optional<ParameterConflict> find_joint_conflict(const model::ParameterValue
 
 std::optional<ParameterConflict> find_linkage_conflict(const model::Rig& rig,
                                                        const model::ParameterValues& values) {
-  if (values.plant != model::PlantKind::linkage) return std::nullopt;
-  if (rig.controller != model::ControllerKind::none)
+  const bool turns = values.plant == model::PlantKind::linkage;
+  const bool of_angle = rig.feedback == model::Feedback::angle;
+  if (rig.controller != model::ControllerKind::none && turns != of_angle)
     return ParameterConflict{
-        "",
-        "the plant linkage has no controller yet: expected type = \"none\" in "
-        "[rig.controller], and the recorded command or pilot_pressure as the drive"};
-  return find_joint_conflict(values);
+        "", fmt::format("the plant {}, and this loop is on {}: expected feedback = \"{}\" in "
+                        "[rig.controller]",
+                        turns ? "linkage turns an arm, whose angle its controller acts on"
+                              : fmt::format("{} has no joint", to_string(values.plant)),
+                        model::gain_keys(rig.feedback).name, turns ? "angle" : "position")};
+  return turns ? find_joint_conflict(values) : std::nullopt;
 }
 
 /// Checks that a second mass has either all or none of its parameters.
@@ -697,7 +700,7 @@ std::optional<ParameterConflict> find_room_conflict(const model::Rig& rig,
   constexpr std::array kTerms{
       "hose_yield",           "hose_yield_ratio",  "payload_mass",  "pump_second_flow",
       "main_spool_gain",      "bristle_stiffness", "film_velocity", "acceleration_feedforward",
-      "velocity_feedforward", "sample_time"};
+      "velocity_feedforward", "sample_time",       "angle_ki",      "angle_kd"};
   std::vector<std::string_view> present;
   for (const char* key : kTerms) {
     if (values.is_given(key)) present.emplace_back(key);
@@ -754,8 +757,9 @@ std::optional<ParameterConflict> find_loop_conflict(const model::Rig& rig,
                       key, other.name, loop.name, own)};
     }
   }
-  const bool of_position = loop.kp == model::gain_keys(model::Feedback::position).kp;
-  if (!values.is_given(loop.kp) && !(values.is_given(loop.ki) && !of_position)) {
+  const bool of_motion = loop.kp == model::gain_keys(model::Feedback::position).kp ||
+                         rig.feedback == model::Feedback::angle;
+  if (!values.is_given(loop.kp) && !(values.is_given(loop.ki) && !of_motion)) {
     return ParameterConflict{
         "", fmt::format("the pid controller has no {}: expected one in [rig.controller]", loop.kp)};
   }

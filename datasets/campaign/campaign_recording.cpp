@@ -231,9 +231,7 @@ ChannelSetting read_channel(const TomlNode& node, Channel channel, Channel drive
   keys.read_rows(node, setting);
   if (const auto sd = node.find("gain_sd")) setting.gain_sd_where = sd->where();
   if (const auto role = node.find("role")) check_role(*role, channel, setting.role, drive);
-  if (const auto recognise = node.find("recognise"); recognise && channel != Channel::reference &&
-                                                     channel != Channel::command &&
-                                                     channel != Channel::pilot_pressure)
+  if (const auto recognise = node.find("recognise"); recognise && !is_drive(channel))
     recognise->fail("has a meaning only for a drive: expected it of reference or command");
   return setting;
 }
@@ -424,6 +422,8 @@ Channel drive_channel(const model::Rig& rig) {
       return Channel::force_reference;
     case model::Feedback::load_pressure:
       return Channel::load_pressure_reference;
+    case model::Feedback::angle:
+      return Channel::angle_reference;
     case model::Feedback::acceleration:
     case model::Feedback::three_variable_acceleration:
       return Channel::acceleration_reference;

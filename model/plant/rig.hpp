@@ -67,6 +67,7 @@ enum class Feedback {
   force,
   load_pressure,
   acceleration,
+  angle,
   three_variable,
   three_variable_acceleration,
 };
@@ -87,6 +88,7 @@ inline constexpr std::array kFeedbacks{
                 "load_pressure_kp", "load_pressure_ki", "load_pressure_kd", ""},
     FeedbackRow{"acceleration", "m/s2", "what the acceleration of the piston is to be",
                 "acceleration_kp", "acceleration_ki", "acceleration_kd", ""},
+    FeedbackRow{"angle", "rad", "where the joint is to be", "angle_kp", "angle_ki", "angle_kd", ""},
     FeedbackRow{"three_variable", "m", "where the piston is to be", "kp", "ki", "velocity_kp",
                 "acceleration_kp"},
     FeedbackRow{"three_variable_acceleration", "m/s2",
@@ -101,6 +103,12 @@ constexpr const FeedbackRow& gain_keys(Feedback feedback) {
 /// Whether a loop acts on position, velocity and acceleration together.
 constexpr bool is_three_variable(Feedback feedback) {
   return !gain_keys(feedback).acceleration.empty();
+}
+
+/// Whether the reference of a loop is where the piston or the joint is to be.
+constexpr bool controls_motion(Feedback feedback) {
+  return feedback == Feedback::position || feedback == Feedback::angle ||
+         feedback == Feedback::three_variable;
 }
 
 enum class InitialState {

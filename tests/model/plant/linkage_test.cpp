@@ -414,6 +414,44 @@ TEST_CASE("linkage: sensitivities are exact against differences, every parameter
           {"accumulator_exponent", 1.3}},
          none},
         electric);
+  Experiment looped = electric;
+  looped.rig.controller = ControllerKind::pid;
+  looped.rig.feedback = Feedback::angle;
+  looped.set("angle_kp", 10.0);
+  check({"loop on the angle",
+         Signal::sine(0.5, 8.0),
+         {{"angle_ki", 80.0},
+          {"angle_kd", 0.05},
+          {"derivative_filter", 200.0},
+          {"pressure_feedback", 5e-8},
+          {"initial_integral", 0.4},
+          {"initial_angle", 0.1},
+          {"valve_time_constant", 8e-3},
+          {"transport_delay", 3e-3}},
+         ControllerKind::pid,
+         InitialState::given,
+         false,
+         Feedback::angle},
+        looped);
+  check({"loop on the angle at its limit",
+         Signal::sine(0.5, 8.0),
+         {{"angle_ki", 40.0}, {"output_limit", 2.0}},
+         ControllerKind::pid,
+         InitialState::rest,
+         false,
+         Feedback::angle},
+        looped);
+  check({"sampled loop on the angle",
+         Signal::sine(0.5, 8.0),
+         {{"angle_ki", 40.0},
+          {"angle_kd", 0.05},
+          {"derivative_filter", 200.0},
+          {"sample_time", 7e-3}},
+         ControllerKind::pid,
+         InitialState::rest,
+         false,
+         Feedback::angle},
+        looped);
   check({"warm oil",
          Signal::sine(4.0, 10.0),
          {{"reference_temperature", 313.15},

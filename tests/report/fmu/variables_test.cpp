@@ -136,6 +136,28 @@ TEST_CASE("fmu variables: an arm is told in radians, and its pilot pressure driv
     CHECK_FALSE(has(variables_of(two_chamber_rig()), of_joint));
 }
 
+TEST_CASE("fmu variables: a loop on the angle has its reference and gains in radians", "[report]") {
+  model::Experiment arm = model::arm_rig().unset("pilot_gain").unset("pilot_dead_band");
+  arm.set("valve_gain", 2e-4).set("angle_kp", 10.0).set("angle_ki", 8.0).set("angle_kd", 0.2);
+  arm.set("derivative_filter", 100.0);
+  model::ExportedRig rig;
+  rig.rig = arm.rig;
+  rig.rig.pilot = false;
+  rig.rig.controller = model::ControllerKind::pid;
+  rig.rig.feedback = model::Feedback::angle;
+  rig.values = arm.values;
+  const auto variables = variables_of(rig);
+  CHECK(variables.front().name == "reference");
+  CHECK(variables.front().unit == "rad");
+  CHECK(named(variables, "angle_kd").unit == "V s/rad");
+  CHECK(named(variables, "controller_filtered_error").unit == "rad");
+  CHECK(named(variables, "command").causality == Causality::output);
+  for (const FmuVariable& each : variables) {
+    CAPTURE(each.name, each.unit);
+    CHECK_NOTHROW(report::base_units(each.unit));
+  }
+}
+
 TEST_CASE("fmu variables: states, outputs and rates by their references", "[report]") {
   const auto variables = variables_of(load_rig());
   const FmuVariable& velocity = named(variables, "velocity");
