@@ -65,9 +65,15 @@ void read_controller(const TomlNode& node, Campaign& campaign) {
   const auto feedback = node.find("feedback");
   if (feedback && campaign.rig.controller == Kind::none)
     feedback->fail("is given, but type is \"none\": expected type = \"pid\"");
-  if (!feedback && campaign.rig.controller == Kind::pid &&
-      campaign.rig.plant == model::PlantKind::linkage)
+  const bool turns = campaign.rig.plant == model::PlantKind::linkage;
+  if (!feedback && campaign.rig.controller == Kind::pid && turns)
     campaign.rig.feedback = model::Feedback::angle;
+  if (feedback && turns != (campaign.rig.feedback == model::Feedback::angle))
+    feedback->fail(turns ? "the controller of a linkage acts on the angle of the joint: expected "
+                           "\"angle\""
+                         : fmt::format("the plant {} has no joint: expected another quantity, or "
+                                       "model = \"linkage\"",
+                                       to_string(campaign.rig.plant)));
   campaign.parameters.insert(campaign.parameters.end(), settings.begin(), settings.end());
 }
 

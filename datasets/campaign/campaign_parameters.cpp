@@ -595,20 +595,6 @@ std::optional<ParameterConflict> find_joint_conflict(const model::ParameterValue
   return std::nullopt;
 }
 
-std::optional<ParameterConflict> find_linkage_conflict(const model::Rig& rig,
-                                                       const model::ParameterValues& values) {
-  const bool turns = values.plant == model::PlantKind::linkage;
-  const bool of_angle = rig.feedback == model::Feedback::angle;
-  if (rig.controller != model::ControllerKind::none && turns != of_angle)
-    return ParameterConflict{
-        "", fmt::format("the plant {}, and this loop is on {}: expected feedback = \"{}\" in "
-                        "[rig.controller]",
-                        turns ? "linkage turns an arm, whose angle its controller acts on"
-                              : fmt::format("{} has no joint", to_string(values.plant)),
-                        model::gain_keys(rig.feedback).name, turns ? "angle" : "position")};
-  return turns ? find_joint_conflict(values) : std::nullopt;
-}
-
 /// Checks that a second mass has either all or none of its parameters.
 std::optional<ParameterConflict> find_payload_conflict(const model::ParameterValues& values) {
   constexpr std::array kKeys{"payload_mass", "payload_frequency", "payload_damping_ratio"};
@@ -835,7 +821,9 @@ std::optional<ParameterConflict> find_conflict(const model::Rig& rig,
   }
   if (const auto conflict = find_supply_conflict(values)) return conflict;
   if (const auto conflict = find_payload_conflict(values)) return conflict;
-  if (const auto conflict = find_linkage_conflict(rig, values)) return conflict;
+  if (values.plant == model::PlantKind::linkage) {
+    if (const auto conflict = find_joint_conflict(values)) return conflict;
+  }
   if (const auto conflict = find_metering_conflict(rig, values)) return conflict;
   if (const auto conflict = find_bristle_conflict(values)) return conflict;
   if (const auto conflict = find_load_conflict(values)) return conflict;

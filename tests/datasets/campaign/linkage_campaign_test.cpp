@@ -162,8 +162,8 @@ TEST_CASE("load_campaign: what does not go together in a loop on the angle", "[d
   };
   for (const Row& row :
        {Row{"type = \"pid\"", "type = \"pid\"\nfeedback = \"force\"",
-            "the plant linkage turns an arm, whose angle its controller acts on, and this loop is "
-            "on force: expected feedback = \"angle\""},
+            "key 'rig.controller.feedback': the controller of a linkage acts on the angle of the "
+            "joint: expected \"angle\""},
         Row{"angle_kp = \"0.2 V/deg\"\n", "", "the pid controller has no angle_kp"},
         Row{"angle_kp", "kp", "unknown parameter 'kp'"},
         Row{"angle_kp", "angle_kd = \"1 V s/rad\"\nangle_kp", "angle_kd without derivative_filter"},
@@ -330,5 +330,5 @@ TEST_CASE("load_campaign: a load that slides has no angle and no torque", "[data
       Catch::Contains("has no joint: expected the channel force"));
   CHECK_THROWS_WITH(
       load_text(replaced(test::kExample, "type = \"pid\"", "type = \"pid\"\nfeedback = \"angle\"")),
-      Catch::Contains("has no joint, and this loop is on angle: expected feedback = \"position\""));
+      Catch::Contains("the plant load_pressure has no joint: expected another quantity"));
 }
