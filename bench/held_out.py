@@ -34,7 +34,7 @@ from result_files import print_table, read_json, residuals  # noqa: E402
 
 CHANNELS = {"position_m": "position", "force_n": "force", "load_pressure_pa": "load pressure", "pressure_a_pa": "pressure A",
             "pressure_b_pa": "pressure B", "acceleration_m_per_s2": "acceleration",
-            "payload_acceleration_m_per_s2": "payload acceleration", "angle_rad": "angle"}
+            "payload_acceleration_m_per_s2": "payload acceleration", "angle_rad": "angle", "torque_n_m": "torque"}
 OPEN_LOOP_DRIVES = ("command_v", "pilot_pressure_pa")
 FILTER_ORDER = 4  # Butterworth, applied forwards and backwards: 48 dB per octave
 

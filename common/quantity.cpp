@@ -98,6 +98,7 @@ constexpr std::array kAliases{
     Alias{"Hz", "cycle/s"}, Alias{"hertz", "cycle/s"},
     Alias{"lpm", "L/min"},  Alias{"gpm", "US_liquid_gallon/min"},
     Alias{"rev", "cycle"},  Alias{"deg", "degree"},
+    Alias{"Nm", "N m"},
 };
 
 /// The unit database. UDUNITS keeps its status in a global, so there is a single instance with a
@@ -231,6 +232,7 @@ constexpr std::array kKinds{
     Kind{"kg", "a mass", "60 kg"},
     Kind{"kg/m3", "a density", "870 kg/m3"},
     Kind{"N", "a force", "500 N"},
+    Kind{"N m", "a torque", "300 N m"},
     Kind{"Pa", "a pressure", "6.2 MPa"},
     Kind{"m/s", "a velocity", "0.1 m/s"},
     Kind{"m/s2", "an acceleration", "9.81 m/s2"},

@@ -28,6 +28,8 @@ const std::vector<ChannelInfo>& channel_table() {
       {Channel::pilot_pressure, "pilot_pressure", "pilot_pressure_pa", "Pa", false},
       {Channel::base_acceleration, "base_acceleration", "base_acceleration_m_per_s2", "m/s2",
        false},
+      {Channel::angle_reference, "angle_reference", "angle_reference_rad", "rad", false},
+      {Channel::torque, "torque", "torque_n_m", "N m", true},
   };
   return table;
 }
@@ -43,6 +45,7 @@ bool is_drive(Channel channel) {
     case Channel::force_reference:
     case Channel::load_pressure_reference:
     case Channel::acceleration_reference:
+    case Channel::angle_reference:
     case Channel::pilot_pressure:
       return true;
     default:

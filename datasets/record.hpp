@@ -34,6 +34,8 @@ enum class Channel {
   angle,                    ///< angle of a joint [rad]
   pilot_pressure,           ///< pilot pressure of the spool [Pa]
   base_acceleration,        ///< acceleration of what the cylinder is fixed to [m/s2]
+  angle_reference,          ///< reference of a loop on the angle of a joint [rad]
+  torque,                   ///< moment that the actuator transmits to a joint [N m]
 };
 
 struct ChannelInfo {

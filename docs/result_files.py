@@ -8,7 +8,7 @@ import subprocess
 import sys
 
 SIGNALS = {"position": "x", "pressure_a": "p_A", "pressure_b": "p_B", "load_pressure": "P_L", "force": "F",
-           "acceleration": "a", "payload_acceleration": "a₂", "angle": "theta"}
+           "acceleration": "a", "payload_acceleration": "a₂", "angle": "theta", "torque": "M"}
 PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 
 

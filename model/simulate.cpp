@@ -109,7 +109,7 @@ template <typename Plant, InstructionSet Set, int N, int... Larger>
 void run(std::integer_sequence<int, N, Larger...>, const SizedRequest& request,
          Simulation& result) {
   // The smallest solver has only the plant's states and supports only position loops.
-  const bool takes_all = N > Plant::kStates || request.layout.position_alone();
+  const bool takes_all = N > Plant::kStates || request.layout.motion_alone();
   if (request.layout.states <= N && takes_all)
     return simulate_sized<Plant, N, Set>(request, result);
   if constexpr (sizeof...(Larger) > 0) {

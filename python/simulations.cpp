@@ -269,7 +269,9 @@ Returns:
                                "Acceleration of the second mass [m/s2]; zero where there is none.",
                                "Reading of a joint's angle sensor [rad]; zero where there is none.",
                                "Angular velocity of the joint [rad/s]; zero where there is none.",
-                               "Pilot pressure of the spool [Pa]; zero where there is none."};
+                               "Pilot pressure of the spool [Pa]; zero where there is none.",
+                               "Reading of a joint's torque sensor [N m]; zero where there is "
+                               "none."};
   static_assert(std::size(about) == model::kAllOutputs.size());
   for (std::size_t i = 0; i < model::kAllOutputs.size(); ++i) {
     const std::string name(output_name(model::kAllOutputs[i]));

@@ -264,6 +264,15 @@ constexpr std::array kCatalogue{
                  [](const RigScale& rig) {
                    return EffectSize{1e-3 * rig.force_n, "0.1 % of area times supply"};
                  }},
+    CatalogueRow{"torque_lag", EffectKind::parameter, true, "lag of the torque sensor", sensor_lag},
+    CatalogueRow{"torque_gain", EffectKind::parameter, false, "gain of the torque sensor",
+                 [](const RigScale&) {
+                   return EffectSize{5e-3, "0.5 % of the reading"};
+                 }},
+    CatalogueRow{"torque_offset", EffectKind::parameter, false, "offset of the torque sensor",
+                 [](const RigScale& rig) {
+                   return EffectSize{1e-3 * rig.moment_n_m, "0.1 % of lever, area and supply"};
+                 }},
 };
 
 double value_of_key(const Problem& problem, const model::ParameterValues& values,
@@ -513,9 +522,9 @@ std::optional<Channel> sensor_channel(std::string_view key) {
   if (error != "_lag" && error != "_gain" && error != "_offset" && error != "_bow" &&
       error != "_wave" && error != "_hysteresis")
     return std::nullopt;
-  for (const Channel channel :
-       {Channel::load_pressure, Channel::pressure_a, Channel::pressure_b, Channel::position,
-        Channel::angle, Channel::force, Channel::acceleration, Channel::payload_acceleration}) {
+  for (const Channel channel : {Channel::load_pressure, Channel::pressure_a, Channel::pressure_b,
+                                Channel::position, Channel::angle, Channel::force, Channel::torque,
+                                Channel::acceleration, Channel::payload_acceleration}) {
     const std::string_view name = datasets::info(channel).key;
     if (key.starts_with(name) && key.substr(name.size()).starts_with('_')) return channel;
   }

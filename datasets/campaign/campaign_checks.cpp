@@ -70,15 +70,16 @@ void check_tank(const Campaign& campaign) {
                    "model = \"two_chamber\"");
 }
 
-/// Checks that the channels suit the plant: angle for a linkage; position, acceleration and force
-/// for every other plant.
+/// Checks that the channels suit the plant: angle and torque for a linkage; position, acceleration
+/// and force for every other plant.
 void check_motion(const Campaign& campaign) {
   const bool turns = campaign.rig.plant == model::PlantKind::linkage;
   for (const auto& [channel, setting] : campaign.channels) {
     if (setting.role == ChannelRole::ignore) continue;
     const bool slides = channel == Channel::force || channel == Channel::payload_acceleration ||
                         channel == Channel::position || channel == Channel::acceleration;
-    if (turns ? slides : channel == Channel::angle) {
+    const bool of_joint = channel == Channel::angle || channel == Channel::torque;
+    if (turns ? slides : of_joint) {
       throw InputError(
           {campaign.file.string()},
           fmt::format("key 'recording.channels.{}': the plant {} {}: expected {}, or role = "
@@ -86,8 +87,10 @@ void check_motion(const Campaign& campaign) {
                       info(channel).key, to_string(campaign.rig.plant),
                       turns ? "turns an arm, and its motion is the angle of the joint"
                             : "moves a load along a line, and has no joint",
-                      turns ? "the channel angle (unit \"deg\" or \"rad\")"
-                            : "the channel position, model = \"linkage\""));
+                      channel == Channel::force    ? "the channel torque (unit \"N m\")"
+                      : turns                      ? "the channel angle (unit \"deg\" or \"rad\")"
+                      : channel == Channel::torque ? "the channel force, model = \"linkage\""
+                                                   : "the channel position, model = \"linkage\""));
     }
   }
 }

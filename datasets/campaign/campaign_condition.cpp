@@ -270,7 +270,7 @@ const KeyTable<Condition>& condition_keys() {
                   },
                   {.doc = fmt::format("{}Of a chirp: at its start", drives), .otherwise = "none"}),
       Row::described(
-          "amplitude", quantity_form(std::vector<std::string>{"m", "V", "Pa", "N", "m/s2"}),
+          "amplitude", quantity_form(std::vector<std::string>{"m", "V", "Pa", "N", "m/s2", "rad"}),
           {.doc = fmt::format("{}Half of peak to peak: a length; a voltage without a controller (a "
                               "pressure with `pilot_gain`); or the quantity of `feedback`",
                               drives),

@@ -47,7 +47,8 @@ const KeyTable<model::Rig>& controller_keys() {
       Row::word<model::Feedback>(
           "feedback", &model::Rig::feedback, feedback_words(),
           {.doc = "The controlled quantity, which determines the gains and the channel of the "
-                  "reference"}),
+                  "reference",
+           .otherwise = "`\"position\"`; of a `\"linkage\"` `\"angle\"`"}),
   });
   return keys;
 }
@@ -61,9 +62,18 @@ void read_controller(const TomlNode& node, Campaign& campaign) {
     const std::string key(spec_of(campaign.rig.plant, settings.front().index).key);
     node.require(key, "a gain").fail("is given, but type is \"none\": expected type = \"pid\"");
   }
-  if (const auto feedback = node.find("feedback");
-      feedback && campaign.rig.controller == Kind::none)
+  const auto feedback = node.find("feedback");
+  if (feedback && campaign.rig.controller == Kind::none)
     feedback->fail("is given, but type is \"none\": expected type = \"pid\"");
+  const bool turns = campaign.rig.plant == model::PlantKind::linkage;
+  if (!feedback && campaign.rig.controller == Kind::pid && turns)
+    campaign.rig.feedback = model::Feedback::angle;
+  if (feedback && turns != (campaign.rig.feedback == model::Feedback::angle))
+    feedback->fail(turns ? "the controller of a linkage acts on the angle of the joint: expected "
+                           "\"angle\""
+                         : fmt::format("the plant {} has no joint: expected another quantity, or "
+                                       "model = \"linkage\"",
+                                       to_string(campaign.rig.plant)));
   campaign.parameters.insert(campaign.parameters.end(), settings.begin(), settings.end());
 }
 

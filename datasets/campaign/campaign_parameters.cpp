@@ -595,17 +595,6 @@ std::optional<ParameterConflict> find_joint_conflict(const model::ParameterValue
   return std::nullopt;
 }
 
-std::optional<ParameterConflict> find_linkage_conflict(const model::Rig& rig,
-                                                       const model::ParameterValues& values) {
-  if (values.plant != model::PlantKind::linkage) return std::nullopt;
-  if (rig.controller != model::ControllerKind::none)
-    return ParameterConflict{
-        "",
-        "the plant linkage has no controller yet: expected type = \"none\" in "
-        "[rig.controller], and the recorded command or pilot_pressure as the drive"};
-  return find_joint_conflict(values);
-}
-
 /// Checks that a second mass has either all or none of its parameters.
 std::optional<ParameterConflict> find_payload_conflict(const model::ParameterValues& values) {
   constexpr std::array kKeys{"payload_mass", "payload_frequency", "payload_damping_ratio"};
@@ -697,7 +686,7 @@ std::optional<ParameterConflict> find_room_conflict(const model::Rig& rig,
   constexpr std::array kTerms{
       "hose_yield",           "hose_yield_ratio",  "payload_mass",  "pump_second_flow",
       "main_spool_gain",      "bristle_stiffness", "film_velocity", "acceleration_feedforward",
-      "velocity_feedforward", "sample_time"};
+      "velocity_feedforward", "sample_time",       "angle_ki",      "angle_kd"};
   std::vector<std::string_view> present;
   for (const char* key : kTerms) {
     if (values.is_given(key)) present.emplace_back(key);
@@ -754,8 +743,9 @@ std::optional<ParameterConflict> find_loop_conflict(const model::Rig& rig,
                       key, other.name, loop.name, own)};
     }
   }
-  const bool of_position = loop.kp == model::gain_keys(model::Feedback::position).kp;
-  if (!values.is_given(loop.kp) && !(values.is_given(loop.ki) && !of_position)) {
+  const bool of_motion = loop.kp == model::gain_keys(model::Feedback::position).kp ||
+                         rig.feedback == model::Feedback::angle;
+  if (!values.is_given(loop.kp) && !(values.is_given(loop.ki) && !of_motion)) {
     return ParameterConflict{
         "", fmt::format("the pid controller has no {}: expected one in [rig.controller]", loop.kp)};
   }
@@ -831,7 +821,9 @@ std::optional<ParameterConflict> find_conflict(const model::Rig& rig,
   }
   if (const auto conflict = find_supply_conflict(values)) return conflict;
   if (const auto conflict = find_payload_conflict(values)) return conflict;
-  if (const auto conflict = find_linkage_conflict(rig, values)) return conflict;
+  if (values.plant == model::PlantKind::linkage) {
+    if (const auto conflict = find_joint_conflict(values)) return conflict;
+  }
   if (const auto conflict = find_metering_conflict(rig, values)) return conflict;
   if (const auto conflict = find_bristle_conflict(values)) return conflict;
   if (const auto conflict = find_load_conflict(values)) return conflict;

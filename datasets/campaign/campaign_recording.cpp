@@ -110,11 +110,12 @@ void check_role(const TomlNode& node, Channel channel, ChannelRole role, Channel
   const bool open_loop = drive == Channel::command || drive == Channel::pilot_pressure;
   const bool can_be_output = info(channel).is_output || (channel == Channel::command && !open_loop);
   if (role == ChannelRole::input && !can_be_input) {
-    const std::string loop = drive == Channel::command ? "without a controller"
+    const std::string loop = !is_drive(channel)          ? ""
+                             : drive == Channel::command ? " without a controller"
                              : drive == Channel::pilot_pressure
-                                 ? "where pilot_gain makes the pilot pressure the drive"
-                                 : fmt::format("of a rig that follows {}", info(drive).key);
-    node.fail(fmt::format("{} cannot be an input {}: expected \"output\" or \"ignore\"",
+                                 ? " where pilot_gain makes the pilot pressure the drive"
+                                 : fmt::format(" of a rig that follows {}", info(drive).key);
+    node.fail(fmt::format("{} cannot be an input{}: expected \"output\" or \"ignore\"",
                           info(channel).key, loop));
   }
   if (role == ChannelRole::output && !can_be_output) {
@@ -230,9 +231,7 @@ ChannelSetting read_channel(const TomlNode& node, Channel channel, Channel drive
   keys.read_rows(node, setting);
   if (const auto sd = node.find("gain_sd")) setting.gain_sd_where = sd->where();
   if (const auto role = node.find("role")) check_role(*role, channel, setting.role, drive);
-  if (const auto recognise = node.find("recognise"); recognise && channel != Channel::reference &&
-                                                     channel != Channel::command &&
-                                                     channel != Channel::pilot_pressure)
+  if (const auto recognise = node.find("recognise"); recognise && !is_drive(channel))
     recognise->fail("has a meaning only for a drive: expected it of reference or command");
   return setting;
 }
@@ -423,6 +422,8 @@ Channel drive_channel(const model::Rig& rig) {
       return Channel::force_reference;
     case model::Feedback::load_pressure:
       return Channel::load_pressure_reference;
+    case model::Feedback::angle:
+      return Channel::angle_reference;
     case model::Feedback::acceleration:
     case model::Feedback::three_variable_acceleration:
       return Channel::acceleration_reference;

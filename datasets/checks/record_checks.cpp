@@ -100,11 +100,12 @@ std::string drive_start_proposal(const Campaign& campaign, const Condition& cond
   if (campaign.before_stated || condition.waveform != Waveform::recorded) return {};
   const Channel channel = drive_channel(campaign);
   const auto drive = record.channels.find(channel);
-  const auto position = record.channels.find(motion_channel(campaign));
+  const ChannelInfo& motion = info(motion_channel(campaign));
+  const auto position = record.channels.find(motion.channel);
   if (drive == record.channels.end() || position == record.channels.end()) return {};
   const std::vector<double>& u = drive->second.mean;
   const std::vector<double>& x = position->second.mean;
-  const bool is_loop = channel == Channel::reference;
+  const bool is_loop = channel == Channel::reference || channel == Channel::angle_reference;
   const double neutral = is_loop ? x.front() : 0.0;
   double farthest = 0.0;
   for (const double value : u) farthest = std::max(farthest, std::abs(value - neutral));
@@ -122,7 +123,7 @@ std::string drive_start_proposal(const Campaign& campaign, const Condition& cond
       "before = \"rest\" in [recording] says that it was {} until then, so that a delay and a lag "
       "of the valve have something to act on",
       info(channel).key, u.front(), info(channel).unit,
-      is_loop ? fmt::format(", the position {:.3g} m", neutral) : std::string(),
+      is_loop ? fmt::format(", the {} {:.3g} {}", motion.key, neutral, motion.unit) : std::string(),
       is_loop ? "where the piston was" : fmt::format("0 {}", info(channel).unit));
 }
 

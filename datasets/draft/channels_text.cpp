@@ -104,6 +104,11 @@ std::string known_channels_text(const FileColumns& columns) {
                       in_comment(column.stem));
       continue;
     }
+    if (column.channel == Channel::torque && column_of(columns, Channel::angle) == nullptr) {
+      text += fmt::format("# '{}' looks like a torque, which only a rig with an angle has\n",
+                          in_comment(column.stem));
+      continue;
+    }
     if (column.channel == Channel::command && has_pilot(columns)) {
       text += fmt::format(
           "# '{}' also looks like a drive: the pilot pressure is nearer to the "

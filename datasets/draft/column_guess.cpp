@@ -193,6 +193,8 @@ std::optional<Channel> reference_of(Meaning quantity, const Reading& reading) {
   switch (quantity) {
     case Meaning::position:
       return Channel::reference;
+    case Meaning::angle:
+      return Channel::angle_reference;
     case Meaning::force:
       return Channel::force_reference;
     case Meaning::acceleration:
@@ -227,6 +229,8 @@ std::optional<Channel> measured(Meaning quantity, const Reading& reading) {
       return Channel::angle;
     case Meaning::force:
       return Channel::force;
+    case Meaning::torque:
+      return Channel::torque;
     case Meaning::pressure:
       return pressure_at(reading);
     case Meaning::acceleration:
@@ -265,11 +269,9 @@ std::string_view other_of(std::optional<Meaning> quantity, const Reading& readin
     case Meaning::flow:
       return "a flow";
     case Meaning::torque:
-      return "a torque";
+      return "the reference of a torque, which no loop controls";
     case Meaning::rotation:
       return "a speed of rotation";
-    case Meaning::angle:
-      return "the reference of an angle, which no loop controls";
     case Meaning::position:
       return kSpoolPosition;
     default:

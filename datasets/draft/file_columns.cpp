@@ -140,6 +140,12 @@ FileColumns file_columns(const fs::path& file) {
       found.unknown.push_back({name, guess.unit, std::string(guess.other)});
     }
   }
+  // A "ref" without a unit beside an angle is a reference of that angle.
+  if (column_of(found, Channel::angle) != nullptr) {
+    for (ChannelColumns& column : found.channels)
+      if (column.channel == Channel::reference && column.unit.empty())
+        column.channel = Channel::angle_reference;
+  }
   if (found.time.empty()) {
     without_time(file, columns, found);
   } else if (found.channels.empty() && found.ambiguous.empty()) {
@@ -178,11 +184,13 @@ const ChannelColumns* motion_of(const FileColumns& columns) {
 }
 
 std::optional<model::Feedback> loop_of(const FileColumns& columns) {
-  if (column_of(columns, Channel::angle) != nullptr)
-    return std::nullopt;  // a joint has no controller
+  const bool turns = column_of(columns, Channel::angle) != nullptr;
   for (std::size_t i = 0; i < model::kFeedbackCount; ++i) {
     const model::Rig rig{{}, model::ControllerKind::pid, {}, static_cast<model::Feedback>(i)};
-    if (column_of(columns, drive_channel(rig)) != nullptr) return rig.feedback;
+    // The only loop of a joint is on its angle.
+    if ((rig.feedback == model::Feedback::angle) == turns &&
+        column_of(columns, drive_channel(rig)) != nullptr)
+      return rig.feedback;
   }
   return std::nullopt;
 }

@@ -189,8 +189,10 @@ std::string rig_text(model::PlantKind plant, std::optional<model::Feedback> loop
   };
   text += "[rig.controller]\ntype = \"pid\"\n";
   if (*loop != model::Feedback::position)
-    text += fmt::format("feedback = \"{}\"{}\n", row.name,
-                        comment("what the loop controls; position unless given"));
+    text += fmt::format(
+        "feedback = \"{}\"{}\n", row.name,
+        comment(fmt::format("what the loop controls; {} unless given",
+                            plant == model::PlantKind::linkage ? "angle" : "position")));
   text += fmt::format("{} = \"{} {}\"{}\n", row.kp, kBlank, unit_of(row.kp),
                       comment("proportional gain; output_limit, sample_time if there are any"));
   text += fmt::format("# {} = \"... {}\"{}\n", row.ki, unit_of(row.ki),

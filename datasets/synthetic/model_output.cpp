@@ -22,12 +22,15 @@ std::optional<model::Output> model_output(Channel channel) {
       return model::Output::payload_acceleration;
     case Channel::angle:
       return model::Output::angle;
+    case Channel::torque:
+      return model::Output::torque;
     case Channel::pilot_pressure:
       return model::Output::pilot_pressure;
     case Channel::reference:
     case Channel::force_reference:
     case Channel::load_pressure_reference:
     case Channel::acceleration_reference:
+    case Channel::angle_reference:
     case Channel::supply_pressure:
     case Channel::tank_pressure:
     case Channel::base_acceleration:

@@ -12,7 +12,7 @@ struct ControllerOutput {
   X limited{};
 };
 
-/// Copies the gains of a force, pressure or acceleration loop to the members from which the
+/// Copies the gains of a force, pressure, acceleration or angle loop to the members from which the
 /// controller reads the gains of a position loop. The controller uses the same equations for every
 /// loop; the gains are in V per unit of the controlled quantity.
 template <typename P>
@@ -36,6 +36,13 @@ void take_gains(Feedback feedback, P& p) {
       p.kp_v_per_m = p.acceleration_kp_v_s2_per_m;
       p.ki_v_per_m_s = p.acceleration_ki_v_s_per_m;
       p.kd_v_s_per_m = p.acceleration_kd_v_s3_per_m;
+      return;
+    case Feedback::angle:
+      if constexpr (requires { p.angle_kp_v_per_rad; }) {
+        p.kp_v_per_m = p.angle_kp_v_per_rad;
+        p.ki_v_per_m_s = p.angle_ki_v_per_rad_s;
+        p.kd_v_s_per_m = p.angle_kd_v_s_per_rad;
+      }
       return;
   }
 }

@@ -116,11 +116,12 @@ inline constexpr StateRow kFilteredRate{"controller_filtered_rate", "m/s",
 inline constexpr StateRow kHeldOutput{"controller_held_output", "V",
                                       "output of the sampled controller", 1e-3, 1.0};
 /// Filtered error, in the unit of the controlled quantity. Three-variable control has none.
-inline constexpr std::array<StateRow, 4> kFilteredError{
+inline constexpr std::array<StateRow, 5> kFilteredError{
     StateRow{"controller_filtered_error", "m", "filtered error", 1e-6, 0.01},
     StateRow{"controller_filtered_error", "N", "filtered error", 0.1, 1e3},
     StateRow{"controller_filtered_error", "Pa", "filtered error", 100.0, 0.1},
-    StateRow{"controller_filtered_error", "m/s2", "filtered error", 1e-3, 1.0}};
+    StateRow{"controller_filtered_error", "m/s2", "filtered error", 1e-3, 1.0},
+    StateRow{"controller_filtered_error", "rad", "filtered error", 1e-6, 0.1}};
 
 /// The states that a rig has in addition to those of its plant, with their indices in the state
 /// vector.
@@ -153,9 +154,10 @@ struct Layout {
   std::array<const StateRow*, kMostAdded> added{};  ///< the states after those of the plant
 
   bool sampled() const { return held >= 0; }
-  /// Whether the loop feeds back only the position of the piston and has no feed-forward.
-  bool position_alone() const {
-    return feedback == Feedback::position && !pressure_feedback && reference < 0;
+  /// Whether the loop feeds back only the motion, position or angle, and has no feed-forward.
+  bool motion_alone() const {
+    return (feedback == Feedback::position || feedback == Feedback::angle) && !pressure_feedback &&
+           reference < 0;
   }
   /// Whether a state changes at the tick of a sampled controller.
   bool of_controller(int state) const {

@@ -171,6 +171,21 @@ struct LinkagePlant : Chambers {
                      least * value_of(p.area_b_m2))};
   }
 
+  /// Moment of dry friction [N m].
+  template <typename X, typename C>
+  static X dry_friction(const X& omega, const Coefficients<C>& p) {
+    return p.joint_friction_n_m * smooth_sign(omega, p.joint_friction_smoothing_rad_per_s);
+  }
+
+  /// Moment that the actuator transmits to the arm [N m]: that of the pressures and stops, less dry
+  /// friction.
+  template <typename X, std::size_t M, typename C>
+  static X torque(const std::array<X, M>& x, const Coefficients<C>& p, const PresentTerms& terms) {
+    const X& omega = x[angular_velocity];
+    const X moment = lever(x[angle], p) * piston_force(x, p) + stops_moment(x[angle], omega, p);
+    return terms.friction ? X(moment - dry_friction(omega, p)) : moment;
+  }
+
   /// Time derivative of the state [rad/s, rad/s2, Pa/s, Pa/s].
   template <typename X, std::size_t M, typename C>
   static std::array<X, kStates> derivative(const std::array<X, M>& x, const PlantInput<X>& in,
@@ -179,9 +194,7 @@ struct LinkagePlant : Chambers {
     const X D = lever(x[angle], p);
     X moment = D * piston_force(x, p) - omega * p.joint_damping_n_m_s_per_rad -
                gravity_moment(x[angle], p) + stops_moment(x[angle], omega, p);
-    if (terms.friction)
-      moment =
-          moment - p.joint_friction_n_m * smooth_sign(omega, p.joint_friction_smoothing_rad_per_s);
+    if (terms.friction) moment = moment - dry_friction(omega, p);
     const auto flow = chamber_flows(x, X(D * omega), valve_flows(x, in, p, terms), in, p, terms);
     const auto volume = volumes(x[angle], p);
     return {omega, moment * p.inverse_inertia,
@@ -221,6 +234,8 @@ struct LinkagePlant : Chambers {
         return x[pressure_b];
       case Output::force:
         return piston_force(x, p);
+      case Output::torque:
+        return torque(x, p, terms);
       case Output::spool:
         return shaped_spool(in, p, terms);
       case Output::servo_flow:

@@ -45,8 +45,15 @@ struct LinkageParameters : TwoChamberParameters<T> {
   T angle_lag_s{};
   T angle_maximum_rad{};
   T angle_offset_rad{};
+  T torque_gain{};
+  T torque_lag_s{};
+  T torque_maximum_n_m{};
+  T torque_offset_n_m{};
   T initial_angle_rad{};
   T initial_angular_velocity_rad_per_s{};
+  T angle_kp_v_per_rad{};
+  T angle_ki_v_per_rad_s{};
+  T angle_kd_v_s_per_rad{};
 };
 
 /// The joint: replaces mass, stroke and position of a sliding load.
@@ -112,20 +119,40 @@ constexpr auto linkage_term_rows() {
   };
 }
 
-/// Sensor and initial state of the joint.
+/// Sensors and initial state of the joint.
 template <typename T>
 constexpr auto angle_rows() {
   using P = LinkageParameters<T>;
   using K = ParameterKind;
+  constexpr double kInf = std::numeric_limits<double>::infinity();
   using F = ParameterField<P, T>;
   return std::array{
       // clang-format off
       F{&P::angle_gain, {"angle_gain", "angle_gain", "s_theta", "1", "recorded angle per angle", "docs/model.md", K::sensor, 0.1, 10, 1.0}},
       F{&P::angle_lag_s, {"angle_lag", "angle_lag_s", "tau_theta", "s", "first-order lag of the angle sensor", "docs/model.md", K::sensor, 0, 10, 0.0}},
-      F{&P::angle_maximum_rad, {"angle_maximum", "angle_maximum_rad", "max_theta", "rad", "largest angle that its sensor and converter can show", "docs/model.md", K::sensor, -1000, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(), false}},
+      F{&P::angle_maximum_rad, {"angle_maximum", "angle_maximum_rad", "max_theta", "rad", "largest angle that its sensor and converter can show", "docs/model.md", K::sensor, -1000, kInf, kInf, false}},
       F{&P::angle_offset_rad, {"angle_offset", "angle_offset_rad", "theta_off", "rad", "recorded angle minus angle", "docs/model.md", K::sensor, -1000, 1000, 0.0}},
+      F{&P::torque_gain, {"torque_gain", "torque_gain", "s_M", "1", "recorded torque per torque", "docs/model.md", K::sensor, 0.1, 10, 1.0}},
+      F{&P::torque_lag_s, {"torque_lag", "torque_lag_s", "tau_M", "s", "first-order lag of the torque sensor", "docs/model.md", K::sensor, 0, 10, 0.0}},
+      F{&P::torque_maximum_n_m, {"torque_maximum", "torque_maximum_n_m", "max_M", "N m", "largest torque that its sensor and converter can show", "docs/model.md", K::sensor, -1e9, kInf, kInf, false}},
+      F{&P::torque_offset_n_m, {"torque_offset", "torque_offset_n_m", "M_off", "N m", "recorded torque minus torque", "docs/model.md", K::sensor, -1e9, 1e9, 0.0}},
       F{&P::initial_angle_rad, {"initial_angle", "initial_angle_rad", "theta(0)", "rad", "recorded angle at the first sample", "docs/model.md", K::initial, -1000, 1000, 0.0}},
       F{&P::initial_angular_velocity_rad_per_s, {"initial_angular_velocity", "initial_angular_velocity_rad_per_s", "omega(0)", "rad/s", "angular velocity at the first sample", "docs/model.md", K::initial, -1000, 1000, 0.0}},
+      // clang-format on
+  };
+}
+
+/// Gains of a loop on the angle.
+template <typename T>
+constexpr auto angle_loop_rows() {
+  using P = LinkageParameters<T>;
+  using K = ParameterKind;
+  using F = ParameterField<P, T>;
+  return std::array{
+      // clang-format off
+      F{&P::angle_kp_v_per_rad, {"angle_kp", "angle_kp_v_per_rad", "K_ptheta", "V/rad", "proportional gain of a loop on the angle", "docs/model.md", K::controller, 0, 1e9, 0.0}},
+      F{&P::angle_ki_v_per_rad_s, {"angle_ki", "angle_ki_v_per_rad_s", "K_itheta", "V/(rad s)", "integral gain of a loop on the angle", "docs/model.md", K::controller, 0, 1e9, 0.0}},
+      F{&P::angle_kd_v_s_per_rad, {"angle_kd", "angle_kd_v_s_per_rad", "K_dtheta", "V s/rad", "derivative gain of a loop on the angle", "docs/model.md", K::controller, 0, 1e9, 0.0}},
       // clang-format on
   };
 }
@@ -142,7 +169,7 @@ constexpr auto with_terms(std::array<F, N> rows, const std::array<std::string_vi
 }
 
 /// Rows of the linkage, in the order of `rigcal params`: its own rows, and those of oil, valve,
-/// chambers and sensors that do not concern a sliding load.
+/// chambers, sensors and controller that do not concern a sliding load.
 template <typename T>
 constexpr auto linkage_fields() {
   using Keys = std::string_view;
@@ -172,8 +199,7 @@ constexpr auto linkage_fields() {
                                      Keys("payload_acceleration_maximum"),
                                      Keys("payload_acceleration_offset"),
                                      Keys("initial_position"),
-                                     Keys("initial_velocity"),
-                                     Keys("initial_integral")};
+                                     Keys("initial_velocity")};
   constexpr std::array kOtherLoads{Keys("coulomb_friction"),
                                    Keys("stribeck_friction"),
                                    Keys("stribeck_velocity"),
@@ -199,6 +225,23 @@ constexpr auto linkage_fields() {
                                    Keys("payload_mass"),
                                    Keys("payload_frequency"),
                                    Keys("payload_damping_ratio")};
+  constexpr std::array kOtherLoops{Keys("kp"),
+                                   Keys("ki"),
+                                   Keys("kd"),
+                                   Keys("force_kp"),
+                                   Keys("force_ki"),
+                                   Keys("force_kd"),
+                                   Keys("load_pressure_kp"),
+                                   Keys("load_pressure_ki"),
+                                   Keys("load_pressure_kd"),
+                                   Keys("acceleration_kp"),
+                                   Keys("acceleration_ki"),
+                                   Keys("acceleration_kd"),
+                                   Keys("velocity_kp"),
+                                   Keys("reference_frequency"),
+                                   Keys("reference_damping_ratio"),
+                                   Keys("velocity_feedforward"),
+                                   Keys("acceleration_feedforward")};
   return joined(joint_rows<T>(),
                 with_terms(rows_without(chamber_rows<LinkageParameters, T>(), kSlides), kAreas),
                 rows_without(oil_rows<LinkageParameters, T>(), kElectricGain),
@@ -207,14 +250,16 @@ constexpr auto linkage_fields() {
                 rows_without(chamber_term_rows<LinkageParameters, T>(), kOtherTerms),
                 linkage_term_rows<T>(), travel_rows<T>(), metering_rows<LinkageParameters, T>(),
                 angle_rows<T>(), rows_without(sensor_rows<LinkageParameters, T>(), kOtherSensors),
-                chamber_initial_rows<LinkageParameters, T>());
+                chamber_initial_rows<LinkageParameters, T>(), angle_loop_rows<T>(),
+                rows_without(controller_rows<LinkageParameters, T>(), kOtherLoops));
 }
 
 template <typename T>
 inline constexpr auto kLinkageFields = linkage_fields<T>();
 
 static_assert((joint_rows<double>().size() + linkage_term_rows<double>().size() +
-               travel_rows<double>().size() + angle_rows<double>().size()) *
+               travel_rows<double>().size() + angle_rows<double>().size() +
+               angle_loop_rows<double>().size()) *
                       sizeof(double) ==
                   sizeof(LinkageParameters<double>) - sizeof(TwoChamberParameters<double>),
               "a parameter was added to the struct but not to the table");

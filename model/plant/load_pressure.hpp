@@ -155,6 +155,7 @@ struct LoadPressurePlant {
       case Output::payload_acceleration:
       case Output::angle:
       case Output::angular_velocity:
+      case Output::torque:
       case Output::pilot_pressure:
       case Output::command:
         break;

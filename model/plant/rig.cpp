@@ -24,6 +24,7 @@ constexpr std::array kOutputNames{
     OutputName{Output::angle, "angle_rad"},
     OutputName{Output::angular_velocity, "angular_velocity_rad_per_s"},
     OutputName{Output::pilot_pressure, "pilot_pressure_pa"},
+    OutputName{Output::torque, "torque_n_m"},
 };
 
 }  // namespace
@@ -41,6 +42,7 @@ bool has_output(const ParameterValues& values, Output output) {
       return values.is_given("payload_mass");
     case Output::angle:
     case Output::angular_velocity:
+    case Output::torque:
       return values.plant == PlantKind::linkage;
     case Output::pilot_pressure:
       return values.is_given("pilot_gain");

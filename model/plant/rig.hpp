@@ -29,6 +29,7 @@ enum class Output {
   angle,                 ///< reading of the angle sensor of a joint [rad]; zero without a joint
   angular_velocity,      ///< angular velocity of the joint [rad/s]; zero without a joint
   pilot_pressure,        ///< pilot pressure that drives the spool [Pa]; zero without a pilot
+  torque,                ///< reading of a torque transducer at a joint [N m]; zero without a joint
 };
 
 /// Name of an output, ending in its SI unit: "position_m", "servo_flow_m3_per_s".
@@ -48,7 +49,8 @@ inline constexpr std::array kAllOutputs{Output::position,
                                         Output::payload_acceleration,
                                         Output::angle,
                                         Output::angular_velocity,
-                                        Output::pilot_pressure};
+                                        Output::pilot_pressure,
+                                        Output::torque};
 
 /// Whether a rig computes an output. Outputs that it does not compute are zero.
 bool has_output(const ParameterValues& values, Output output);
@@ -65,6 +67,7 @@ enum class Feedback {
   force,
   load_pressure,
   acceleration,
+  angle,
   three_variable,
   three_variable_acceleration,
 };
@@ -85,6 +88,7 @@ inline constexpr std::array kFeedbacks{
                 "load_pressure_kp", "load_pressure_ki", "load_pressure_kd", ""},
     FeedbackRow{"acceleration", "m/s2", "what the acceleration of the piston is to be",
                 "acceleration_kp", "acceleration_ki", "acceleration_kd", ""},
+    FeedbackRow{"angle", "rad", "where the joint is to be", "angle_kp", "angle_ki", "angle_kd", ""},
     FeedbackRow{"three_variable", "m", "where the piston is to be", "kp", "ki", "velocity_kp",
                 "acceleration_kp"},
     FeedbackRow{"three_variable_acceleration", "m/s2",
@@ -99,6 +103,12 @@ constexpr const FeedbackRow& gain_keys(Feedback feedback) {
 /// Whether a loop acts on position, velocity and acceleration together.
 constexpr bool is_three_variable(Feedback feedback) {
   return !gain_keys(feedback).acceleration.empty();
+}
+
+/// Whether the reference of a loop is where the piston or the joint is to be.
+constexpr bool controls_motion(Feedback feedback) {
+  return feedback == Feedback::position || feedback == Feedback::angle ||
+         feedback == Feedback::three_variable;
 }
 
 enum class InitialState {

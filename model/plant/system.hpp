@@ -210,8 +210,7 @@ class System {
     }
     if (before == Before::steady) {
       while_it_waits_ = C(drive_.first_value());
-      if (layout_.pid &&
-          (layout_.feedback == Feedback::position || layout_.feedback == Feedback::three_variable))
+      if (layout_.pid && controls_motion(layout_.feedback))
         states[Plant::position] = while_it_waits_;
     }
     if (layout_.payload >= 0) {  // starts as if it were fixed to the first mass
@@ -498,12 +497,12 @@ class System {
   }
 
   /// Signals on which the controller acts. The solver with only the plant's states supports only
-  /// position loops.
+  /// loops on the motion.
   template <typename K>
   LoopError<Number<K>> loop_error(K by, const Numbers<K>& x, const Number<K>& drive,
                                   double t) const {
     if constexpr (N > Plant::kStates) {
-      if (!layout_.position_alone()) return other_loop_error(by, x, drive, t);
+      if (!layout_.motion_alone()) return other_loop_error(by, x, drive, t);
     }
     const Number<K> none(0.0);
     return {drive - x[Plant::position], none, none, none, none};
@@ -521,6 +520,7 @@ class System {
     LoopError<Number<K>> loop{drive, none, drive, none, none};
     switch (layout_.feedback) {
       case Feedback::position:
+      case Feedback::angle:
         loop.error = drive - x[Plant::position];
         break;
       case Feedback::force:

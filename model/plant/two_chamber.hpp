@@ -230,6 +230,7 @@ struct TwoChamberPlant : Chambers {
       case Output::payload_acceleration:
       case Output::angle:
       case Output::angular_velocity:
+      case Output::torque:
       case Output::pilot_pressure:
       case Output::command:
         break;

@@ -42,6 +42,8 @@ std::string_view sensor_name(Output output) {
       return "payload_acceleration";
     case Output::angle:
       return "angle";
+    case Output::torque:
+      return "torque";
     default:
       return {};
   }

@@ -39,6 +39,7 @@ constexpr std::array kOutputs{
     OutputRow{Output::angular_velocity, "angular_velocity", "rad/s",
               "angular velocity of the joint"},
     OutputRow{Output::pilot_pressure, "pilot_pressure", "Pa", "pilot pressure of the spool"},
+    OutputRow{Output::torque, "torque", "N m", "moment that the actuator transmits to the arm"},
 };
 static_assert(kOutputs.size() == model::kAllOutputs.size(), "every output has a row");
 

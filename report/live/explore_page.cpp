@@ -71,8 +71,10 @@ std::string still_pictures(const LiveCase& shown, const model::Simulation& run) 
   constexpr double kDegree = 0.017453292519943295;
   Plot position = turns ? still_plot(shown, run, "Angle", "deg", kDegree, kAngle)
                         : still_plot(shown, run, "Position", "mm", 1e-3, kPosition);
-  if (auto reference_m = calib::reference_of(shown.task); !reference_m.empty())
-    add_line(position, "reference", "reference", shown.task.time_s, std::move(reference_m), 1e-3);
+  if (auto reference = calib::reference_of(shown.task);
+      !reference.empty() && model::controls_motion(shown.task.rig.feedback))
+    add_line(position, "reference", "reference", shown.task.time_s, std::move(reference),
+             turns ? kDegree : 1e-3);
   return still_figure(shown, turns ? "Angle" : "Position", position) +
          still_figure(shown, "Flows",
                       still_plot(shown, run, "Flow", "L/min", kLitrePerMinute, kFlows));

@@ -327,12 +327,13 @@
     : {name: "position", output: "position_m", unit: "mm", si: 1e-3};
   // Leak levels from the published table, otherwise from the campaign. The page of a fit has no
   // table of levels.
+  const followsMotion = ["m", "rad"].includes(driven.si_unit);
   const levels = document.getElementById("live-levels") && rig.leak >= 0 ? rig.levels ?? (rig.presets.length > 1 ? rig.presets : []) : [];
   const styleOf = (k) => `level-${k % 5}`;
   const ofLevels = levels.length ? [
     {title: `${rig.turns ? "Angle" : "Position"} at each leak level`, unit: motion.unit, si: motion.si, height: 220, ofLevels: true,
-     percent: driven.si_unit === "m" ? () => state.waveform === "recorded" ? 0 : state.amplitude / motion.si : undefined,
-     lines: [...(driven.si_unit === "m" ? [{name: "reference", style: "reference", reference: true}] : []),
+     percent: followsMotion ? () => state.waveform === "recorded" ? 0 : state.amplitude / motion.si : undefined,
+     lines: [...(followsMotion ? [{name: "reference", style: "reference", reference: true}] : []),
              ...levels.map(({name}, k) => ({name, style: styleOf(k), level: k, output: motion.output, width: 1.5}))]},
     {title: "Flows at each leak level: servo, and leak (dashed)", unit: "L/min", si: 1e-3 / 60, height: 220, ofLevels: true,
      lines: levels.flatMap(({name}, k) => [{name, style: styleOf(k), level: k, output: "servo_flow_m3_per_s", width: 1.5},
@@ -340,7 +341,7 @@
   ] : [];
   const plots = [
     {title: rig.turns ? "Angle" : "Position", unit: motion.unit, si: motion.si, height: 220, lines: [
-      ...(driven.si_unit === "m" ? [{name: "reference", style: "reference", reference: true}] : []),
+      ...(followsMotion ? [{name: "reference", style: "reference", reference: true}] : []),
       ...recorded(motion.output),
       {name: "without a leak", style: "soft", healthy: true},
       {name: "live", style: "model", output: motion.output, width: 1.8}]},
@@ -494,9 +495,9 @@
       ["Leaked share", fraction == null ? "–" : `${digits(fraction, 3)} %`, leakClass],
       [`Peak ${motion.name}`, `${digits(peak(position) / motion.si, 4)} ${motion.unit}`, ""],
     ];
-    if (driven.si_unit === "m") {
+    if (followsMotion) {
       const reference = driveValues(request);
-      items.push(["Error of position", `${digits(rms(position.map((x, i) => reference[i] - x)) * 1e3, 3)} mm`, "rms against the reference"]);
+      items.push([`Error of ${motion.name}`, `${digits(rms(position.map((x, i) => reference[i] - x)) / motion.si, 3)} ${motion.unit}`, "rms against the reference"]);
     }
     if (answer.healthy) items.push(["Parity residual", `${digits(rms(position.map((x, i) => answer.healthy[i] - x)) / motion.si, 3)} ${motion.unit}`, "rms"]);
     $("numbers").replaceChildren(...items.map(([name, text, of]) => make("div", {}, make("dt", {text: name}), make("dd", {text: text + " "}, make("small", {text: of})))));

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -111,11 +112,16 @@ const char* group_of(const datasets::ParameterSetting* setting, model::Parameter
 /// Describes the quantity that is driven, in the unit of its input field.
 Json driven(const Campaign& campaign) {
   const datasets::ChannelInfo& channel = info(datasets::drive_channel(campaign));
-  const bool metres = channel.unit == "m";
-  return {{"name", channel.key},
-          {"unit", metres ? "mm" : channel.unit},
-          {"si", metres ? 1e-3 : 1.0},
-          {"si_unit", channel.unit}};
+  std::string_view unit = channel.unit;
+  double si = 1.0;
+  if (unit == "m") {
+    unit = "mm";
+    si = 1e-3;
+  } else if (unit == "rad") {
+    unit = "deg";
+    si = std::numbers::pi / 180.0;
+  }
+  return {{"name", channel.key}, {"unit", unit}, {"si", si}, {"si_unit", channel.unit}};
 }
 
 /// Returns null for numbers that JSON cannot represent.

@@ -121,6 +121,14 @@ TEST_CASE("parse_quantity: 1/s is neither Hz nor rad/s", "[common]") {
   CHECK_THAT(error_of("5 rad", "1"), Contains("angle"));
 }
 
+TEST_CASE("parse_quantity: a torque, as it is usually written", "[common]") {
+  CHECK(parse_quantity("5 Nm", "N m") == 5.0);
+  CHECK(parse_quantity("2 kNm", "N m") == 2000.0);
+  CHECK(parse_quantity("2 kN m", "N m") == 2000.0);
+  CHECK_THAT(error_of("5 N", "N m"), Contains("'N' is the unit of a force") &&
+                                         Contains("expected a torque such as \"300 N m\""));
+}
+
 TEST_CASE("parse_quantity: a period is no frequency", "[common]") {
   // UDUNITS by itself would convert using the reciprocal.
   CHECK_THAT(error_of("10 s", "Hz"), Contains("'s' is the unit of a time"));

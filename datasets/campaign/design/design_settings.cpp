@@ -125,7 +125,7 @@ const KeyTable<DesignSettings>& design_keys() {
       limit_row("flow", &DesignSettings::flow_m3_per_s, "m3/s", kFlows_m3_per_s,
                 {.doc = "Largest flow of the servo valve", .otherwise = "no limit"}),
       Row::described("amplitude",
-                     quantity_form(std::vector<std::string>{"m", "V", "Pa", "N", "m/s2"}),
+                     quantity_form(std::vector<std::string>{"m", "V", "Pa", "N", "m/s2", "rad"}),
                      {.doc = "Largest distance of the drive from where it begins, in the unit of "
                              "its channel; needed where the loop controls something other than "
                              "position",

@@ -160,6 +160,7 @@ TEST_CASE("catalogue: gains are those of the loop that the rig has", "[calib]") 
   CHECK(gains == std::vector<std::string>{"force_ki", "force_kp"});
   CHECK_FALSE(sensor_channel("force_kp"));
   CHECK(sensor_channel("force_gain") == datasets::Channel::force);
+  CHECK(sensor_channel("torque_offset") == datasets::Channel::torque);
   CHECK(sensor_channel("payload_acceleration_lag") == datasets::Channel::payload_acceleration);
 }
 

@@ -1,9 +1,13 @@
 #include "calib/consider/consider.hpp"
 
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <map>
 #include <set>
+#include <string>
+#include <utility>
 
 #include "calib/consider/catalogue.hpp"
 #include "calib/consider/effect_changes.hpp"
@@ -265,6 +269,53 @@ TEST_CASE("considered: a linkage has effects in radians and of its pilot", "[cal
     CHECK_THAT(column("angle_wave")(i),
                WithinRel(2e-3 * std::sin(2.0 * 3.14159265358979 * turn) / 5e-4, 1e-6));
   }
+}
+
+TEST_CASE("considered: a loop on the angle has effects of its gains, and a torque of its sensor",
+          "[calib]") {
+  using rigcal::test::replaced;
+  std::string text = replaced(kConsideredArm,
+                              "pilot_gain = { start = \"0.048 mm/bar\", lower = \"0.01 mm/bar\", "
+                              "upper = \"0.2 mm/bar\", fit = "
+                              "true }\npilot_dead_band = \"10 bar\"\npilot_range = \"20 bar\"",
+                              "valve_gain = { start = \"0.2 mm/V\", lower = \"0.05 mm/V\", upper = "
+                              "\"1 mm/V\", fit = true }");
+  text = replaced(text, "type = \"none\"", "type = \"pid\"\nangle_kp = \"2 V/rad\"");
+  text = replaced(text, "pilot_pressure = { column = \"pilot_bar\", unit = \"bar\" }",
+                  "torque = { column = \"M_Nm\", unit = \"N m\", sd = \"20 N m\" }");
+  const datasets::Campaign campaign =
+      rigcal::test::load_text(replaced(text, "amplitude = \"20 bar\"", "amplitude = \"0.3 rad\""));
+  const datasets::Condition& condition = campaign.conditions.front();
+  datasets::Record record;
+  record.condition = condition.id;
+  for (int i = 0; i < 200; ++i) record.time_s.push_back(0.005 * i);
+  const auto values = datasets::values_in(campaign, condition);
+  const auto run = model::simulate(
+      campaign.rig, values, {}, datasets::inputs_of(campaign, condition, values, nullptr),
+      record.time_s, std::vector{model::Output::angle, model::Output::torque},
+      model::SimulationOptions());
+  REQUIRE(run.ok());
+  const std::array channels{std::pair{datasets::Channel::angle, 5e-4},
+                            std::pair{datasets::Channel::torque, 20.0}};
+  for (Eigen::Index k = 0; k < 2; ++k) {
+    const auto& [channel, sd] = channels.at(static_cast<std::size_t>(k));
+    const Eigen::VectorXd column = run.outputs.col(k);
+    record.channels[channel].mean.assign(column.begin(), column.end());
+    record.channels[channel].sd_of_mean = sd;
+  }
+  const std::vector<datasets::Record> records{record};
+  const Problem problem = make_problem(campaign, records, {&condition}, false, nullptr);
+  std::map<std::string, double> sizes;
+  for (const Effect& each : effects_of(problem, problem.start()))
+    sizes[each.about.key] = each.about.size;
+  for (const char* key : {"angle_ki", "sample_time", "torque_lag", "torque_gain", "angle_gain"}) {
+    CAPTURE(key);
+    CHECK(sizes.contains(key));
+  }
+  CHECK_THAT(sizes["angle_kp"], WithinRel(2e-3 * 2.0, 1e-12));
+  // 0.1 % of lever, area and supply.
+  CHECK_THAT(sizes["torque_offset"], WithinRel(1e-3 * 0.3 * 4e-3 * 2e7, 1e-12));
+  CHECK_FALSE(sizes.contains("pilot_hysteresis"));
 }
 
 TEST_CASE("considered: what a linkage leaves out widens its intervals, or is a reservation",

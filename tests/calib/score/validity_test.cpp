@@ -77,7 +77,7 @@ TEST_CASE("coverage: what conditions and the narrower scope of a fit tell", "[ca
 
 TEST_CASE("validity: an amplitude is in the member of its unit", "[calib]") {
   const std::optional<Range> range = Range{1.0, 2.0};
-  for (const char* unit : {"m", "V", "N", "Pa", "m/s2"}) {
+  for (const char* unit : {"m", "V", "N", "Pa", "m/s2", "rad"}) {
     Validity validity;
     put_amplitude(unit, range, validity);
     CHECK(validity.amplitude().unit == unit);

@@ -82,6 +82,28 @@ TEST_CASE("load_campaign: a linkage is in radians, and a pilot pressure drives i
         "inertia_kg_m2");
 }
 
+TEST_CASE("load_campaign: the torque of a linkage is compared, and its sensor has errors",
+          "[datasets]") {
+  const std::string text = replaced(
+      replaced(kArm, "pressure_a = {",
+               "torque = { column = \"M_kNm\", unit = \"kN m\", sd = \"50 Nm\" }\npressure_a = {"),
+      "leakage_area = \"1 mm2\"",
+      "leakage_area = \"1 mm2\"\ntorque_lag = \"2 ms\"\n"
+      "torque_offset = { start = \"0 N m\", lower = \"-1 kN m\", upper = \"1 kN m\", fit = true }");
+  const Campaign campaign = load_text(text);
+  const ChannelSetting& torque = campaign.channels.at(Channel::torque);
+  CHECK(torque.role == ChannelRole::output);
+  CHECK(torque.to_si(3.0) == Approx(3e3));
+  CHECK(*torque.sd == Approx(50.0));
+  CHECK(value(campaign, "torque_lag") == Approx(2e-3));
+  CHECK(info(Channel::torque).name == "torque_n_m");
+  CHECK_THROWS_WITH(
+      load_text(replaced(text, "sd = \"50 Nm\"", "role = \"input\"")),
+      Catch::Contains("torque cannot be an input: expected \"output\" or \"ignore\""));
+  CHECK_THROWS_WITH(load_text(replaced(text, "unit = \"kN m\"", "unit = \"kN\"")),
+                    Catch::Contains("'kN' is the unit of a force") && Catch::Contains("a torque"));
+}
+
 TEST_CASE("load_campaign: a linkage with an electric valve is driven by the command",
           "[datasets]") {
   std::string text = replaced(kArm, "pilot_gain = \"0.3 mm/bar\"\npilot_dead_band = \"12 bar\"",
@@ -92,6 +114,75 @@ TEST_CASE("load_campaign: a linkage with an electric valve is driven by the comm
   const Campaign campaign = load_text(text);
   CHECK_FALSE(campaign.rig.pilot);
   CHECK(drive_channel(campaign) == Channel::command);
+}
+
+namespace {
+
+/// kArm with an electric valve under a loop on its angle.
+std::string arm_loop() {
+  std::string text = replaced(kArm, "pilot_gain = \"0.3 mm/bar\"\npilot_dead_band = \"12 bar\"",
+                              "valve_gain = \"0.1 mm/V\"");
+  text = replaced(text, "type = \"none\"",
+                  "type = \"pid\"\nangle_kp = \"0.2 V/deg\"\nangle_ki = { start = \"5 V/(rad s)\", "
+                  "lower = \"1 V/(rad s)\", upper = \"20 V/(rad s)\", fit = true }\n"
+                  "output_limit = \"10 V\"");
+  return replaced(text,
+                  "pilot_pressure = { column = \"out_bar\", minus = \"in_bar\", unit = \"bar\"",
+                  "angle_reference = { column = \"ref_deg\", unit = \"deg\", recognise = false");
+}
+
+}  // namespace
+
+TEST_CASE("load_campaign: the controller of a linkage acts on its angle", "[datasets]") {
+  const Campaign campaign = load_text(arm_loop());
+  CHECK(campaign.rig.controller == model::ControllerKind::pid);
+  CHECK(campaign.rig.feedback == model::Feedback::angle);
+  CHECK(drive_channel(campaign) == Channel::angle_reference);
+  const ChannelSetting& reference = campaign.channels.at(Channel::angle_reference);
+  CHECK(reference.role == ChannelRole::input);
+  CHECK(reference.to_si(180.0) == Approx(3.14159265358979));
+  CHECK(value(campaign, "angle_kp") == Approx(0.2 * 180.0 / 3.14159265358979));
+  CHECK(info(Channel::angle_reference).name == "angle_reference_rad");
+  const std::string type = "type = \"pid\"";
+  CHECK(load_text(replaced(arm_loop(), type, type + "\nfeedback = \"angle\"")).rig.feedback ==
+        model::Feedback::angle);
+  const std::string sine =
+      replaced(arm_loop(), "waveform = \"recorded\"",
+               "waveform = \"sine\"\nfrequency = \"0.5 Hz\"\namplitude = \"10 deg\"");
+  CHECK(*load_text(sine).conditions.front().amplitude == Approx(3.14159265358979 / 18.0));
+  CHECK_THROWS_WITH(load_text(replaced(sine, "10 deg", "10 mm")),
+                    Catch::Contains("the waveform is the angle reference, in rad"));
+}
+
+TEST_CASE("load_campaign: what does not go together in a loop on the angle", "[datasets]") {
+  struct Row {
+    const char* part;
+    const char* with;
+    const char* message;
+  };
+  for (const Row& row :
+       {Row{"type = \"pid\"", "type = \"pid\"\nfeedback = \"force\"",
+            "key 'rig.controller.feedback': the controller of a linkage acts on the angle of the "
+            "joint: expected \"angle\""},
+        Row{"angle_kp = \"0.2 V/deg\"\n", "", "the pid controller has no angle_kp"},
+        Row{"angle_kp", "kp", "unknown parameter 'kp'"},
+        Row{"angle_kp", "angle_kd = \"1 V s/rad\"\nangle_kp", "angle_kd without derivative_filter"},
+        Row{"output_limit", "velocity_feedforward = \"1 V s/m\"\noutput_limit",
+            "unknown parameter 'velocity_feedforward'"},
+        Row{"valve_gain = \"0.1 mm/V\"",
+            "valve_gain = \"0.1 mm/V\"\nvalve_frequency = \"40 Hz\"\nvalve_damping_ratio = 0.7\n"
+            "pump_flow = \"100 L/min\"\nsupply_resistance = \"1e9 Pa s/m3\"\nsupply_capacity = "
+            "\"1e-12 m3/Pa\"\npump_second_flow = \"150 L/min\"\npump_delay = \"1 s\"",
+            "the rig has 9 states, and the solver of the plant linkage has room for 8: expected "
+            "fewer of pump_second_flow, angle_ki"},
+        Row{"angle_reference = { column = \"ref_deg\", unit = \"deg\", recognise = false",
+            "reference = { column = \"ref_mm\", unit = \"mm\"",
+            "the waveform \"recorded\" needs the channel angle_reference where a pid "
+            "controller"}}) {
+    CAPTURE(row.with);
+    CHECK_THROWS_WITH(load_text(replaced(arm_loop(), row.part, row.with)),
+                      Catch::Contains(row.message));
+  }
 }
 
 TEST_CASE("load_campaign: a generated pilot pressure has an amplitude in bar", "[datasets]") {
@@ -133,10 +224,14 @@ TEST_CASE("load_campaign: what does not go together on a linkage", "[datasets]")
            Row{"upper_stop = \"-30 deg\"", "upper_stop = \"-160 deg\"", "is not above lower_stop"},
            Row{"lever = \"12 mm/deg\"", "lever = \"12 mm/deg\"\nlever_gradient = \"-1 m/rad2\"",
                "expected one above 0 in all of the range"},
-           Row{"type = \"none\"", "type = \"pid\"", "the plant linkage has no controller yet"},
+           Row{"type = \"none\"", "type = \"pid\"",
+               "the controller's output is a voltage, and pilot_gain makes the pilot pressure"},
            Row{"angle = { column",
                "position = { column = \"x_m\", unit = \"m\" }\nangle = { column",
                "the plant linkage turns an arm, and its motion is the angle of the joint"},
+           Row{"angle = { column",
+               "force = { column = \"F_N\", unit = \"N\", role = \"output\" }\nangle = { column",
+               "expected the channel torque (unit \"N m\")"},
            Row{"angle = { column",
                "base_acceleration = { column = \"a\", unit = \"m/s2\" }\nangle = { column",
                "how its base moves the arm depends on lengths"},
@@ -222,10 +317,18 @@ TEST_CASE("load_campaign: a rotary actuator has a displacement, and no linkage",
                     Catch::Contains("no value for area_b"));
 }
 
-TEST_CASE("load_campaign: a load that slides has no angle", "[datasets]") {
+TEST_CASE("load_campaign: a load that slides has no angle and no torque", "[datasets]") {
   CHECK_THROWS_WITH(
       load_text(replaced(
           test::kExample, "pressure_a = { unit = \"bar\" }",
           "pressure_a = { unit = \"bar\" }\nangle = { column = \"a_deg\", unit = \"deg\" }")),
       Catch::Contains("moves a load along a line, and has no joint"));
+  CHECK_THROWS_WITH(
+      load_text(replaced(
+          test::kExample, "pressure_a = { unit = \"bar\" }",
+          "pressure_a = { unit = \"bar\" }\ntorque = { column = \"M_Nm\", unit = \"N m\" }")),
+      Catch::Contains("has no joint: expected the channel force"));
+  CHECK_THROWS_WITH(
+      load_text(replaced(test::kExample, "type = \"pid\"", "type = \"pid\"\nfeedback = \"angle\"")),
+      Catch::Contains("the plant load_pressure has no joint: expected another quantity"));
 }

@@ -111,8 +111,14 @@ TEST_CASE("guess_column: the part in a loop is apart from the quantity", "[datas
     CHECK(channel(name) == Channel::position);
   }
   CHECK(channel("p_ref_bar") == Channel::load_pressure_reference);
+  CHECK(channel("ref_deg") == Channel::angle_reference);
+  CHECK(channel("Winkel_Soll") == Channel::angle_reference);
   CHECK(channel("Istkraft") == Channel::force);
   CHECK(channel("feedback_kN") == Channel::force);
+  for (const char* name : {"torque", "Drehmoment_Nm", "M_ist_Nm", "shaft moment [kN m]"}) {
+    CAPTURE(name);
+    CHECK(channel(name) == Channel::torque);
+  }
 }
 
 TEST_CASE("guess_column: where a pressure is", "[datasets]") {
@@ -147,11 +153,10 @@ TEST_CASE("guess_column: what no channel records", "[datasets]") {
   for (const Case& each :
        {Case{"v_mm_s", "a velocity"}, Case{"v_mm/s", "a velocity"},
         Case{"Geschwindigkeit_mm/s", "a velocity"}, Case{"Durchfluss_l/min", "a flow"},
-        Case{"Drehmoment_Nm", "a torque"}, Case{"n_rpm", ""}, Case{"y_%", ""},
-        Case{"err_mm", "an error of control"}, Case{"valve_position_mm", "the position of a spool"},
-        Case{"ref_deg", "the reference of an angle, which no loop controls"},
-        Case{"supply voltage [V]", ""}, Case{"start", ""}, Case{"offset", ""},
-        Case{"Untitled 1", ""}}) {
+        Case{"Drehmoment_Soll_Nm", "the reference of a torque, which no loop controls"},
+        Case{"n_rpm", ""}, Case{"y_%", ""}, Case{"err_mm", "an error of control"},
+        Case{"valve_position_mm", "the position of a spool"}, Case{"supply voltage [V]", ""},
+        Case{"start", ""}, Case{"offset", ""}, Case{"Untitled 1", ""}}) {
     CAPTURE(each.name);
     const ColumnGuess guess = guess_column(each.name);
     CHECK_FALSE(guess.is_time);

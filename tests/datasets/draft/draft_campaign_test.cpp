@@ -178,6 +178,39 @@ TEST_CASE("draft_campaign: a joint without a pilot has an electric valve", "[dat
   CHECK_THAT(draft, !Contains("pilot_dead_band"));
 }
 
+TEST_CASE("draft_campaign: a reference beside an angle makes a loop on the angle", "[datasets]") {
+  for (const char* reference : {"ref_deg", "ref"}) {
+    CAPTURE(reference);
+    const TemporaryFolder folder;
+    std::string text = fmt::format("t_s,{},angle_deg,pA_bar,pB_bar\n", reference);
+    for (int i = 0; i < 200; ++i)
+      text += fmt::format("{},{},{},{},20\n", 0.01 * i, i > 50 ? 10 : 0, i > 50 ? 0.05 * i : 0.0,
+                          80 + i % 3);
+    const std::string draft = draft_campaign({folder.write("j.csv", text)}, folder.path()).text;
+    CHECK_THAT(draft, Contains("model = \"linkage\"") && Contains("type = \"pid\""));
+    CHECK_THAT(draft,
+               Contains("feedback = \"angle\"  # what the loop controls; angle unless given"));
+    CHECK_THAT(draft, Contains("\nangle_kp = \"FILL IN V/rad\"") &&
+                          Contains("# pressure_feedback = \"... V/Pa\"") &&
+                          !Contains("velocity_feedforward"));
+    CHECK_THAT(draft, Contains(fmt::format("angle_reference = {{ column = \"{}\"", reference)));
+    CHECK_THAT(draft, Contains("\nvalve_gain = ") && !Contains("\nreference = "));
+  }
+}
+
+TEST_CASE("draft_campaign: a joint may have a torque, and a slide has none", "[datasets]") {
+  const TemporaryFolder folder;
+  std::string text = "t_s,u_V,angle_deg,torque_Nm\n";
+  for (int i = 0; i < 200; ++i)
+    text += fmt::format("{},{},{},{}\n", 0.01 * i, i > 50 ? 4 : 0, 0.1 * i, 20.0 + 0.3 * i);
+  std::string draft = draft_campaign({folder.write("j.csv", text)}, folder.path()).text;
+  CHECK_THAT(draft, Contains("\ntorque = { column = \"torque_Nm\", unit = \"N m\" }"));
+  text.replace(text.find("angle_deg"), 9, "x_mm");
+  draft = draft_campaign({folder.write("s.csv", text)}, folder.path()).text;
+  CHECK_THAT(draft, Contains("# 'torque_Nm' looks like a torque, which only a rig with an angle") &&
+                        !Contains("\ntorque = "));
+}
+
 TEST_CASE("draft_campaign: both pressures and a position suggest a load by a table", "[datasets]") {
   const TemporaryFolder folder;
   std::string both = "t_s,u_V,x_mm,pA_bar,pB_bar,acc_base [m/s2]\n";

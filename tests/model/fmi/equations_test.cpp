@@ -223,7 +223,7 @@ TEST_CASE("equations: an arm on a triangle, and one with a table, move as they a
     for (const auto& [key, value] : row.travel) e.set(key, value);
     e.inputs.drive = Signal::constant(1.3e6);
     e.times_s = {0.0, 0.4};
-    e.outputs = {Output::angle, Output::position, Output::acceleration};
+    e.outputs = {Output::angle, Output::position, Output::acceleration, Output::torque};
     e.options.tolerance = 1e-10;
     const Simulation run = e();
     INFO(run.reason);
@@ -243,10 +243,45 @@ TEST_CASE("equations: an arm on a triangle, and one with a table, move as they a
     REQUIRE(run.outputs(1, 0) > 0.02);
     CHECK(x[0] == Approx(run.outputs(1, 0)).epsilon(1e-6));
     CHECK(equations->output(Output::position, x) == Approx(run.outputs(1, 1)).epsilon(1e-6));
+    CHECK(equations->output(Output::torque, x) == Approx(run.outputs(1, 3)).epsilon(1e-5));
     const std::vector<double> indicators = equations->indicators(x);
     REQUIRE(indicators.size() == row.indicators);
     if (indicators.size() == 9) CHECK(indicators[6] == Approx(x[0] - 0.05));
   }
+}
+
+TEST_CASE("equations: an arm follows the reference of its angle as it is simulated", "[model]") {
+  Experiment e = arm_rig().unset("pilot_gain").unset("pilot_dead_band");
+  e.rig.pilot = false;
+  e.rig.controller = ControllerKind::pid;
+  e.rig.feedback = Feedback::angle;
+  e.set("valve_gain", 2e-4).set("joint_damping", 1e4).set("angle_kp", 10.0).set("angle_ki", 8.0);
+  e.set("angle_kd", 0.2).set("derivative_filter", 100.0).set("output_limit", 2.0);
+  e.inputs.drive = Signal::constant(0.4);
+  e.times_s = {0.0, 0.7};
+  e.outputs = {Output::angle, Output::command, Output::torque};
+  e.options.tolerance = 1e-10;
+  const Simulation run = e();
+  INFO(run.reason);
+  REQUIRE(run.ok());
+  ExportedRig rig;
+  rig.rig = e.rig;
+  rig.values = e.values;
+  const auto equations = make_equations(rig);
+  RigInputs inputs;
+  inputs.drive.value = 0.4;
+  inputs.supply_pressure_pa.value = 2e7;
+  inputs.tank_pressure_pa.value = 2e5;
+  equations->set(rig.values, inputs, 1.0);
+  std::vector<double> x = equations->initial();
+  REQUIRE(x.size() == 6);
+  CHECK(equations->output(Output::command, x) == 2.0);  // at its limit
+  StepMemory memory;
+  equations->advance(x, memory, 0.0, 0.7, 1e-10);
+  REQUIRE(run.outputs(1, 0) > 0.1);
+  CHECK(x[0] == Approx(run.outputs(1, 0)).epsilon(1e-6));
+  CHECK(equations->output(Output::command, x) == Approx(run.outputs(1, 1)).epsilon(1e-5));
+  CHECK(equations->output(Output::torque, x) == Approx(run.outputs(1, 2)).epsilon(1e-5));
 }
 
 TEST_CASE("equations: a cylinder with a load-sensing pump and friction with pre-sliding",

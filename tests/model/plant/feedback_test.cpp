@@ -243,14 +243,14 @@ TEST_CASE("layout_of: a loop takes the gains and the filter of what it controls"
   CHECK(force.states == 5);
   CHECK(force.filter == 4);
   CHECK(force.added[1]->unit == "N");
-  CHECK_FALSE(force.position_alone());
+  CHECK_FALSE(force.motion_alone());
   rig.feedback = Feedback::load_pressure;
   CHECK(layout_of(rig, values, {}, 3).states == 3);
   rig.feedback = Feedback::position;
   CHECK(layout_of(rig, values, {}, 3).states == 4);
-  CHECK(layout_of(rig, values, {}, 3).position_alone());
+  CHECK(layout_of(rig, values, {}, 3).motion_alone());
   values.set("pressure_feedback", 1e-8);
-  CHECK_FALSE(layout_of(rig, values, {}, 3).position_alone());
+  CHECK_FALSE(layout_of(rig, values, {}, 3).motion_alone());
 }
 
 TEST_CASE("layout_of: every state has a floor of its own", "[model]") {

@@ -64,15 +64,20 @@ TEST_CASE("linkage: with a constant lever it is the cylinder that slides", "[mod
   turning.outputs = sliding.outputs;
   turning.outputs.push_back(Output::angle);
   turning.outputs.push_back(Output::angular_velocity);
+  turning.outputs.push_back(Output::torque);
+  sliding.outputs.push_back(Output::force);
   const Simulation slid = sliding();
   const Simulation turned = turning();
   REQUIRE(slid.ok());
   REQUIRE(turned.ok());
   REQUIRE(slid.outputs.col(0).maxCoeff() > 0.1);  // it reaches both stops
   REQUIRE(slid.outputs.col(0).minCoeff() < -0.1);
-  CHECK(difference(slid.outputs, turned.outputs.leftCols(9)) < 2e-5);
+  CHECK(difference(slid.outputs.leftCols(9), turned.outputs.leftCols(9)) < 2e-5);
   CHECK(peak(turned.outputs.col(9) * kLever - turned.outputs.col(0)) < 1e-12);
   CHECK(peak(turned.outputs.col(10) * kLever - turned.outputs.col(1)) < 1e-12);
+  // A load cell in the rod reads what a torque transducer at the joint reads, less dry friction and
+  // with the stops.
+  CHECK(difference(slid.outputs.col(9) * kLever, turned.outputs.col(11)) < 2e-5);
 }
 
 TEST_CASE("linkage: two methods agree on an arm with all of its terms", "[model]") {
@@ -241,6 +246,33 @@ TEST_CASE("linkage: at its stop the chamber fills to the pressure that the pump 
   CHECK_THAT(end(0), WithinAbs(1.0 + 0.3 * (4e-3 * 2e7 - 2.4e-3 * 2e5) / 1e7, 1e-6));
 }
 
+TEST_CASE("linkage: the torque balances inertia, viscous friction and load, into a stop too",
+          "[model]") {
+  Experiment e = arm_rig();
+  e.set("joint_friction", 400.0).set("joint_friction_smoothing", 0.02);
+  e.set("gravity_moment", 3e3).set("gravity_moment_gradient", 1500.0);
+  e.inputs.drive = Signal::constant(3e6);
+  e.times_s = grid(0.0, 6.0, 601);
+  e.outputs = {Output::angle, Output::angular_velocity, Output::acceleration, Output::torque,
+               Output::force};
+  e.options.tolerance = 1e-9;
+  const Simulation run = e();
+  REQUIRE(run.ok());
+  REQUIRE(run.outputs(600, 0) > 1.0);  // pressed into the stop
+  for (Eigen::Index i = 0; i < run.outputs.rows(); ++i) {
+    const double omega = run.outputs(i, 1);
+    const double expected =
+        400.0 * run.outputs(i, 2) / 0.3 + 500.0 * omega + 3e3 + 1500.0 * run.outputs(i, 0);
+    CAPTURE(i);
+    CHECK_THAT(run.outputs(i, 3), WithinAbs(expected, 1e-4));
+    if (run.outputs(i, 0) < 1.0)
+      CHECK_THAT(run.outputs(i, 3),
+                 WithinAbs(0.3 * run.outputs(i, 4) - 400.0 * std::tanh(omega / 0.02), 1e-4));
+  }
+  // The stop takes what the pressures have beyond the load.
+  CHECK(0.3 * run.outputs(600, 4) > 5.0 * run.outputs(600, 3));
+}
+
 TEST_CASE("linkage: a support holds what the pressures do not", "[model]") {
   Experiment e = arm_rig();
   e.rig.initial = InitialState::given;
@@ -287,6 +319,9 @@ TEST_CASE("linkage: sensitivities are exact against differences, every parameter
                           {"angle_gain", 1.1},
                           {"angle_offset", 0.05},
                           {"angle_lag", 4e-3},
+                          {"torque_gain", 1.05},
+                          {"torque_offset", 200.0},
+                          {"torque_lag", 3e-3},
                           {"pressure_a_offset", 2e5},
                           {"pressure_b_offset", -3e5},
                           {"load_pressure_offset", 1e6},
@@ -324,6 +359,7 @@ TEST_CASE("linkage: sensitivities are exact against differences, every parameter
     check_sensitivities(e, seen,
                         {{Output::load_pressure, 2e7},
                          {Output::force, 8e4},
+                         {Output::torque, 2.4e4},
                          {Output::servo_flow, 1e-2},
                          {Output::leakage_flow, 3e-4},
                          {Output::acceleration, 20.0}});
@@ -378,6 +414,44 @@ TEST_CASE("linkage: sensitivities are exact against differences, every parameter
           {"accumulator_exponent", 1.3}},
          none},
         electric);
+  Experiment looped = electric;
+  looped.rig.controller = ControllerKind::pid;
+  looped.rig.feedback = Feedback::angle;
+  looped.set("angle_kp", 10.0);
+  check({"loop on the angle",
+         Signal::sine(0.5, 8.0),
+         {{"angle_ki", 80.0},
+          {"angle_kd", 0.05},
+          {"derivative_filter", 200.0},
+          {"pressure_feedback", 5e-8},
+          {"initial_integral", 0.4},
+          {"initial_angle", 0.1},
+          {"valve_time_constant", 8e-3},
+          {"transport_delay", 3e-3}},
+         ControllerKind::pid,
+         InitialState::given,
+         false,
+         Feedback::angle},
+        looped);
+  check({"loop on the angle at its limit",
+         Signal::sine(0.5, 8.0),
+         {{"angle_ki", 40.0}, {"output_limit", 2.0}},
+         ControllerKind::pid,
+         InitialState::rest,
+         false,
+         Feedback::angle},
+        looped);
+  check({"sampled loop on the angle",
+         Signal::sine(0.5, 8.0),
+         {{"angle_ki", 40.0},
+          {"angle_kd", 0.05},
+          {"derivative_filter", 200.0},
+          {"sample_time", 7e-3}},
+         ControllerKind::pid,
+         InitialState::rest,
+         false,
+         Feedback::angle},
+        looped);
   check({"warm oil",
          Signal::sine(4.0, 10.0),
          {{"reference_temperature", 313.15},

@@ -81,8 +81,8 @@ void check_motion(Experiment e, const Travel& travel,
   e.set("joint_damping", 1e4).set("gravity_moment", 4e3).set("gravity_moment_gradient", 1500.0);
   e.inputs.drive = Signal::sine(2.8e6, 0.5);
   e.times_s = grid(0.0, 1.6, 17);
-  e.outputs = {Output::angle, Output::angular_velocity, Output::pressure_a, Output::pressure_b,
-               Output::position};
+  e.outputs = {Output::angle,      Output::angular_velocity, Output::pressure_a,
+               Output::pressure_b, Output::position,         Output::torque};
   e.options.tolerance = 1e-9;
   for (const Method method : {Method::rosenbrock, Method::dopri5}) {
     e.options.method = method;
@@ -93,8 +93,12 @@ void check_motion(Experiment e, const Travel& travel,
     REQUIRE(peak(other.col(0)) > 0.5);
     REQUIRE(peak(other.col(0)) < 0.99);
     CHECK(difference(run.outputs.leftCols(4), other) < 3e-5);
-    for (Eigen::Index i = 0; i < run.outputs.rows(); ++i)
+    Eigen::VectorXd torque(other.rows());
+    for (Eigen::Index i = 0; i < other.rows(); ++i) {
       CHECK_THAT(run.outputs(i, 4), WithinAbs(travel(run.outputs(i, 0))[0], 1e-12));
+      torque(i) = travel(other(i, 0))[1] * (area[0] * other(i, 2) - area[1] * other(i, 3));
+    }
+    CHECK(difference(run.outputs.col(5), torque) < 1e-4);
   }
 }
 
@@ -253,12 +257,16 @@ TEST_CASE("linkage: a rotary actuator turns by its displacement, and holds a mom
   e.set("gravity_moment", 2e3).set("initial_angle", 0.3);
   e.times_s = {0.0, 1.0};
   e.options.tolerance = 1e-9;
-  e.outputs = {Output::angle, Output::load_pressure, Output::force};
+  e.set("torque_gain", 1.1).set("torque_offset", 50.0);
+  e.outputs = {Output::angle, Output::load_pressure, Output::force, Output::torque};
   const Simulation held = e();
   REQUIRE(held.ok());
   CHECK_THAT(held.outputs(1, 0), WithinAbs(0.3, 1e-6));
   CHECK_THAT(held.outputs(1, 1), WithinRel(2e3 / 5e-4, 1e-5));
   CHECK_THAT(held.outputs(1, 2), WithinRel(2e3, 1e-5));  // the moment
+  CHECK_THAT(held.outputs(1, 3), WithinRel(1.1 * 2e3 + 50.0, 1e-5));
+  e.set("torque_maximum", 2100.0);  // the converter shows no more
+  CHECK(e().outputs(1, 3) == 2100.0);
   e.rig.initial = InitialState::rest;
   e.set("lower_stop", -2.0).set("upper_stop", 2.0).set("joint_damping", 2e4);
   e.set("pilot_gain", 1e-11).set("gravity_moment", 0.0);

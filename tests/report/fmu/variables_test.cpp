@@ -122,6 +122,8 @@ TEST_CASE("fmu variables: an arm is told in radians, and its pilot pressure driv
   CHECK(named(variables, "angle").unit == "rad");
   CHECK(named(variables, "angle").is_state);
   CHECK(named(variables, "position").causality == Causality::output);  // the position of the piston
+  CHECK(named(variables, "torque").unit == "N m");
+  CHECK(named(variables, "torque").causality == Causality::output);
   CHECK(named(variables, "der(pump_demand)").unit == "1");
   CHECK(named(variables, "lever_curvature").unit == "m/rad3");
   for (const char* absent : {"external_force", "command", "payload_acceleration", "stroke"})
@@ -130,7 +132,30 @@ TEST_CASE("fmu variables: an arm is told in radians, and its pilot pressure driv
     CAPTURE(each.name, each.unit);
     CHECK_NOTHROW(report::base_units(each.unit));
   }
-  CHECK_FALSE(has(variables_of(two_chamber_rig()), "angle"));
+  for (const char* of_joint : {"angle", "torque"})
+    CHECK_FALSE(has(variables_of(two_chamber_rig()), of_joint));
+}
+
+TEST_CASE("fmu variables: a loop on the angle has its reference and gains in radians", "[report]") {
+  model::Experiment arm = model::arm_rig().unset("pilot_gain").unset("pilot_dead_band");
+  arm.set("valve_gain", 2e-4).set("angle_kp", 10.0).set("angle_ki", 8.0).set("angle_kd", 0.2);
+  arm.set("derivative_filter", 100.0);
+  model::ExportedRig rig;
+  rig.rig = arm.rig;
+  rig.rig.pilot = false;
+  rig.rig.controller = model::ControllerKind::pid;
+  rig.rig.feedback = model::Feedback::angle;
+  rig.values = arm.values;
+  const auto variables = variables_of(rig);
+  CHECK(variables.front().name == "reference");
+  CHECK(variables.front().unit == "rad");
+  CHECK(named(variables, "angle_kd").unit == "V s/rad");
+  CHECK(named(variables, "controller_filtered_error").unit == "rad");
+  CHECK(named(variables, "command").causality == Causality::output);
+  for (const FmuVariable& each : variables) {
+    CAPTURE(each.name, each.unit);
+    CHECK_NOTHROW(report::base_units(each.unit));
+  }
 }
 
 TEST_CASE("fmu variables: states, outputs and rates by their references", "[report]") {
