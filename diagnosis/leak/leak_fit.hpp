@@ -191,8 +191,7 @@ LeakCurve leak_curve_of(const LeakProblem& leak_problem, const datasets::Conditi
                         const datasets::Record& average, double coefficient, double reach,
                         LeakMemo& memo);
 
-/// Returns one point of this curve, which costs a single simulation: that of a leak with the
-/// coefficient, which is above 0.
+/// Returns one point of this curve, for a coefficient above 0. It costs a single leak of the memo.
 LeakPoint leak_point_of(const LeakProblem& leak_problem, const datasets::Condition& condition,
                         const datasets::Record& average, double coefficient, double reach,
                         LeakMemo& memo);
@@ -201,21 +200,24 @@ LeakPoint leak_point_of(const LeakProblem& leak_problem, const datasets::Conditi
 /// effect, if the coefficient is refitted. It combines their direct action on the share with that
 /// through the coefficient. Shape: rows of RigFit::covariance.
 ///
+/// @param memo        leaks of the condition, with slopes by RigFit::indices
 /// @param negligible  below this coefficient the leak is not simulated
 /// @param effects     effects in the same condition; if null, effects act only through the
 ///                    coefficient
 Eigen::VectorXd share_rig_moves(const LeakProblem& leak_problem, const RigFit& rig,
                                 const datasets::Condition& condition,
                                 const datasets::Record& average, const LeakFit& fit,
-                                double share_slope, double negligible = 0.0,
+                                double share_slope, LeakMemo& memo, double negligible = 0.0,
                                 const LeakEffects* effects = nullptr);
 
 /// Returns the change in the share with each day quantity, per standard deviation between days,
 /// both directly and through the coefficient, which changes by `day_effects`.
+///
+/// @param memo  leaks of the condition, with slopes by the rows of the day quantities
 Eigen::VectorXd share_day_effects(const LeakProblem& leak_problem,
                                   const datasets::Condition& condition,
                                   const datasets::Record& average, const LeakFit& fit,
-                                  double share_slope, double negligible = 0.0);
+                                  double share_slope, LeakMemo& memo, double negligible = 0.0);
 
 /// Returns the share of the servo flow that leaks in a condition for given values, such as known
 /// true values.
