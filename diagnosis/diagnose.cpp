@@ -27,7 +27,8 @@ using datasets::Campaign;
 using datasets::Condition;
 
 Prepared prepare(const LeakProblem& problem, const RigFit& rig,
-                 const datasets::RepeatRecords& records, const DiagnosisOptions& options) {
+                 const datasets::RepeatRecords& records, const DiagnosisOptions& options,
+                 HealthyEffects& healthy) {
   Prepared result;
   result.condition = problem.campaign.find(records.average.condition);
   if (result.condition == nullptr)
@@ -36,7 +37,8 @@ Prepared prepare(const LeakProblem& problem, const RigFit& rig,
   try {
     result.scan = leak_scan_of(problem, *result.condition, records.average);
     result.leaks = result.memo(rig.indices);
-    result.effects = leak_effects_of(problem, rig, *result.condition, records.average, result.scan);
+    result.effects =
+        leak_effects_of(problem, rig, *result.condition, records.average, result.scan, healthy);
     std::vector<const datasets::Record*> all{&records.average};
     for (const datasets::Record& single : records.singles) all.push_back(&single);
     result.residuals = healthy_residuals(problem, *result.condition, records.average, all);
@@ -366,8 +368,10 @@ Diagnosis diagnose(const Campaign& campaign, const std::vector<datasets::RepeatR
   LeakProblem problem(campaign, rig);
   problem.cancel = options.cancel;
   std::vector<Prepared> prepared(records.size());
-  parallel_for(prepared.size(), options.threads,
-               [&](std::size_t i) { prepared[i] = prepare(problem, rig, records[i], options); });
+  HealthyEffects healthy;
+  parallel_for(prepared.size(), options.threads, [&](std::size_t i) {
+    prepared[i] = prepare(problem, rig, records[i], options, healthy);
+  });
   // The campaign in `problem` no longer contains the known leaks.
   for (Prepared& each : prepared)
     each.is_healthy = is_healthy(campaign, *campaign.find(each.condition->id));

@@ -457,7 +457,8 @@ std::vector<calib::BudgetLine> RigFit::contributions(const Eigen::VectorXd& move
 
 std::shared_ptr<const LeakEffects> leak_effects_of(const LeakProblem& leak_problem,
                                                    const RigFit& rig, const Condition& condition,
-                                                   const Record& average, const LeakScan& scan) {
+                                                   const Record& average, const LeakScan& scan,
+                                                   HealthyEffects& healthy) {
   if (rig.effects.empty()) return nullptr;
   const std::vector<Record> records{average};
   const calib::Problem problem =
@@ -478,7 +479,7 @@ std::shared_ptr<const LeakEffects> leak_effects_of(const LeakProblem& leak_probl
                              leak_problem.cancel, kFlows);
   };
   auto result = std::make_shared<LeakEffects>();
-  result->healthy = changes_at(0.0);
+  result->healthy = *healthy.of(prepared, values_at(0.0), acting, [&] { return changes_at(0.0); });
   result->by_leak = changes_at(leak);
   for (std::size_t k = 0; k < result->healthy.size(); ++k) {
     if (!result->healthy[k].allFinite() || !result->by_leak[k].allFinite()) return nullptr;

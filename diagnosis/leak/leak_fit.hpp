@@ -14,6 +14,7 @@
 #include "calib/trust/prediction_band.hpp"
 #include "datasets/campaign/campaign.hpp"
 #include "datasets/prepare/single_repeats.hpp"
+#include "diagnosis/leak/healthy_effects.hpp"
 #include "diagnosis/leak/leak_curve.hpp"
 #include "diagnosis/leak/leak_memo.hpp"
 #include "diagnosis/leak/leak_scan.hpp"
@@ -148,12 +149,13 @@ LeakFit fit_leak(const LeakProblem& leak_problem, const RigFit& rig,
 
 /// Simulates the effects in a condition, based on its average record, with and without a leak.
 ///
+/// @param healthy  simulations without a leak that other conditions may have made
 /// @return  null if the fit considered no effects, or if the condition cannot be simulated
 std::shared_ptr<const LeakEffects> leak_effects_of(const LeakProblem& leak_problem,
                                                    const RigFit& rig,
                                                    const datasets::Condition& condition,
                                                    const datasets::Record& average,
-                                                   const LeakScan& scan);
+                                                   const LeakScan& scan, HealthyEffects& healthy);
 
 /// The record minus the healthy model, for each record and channel.
 using Residuals = std::vector<std::map<datasets::Channel, std::vector<double>>>;

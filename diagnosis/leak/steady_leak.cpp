@@ -12,15 +12,6 @@
 namespace rigcal::diagnosis {
 namespace {
 
-/// Returns true if a generated wave is the only input that varies, so that there is a periodic
-/// state.
-bool has_periodic_state(const calib::ProblemCondition& condition) {
-  const model::SimulationInputs& in = condition.inputs;
-  return is_generated_wave(*condition.condition) && condition.condition->amplitude.has_value() &&
-         !in.external_force_n && !in.supply_pressure_pa && !in.tank_pressure_pa &&
-         !in.base_acceleration_m_per_s2 && !in.oil_temperature_k;
-}
-
 /// Computes the leak in the periodic state; empty if the rig does not become periodic.
 std::optional<SteadyLeak> periodic(const calib::Problem& problem,
                                    const calib::ProblemCondition& condition,
@@ -66,6 +57,13 @@ SteadyLeak over_record(const calib::Problem& problem, const calib::ProblemCondit
 
 bool is_generated_wave(const datasets::Condition& condition) {
   return is_periodic(condition.waveform) && condition.frequency_hz.has_value();
+}
+
+bool has_periodic_state(const calib::ProblemCondition& condition) {
+  const model::SimulationInputs& in = condition.inputs;
+  return is_generated_wave(*condition.condition) && condition.condition->amplitude.has_value() &&
+         !in.external_force_n && !in.supply_pressure_pa && !in.tank_pressure_pa &&
+         !in.base_acceleration_m_per_s2 && !in.oil_temperature_k;
 }
 
 SteadyLeak steady_leak(const calib::Problem& problem, const calib::ProblemCondition& condition,

@@ -50,4 +50,8 @@ SteadyLeak steady_leak(const calib::Problem& problem, const calib::ProblemCondit
 /// Returns true if the drive of the condition is a sine or square of known frequency.
 bool is_generated_wave(const datasets::Condition& condition);
 
+/// Returns true if a generated wave is the only input that varies, so that there is a periodic
+/// state.
+bool has_periodic_state(const calib::ProblemCondition& condition);
+
 }  // namespace rigcal::diagnosis

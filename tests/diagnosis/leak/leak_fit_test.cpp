@@ -256,7 +256,9 @@ TEST_CASE("fit_leak: an effect that the model lacks moves a coefficient as far a
   const diagnosis::LeakProblem problem = diagnosis::LeakProblem(made.campaign, rig).up_to(1.0);
   const datasets::Condition& condition = problem.campaign.conditions.front();
   const auto scan = diagnosis::leak_scan_of(problem, condition, made.record);
-  const auto effects = diagnosis::leak_effects_of(problem, rig, condition, made.record, scan);
+  diagnosis::HealthyEffects healthy;
+  const auto effects =
+      diagnosis::leak_effects_of(problem, rig, condition, made.record, scan, healthy);
   REQUIRE(effects != nullptr);
   const auto fit = [&](const HealthySine& of, int reference) {
     const auto found = diagnosis::fit_leak(problem, rig, condition, of.record, std::nullopt,
@@ -291,7 +293,9 @@ TEST_CASE("share_rig_moves: an effect that leaks itself changes the true share, 
   const diagnosis::LeakProblem problem = diagnosis::LeakProblem(made.campaign, rig).up_to(1.0);
   const datasets::Condition& condition = problem.campaign.conditions.front();
   const auto scan = diagnosis::leak_scan_of(problem, condition, made.record);
-  const auto effects = diagnosis::leak_effects_of(problem, rig, condition, made.record, scan);
+  diagnosis::HealthyEffects healthy;
+  const auto effects =
+      diagnosis::leak_effects_of(problem, rig, condition, made.record, scan, healthy);
   REQUIRE(effects != nullptr);
   const auto fit = diagnosis::fit_leak(problem, rig, condition, made.record, std::nullopt, 0, &scan,
                                        nullptr, effects.get());

@@ -14,7 +14,7 @@ using Catch::WithinRel;
 namespace {
 
 /// share = C / (1 + C), flow = 1e-5 C, and a slope by a further parameter of C / (1 + C)^2.
-SimulatedLeak saturating(double c) {
+SimulatedLeak leak_that_saturates(double c) {
   SimulatedLeak leak;
   leak.point = {c, c / (1.0 + c), 1e-5 * c, std::pow(1.0 + c, -2), 1e-5};
   leak.further_slope = Eigen::VectorXd::Constant(1, c * std::pow(1.0 + c, -2));
@@ -22,11 +22,11 @@ SimulatedLeak saturating(double c) {
 }
 
 /// Counts what a memo simulates.
-struct Counted {
+struct CountedLeaks {
   std::vector<double> coefficients;
   LeakMemo::Simulate simulate = [this](double c, PeriodicEffort) {
     coefficients.push_back(c);
-    return saturating(c);
+    return leak_that_saturates(c);
   };
 };
 
@@ -34,13 +34,13 @@ struct Counted {
 
 TEST_CASE("LeakMemo: records of a condition that do not leak share their simulations",
           "[diagnosis]") {
-  Counted counted;
+  CountedLeaks counted;
   LeakMemo memo;
   const LeakAt remembered = [&](double c) { return memo.at(c, counted.simulate).point; };
   // Ten records, whose coefficients differ by noise around zero.
   for (int i = 0; i < 10; ++i) {
     const LeakCurve curve = curve_about(remembered, 0.001 * (i - 5), 0.25);
-    CHECK(curve.share(0.25) == saturating(0.25).point.share);
+    CHECK(curve.share(0.25) == leak_that_saturates(0.25).point.share);
   }
   CHECK(counted.coefficients.size() == 2);
   // A new leak requires three more simulations, a repeated request none.
@@ -49,7 +49,7 @@ TEST_CASE("LeakMemo: records of a condition that do not leak share their simulat
 }
 
 TEST_CASE("LeakMemo: leaks that are close to each other are between few nodes", "[diagnosis]") {
-  Counted counted;
+  CountedLeaks counted;
   LeakMemo memo({7}, Between::interpolated);
   for (int i = -50; i <= 50; ++i) {
     const double c = 0.4 * (1.0 + 1e-3 * i);
@@ -57,10 +57,10 @@ TEST_CASE("LeakMemo: leaks that are close to each other are between few nodes", 
     const SimulatedLeak leak = memo.at(c, counted.simulate);
     CHECK(leak.point.coefficient == c);
     // A cubic is off by 0.03^4 / 384 of a share that saturates, a line by 0.03^2 / 4 of a slope.
-    CHECK_THAT(leak.point.share, WithinRel(saturating(c).point.share, 1e-8));
+    CHECK_THAT(leak.point.share, WithinRel(leak_that_saturates(c).point.share, 1e-8));
     CHECK_THAT(leak.point.leak_flow_m3_per_s, WithinRel(1e-5 * c, 1e-12));
-    CHECK_THAT(leak.point.share_slope, WithinRel(saturating(c).point.share_slope, 2.5e-4));
-    CHECK_THAT(leak.further_slope(0), WithinRel(saturating(c).further_slope(0), 2.5e-4));
+    CHECK_THAT(leak.point.share_slope, WithinRel(leak_that_saturates(c).point.share_slope, 2.5e-4));
+    CHECK_THAT(leak.further_slope(0), WithinRel(leak_that_saturates(c).further_slope(0), 2.5e-4));
   }
   CHECK(counted.coefficients.size() <= 6);
   CHECK(std::set<double>(counted.coefficients.begin(), counted.coefficients.end()).size() ==
@@ -70,7 +70,7 @@ TEST_CASE("LeakMemo: leaks that are close to each other are between few nodes", 
 TEST_CASE("LeakMemo: the order of requests changes nothing", "[diagnosis]") {
   std::vector<double> wanted{0.2, 0.21, 0.199, 0.35};
   const auto shares = [&] {
-    Counted counted;
+    CountedLeaks counted;
     LeakMemo memo({7}, Between::interpolated, 0.2);
     std::vector<std::pair<double, double>> found;
     for (const double c : wanted) found.emplace_back(c, memo.at(c, counted.simulate).point.share);
@@ -86,7 +86,7 @@ TEST_CASE("LeakMemo: nodes begin with the effort of a typical one", "[diagnosis]
   std::vector<int> periods;
   const LeakMemo::Simulate simulate = [&](double c, PeriodicEffort least) {
     periods.push_back(least.periods);
-    SimulatedLeak leak = saturating(c);
+    SimulatedLeak leak = leak_that_saturates(c);
     leak.effort = {32, 512};
     return leak;
   };
@@ -98,9 +98,9 @@ TEST_CASE("LeakMemo: nodes begin with the effort of a typical one", "[diagnosis]
 TEST_CASE("LeakMemo: where a node cannot be simulated, the leak itself is", "[diagnosis]") {
   const LeakMemo::Simulate simulate = [](double c, PeriodicEffort) {
     if (c > 0.4) throw rigcal::NoResultError("beyond the bound");
-    return saturating(c);
+    return leak_that_saturates(c);
   };
   LeakMemo memo({7}, Between::interpolated);
-  CHECK(memo.at(0.4, simulate).point.share == saturating(0.4).point.share);
+  CHECK(memo.at(0.4, simulate).point.share == leak_that_saturates(0.4).point.share);
   CHECK_THROWS_AS(memo.at(0.41, simulate), rigcal::NoResultError);
 }
