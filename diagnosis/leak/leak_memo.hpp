@@ -33,7 +33,7 @@ class LeakMemo {
   using Simulate = std::function<SimulatedLeak(double coefficient, PeriodicEffort least)>;
 
   /// @param further  table indices of the parameters for which slopes are kept
-  /// @param typical  a coefficient whose node tells the effort; 0 if unknown
+  /// @param typical  coefficient of the node whose effort the others begin with; 0 if unknown
   explicit LeakMemo(std::vector<int> further = {}, Between between = Between::simulated,
                     double typical = 0.0)
       : further_(std::move(further)), between_(between), typical_(typical) {}
