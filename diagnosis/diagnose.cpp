@@ -27,7 +27,8 @@ using datasets::Campaign;
 using datasets::Condition;
 
 Prepared prepare(const LeakProblem& problem, const RigFit& rig,
-                 const datasets::RepeatRecords& records, const DiagnosisOptions& options) {
+                 const datasets::RepeatRecords& records, const DiagnosisOptions& options,
+                 HealthyEffects& healthy) {
   Prepared result;
   result.condition = problem.campaign.find(records.average.condition);
   if (result.condition == nullptr)
@@ -35,7 +36,9 @@ Prepared prepare(const LeakProblem& problem, const RigFit& rig,
   result.records = &records;
   try {
     result.scan = leak_scan_of(problem, *result.condition, records.average);
-    result.effects = leak_effects_of(problem, rig, *result.condition, records.average, result.scan);
+    result.leaks = result.memo(rig.indices);
+    result.effects =
+        leak_effects_of(problem, rig, *result.condition, records.average, result.scan, healthy);
     std::vector<const datasets::Record*> all{&records.average};
     for (const datasets::Record& single : records.singles) all.push_back(&single);
     result.residuals = healthy_residuals(problem, *result.condition, records.average, all);
@@ -234,12 +237,13 @@ void estimate(const LeakProblem& problem, const RigFit& rig, const Prepared& pre
     const double share_slope = curve.share_slope(record.fit.coefficient);
     const Eigen::VectorXd share_moves =
         share_rig_moves(problem, rig, *prepared.condition, average, record.fit, share_slope,
-                        prepared.negligible(), prepared.effects.get());
+                        *prepared.leaks, prepared.negligible(), prepared.effects.get());
     const double share_days_se =
-        distance > 0.0 ? between.error(distance, share_day_effects(problem, *prepared.condition,
-                                                                   average, record.fit, share_slope,
-                                                                   prepared.negligible()))
-                       : 0.0;
+        distance > 0.0
+            ? between.error(distance, share_day_effects(problem, *prepared.condition, average,
+                                                        record.fit, share_slope,
+                                                        *prepared.day_leaks, prepared.negligible()))
+            : 0.0;
     record.estimate = estimate_leak(record.fit.coefficient, error, curve,
                                     std::hypot(rig.error(share_moves), share_days_se),
                                     problem.campaign.diagnosis);
@@ -364,8 +368,10 @@ Diagnosis diagnose(const Campaign& campaign, const std::vector<datasets::RepeatR
   LeakProblem problem(campaign, rig);
   problem.cancel = options.cancel;
   std::vector<Prepared> prepared(records.size());
-  parallel_for(prepared.size(), options.threads,
-               [&](std::size_t i) { prepared[i] = prepare(problem, rig, records[i], options); });
+  HealthyEffects healthy;
+  parallel_for(prepared.size(), options.threads, [&](std::size_t i) {
+    prepared[i] = prepare(problem, rig, records[i], options, healthy);
+  });
   // The campaign in `problem` no longer contains the known leaks.
   for (Prepared& each : prepared)
     each.is_healthy = is_healthy(campaign, *campaign.find(each.condition->id));
@@ -373,6 +379,8 @@ Diagnosis diagnose(const Campaign& campaign, const std::vector<datasets::RepeatR
     result.between_days =
         between_days_of(campaign, rig_values(problem), shortest_interval(records));
   problem.day_quantities = result.between_days.quantities;
+  for (Prepared& each : prepared)
+    each.day_leaks = each.memo(calib::further_rows(problem.day_quantities, {}));
   std::vector<Task> tasks;
   std::vector<std::size_t> begin;  // index of the first task of each condition
   for (const Prepared& each : prepared) {

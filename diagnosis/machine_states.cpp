@@ -57,7 +57,7 @@ double share_days_error(const LeakProblem& problem, const Prepared& duty, const 
   itself.day_effects = Eigen::VectorXd::Zero(quantities);
   StateMember direct;
   direct.day_effects = share_day_effects(problem, *duty.condition, duty.records->average, itself,
-                                         state.share_slope, duty.negligible());
+                                         state.share_slope, *duty.day_leaks, duty.negligible());
   direct.day_weights = weights;
   return std::sqrt(days.factor) *
          (state.share_slope * state.pooled.day_moves + direct.day_moves()).norm();
@@ -83,7 +83,7 @@ void judge_state(const LeakProblem& problem, const RigFit& rig, const Prepared& 
     state.share_slope = curve.share_slope(leak.coefficient);
     const Eigen::VectorXd share_moves =
         share_rig_moves(problem, rig, *duty.condition, average, leak, state.share_slope,
-                        duty.negligible(), duty.effects.get());
+                        *duty.leaks, duty.negligible(), duty.effects.get());
     const double share_days_se = share_days_error(problem, duty, days, leak, state);
     const double share_se = std::hypot(rig.error(share_moves), share_days_se);
     const PooledLeak& pooled = state.pooled;

@@ -23,8 +23,16 @@ struct Prepared {
   std::string failure;
   std::optional<double> true_share;
   bool is_healthy = false;
-  std::shared_ptr<LeakMemo> leaks = std::make_shared<LeakMemo>();
+  std::shared_ptr<LeakMemo> leaks;      ///< with slopes by the rig's parameters
+  std::shared_ptr<LeakMemo> day_leaks;  ///< with slopes by the day quantities
 
+  /// Makes a memo of its leaks. A condition with several records needs leaks that are close to each
+  /// other; that of a single record would need more nodes than leaks.
+  std::shared_ptr<LeakMemo> memo(const std::vector<int>& further) const {
+    return std::make_shared<LeakMemo>(
+        further, records->singles.empty() ? Between::simulated : Between::interpolated,
+        scan.best_coefficient > 0.0 ? scan.best_coefficient : least_reach());
+  }
   const std::vector<double>& time_s() const { return records->average.time_s; }
   /// Minimum half-width of a curve of shares. It is needed for a record that is its own reference:
   /// its error is zero, and any width that includes a leak is sufficient.

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "calib/consider/effect_changes.hpp"
 #include "calib/problem/evaluation.hpp"
@@ -458,7 +459,8 @@ std::vector<calib::BudgetLine> RigFit::contributions(const Eigen::VectorXd& move
 
 std::shared_ptr<const LeakEffects> leak_effects_of(const LeakProblem& leak_problem,
                                                    const RigFit& rig, const Condition& condition,
-                                                   const Record& average, const LeakScan& scan) {
+                                                   const Record& average, const LeakScan& scan,
+                                                   HealthyEffects& healthy) {
   if (rig.effects.empty()) return nullptr;
   const std::vector<Record> records{average};
   const calib::Problem problem =
@@ -479,7 +481,7 @@ std::shared_ptr<const LeakEffects> leak_effects_of(const LeakProblem& leak_probl
                              leak_problem.cancel, kFlows);
   };
   auto result = std::make_shared<LeakEffects>();
-  result->healthy = changes_at(0.0);
+  result->healthy = *healthy.of(prepared, values_at(0.0), acting, [&] { return changes_at(0.0); });
   result->by_leak = changes_at(leak);
   for (std::size_t k = 0; k < result->healthy.size(); ++k) {
     if (!result->healthy[k].allFinite() || !result->by_leak[k].allFinite()) return nullptr;
@@ -574,45 +576,53 @@ LeakScan leak_scan_of(const LeakProblem& leak_problem, const Condition& conditio
 
 namespace {
 
-/// Calls `use` with the leaks of a condition, each of which is simulated once.
-template <typename Use>
-auto with_leaks(const LeakProblem& leak_problem, const Condition& condition, const Record& average,
-                LeakMemo& memo, Use use) {
-  const std::vector<Record> records{average};
-  const calib::Problem problem =
-      problem_of(leak_problem, own_condition(leak_problem, condition), records);
-  const calib::ProblemCondition& prepared = problem.conditions.front();
-  const auto leak_at = [&](double each) {
-    model::ParameterValues values = prepared.values;
-    values.set(leak_problem.leak, each);
+/// Returns the leak of a condition as a function of the coefficient, with slopes by what the memo
+/// keeps. `problem` must outlive it.
+auto leaks_of(const LeakProblem& leak_problem, const calib::Problem& problem, LeakMemo& memo) {
+  std::vector<int> free = memo.further();
+  if (column_of(free, leak_problem.leak) < 0) free.push_back(leak_problem.leak);
+  const auto simulated = [&leak_problem, &problem, &memo, free](double coefficient,
+                                                                PeriodicEffort least) {
+    const calib::ProblemCondition& condition = problem.conditions.front();
+    model::ParameterValues values = condition.values;
+    values.set(leak_problem.leak, coefficient);
     const SteadyLeak leak =
-        steady_leak(problem, prepared, values, std::array{leak_problem.leak}, leak_problem.cancel);
-    return LeakPoint{each, leak.share, leak.leak_flow_m3_per_s, leak.share_slope(0),
-                     leak.flow_slope(0)};
+        steady_leak(problem, condition, values, free, leak_problem.cancel, least);
+    const int own = column_of(free, leak_problem.leak);
+    return SimulatedLeak{LeakPoint{coefficient, leak.share, leak.leak_flow_m3_per_s,
+                                   leak.share_slope(own), leak.flow_slope(own)},
+                         leak.share_slope.head(static_cast<Eigen::Index>(memo.further().size())),
+                         leak.effort};
   };
-  return use([&](double each) { return memo.at(each, leak_at); });
+  return [&memo, simulated](double coefficient) { return memo.at(coefficient, simulated); };
 }
 
 }  // namespace
 
 LeakCurve leak_curve_of(const LeakProblem& leak_problem, const Condition& condition,
                         const Record& average, double coefficient, double reach, LeakMemo& memo) {
-  return with_leaks(leak_problem, condition, average, memo, [&](const LeakAt& leak_at) {
-    return curve_about(leak_at, coefficient, reach);
-  });
+  const std::vector<Record> records{average};
+  const calib::Problem problem =
+      problem_of(leak_problem, own_condition(leak_problem, condition), records);
+  const auto leak_at = leaks_of(leak_problem, problem, memo);
+  return curve_about([&](double each) { return leak_at(each).point; }, coefficient, reach);
 }
 
 LeakPoint leak_point_of(const LeakProblem& leak_problem, const Condition& condition,
                         const Record& average, double coefficient, double reach, LeakMemo& memo) {
-  return with_leaks(leak_problem, condition, average, memo, [&](const LeakAt& leak_at) {
-    return point_about(leak_at, coefficient, reach);
-  });
+  const std::vector<Record> records{average};
+  const calib::Problem problem =
+      problem_of(leak_problem, own_condition(leak_problem, condition), records);
+  const auto leak_at = leaks_of(leak_problem, problem, memo);
+  return point_about([&](double each) { return leak_at(each).point; }, coefficient, reach);
 }
 
 Eigen::VectorXd share_rig_moves(const LeakProblem& leak_problem, const RigFit& rig,
                                 const Condition& condition, const Record& average,
-                                const LeakFit& fit, double share_slope, double negligible,
-                                const LeakEffects* effects) {
+                                const LeakFit& fit, double share_slope, LeakMemo& memo,
+                                double negligible, const LeakEffects* effects) {
+  if (memo.further() != rig.indices)
+    throw std::invalid_argument("share_rig_moves: expected a memo with the rig's parameters");
   if (rig.covariance.rows() == 0) return Eigen::VectorXd::Zero(0);
   Eigen::VectorXd moves = share_slope * fit.rig_moves;
   const auto of_rig = static_cast<Eigen::Index>(rig.indices.size());
@@ -622,33 +632,25 @@ Eigen::VectorXd share_rig_moves(const LeakProblem& leak_problem, const RigFit& r
     const std::vector<Record> records{average};
     const calib::Problem problem =
         problem_of(leak_problem, own_condition(leak_problem, condition), records);
-    const calib::ProblemCondition& prepared = problem.conditions.front();
-    model::ParameterValues values = prepared.values;
-    values.set(leak_problem.leak, fit.coefficient);
-    moves.head(of_rig) +=
-        steady_leak(problem, prepared, values, rig.indices, leak_problem.cancel).share_slope;
+    moves.head(of_rig) += leaks_of(leak_problem, problem, memo)(fit.coefficient).further_slope;
   }
   return moves;
 }
 
 Eigen::VectorXd share_day_effects(const LeakProblem& leak_problem, const Condition& condition,
                                   const Record& average, const LeakFit& fit, double share_slope,
-                                  double negligible) {
+                                  LeakMemo& memo, double negligible) {
   Eigen::VectorXd moves = share_slope * fit.day_effects;
   if (!(fit.coefficient > negligible) || moves.size() == 0) return moves;
-  const std::vector<int> rows = calib::further_rows(leak_problem.day_quantities, {});
   const std::vector<Record> records{average};
   const calib::Problem problem =
       problem_of(leak_problem, own_condition(leak_problem, condition), records);
-  const calib::ProblemCondition& prepared = problem.conditions.front();
-  model::ParameterValues values = prepared.values;
-  values.set(leak_problem.leak, fit.coefficient);
   const Eigen::VectorXd slopes =
-      steady_leak(problem, prepared, values, rows, leak_problem.cancel).share_slope;
-  const bool supply_recorded = prepared.inputs.supply_pressure_pa.has_value();
+      leaks_of(leak_problem, problem, memo)(fit.coefficient).further_slope;
+  const bool supply_recorded = problem.conditions.front().inputs.supply_pressure_pa.has_value();
   for (std::size_t q = 0; q < leak_problem.day_quantities.size(); ++q) {
     const calib::DayQuantity& quantity = leak_problem.day_quantities[q];
-    const int place = column_of(rows, quantity.index);
+    const int place = column_of(memo.further(), quantity.index);
     if (place < 0 || (supply_recorded && quantity.key == "supply_pressure")) continue;
     moves(static_cast<Eigen::Index>(q)) += quantity.sd * slopes(place);
   }

@@ -14,6 +14,7 @@
 #include "calib/trust/prediction_band.hpp"
 #include "datasets/campaign/campaign.hpp"
 #include "datasets/prepare/single_repeats.hpp"
+#include "diagnosis/leak/healthy_effects.hpp"
 #include "diagnosis/leak/leak_curve.hpp"
 #include "diagnosis/leak/leak_memo.hpp"
 #include "diagnosis/leak/leak_scan.hpp"
@@ -148,12 +149,13 @@ LeakFit fit_leak(const LeakProblem& leak_problem, const RigFit& rig,
 
 /// Simulates the effects in a condition, based on its average record, with and without a leak.
 ///
+/// @param healthy  simulations without a leak that other conditions may have made
 /// @return  null if the fit considered no effects, or if the condition cannot be simulated
 std::shared_ptr<const LeakEffects> leak_effects_of(const LeakProblem& leak_problem,
                                                    const RigFit& rig,
                                                    const datasets::Condition& condition,
                                                    const datasets::Record& average,
-                                                   const LeakScan& scan);
+                                                   const LeakScan& scan, HealthyEffects& healthy);
 
 /// The record minus the healthy model, for each record and channel.
 using Residuals = std::vector<std::map<datasets::Channel, std::vector<double>>>;
@@ -191,8 +193,7 @@ LeakCurve leak_curve_of(const LeakProblem& leak_problem, const datasets::Conditi
                         const datasets::Record& average, double coefficient, double reach,
                         LeakMemo& memo);
 
-/// Returns one point of this curve, which costs a single simulation: that of a leak with the
-/// coefficient, which is above 0.
+/// Returns one point of this curve, for a coefficient above 0. It costs a single leak of the memo.
 LeakPoint leak_point_of(const LeakProblem& leak_problem, const datasets::Condition& condition,
                         const datasets::Record& average, double coefficient, double reach,
                         LeakMemo& memo);
@@ -201,21 +202,24 @@ LeakPoint leak_point_of(const LeakProblem& leak_problem, const datasets::Conditi
 /// effect, if the coefficient is refitted. It combines their direct action on the share with that
 /// through the coefficient. Shape: rows of RigFit::covariance.
 ///
+/// @param memo        leaks of the condition, with slopes by RigFit::indices
 /// @param negligible  below this coefficient the leak is not simulated
 /// @param effects     effects in the same condition; if null, effects act only through the
 ///                    coefficient
 Eigen::VectorXd share_rig_moves(const LeakProblem& leak_problem, const RigFit& rig,
                                 const datasets::Condition& condition,
                                 const datasets::Record& average, const LeakFit& fit,
-                                double share_slope, double negligible = 0.0,
+                                double share_slope, LeakMemo& memo, double negligible = 0.0,
                                 const LeakEffects* effects = nullptr);
 
 /// Returns the change in the share with each day quantity, per standard deviation between days,
 /// both directly and through the coefficient, which changes by `day_effects`.
+///
+/// @param memo  leaks of the condition, with slopes by the rows of the day quantities
 Eigen::VectorXd share_day_effects(const LeakProblem& leak_problem,
                                   const datasets::Condition& condition,
                                   const datasets::Record& average, const LeakFit& fit,
-                                  double share_slope, double negligible = 0.0);
+                                  double share_slope, LeakMemo& memo, double negligible = 0.0);
 
 /// Returns the share of the servo flow that leaks in a condition for given values, such as known
 /// true values.

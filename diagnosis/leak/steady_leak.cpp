@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <optional>
 
@@ -11,20 +12,11 @@
 namespace rigcal::diagnosis {
 namespace {
 
-/// Returns true if a generated wave is the only input that varies, so that there is a periodic
-/// state.
-bool has_periodic_state(const calib::ProblemCondition& condition) {
-  const model::SimulationInputs& in = condition.inputs;
-  return is_generated_wave(*condition.condition) && condition.condition->amplitude.has_value() &&
-         !in.external_force_n && !in.supply_pressure_pa && !in.tank_pressure_pa &&
-         !in.base_acceleration_m_per_s2 && !in.oil_temperature_k;
-}
-
 /// Computes the leak in the periodic state; empty if the rig does not become periodic.
 std::optional<SteadyLeak> periodic(const calib::Problem& problem,
                                    const calib::ProblemCondition& condition,
                                    const model::ParameterValues& values, std::span<const int> free,
-                                   const std::atomic<bool>* cancel) {
+                                   const std::atomic<bool>* cancel, PeriodicEffort least) {
   const datasets::Condition& c = *condition.condition;
   calib::PeriodicDrive drive;
   drive.rig = condition.rig;
@@ -37,11 +29,14 @@ std::optional<SteadyLeak> periodic(const calib::Problem& problem,
   options.simulation.tolerance = settings.tolerance.value_or(options.simulation.tolerance);
   options.simulation.max_seconds = settings.max_seconds;
   options.simulation.cancel = cancel;
+  options.periods = std::max(options.periods, least.periods);
+  options.intervals = std::max(options.intervals, least.intervals);
   const calib::PeriodicFlow flow = calib::periodic_flow(drive, values, free, options);
   if (!flow.ok()) return std::nullopt;
   SteadyLeak leak(flow.servo_flow_m3_per_s, flow.leak_flow_m3_per_s, flow.servo_slope,
                   flow.leak_slope);
   leak.is_periodic = true;
+  leak.effort = {flow.periods, flow.intervals};
   return leak;
 }
 
@@ -64,11 +59,18 @@ bool is_generated_wave(const datasets::Condition& condition) {
   return is_periodic(condition.waveform) && condition.frequency_hz.has_value();
 }
 
+bool has_periodic_state(const calib::ProblemCondition& condition) {
+  const model::SimulationInputs& in = condition.inputs;
+  return is_generated_wave(*condition.condition) && condition.condition->amplitude.has_value() &&
+         !in.external_force_n && !in.supply_pressure_pa && !in.tank_pressure_pa &&
+         !in.base_acceleration_m_per_s2 && !in.oil_temperature_k;
+}
+
 SteadyLeak steady_leak(const calib::Problem& problem, const calib::ProblemCondition& condition,
                        const model::ParameterValues& values, std::span<const int> free,
-                       const std::atomic<bool>* cancel) {
+                       const std::atomic<bool>* cancel, PeriodicEffort least) {
   if (has_periodic_state(condition)) {
-    if (auto leak = periodic(problem, condition, values, free, cancel)) return *leak;
+    if (auto leak = periodic(problem, condition, values, free, cancel, least)) return *leak;
   }
   return over_record(problem, condition, values, free, cancel);
 }

@@ -8,6 +8,12 @@
 
 namespace rigcal::diagnosis {
 
+/// How long and how finely a periodic state was simulated. Zeros: as calib::PeriodicOptions.
+struct PeriodicEffort {
+  int periods = 0;
+  int intervals = 0;  ///< per piece of a period
+};
+
 /// Leak in one condition for one leakage coefficient, with its derivatives.
 struct SteadyLeak {
   /// @param servo, leak  mean absolute flows [m3/s], with their slopes
@@ -23,6 +29,7 @@ struct SteadyLeak {
   Eigen::VectorXd share_slope;      ///< d share / d parameter, SI, shape (free)
   Eigen::VectorXd flow_slope;       ///< d leakage flow / d parameter
   bool is_periodic = false;         ///< true for the periodic state, false for the record
+  PeriodicEffort effort;            ///< what the periodic state needed
 };
 
 /// Computes the leak in one condition. The leak share is defined only here. For a generated sine or
@@ -34,12 +41,17 @@ struct SteadyLeak {
 /// @param values  SI; includes the leakage coefficient, which must be above 0 if slopes are
 ///                requested
 /// @param free    table indices of the parameters for which slopes are computed
+/// @param least   effort to begin with, such as that of a similar leak
 /// @throws NoResultError  if the run fails, moves no oil, or has only one sample in the windows
 SteadyLeak steady_leak(const calib::Problem& problem, const calib::ProblemCondition& condition,
                        const model::ParameterValues& values, std::span<const int> free,
-                       const std::atomic<bool>* cancel = nullptr);
+                       const std::atomic<bool>* cancel = nullptr, PeriodicEffort least = {});
 
 /// Returns true if the drive of the condition is a sine or square of known frequency.
 bool is_generated_wave(const datasets::Condition& condition);
+
+/// Returns true if a generated wave is the only input that varies, so that there is a periodic
+/// state.
+bool has_periodic_state(const calib::ProblemCondition& condition);
 
 }  // namespace rigcal::diagnosis

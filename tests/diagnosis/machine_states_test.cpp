@@ -52,6 +52,7 @@ struct TwoSines {
       each.condition = &problem.campaign.conditions[i];
       each.records = &records[i];
       each.scan = {0.3, 1.0};
+      each.leaks = each.memo(rig.indices);
     }
     return diagnosis::machine_states(problem, rig, prepared, found, {});
   }

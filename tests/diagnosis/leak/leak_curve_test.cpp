@@ -2,9 +2,6 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <set>
-
-#include "diagnosis/leak/leak_memo.hpp"
 
 using namespace rigcal::diagnosis;
 using Catch::WithinAbs;
@@ -70,27 +67,6 @@ TEST_CASE("curve_about: from no leak on where that is within reach", "[diagnosis
   // The slope is that of a fiftieth of the range: (1 - exp(-x)) / x = 1 - x / 2.
   CHECK_THAT(curve.share_slope(0.0), WithinRel(1.0 - 1e-3, 1e-6));
   CHECK_THAT(curve.points().back().coefficient, WithinRel(0.1, 1e-12));
-}
-
-TEST_CASE("curve_about: records of a condition that do not leak share their simulations",
-          "[diagnosis]") {
-  std::vector<double> simulated;
-  const LeakAt simulate = [&](double c) {
-    simulated.push_back(c);
-    return saturating(c);
-  };
-  LeakMemo memo;
-  const LeakAt remembered = [&](double c) { return memo.at(c, simulate); };
-  // Ten records, whose coefficients differ by noise around zero.
-  for (int i = 0; i < 10; ++i) {
-    const LeakCurve curve = curve_about(remembered, 0.001 * (i - 5), 0.25);
-    CHECK(curve.share(0.25) == saturating(0.25).share);
-  }
-  CHECK(std::set<double>(simulated.begin(), simulated.end()).size() == simulated.size());
-  CHECK(simulated.size() == 2);
-  // A new leak requires three more simulations, a repeated request none.
-  for (int i = 0; i < 2; ++i) curve_about(remembered, 1.0, 0.25);
-  CHECK(simulated.size() == 5);
 }
 
 TEST_CASE("point_about: a limit of detection costs one simulation, and is that of its curve",

@@ -289,7 +289,9 @@ TEST_CASE("fit_leak: an effect that the model lacks moves a coefficient as far a
   const diagnosis::LeakProblem problem = diagnosis::LeakProblem(made.campaign, rig).up_to(1.0);
   const datasets::Condition& condition = problem.campaign.conditions.front();
   const auto scan = diagnosis::leak_scan_of(problem, condition, made.record);
-  const auto effects = diagnosis::leak_effects_of(problem, rig, condition, made.record, scan);
+  diagnosis::HealthyEffects healthy;
+  const auto effects =
+      diagnosis::leak_effects_of(problem, rig, condition, made.record, scan, healthy);
   REQUIRE(effects != nullptr);
   const auto fit = [&](const HealthySine& of, int reference) {
     const auto found = diagnosis::fit_leak(problem, rig, condition, of.record, std::nullopt,
@@ -324,7 +326,9 @@ TEST_CASE("share_rig_moves: an effect that leaks itself changes the true share, 
   const diagnosis::LeakProblem problem = diagnosis::LeakProblem(made.campaign, rig).up_to(1.0);
   const datasets::Condition& condition = problem.campaign.conditions.front();
   const auto scan = diagnosis::leak_scan_of(problem, condition, made.record);
-  const auto effects = diagnosis::leak_effects_of(problem, rig, condition, made.record, scan);
+  diagnosis::HealthyEffects healthy;
+  const auto effects =
+      diagnosis::leak_effects_of(problem, rig, condition, made.record, scan, healthy);
   REQUIRE(effects != nullptr);
   const auto fit = diagnosis::fit_leak(problem, rig, condition, made.record, std::nullopt, 0, &scan,
                                        nullptr, effects.get());
@@ -341,8 +345,9 @@ TEST_CASE("share_rig_moves: an effect that leaks itself changes the true share, 
   const double seen = slope * fit.rig_moves(1) * kSize;
   const double itself = share(fit.coefficient, kSize) - share(fit.coefficient, 0.0);
   REQUIRE(itself > 0.0);
+  diagnosis::LeakMemo memo(rig.indices);
   const double error = rig.error(diagnosis::share_rig_moves(problem, rig, condition, made.record,
-                                                            fit, slope, 0.0, effects.get()));
+                                                            fit, slope, memo, 0.0, effects.get()));
   CHECK_THAT(error, WithinAbs(std::abs(seen - itself), 0.2 * itself));
 }
 
@@ -380,9 +385,10 @@ TEST_CASE("share_rig_moves: what the rig moves, with the coefficient and by itse
   const double sd = 4.06e-7;
   const double share_slope = 0.5;
   fit.rig_moves = Eigen::VectorXd::Zero(1);
+  diagnosis::LeakMemo memo(rig.indices);
   const auto error = [&] {
     return rig.error(
-        diagnosis::share_rig_moves(problem, rig, condition, made.record, fit, share_slope));
+        diagnosis::share_rig_moves(problem, rig, condition, made.record, fit, share_slope, memo));
   };
   CHECK_THAT(error(), WithinRel(std::abs(itself) * sd, 1e-3));
   fit.rig_moves(0) = 3.0 * itself / share_slope;
@@ -414,9 +420,12 @@ TEST_CASE("leaks: whatever simulates them ends with the flag", "[diagnosis]") {
   leak.rig_moves = Eigen::VectorXd::Zero(1);
   const auto make_all = [&](const auto& check) {
     diagnosis::LeakMemo memo;
+    diagnosis::LeakMemo of_rig(rig.indices);
     check([&] { diagnosis::leak_scan_of(problem, condition, made.record); });
     check([&] { diagnosis::leak_curve_of(problem, condition, made.record, 0.2, 0.01, memo); });
-    check([&] { diagnosis::share_rig_moves(problem, rig, condition, made.record, leak, 0.5); });
+    check([&] {
+      diagnosis::share_rig_moves(problem, rig, condition, made.record, leak, 0.5, of_rig);
+    });
     check([&] { diagnosis::healthy_residuals(problem, condition, made.record, {&made.record}); });
     check([&] {
       diagnosis::share_at(problem.campaign, condition, made.record, rig.values, problem.cancel);
