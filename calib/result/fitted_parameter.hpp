@@ -32,7 +32,7 @@ std::string_view to_string(IntervalSource source);
 
 /// One end of a profile, at which the cost has risen to the limit of a 95 % interval.
 struct ProfileEnd {
-  std::optional<double> value;  ///< absent if the cost is still below the limit at `reached`
+  std::optional<double> value;  ///< end of the interval; absent if the cost never rises so far
   double reached = 0.0;         ///< value up to which the profile was followed
   /// Whether the profile was abandoned because an inner fit failed or was cancelled. If it was not,
   /// an end without a value is unbounded. Absent if unknown.
@@ -45,20 +45,20 @@ struct ProfileEnd {
 /// Profile likelihood of one unknown: the cost at fixed values of this unknown, minimised over all
 /// others.
 struct Profile {
-  ProfileEnd low, high;
-  std::vector<double> values;  ///< SI, ascending
-  /// Rise in 2 cost as a fraction of the threshold; the interval ends at 1.
+  ProfileEnd low, high;        ///< where the profile ends on this side
+  std::vector<double> values;  ///< values of the unknown, shape (points), ascending, SI
+  /// Rise in 2 cost as a fraction of the threshold, shape (points); the 95 % interval ends at 1.
   std::vector<double> rises;
   bool lower_cost_found = false;  ///< true if the fit was not at the minimum; not stored
   RIGCAL_DESCRIBE(low, high, values, rises)
 };
 
-/// Statistics of one parameter over the bootstrap replicates.
+/// Statistics of one parameter over the bootstrap replicates, in the unit of the parameter.
 struct BootstrapSpread {
-  double standard_error = 0.0;
-  double bias = 0.0;          ///< mean of the replicates minus the estimate
-  double freedom = 0.0;       ///< degrees of freedom of the standard error
-  std::optional<Range> ci95;  ///< percentiles, widened to account for the degrees of freedom
+  double standard_error = 0.0;  ///< standard deviation of the replicates
+  double bias = 0.0;            ///< mean of the replicates minus the estimate
+  double freedom = 0.0;         ///< degrees of freedom of the standard error
+  std::optional<Range> ci95;    ///< percentiles, widened to account for the degrees of freedom
   RIGCAL_DESCRIBE(standard_error, bias, freedom, ci95)
 };
 
