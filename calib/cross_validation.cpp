@@ -61,8 +61,7 @@ Keyed<double, datasets::Channel> rmse_of(const ConditionScore& score) {
   return result;
 }
 
-void add_shift(const Fit& whole, const Fit& part, const Campaign& campaign, HeldOut& held) {
-  const auto table = model::parameter_table(campaign.rig.plant);
+void add_shift(const Fit& whole, const Fit& part, HeldOut& held) {
   double largest = 0.0;
   for (const FittedParameter& a : whole.parameters) {
     if (!a.fitted || a.nuisance || !a.standard_error) continue;
@@ -73,8 +72,7 @@ void add_shift(const Fit& whole, const Fit& part, const Campaign& campaign, Held
       const double shift = (b.value - a.value) / error;
       if (std::abs(shift) <= std::abs(largest)) continue;
       largest = shift;
-      const auto name = table[static_cast<std::size_t>(a.index)].name;
-      held.shifted = a.level.empty() ? std::string(name) : fmt::format("{} ({})", name, a.level);
+      held.shifted = a.level ? fmt::format("{} ({})", a.name, *a.level) : a.name;
     }
   }
   held.largest_shift = largest;
@@ -97,7 +95,7 @@ HeldOut leave_out(const Campaign& campaign, const std::vector<datasets::Record>&
       held.problem = predicted == nullptr ? "not predicted" : predicted->failure;
     } else {
       held.rmse = rmse_of(*predicted);
-      add_shift(whole, part, campaign, held);
+      add_shift(whole, part, held);
     }
   } catch (const InputError& error) {  // no other record determines one of the unknowns
     held.problem = error.what();

@@ -46,7 +46,7 @@ std::vector<FittedValue> values_of(const std::vector<FittedParameter>& parameter
   std::vector<FittedValue> values;
   for (const FittedParameter& each : parameters) {
     if (each.fitted && !each.nuisance)
-      values.push_back({each.index, each.scope, each.level, each.value});
+      values.push_back({each.index, each.scope, each.level.value_or(""), each.value});
   }
   return values;
 }
@@ -124,8 +124,7 @@ EffectSpread effects_beside(const Fit& fit, const EstimateSpread& spread) {
   for (const EstimateSpread::Estimate& each : spread.estimates) {
     const auto found =
         std::find_if(fit.parameters.begin(), fit.parameters.end(), [&](const auto& parameter) {
-          return parameter.fitted && parameter.index == each.index &&
-                 parameter.scope == each.scope && parameter.level == each.level;
+          return parameter.fitted && parameter.matches(each.index, each.scope, each.level);
         });
     const bool known = found != fit.parameters.end() && found->budget.has_value();
     budgets.push_back(known ? &*found->budget : nullptr);

@@ -60,8 +60,15 @@ CampaignPtr load_campaign(
 void bind_parameter(py::module_& module) {
   using model::ParameterSpec;
   py::class_<Parameter> parameter(module, "Parameter", "A parameter that the campaign gives; SI.");
-  bind_spec(parameter);
   parameter
+      .def_property_readonly("key", field(&Parameter::spec, &ParameterSpec::key),
+                             "Name in the campaign file: \"bulk_modulus\".")
+      .def_property_readonly("name", field(&Parameter::spec, &ParameterSpec::name),
+                             "Name in results, with its unit: \"bulk_modulus_pa\".")
+      .def_property_readonly("symbol", field(&Parameter::spec, &ParameterSpec::symbol),
+                             "Symbol in the equations.")
+      .def_property_readonly("unit", field(&Parameter::spec, &ParameterSpec::unit),
+                             "SI unit; \"1\" for a plain number.")
       .def_property_readonly("meaning", field(&Parameter::spec, &model::ParameterSpec::meaning),
                              "In one line.")
       .def_property_readonly("start",

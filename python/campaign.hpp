@@ -33,21 +33,6 @@ struct Campaign {
 using CampaignPtr = std::shared_ptr<Campaign>;
 using CampaignClass = pybind11::class_<Campaign, CampaignPtr>;
 
-/// Binds the properties that come from the plant's parameter table, for a class with a member
-/// `spec`.
-template <typename Parameter>
-void bind_spec(pybind11::class_<Parameter>& parameter) {
-  parameter
-      .def_property_readonly("key", field(&Parameter::spec, &model::ParameterSpec::key),
-                             "Name in the campaign file: \"bulk_modulus\".")
-      .def_property_readonly("name", field(&Parameter::spec, &model::ParameterSpec::name),
-                             "Name in results, with its unit: \"bulk_modulus_pa\".")
-      .def_property_readonly("symbol", field(&Parameter::spec, &model::ParameterSpec::symbol),
-                             "Symbol in the equations.")
-      .def_property_readonly("unit", field(&Parameter::spec, &model::ParameterSpec::unit),
-                             "SI unit; \"1\" for a plain number.");
-}
-
 /// Returns None for an unknown number.
 inline std::optional<double> none_if_nan(double value) {
   return std::isnan(value) ? std::nullopt : std::optional(value);

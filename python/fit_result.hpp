@@ -31,12 +31,6 @@ report::FitSource fit_source(const std::optional<FitArgument>& fit, model::Plant
 /// Formats the argument as text, for the call recorded in a result.
 std::string written_fit(const FitArgument& fit);
 
-/// A parameter in a result, with its row in the plant's parameter table.
-struct FittedParameter {
-  calib::FittedParameter value;
-  model::ParameterSpec spec;
-};
-
 /// A scored condition, which keeps its result alive.
 struct ScoredCondition {
   std::shared_ptr<const calib::ConditionScore> score;

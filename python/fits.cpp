@@ -160,26 +160,21 @@ ResultPtr result_of(const FitResult& self, int threads) {
 
 // ---- members
 
-std::vector<FittedParameter> result_parameters(const FitResult& self) {
-  const auto table = model::parameter_table(self.campaign->rig.plant);
-  std::vector<FittedParameter> parameters;
-  for (const calib::FittedParameter& each : self.fit.parameters)
-    parameters.push_back({each, table[static_cast<std::size_t>(each.index)]});
-  return parameters;
+std::vector<calib::FittedParameter> result_parameters(const FitResult& self) {
+  return self.fit.parameters;
 }
 
-FittedParameter parameter_of(const FitResult& self, const std::string& key,
-                             const std::optional<std::string>& level) {
+calib::FittedParameter parameter_of(const FitResult& self, const std::string& key,
+                                    const std::optional<std::string>& level) {
   std::vector<std::string> known;
   std::vector<std::string> levels;
-  for (const FittedParameter& each : result_parameters(self)) {
-    if (each.spec.key != key && each.spec.name != key) {
-      known.emplace_back(each.spec.key);
+  for (const calib::FittedParameter& each : self.fit.parameters) {
+    if (each.key != key && each.name != key) {
+      known.push_back(each.key);
       continue;
     }
-    const bool of_rig = each.value.scope == datasets::Scope::rig;
-    if (level ? !of_rig && each.value.level == *level : of_rig) return each;
-    levels.push_back(of_rig ? "None" : each.value.level);
+    if (each.level == level) return each;
+    levels.push_back(each.level.value_or("None"));
   }
   if (levels.empty()) throw py::key_error(unknown_name_message("parameter", key, known));
   throw py::key_error(fmt::format("{}: found level {}, expected one of {}", key,
@@ -228,7 +223,8 @@ std::optional<double> cost_of(const FitResult& self) {
 Page explore(const FitResult& self) {
   std::vector<datasets::FittedValue> values;
   for (const calib::FittedParameter& p : self.fit.parameters)
-    if (p.fitted && !p.nuisance) values.push_back({p.index, p.scope, p.level, p.value});
+    if (p.fitted && !p.nuisance)
+      values.push_back({p.index, p.scope, p.level.value_or(""), p.value});
   const py::gil_scoped_release released;
   return explore_page_of(*self.campaign, values, self.provenance.command + ".explore()");
 }

@@ -638,7 +638,7 @@ Budget95 budget_of(const Uncertainty& found, std::size_t unknown, const FittedPa
                    double slope, const Seen& seen, const VectorXd& moves, const Sizes& sizes,
                    double shift) {
   Budget95 budget;
-  const bool robust = parameter.interval == IntervalSource::robust_standard_error;
+  const bool robust = parameter.ci95_from == IntervalSource::robust_standard_error;
   const double exact =
       (robust ? parameter.robust_standard_error : parameter.standard_error).value_or(0.0);
   double known = 0.0;

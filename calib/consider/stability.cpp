@@ -23,8 +23,7 @@ const FittedParameter* same_unknown(const std::vector<FittedParameter>& paramete
                                     const Unknown& unknown) {
   const auto found =
       std::find_if(parameters.begin(), parameters.end(), [&](const FittedParameter& each) {
-        return each.fitted && each.index == unknown.index && each.scope == unknown.scope &&
-               each.level == unknown.level;
+        return each.fitted && each.matches(unknown.index, unknown.scope, unknown.level);
       });
   return found == parameters.end() ? nullptr : &*found;
 }

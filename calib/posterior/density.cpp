@@ -54,7 +54,7 @@ MatrixXd score_covariance(const Problem& problem, const Evaluation& optimum,
   const bool robust =
       !found.scatter.empty() &&
       std::any_of(parameters.begin(), parameters.end(), [](const FittedParameter& each) {
-        return each.interval == IntervalSource::robust_standard_error;
+        return each.ci95_from == IntervalSource::robust_standard_error;
       });
   MatrixXd covariance = MatrixXd::Zero(directions, directions);
   if (robust) {
@@ -72,7 +72,7 @@ MatrixXd score_covariance(const Problem& problem, const Evaluation& optimum,
   VectorXd stretch = VectorXd::Ones(root.rows());
   for (Index j = 0; j < root.rows(); ++j) {
     const auto u = static_cast<std::size_t>(j);
-    const bool by_residuals = parameters[u].interval == IntervalSource::robust_standard_error;
+    const bool by_residuals = parameters[u].ci95_from == IntervalSource::robust_standard_error;
     const auto& error = by_residuals ? found.robust_standard_error[u] : found.standard_error[u];
     const double variance = root.row(j) * covariance * root.row(j).transpose();
     const double slope = std::abs(problem.map.slope(static_cast<int>(j), optimum.z[u]));

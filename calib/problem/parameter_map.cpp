@@ -67,19 +67,6 @@ double UnitInterval::slope(double z) const {
   return logarithmic ? value(z) * std::log(upper / lower) : upper - lower;
 }
 
-std::string parameter_name(const model::ParameterSpec& spec, datasets::Scope scope,
-                           const std::string& level) {
-  switch (scope) {
-    case datasets::Scope::rig:
-      break;
-    case datasets::Scope::leak_level:
-      return fmt::format("{} (leak level {})", spec.name, level);
-    case datasets::Scope::condition:
-      return fmt::format("{} (condition {})", spec.name, level);
-  }
-  return std::string(spec.name);
-}
-
 bool known_in(const Campaign& campaign, const Condition& condition, int index) {
   if (contains(condition.overrides, index)) return true;
   if (!condition.leak_level) return false;

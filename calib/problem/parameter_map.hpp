@@ -47,10 +47,6 @@ bool known_in(const datasets::Campaign& campaign, const datasets::Condition& con
 std::string level_in(const datasets::Condition& condition, datasets::Scope scope,
                      std::string_view parameter);
 
-/// Returns a parameter's name with its level: "mass_kg", "leakage_coefficient (leak level 33 %)".
-std::string parameter_name(const model::ParameterSpec& spec, datasets::Scope scope,
-                           const std::string& level);
-
 /// The unknowns of a set of conditions in a fixed order (table index, then first appearance of the
 /// level), with a record of which act in which condition. The optimiser's coordinates z range from
 /// 0 to 1. They are linear in the value, or in its logarithm if both bounds are positive and span

@@ -11,6 +11,7 @@
 #include "calib/problem/initial_state.hpp"
 #include "calib/problem/known_sd.hpp"
 #include "calib/problem/known_values.hpp"
+#include "calib/result/fitted_parameter.hpp"
 #include "datasets/synthetic/model_output.hpp"
 
 namespace rigcal::calib {
@@ -287,7 +288,7 @@ const model::ParameterSpec& Problem::spec(std::size_t unknown) const {
 
 std::string Problem::name(std::size_t unknown) const {
   const Unknown& u = map.unknowns()[unknown];
-  return parameter_name(spec(unknown), u.scope, u.level);
+  return parameter_label(std::string(spec(unknown).name), u.scope, u.level);
 }
 
 std::vector<Channel> output_channels(const Campaign& campaign, const Record& record) {

@@ -1,19 +1,39 @@
 #include "calib/result/fitted_parameter.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 namespace rigcal::calib {
 
-std::string_view to_string(IntervalSource source) {
-  switch (source) {
-    case IntervalSource::none:
-      return "none";
-    case IntervalSource::standard_error:
-      return "standard_error";
-    case IntervalSource::robust_standard_error:
-      return "robust_standard_error";
-  }
-  return "";
+using datasets::Scope;
+
+void FittedParameter::name_after(const model::ParameterSpec& spec) {
+  name = spec.name;
+  key = spec.key;
+  symbol = spec.symbol;
+  unit = spec.unit;
+}
+
+bool FittedParameter::matches(int row, Scope of, const std::string& level_of) const {
+  return index == row && scope == of && level.value_or("") == level_of;
+}
+
+FittedParameter parameter_in_row(model::PlantKind plant, int index, Scope scope,
+                                 const std::string& level) {
+  FittedParameter parameter;
+  parameter.index = index;
+  parameter.name_after(model::parameter_table(plant)[static_cast<std::size_t>(index)]);
+  parameter.scope = scope;
+  if (scope != Scope::rig) parameter.level = level;
+  return parameter;
+}
+
+std::string parameter_label(const std::string& name, Scope scope,
+                            const std::optional<std::string>& level) {
+  if (!level || level->empty()) return name;
+  return fmt::format("{} ({} {})", name, scope == Scope::leak_level ? "leak level" : "condition",
+                     *level);
 }
 
 double undetermined_sd(const std::optional<Range>& ci95, double lower, double upper) {

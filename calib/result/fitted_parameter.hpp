@@ -27,8 +27,8 @@ enum class Identifiability {
 RIGCAL_NAMES(Identifiability, identified, weak, bounded, not_identifiable)
 
 /// The standard error on which an interval is based.
-enum class IntervalSource { none, standard_error, robust_standard_error };
-std::string_view to_string(IntervalSource source);
+enum class IntervalSource { standard_error, robust_standard_error };
+RIGCAL_NAMES(IntervalSource, standard_error, robust_standard_error)
 
 /// One end of a profile, at which the cost has risen to the limit of a 95 % interval.
 struct ProfileEnd {
@@ -64,54 +64,79 @@ struct BootstrapSpread {
 
 /// Weighted average of an estimate over several models.
 struct AveragedEstimate {
-  double value = 0.0;  ///< SI
+  double value = 0.0;  ///< the average, SI
   /// Combines the errors within the models and the variation between them, SI.
   double standard_error = 0.0;
   RIGCAL_DESCRIBE(value, standard_error)
 };
 
-/// One parameter of the result, fitted or known.
+/// One parameter of the result, fitted or known. Numbers are in SI; files have null for a number
+/// that is not finite.
 struct FittedParameter {
-  int index = 0;
-  datasets::Scope scope = datasets::Scope::rig;
-  std::string level;  ///< leak level or condition; empty for the rig
-  double value = 0.0;
-  double start = 0.0;
-  double lower = 0.0;
-  double upper = 0.0;
-  bool fitted = false;
-  bool nuisance = false;
-  bool correlated = true;  ///< if true and it has an error, it has a row in the correlation matrix
-  std::optional<double> standard_error;  ///< absent if the Jacobian does not determine it
+  int index = 0;                                 ///< row of the plant's parameter table; not stored
+  std::string name;                              ///< name in result files: "mass_kg"
+  std::string key;                               ///< name in campaign files: "mass"
+  std::string symbol;                            ///< symbol in the equations: "m"
+  std::string unit;                              ///< SI unit: "kg"; "1" if dimensionless
+  datasets::Scope scope = datasets::Scope::rig;  ///< scope of the value
+  std::optional<std::string> level;              ///< leak level or condition; absent for the rig
+  double value = 0.0;                            ///< the estimate, or the known value
+  double start = 0.0;                  ///< where the fit began; the value itself if it is known
+  std::optional<double> lower, upper;  ///< bounds of the fit; absent for a known value
+  bool fitted = false;                 ///< false for a known value
+  bool nuisance = false;               ///< fitted, but of no interest itself
+  /// If true and it has an error, it has a row in the correlation matrix. Not stored.
+  bool correlated = true;
+  /// Standard error for independent residuals; absent if the Jacobian does not determine it.
+  std::optional<double> standard_error;
   /// Computed from the residuals themselves, and therefore larger if they are correlated in time.
   std::optional<double> robust_standard_error;
   /// Interval for the real rig. It includes the effects that the model omits, if they were
   /// considered.
   std::optional<Range> ci95;
   /// Interval under the assumption that the model is exact.
-  std::optional<Range> ci95_if_exact;
-  IntervalSource interval = IntervalSource::none;  ///< basis of ci95_if_exact
+  Later<std::optional<Range>> ci95_if_exact;
+  Later<std::optional<IntervalSource>> ci95_from;  ///< basis of ci95_if_exact
   /// Degrees of freedom of the error that ci95_if_exact is based on; at most metrics::kManyDegrees.
-  std::optional<double> degrees_of_freedom;
+  Later<std::optional<double>> degrees_of_freedom;
   /// Standard error due to quantities that differ between days. No interval includes it. It only
   /// matters when estimates from different dates are compared.
-  std::optional<double> between_days_error;
-  std::optional<Budget95> budget;  ///< contributions to ci95; absent if no effects were considered
+  Omittable<double> between_days_error;
+  Omittable<Budget95> budget;  ///< contributions to ci95; absent if no effects were considered
   /// Average over the fits with the effects that the residuals call for. Absent if the residuals
   /// call for no effect.
-  std::optional<AveragedEstimate> averaged;
-  /// Largest change in the estimate due to an effect that the residuals call for, SI.
+  Omittable<AveragedEstimate> averaged;
+  /// Largest change in the estimate due to an effect that the residuals call for, SI. Not stored.
   double moved_by_missing = 0.0;
   /// Largest possible change in the estimate due to a significant model error that no effect
-  /// explains, SI.
+  /// explains, SI. Not stored.
   double moved_by_unexplained = 0.0;
-  std::optional<BootstrapSpread> bootstrap;
-  std::optional<Profile> profile;
-  std::optional<PosteriorSpread> posterior;
-  bool at_bound = false;
-  Identifiability identifiability = Identifiability::identified;
+  Omittable<BootstrapSpread> bootstrap;  ///< absent unless the fit was asked for a bootstrap
+  Omittable<Profile> profile;            ///< absent unless the fit was asked for profiles
+  Omittable<PosteriorSpread> posterior;  ///< absent unless the fit was asked for draws
+  bool at_bound = false;                 ///< whether the estimate is at one of its bounds
+  std::optional<Identifiability> identifiability;  ///< absent for a known value
   std::string reason;  ///< why it has no error or is weak, or at which bound it is, in words
+  RIGCAL_DESCRIBE(name, key, symbol, unit, scope, level, value, start, lower, upper, fitted,
+                  nuisance, standard_error, robust_standard_error, ci95, ci95_if_exact, ci95_from,
+                  degrees_of_freedom, budget, averaged, between_days_error, bootstrap, profile,
+                  posterior, at_bound, identifiability, reason)
+
+  /// Takes name, key, symbol and unit from a row of a parameter table.
+  void name_after(const model::ParameterSpec& spec);
+  /// Returns true for the parameter with this row, scope and level (empty for the rig).
+  bool matches(int row, datasets::Scope of, const std::string& level_of) const;
 };
+
+/// Returns the parameter in a row of a plant's table, without a value.
+///
+/// @param level  leak level or condition; empty for the rig
+FittedParameter parameter_in_row(model::PlantKind plant, int index, datasets::Scope scope,
+                                 const std::string& level);
+
+/// Returns a parameter's name or key with its level: "leakage_coefficient (leak level 33 %)".
+std::string parameter_label(const std::string& name, datasets::Scope scope,
+                            const std::optional<std::string>& level);
 
 /// Returns the standard deviation that later steps assume for a parameter without an error: that of
 /// a uniform distribution over its interval, or over its bounds if it has no interval.

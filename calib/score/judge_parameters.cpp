@@ -6,9 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <string_view>
+#include <string>
 
-#include "calib/problem/parameter_map.hpp"
 #include "common/significant.hpp"
 
 namespace rigcal::calib {
@@ -71,7 +70,7 @@ void note_exact_values(const Campaign& campaign, const Fit& fit, std::vector<Rea
   for (const datasets::ParameterSetting& setting : campaign.parameters) {
     if (setting.prior) uncertain.insert(setting.index);
   }
-  std::vector<std::string_view> names;
+  std::vector<std::string> names;
   std::set<int> seen;
   for (const FittedParameter& each : fit.parameters) {
     const model::ParameterSpec& spec = table[static_cast<std::size_t>(each.index)];
@@ -79,7 +78,7 @@ void note_exact_values(const Campaign& campaign, const Fit& fit, std::vector<Rea
         spec.kind == model::ParameterKind::initial || !seen.insert(each.index).second) {
       continue;
     }
-    names.push_back(spec.key);
+    names.push_back(each.key);
   }
   if (names.empty()) return;
   reasons.push_back(
@@ -149,13 +148,11 @@ std::string alternatives_text(const Considered& considered) {
 
 /// Reports effects that the residuals call for. Expresses a reservation if such an effect would
 /// move an estimate out of the interval that assumes an exact model.
-void judge_missing(const Campaign& campaign, const Fit& fit, std::vector<Reason>& reasons) {
-  const auto table = model::parameter_table(campaign.rig.plant);
+void judge_missing(const Fit& fit, std::vector<Reason>& reasons) {
   std::vector<std::string> moved;
   for (const FittedParameter& each : fit.parameters) {
     if (each.fitted && !each.nuisance && each.moved_by_missing > half_width_if_exact(each))
-      moved.push_back(
-          parameter_name(table[static_cast<std::size_t>(each.index)], each.scope, each.level));
+      moved.push_back(parameter_label(each.name, each.scope, each.level));
   }
   for (const std::string& key : fit.considered->missing) {
     const ConsideredEffect& effect = *fit.considered->find(key);
@@ -190,7 +187,7 @@ void judge_stability(const Campaign& campaign, const Fit& fit, std::vector<Reaso
     const int row = model::parameter_index(campaign.rig.plant, each.key);
     const auto& spec = table[static_cast<std::size_t>(row)];
     words.push_back(fmt::format("{} {:.4g} {} ({:+.2g}, {:.2g} allowed)",
-                                parameter_name(spec, each.scope, each.level.value_or("")),
+                                parameter_label(std::string(spec.name), each.scope, each.level),
                                 each.value, spec.unit, each.difference, each.expanded));
   }
   if (fit.stability.empty()) return;
@@ -214,14 +211,12 @@ void judge_stability(const Campaign& campaign, const Fit& fit, std::vector<Reaso
 /// Judges how small effects that the model omits change the estimates.
 void judge_considered(const Campaign& campaign, const Fit& fit, std::vector<Reason>& reasons) {
   if (!fit.considered) return;
-  judge_missing(campaign, fit, reasons);
-  const auto table = model::parameter_table(campaign.rig.plant);
+  judge_missing(fit, reasons);
   for (const FittedParameter& each : fit.parameters) {
     if (!each.fitted || each.nuisance || !each.ci95) continue;
     const double half = 0.5 * (each.ci95->high - each.ci95->low);
     if (!(each.moved_by_unexplained > half)) continue;
-    const std::string name =
-        parameter_name(table[static_cast<std::size_t>(each.index)], each.scope, each.level);
+    const std::string name = parameter_label(each.name, each.scope, each.level);
     reasons.push_back(reason(
         AspectState::reservation, "unexplained_error",
         fmt::format("{}: the model error that the residuals show, and no small effect explains, "
@@ -266,7 +261,6 @@ void judge_posterior(const Fit& fit, std::vector<Reason>& reasons) {
 }  // namespace
 
 Aspect judge_parameters(const Campaign& campaign, const Fit& fit) {
-  const auto table = model::parameter_table(campaign.rig.plant);
   // Intervals and grades are valid only at a minimum.
   if (!fit.has_converged())
     return aspect_of({reason(AspectState::reservation, "not_converged", fit.message)});
@@ -276,8 +270,7 @@ Aspect judge_parameters(const Campaign& campaign, const Fit& fit) {
   for (const FittedParameter& each : fit.parameters) {
     if (!each.fitted || each.nuisance) continue;
     ++estimated;
-    const std::string name =
-        parameter_name(table[static_cast<std::size_t>(each.index)], each.scope, each.level);
+    const std::string name = parameter_label(each.name, each.scope, each.level);
     const bool active = each.at_bound && each.identifiability != Identifiability::bounded;
     if (each.identifiability == Identifiability::bounded) {
       reasons.push_back(judge_bounded(campaign, fit, each, name));

@@ -106,7 +106,7 @@ std::vector<std::string> name_combinations(const Problem& problem, std::span<con
   std::vector<std::string> words;
   std::vector<bool> named(n, false);
   for (std::size_t j = 0; j < n; ++j) {
-    const Identifiability grade = parameters[j].identifiability;
+    const std::optional<Identifiability> grade = parameters[j].identifiability;
     const bool determined =
         grade == Identifiability::identified || grade == Identifiability::bounded;
     if (to_log[j] == 0.0 || determined) continue;

@@ -33,10 +33,6 @@ using datasets::Scope;
 using model::ParameterKind;
 using model::ParameterSpec;
 
-const ParameterSpec& spec_of(const Problem& problem, int index) {
-  return model::parameter_table(problem.campaign->rig.plant)[static_cast<std::size_t>(index)];
-}
-
 bool zero_is_arbitrary(const ParameterSpec& spec, const Unknown& unknown) {
   return spec.kind == ParameterKind::sensor || spec.kind == ParameterKind::initial ||
          (unknown.lower < 0.0 && unknown.upper > 0.0);
@@ -98,8 +94,8 @@ void remove_reason(FittedParameter& parameter, const std::string& text) {
 /// needed.
 std::string grade_words(const Problem& problem, const Uncertainty& found, std::size_t unknown,
                         double half_width, const FittedParameter& parameter) {
-  const ParameterSpec& spec = spec_of(problem, problem.map.unknowns()[unknown].index);
-  switch (parameter.identifiability) {
+  const ParameterSpec& spec = problem.spec(unknown);
+  switch (*parameter.identifiability) {
     case Identifiability::identified:
       return {};
     case Identifiability::bounded:
@@ -121,10 +117,9 @@ std::string grade_words(const Problem& problem, const Uncertainty& found, std::s
 /// and the value, so that wider bounds do not change them.
 void grade(const Problem& problem, const Uncertainty& found, std::size_t unknown, double half_width,
            FittedParameter& parameter) {
-  const Unknown& u = problem.map.unknowns()[unknown];
-  const ParameterSpec& spec = spec_of(problem, u.index);
-  parameter.identifiability =
-      grade_of(spec, parameter.value, half_width, zero_is_arbitrary(spec, u));
+  const ParameterSpec& spec = problem.spec(unknown);
+  parameter.identifiability = grade_of(spec, parameter.value, half_width,
+                                       zero_is_arbitrary(spec, problem.map.unknowns()[unknown]));
   const std::string words = grade_words(problem, found, unknown, half_width, parameter);
   if (!words.empty()) add_reason(parameter, words);
 }
@@ -154,12 +149,12 @@ double choose_interval(const Problem& problem, const Uncertainty& found, std::si
   const double least = kSuspiciouslySmall * problem.least_noise();
   const bool unresolved = found.reduced_chi_square < least * least;
   if (!(robust > 0.0) || unresolved || (freedom < kLeastFreedom && robust < plain)) {
-    parameter.interval = IntervalSource::standard_error;
-    parameter.degrees_of_freedom = degrees(found.freedom);
+    parameter.ci95_from = std::optional(IntervalSource::standard_error);
+    parameter.degrees_of_freedom = std::optional(degrees(found.freedom));
     return student_t(found.freedom) * plain;
   }
-  parameter.interval = IntervalSource::robust_standard_error;
-  parameter.degrees_of_freedom = degrees(freedom);
+  parameter.ci95_from = std::optional(IntervalSource::robust_standard_error);
+  parameter.degrees_of_freedom = std::optional(degrees(freedom));
   if (robust > kRobustMatters * plain) {
     add_reason(parameter,
                fmt::format("{}: the robust error, on which the "
@@ -182,7 +177,7 @@ void describe_bound(const Problem& problem, const OptimumCheck& check, std::size
   const bool lower = side == BoundSide::lower;
   const std::string text =
       fmt::format("at its {} bound {} ({})", lower ? "lower" : "upper",
-                  number(spec_of(problem, u.index), lower ? u.lower : u.upper),
+                  number(problem.spec(unknown), lower ? u.lower : u.upper),
                   parameter.identifiability == Identifiability::not_identifiable
                       ? "the records do not determine it"
                   : check.active_bound[unknown] ? "active: the fit would improve beyond it"
@@ -202,15 +197,11 @@ bool holds_somewhere(const Problem& problem, const FittedValue& value) {
       });
 }
 
-FittedParameter known(int index, Scope scope, std::string level, double value) {
-  FittedParameter parameter;
-  parameter.index = index;
-  parameter.scope = scope;
-  parameter.level = std::move(level);
+FittedParameter known(const datasets::Campaign& campaign, int index, Scope scope,
+                      const std::string& level, double value) {
+  FittedParameter parameter = parameter_in_row(campaign.rig.plant, index, scope, level);
   parameter.value = value;
   parameter.start = value;
-  parameter.lower = value;
-  parameter.upper = value;
   return parameter;
 }
 
@@ -247,11 +238,9 @@ std::vector<FittedParameter> describe_unknowns(const Problem& problem, const Eva
   std::vector<FittedParameter> result;
   for (std::size_t j = 0; j < optimum.z.size(); ++j) {
     const Unknown& u = problem.map.unknowns()[j];
-    const ParameterSpec& spec = spec_of(problem, u.index);
-    FittedParameter& parameter = result.emplace_back();
-    parameter.index = u.index;
-    parameter.scope = u.scope;
-    parameter.level = u.level;
+    const ParameterSpec& spec = problem.spec(j);
+    FittedParameter& parameter = result.emplace_back(
+        parameter_in_row(problem.campaign->rig.plant, u.index, u.scope, u.level));
     parameter.value = problem.map.to_physical(static_cast<int>(j), optimum.z[j]);
     parameter.start = u.start;
     parameter.lower = u.lower;
@@ -261,7 +250,8 @@ std::vector<FittedParameter> describe_unknowns(const Problem& problem, const Eva
     parameter.correlated = found.root.condition_of(static_cast<Eigen::Index>(j)) < 0;
     parameter.standard_error = found.standard_error[j];
     parameter.robust_standard_error = found.robust_standard_error[j];
-    if (found.standard_error[j] && j < found.between_days.size())
+    if (found.standard_error[j] && j < found.between_days.size() &&
+        std::isfinite(found.between_days[j]))
       parameter.between_days_error = found.between_days[j];
     if (parameter.standard_error) {
       const double half_width = choose_interval(problem, found, j, parameter);
@@ -310,24 +300,24 @@ std::vector<FittedParameter> describe_known(const Problem& problem,
     const auto& unknowns = problem.map.unknowns();
     if (std::any_of(unknowns.begin(), unknowns.end(), of_setting)) continue;
     if (values == nullptr || std::none_of(values->begin(), values->end(), of_setting)) {
-      result.push_back(known(setting.index, Scope::rig, {}, setting.value));
+      result.push_back(known(campaign, setting.index, Scope::rig, {}, setting.value));
       continue;
     }
     for (const FittedValue& each : *values) {
       if (of_setting(each) && holds_somewhere(problem, each))
-        result.push_back(known(each.index, each.scope, each.level, each.value));
+        result.push_back(known(campaign, each.index, each.scope, each.level, each.value));
     }
   }
   std::set<std::string> levels;
   for (const ProblemCondition& each : problem.conditions) {
     const datasets::Condition& condition = *each.condition;
     for (const auto& [index, value] : condition.overrides)
-      result.push_back(known(index, Scope::condition, condition.id, value));
+      result.push_back(known(campaign, index, Scope::condition, condition.id, value));
     if (!condition.leak_level || !levels.insert(*condition.leak_level).second) continue;
     const auto level = campaign.leak_levels.find(*condition.leak_level);
     if (level == campaign.leak_levels.end()) continue;
     for (const auto& [index, value] : level->second)
-      result.push_back(known(index, Scope::leak_level, *condition.leak_level, value));
+      result.push_back(known(campaign, index, Scope::leak_level, *condition.leak_level, value));
   }
   return result;
 }

@@ -315,8 +315,7 @@ void profiles(const Problem& problem, const std::vector<datasets::Record>& recor
                       left.spent() ? left.reason() : "no fit there converged"));
     }
     if (profile.low.value && profile.high.value) continue;
-    const model::ParameterSpec& spec = model::parameter_table(
-        problem.campaign->rig.plant)[static_cast<std::size_t>(unknowns[j].index)];
+    const model::ParameterSpec& spec = problem.spec(j);
     // A profile that reaches a limit of the parameter itself, such as zero leakage, is complete.
     const bool below =
         !profile.low.value && !profile.low.is_lost() && unknowns[j].lower > spec.lower;

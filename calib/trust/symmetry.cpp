@@ -202,7 +202,7 @@ void grade_symmetric(const Problem& problem, const ScalingSymmetry& symmetry,
     each.robust_standard_error.reset();
     each.ci95.reset();
     each.ci95_if_exact.reset();
-    each.interval = IntervalSource::none;
+    each.ci95_from.reset();
     each.reason = fmt::format(
         "not determined because of the scaling symmetry: {}, would make it identifiable{}",
         symmetry_remedy(problem, symmetry), known);

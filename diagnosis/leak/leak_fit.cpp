@@ -363,13 +363,13 @@ RigFit rig_fit_of(const calib::Fit& fit, datasets::LeakLaw law) {
   Eigen::Index row = 0;
   for (const calib::FittedParameter& p : fit.parameters) {
     if (!p.fitted) continue;
-    if (!p.nuisance) rig.values.push_back({p.index, p.scope, p.level, p.value});
+    if (!p.nuisance) rig.values.push_back({p.index, p.scope, p.level.value_or(""), p.value});
     const bool of_rig = !p.nuisance && p.scope == datasets::Scope::rig;
     if (p.standard_error && !p.correlated) continue;  // belongs to one condition and has no row
     if (!p.standard_error || row >= fit.correlation.matrix.rows()) {
       if (!of_rig) continue;
       without_error.push_back(p.index);
-      undetermined.push_back(calib::undetermined_sd(p.ci95, p.lower, p.upper));
+      undetermined.push_back(calib::undetermined_sd(p.ci95, *p.lower, *p.upper));
       continue;
     }
     if (of_rig) {
@@ -393,7 +393,7 @@ RigFit rig_fit_of(const calib::Fit& fit, datasets::LeakLaw law) {
   std::vector<const calib::Budget95*> budgets;
   for (const calib::FittedParameter& p : fit.parameters) {
     if (!p.fitted || p.nuisance) continue;
-    spread.estimates.push_back({p.index, p.scope, p.level});
+    spread.estimates.push_back({p.index, p.scope, p.level.value_or("")});
     budgets.push_back(p.budget ? &*p.budget : nullptr);
   }
   spread.effects = calib::effect_spread(*fit.considered, budgets);

@@ -55,14 +55,16 @@ std::vector<std::string> reasons_of(const StoredFit& fit) {
 
 /// Returns true for parameters that can be compared between rigs and dates: all fitted ones except
 /// nuisance parameters.
-bool is_shown(const StoredParameter& parameter) { return parameter.fitted && !parameter.nuisance; }
+bool is_shown(const calib::FittedParameter& parameter) {
+  return parameter.fitted && !parameter.nuisance;
+}
 
 std::vector<StoredRigEstimate> estimates(const StoredFit& fit) {
   std::vector<StoredRigEstimate> list;
-  for (const StoredParameter& p : fit.parameters) {
+  for (const calib::FittedParameter& p : fit.parameters) {
     if (!is_shown(p)) continue;
-    list.push_back({p.key, p.name, p.unit, p.scope, p.level, p.value.value_or(std::nan("")),
-                    finite_ends(p.ci95), p.identifiability});
+    list.push_back(
+        {p.key, p.name, p.unit, p.scope, p.level, p.value, finite_ends(p.ci95), p.identifiability});
   }
   return list;
 }
@@ -73,7 +75,7 @@ std::vector<StoredRigTrend> trends_of(const RigRun& run) {
   results.push_back(*run.result);
   std::vector<StoredRigTrend> list;
   std::set<std::string> seen;
-  for (const StoredParameter& parameter : run.result->result.parameters) {
+  for (const calib::FittedParameter& parameter : run.result->result.parameters) {
     if (!is_shown(parameter) || !seen.insert(parameter.key).second) continue;
     for (StoredSeries& series : trends(results, parameter.key)) {
       if (series.points.size() >= 2)

@@ -57,9 +57,10 @@ std::string repeats_warning(const std::string& name, const calib::BetweenRepeats
 }
 
 bool lacks_degrees(const StoredFit& fit) {
-  return std::any_of(fit.parameters.begin(), fit.parameters.end(), [](const StoredParameter& p) {
-    return p.fitted && !p.nuisance && p.ci95 && !p.degrees_of_freedom;
-  });
+  return std::any_of(fit.parameters.begin(), fit.parameters.end(),
+                     [](const calib::FittedParameter& p) {
+                       return p.fitted && !p.nuisance && p.ci95 && !p.degrees_of_freedom;
+                     });
 }
 
 std::vector<std::string> comparison_warnings(const std::vector<Compared>& results) {

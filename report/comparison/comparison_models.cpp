@@ -93,12 +93,12 @@ struct Terms {
   std::map<std::tuple<std::string, Scope, std::string>, double> known;
 
   explicit Terms(const StoredFit& fit) {
-    for (const StoredParameter& p : fit.parameters) {
+    for (const calib::FittedParameter& p : fit.parameters) {
       if (p.fitted) {
         free[p.key] = p.scope;
         bounds[p.key] = {p.lower.value_or(-HUGE_VAL), p.upper.value_or(HUGE_VAL)};
       } else {
-        known[{p.key, p.scope, p.level.value_or("")}] = p.value.value_or(HUGE_VAL);
+        known[{p.key, p.scope, p.level.value_or("")}] = std::isfinite(p.value) ? p.value : HUGE_VAL;
       }
     }
   }

@@ -23,7 +23,7 @@ std::optional<calib::ComparedEstimate> estimate_of(const StoredFit& fit,
   if (found == fit.parameters.end()) return std::nullopt;
   calib::ComparedEstimate estimate;
   const bool usable = is_usable(fit);
-  if (usable || !found->fitted) estimate.value = found->value;
+  if (usable || !found->fitted) estimate.value = finite(found->value);
   estimate.fitted = found->fitted;
   if (const auto error = interval_error(*found); error && usable && found->fitted) {
     estimate.standard_error = error->standard_error;
@@ -54,7 +54,7 @@ double by_effects(const StoredFit& first, const StoredFit& other,
 std::vector<StoredComparedParameter> all_parameters(const std::vector<Compared>& results) {
   std::vector<StoredComparedParameter> list;
   for (const Compared& compared : results) {
-    for (const StoredParameter& p : compared.result.parameters) {
+    for (const calib::FittedParameter& p : compared.result.parameters) {
       const bool known = std::any_of(list.begin(), list.end(),
                                      [&](const auto& each) { return same_parameter(each, p); });
       if (p.nuisance || known) continue;

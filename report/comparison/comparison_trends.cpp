@@ -10,7 +10,7 @@ using datasets::Scope;
 
 /// Averages a quantity over the conditions that an estimate with this scope and level is based on.
 template <typename Quantity>
-std::optional<double> mean_over(const StoredFit& fit, const StoredParameter& parameter,
+std::optional<double> mean_over(const StoredFit& fit, const calib::FittedParameter& parameter,
                                 Quantity quantity) {
   double sum = 0.0;
   int count = 0;
@@ -27,7 +27,7 @@ std::optional<double> mean_over(const StoredFit& fit, const StoredParameter& par
 }
 
 /// Names the series of an estimate. Estimates with the same name are points on one trend.
-std::string series_of(const StoredFit& fit, const StoredParameter& parameter) {
+std::string series_of(const StoredFit& fit, const calib::FittedParameter& parameter) {
   const std::string level = parameter.level.value_or("");
   if (parameter.scope == Scope::rig) return "rig";
   if (parameter.scope == Scope::leak_level) return level;
@@ -45,7 +45,7 @@ bool any_share_records(const std::vector<const Compared*>& results) {
   return false;
 }
 
-StoredTrendPoint point_of(const Compared& compared, const StoredParameter& parameter) {
+StoredTrendPoint point_of(const Compared& compared, const calib::FittedParameter& parameter) {
   StoredTrendPoint point;
   point.result = compared.name;
   point.level = parameter.level;
@@ -56,7 +56,7 @@ StoredTrendPoint point_of(const Compared& compared, const StoredParameter& param
                                   [](const StoredCondition& condition) -> std::optional<double> {
                                     return condition.temperature_k;
                                   });
-  point.value = parameter.value;
+  point.value = finite(parameter.value);
   if (const auto error = interval_error(parameter)) {
     const bool dated = point.day.has_value();  // the between-day error applies only to points with
                                                // a date
@@ -92,7 +92,7 @@ std::vector<StoredSeries> trends(const std::vector<Compared>& results, std::stri
   std::vector<std::vector<const Compared*>> sources;  // the results that contribute to each series
   for (const Compared& compared : results) {
     if (!is_usable(compared.result)) continue;
-    for (const StoredParameter& parameter : compared.result.parameters) {
+    for (const calib::FittedParameter& parameter : compared.result.parameters) {
       if (parameter.key != key || !parameter.fitted) continue;
       const std::string of = series_of(compared.result, parameter);
       const auto found =

@@ -34,10 +34,8 @@ void warn_of_validity(const Campaign& campaign, const calib::Validity& covered,
     Campaign alone = campaign;
     std::erase_if(alone.conditions, [&](const Condition& c) { return c.id != record.condition; });
     calib::Fit values;
-    calib::FittedParameter& own = values.parameters.emplace_back();
-    own.index = leak;
-    own.scope = datasets::Scope::condition;
-    own.level = record.condition;
+    calib::FittedParameter& own = values.parameters.emplace_back(calib::parameter_in_row(
+        campaign.rig.plant, leak, datasets::Scope::condition, record.condition));
     own.value = std::max(0.0, record.estimate.coefficient);
     own.fitted = true;
     calib::Validity asked = calib::coverage(alone, {}, values, {alone.conditions.front().use});

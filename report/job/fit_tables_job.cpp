@@ -23,15 +23,12 @@ std::string reason(const calib::FittedAssumption& p) {
   return calib::half_width_words(half_width / std::abs(p.value));
 }
 
-StoredParameter stored(const datasets::Campaign& campaign, FitStatus status,
-                       const calib::FittedAssumption& p) {
+calib::FittedParameter stored(const datasets::Campaign& campaign, FitStatus status,
+                              const calib::FittedAssumption& p) {
   const auto& spec = datasets::assumption_spec(campaign.rig.plant, p.index);
-  StoredParameter parameter;
-  parameter.name = spec.name;
-  parameter.key = spec.key;
-  parameter.symbol = spec.symbol;
-  parameter.unit = spec.unit;
-  if (status != FitStatus::failed) parameter.value = p.value;
+  calib::FittedParameter parameter;
+  parameter.name_after(spec);
+  parameter.value = status != FitStatus::failed ? p.value : std::nan("");
   parameter.start = p.start;
   parameter.lower = p.lower;
   parameter.upper = p.upper;

@@ -199,7 +199,7 @@ Json intervals_of(const calib::Fit& fit) {
         !std::isfinite(p.ci95->high))
       continue;
     intervals.push_back({{"index", p.index},
-                         {"level", p.level},
+                         {"level", p.level.value_or("")},
                          {"scope", to_string(p.scope)},
                          {"low", p.ci95->low},
                          {"high", p.ci95->high}});

@@ -25,14 +25,14 @@ using doc::Interval;
 using doc::Number;
 
 /// Chooses a readable unit for the row of a parameter.
-inline ReadableUnit unit_of(const StoredParameter& p) {
-  return readable_unit(p.value.value_or(0.0), p.unit);
+inline ReadableUnit unit_of(const calib::FittedParameter& p) {
+  return readable_unit(std::isfinite(p.value) ? p.value : 0.0, p.unit);
 }
 
 /// Returns the larger distance from the value to an end of the 95 % interval, divided by the value.
 /// The larger distance is used because a bound may cut off the other side. Infinite without an
 /// interval or for a value of zero.
-double relative_half_width(const StoredParameter& parameter);
+double relative_half_width(const calib::FittedParameter& parameter);
 /// Returns true if the half-width is at most ten times the value.
 bool is_determined(double relative_half_width);
 /// Returns "± 2.1 %" or "± 220 %"; "not determined" beyond the limit of is_determined().

@@ -57,7 +57,7 @@ std::string terms_in_comments(const Result& result) {
 std::string fitted_toml(const fs::path& out, const Result& result) {
   std::vector<datasets::FittedValue> values;
   for (const calib::FittedParameter& p : result.fit.parameters) {
-    if (p.fitted) values.push_back({p.index, p.scope, p.level, p.value});
+    if (p.fitted) values.push_back({p.index, p.scope, p.level.value_or(""), p.value});
   }
   const std::string text =
       terms_in_comments(result) + fitted_campaign_text(result.campaign, values, out);

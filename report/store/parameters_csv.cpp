@@ -9,7 +9,7 @@ namespace {
 
 std::string yes_or_no(bool value) { return value ? "1" : "0"; }
 
-void add_budget(const StoredParameter& p, std::vector<std::string>& fields) {
+void add_budget(const calib::FittedParameter& p, std::vector<std::string>& fields) {
   const auto& exact = p.ci95_if_exact;
   fields.push_back(exact ? csv_number(exact->low) : std::string());
   fields.push_back(exact ? csv_number(exact->high) : std::string());
@@ -26,15 +26,16 @@ void add_budget(const StoredParameter& p, std::vector<std::string>& fields) {
     fields.push_back(csv_number(p.budget->beside_of(kind)));
 }
 
-std::string row_of(const StoredParameter& p) {
+std::string row_of(const calib::FittedParameter& p) {
   std::vector<std::string> fields;
   for (const std::string& text :
        {p.name, p.key, p.symbol, p.unit, std::string(to_string(p.scope)), p.level.value_or("")})
     fields.push_back(csv_text(text));
   fields.push_back(yes_or_no(p.fitted));
   fields.push_back(yes_or_no(p.nuisance));
-  for (const auto& number :
-       {p.start, p.lower, p.upper, p.value, p.standard_error, p.robust_standard_error})
+  for (const std::optional<double>& number :
+       {std::optional(p.start), p.lower, p.upper, std::optional(p.value), p.standard_error,
+        p.robust_standard_error})
     fields.push_back(csv_number(number));
   fields.push_back(p.ci95 ? csv_number(p.ci95->low) : std::string());
   fields.push_back(p.ci95 ? csv_number(p.ci95->high) : std::string());
@@ -48,7 +49,7 @@ std::string row_of(const StoredParameter& p) {
 }  // namespace
 
 std::string parameters_csv(calib::FitStatus status, const std::string& message,
-                           const std::vector<StoredParameter>& parameters) {
+                           const std::vector<calib::FittedParameter>& parameters) {
   std::string text;
   if (status != calib::FitStatus::converged)
     text += csv_comment(fmt::format("status: {}: {}", to_string(status), message));
@@ -82,7 +83,7 @@ std::string parameters_csv(calib::FitStatus status, const std::string& message,
                    "shift",
                    "u_days",
                    "u_numerics"});
-  for (const StoredParameter& parameter : parameters) text += row_of(parameter);
+  for (const calib::FittedParameter& parameter : parameters) text += row_of(parameter);
   return text;
 }
 

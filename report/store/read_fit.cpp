@@ -23,7 +23,7 @@ constexpr const char* kTruthSchema = "rigcal.truth/1";
 
 /// Computes an error for a parameter that the fit could not determine, from its interval or its
 /// bounds. Otherwise its uncertainty would be omitted.
-double undetermined_error(const StoredParameter& p, const JsonNode& node) {
+double undetermined_error(const calib::FittedParameter& p, const JsonNode& node) {
   if (!p.lower) node["lower"].fail("a number");
   if (!p.upper) node["upper"].fail("a number");
   return calib::undetermined_sd(p.ci95, *p.lower, *p.upper);
@@ -41,7 +41,7 @@ struct Estimates {
 
 /// Returns the half width of ci95_if_exact in units of the standard error; 0 without a finite
 /// interval.
-double half_in_errors(const StoredParameter& p, double error) {
+double half_in_errors(const calib::FittedParameter& p, double error) {
   const auto& ci95 = p.ci95_if_exact;
   if (!ci95 || !std::isfinite(ci95->high - ci95->low)) return 0.0;
   return 0.5 * (ci95->high - ci95->low) / error;
@@ -67,7 +67,7 @@ Estimates estimates_of(const StoredFit& stored, const JsonNode& root, model::Pla
   std::vector<std::optional<Eigen::Index>> places;  // rows in the correlation matrix
   std::vector<double> errors;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const StoredParameter& p = stored.parameters[i];
+    const calib::FittedParameter& p = stored.parameters[i];
     if (!p.fitted || p.nuisance) continue;
     const auto place =
         std::find(names.begin(), names.end(), parameter_label(p.name, p.scope, p.level));
@@ -151,7 +151,7 @@ void read_values(const StoredFit& stored, const JsonNode& root, model::PlantKind
                  EarlierFit& fit) {
   const std::vector<JsonNode> nodes = root["parameters"].items();
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const StoredParameter& p = stored.parameters[i];
+    const calib::FittedParameter& p = stored.parameters[i];
     FittedValue value;
     value.index = parameter_row(nodes[i]["name"], plant);
     value.scope = p.scope;
@@ -160,9 +160,9 @@ void read_values(const StoredFit& stored, const JsonNode& root, model::PlantKind
       value.level = *p.level;
     }
     // A nuisance parameter applies only to the records of its own fit.
-    if (p.nuisance || (!p.fitted && !p.value)) continue;
-    if (!p.value) nodes[i]["value"].fail("a number");
-    value.value = *p.value;
+    if (p.nuisance || (!p.fitted && !std::isfinite(p.value))) continue;
+    if (!std::isfinite(p.value)) nodes[i]["value"].fail("a number");
+    value.value = p.value;
     if (p.fitted) {
       fit.values.push_back(std::move(value));
     } else if (value.scope == Scope::rig) {

@@ -61,7 +61,7 @@ void require_matching(const StoredCurves& curves, const std::string& file) {
 }
 
 void require_matching(const StoredFit& fit, const std::string& file) {
-  for (const StoredParameter& parameter : fit.parameters) {
+  for (const calib::FittedParameter& parameter : fit.parameters) {
     if (parameter.profile)
       require_length(parameter.profile->rises.size(), parameter.profile->values.size(),
                      fmt::format("profile.rises of {}", parameter.name).c_str(), file);

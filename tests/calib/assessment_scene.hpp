@@ -10,6 +10,12 @@
 
 namespace rigcal::calib {
 
+/// Returns a parameter of the rig that is neither fitted nor has a value.
+inline FittedParameter plain_parameter(const char* key) {
+  constexpr auto kPlant = model::PlantKind::load_pressure;
+  return parameter_in_row(kPlant, model::parameter_index(kPlant, key), datasets::Scope::rig, {});
+}
+
 /// A result that passes all four aspects: one condition is fitted, and one is not.
 struct AssessmentScene {
   datasets::Campaign campaign;
@@ -21,10 +27,10 @@ struct AssessmentScene {
     add("fitted", datasets::Use::fit, 0.999);
     add("other", datasets::Use::validate, 0.998);
     fit.status = FitStatus::converged;
-    FittedParameter mass;
-    mass.index = model::parameter_index(model::PlantKind::load_pressure, "mass");
+    FittedParameter mass = plain_parameter("mass");
     mass.value = 85.0;
     mass.fitted = true;
+    mass.identifiability = Identifiability::identified;
     mass.ci95 = {84.0, 86.0};
     fit.parameters = {mass};
     for (const char* id : {"fitted", "other"}) {

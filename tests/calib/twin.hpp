@@ -152,7 +152,7 @@ struct Twin {
 inline const FittedParameter& parameter(const Fit& fit, std::string_view key,
                                         const std::string& level = {}) {
   for (const FittedParameter& each : fit.parameters) {
-    if (each.index == Twin::index(key) && each.level == level) return each;
+    if (each.index == Twin::index(key) && each.level.value_or("") == level) return each;
   }
   throw std::runtime_error("no parameter " + std::string(key) + " " + level);
 }

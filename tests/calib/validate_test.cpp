@@ -79,7 +79,15 @@ TEST_CASE("validate: estimates nothing but nuisance parameters", "[calib]") {
   const Fit found = validate(twin.campaign, twin.records(400, 500.0, 5), &values, {});
   CHECK(found.status == FitStatus::converged);
   CHECK(found.conditions.size() == 3);
-  for (const FittedParameter& each : found.parameters) CHECK(each.fitted == each.nuisance);
+  for (const FittedParameter& each : found.parameters) {
+    CAPTURE(each.key);
+    CHECK(each.fitted == each.nuisance);
+    // A known value has neither bounds nor a grade.
+    CHECK(each.lower.has_value() == each.fitted);
+    CHECK(each.upper.has_value() == each.fitted);
+    CHECK(each.identifiability.has_value() == each.fitted);
+    CHECK(each.index == Twin::index(each.key));
+  }
   const FittedParameter& offset = parameter(found, "position_offset", "day1_low");
   CHECK(std::abs(offset.value - 1e-3) < 3.5 * offset.standard_error.value());
 }
@@ -91,7 +99,8 @@ TEST_CASE("validate: tells the values that it used, not those of the campaign", 
   const auto of = [&](std::string_view key, const std::string& level) {
     std::vector<double> told;
     for (const FittedParameter& each : found.parameters) {
-      if (each.index == Twin::index(key) && each.level == level) told.push_back(each.value);
+      if (each.index == Twin::index(key) && each.level.value_or("") == level)
+        told.push_back(each.value);
     }
     return told;
   };

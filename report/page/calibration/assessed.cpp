@@ -59,12 +59,12 @@ double correlation_at(const calib::Correlation& correlation, std::size_t i, std:
 }
 
 calib::Correlation correlation_by_key(calib::Correlation correlation,
-                                      const std::vector<StoredParameter>& parameters) {
+                                      const std::vector<calib::FittedParameter>& parameters) {
   for (std::string& name : correlation.names) {
-    const auto same =
-        std::find_if(parameters.begin(), parameters.end(), [&name](const StoredParameter& p) {
-          return name == p.name || name.starts_with(p.name + " (");
-        });
+    const auto same = std::find_if(parameters.begin(), parameters.end(),
+                                   [&name](const calib::FittedParameter& p) {
+                                     return name == p.name || name.starts_with(p.name + " (");
+                                   });
     if (same != parameters.end()) name.replace(0, same->name.size(), same->key);
   }
   return correlation;

@@ -45,7 +45,7 @@ double correlation_at(const calib::Correlation& correlation, std::size_t i, std:
 /// Returns the correlations with the keys of the campaign as names, as in "valve_gain" and
 /// "leakage_coefficient (leak level 100 %)".
 calib::Correlation correlation_by_key(calib::Correlation correlation,
-                                      const std::vector<StoredParameter>& parameters);
+                                      const std::vector<calib::FittedParameter>& parameters);
 
 /// Describes how strongly the estimates are correlated. Leaves out estimates without a correlation.
 std::string correlation_words(const calib::Correlation& correlation);

@@ -80,9 +80,9 @@ std::vector<Judged> judged_signals(const StoredFit& fit) {
 }
 
 /// Returns the estimates for the certificate, without nuisance parameters.
-std::vector<const StoredParameter*> signed_estimates(const StoredFit& fit) {
-  std::vector<const StoredParameter*> found;
-  for (const StoredParameter& p : fit.parameters)
+std::vector<const calib::FittedParameter*> signed_estimates(const StoredFit& fit) {
+  std::vector<const calib::FittedParameter*> found;
+  for (const calib::FittedParameter& p : fit.parameters)
     if (p.fitted && !p.nuisance) found.push_back(&p);
   return found;
 }
@@ -123,7 +123,7 @@ void add_numbers(const StoredFit& fit, Line& sentence) {
   double widest = 0.0;
   std::size_t determined = 0;
   const auto found = signed_estimates(fit);
-  for (const StoredParameter* p : found) {
+  for (const calib::FittedParameter* p : found) {
     // A bounded parameter is described by its limit, not by a half-width.
     if (p->identifiability == calib::Identifiability::bounded) continue;
     widest = std::max(widest, relative_half_width(*p));
@@ -235,19 +235,19 @@ doc::Doubts doubts_of(const StoredFit& fit) {
 
 /// Returns half the length of an interval that is symmetric about the value. Returns std::nullopt
 /// if it is asymmetric or unknown.
-std::optional<double> expanded_uncertainty(const StoredParameter& p,
+std::optional<double> expanded_uncertainty(const calib::FittedParameter& p,
                                            const doc::Interval& interval) {
   constexpr double kSymmetric = 0.01;
   const auto& ends = interval.ends;
-  if (!ends || !p.value) return std::nullopt;
-  const double below = *p.value - ends->low;
-  const double above = ends->high - *p.value;
+  if (!ends || !std::isfinite(p.value)) return std::nullopt;
+  const double below = p.value - ends->low;
+  const double above = ends->high - p.value;
   if (!(std::abs(above - below) <= kSymmetric * std::max(above, below))) return std::nullopt;
   return 0.5 * (above + below);
 }
 
 /// Returns the expanded uncertainty U divided by the standard error it was derived from.
-std::optional<double> coverage_factor(const StoredParameter& p) {
+std::optional<double> coverage_factor(const calib::FittedParameter& p) {
   if (p.budget) return p.budget->coverage_factor;
   const auto half = expanded_uncertainty(p, p.ci95);
   const auto error = interval_error(p);
@@ -256,7 +256,7 @@ std::optional<double> coverage_factor(const StoredParameter& p) {
 }
 
 /// Formats the uncertainty as "± 0.05", or as both ends if the interval is asymmetric.
-Line uncertainty_line(const StoredParameter& p, const doc::Interval& interval,
+Line uncertainty_line(const calib::FittedParameter& p, const doc::Interval& interval,
                       const ReadableUnit& unit) {
   if (const auto half = expanded_uncertainty(p, interval))
     return {"± ", doc::Quantity{half, matched(*half / unit.si, *half / unit.si)}};
@@ -267,7 +267,7 @@ Line uncertainty_line(const StoredParameter& p, const doc::Interval& interval,
 }
 
 /// @param both  whether to include the uncertainty that would apply if the model were exact
-doc::Row value_row(const StoredParameter& p, bool judged, bool both) {
+doc::Row value_row(const calib::FittedParameter& p, bool judged, bool both) {
   const ReadableUnit unit = unit_of(p);
   const doc::Estimate estimate =
       doc::estimate(p.value, judged ? p.ci95 : std::nullopt, unit.si,
@@ -285,10 +285,10 @@ doc::Row value_row(const StoredParameter& p, bool judged, bool both) {
 
 /// Returns, for example, "k = 1.96" or "k = 1.96 to 2.1"; empty if no value has an expanded
 /// uncertainty.
-std::string coverage_words(const std::vector<const StoredParameter*>& found) {
+std::string coverage_words(const std::vector<const calib::FittedParameter*>& found) {
   double least = HUGE_VAL;
   double largest = 0.0;
-  for (const StoredParameter* p : found) {
+  for (const calib::FittedParameter* p : found) {
     const auto k = coverage_factor(*p);
     if (!k) continue;
     least = std::min(least, *k);
@@ -302,7 +302,7 @@ std::string coverage_words(const std::vector<const StoredParameter*>& found) {
 
 /// Adds the calibrated values. A validation that did not estimate anything has none.
 void add_values(const StoredFit& fit, bool judged, doc::Blocks& blocks) {
-  std::vector<const StoredParameter*> found = signed_estimates(fit);
+  std::vector<const calib::FittedParameter*> found = signed_estimates(fit);
   if (found.empty()) return;
   const std::size_t more = found.size() > kValues ? found.size() - kValues : 0;
   // The least certain values come first because the table is truncated.
@@ -326,7 +326,7 @@ void add_values(const StoredFit& fit, bool judged, doc::Blocks& blocks) {
   if (both) table.columns.push_back({"U if the model is exact"});
   table.columns.push_back({"Unit", doc::Column::Kind::unit});
   table.columns.push_back({"Determined?"});
-  for (const StoredParameter* p : found) table.rows.push_back(value_row(*p, judged, both));
+  for (const calib::FittedParameter* p : found) table.rows.push_back(value_row(*p, judged, both));
   blocks.emplace_back(std::move(table));
   Line notes;
   if (both) {

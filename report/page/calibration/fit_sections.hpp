@@ -22,11 +22,11 @@ std::vector<Figure> rig_response_figures(const Calibration& stored);
 /// @param unfinished  whether the search did not converge
 doc::Section scores_section(const StoredFit& fit, bool unfinished);
 /// @param judged  whether a search converged, so that the estimates have grades
-doc::Section parameters_section(const std::vector<StoredParameter>& parameters,
+doc::Section parameters_section(const std::vector<calib::FittedParameter>& parameters,
                                 const calib::Correlation& correlation, bool judged);
 /// Adds the contributions to the uncertainty of each estimate. Adds nothing if no effects were
 /// considered.
-void add_budget(const std::vector<StoredParameter>& parameters, doc::Blocks& blocks);
+void add_budget(const std::vector<calib::FittedParameter>& parameters, doc::Blocks& blocks);
 /// Adds the contributions to the uncertainty of each score of a condition. Adds nothing if they are
 /// unknown.
 void add_score_budgets(const StoredCondition& condition, doc::Blocks& blocks);

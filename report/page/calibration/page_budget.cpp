@@ -80,7 +80,7 @@ void add_refits(const StoredFit& fit, doc::Blocks& blocks) {
                       {"Averaged", Kind::number},
                       {"u", Kind::number},
                       {"Unit", Kind::unit}};
-  for (const StoredParameter& p : fit.parameters) {
+  for (const calib::FittedParameter& p : fit.parameters) {
     if (!p.averaged) continue;
     const ReadableUnit unit = unit_of(p);
     averaged.rows.push_back(
@@ -103,9 +103,9 @@ doc::Row stability_row(const calib::StabilityCheck& check) {
 
 }  // namespace
 
-void add_budget(const std::vector<StoredParameter>& parameters, doc::Blocks& blocks) {
+void add_budget(const std::vector<calib::FittedParameter>& parameters, doc::Blocks& blocks) {
   std::vector<BudgetOf> budgets;
-  for (const StoredParameter& p : parameters)
+  for (const calib::FittedParameter& p : parameters)
     if (p.budget) budgets.push_back({parameter_label(p), unit_of(p), &*p.budget});
   if (budgets.empty()) return;
   blocks.emplace_back(budget_table("Parameter", budgets));

@@ -30,7 +30,7 @@ doc::Verdict tables_verdict(const StoredTablesFit& fit) {
       {fmt::format("Estimated from {} published numbers; their weighted logarithms are off by "
                    "{:.1f} % rms.",
                    fit.residual_count, 100.0 * fit.rms.value_or(0.0))}};
-  for (const StoredParameter& p : fit.parameters) {
+  for (const calib::FittedParameter& p : fit.parameters) {
     if (!p.reason.empty())
       add_reason(verdict, fmt::format("{}: {}", parameter_label(p), p.reason), "parameters");
   }

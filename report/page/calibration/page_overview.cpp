@@ -95,9 +95,9 @@ std::string whose(const Extreme& worst, const std::string& metric,
 
 /// Returns the estimate with the largest relative interval, ignoring nuisance parameters; null if
 /// there is none.
-const StoredParameter* least_certain(const std::vector<StoredParameter>& parameters) {
-  const StoredParameter* least = nullptr;
-  for (const StoredParameter& p : parameters) {
+const calib::FittedParameter* least_certain(const std::vector<calib::FittedParameter>& parameters) {
+  const calib::FittedParameter* least = nullptr;
+  for (const calib::FittedParameter& p : parameters) {
     if (!p.fitted || p.nuisance) continue;
     if (least == nullptr || relative_half_width(p) > relative_half_width(*least)) least = &p;
   }
@@ -117,7 +117,7 @@ doc::Facts three_numbers(const StoredFit& fit) {
           extreme(fit.conditions, &Agreement::absolute_error_percent, std::greater<>()))
     add("Largest mean error", fmt::format("{} % of the range", significant(largest->value, 3)),
         whose(*largest, "absolute_error_percent", &Agreement::absolute_error_percent));
-  const StoredParameter* least = least_certain(fit.parameters);
+  const calib::FittedParameter* least = least_certain(fit.parameters);
   // A search that was stopped before it converged has no valid errors.
   if (least == nullptr || (fit.status == calib::FitStatus::stopped && !searched_to_the_end(fit)))
     return numbers;

@@ -19,24 +19,24 @@ namespace {
 using doc::Line;
 using Kind = doc::Column::Kind;
 
-Range bounds_of(const StoredParameter& p) {
+Range bounds_of(const calib::FittedParameter& p) {
   return {p.lower.value_or(kAnywhere.low), p.upper.value_or(kAnywhere.high)};
 }
 
 /// Returns a cell with a standard error and the 95 % interval based only on this error, assuming a
 /// normal distribution.
-doc::Cell error_cell(const StoredParameter& p, const std::optional<double>& error,
+doc::Cell error_cell(const calib::FittedParameter& p, const std::optional<double>& error,
                      const ReadableUnit& unit) {
   doc::Cell cell{Line{doc::in_unit(error, unit.si, kErrorDigits)}};
-  if (!p.value || !error) return cell;
-  const Range range{*p.value - metrics::kNormal95 * *error, *p.value + metrics::kNormal95 * *error};
+  if (!std::isfinite(p.value) || !error) return cell;
+  const Range range{p.value - metrics::kNormal95 * *error, p.value + metrics::kNormal95 * *error};
   cell.below = {doc::estimate(p.value, range, unit.si, bounds_of(p)).interval()};
   return cell;
 }
 
 /// @param judged  whether the search converged
 /// @param reason  a reason that applies only to this estimate
-doc::Row fitted_row(const StoredParameter& p, bool judged, const std::string& reason) {
+doc::Row fitted_row(const calib::FittedParameter& p, bool judged, const std::string& reason) {
   const ReadableUnit unit = unit_of(p);
   const doc::Estimate estimate = doc::estimate(p.value, p.ci95, unit.si, bounds_of(p));
   Line name{p.key, " ", doc::Soft{p.symbol}};
@@ -66,7 +66,7 @@ doc::Row fitted_row(const StoredParameter& p, bool judged, const std::string& re
   return row;
 }
 
-doc::Row known_row(const StoredParameter& p) {
+doc::Row known_row(const calib::FittedParameter& p) {
   const ReadableUnit unit = unit_of(p);
   return {{Line{p.key, " ", doc::Soft{p.symbol}}, p.level.value_or("rig"),
            doc::in_unit(p.value, unit.si, 6), unit.name, p.reason}};
@@ -109,12 +109,12 @@ std::string joined_reason(const std::vector<std::string>& parts) {
 }
 
 /// Returns the reasons that all estimates have in common, so that they are shown only once.
-std::vector<std::string> common_reasons(const std::vector<const StoredParameter*>& fitted) {
+std::vector<std::string> common_reasons(const std::vector<const calib::FittedParameter*>& fitted) {
   std::vector<std::string> common;
   if (fitted.size() < 2) return common;
   for (const std::string& part : parts_of_reason(fitted.front()->reason)) {
     const bool everywhere =
-        std::all_of(fitted.begin(), fitted.end(), [&](const StoredParameter* p) {
+        std::all_of(fitted.begin(), fitted.end(), [&](const calib::FittedParameter* p) {
           const auto parts = parts_of_reason(p->reason);
           return std::find(parts.begin(), parts.end(), part) != parts.end();
         });
@@ -124,7 +124,7 @@ std::vector<std::string> common_reasons(const std::vector<const StoredParameter*
 }
 
 /// Returns the reason for one estimate, without the reasons that it shares with all others.
-std::string own_reason(const StoredParameter& p, const std::vector<std::string>& common) {
+std::string own_reason(const calib::FittedParameter& p, const std::vector<std::string>& common) {
   auto parts = parts_of_reason(p.reason);
   std::erase_if(parts, [&](const std::string& part) {
     return std::find(common.begin(), common.end(), part) != common.end();
@@ -134,7 +134,7 @@ std::string own_reason(const StoredParameter& p, const std::vector<std::string>&
 
 std::vector<std::string> not_identifiable(const StoredFit& fit) {
   std::vector<std::string> names;
-  for (const StoredParameter& p : fit.parameters) {
+  for (const calib::FittedParameter& p : fit.parameters) {
     if (p.fitted && p.identifiability == calib::Identifiability::not_identifiable)
       names.push_back(parameter_label(p));
   }
@@ -143,10 +143,10 @@ std::vector<std::string> not_identifiable(const StoredFit& fit) {
 
 }  // namespace
 
-double relative_half_width(const StoredParameter& parameter) {
+double relative_half_width(const calib::FittedParameter& parameter) {
   const auto ends = Interval(parameter.ci95).ends;
-  const double value = parameter.value.value_or(0.0);
-  if (!ends || value == 0.0) return HUGE_VAL;
+  const double value = parameter.value;
+  if (!ends || !std::isfinite(value) || value == 0.0) return HUGE_VAL;
   return std::max(ends->high - value, value - ends->low) / std::abs(value);
 }
 
@@ -160,7 +160,7 @@ std::string half_width_text(double relative) {
   return fmt::format("± {} %", significant(100.0 * relative, kErrorDigits));
 }
 
-doc::Section parameters_section(const std::vector<StoredParameter>& parameters,
+doc::Section parameters_section(const std::vector<calib::FittedParameter>& parameters,
                                 const calib::Correlation& correlation, bool judged) {
   doc::Section section{"parameters", "Parameters"};
   if (!judged)
@@ -168,10 +168,10 @@ doc::Section parameters_section(const std::vector<StoredParameter>& parameters,
         {"Stopped before it converged: the values are the best so far, and errors and intervals "
          "are those of a minimum, which this is not."},
         doc::Paragraph::Tone::problem});
-  std::vector<const StoredParameter*> estimated;
+  std::vector<const calib::FittedParameter*> estimated;
   doc::Table known{"Known values"};
   known.columns = {{"Parameter"}, {"For"}, {"Value", Kind::number}, {"Unit"}, {"Note"}};
-  for (const StoredParameter& p : parameters) {
+  for (const calib::FittedParameter& p : parameters) {
     if (p.fitted) {
       estimated.push_back(&p);
     } else {
@@ -195,7 +195,7 @@ doc::Section parameters_section(const std::vector<StoredParameter>& parameters,
                      {"Robust std. error", Kind::number, 0, "its interval"},
                      {"Start", Kind::number, 0, "bounds"}};
     const std::vector<std::string> common = common_reasons(estimated);
-    for (const StoredParameter* p : estimated)
+    for (const calib::FittedParameter* p : estimated)
       table.rows.push_back(fitted_row(*p, judged, own_reason(*p, common)));
     section.blocks.emplace_back(std::move(table));
     if (!common.empty())

@@ -33,7 +33,7 @@ doc::Table draws_table(const StoredFit& fit, const calib::Posterior& found) {
                    {"95 % interval", Kind::number},
                    {"R-hat", Kind::number},
                    {"Effective draws", Kind::number}};
-  for (const StoredParameter& p : fit.parameters) {
+  for (const calib::FittedParameter& p : fit.parameters) {
     if (!p.posterior) continue;
     const ReadableUnit unit = unit_of(p);
     const calib::PosteriorSpread& spread = *p.posterior;
@@ -102,10 +102,12 @@ doc::Table shares_table(const calib::Posterior& found) {
 }
 
 /// Returns the column name of a parameter in posterior.csv, which includes its scope.
-std::string named_as(const StoredParameter& p) { return parameter_label(p.name, p.scope, p.level); }
+std::string named_as(const calib::FittedParameter& p) {
+  return parameter_label(p.name, p.scope, p.level);
+}
 
 /// Returns the stored parameter with this name, or null if there is none.
-const StoredParameter* named(const StoredFit& fit, const std::string& name) {
+const calib::FittedParameter* named(const StoredFit& fit, const std::string& name) {
   const auto found = std::find_if(fit.parameters.begin(), fit.parameters.end(),
                                   [&](const auto& p) { return p.fitted && named_as(p) == name; });
   return found == fit.parameters.end() ? nullptr : &*found;
@@ -116,8 +118,8 @@ std::string axis_label(const std::string& name, const ReadableUnit& unit) {
 }
 
 Plot pair_plot(const StoredFit& fit, const calib::Pairs& pairs, std::size_t a, std::size_t b) {
-  const StoredParameter* const first = named(fit, pairs.names[a]);
-  const StoredParameter* const second = named(fit, pairs.names[b]);
+  const calib::FittedParameter* const first = named(fit, pairs.names[a]);
+  const calib::FittedParameter* const second = named(fit, pairs.names[b]);
   const ReadableUnit x = first != nullptr ? unit_of(*first) : ReadableUnit{};
   const ReadableUnit y = second != nullptr ? unit_of(*second) : ReadableUnit{};
   Plot plot;
@@ -134,9 +136,10 @@ Plot pair_plot(const StoredFit& fit, const calib::Pairs& pairs, std::size_t a, s
   Trace estimate;
   estimate.kind = Trace::Kind::points;
   estimate.style = "model";
-  if (first != nullptr && second != nullptr && first->value && second->value) {
-    estimate.x = {*first->value / x.si};
-    estimate.y = {*second->value / y.si};
+  if (first != nullptr && second != nullptr && std::isfinite(first->value) &&
+      std::isfinite(second->value)) {
+    estimate.x = {first->value / x.si};
+    estimate.y = {second->value / y.si};
   }
   plot.traces = {std::move(draws), std::move(estimate)};
   return plot;

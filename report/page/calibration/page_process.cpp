@@ -102,8 +102,8 @@ doc::Section warnings_section(const StoredFit& fit) {
   doc::List warnings{{}, doc::State::warn};
   for (const std::string& warning : fit.warnings) {
     // The parameter table already shows this reason.
-    const bool told =
-        std::any_of(fit.parameters.begin(), fit.parameters.end(), [&](const StoredParameter& p) {
+    const bool told = std::any_of(
+        fit.parameters.begin(), fit.parameters.end(), [&](const calib::FittedParameter& p) {
           return p.fitted && !p.reason.empty() && warning.ends_with(": " + p.reason);
         });
     if (!told) warnings.items.push_back({warning});

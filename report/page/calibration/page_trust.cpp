@@ -33,7 +33,7 @@ std::string end_words(const calib::ProfileEnd& end, const ReadableUnit& unit, co
 
 /// Plots the increase in cost when a parameter is fixed at each value. The 95 % interval ends where
 /// the increase is 1.
-Plot profile_plot(const StoredParameter& parameter, const calib::Profile& profile) {
+Plot profile_plot(const calib::FittedParameter& parameter, const calib::Profile& profile) {
   const ReadableUnit unit = unit_of(parameter);
   Plot plot;
   plot.title = fmt::format("Profile of {}: the followed points, and a curve through them",
@@ -63,13 +63,15 @@ Plot profile_plot(const StoredParameter& parameter, const calib::Profile& profil
   return plot;
 }
 
-std::string profile_reading(const StoredParameter& parameter, const calib::Profile& profile) {
+std::string profile_reading(const calib::FittedParameter& parameter,
+                            const calib::Profile& profile) {
   const ReadableUnit unit = unit_of(parameter);
   return fmt::format("{}: {}, {}.", parameter_label(parameter),
                      end_words(profile.low, unit, "lower"), end_words(profile.high, unit, "upper"));
 }
 
-doc::Row bootstrap_row(const StoredParameter& parameter, const calib::BootstrapSpread& bootstrap) {
+doc::Row bootstrap_row(const calib::FittedParameter& parameter,
+                       const calib::BootstrapSpread& bootstrap) {
   const ReadableUnit unit = unit_of(parameter);
   const auto& ci95 = bootstrap.ci95;
   return {{parameter_label(parameter), doc::in_unit(parameter.value, unit.si, 6), unit.name,
@@ -166,7 +168,7 @@ void add_cross_validation(const StoredFit& fit, doc::Blocks& blocks) {
 
 void add_profiles(const StoredFit& fit, doc::Blocks& blocks) {
   doc::Gallery gallery;
-  for (const StoredParameter& p : fit.parameters) {
+  for (const calib::FittedParameter& p : fit.parameters) {
     if (!p.profile) continue;
     doc::Figure figure{[p] { return profile_plot(p, *p.profile); }};
     figure.caption = fmt::format("How far can {} move?", parameter_label(p));
@@ -190,7 +192,7 @@ void add_bootstrap(const StoredFit& fit, doc::Blocks& blocks) {
                    {"95 % interval", Kind::number},
                    {"Std. error", Kind::number},
                    {"Bias", Kind::number}};
-  for (const StoredParameter& p : fit.parameters)
+  for (const calib::FittedParameter& p : fit.parameters)
     if (p.bootstrap) table.rows.push_back(bootstrap_row(p, *p.bootstrap));
   if (table.rows.empty()) return;
   blocks.emplace_back(doc::Heading{{"Bootstrap"}});

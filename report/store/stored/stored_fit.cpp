@@ -1,7 +1,5 @@
 #include "report/store/stored/stored_fit.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -14,8 +12,6 @@
 namespace rigcal::report {
 namespace {
 
-using datasets::Scope;
-
 std::string key_of(datasets::Channel channel) { return std::string(info(channel).key); }
 
 std::vector<std::string> keys_of(const std::vector<datasets::Channel>& channels) {
@@ -24,45 +20,11 @@ std::vector<std::string> keys_of(const std::vector<datasets::Channel>& channels)
   return keys;
 }
 
+/// Returns the reason with why the file has null as the value, if it has.
 std::string reason_of(const calib::FittedParameter& p) {
   if (std::isfinite(p.value)) return p.reason;
   return p.reason + (p.reason.empty() ? "" : "; ") +
          (std::isinf(p.value) && !p.fitted ? "no limit" : "the value is not a finite number");
-}
-
-StoredParameter stored(const calib::FittedParameter& p, const model::ParameterSpec& spec) {
-  StoredParameter result;
-  result.name = spec.name;
-  result.key = spec.key;
-  result.symbol = spec.symbol;
-  result.unit = spec.unit;
-  result.scope = p.scope;
-  if (p.scope != Scope::rig) result.level = p.level;
-  result.value = finite(p.value);
-  result.start = finite(p.start);
-  if (p.fitted) {
-    result.lower = finite(p.lower);
-    result.upper = finite(p.upper);
-    result.identifiability = p.identifiability;
-  }
-  result.fitted = p.fitted;
-  result.nuisance = p.nuisance;
-  result.standard_error = finite(p.standard_error);
-  result.robust_standard_error = finite(p.robust_standard_error);
-  result.ci95 = p.ci95;
-  result.ci95_if_exact = p.ci95_if_exact;
-  result.budget = p.budget;
-  result.averaged = p.averaged;
-  if (p.between_days_error && std::isfinite(*p.between_days_error))
-    result.between_days_error = *p.between_days_error;
-  if (p.ci95) result.ci95_from = std::optional(p.interval);
-  result.degrees_of_freedom = finite(p.degrees_of_freedom);
-  result.bootstrap = p.bootstrap;
-  result.profile = p.profile;
-  result.posterior = p.posterior;
-  result.at_bound = p.at_bound;
-  result.reason = reason_of(p);
-  return result;
 }
 
 const datasets::Record* record_of(const Result& result, const std::string& condition) {
@@ -205,11 +167,11 @@ void add_search(const calib::Fit& fit, StoredFit& result) {
 
 /// Finds the degrees of freedom for which Student's t times this error gives the half width of
 /// ci95_if_exact. A bound may cut off one end of the interval, so the longer side is used.
-double freedom_of_interval(const StoredParameter& parameter, double error) {
+double freedom_of_interval(const calib::FittedParameter& parameter, double error) {
   const auto& interval = parameter.ci95_if_exact;
-  if (!interval || !parameter.value) return metrics::kManyDegrees;
+  if (!interval || !std::isfinite(parameter.value)) return metrics::kManyDegrees;
   const double quantile =
-      std::max(interval->high - *parameter.value, *parameter.value - interval->low) / error;
+      std::max(interval->high - parameter.value, parameter.value - interval->low) / error;
   return metrics::freedom_of_quantile(quantile);
 }
 
@@ -229,14 +191,14 @@ const metrics::Agreement* StoredCondition::printed_uncertainty_of(
   return found != nullptr && found->has_value() ? &**found : nullptr;
 }
 
-void as_of_now(std::string_view schema, std::vector<StoredParameter>& parameters) {
+void as_of_now(std::string_view schema, std::vector<calib::FittedParameter>& parameters) {
   if (schema == kFitSchema) return;
-  for (StoredParameter& each : parameters) {
+  for (calib::FittedParameter& each : parameters) {
     if (!each.ci95_if_exact && each.ci95) each.ci95_if_exact = *each.ci95;
   }
 }
 
-std::optional<metrics::EstimateError> interval_error(const StoredParameter& parameter) {
+std::optional<metrics::EstimateError> interval_error(const calib::FittedParameter& parameter) {
   const auto& source = parameter.ci95_from;
   const auto error = source == calib::IntervalSource::standard_error ? parameter.standard_error
                      : source == calib::IntervalSource::robust_standard_error
@@ -248,16 +210,9 @@ std::optional<metrics::EstimateError> interval_error(const StoredParameter& para
   return metrics::EstimateError{*error, freedom_of_interval(parameter, *error)};
 }
 
-std::optional<double> error_of(const StoredParameter& parameter) {
+std::optional<double> error_of(const calib::FittedParameter& parameter) {
   if (!parameter.standard_error) return parameter.robust_standard_error;
   return std::max(*parameter.standard_error, parameter.robust_standard_error.value_or(0.0));
-}
-
-std::string parameter_label(const std::string& key, Scope scope,
-                            const std::optional<std::string>& level) {
-  if (!level || level->empty()) return key;
-  return fmt::format("{} ({} {})", key, scope == Scope::leak_level ? "leak level" : "condition",
-                     *level);
 }
 
 StoredFit as_fit(const StoredTablesFit& tables) {
@@ -314,9 +269,8 @@ StoredFit stored(const Result& result) {
   json.evaluations = fit.evaluations;
   json.wall_seconds = finite(fit.wall_seconds);
   json.simulation_tolerance = finite(fit.tolerance);
-  const auto table = model::parameter_table(result.campaign.rig.plant);
-  for (const calib::FittedParameter& p : fit.parameters)
-    json.parameters.push_back(stored(p, table[static_cast<std::size_t>(p.index)]));
+  json.parameters = fit.parameters;
+  for (calib::FittedParameter& each : json.parameters) each.reason = reason_of(each);
   add_trust(fit, json);
   if (!fit.stability.empty()) json.stability = fit.stability;
   if (result.kind == ResultKind::fit) json.weights = weights(result);

@@ -40,55 +40,20 @@ template <>
 inline std::vector<calib::Verdict> every() {
   return {calib::Verdict::pass, calib::Verdict::warn, calib::Verdict::fail};
 }
-template <>
-inline std::vector<calib::IntervalSource> every() {  // except `none`, which is null
-  return {calib::IntervalSource::standard_error, calib::IntervalSource::robust_standard_error};
-}
-
-/// A parameter, fitted or known.
-struct StoredParameter {
-  std::string name;  ///< name in result files: "mass_kg"
-  std::string key;   ///< key in campaign files
-  std::string symbol, unit;
-  datasets::Scope scope = datasets::Scope::rig;
-  std::optional<std::string> level;  ///< leak level or condition
-  std::optional<double> value, start, lower, upper;
-  bool fitted = false;
-  bool nuisance = false;
-  std::optional<double> standard_error, robust_standard_error;
-  std::optional<Range> ci95;                              ///< interval for the rig
-  Later<std::optional<Range>> ci95_if_exact;              ///< assumes an exact model
-  Later<std::optional<calib::IntervalSource>> ci95_from;  ///< basis of ci95_if_exact
-  Later<std::optional<double>> degrees_of_freedom;        ///< for that error
-  Omittable<calib::Budget95> budget;
-  Omittable<calib::AveragedEstimate> averaged;  ///< if the residuals call for an effect
-  Omittable<double> between_days_error;         ///< standard error due to differences between days
-  Omittable<calib::BootstrapSpread> bootstrap;
-  Omittable<calib::Profile> profile;
-  Omittable<calib::PosteriorSpread> posterior;
-  bool at_bound = false;
-  std::optional<calib::Identifiability> identifiability;
-  std::string reason;
-  RIGCAL_DESCRIBE(name, key, symbol, unit, scope, level, value, start, lower, upper, fitted,
-                  nuisance, standard_error, robust_standard_error, ci95, ci95_if_exact, ci95_from,
-                  degrees_of_freedom, budget, averaged, between_days_error, bootstrap, profile,
-                  posterior, at_bound, identifiability, reason)
-};
 
 /// Converts parameters from an earlier schema to the current one: the earlier `ci95` becomes
 /// `ci95_if_exact`.
-void as_of_now(std::string_view schema, std::vector<StoredParameter>& parameters);
+void as_of_now(std::string_view schema, std::vector<calib::FittedParameter>& parameters);
 
 /// Returns the error behind ci95_if_exact with its degrees of freedom. If an older file lacks them,
 /// they are computed from the interval's half width in units of the error. Without an interval a
 /// large number is assumed.
-std::optional<metrics::EstimateError> interval_error(const StoredParameter& parameter);
+std::optional<metrics::EstimateError> interval_error(const calib::FittedParameter& parameter);
 /// Returns the larger of standard and robust error.
-std::optional<double> error_of(const StoredParameter& parameter);
-/// Returns the text for a parameter with its level: "leakage_coefficient (leak level 33 %)".
-std::string parameter_label(const std::string& key, datasets::Scope scope,
-                            const std::optional<std::string>& level);
-inline std::string parameter_label(const StoredParameter& p) {
+std::optional<double> error_of(const calib::FittedParameter& parameter);
+using calib::parameter_label;
+/// Returns the key of a parameter with its level.
+inline std::string parameter_label(const calib::FittedParameter& p) {
   return parameter_label(p.key, p.scope, p.level);
 }
 
@@ -189,7 +154,7 @@ struct StoredFit {
   long residual_count = 0;
   long evaluations = 0;
   std::optional<double> wall_seconds, simulation_tolerance;
-  std::vector<StoredParameter> parameters;
+  std::vector<calib::FittedParameter> parameters;
   calib::Correlation correlation;
   int rank = 0;
   std::vector<double> singular_values;

@@ -25,7 +25,7 @@ struct StoredTablesFit {
   long evaluations = 0;
   long iterations = 0;
   std::optional<double> wall_seconds;
-  std::vector<StoredParameter> parameters;
+  std::vector<calib::FittedParameter> parameters;
   calib::Correlation correlation;
   std::vector<calib::TableResidual> residuals;
   std::vector<std::string> left_out;

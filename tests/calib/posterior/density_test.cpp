@@ -70,7 +70,7 @@ struct Scene {
     found.reduced_chi_square = 1.0;
     parameters.assign(z.size(), FittedParameter());
     for (std::size_t j = 0; j < z.size(); ++j) {
-      parameters[j].interval = IntervalSource::standard_error;
+      parameters[j].ci95_from = std::optional(IntervalSource::standard_error);
       found.standard_error[j] = white_error(j);
     }
   }
@@ -182,7 +182,7 @@ TEST_CASE("posterior density: its curvature is that of the errors that the fit s
   CHECK_THAT((plain - own) / (curvature(wide) - own), WithinRel(9.0, 0.02));
   // The robust error is used if the interval is based on it.
   for (FittedParameter& each : scene.parameters)
-    each.interval = IntervalSource::robust_standard_error;
+    each.ci95_from = std::optional(IntervalSource::robust_standard_error);
   for (std::size_t k = 0; k < scene.parameters.size(); ++k)
     scene.found.robust_standard_error[k] = 2.0 * scene.white_error(k);
   CHECK_THAT((plain - own) / (curvature(scene.density()) - own), WithinRel(4.0, 0.25));

@@ -8,8 +8,7 @@ namespace rigcal::calib {
 namespace {
 
 FittedParameter bounded_leak(double limit) {
-  FittedParameter leak;
-  leak.index = model::parameter_index(model::PlantKind::load_pressure, "leakage_coefficient");
+  FittedParameter leak = plain_parameter("leakage_coefficient");
   leak.fitted = true;
   leak.scope = datasets::Scope::leak_level;
   leak.level = "none";
@@ -81,10 +80,7 @@ TEST_CASE("parameters: each is identified, or negligible", "[calib]") {
   }
   SECTION("known values that are taken as exact are named, and change nothing") {
     const auto add = [&](const char* key) {
-      FittedParameter known;
-      known.index = model::parameter_index(model::PlantKind::load_pressure, key);
-      scene.fit.parameters.push_back(known);
-      return known.index;
+      return scene.fit.parameters.emplace_back(plain_parameter(key)).index;
     };
     add("piston_area");
     add("leakage_smoothing");  // a numerical parameter, not a property of the rig

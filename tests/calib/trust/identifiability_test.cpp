@@ -74,18 +74,18 @@ TEST_CASE("identifiability: an interval ends where the parameter does", "[calib]
 TEST_CASE("identifiability: the robust error, unless it is small and hardly known", "[calib]") {
   Graded rig(10.0);
   rig.found.robust_standard_error = {5.0};
-  CHECK(rig.graded().interval == IntervalSource::robust_standard_error);
+  CHECK(rig.graded().ci95_from == IntervalSource::robust_standard_error);
   CHECK_THAT(rig.graded().ci95->high, WithinRel(110.0, 1e-12));
   CHECK(rig.graded().degrees_of_freedom == 50.0);
   rig.found.robust_freedom = {2.0};
   rig.found.freedom = 7.0;
-  CHECK(rig.graded().interval == IntervalSource::standard_error);
+  CHECK(rig.graded().ci95_from == IntervalSource::standard_error);
   CHECK(rig.graded().degrees_of_freedom == 7.0);
   rig.found.robust_standard_error = {15.0};
-  CHECK(rig.graded().interval == IntervalSource::robust_standard_error);
+  CHECK(rig.graded().ci95_from == IntervalSource::robust_standard_error);
   // Residuals far below the stated noise carry no information about it.
   rig.found.reduced_chi_square = 0.2;
-  CHECK(rig.graded().interval == IntervalSource::standard_error);
+  CHECK(rig.graded().ci95_from == IntervalSource::standard_error);
 }
 
 TEST_CASE("identifiability: a wider interval replaces its own clause, wherever that stands",

@@ -155,8 +155,9 @@ TEST_CASE("own unknowns: a fit finds them, and stores correlations of the shared
     if (!each.fitted) continue;
     REQUIRE(each.ci95);
     CHECK(each.correlated == (each.scope == Scope::rig));
-    const double truth = each.scope == Scope::condition ? rig.twin.offsets.at(each.level).second
-                                                        : rig.twin.truth.setting(each.index)->value;
+    const double truth = each.scope == Scope::condition
+                             ? rig.twin.offsets.at(each.level.value()).second
+                             : rig.twin.truth.setting(each.index)->value;
     beyond += truth < each.ci95->low || truth > each.ci95->high;
     CHECK(each.robust_standard_error.value() > 0.5 * each.standard_error.value());
     CHECK(each.robust_standard_error.value() < 2.0 * each.standard_error.value());

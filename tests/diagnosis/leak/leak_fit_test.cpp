@@ -25,6 +25,8 @@ calib::FittedParameter fitted(int index, double error, std::optional<double> rob
   p.index = index;
   p.fitted = true;
   p.value = 1.0;
+  p.lower = 0.0;
+  p.upper = 0.0;
   p.standard_error = error;
   p.robust_standard_error = robust;
   return p;

@@ -17,11 +17,8 @@ int main(int argc, char** argv) {
     report::JobTerms terms{.command = "consumer", .options = {}, .threads = 2, .cancel = cancel};
     terms.hold = [&](report::PlannedFiles planned) { results.plan(std::move(planned)); };
     report::JobResult job = report::fit_job(campaign, {}, terms);
-    const auto table = model::parameter_table(campaign->rig.plant);
-    for (const calib::FittedParameter& each : job.fit->fit.parameters) {
-      const model::ParameterSpec& spec = table[static_cast<std::size_t>(each.index)];
-      if (each.fitted) std::printf("%s %.6g %s\n", spec.key.data(), each.value, spec.unit.data());
-    }
+    for (const calib::FittedParameter& each : job.fit->fit.parameters)
+      if (each.fitted) std::printf("%s %.6g %s\n", each.key.c_str(), each.value, each.unit.c_str());
     report::write_job(results, 2, std::move(job));
   } catch (const std::exception& error) {
     std::fprintf(stderr, "consumer: %s\n", error.what());

@@ -21,14 +21,16 @@ struct Scene {
   Scene() { fit.status = calib::FitStatus::converged; }
 
   calib::FittedParameter& add_mass(double value, const Range& ci95) {
-    calib::FittedParameter& mass = fit.parameters.emplace_back();
-    mass.index = model::parameter_index(campaign.rig.plant, "mass");
+    const model::PlantKind plant = campaign.rig.plant;
+    calib::FittedParameter& mass = fit.parameters.emplace_back(calib::parameter_in_row(
+        plant, model::parameter_index(plant, "mass"), datasets::Scope::rig, {}));
     mass.value = value;
     mass.lower = 10.0;
     mass.upper = 500.0;
     mass.standard_error = 0.25;
     mass.ci95 = ci95;
-    mass.interval = calib::IntervalSource::standard_error;
+    mass.ci95_from = std::optional(calib::IntervalSource::standard_error);
+    mass.identifiability = calib::Identifiability::identified;
     mass.fitted = true;
     return mass;
   }
