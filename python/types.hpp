@@ -5,9 +5,9 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
-#include <variant>
 
 #include "common/describe.hpp"
 #include "common/range.hpp"
