@@ -194,7 +194,7 @@ void count_healthy(const diagnosis::Diagnosis& found, const std::string& level,
                    DaysCounts& counts) {
   for (const diagnosis::RecordDiagnosis& record : found.records) {
     if (record.condition.find(level) == std::string::npos) continue;
-    if (!record.fit.ok()) throw std::runtime_error(record.fit.failure);
+    if (!record.fit.ok()) throw std::runtime_error(record.condition + ": " + record.fit.failure);
     const bool alarm = record.estimate.leak_detected;
     if (record.repeat) {
       ++counts.singles;

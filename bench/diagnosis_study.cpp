@@ -234,10 +234,10 @@ void study_classes(Campaign campaign, const char* variant, int first, int last) 
     Campaign told = campaign;
     const auto rig = healthy_fit(told, records);
     const auto found = diagnose(told, records, rig);
-    single.add(found.single);
-    averaged.add(found.averaged);
-    features.add(found.features);
-    other_signals.add(found.features_of_other_signals);
+    single.add(found.methods.fitted_leak_single);
+    averaged.add(found.methods.fitted_leak_averaged);
+    features.add(found.methods.features_leave_one_repeat_out);
+    other_signals.add(found.methods.features_leave_one_signal_out);
     for (const auto& record : found.records) {
       if (!record.repeat || !record.truth || record.leak_class == record.truth) continue;
       ++wrong[record.condition].right;

@@ -69,9 +69,9 @@ double flow_through(const ForeignRig& rig, double volts, double load, double sup
   return skew * valve_flow(rig, volts, load, supply);
 }
 
-/// @param share  elapsed fraction of the record
+/// @param elapsed  fraction of the record that has passed
 ForeignState slope(const ForeignRig& rig, const ForeignState& s, const Memory& memory,
-                   double reference, double share) {
+                   double reference, double elapsed) {
   const double position = s[0];
   const double velocity = s[1];
   const double load = s[2];
@@ -82,7 +82,7 @@ ForeignState slope(const ForeignRig& rig, const ForeignState& s, const Memory& m
   const double command = command_at(rig, s, memory, seen);
   const double spool = with_play(rig, memory.played, spool_signal(rig, s, command));
   const double volts = without_band(spool + rig.null_shift_v, rig.dead_band_v);
-  const double source = rig.supply_pa * (1.0 - rig.supply_drift * share);
+  const double source = rig.supply_pa * (1.0 - rig.supply_drift * elapsed);
   double supply = source;
   if (rig.sag > 0.0) {
     const double full = valve_flow(rig, rig.limit_v, 0.0, source);
@@ -100,7 +100,7 @@ ForeignState slope(const ForeignRig& rig, const ForeignState& s, const Memory& m
                           rig.square_damping * velocity * std::abs(velocity);
   const double end = 2.0 * position * rig.area_m2 / rig.volume_m3;  // +-1 at the ends
   const double oil = (rig.volume_m3 + rig.hose_volume_m3) * (1.0 - rig.volume_bow * end * end);
-  const double stiffness = 4.0 * rig.bulk_modulus_pa * (1.0 + rig.oil_drift * share) / oil;
+  const double stiffness = 4.0 * rig.bulk_modulus_pa * (1.0 + rig.oil_drift * elapsed) / oil;
   ForeignState d{};
   d[0] = velocity;
   d[1] = (rig.area_m2 * load - rig.damping_n_s_per_m * velocity - friction) / rig.mass_kg;
@@ -137,11 +137,11 @@ ForeignState stepped(const ForeignRig& rig, const Reference& reference, double t
   const double first = reference_at(reference, t - rig.delay_s + inside);
   const double middle = reference_at(reference, t - rig.delay_s + 0.5 * kStep_s);
   const double last = reference_at(reference, t - rig.delay_s + kStep_s - inside);
-  const double share = t / reference.duration_s;
-  const ForeignState a = slope(rig, s, memory, first, share);
-  const ForeignState b = slope(rig, moved(s, a, 0.5 * kStep_s), memory, middle, share);
-  const ForeignState c = slope(rig, moved(s, b, 0.5 * kStep_s), memory, middle, share);
-  const ForeignState d = slope(rig, moved(s, c, kStep_s), memory, last, share);
+  const double elapsed = t / reference.duration_s;
+  const ForeignState a = slope(rig, s, memory, first, elapsed);
+  const ForeignState b = slope(rig, moved(s, a, 0.5 * kStep_s), memory, middle, elapsed);
+  const ForeignState c = slope(rig, moved(s, b, 0.5 * kStep_s), memory, middle, elapsed);
+  const ForeignState d = slope(rig, moved(s, c, kStep_s), memory, last, elapsed);
   ForeignState next = s;
   for (std::size_t i = 0; i < s.size(); ++i)
     next[i] += kStep_s / 6.0 * (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]);

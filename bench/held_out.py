@@ -15,7 +15,7 @@ The last two are fitted by least squares to the fitted conditions. A channel tha
 error", for the reference minus the channel, because the reference alone predicts the channel almost completely.
 
 --below scores both series after a low-pass filter without phase, for each of the frequencies. The models are those fitted to
-the whole band. "share" is the fraction of the measured variance that the filter leaves.
+the whole band. "fraction" is that of the measured variance which the filter leaves.
 
 --leave-one-out is for campaigns that fit every condition. It predicts each of them without a model of rigcal, whose fit has
 seen it, by two that have not:
@@ -76,7 +76,7 @@ def rho2(table, measured, simulated, below_hz=None):
     return 1.0 - np.var(measured - simulated) / np.var(measured)
 
 
-def share_below(table, measured, below_hz):
+def fraction_below(table, measured, below_hz):
     """Returns the fraction of the variance that the filter leaves."""
     return np.var(counted(table, [measured], below_hz)[0]) / np.var(counted(table, [measured])[0])
 
@@ -165,7 +165,7 @@ def held_out_rows(tables, uses, options):
             models = [simulated(table), null_model(fitted, measured).simulated(table),
                       black_box(fitted, measured, options.taps).simulated(table)]
             for below_hz in options.below or [None]:
-                band = [f"{below_hz:g} Hz", written(share_below(table, measured(table), below_hz))] if below_hz else []
+                band = [f"{below_hz:g} Hz", written(fraction_below(table, measured(table), below_hz))] if below_hz else []
                 scores = [rho2(table, measured(table), each, below_hz) for each in models]
                 yield [f"`{name}`", words, *band, *map(written, scores)]
 
@@ -201,7 +201,7 @@ def main():
         channels = [words for words, _, _ in channels_of(next(iter(tables.values())))]
         header = ["condition", *(f"{model}: {words}" for model in ("copy", "black box") for words in channels)]
     else:
-        header = ["condition", "channel", *(["below", "share"] if options.below else []), "rigcal", "null", "black box"]
+        header = ["condition", "channel", *(["below", "fraction"] if options.below else []), "rigcal", "null", "black box"]
     print_table(header, rows)
 
 

@@ -1,4 +1,4 @@
-// Prints figures in docs/performance.md as tables of CPU times, which are medians over interleaved
+// Prints figures in docs/quality.md as tables of CPU times, which are medians over interleaved
 // rounds.
 //
 //   rigcal_speed [ROUNDS]           generated drives

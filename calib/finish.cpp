@@ -23,15 +23,13 @@ void add_predictions(Fit& fit) {
   std::vector<LackOfFit> predictions;
   for (const ConditionScore& score : fit.conditions) {
     for (const ChannelScore& channel : score.channels) {
-      const bool there =
-          std::any_of(fit.lack_of_fit.begin(), fit.lack_of_fit.end(), [&](const LackOfFit& test) {
-            return test.condition == score.id && test.channel == channel.channel;
-          });
-      if (channel.lack_of_fit && !there) predictions.push_back(*channel.lack_of_fit);
+      if (channel.lack_of_fit && !fit.lack_of_fit.has(score.id, channel.channel))
+        predictions.push_back(*channel.lack_of_fit);
     }
   }
   judge_together(predictions);
-  fit.lack_of_fit.insert(fit.lack_of_fit.end(), predictions.begin(), predictions.end());
+  auto& tests = fit.lack_of_fit.tests;
+  tests.insert(tests.end(), predictions.begin(), predictions.end());
 }
 
 /// Returns the conditions from which the campaign's values are assumed to have been estimated.

@@ -44,6 +44,16 @@ struct Accuracy {
                   accuracy_ci95, confusion)
 };
 
+/// Accuracy of each method.
+struct Methods {
+  Accuracy fitted_leak_single;             ///< fitted leaks in single repeats
+  Accuracy fitted_leak_averaged;           ///< fitted leaks in averages
+  Accuracy features_leave_one_repeat_out;  ///< the paper's features, learned without the repeat
+  Accuracy features_leave_one_signal_out;
+  RIGCAL_DESCRIBE(fitted_leak_single, fitted_leak_averaged, features_leave_one_repeat_out,
+                  features_leave_one_signal_out)
+};
+
 /// Computes the accuracy of a method.
 ///
 /// @param judged  classified records; if empty, the accuracy is absent

@@ -433,13 +433,13 @@ Diagnosis diagnose(const Campaign& campaign, const std::vector<datasets::RepeatR
   for (RecordDiagnosis& record : result.records) set_truth(campaign, record);
   classify_by_features(result.records);
   const auto by_leak = [](const RecordDiagnosis& record) { return record.leak_class; };
-  result.single = accuracy(result.records, Method::fitted_leak, true, by_leak);
-  result.averaged = accuracy(result.records, Method::fitted_leak, false, by_leak);
-  result.features = accuracy(result.records, Method::features, true,
-                             [](const RecordDiagnosis& record) { return record.by_features; });
-  result.features_of_other_signals =
+  result.methods = {
+      accuracy(result.records, Method::fitted_leak, true, by_leak),
+      accuracy(result.records, Method::fitted_leak, false, by_leak),
       accuracy(result.records, Method::features, true,
-               [](const RecordDiagnosis& record) { return record.by_features_of_other_signals; });
+               [](const RecordDiagnosis& record) { return record.by_features; }),
+      accuracy(result.records, Method::features, true,
+               [](const RecordDiagnosis& record) { return record.by_features_of_other_signals; })};
   for (const std::string& each : confounded(campaign)) result.warnings.push_back(each);
   if (const std::string text = in_words(between, result.other_days); !text.empty())
     result.warnings.push_back(text);

@@ -84,10 +84,7 @@ struct Diagnosis {
   /// Days of records that are not from the day of their reference.
   std::vector<std::string> other_days;
   std::vector<LeakTrend> trends;  ///< trends over states that differ only by date
-  Accuracy single;                ///< accuracy of fitted leaks in single repeats
-  Accuracy averaged;              ///< accuracy of fitted leaks in averages
-  Accuracy features;  ///< accuracy of the paper's features, learned without the repeat itself
-  Accuracy features_of_other_signals;
+  Methods methods;
   std::vector<std::string> warnings;
   /// Returns true if at least one record was diagnosed.
   bool usable() const;

@@ -12,6 +12,7 @@ namespace {
 
 /// A trend with a p-value below this is significant.
 constexpr double kSignificantTrend = 0.05;
+constexpr double kInPercent = 100.0;
 
 /// A state with its date as a number of days.
 struct DatedState {
@@ -71,41 +72,52 @@ metrics::Trend line_through(const std::vector<DatedState>& states,
 }
 
 /// Predicts when the line reaches the next limit.
-void foresee(const MachineState& last, const datasets::DiagnosisSettings& settings,
-             LeakTrend& trend) {
-  const double share = last.estimate.share;
+///
+/// @param rate  change in the share per day, with its interval
+std::optional<NextLimit> foresee(const DatedState& last, double rate, const Range& ci95,
+                                 const datasets::DiagnosisSettings& settings) {
+  const double share = last.state->estimate.share;
   const auto next = std::upper_bound(settings.limits.begin(), settings.limits.end(), share);
-  if (next == settings.limits.end()) return;
-  const auto day = [&](double per_day) { return trend.last_day + (*next - share) / per_day; };
-  trend.next_class =
+  if (next == settings.limits.end()) return std::nullopt;
+  const auto day = [&](double per_day) { return last.day + (*next - share) / per_day; };
+  NextLimit limit;
+  limit.class_ =
       datasets::kLeakClasses[static_cast<std::size_t>(next - settings.limits.begin()) + 1];
-  trend.next_limit = *next;
-  trend.reached_day = day(trend.share_per_day);
-  trend.earliest_day = day(trend.share_per_day_ci95.high);
-  if (trend.share_per_day_ci95.low > 0.0) trend.latest_day = day(trend.share_per_day_ci95.low);
+  limit.percent = kInPercent * *next;
+  limit.reached_day = day(rate);
+  limit.reached = date_of(limit.reached_day);
+  limit.earliest = date_of(day(ci95.high));
+  if (ci95.low > 0.0) {
+    limit.latest_day = day(ci95.low);
+    limit.latest = date_of(*limit.latest_day);
+  }
+  return limit;
 }
 
 LeakTrend trend_of(const DatedMachine& machine, const Eigen::MatrixXd& rig_covariance,
                    const datasets::DiagnosisSettings& settings, const DayVariance& variance) {
   const metrics::Trend line = line_through(machine.states, rig_covariance, variance);
   const MachineState& last = *machine.states.back().state;
+  const double rate = last.share_slope * line.slope;
+  const Range ci95{last.share_slope * line.ci95_low, last.share_slope * line.ci95_high};
   LeakTrend trend;
-  trend.leak_level = machine.leak_level;
-  trend.specimen = machine.specimen;
+  trend.leak_level = unless_empty(machine.leak_level);
+  trend.specimen = unless_empty(machine.specimen);
   trend.duty = last.duty;
-  trend.first_day = machine.states.front().day;
-  trend.last_day = machine.states.back().day;
+  trend.first_date = date_of(machine.states.front().day);
+  trend.last_date = date_of(machine.states.back().day);
   trend.dates = static_cast<int>(machine.states.size());
   trend.coefficient_per_day = line.slope;
   trend.coefficient_per_day_error = line.slope_standard_error / line.widened;
-  trend.share_per_day = last.share_slope * line.slope;
-  trend.share_per_day_ci95 = {last.share_slope * line.ci95_low, last.share_slope * line.ci95_high};
-  trend.p = line.p_value;
-  trend.significant = trend.p < kSignificantTrend;
+  trend.share_percent_per_day = kInPercent * rate;
+  trend.share_percent_per_day_ci95 = {kInPercent * ci95.low, kInPercent * ci95.high};
+  trend.p_value = line.p_value;
+  trend.significant = trend.p_value < kSignificantTrend;
   trend.chi_squared = line.chi_square;
   trend.freedom = static_cast<double>(machine.states.size() - 2);
   trend.widened = line.widened;
-  if (trend.significant && line.slope > 0.0) foresee(last, settings, trend);
+  if (trend.significant && line.slope > 0.0)
+    trend.next_limit = foresee(machine.states.back(), rate, ci95, settings);
   return trend;
 }
 

@@ -6,35 +6,46 @@
 #include <utility>
 #include <vector>
 
+#include "common/describe.hpp"
 #include "common/range.hpp"
 #include "diagnosis/machine_state.hpp"
 
 namespace rigcal::diagnosis {
 
+/// The next class limit that a growing leak reaches.
+struct NextLimit {
+  LeakClass class_ = LeakClass::normal;  ///< the class that begins at the limit
+  double percent = 0.0;
+  std::string reached, earliest;      ///< dates
+  std::optional<std::string> latest;  ///< absent if the limit may never be reached
+  /// The same in days since 1970-01-01; not stored.
+  double reached_day = 0.0;
+  std::optional<double> latest_day = {};
+  RIGCAL_DESCRIBE(class_, percent, reached, earliest, latest)
+};
+
 /// Change in one machine's leak from date to date.
 struct LeakTrend {
-  std::string leak_level, specimen;  ///< common to all its states; empty if not stated
-  std::string duty;                  ///< signal whose share is stated
-  int first_day = 0, last_day = 0;   ///< days since 1970-01-01
+  std::optional<std::string> leak_level, specimen;  ///< common to all its states
+  std::string sentence;                             ///< for an operator; set by `report`
   int dates = 0;
+  std::string first_date, last_date;
+  std::string duty;  ///< signal whose share is stated
   double coefficient_per_day = 0.0;
-  /// Standard error of coefficient_per_day due to the errors of the states, without `widened`.
+  /// Standard error of coefficient_per_day due to the errors of the states, without `widened`. Not
+  /// stored.
   double coefficient_per_day_error = 0.0;
-  double share_per_day = 0.0;  ///< slope of the share at the duty, close to the last date
-  Range share_per_day_ci95{};
-  double p = 1.0;            ///< two-sided p-value for no change
+  double share_percent_per_day = 0.0;  ///< slope of the share at the duty, close to the last date
+  Range share_percent_per_day_ci95{};
+  double p_value = 1.0;      ///< two-sided, for no change
   bool significant = false;  ///< whether the trend is significant at 5 %
   double chi_squared = 0.0;  ///< measure of the variation of the states about the line
   double freedom = 0.0;      ///< degrees of freedom of chi_squared: dates - 2
   double widened = 1.0;  ///< factor on the error; above 1 if the states are too far from the line
-  /// Set if the leak grows significantly: the next limit above the share on the last date, and the
-  /// day on which the line reaches it, with the days for the ends of the interval. If `latest_day`
-  /// is absent, the limit may never be reached.
-  std::optional<LeakClass> next_class;
-  double next_limit = 0.0;
-  double reached_day = 0.0;
-  double earliest_day = 0.0;
-  std::optional<double> latest_day;
+  std::optional<NextLimit> next_limit;  ///< present if the leak grows significantly
+  RIGCAL_DESCRIBE(leak_level, specimen, sentence, dates, first_date, last_date, duty,
+                  coefficient_per_day, share_percent_per_day, share_percent_per_day_ci95, p_value,
+                  significant, chi_squared, freedom, widened, next_limit)
 };
 
 /// Returns the trend of every machine that was diagnosed on three or more dates, in order of

@@ -82,9 +82,8 @@ PooledLeak pooled_leak(const std::vector<StateMember>& members,
   pooled.chi_squared = left.dot(root.solve(left));
   pooled.freedom = static_cast<double>(n - 1);
   if (n > 1) pooled.p = metrics::chi_squared_exceedance(pooled.chi_squared, pooled.freedom);
-  pooled.disagree = pooled.p < kDisagree;
-  if (pooled.disagree)
-    pooled.widened = std::max(1.0, std::sqrt(pooled.chi_squared / pooled.freedom));
+  pooled.agree = !(pooled.p < kDisagree);
+  if (!pooled.agree) pooled.widened = std::max(1.0, std::sqrt(pooled.chi_squared / pooled.freedom));
 
   double variance = 0.0;
   double squares = 0.0;  // sum for the Welch-Satterthwaite formula
@@ -117,14 +116,10 @@ LimitDistance nearest_limit(const LeakEstimate& estimate,
   for (std::size_t i = 1; i < settings.limits.size(); ++i) {
     if (std::abs(share - settings.limits[i]) < std::abs(share - settings.limits[best])) best = i;
   }
-  LimitDistance nearest;
-  nearest.above = datasets::kLeakClasses[best + 1];
-  nearest.limit = settings.limits[best];
-  nearest.distance = share - nearest.limit;
-  const bool within =
-      estimate.share_ci95.low <= nearest.limit && nearest.limit <= estimate.share_ci95.high;
-  nearest.on_limit = within || std::abs(nearest.distance) <= kOnLimit * nearest.limit;
-  return nearest;
+  const double limit = settings.limits[best];
+  const bool within = estimate.share_ci95.low <= limit && limit <= estimate.share_ci95.high;
+  return {datasets::kLeakClasses[best + 1], 100.0 * limit, 100.0 * (share - limit),
+          within || std::abs(share - limit) <= kOnLimit * limit};
 }
 
 }  // namespace rigcal::diagnosis

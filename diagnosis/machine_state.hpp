@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "common/describe.hpp"
 #include "diagnosis/leak/leak_estimate.hpp"
 #include "diagnosis/leak/leak_fit.hpp"
 #include "metrics/significance.hpp"
@@ -42,18 +43,23 @@ struct DayVariance {
   double freedom = metrics::kManyDegrees;
 };
 
+/// Test of whether the signals recorded in one state give the same leak.
+struct SignalsAgreement {
+  double p = 1.0;            ///< probability that errors alone cause such a disagreement
+  double chi_squared = 0.0;  ///< measure of the disagreement between members
+  double freedom = 0.0;      ///< number of members - 1
+  double widened = 1.0;      ///< factor by which the error was widened, at least 1
+  bool agree = true;         ///< false if the disagreement is significant at 5 %
+  RIGCAL_DESCRIBE(p, chi_squared, freedom, widened, agree)
+};
+
 /// The leak that all members have in common.
-struct PooledLeak {
+struct PooledLeak : SignalsAgreement {
   double coefficient = 0.0;
   CoefficientError error;       ///< widened if the members disagree
   Eigen::VectorXd rig_moves;    ///< change in the pooled coefficient
   Eigen::VectorXd day_moves;    ///< change in the pooled coefficient with each quantity on each day
   Eigen::VectorXd day_weights;  ///< one per day
-  double chi_squared = 0.0;     ///< measure of the disagreement between members
-  double freedom = 0.0;         ///< number of members - 1
-  double p = 1.0;               ///< probability that errors alone cause such a disagreement
-  bool disagree = false;        ///< true if the disagreement is significant at 5 %
-  double widened = 1.0;         ///< factor by which the error was widened, at least 1
 };
 
 /// Pools members by generalised least squares. Each member has its own error. In addition, a common
@@ -69,11 +75,12 @@ PooledLeak pooled_leak(const std::vector<StateMember>& members,
 
 /// Position of a share relative to the limits of the classes.
 struct LimitDistance {
-  LeakClass above = LeakClass::slight;  ///< the class that begins at the limit
-  double limit = 0.0;
-  double distance = 0.0;  ///< share minus `limit`
+  LeakClass class_ = LeakClass::normal;  ///< the class that begins at the limit
+  double percent = 0.0;
+  double distance_percentage_points = 0.0;  ///< share minus the limit
   /// True if the interval includes the limit, or the share is within 5 % of it.
   bool on_limit = false;
+  RIGCAL_DESCRIBE(class_, percent, distance_percentage_points, on_limit)
 };
 LimitDistance nearest_limit(const LeakEstimate& estimate,
                             const datasets::DiagnosisSettings& settings);

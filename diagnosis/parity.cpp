@@ -51,13 +51,13 @@ ParityCondition residuals_of(const LeakProblem& problem, const Condition& condit
           residuals[records.singles.empty() ? 0 : k + 1].at(Channel::position);
     result.day_changes_m = healthy_day_changes(problem, condition, records.average);
   } catch (const NoResultError& error) {
-    for (ParityRecord& record : result.records) record.failure = error.what();
+    for (ParityResidual& record : result.records) record.failure = error.what();
   }
   return result;
 }
 
 /// Returns the residual at the sample that is nearest to a time.
-double at_time(const ParityCondition& condition, const ParityRecord& record, double t) {
+double at_time(const ParityCondition& condition, const ParityResidual& record, double t) {
   const auto& times = condition.time_s;
   const auto above = std::lower_bound(times.begin(), times.end(), t);
   auto i = static_cast<std::size_t>(above - times.begin());
@@ -67,7 +67,7 @@ double at_time(const ParityCondition& condition, const ParityRecord& record, dou
 
 struct Healthy {
   const ParityCondition* condition = nullptr;
-  const ParityRecord* record = nullptr;
+  const ParityResidual* record = nullptr;
 };
 
 /// Returns true if a sample of a record counts, that is, if it was recorded and is within the
@@ -82,7 +82,7 @@ bool counts(const RepeatRecords& records, std::size_t repeat, double t) {
 }
 
 /// Returns the residual minus the mean residual of the healthy records.
-std::vector<double> corrected(const ParityCondition& condition, const ParityRecord& record,
+std::vector<double> corrected(const ParityCondition& condition, const ParityResidual& record,
                               std::size_t repeat, const RepeatRecords& records,
                               const std::vector<Healthy>& references) {
   std::vector<double> result = record.parity_m;
@@ -124,13 +124,13 @@ std::optional<ResidualValues> values_of(const std::vector<double>& residual_m,
 }
 
 /// Sets all members of a record that describe its residual, except the alarm.
-void describe(const std::vector<double>& time_s, double window_s, ParityRecord& record) {
+void describe(const std::vector<double>& time_s, double window_s, ParityResidual& record) {
   const auto values = values_of(record.residual_m, time_s, window_s);
   if (!values) {
     record.failure = "fewer than two samples count";
     return;
   }
-  record.features = values->features;
+  record.features = {values->features.mean, values->features.rms, values->features.std};
   record.moving_rms_m = values->moving_rms_m;
   record.peak_m = values->peak_m;
 }
@@ -192,7 +192,7 @@ class Work {
     }
     set_thresholds(references, signal);
     for (const std::size_t place : group.places) {
-      for (ParityRecord& record : result_.conditions[place].records)
+      for (ParityResidual& record : result_.conditions[place].records)
         raise(result_.conditions[place].time_s, signal, record);
     }
     conditions_.clear();
@@ -201,10 +201,10 @@ class Work {
   void check_false_alarms() {
     FalseAlarmCheck& check = result_.check;
     for (const ParityCondition& condition : result_.conditions) {
-      for (const ParityRecord& record : condition.records) {
-        if (!record.is_healthy || record.sets_threshold || !judged(record)) continue;
+      for (const ParityResidual& record : condition.records) {
+        if (!record.healthy || !record.alarm) continue;
         ++check.records;
-        check.alarms += record.alarm ? 1 : 0;
+        check.alarms += *record.alarm ? 1 : 0;
       }
     }
     check.expected = options_.false_alarm * check.records;
@@ -215,13 +215,6 @@ class Work {
   }
 
  private:
-  bool judged(const ParityRecord& record) const {
-    const auto signal =
-        std::find_if(result_.signals.begin(), result_.signals.end(),
-                     [&](const ParitySignal& each) { return each.signal == record.signal; });
-    return record.failure.empty() && signal != result_.signals.end() && signal->threshold_m;
-  }
-
   /// Marks and returns the healthy records on which the thresholds are based.
   std::vector<Healthy> references_of(const Group& group) {
     std::vector<Healthy> of_fit;
@@ -229,15 +222,15 @@ class Work {
     for (const std::size_t place : group.places) {
       ParityCondition& condition = result_.conditions[place];
       const datasets::Use use = campaign_.find(condition.condition)->use;
-      for (ParityRecord& record : condition.records) {
-        if (!record.is_healthy || !record.failure.empty()) continue;
+      for (ParityResidual& record : condition.records) {
+        if (!record.healthy || record.failure) continue;
         all.push_back({&condition, &record});
         if (use == datasets::Use::fit) of_fit.push_back(all.back());
       }
     }
     const std::vector<Healthy>& chosen = of_fit.size() >= kLeastHealthyRecords ? of_fit : all;
     for (const std::size_t place : group.places) {
-      for (ParityRecord& record : result_.conditions[place].records) {
+      for (ParityResidual& record : result_.conditions[place].records) {
         record.sets_threshold = std::any_of(chosen.begin(), chosen.end(), [&](const Healthy& each) {
           return each.record == &record;
         });
@@ -248,8 +241,8 @@ class Work {
 
   void residual_of(ParityCondition& condition, std::size_t repeat, const RepeatRecords& records,
                    double window_s, const std::vector<Healthy>& references) {
-    ParityRecord& record = condition.records[repeat];
-    if (!record.failure.empty()) return;
+    ParityResidual& record = condition.records[repeat];
+    if (record.failure) return;
     std::vector<Healthy> others = references;
     std::erase_if(others, [&](const Healthy& each) { return each.record == &record; });
     record.reference_records = static_cast<int>(others.size());
@@ -358,17 +351,25 @@ class Work {
 
   static double square(double x) { return x * x; }
 
+  static std::optional<bool> above(const std::optional<double>& value,
+                                   const std::optional<double>& threshold) {
+    return threshold ? std::optional(value > threshold) : std::nullopt;
+  }
+
   void raise(const std::vector<double>& time_s, const ParitySignal& signal,
-             ParityRecord& record) const {
-    if (!signal.threshold_m || !record.failure.empty()) return;
+             ParityResidual& record) const {
+    if (!signal.threshold_m || record.failure) return;
     record.threshold_m = threshold(kPeak, record.days.norm());
-    record.feature_thresholds = feature_thresholds(record.days.norm());
+    const FeatureThresholds limits = feature_thresholds(record.days.norm());
+    record.exceeds = {above(record.features.mean_m, limits.mean_m),
+                      above(record.features.rms_m, limits.rms_m),
+                      above(record.features.std_m, limits.std_m)};
     if (record.sets_threshold) return;
     const auto first = std::find_if(record.moving_rms_m.begin(), record.moving_rms_m.end(),
                                     [&](double value) { return value > *record.threshold_m; });
-    if (first == record.moving_rms_m.end()) return;
-    record.alarm = true;
-    record.alarm_time_s =
+    record.alarm = first != record.moving_rms_m.end();
+    if (!*record.alarm) return;
+    record.time_to_alarm_s =
         time_s[static_cast<std::size_t>(first - record.moving_rms_m.begin())] - time_s.front();
   }
 
@@ -398,7 +399,7 @@ void warn_of_undated(const Campaign& campaign, Parity& result) {
 bool Parity::usable() const {
   return std::any_of(conditions.begin(), conditions.end(), [](const ParityCondition& condition) {
     return std::any_of(condition.records.begin(), condition.records.end(),
-                       [](const ParityRecord& record) { return record.failure.empty(); });
+                       [](const ParityResidual& record) { return !record.failure; });
   });
 }
 
@@ -427,9 +428,10 @@ Parity parity(const Campaign& campaign, const std::vector<RepeatRecords>& record
     const std::string signal = condition.waveform == datasets::Waveform::recorded
                                    ? "recorded, " + condition.id
                                    : signal_name(campaign, condition);
-    for (ParityRecord& record : result.conditions[i].records) {
+    for (ParityResidual& record : result.conditions[i].records) {
       record.signal = signal;
-      record.is_healthy = is_healthy(campaign, condition);
+      record.healthy = is_healthy(campaign, condition);
+      record.leak_level = condition.leak_level;
     }
     auto group = std::find_if(groups.begin(), groups.end(),
                               [&](const Group& each) { return each.signal == signal; });
@@ -440,7 +442,7 @@ Parity parity(const Campaign& campaign, const std::vector<RepeatRecords>& record
   for (const Group& group : groups) work.judge(group);
   work.check_false_alarms();
   for (const ParityCondition& condition : result.conditions) {
-    for (const ParityRecord& record : condition.records) {
+    for (const ParityResidual& record : condition.records) {
       const std::string day = day_label(*campaign.find(condition.condition));
       auto& days = result.other_days;
       if (record.days.norm() > 0.0 && std::find(days.begin(), days.end(), day) == days.end())

@@ -29,25 +29,32 @@ using FeatureThresholds = metrics::ByFeature<std::optional<double>>;
 /// (eq. 14). The mean of this residual over healthy records of the signal, which shows what the
 /// model lacks, is then subtracted. A healthy record is compared with the other healthy records.
 struct ParityRecord {
-  std::string condition, signal;
+  std::string condition;
   std::optional<int> repeat;  ///< counted from 1; absent for a file that is already averaged
-  bool is_healthy = false;
-  /// True if the threshold is based on this healthy record, which then raises no alarm.
+  std::string signal;
+  std::optional<std::string> leak_level;
+  bool healthy = false;
+  /// True if the threshold is based on this healthy record, which is then not judged.
   bool sets_threshold = false;
-  int reference_records = 0;     ///< number of healthy records whose mean was subtracted
-  std::string failure;           ///< why there is no residual; empty if there is one
-  std::vector<double> parity_m;  ///< shape (samples), before a reference is subtracted
-  /// Parity_m minus the reference; NaN for samples that do not count.
-  std::vector<double> residual_m;
-  std::vector<double> moving_rms_m;    ///< moving RMS over the window of the signal
-  metrics::ResidualFeatures features;  ///< computed from residual_m
-  double peak_m = 0.0;                 ///< largest moving_rms_m
-  DayWeights days;                     ///< day of the record relative to the days of its reference
-  /// Thresholds for peak_m and the features on the day of the record.
-  std::optional<double> threshold_m;
-  FeatureThresholds feature_thresholds;
-  bool alarm = false;         ///< true if peak_m exceeds the threshold
-  double alarm_time_s = 0.0;  ///< time from the first sample to the first one above the threshold
+  int reference_records = 0;           ///< number of healthy records whose mean was subtracted
+  std::optional<std::string> failure;  ///< why there is no residual
+  std::optional<double> peak_m;        ///< largest moving RMS
+  std::optional<bool> alarm;  ///< true if peak_m exceeds the threshold; absent if not judged
+  std::optional<double>
+      time_to_alarm_s;  ///< from the first sample to the first above the threshold
+  metrics::ByFeature<std::optional<double>> features;
+  metrics::ByFeature<std::optional<bool>> exceeds;  ///< absent without a threshold
+  Omittable<double> threshold_m;                    ///< for peak_m on the day of the record
+  RIGCAL_DESCRIBE(condition, repeat, signal, leak_level, healthy, sets_threshold, reference_records,
+                  failure, peak_m, alarm, time_to_alarm_s, features, exceeds, threshold_m)
+};
+
+/// The record with its series, shape (samples).
+struct ParityResidual : ParityRecord {
+  std::vector<double> parity_m;      ///< before a reference is subtracted
+  std::vector<double> residual_m;    ///< minus the reference; NaN for samples that do not count
+  std::vector<double> moving_rms_m;  ///< over the window of the signal
+  DayWeights days;                   ///< day of the record relative to the days of its reference
 };
 
 /// Records of one condition on a common time base.
@@ -58,7 +65,7 @@ struct ParityCondition {
   /// Change in that position with each quantity that differs between days, per standard deviation.
   /// Shape (samples, quantities).
   Eigen::MatrixXd day_changes_m;
-  std::vector<ParityRecord> records;
+  std::vector<ParityResidual> records;
 };
 
 /// Thresholds from the healthy records of one signal.

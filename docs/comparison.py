@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Prints the comparison with what one would use instead, from the tables that scripts/performance and scripts/coverage-study
-have printed into docs/performance.md and docs/uncertainty.md. usage: comparison.py"""
+have printed into docs/quality.md and docs/uncertainty.md. usage: comparison.py"""
 import pathlib
 import re
 import sys
@@ -25,12 +25,12 @@ def row(document, name):
 
 
 def main():
-    performance = (DOCS / "performance.md").read_text(encoding="utf-8")
+    quality = (DOCS / "quality.md").read_text(encoding="utf-8")
     uncertainty = (DOCS / "uncertainty.md").read_text(encoding="utf-8")
     if f"includes the truth, % ({PARAMETERS}) | warned, %" not in uncertainty:
         sys.exit("docs/uncertainty.md: the columns of the coverage study are others")
-    distance = re.search(r"^Distance from the optimum .*: baseline ([\d.]+), rigcal ([\d.]+);", performance, re.M)
-    baseline, rigcal, *_ = row("performance.md", "fit")
+    distance = re.search(r"^Distance from the optimum .*: baseline ([\d.]+), rigcal ([\d.]+);", quality, re.M)
+    baseline, rigcal, *_ = row("quality.md", "fit")
     print("| | rigcal | instead | printed by |")
     print("| --- | ---: | ---: | --- |")
     print(f"| fit of six signals, 86 006 samples: CPU time | {rigcal} ms | {baseline} ms | `scripts/performance` |")

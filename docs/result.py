@@ -4,7 +4,7 @@
     docs/result.py scores RESULT_DIR [CONDITION...]    agreement by condition and signal
     docs/result.py outcome RESULT_DIR...               verdict and what it rests on
     docs/result.py verdict RESULT_DIR...               of that the first line
-    docs/result.py parameters RESULT_DIR...            estimates; several folders stand side by side
+    docs/result.py parameters RESULT_DIR...            estimates; several folders are side by side
 """
 import pathlib
 import re
@@ -44,8 +44,8 @@ def message_of(result):
 
 def reason_text(reason):
     numbers = ", ".join(f"{name.replace('_', ' ')} {value:.3g}" for name, value in reason["numbers"].items() if name != "p")
-    told = [f"`{reason['code']}`", *([f"`{reason['subject']}`"] if reason["subject"] else [])]
-    return " of ".join(told) + (f": {numbers}" if numbers else "")
+    words = [f"`{reason['code']}`", *([f"`{reason['subject']}`"] if reason["subject"] else [])]
+    return " of ".join(words) + (f": {numbers}" if numbers else "")
 
 
 def outcome(*folders):
@@ -53,14 +53,14 @@ def outcome(*folders):
         result = read_json(folder, *RESULTS)
         rows = [["**verdict**", f"**{verdict_of(result)}**", message_of(result)]]
         rows += [[aspect, reason["state"].replace("_", " "), reason_text(reason)]
-                 for aspect, told in result["assessment"].items() for reason in told["reasons"]]
+                 for aspect, judged in result["assessment"].items() for reason in judged["reasons"]]
         print_table(["", "", ""], rows)
 
 
 def verdict(*folders):
     for folder in folders:
         result = read_json(folder, *RESULTS)
-        states = "; ".join(f"{aspect}: {told['state'].replace('_', ' ')}" for aspect, told in result["assessment"].items())
+        states = "; ".join(f"{aspect}: {judged['state'].replace('_', ' ')}" for aspect, judged in result["assessment"].items())
         print(f"**{verdict_of(result)}**, {message_of(result)} ({states}).")
 
 
@@ -69,8 +69,8 @@ def estimate(parameter):
     (low, high), value = parameter["ci95"], parameter["value"]
     factor, unit = scaled(max(abs(low), abs(high)), parameter["unit"])
     numbers = in_steps_of((high - low) * factor / 4.0, value * factor, low * factor, high * factor)
-    told = parameter["identifiability"].replace("_", " ") + (", at a bound" if parameter["at_bound"] else "")
-    return [f"{numbers[0]} {unit}".strip(), f"{numbers[1]} to {numbers[2]}", told]
+    grade = parameter["identifiability"].replace("_", " ") + (", at a bound" if parameter["at_bound"] else "")
+    return [f"{numbers[0]} {unit}".strip(), f"{numbers[1]} to {numbers[2]}", grade]
 
 
 def parameters(*folders):

@@ -26,7 +26,7 @@ struct NoiseFloor {
 ///   ccc  = 2 cov(y, t) / (var(y) + var(t)) = 2 (var(y) - sigma^2) / (2 var(y) - sigma^2)  (eq. 17)
 ///   absolute error = 100 E|n| / (max y - min y), E|n| = sigma sqrt(2 / pi) for Gaussian noise
 ///
-/// A single draw scatters around these values. With x = sigma^2 / var(t), a model with its gain
+/// A single draw varies around these values. With x = sigma^2 / var(t), a model with its gain
 /// increased by sqrt(1 + x) would reach ccc = 1 / sqrt(1 + x). This exceeds the 1 / (1 + x / 2) of
 /// the truth by at most x^2 / 8, so models are compared with the score of the truth.
 ///

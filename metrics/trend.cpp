@@ -11,11 +11,11 @@
 namespace rigcal::metrics {
 namespace {
 
-/// If chi-square is less probable than these, the points scatter by more than their errors explain.
-/// Days that no error counts are likely to add scatter, and a quartile keeps false trends few. If
-/// they are counted, the quartile would widen a quarter of all trends for nothing: four points then
-/// find a slope of four standard errors in 74 % instead of 88 %. At 5 % it would be 93 %, but with
-/// more false trends where the days are counted too small (decision 58).
+/// If chi-square is less probable than these, the points are farther from the line than their
+/// errors explain. Days that no error counts are likely to move the points, and a quartile keeps
+/// false trends few. If they are counted, the quartile would widen a quarter of all trends for
+/// nothing: four points then find a slope of four standard errors in 74 % instead of 88 %. At 5 %
+/// it would be 93 %, but with more false trends where the days are counted too small (decision 58).
 constexpr double kUpperQuartile = 0.25;
 constexpr double kWithDaysCounted = 0.1;
 /// A larger chi-square means that the errors cannot belong to these points.

@@ -148,10 +148,10 @@ CampaignClass bind_campaign(py::module_& module) {
                              "Whether its records were made by `rigcal synthesize`.")
       .def_property_readonly("conditions",
                              field(&Campaign::campaign, &datasets::Campaign::conditions),
-                             "In the order of the file.")
+                             "Conditions in the order of the file.")
       .def_property_readonly("parameters", &campaign_parameters,
-                             "Those that the file gives, in its order, with the changes of `set` "
-                             "and `free`.")
+                             "Parameters of the file, in its order, with the changes of `set` and "
+                             "`free`.")
       .def("__reduce__",
            [](const Campaign& self) {
              const report::CampaignChoice& choice = self.choice;

@@ -287,43 +287,48 @@ Raises:
             return self.fit.rank > 0 ? std::optional(self.fit.reduced_chi_square) : std::nullopt;
           },
           "Twice the cost over the degrees of freedom: about 1 if the noise is all that is left.")
-      .def_property_readonly("residual_count", of_fit(&calib::Fit::residual_count), "That count.")
-      .def_property_readonly("evaluations", of_fit(&calib::Fit::evaluations), "Of all residuals.")
-      .def_property_readonly("wall_seconds", of_fit(&calib::Fit::wall_seconds), "[s]")
+      .def_property_readonly("residual_count", of_fit(&calib::Fit::residual_count),
+                             "Number of residuals.")
+      .def_property_readonly("evaluations", of_fit(&calib::Fit::evaluations),
+                             "How often all residuals were evaluated.")
+      .def_property_readonly("wall_seconds", of_fit(&calib::Fit::wall_seconds),
+                             "Duration of the fit [s].")
       .def_property_readonly(
           "simulation_tolerance", of_fit(&calib::Fit::tolerance),
           "Local error per step of the simulations, over the peak of each state.")
       .def_property_readonly(
           "correlation_names", [](const Self& self) { return self.fit.correlation.names; },
-          "Of the rows and columns of `correlation`.")
+          "Names of the rows and columns of `correlation`.")
       .def_property_readonly(
           "correlation", [](const Self& self) { return array_of(self.fit.correlation.matrix); },
-          "Of the estimates that have a standard error, shape (names, names).")
+          "Correlations of the estimates that have a standard error, shape (names, names).")
       .def_property_readonly("rank", of_fit(&calib::Fit::rank),
-                             "Of the scaled Jacobian at the optimum.")
+                             "Rank of the scaled Jacobian at the optimum.")
       .def_property_readonly(
           "singular_values",
           [](const FitResultPtr& self) { return view(self, self->fit.singular_values); },
-          "Of the same, shape (unknowns).")
+          "Singular values of the scaled Jacobian at the optimum, shape (unknowns).")
       .def_property_readonly(
           "combinations", of_fit(&calib::Fit::combinations),
           "What the records fix where they do not fix single parameters, in words.")
       .def_property_readonly("interval_advice", of_fit(&calib::Fit::interval_advice),
                              "Which interval to believe, and why, in words.")
-      .def_property_readonly("starts", of_fit(&calib::Fit::starts), "One report for each.")
+      .def_property_readonly("starts", of_fit(&calib::Fit::starts), "One report per start.")
       .def_property_readonly("best_start", of_fit(&calib::Fit::best_start),
                              "Number of the start that counts.")
-      .def_property_readonly("bootstrap_replicates", of_fit(&calib::Fit::bootstrap_replicates),
-                             "That converged.")
       .def_property_readonly(
-          "draws", &draws_of,
-          "From the posterior, SI, shape (chains, draws, unknowns); None where there are none.")
+          "bootstrap_replicates",
+          [](const Self& self) { return self.fit.bootstrap ? self.fit.bootstrap->replicates : 0; },
+          "Number of bootstrap replicates that converged.")
+      .def_property_readonly("draws", &draws_of,
+                             "Draws from the posterior, SI, shape (chains, draws, unknowns); None "
+                             "without a posterior.")
       .def_property_readonly(
           "draw_names",
           [](const Self& self) {
             return self.fit.posterior ? self.fit.posterior->names : std::vector<std::string>();
           },
-          "Of the unknowns in `draws`.")
+          "Names of the unknowns in `draws`.")
       .def("json", &json_of_result,
            R"(Contents of the fit.json, or validation.json, that write() would write.
 

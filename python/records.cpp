@@ -206,7 +206,7 @@ void bind_records(py::module_& module, CampaignClass& campaign) {
             }
             return warnings;
           },
-          "Those of each record that has some, by the id of its condition.")
+          "Warnings by the id of the condition, for the records that have some.")
       .def("__str__", [](const Checked& self) { return self.text; })
       .def("__repr__", [](const Checked& self) {
         return fmt::format("<rigcal.Check: {} records>", self.records.size());

@@ -109,13 +109,13 @@ void bind_scored_channel(py::module_& module) {
           [](const ScoredChannel& self) {
             return by_name<std::optional<double>>(self.score.agreement);
           },
-          "By name, \"ccc\", \"rho2\"...; None where it does not exist.")
+          "Metrics by name, \"ccc\", \"rho2\"...; None where one does not exist.")
       .def_property_readonly("noise_floor", &noise_floor_of,
                              "What a perfect model would reach, by name; None where the noise is\n"
                              "unknown.")
       .def_property_readonly("expanded_uncertainty", &expanded_uncertainty_of,
-                             "Of each of `metrics`, 95 %, by repeats and sensor; None with fewer\n"
-                             "than two repeats.")
+                             "Expanded uncertainty (95 %) of each of `metrics`, from repeats and\n"
+                             "sensor; None with fewer than two repeats.")
       .def_property_readonly(
           "budgets", [](const ScoredChannel& self) { return dict_of(self.score.budgets); },
           "Contributions to the two-sided uncertainty of each of `metrics`, by\n"
@@ -123,11 +123,11 @@ void bind_scored_channel(py::module_& module) {
       .def_property_readonly(
           "gain_ratio", field(&ScoredChannel::score, &calib::ChannelScore::gain_ratio),
           "Simulated over measured amplitude of the fundamental; None where there is none.")
-      .def_property_readonly("phase_deg",
-                             field(&ScoredChannel::score, &calib::ChannelScore::phase_deg),
-                             "Of the fundamental [degrees]; or None.")
+      .def_property_readonly(
+          "phase_deg", field(&ScoredChannel::score, &calib::ChannelScore::phase_deg),
+          "Phase of the simulated fundamental minus that of the measured one [degrees]; or None.")
       .def_property_readonly("delay_s", field(&ScoredChannel::score, &calib::ChannelScore::delay_s),
-                             "Of the fundamental [s]; or None.")
+                             "Delay of the simulated fundamental [s]; or None.")
       .def_property_readonly(
           "problem", [](const ScoredChannel& self) { return unless_empty(self.score.problem); },
           "Why a metric does not exist, in words; or None.")
@@ -146,15 +146,15 @@ void bind_scores(py::module_& module) {
                    "How well the model agrees with the record of a condition; SI. Its arrays\n"
                    "cannot be written to.")
       .def_property_readonly("id", field(&Self::score, &calib::ConditionScore::id),
-                             "Of the condition.")
+                             "Id of the condition.")
       .def_property_readonly("use", field(&Self::score, &calib::ConditionScore::use),
                              "\"fit\" or \"validate\".")
       .def_property_readonly("verdict", field(&Self::score, &calib::ConditionScore::verdict),
                              "\"PASS\", \"WARN\" or \"FAIL\"; None without limits.")
       .def_property_readonly("reasons", field(&Self::score, &calib::ConditionScore::reasons),
-                             "Of WARN and FAIL, in words.")
+                             "Reasons for WARN or FAIL, in words.")
       .def_property_readonly("checks", field(&Self::score, &calib::ConditionScore::checks),
-                             "Of every limit.")
+                             "One check per limit.")
       .def_property_readonly("warnings", field(&Self::score, &calib::ConditionScore::data_warnings),
                              "What is doubtful about the recording, in words.")
       .def_property_readonly(
@@ -164,7 +164,7 @@ void bind_scores(py::module_& module) {
           "not_scored", [](const Self& self) { return unless_empty(self.score->not_scored); },
           "Why it was not scored, in words; or None.")
       .def_property_readonly("samples", field(&Self::score, &calib::ConditionScore::samples),
-                             "That count.")
+                             "Number of samples inside the windows.")
       .def_property_readonly(
           "time_s", [](const Self& self) { return view(self.score, self.score->time_s); },
           "Shape (samples of the whole record) [s].")

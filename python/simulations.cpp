@@ -236,7 +236,7 @@ void bind_simulations(py::module_& module, CampaignClass& campaign) {
           },
           "Where it ended [s]; None if it did not fail.")
       .def_property_readonly("steps", field(&Simulated::simulation, &model::Simulation::steps),
-                             "Of the solver.")
+                             "Number of steps of the solver.")
       .def_property_readonly(
           "time_s", [](const SimulatedPtr& self) { return view(self, self->time_s); },
           "Shape (samples) [s].")
@@ -273,7 +273,7 @@ Returns:
                            to_string(self.simulation.status), self.time_s.size());
       });
   const char* const about[] = {"Reading of the position sensor [m].",
-                               "Of the piston [m/s].",
+                               "Velocity of the piston [m/s].",
                                "Difference of the chamber pressures [Pa].",
                                "[Pa]",
                                "[Pa]",
@@ -283,10 +283,10 @@ Returns:
                                "Flow of the servo valve to the load [m3/s].",
                                "Internal leakage across the piston [m3/s].",
                                "Flow that moves the piston [m3/s].",
-                               "Of the piston and what is fixed to it [m/s2].",
-                               "Of the second mass [m/s2]; zero where there is none.",
+                               "Acceleration of the piston and what is fixed to it [m/s2].",
+                               "Acceleration of the second mass [m/s2]; zero where there is none.",
                                "Reading of a joint's angle sensor [rad]; zero where there is none.",
-                               "Of the joint [rad/s]; zero where there is none.",
+                               "Angular velocity of the joint [rad/s]; zero where there is none.",
                                "Pilot pressure of the spool [Pa]; zero where there is none."};
   static_assert(std::size(about) == model::kAllOutputs.size());
   for (std::size_t i = 0; i < model::kAllOutputs.size(); ++i) {

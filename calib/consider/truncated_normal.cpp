@@ -68,8 +68,8 @@ NormalMoments cut_at_zero(NormalMoments normal, const std::vector<Eigen::Index>&
     }
     if (moved < kSettled) break;
   }
-  // The factors of other components move a mean after its own factor has cut it. Where a component
-  // is held at zero with an uncertainty near rounding, that leaves the mean slightly below zero.
+  // The factors of other components move a mean after its own factor has cut it. If a
+  // component is confined to zero within rounding, that leaves its mean slightly below zero.
   for (const Eigen::Index k : never_negative) normal.mean(k) = std::max(0.0, normal.mean(k));
   return normal;
 }

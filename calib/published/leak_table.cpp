@@ -9,10 +9,13 @@
 #include "calib/published/flow_curve.hpp"
 #include "common/error.hpp"
 #include "common/parallel.hpp"
+#include "common/quantity.hpp"
 #include "metrics/distributions.hpp"
 
 namespace rigcal::calib {
 namespace {
+
+using datasets::Feature;
 
 /// Number of points per decade in a scan over the coefficient.
 constexpr int kScanPerDecade = 4;
@@ -52,66 +55,75 @@ std::string not_reached(const FlowCurve& curve, double target) {
   return note;
 }
 
-LeakGrade leak_grade(const LeakComparison& comparison) {
-  if (!comparison.relative_error_percent) return LeakGrade::outlier;
-  const double error = std::abs(*comparison.relative_error_percent);
+LeakGrade leak_grade(const LeakEntry& entry) {
+  if (!entry.relative_error_percent) return LeakGrade::outlier;
+  const double error = std::abs(*entry.relative_error_percent);
   if (error <= kGoodPercent + kHair) return LeakGrade::within_10;
   return error <= kFairPercent + kHair ? LeakGrade::within_16 : LeakGrade::outlier;
 }
 
-LeakComparison compare(FlowCurve& curve, const datasets::PrintedCoefficient& printed,
-                       const std::vector<LeakRoot>& roots) {
-  LeakComparison comparison;
-  comparison.published = printed.value;
-  comparison.share_percent = 100.0 * curve.at(printed.value).share();
+/// Compares the published coefficient of an entry with the computed ones.
+void compare(FlowCurve& curve, const datasets::PrintedCoefficient& printed, LeakEntry& entry) {
+  entry.published_coefficient = printed.value;
+  entry.share_at_published_percent = 100.0 * curve.at(printed.value).share();
   const double low = std::max(printed.value - printed.half_digit, 0.5 * printed.value);
   const double at_low = 100.0 * curve.at(low).share();
   const double at_high = 100.0 * curve.at(printed.value + printed.half_digit).share();
-  comparison.share_low_percent = std::min(at_low, at_high);
-  comparison.share_high_percent = std::max(at_low, at_high);
-  if (roots.empty()) return comparison;
-  const auto nearest =
-      std::min_element(roots.begin(), roots.end(), [&](const auto& a, const auto& b) {
-        return std::abs(std::log(a.coefficient / printed.value)) <
-               std::abs(std::log(b.coefficient / printed.value));
-      });
-  comparison.relative_error_percent = 100.0 * (nearest->coefficient / printed.value - 1.0);
-  return comparison;
+  entry.share_by_rounding_percent = {std::min(at_low, at_high), std::max(at_low, at_high)};
+  if (!entry.coefficients.empty()) {
+    const double nearest = *std::min_element(
+        entry.coefficients.begin(), entry.coefficients.end(), [&](double a, double b) {
+          return std::abs(std::log(a / printed.value)) < std::abs(std::log(b / printed.value));
+        });
+    entry.relative_error_percent = 100.0 * (nearest / printed.value - 1.0);
+  }
+  entry.grade = leak_grade(entry);
 }
 
-std::string note_of(const LeakEntry& entry, const FlowCurve& curve) {
+std::string note_of(const LeakEntry& entry, const datasets::LeakSignal& signal,
+                    const FlowCurve& curve) {
   std::string note;
-  if (entry.roots.empty()) note = not_reached(curve, entry.target_percent / 100.0);
-  if (entry.roots.size() > 1) {
-    note = fmt::format("{} coefficients leak this share", entry.roots.size());
+  if (entry.coefficients.empty()) note = not_reached(curve, entry.target_percent / 100.0);
+  if (entry.coefficients.size() > 1) {
+    note = fmt::format("{} coefficients leak this share", entry.coefficients.size());
   }
-  if (std::any_of(entry.roots.begin(), entry.roots.end(),
-                  [](const LeakRoot& root) { return !root.determined(); })) {
+  if (!entry.coefficients.empty() && !entry.determined) {
     note = join(note, "not determined: the share hardly depends on the coefficient here");
   }
-  if (entry.comparison && entry.grade == LeakGrade::outlier) {
+  if (entry.published_coefficient && entry.grade == LeakGrade::outlier) {
     note = join(note, fmt::format("at the published coefficient {:.3g} % leak",
-                                  entry.comparison->share_percent));
+                                  *entry.share_at_published_percent));
   }
-  const auto printed = entry.signal.printed.find(entry.target_percent);
-  return printed == entry.signal.printed.end() ? note : join(note, printed->second.note);
+  const auto printed = signal.printed.find(entry.target_percent);
+  return printed == signal.printed.end() ? note : join(note, printed->second.note);
 }
 
-LeakRoot root_at(const FlowCurve& curve, double coefficient, const LeakTableOptions& options) {
+/// Adds a root to an entry, with its slope and interval.
+void add_root(const FlowCurve& curve, double coefficient, const LeakTableOptions& options,
+              LeakEntry& entry) {
   const RigUncertainty& rig = options.rig;
-  LeakRoot root;
-  root.coefficient = coefficient;
+  entry.coefficients.push_back(coefficient);
   if (rig.indices.empty()) {
-    root.log_slope = curve.log_slope(coefficient);
-    return root;
+    entry.log_slopes.push_back(curve.log_slope(coefficient));
+    entry.coefficients_ci95.emplace_back();
+    return;
   }
   const Eigen::VectorXd slopes = curve.share_slopes(coefficient, rig.indices);
-  root.log_slope = coefficient * slopes(0);
-  const Eigen::VectorXd moves = -slopes.tail(slopes.size() - 1) / root.log_slope;
+  const double log_slope = entry.log_slopes.emplace_back(coefficient * slopes(0));
+  const Eigen::VectorXd moves = -slopes.tail(slopes.size() - 1) / log_slope;
   // The interval also covers the error in the share due to transient and sampling.
-  const double numeric = options.periodic.tolerance / root.log_slope;
-  root.log_error = std::sqrt(std::max(0.0, moves.dot(rig.covariance * moves)) + numeric * numeric);
-  return root;
+  const double numeric = options.periodic.tolerance / log_slope;
+  const double log_error =
+      std::sqrt(std::max(0.0, moves.dot(rig.covariance * moves)) + numeric * numeric);
+  const double factor = std::exp(metrics::normal_quantile(0.975) * log_error);
+  entry.coefficients_ci95.emplace_back(Range{coefficient / factor, coefficient * factor});
+}
+
+LeakDrive leak_drive(const PeriodicDrive& drive) {
+  LeakDrive described{drive.signal.waveform, drive.signal.frequency_hz, {}, {}};
+  const bool closed_loop = drive.rig.controller == model::ControllerKind::pid;
+  (closed_loop ? described.amplitude_m : described.amplitude_v) = drive.signal.amplitude;
+  return described;
 }
 
 struct Column {
@@ -126,22 +138,23 @@ Column column_of(const PeriodicDrive& drive, const model::ParameterValues& value
   Column column;
   for (const double target : settings.targets_percent) {
     LeakEntry entry;
-    entry.signal = drive.signal;
+    entry.drive = leak_drive(drive);
     entry.target_percent = target;
-    for (const double root : curve.roots(share_of, target / 100.0)) {
-      entry.roots.push_back(root_at(curve, root, options));
-    }
+    for (const double root : curve.roots(share_of, target / 100.0))
+      add_root(curve, root, options, entry);
+    const auto& slopes = entry.log_slopes;
+    if (!slopes.empty()) entry.log_slope = slopes.front();
+    entry.determined = !slopes.empty() && std::all_of(slopes.begin(), slopes.end(), [](double s) {
+      return std::abs(s) >= kFlatSlope;
+    });
     const auto printed = drive.signal.printed.find(target);
-    if (printed != drive.signal.printed.end()) {
-      entry.comparison = compare(curve, printed->second, entry.roots);
-      entry.grade = leak_grade(*entry.comparison);
-    }
-    entry.note = note_of(entry, curve);
+    if (printed != drive.signal.printed.end()) compare(curve, printed->second, entry);
+    entry.note = note_of(entry, drive.signal, curve);
     column.entries.push_back(std::move(entry));
   }
   if (drive.signal.normal) {
     const double coefficient = drive.signal.normal->value;
-    column.normal = {drive.signal, coefficient, 100.0 * curve.at(coefficient).share()};
+    column.normal = {leak_drive(drive), coefficient, 100.0 * curve.at(coefficient).share()};
   }
   return column;
 }
@@ -170,40 +183,81 @@ FeatureRow feature_row(const PeriodicDrive& drive, const model::ParameterValues&
                        const datasets::PrintedFeatures& printed, const PeriodicSeries& healthy,
                        const LeakTableOptions& options) {
   FlowCurve curve(drive, values, options.periodic);
-  FeatureRow row;
-  row.printed = printed;
+  const auto published = [&](Feature feature, double unit) {
+    const auto found = printed.printed.find(feature);
+    return found == printed.printed.end() ? std::nullopt : std::optional(found->second / unit);
+  };
   const PeriodicFlow flow = curve.at(printed.coefficient);
-  row.servo_flow_m3_per_s = flow.servo_flow_m3_per_s;
-  row.leak_flow_m3_per_s = flow.leak_flow_m3_per_s;
-  row.series = series_at(drive, values, printed.coefficient, kMorePeriods * flow.periods, options);
+  PeriodicSeries series =
+      series_at(drive, values, printed.coefficient, kMorePeriods * flow.periods, options);
   const datasets::Assumption* scale = settings.assumption(datasets::kResidualScale);
   const Eigen::VectorXd residual = (scale == nullptr ? 1.0 : scale->value) *
-                                   (row.series.run.outputs.col(0) - healthy.run.outputs.col(0));
-  row.features =
+                                   (series.run.outputs.col(0) - healthy.run.outputs.col(0));
+  const metrics::ResidualFeatures features =
       metrics::residual_features({residual.data(), static_cast<std::size_t>(residual.size())});
-  const auto leak = printed.printed.find(datasets::Feature::leak_flow);
+  std::vector<double> for_leak_flow;
+  const auto leak = printed.printed.find(Feature::leak_flow);
   if (!printed.leaking && leak != printed.printed.end()) {
     curve.scan(settings.lowest_coefficient, 10.0 * printed.coefficient, kScanPerDecade);
-    row.coefficients_for_leak_flow = curve.roots(leak_of, leak->second);
+    for_leak_flow = curve.roots(leak_of, leak->second);
   }
-  return row;
+  return {.level = printed.level,
+          .coefficient = printed.coefficient,
+          .servo_flow_l_per_min = flow.servo_flow_m3_per_s / kLitrePerMinute,
+          .published_servo_flow_l_per_min = published(Feature::servo_flow, kLitrePerMinute),
+          .leak_flow_l_per_min = flow.leak_flow_m3_per_s / kLitrePerMinute,
+          .published_leak_flow_l_per_min = published(Feature::leak_flow, kLitrePerMinute),
+          .mean = features.mean,
+          .published_mean = published(Feature::mean, 1.0),
+          .rms = features.rms,
+          .published_rms = published(Feature::rms, 1.0),
+          .std = features.std,
+          .published_std = published(Feature::std, 1.0),
+          .coefficients_for_published_leak_flow = std::move(for_leak_flow),
+          .left_out_of_fit = printed.left_out,
+          .reason = unless_empty(printed.reason),
+          .series = std::move(series)};
 }
 
 LeakSummary summary_of(const std::vector<LeakEntry>& entries) {
   LeakSummary summary;
   double squares = 0.0;
   for (const LeakEntry& entry : entries) {
-    if (!entry.comparison) continue;
+    if (!entry.published_coefficient) continue;
     ++summary.published;
     summary.within_10_percent += entry.grade == LeakGrade::within_10 ? 1 : 0;
     summary.within_16_percent += entry.grade != LeakGrade::outlier ? 1 : 0;
-    const double off = std::log(entry.comparison->share_percent / entry.target_percent);
+    const double off = std::log(*entry.share_at_published_percent / entry.target_percent);
     squares += off * off;
   }
   if (summary.published > 0) {
     summary.share_rms_percent = 100.0 * std::sqrt(squares / summary.published);
   }
   return summary;
+}
+
+/// Lists every value that the computation used. Values not set in the leak table section come from
+/// the campaign.
+std::vector<UsedValue> used_values(const datasets::Campaign& campaign,
+                                   const datasets::LeakTableSettings& settings,
+                                   const model::ParameterValues& values) {
+  const auto table = model::parameter_table(campaign.rig.plant);
+  std::vector<UsedValue> list;
+  const auto add = [&](const model::ParameterSpec& spec, double value, const std::string& source) {
+    list.push_back(
+        {std::string(spec.name), std::string(spec.key), value, std::string(spec.unit), source});
+  };
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    if (table[i].key == "leakage_coefficient") continue;  // the table varies this parameter
+    const auto* assumption = settings.assumption(static_cast<int>(i));
+    if (!values.given[i] && table[i].kind != model::ParameterKind::plant) continue;
+    add(table[i], values.value[i], assumption == nullptr ? "campaign file" : assumption->source);
+  }
+  if (const auto* scale = settings.assumption(datasets::kResidualScale)) {
+    add(datasets::assumption_spec(campaign.rig.plant, datasets::kResidualScale), scale->value,
+        scale->source);
+  }
+  return list;
 }
 
 }  // namespace
@@ -220,14 +274,6 @@ std::string_view to_string(LeakGrade grade) {
       return "not published";
   }
   return "";
-}
-
-bool LeakRoot::determined() const { return std::abs(log_slope) >= kFlatSlope; }
-
-std::optional<std::array<double, 2>> LeakRoot::ci95() const {
-  if (!log_error) return std::nullopt;
-  const double factor = std::exp(metrics::normal_quantile(0.975) * *log_error);
-  return std::array{coefficient / factor, coefficient * factor};
 }
 
 std::vector<FixedCombination> fixed_combinations(const datasets::Campaign& campaign,
@@ -257,6 +303,7 @@ LeakTable leak_table(const datasets::Campaign& campaign,
                      "leakage_area is zero, so no coefficient leaks: expected an area above zero");
   }
   LeakTable table;
+  table.assumptions = used_values(campaign, settings, values);
   std::vector<Column> columns(settings.signals.size());
   table.features.resize(settings.features.size());
   if (settings.feature_signal && !settings.features.empty()) {
@@ -276,7 +323,7 @@ LeakTable leak_table(const datasets::Campaign& campaign,
   });
   for (Column& column : columns) {
     for (LeakEntry& entry : column.entries) table.entries.push_back(std::move(entry));
-    if (column.normal) table.normals.push_back(std::move(*column.normal));
+    if (column.normal) table.normal.push_back(std::move(*column.normal));
   }
   table.fixed_combinations = fixed_combinations(campaign, values);
   table.summary = summary_of(table.entries);

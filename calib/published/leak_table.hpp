@@ -8,6 +8,7 @@
 
 #include "calib/published/periodic_flow.hpp"
 #include "common/describe.hpp"
+#include "common/range.hpp"
 #include "datasets/campaign/leak_table_settings.hpp"
 #include "metrics/residual_features.hpp"
 
@@ -17,57 +18,73 @@ namespace rigcal::calib {
 enum class LeakGrade { within_10, within_16, outlier, not_published };
 std::string_view to_string(LeakGrade grade);
 
-struct LeakRoot {
-  double coefficient = 0.0;
-  double log_slope = 0.0;  ///< d ln share / d ln coefficient
-  /// Standard error of ln coefficient due to the errors of the rig's values; absent if no error is
-  /// known.
-  std::optional<double> log_error;
-  /// Returns false on a plateau, where a change of 1 % in the share moves the coefficient by more
-  /// than 5 %.
-  bool determined() const;
-  /// Returns the 95 % interval of the coefficient. Both ends are positive, because the interval is
-  /// symmetric in the logarithm.
-  std::optional<std::array<double, 2>> ci95() const;
-};
+/// Drive of an entry.
+struct LeakDrive {
+  datasets::Waveform waveform = datasets::Waveform::sine;
+  double frequency_hz = 0.0;
+  Omittable<double> amplitude_m;  ///< in a closed loop
+  Omittable<double> amplitude_v;  ///< in an open loop
+  RIGCAL_DESCRIBE(waveform, frequency_hz, amplitude_m, amplitude_v)
 
-/// Comparison of the published coefficient of an entry with the computed one.
-struct LeakComparison {
-  double published = 0.0;
-  double share_percent = 0.0;  ///< computed share at the published coefficient
-  /// At the ends of the interval within which the published value may have been rounded.
-  double share_low_percent = 0.0;
-  double share_high_percent = 0.0;
-  /// Error of the nearest root; absent if there is no root.
-  std::optional<double> relative_error_percent;
+  std::optional<double> amplitude() const { return amplitude_m ? amplitude_m : amplitude_v; }
 };
 
 /// One cell of the table: a signal and a target share.
 struct LeakEntry {
-  datasets::LeakSignal signal;
+  Inlined<LeakDrive> drive;
   double target_percent = 0.0;
-  std::vector<LeakRoot> roots;  ///< all roots, in increasing order
-  std::optional<LeakComparison> comparison;
+  std::vector<double> coefficients;  ///< all roots, in increasing order
+  /// 95 % interval of each coefficient; null without errors of the rig's values. Both ends are
+  /// positive, because the interval is symmetric in the logarithm.
+  Later<std::vector<std::optional<Range>>> coefficients_ci95;
+  Later<std::vector<double>> log_slopes;  ///< d ln share / d ln coefficient at each coefficient
+  std::optional<double> log_slope;        ///< that at the first coefficient
+  /// False without a root or on a plateau, where a change of 1 % in the share moves a coefficient
+  /// by more than 5 %.
+  bool determined = false;
+  std::optional<double> published_coefficient;
+  std::optional<double> relative_error_percent;  ///< error of the nearest root
+  std::optional<double> share_at_published_percent;
+  /// Shares at the ends of the interval within which the published value may have been rounded.
+  std::optional<Range> share_by_rounding_percent;
   LeakGrade grade = LeakGrade::not_published;
   std::string note;  ///< why there is no root or more than one, or a comment on an outlier
+  RIGCAL_DESCRIBE(drive, target_percent, coefficients, coefficients_ci95, log_slopes, log_slope,
+                  determined, published_coefficient, relative_error_percent,
+                  share_at_published_percent, share_by_rounding_percent, grade, note)
 };
 
 /// The published coefficient of the rig without a fault.
 struct NormalEntry {
-  datasets::LeakSignal signal;
-  double coefficient = 0.0;
-  double share_percent = 0.0;  ///< computed share at this coefficient
+  Inlined<LeakDrive> drive;
+  double published_coefficient = 0.0;
+  double share_at_published_percent = 0.0;
+  RIGCAL_DESCRIBE(drive, published_coefficient, share_at_published_percent)
 };
 
-/// Computed values for one row of the published flows and features.
+/// Computed values beside one row of the published flows and features.
 struct FeatureRow {
-  datasets::PrintedFeatures printed;
-  double servo_flow_m3_per_s = 0.0;
-  double leak_flow_m3_per_s = 0.0;
-  metrics::ResidualFeatures features;  ///< from the scaled residual: leaking minus healthy position
-  /// Coefficients that give the published leak flow; only for the rig without a fault.
-  std::vector<double> coefficients_for_leak_flow;
-  PeriodicSeries series;  ///< one period, with the outputs in kFeatureOutputs
+  std::string level;
+  double coefficient = 0.0;
+  double servo_flow_l_per_min = 0.0;
+  std::optional<double> published_servo_flow_l_per_min;
+  double leak_flow_l_per_min = 0.0;
+  std::optional<double> published_leak_flow_l_per_min;
+  double mean = 0.0;  ///< from the scaled residual, as are rms and std: leaking minus healthy
+  std::optional<double> published_mean;
+  double rms = 0.0;
+  std::optional<double> published_rms;
+  double std = 0.0;
+  std::optional<double> published_std;
+  /// Only for the rig without a fault.
+  std::vector<double> coefficients_for_published_leak_flow;
+  std::vector<datasets::Feature> left_out_of_fit;
+  std::optional<std::string> reason;  ///< why they are left out
+  PeriodicSeries series;              ///< one period, with the outputs in kFeatureOutputs
+  RIGCAL_DESCRIBE(level, coefficient, servo_flow_l_per_min, published_servo_flow_l_per_min,
+                  leak_flow_l_per_min, published_leak_flow_l_per_min, mean, published_mean, rms,
+                  published_rms, std, published_std, coefficients_for_published_leak_flow,
+                  left_out_of_fit, reason)
 };
 inline constexpr std::array kFeatureOutputs{model::Output::position, model::Output::servo_flow,
                                             model::Output::leakage_flow, model::Output::work_flow};
@@ -91,9 +108,20 @@ struct LeakSummary {
   RIGCAL_DESCRIBE(published, within_10_percent, within_16_percent, share_rms_percent)
 };
 
+/// A value that the computation used.
+struct UsedValue {
+  std::string name;    ///< name in result files: "piston_area_m2"
+  std::string key;     ///< key in campaign files
+  double value = 0.0;  ///< SI
+  std::string unit;
+  std::string source;
+  RIGCAL_DESCRIBE(name, key, value, unit, source)
+};
+
 struct LeakTable {
+  std::vector<UsedValue> assumptions;
   std::vector<LeakEntry> entries;  ///< signal by signal, with the targets of each in order
-  std::vector<NormalEntry> normals;
+  std::vector<NormalEntry> normal;
   std::optional<PeriodicSeries> healthy;  ///< series of the feature signal, without a leak
   std::vector<FeatureRow> features;
   std::vector<FixedCombination> fixed_combinations;

@@ -23,6 +23,12 @@ struct Correlation {
   RIGCAL_DESCRIBE(names, matrix)
 };
 
+struct BootstrapRun {
+  int replicates = 0;   ///< number of replicates that converged
+  std::string message;  ///< how the replicates were drawn, and any problem
+  RIGCAL_DESCRIBE(replicates, message)
+};
+
 /// Everything that a fit found.
 struct Fit {
   FitStatus status = FitStatus::failed;
@@ -39,9 +45,7 @@ struct Fit {
   double aic = 0.0,
          bic = 0.0;  ///< from the independent residuals, for comparing models within a campaign
   std::vector<FittedParameter> parameters;
-  std::vector<LackOfFit> lack_of_fit;  ///< one test per channel with known noise
-  /// Whether the lack of fit is significant; absent if it cannot be judged.
-  std::optional<bool> misfit;
+  LackOfFitTests lack_of_fit;
   std::optional<BetweenRepeats> between_repeats;  ///< absent if there are no single repeats
   /// Small effects that the model omits; absent if they were not examined.
   std::optional<Considered> considered;
@@ -55,8 +59,7 @@ struct Fit {
   int best_start = 0;
   std::optional<FurtherStarts> further_starts;  ///< absent if no further starts were evaluated
   std::vector<Basin> basins;                    ///< sorted by cost
-  int bootstrap_replicates = 0;                 ///< number of replicates that converged
-  std::string bootstrap_message;                ///< how the replicates were drawn, and any problem
+  std::optional<BootstrapRun> bootstrap;        ///< absent if not requested
   std::optional<Posterior> posterior;           ///< absent if not requested
   std::vector<HeldOut> cross_validation;
   std::string agreement;  ///< how well the starts agree, in words; empty for a single start

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,6 +30,19 @@ struct LackOfFit : metrics::Judged {
                   reason)
 
   bool by_repeats() const { return against == "repeats"; }
+};
+
+/// The tests of a fit, and their joint result.
+struct LackOfFitTests {
+  std::optional<bool> misfit;    ///< true if the lack of fit is significant; absent if not judged
+  std::vector<LackOfFit> tests;  ///< one per channel with known noise
+  RIGCAL_DESCRIBE(misfit, tests)
+
+  bool has(const std::string& condition, datasets::Channel channel) const {
+    return std::any_of(tests.begin(), tests.end(), [&](const LackOfFit& test) {
+      return test.condition == condition && test.channel == channel;
+    });
+  }
 };
 
 /// Differences between the repeats of the fitted conditions (between_repeats.hpp).

@@ -230,14 +230,14 @@ void bootstrap(const Problem& problem, const Evaluation& optimum, const Uncertai
                const std::vector<ConditionScore>& scores, const FitOptions& options, Fit& fit,
                Budget& left) {
   if (found.scatter.empty()) {
-    fit.bootstrap_message = "no bootstrap: there are no residuals to draw from";
+    fit.bootstrap = {0, "no bootstrap: there are no residuals to draw from"};
     return;
   }
   std::vector<Source> sources;
   for (std::size_t i = 0; i < problem.conditions.size(); ++i) {
     if (!scores[i].failure.empty()) {
-      fit.bootstrap_message =
-          fmt::format("no bootstrap: condition \"{}\" could not be simulated", scores[i].id);
+      fit.bootstrap = {
+          0, fmt::format("no bootstrap: condition \"{}\" could not be simulated", scores[i].id)};
       return;
     }
     sources.push_back(has_repeats(problem.conditions[i])
@@ -298,13 +298,12 @@ void bootstrap(const Problem& problem, const Evaluation& optimum, const Uncertai
   values.erase(
       std::remove_if(values.begin(), values.end(), [](const auto& each) { return each.empty(); }),
       values.end());
-  fit.bootstrap_replicates = static_cast<int>(values.size());
-  fit.bootstrap_message =
-      fmt::format("{} of {} replicates converged", values.size(), made) +
-      (made == replicates ? "" : fmt::format(", {} were asked for", replicates)) +
-      drawn_from(sources);
+  fit.bootstrap = {static_cast<int>(values.size()),
+                   fmt::format("{} of {} replicates converged", values.size(), made) +
+                       (made == replicates ? "" : fmt::format(", {} were asked for", replicates)) +
+                       drawn_from(sources)};
   if (values.size() < kLeastReplicates) {
-    fit.bootstrap_message +=
+    fit.bootstrap->message +=
         fmt::format("; too few for an interval, expected at least {}", kLeastReplicates);
     return;
   }

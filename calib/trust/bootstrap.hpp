@@ -31,7 +31,7 @@ std::size_t block_length(const metrics::Autoregression& noise, std::size_t sampl
 /// Intervals are percentiles, with their distance from the estimate multiplied by the ratio of the
 /// quantiles of Student's t and the normal distribution. The degrees of freedom are combined over
 /// the conditions according to Satterthwaite, with R - 1 for each condition with repeats. Stores
-/// the results in `fit.parameters`. `fit.bootstrap_message` then describes how they were obtained,
+/// the results in `fit.parameters`. `fit.bootstrap` then describes how they were obtained,
 /// or why there are none. Random numbers depend only on seed, replicate and condition.
 ///
 /// @param found   must include `scatter`

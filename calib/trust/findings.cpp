@@ -117,9 +117,9 @@ void rate_model(const Uncertainty& spread, Fit& fit) {
 void judge_residuals(const Problem& problem, const OptimumCheck& check, const Uncertainty& spread,
                      Fit& fit) {
   fit.independent_residuals = spread.independent_residuals;
-  fit.lack_of_fit = lack_of_fit(problem, spread);
-  fit.misfit = misfit(fit.lack_of_fit);
-  fit.interval_advice = interval_advice(problem, check, spread, fit.lack_of_fit);
+  fit.lack_of_fit.tests = lack_of_fit(problem, spread);
+  fit.lack_of_fit.misfit = misfit(fit.lack_of_fit.tests);
+  fit.interval_advice = interval_advice(problem, check, spread, fit.lack_of_fit.tests);
   fit.between_repeats = between_repeats(problem, spread);
   if (fit.between_repeats && fit.between_repeats->differ)
     fit.warnings.push_back(between_repeats_warning(*fit.between_repeats));

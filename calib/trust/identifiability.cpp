@@ -216,12 +216,12 @@ Identifiability grade_of(const ParameterSpec& spec, double value, double half_wi
   return share > kWeak ? Identifiability::weak : Identifiability::identified;
 }
 
-std::string half_width_words(double share) {
+std::string half_width_words(double fraction) {
   constexpr double kMeaningless = 10.0;
-  if (!(share <= kMeaningless))
+  if (!(fraction <= kMeaningless))
     return "not determined: the 95 % interval is more than 10 times as wide as the value to each "
            "side";
-  return fmt::format("half width of the 95 % interval is {:.0f} % of the value", 100.0 * share);
+  return fmt::format("half width of the 95 % interval is {:.0f} % of the value", 100.0 * fraction);
 }
 
 void withhold_grades(std::vector<FittedParameter>& parameters) {

@@ -34,8 +34,8 @@ std::vector<FittedParameter> describe_unknowns(const Problem& problem, const Eva
 
 /// Returns, for example, "half width of the 95 % interval is 37 % of the value".
 ///
-/// @param share  half-width divided by the value
-std::string half_width_words(double share);
+/// @param fraction  half-width divided by the value
+std::string half_width_words(double fraction);
 
 /// Removes the grades after a search that was stopped before it converged. Derivatives at a point
 /// that is not a minimum cannot be used to grade an estimate.

@@ -31,7 +31,7 @@ std::string noiseless_warning(const Problem& problem, const Uncertainty& found);
 ///
 /// @param parameters  parameters of the problem's unknowns
 /// @param carried     known values whose uncertainty is included only in `ci95`
-/// @param misfit      whether the residuals are known to contain more than noise
+/// @param misfit      whether there is lack of fit: the residuals contain more than noise
 std::string compare_intervals(const Problem& problem,
                               const std::vector<FittedParameter>& parameters,
                               const std::vector<std::string>& carried = {}, bool misfit = false);

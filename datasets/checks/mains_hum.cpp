@@ -9,8 +9,8 @@
 namespace rigcal::datasets {
 namespace {
 
-// Thresholds for the row "hum of the mains" in docs/campaign-file.md. The mains frequency varies by
-// less than half a hertz.
+// Thresholds for the row "hum of the mains" in docs/campaign-records.md. The mains frequency varies
+// by less than half a hertz.
 constexpr double kLineHalfWidthHz = 0.5;
 constexpr double kSideShare = 0.45;  ///< neighbours are within this fraction of the frequency
 constexpr double kSideLobes = 3.0;   ///< width of a smeared line, in multiples of 1 / record length

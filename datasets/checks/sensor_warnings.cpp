@@ -7,8 +7,7 @@
 #include <string_view>
 
 #include "datasets/campaign/campaign_sections.hpp"
-#include "datasets/checks/clipped_sensor.hpp"
-#include "datasets/checks/frozen_sensor.hpp"
+#include "datasets/checks/stuck_sensor.hpp"
 
 namespace rigcal::datasets {
 namespace {

@@ -10,7 +10,7 @@
 namespace rigcal::datasets {
 namespace {
 
-// Thresholds for the row "a record that ends early" in docs/campaign-file.md.
+// Thresholds for the row "a record that ends early" in docs/campaign-records.md.
 constexpr double kStatedShare = 0.95;
 constexpr double kEquallyLong = 0.95;  // fraction of the longest
 constexpr double kShareOfLongest = 0.75;

@@ -6,10 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include "datasets/checks/coarse_steps.hpp"
-#include "datasets/checks/identical_repeats.hpp"
 #include "datasets/checks/mains_hum.hpp"
 #include "datasets/checks/median.hpp"
+#include "datasets/checks/repeat_checks.hpp"
 #include "datasets/prepare/alignment.hpp"
 #include "datasets/prepare/bridged_holes.hpp"
 #include "datasets/prepare/lag.hpp"

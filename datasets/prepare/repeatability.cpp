@@ -18,7 +18,7 @@ std::optional<metrics::NoiseFloor> noise_floor_of(const Series& series) {
 std::vector<Repeatability> repeatability(const Record& record) {
   std::vector<Repeatability> result;
   for (const auto& [channel, series] : record.channels)
-    result.push_back({record.condition, channel, series.repeats, series.pooled_sd,
+    result.push_back({channel, std::string(info(channel).unit), series.repeats, series.pooled_sd,
                       series.sd_of_mean, noise_floor_of(series)});
   return result;
 }

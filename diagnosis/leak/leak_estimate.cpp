@@ -6,7 +6,6 @@
 #include <numeric>
 #include <vector>
 
-#include "diagnosis/leak/exceeds_noise.hpp"
 #include "metrics/distributions.hpp"
 #include "metrics/significance.hpp"
 
@@ -153,8 +152,6 @@ double CoefficientError::half_width() const {
 
 CoefficientError coefficient_error(const LeakFit& fit, const SignalErrors& errors, int repeats,
                                    int reference) {
-  const bool coloured = errors.misfit && exceeds_noise(squared(fit.cluster_se),
-                                                       squared(fit.white_se), fit.cluster_freedom);
   CoefficientError error;
   std::vector<metrics::ErrorPart> parts;
   double own_variance = 0.0;
@@ -163,7 +160,7 @@ CoefficientError coefficient_error(const LeakFit& fit, const SignalErrors& error
     own_variance += part.variance;
     error.own.push_back({source, "records", std::sqrt(part.variance)});
   };
-  if (coloured) {
+  if (is_coloured(fit, errors)) {
     add("lack_of_fit", {squared(fit.cluster_se), static_cast<double>(fit.cluster_freedom)});
   } else {
     add("noise", {squared(fit.white_se), static_cast<double>(fit.white_freedom)});
@@ -186,11 +183,17 @@ std::optional<CoefficientError> error_of_averages(const LeakFit& fit, const Sign
                                                   int repeats, int reference) {
   if (!errors.repeat_m || !(fit.effect_m > 0.0) || reference < 1) return std::nullopt;
   const double of_both = 1.0 / repeats + 1.0 / reference;
-  const metrics::ErrorPart spread{squared(*errors.repeat_m / fit.effect_m) * of_both,
-                                  static_cast<double>(std::max(1, errors.repeat_freedom))};
-  return CoefficientError{
-      std::sqrt(spread.variance), fit.rig_se,
-      metrics::effective_freedom(std::array{spread, metrics::ErrorPart{squared(fit.rig_se)}})};
+  const auto part = [&](double square_m2, double freedom) {
+    return metrics::ErrorPart{square_m2 / squared(fit.effect_m) * of_both, freedom};
+  };
+  // The samples of all repeats determine the noise. The variation between a few repeats beyond it
+  // is uncertain.
+  const std::array parts{
+      part(squared(errors.repeat_noise_m) * errors.residual_ratio, errors.residual_freedom),
+      part(squared(errors.between_m.value_or(0.0)), std::max(1, errors.repeat_freedom)),
+      metrics::ErrorPart{squared(fit.rig_se)}};
+  return CoefficientError{std::sqrt(parts[0].variance + parts[1].variance), fit.rig_se,
+                          metrics::effective_freedom(parts)};
 }
 
 LeakEstimate estimate_leak(double coefficient, const CoefficientError& error,

@@ -74,9 +74,10 @@ struct CoefficientError {
 CoefficientError coefficient_error(const LeakFit& fit, const SignalErrors& errors, int repeats,
                                    int reference);
 
-/// Returns the error for an average that is its own reference, estimated from the variation between
-/// single repeats. It is the error of the difference between a mean of `repeats` repeats and a mean
-/// of `reference` repeats. Returns std::nullopt if there is only one repeat.
+/// Returns the error for an average that is its own reference: that of the difference between a
+/// mean of `repeats` repeats and a mean of `reference` repeats. The noise of the single repeats,
+/// the misfit of other records and the variation between repeats beyond noise contribute. Returns
+/// std::nullopt if there is only one repeat.
 std::optional<CoefficientError> error_of_averages(const LeakFit& fit, const SignalErrors& errors,
                                                   int repeats, int reference);
 

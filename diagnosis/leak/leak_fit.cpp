@@ -286,9 +286,11 @@ void describe(const calib::Problem& problem, const RigFit& rig, const LeakProble
   // continuation, but this step must not be long. A record that is its own reference may have no
   // residual, so the error for white noise of unit variance is also an allowed length.
   const double error = std::max({fit.white_se, fit.cluster_se, root.row(leak).norm()});
-  if (simulated_leak > 0.0 && std::abs(step(leak)) > error + 1e-3 * simulated_leak) {
+  // The optimiser cannot go below zero, so only the part of the step above it is its own.
+  const double own_step = step(leak) < 0.0 ? std::min(-step(leak), simulated_leak) : step(leak);
+  if (simulated_leak > 0.0 && own_step > error + 1e-3 * simulated_leak) {
     fit.failure = fmt::format("the leak did not converge: a step of {:.2g} standard errors is left",
-                              std::abs(step(leak)) / error);
+                              own_step / error);
     return;
   }
 

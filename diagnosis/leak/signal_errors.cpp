@@ -23,7 +23,29 @@ bool has_misfit(const std::vector<const LeakFit*>& records) {
   return freedom == 0.0 || exceeds_noise(ratios / freedom, 1.0, freedom);
 }
 
+void set_residual_ratio(const std::vector<const LeakFit*>& records, SignalErrors& errors) {
+  double ratios = 0.0;
+  double squares = 0.0;  // squared ratios over their degrees of freedom
+  double count = 0.0;
+  for (const LeakFit* fit : records) {
+    if (!(fit->white_se > 0.0)) continue;
+    const bool coloured = is_coloured(*fit, errors);
+    const double ratio = coloured ? power(fit->cluster_se / fit->white_se) : 1.0;
+    ratios += ratio;
+    squares += power(ratio) / (coloured ? fit->cluster_freedom : metrics::kManyDegrees);
+    ++count;
+  }
+  if (count == 0.0) return;
+  errors.residual_ratio = ratios / count;
+  errors.residual_freedom = power(ratios) / (count * squares);
+}
+
 }  // namespace
+
+bool is_coloured(const LeakFit& fit, const SignalErrors& errors) {
+  return errors.misfit &&
+         exceeds_noise(power(fit.cluster_se), power(fit.white_se), fit.cluster_freedom);
+}
 
 SignalErrors signal_errors(const std::vector<std::vector<SingleFit>>& singles,
                            const std::vector<const LeakFit*>& healthy,
@@ -56,6 +78,7 @@ SignalErrors signal_errors(const std::vector<std::vector<SingleFit>>& singles,
   for (const LeakFit* each : healthy) sum += power(each->coefficient * each->effect_m);
   if (!healthy.empty()) errors.healthy_m = std::sqrt(sum / static_cast<double>(healthy.size()));
   errors.misfit = has_misfit(records);
+  set_residual_ratio(averages.empty() ? records : averages, errors);
   return errors;
 }
 

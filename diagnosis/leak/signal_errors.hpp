@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "diagnosis/leak/leak_fit.hpp"
+#include "metrics/significance.hpp"
 
 namespace rigcal::diagnosis {
 
@@ -26,6 +27,11 @@ struct SignalErrors {
   std::optional<double> between_m;
   /// True if the residuals of the signal's records contain more than white noise.
   bool misfit = false;
+  /// Variance that the residuals of an average cause in its error, over that of white noise: mean
+  /// of the signal's averages (of its single repeats if it has no other), and its effective degrees
+  /// of freedom. Above 1 only with a misfit.
+  double residual_ratio = 1.0;
+  double residual_freedom = metrics::kManyDegrees;
   /// Apparent leak of healthy records if they do not correct other records. Terms that the model
   /// lacks look like a leak of this size.
   std::optional<double> healthy_m;
@@ -40,6 +46,10 @@ struct SignalErrors {
 SignalErrors signal_errors(const std::vector<std::vector<SingleFit>>& singles,
                            const std::vector<const LeakFit*>& healthy,
                            const std::vector<const LeakFit*>& averages);
+
+/// Returns true if the error of a record follows from the clusters of its residuals rather than
+/// from white noise.
+bool is_coloured(const LeakFit& fit, const SignalErrors& errors);
 
 /// Sets the components beyond noise for all signals. First, all signals together are tested for
 /// whether repeats differ at all, because the causes act on all of them; then each signal is

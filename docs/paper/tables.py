@@ -42,11 +42,11 @@ def coefficients(folder):
     fields = {(entry["target_percent"], name_of(entry)): coefficient_field(entry) for entry in table["entries"]}
     print_table(["share", *signals],
                 [[f"{target:g} %", *(fields[target, signal] for signal in signals)] for target in targets])
-    told = table["summary"]
-    if told["published"]:
-        print(f"\n{told['within_10_percent']} of {told['published']} coefficients within 10 %, "
-              f"{told['within_16_percent']} within 16 %. At the published coefficients the shares are off by "
-              f"{told['share_rms_percent']:.1f} % rms (logarithms of share over target).")
+    summary = table["summary"]
+    if summary["published"]:
+        print(f"\n{summary['within_10_percent']} of {summary['published']} coefficients within 10 %, "
+              f"{summary['within_16_percent']} within 16 %. At the published coefficients the shares are off by "
+              f"{summary['share_rms_percent']:.1f} % rms (logarithms of share over target).")
 
 
 def normal(folder):

@@ -119,7 +119,7 @@ constexpr auto chamber_term_rows() {
       F{&P::valve_line_opening_v, {"valve_line_opening", "valve_line_opening_v", "u_l", "V", "opening at which an edge and the lines in series with it lose alike", "docs/model.md", K::term, 1e-3, 1e6, 0.0}},
       F{&P::external_leakage_a_m3_per_s_pa, {"external_leakage_a", "external_leakage_a_m3_per_s_pa", "G_A", "m3/(s Pa)", "laminar leak of chamber A to the tank", "docs/model.md", K::term, 0, 1, 0.0}},
       F{&P::external_leakage_b_m3_per_s_pa, {"external_leakage_b", "external_leakage_b_m3_per_s_pa", "G_B", "m3/(s Pa)", "laminar leak of chamber B to the tank", "docs/model.md", K::term, 0, 1, 0.0}},
-      F{&P::air_fraction, {"air_fraction", "air_fraction", "alpha", "1", "volume share of undissolved air at atmospheric pressure", "docs/model.md", K::term, 0, 0.5, 0.0}},
+      F{&P::air_fraction, {"air_fraction", "air_fraction", "alpha", "1", "volume fraction of undissolved air at atmospheric pressure", "docs/model.md", K::term, 0, 0.5, 0.0}},
       F{&P::air_exponent, {"air_exponent", "air_exponent", "n", "1", "polytropic exponent of that air", "docs/model.md", K::term, 1, 1.67, 1.4}},
       F{&P::hose_capacity_a_m3_per_pa, {"hose_capacity_a", "hose_capacity_a_m3_per_pa", "C_hA", "m3/Pa", "what the hose of chamber A takes up per pressure once it yields", "docs/model.md", K::term, 0, 1e-6, 0.0}},
       F{&P::hose_capacity_b_m3_per_pa, {"hose_capacity_b", "hose_capacity_b_m3_per_pa", "C_hB", "m3/Pa", "what the hose of chamber B takes up per pressure once it yields", "docs/model.md", K::term, 0, 1e-6, 0.0}},

@@ -16,24 +16,24 @@ auto part(std::span<const double> column, std::size_t begin, std::size_t count) 
 
 }  // namespace
 
-void continue_periods(const KnownPeriods& known, std::span<const double> share,
+void continue_periods(const KnownPeriods& known, std::span<const double> multiples,
                       std::span<double> column) {
-  for (std::size_t i = 0; i < share.size(); ++i) {
+  for (std::size_t i = 0; i < multiples.size(); ++i) {
     const std::size_t begin = known.end + i * known.samples;
     const std::size_t count = std::min(known.samples, column.size() - begin);
     part(column, begin, count) = known.sign * part(column, begin - known.samples, count);
   }
-  add_changes(known, share, column, column);
+  add_changes(known, multiples, column, column);
 }
 
-void add_changes(const KnownPeriods& known, std::span<const double> share,
+void add_changes(const KnownPeriods& known, std::span<const double> multiples,
                  std::span<const double> values, std::span<double> column) {
   const std::size_t last = known.end - known.samples;
-  for (std::size_t i = 0; i < share.size(); ++i) {
-    if (share[i] == 0.0) continue;
+  for (std::size_t i = 0; i < multiples.size(); ++i) {
+    if (multiples[i] == 0.0) continue;
     const std::size_t begin = known.end + i * known.samples;
     const std::size_t count = std::min(known.samples, column.size() - begin);
-    const double by = i % 2 == 0 ? known.sign * share[i] : share[i];
+    const double by = i % 2 == 0 ? known.sign * multiples[i] : multiples[i];
     part(column, begin, count) +=
         by * (part(values, last, count) - known.sign * part(values, last - known.samples, count));
   }

@@ -16,15 +16,15 @@ struct KnownPeriods {
 /// Extrapolates a column of samples. Each further period is the last known one plus a multiple of
 /// its change since the previous one. Every other period is multiplied by the sign of `known`.
 ///
-/// @param share  the multiples, shape (further periods); if one is zero, the change is not read
-void continue_periods(const KnownPeriods& known, std::span<const double> share,
+/// @param multiples  shape (further periods); if one is zero, the change is not read
+void continue_periods(const KnownPeriods& known, std::span<const double> multiples,
                       std::span<double> column);
 
 /// Adds a multiple of the change of `values` over the last known period to each further period of a
 /// column. Every other period is multiplied by the sign of `known`.
 ///
-/// @param share  the multiples, shape (further periods)
-void add_changes(const KnownPeriods& known, std::span<const double> share,
+/// @param multiples  shape (further periods)
+void add_changes(const KnownPeriods& known, std::span<const double> multiples,
                  std::span<const double> values, std::span<double> column);
 
 }  // namespace rigcal::model

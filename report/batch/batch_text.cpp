@@ -4,7 +4,7 @@
 #include <array>
 
 #include "report/batch/batch.hpp"
-#include "report/store/csv_fields.hpp"
+#include "report/store/csv_columns.hpp"
 #include "report/text/readable.hpp"
 
 namespace rigcal::report {
@@ -15,6 +15,11 @@ std::string first_reason(const StoredRig& rig) {
   return rig.reasons.empty() ? "" : rig.reasons.front();
 }
 
+/// Returns the worst score; null if nothing was scored.
+const StoredRigScore* worst_score(const StoredRig& rig) {
+  return rig.worst_scores.empty() ? nullptr : &rig.worst_scores.front();
+}
+
 /// Returns the verdict of a rig that was judged, and otherwise how its run ended.
 std::string outcome_of(const StoredRig& rig) {
   if (!rig.status) return "no result";
@@ -22,12 +27,16 @@ std::string outcome_of(const StoredRig& rig) {
   return rig.verdict ? std::string(to_string(*rig.verdict)) : "not judged";
 }
 
+std::string column_of(const StoredRigEstimate& each) {
+  return each.level ? each.name + "[" + *each.level + "]" : each.name;
+}
+
 /// Returns the names of the estimates of all rigs, in order of first appearance.
 std::vector<std::string> estimate_columns(const StoredBatch& batch) {
   std::vector<std::string> names;
   for (const StoredRig& rig : batch.rigs) {
     for (const StoredRigEstimate& each : rig.parameters) {
-      const std::string name = each.level ? each.name + "[" + *each.level + "]" : each.name;
+      const std::string name = column_of(each);
       if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
     }
   }
@@ -36,7 +45,7 @@ std::vector<std::string> estimate_columns(const StoredBatch& batch) {
 
 const StoredRigEstimate* estimate_of(const StoredRig& rig, const std::string& column) {
   for (const StoredRigEstimate& each : rig.parameters)
-    if ((each.level ? each.name + "[" + *each.level + "]" : each.name) == column) return &each;
+    if (column_of(each) == column) return &each;
   return nullptr;
 }
 
@@ -74,53 +83,26 @@ std::string trend_sentence(const StoredRigTrend& trend) {
 }
 
 std::string batch_csv(const StoredBatch& batch) {
-  const std::vector<std::string> columns = estimate_columns(batch);
-  std::vector<std::string> head{"rig",
-                                "name",
-                                "exit_code",
-                                "status",
-                                "verdict",
-                                "seconds",
-                                "unchanged",
-                                "warnings",
-                                "message",
-                                "first_reason",
-                                "worst_condition",
-                                "worst_channel",
-                                "worst_rho2",
-                                "worst_absolute_error_percent"};
-  for (const std::string& name : columns) {
-    for (const char* what : {"", "_ci95_low", "_ci95_high"}) head.push_back(csv_text(name + what));
+  using R = StoredRig;
+  using Score = StoredRigScore;
+  CsvColumns<R> columns;
+  columns
+      .members(&R::rig, &R::name, &R::exit_code, &R::status, &R::verdict, &R::seconds,
+               &R::unchanged)
+      .add("warnings", [](const R& rig) { return rig.warnings.size(); })
+      .members(&R::message)
+      .add("first_reason", first_reason)
+      .add("worst_condition", worst_score, &Score::condition)
+      .add("worst_channel", worst_score, &Score::channel)
+      .add("worst_rho2", worst_score, &Score::rho2)
+      .add("worst_absolute_error_percent", worst_score, &Score::absolute_error_percent);
+  for (const std::string& name : estimate_columns(batch)) {
+    const auto estimate = [name](const R& rig) { return estimate_of(rig, name); };
+    columns.add(name, estimate, &StoredRigEstimate::value);
+    columns.add(name + "_ci95_low", estimate, &StoredRigEstimate::ci95, &Range::low);
+    columns.add(name + "_ci95_high", estimate, &StoredRigEstimate::ci95, &Range::high);
   }
-  std::string text = csv_row(head);
-  for (const StoredRig& rig : batch.rigs) {
-    const StoredRigScore none;
-    const StoredRigScore& worst = rig.worst_scores.empty() ? none : rig.worst_scores.front();
-    std::vector<std::string> row{csv_text(rig.rig),
-                                 csv_text(rig.name.value_or("")),
-                                 fmt::format("{}", rig.exit_code),
-                                 rig.status ? std::string(to_string(*rig.status)) : "",
-                                 rig.verdict ? std::string(to_string(*rig.verdict)) : "",
-                                 csv_number(rig.seconds),
-                                 rig.unchanged ? "1" : "0",
-                                 fmt::format("{}", rig.warnings.size()),
-                                 csv_text(rig.message),
-                                 csv_text(first_reason(rig)),
-                                 csv_text(worst.condition),
-                                 worst.channel,
-                                 csv_number(worst.rho2),
-                                 csv_number(worst.absolute_error_percent)};
-    for (const std::string& name : columns) {
-      const StoredRigEstimate* each = estimate_of(rig, name);
-      row.push_back(each == nullptr ? "" : csv_number(each->value));
-      for (const bool low : {true, false}) {
-        const bool known = each != nullptr && each->ci95;
-        row.push_back(!known ? "" : csv_number(low ? each->ci95->low : each->ci95->high));
-      }
-    }
-    text += csv_row(row);
-  }
-  return text;
+  return columns.table(batch.rigs);
 }
 
 }  // namespace rigcal::report

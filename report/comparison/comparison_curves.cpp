@@ -12,7 +12,6 @@
 #include "datasets/record.hpp"
 #include "report/comparison/comparison_parts.hpp"
 #include "report/figure/decimate.hpp"
-#include "report/store/csv_fields.hpp"
 #include "report/store/stored.hpp"
 
 namespace rigcal::report {

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 #include <hpdf.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -11,8 +13,11 @@
 #include <string_view>
 #include <type_traits>
 
-#include "report/figure/figure_font.hpp"
 #include "report/figure/plot_scene.hpp"
+
+// The bytes of the font, embedded by figure_font.S.
+extern "C" const char rigcal_figure_font_begin[];
+extern "C" const char rigcal_figure_font_end[];
 
 namespace rigcal::report {
 namespace {
@@ -43,6 +48,21 @@ const Ink& ink_of(const std::string& style) {
   return found == kInks.end() ? kOther : *found;
 }
 
+/// Writes the built-in font to a file in memory, which disappears with the process, because libharu
+/// can only read fonts from a file. Returns its path.
+std::string font_in_memory() {
+  const int file = ::memfd_create("rigcal-font", MFD_CLOEXEC);
+  const char* at = rigcal_figure_font_begin;
+  while (file >= 0 && at != rigcal_figure_font_end) {
+    const ssize_t count = ::write(file, at, static_cast<std::size_t>(rigcal_figure_font_end - at));
+    if (count <= 0) break;
+    at += count;
+  }
+  if (at != rigcal_figure_font_end)
+    throw std::runtime_error("the font of the figures cannot be kept in memory");
+  return fmt::format("/proc/self/fd/{}", file);
+}
+
 /// Makes the text searchable, so that PDF readers can find and copy it. The character codes are
 /// UTF-16. libharu (2.3) writes the map from codes to Unicode with the operators of a glyph map,
 /// which PDF readers reject. The map is overwritten in place with one of the same length, because
@@ -71,8 +91,8 @@ class PdfPage {
     HPDF_Page_SetWidth(page_, real(width));
     HPDF_Page_SetHeight(page_, real(height));
     HPDF_UseUTFEncodings(document_.get());
-    const char* name =
-        HPDF_LoadTTFontFromFile(document_.get(), figure_font_file().c_str(), HPDF_TRUE);
+    static const std::string kFont = font_in_memory();
+    const char* name = HPDF_LoadTTFontFromFile(document_.get(), kFont.c_str(), HPDF_TRUE);
     if (name == nullptr)
       throw std::runtime_error(fmt::format("PDF: error {:#x} of libharu", error_));
     HPDF_Page_SetFontAndSize(page_, HPDF_GetFont(document_.get(), name, "UTF-8"), real(kFontSize));

@@ -62,8 +62,8 @@ void warn_of_recordings(const std::vector<datasets::Record>& averages,
 
 /// Takes the class limits from the rows of a leak table, which must describe the same rig as this
 /// diagnosis.
-std::vector<TableLimit> take_table(const std::filesystem::path& file, const EarlierFit& earlier,
-                                   Campaign& campaign) {
+std::vector<calib::LeakEntry> take_table(const std::filesystem::path& file,
+                                         const EarlierFit& earlier, Campaign& campaign) {
   if (campaign.diagnosis.leak_law != datasets::LeakLaw::orifice)
     throw InputError(
         {campaign.file.string()},
@@ -83,14 +83,15 @@ std::vector<TableLimit> take_table(const std::filesystem::path& file, const Earl
 }
 
 /// Warns about diagnosed signals for which the leak table has no column.
-void warn_of_absent(const std::vector<TableLimit>& limits, const Campaign& campaign,
+void warn_of_absent(const std::vector<calib::LeakEntry>& limits, const Campaign& campaign,
                     diagnosis::Diagnosis& found) {
   std::vector<std::string> absent;
   for (const diagnosis::RecordDiagnosis& record : found.records) {
     const Condition& condition = *campaign.find(record.condition);
     const bool is_there = std::any_of(limits.begin(), limits.end(), [&](const auto& limit) {
-      return limit.waveform == condition.waveform && limit.frequency_hz == condition.frequency_hz &&
-             limit.amplitude == condition.amplitude;
+      return limit.drive.waveform == condition.waveform &&
+             limit.drive.frequency_hz == condition.frequency_hz &&
+             limit.drive.amplitude() == condition.amplitude;
     });
     if (!is_there && std::find(absent.begin(), absent.end(), record.signal) == absent.end())
       absent.push_back(record.signal);
@@ -135,7 +136,7 @@ std::optional<std::vector<datasets::FittedValue>> truth_beside(const Campaign& c
 JobResult finished(const DiagnosisResult& result, const std::optional<Json>& live = {}) {
   StoredDiagnosis diagnosis = stored(result);
   JobResult job;
-  job.files = {{"diagnosis.csv", diagnosis_csv(result)}};
+  job.files = {{"diagnosis.csv", diagnosis_csv(diagnosis)}};
   if (live) job.files.push_back({kLiveDiagnosisFile, json_line(*live)});
   name_files(job.files, diagnosis.provenance);
   job.files.push_back({"diagnosis.json", json_text(json_of(diagnosis))});
@@ -166,7 +167,7 @@ JobResult diagnosis_job(Campaign campaign, const DiagnosisRequest& request, cons
     return finished({campaign, found, reasons, provenance});
   }
   const EarlierFit earlier = request.fit.read(campaign.rig.plant);
-  std::vector<TableLimit> limits;
+  std::vector<calib::LeakEntry> limits;
   if (!request.table.empty()) limits = take_table(request.table, earlier, campaign);
   diagnosis::DiagnosisOptions settings;
   settings.threads = terms.threads;

@@ -63,8 +63,8 @@ std::vector<ResultFile> leak_table_files(const LeakTableResult& result) {
     files.push_back({"features.csv", features_csv(result)});
     files.push_back({kHealthySeries, level_csv(signal, *table.healthy, nullptr)});
     for (const calib::FeatureRow& row : table.features) {
-      files.push_back({kLevels / level_file(row.printed.level),
-                       level_csv(signal, row.series, &*table.healthy)});
+      files.push_back(
+          {kLevels / level_file(row.level), level_csv(signal, row.series, &*table.healthy)});
     }
   }
   Json rig = live_rig(result.campaign, leak_table_cases(result.campaign, result.settings));

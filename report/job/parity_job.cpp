@@ -15,7 +15,7 @@ JobResult finished(const ParityResult& result) {
   StoredParity parity = stored(result);
   JobResult job;
   job.files = parity_series(result);
-  job.files.push_back({"parity.csv", parity_csv(result)});
+  job.files.push_back({"parity.csv", parity_csv(parity)});
   name_files(job.files, parity.provenance);
   job.files.push_back({"parity.json", json_text(json_of(parity))});
   job.first = {"parity.json", "parity.csv", "parity/"};

@@ -16,19 +16,19 @@ struct DiagnosisResult {
   const std::vector<std::string>& reasons;  ///< why the diagnosis was declined; empty if it was not
   const Provenance& provenance;
   /// Limits from the leak table that defined the classes; empty if [diagnosis] defined them.
-  std::vector<TableLimit> class_limits = {};
+  std::vector<calib::LeakEntry> class_limits = {};
 };
 
 /// Returns declined if there are reasons for it, and failed if no record could be diagnosed.
 LeakStatus status_of(const DiagnosisResult& result);
 
-/// Describes the signal that an entry in the leak table belongs to: "sine 0.1 Hz, 50.8 mm".
-std::string drive_of(const datasets::Campaign& campaign, const TableLimit& limit);
+/// Describes the signal of a drive in the leak table: "sine 0.1 Hz, 50.8 mm".
+std::string drive_of(const datasets::Campaign& campaign, const calib::LeakDrive& drive);
 
 /// Builds the contents of diagnosis.json.
 StoredDiagnosis stored(const DiagnosisResult& result);
 
 /// Writes diagnosis.csv with one row per record.
-std::string diagnosis_csv(const DiagnosisResult& result);
+std::string diagnosis_csv(const StoredDiagnosis& diagnosis);
 
 }  // namespace rigcal::report

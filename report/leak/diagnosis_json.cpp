@@ -104,18 +104,20 @@ StoredDiagnosis stored(const DiagnosisResult& result) {
   file.synthetic = campaign.synthetic;
   file.report = identity_json(campaign);
   file.settings = stored(campaign.diagnosis);
-  for (const TableLimit& limit : result.class_limits) {
-    file.class_limits.push_back({drive_of(campaign, limit), limit.target_percent,
+  for (const calib::LeakEntry& limit : result.class_limits) {
+    file.class_limits.push_back({drive_of(campaign, limit.drive), limit.target_percent,
                                  class_ending_at(campaign.diagnosis, limit.target_percent),
-                                 limit.coefficients, limit.ranges_95});
+                                 limit.coefficients, limit.coefficients_ci95});
   }
   for (const auto& state : found.states) file.states.push_back(stored(state));
-  for (const auto& trend : found.trends) file.trends.push_back(stored(trend));
+  file.trends = found.trends;
+  for (diagnosis::LeakTrend& trend : file.trends) trend.sentence = trend_sentence(trend);
   for (const auto& record : found.records) file.records.push_back(stored(record));
-  file.methods = {found.single, found.averaged, found.features, found.features_of_other_signals};
-  file.confusion = found.single.confusion;
-  file.accuracy = found.single.accuracy;
-  file.accuracy_ci95 = found.single.accuracy_ci95;
+  file.methods = found.methods;
+  const diagnosis::Accuracy& single = found.methods.fitted_leak_single;
+  file.confusion = single.confusion;
+  file.accuracy = single.accuracy;
+  file.accuracy_ci95 = single.accuracy_ci95;
   for (const auto& signal : found.signals) file.smallest_leak_l_per_min.push_back(stored(signal));
   if (found.usable()) file.between_days = stored(found.between_days, found.other_days);
   file.warnings = found.warnings;

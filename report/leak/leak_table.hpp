@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "calib/published/leak_table.hpp"
-#include "common/quantity.hpp"
 #include "datasets/campaign/leak_table_settings.hpp"
 #include "report/store/provenance.hpp"
 #include "report/store/stored/stored_leak_table.hpp"

@@ -1,81 +1,53 @@
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
-#include <algorithm>
-#include <cmath>
 #include <optional>
 
 #include "report/leak/leak_table.hpp"
-#include "report/store/csv_fields.hpp"
+#include "report/store/csv_columns.hpp"
 #include "report/store/table.hpp"
 
 namespace rigcal::report {
 namespace {
 
-using datasets::Feature;
+using calib::LeakDrive;
+using calib::LeakEntry;
 
-template <typename Value>
-std::string list(const std::vector<calib::LeakRoot>& roots, Value value) {
-  std::vector<std::string> texts;
-  for (const calib::LeakRoot& root : roots) texts.push_back(fmt::format("{}", root.*value));
-  return fmt::format("{}", fmt::join(texts, " "));
-}
-
-/// Lists the lower (or upper) ends of the intervals of all roots; empty without a fit.
-std::string ends(const std::vector<calib::LeakRoot>& roots, std::size_t end) {
-  std::vector<std::string> texts;
-  for (const calib::LeakRoot& root : roots) {
-    if (const auto range = root.ci95()) texts.push_back(csv_number(range->at(end)));
-  }
-  return fmt::format("{}", fmt::join(texts, " "));
+/// Makes a getter that lists the lower or upper ends of the intervals of an entry.
+auto ends(double Range::*end) {
+  return [end](const LeakEntry& entry) {
+    std::vector<double> values;
+    for (const auto& range : entry.coefficients_ci95)
+      if (range) values.push_back((*range).*end);
+    return values;
+  };
 }
 
 }  // namespace
 
 std::string leak_table_csv(const LeakTableResult& result) {
+  using R = LeakEntry;
   const bool closed_loop = result.campaign.rig.controller == model::ControllerKind::pid;
-  std::string text =
-      csv_row({"waveform", "frequency_hz", closed_loop ? "amplitude_m" : "amplitude_v",
-               "target_percent", "coefficients", "ci95_low", "ci95_high", "log_slopes",
-               "published_coefficient", "relative_error_percent", "share_at_published_percent",
-               "share_by_rounding_low_percent", "share_by_rounding_high_percent", "grade", "note"});
-  for (const calib::LeakEntry& entry : result.table.entries) {
-    const auto& c = entry.comparison;
-    const auto of = [&](auto member) { return c ? csv_number((*c).*member) : std::string(); };
-    text += csv_row(
-        {std::string(to_string(entry.signal.waveform)), csv_number(entry.signal.frequency_hz),
-         csv_number(entry.signal.amplitude), csv_number(entry.target_percent),
-         list(entry.roots, &calib::LeakRoot::coefficient), ends(entry.roots, 0),
-         ends(entry.roots, 1), list(entry.roots, &calib::LeakRoot::log_slope),
-         of(&calib::LeakComparison::published), of(&calib::LeakComparison::relative_error_percent),
-         of(&calib::LeakComparison::share_percent), of(&calib::LeakComparison::share_low_percent),
-         of(&calib::LeakComparison::share_high_percent), std::string(to_string(entry.grade)),
-         csv_text(entry.note)});
-  }
-  return text;
+  return CsvColumns<R>()
+      .add("waveform", &R::drive, &LeakDrive::waveform)
+      .add("frequency_hz", &R::drive, &LeakDrive::frequency_hz)
+      .add(closed_loop ? "amplitude_m" : "amplitude_v", &R::drive, &LeakDrive::amplitude)
+      .members(&R::target_percent, &R::coefficients)
+      .add("ci95_low", ends(&Range::low))
+      .add("ci95_high", ends(&Range::high))
+      .members(&R::log_slopes, &R::published_coefficient, &R::relative_error_percent,
+               &R::share_at_published_percent)
+      .add("share_by_rounding_low_percent", &R::share_by_rounding_percent, &Range::low)
+      .add("share_by_rounding_high_percent", &R::share_by_rounding_percent, &Range::high)
+      .members(&R::grade, &R::note)
+      .table(result.table.entries);
 }
 
 std::string features_csv(const LeakTableResult& result) {
-  std::string text =
-      csv_row({"level", "coefficient", "servo_flow_l_per_min", "published_servo_flow_l_per_min",
-               "leak_flow_l_per_min", "published_leak_flow_l_per_min", "mean", "published_mean",
-               "rms", "published_rms", "std", "published_std"});
-  for (const calib::FeatureRow& each : result.table.features) {
-    const auto printed = [&](Feature feature, double unit) -> std::optional<double> {
-      const auto found = each.printed.printed.find(feature);
-      if (found == each.printed.printed.end()) return std::nullopt;
-      return found->second / unit;
-    };
-    text += csv_row({csv_text(each.printed.level), csv_number(each.printed.coefficient),
-                     csv_number(each.servo_flow_m3_per_s / kLitrePerMinute),
-                     csv_number(printed(Feature::servo_flow, kLitrePerMinute)),
-                     csv_number(each.leak_flow_m3_per_s / kLitrePerMinute),
-                     csv_number(printed(Feature::leak_flow, kLitrePerMinute)),
-                     csv_number(each.features.mean), csv_number(printed(Feature::mean, 1.0)),
-                     csv_number(each.features.rms), csv_number(printed(Feature::rms, 1.0)),
-                     csv_number(each.features.std), csv_number(printed(Feature::std, 1.0))});
-  }
-  return text;
+  using R = calib::FeatureRow;
+  return CsvColumns<R>()
+      .members(&R::level, &R::coefficient, &R::servo_flow_l_per_min,
+               &R::published_servo_flow_l_per_min, &R::leak_flow_l_per_min,
+               &R::published_leak_flow_l_per_min, &R::mean, &R::published_mean, &R::rms,
+               &R::published_rms, &R::std, &R::published_std)
+      .table(result.table.features);
 }
 
 std::string level_csv(const datasets::LeakSignal& signal, const calib::PeriodicSeries& series,

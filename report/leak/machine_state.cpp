@@ -23,7 +23,7 @@ std::string signals_of(const MachineState& state) {
 
 std::string agreement_of(const MachineState& state) {
   if (state.members.size() < 2) return fmt::format(" From {} alone.", signals_of(state));
-  if (!state.pooled.disagree) return fmt::format(" {} agree.", signals_of(state));
+  if (state.pooled.agree) return fmt::format(" {} agree.", signals_of(state));
   const auto [low, high] = std::minmax_element(
       state.members.begin(), state.members.end(),
       [](const auto& a, const auto& b) { return a.coefficient < b.coefficient; });
@@ -35,16 +35,17 @@ std::string agreement_of(const MachineState& state) {
 }
 
 std::string limit_of(const LimitDistance& limit) {
-  const std::string name(to_string(limit.above));
+  const std::string name(to_string(limit.class_));
   if (limit.on_limit) {
-    return fmt::format(", interval includes the limit between {} and {} ({:g} %)",
-                       to_string(datasets::kLeakClasses[static_cast<std::size_t>(limit.above) - 1]),
-                       name, kInPercent * limit.limit);
+    return fmt::format(
+        ", interval includes the limit between {} and {} ({:g} %)",
+        to_string(datasets::kLeakClasses[static_cast<std::size_t>(limit.class_) - 1]), name,
+        limit.percent);
   }
-  return fmt::format(
-      ", {:.1f} percentage points {} {} ({:g} %)", kInPercent * std::abs(limit.distance),
-      limit.distance < 0.0 ? "below" : "above",
-      limit.distance < 0.0 ? name : "the limit of " + name, kInPercent * limit.limit);
+  const bool below = limit.distance_percentage_points < 0.0;
+  return fmt::format(", {:.1f} percentage points {} {} ({:g} %)",
+                     std::abs(limit.distance_percentage_points), below ? "below" : "above",
+                     below ? name : "the limit of " + name, limit.percent);
 }
 
 }  // namespace
@@ -118,12 +119,8 @@ StoredState stored(const MachineState& state) {
     told.leak_area_m2 = std::max(0.0, *state.leak_area_m2);
     if (e.standard_error > 0.0) told.leak_area_ci95_m2 = scaled_ends(e.ci95, area);
   }
-  if (e.has_share())
-    told.nearest_limit = {state.limit.above, kInPercent * state.limit.limit,
-                          kInPercent * state.limit.distance, state.limit.on_limit};
-  if (const diagnosis::PooledLeak& pooled = state.pooled; state.members.size() > 1)
-    told.agreement = {pooled.p, pooled.chi_squared, pooled.freedom, pooled.widened,
-                      !pooled.disagree};
+  if (e.has_share()) told.nearest_limit = state.limit;
+  if (state.members.size() > 1) told.agreement = state.pooled;
   return told;
 }
 

@@ -1,12 +1,8 @@
 #include "report/leak/parity.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include <algorithm>
-#include <cmath>
-
-#include "report/store/csv_fields.hpp"
+#include "report/store/csv_columns.hpp"
 #include "report/store/identity.hpp"
 #include "report/store/table.hpp"
 
@@ -14,58 +10,11 @@ namespace rigcal::report {
 namespace {
 
 using diagnosis::ParityCondition;
-using diagnosis::ParityRecord;
+using diagnosis::ParityResidual;
 using diagnosis::ParitySignal;
 
-const ParitySignal* signal_of(const ParityResult& result, const ParityRecord& record) {
-  for (const ParitySignal& signal : result.parity.signals)
-    if (signal.signal == record.signal) return &signal;
-  return nullptr;
-}
-
-/// Returns true if a record exceeds a threshold, and std::nullopt if there is no threshold.
-std::optional<bool> exceeds(const std::optional<double>& threshold, double value) {
-  return threshold ? std::optional(value > *threshold) : std::nullopt;
-}
-
-/// Returns true if a record is compared with a threshold that it did not help to set.
-bool is_judged(const ParitySignal* signal, const ParityRecord& record) {
-  return record.failure.empty() && signal != nullptr && signal->threshold_m &&
-         !record.sets_threshold;
-}
-
-StoredParityRecord stored(const ParityResult& result, const ParityRecord& record) {
-  const bool ok = record.failure.empty();
-  const ParitySignal* signal = signal_of(result, record);
-  const auto value = [&](double x) { return ok ? std::optional(x) : std::nullopt; };
-  StoredParityRecord told;
-  told.condition = record.condition;
-  told.repeat = record.repeat;
-  told.signal = record.signal;
-  told.leak_level = result.campaign.find(record.condition)->leak_level;
-  told.healthy = record.is_healthy;
-  told.sets_threshold = record.sets_threshold;
-  told.reference_records = record.reference_records;
-  told.failure = unless_empty(record.failure);
-  told.peak_m = value(record.peak_m);
-  if (is_judged(signal, record)) {
-    told.alarm = record.alarm;
-    if (record.alarm) told.time_to_alarm_s = record.alarm_time_s;
-  }
-  told.features = {value(record.features.mean), value(record.features.rms),
-                   value(record.features.std)};
-  if (ok && record.threshold_m) told.threshold_m = *record.threshold_m;
-  if (ok) {
-    const diagnosis::FeatureThresholds& limits = record.feature_thresholds;
-    told.exceeds = {exceeds(limits.mean_m, record.features.mean),
-                    exceeds(limits.rms_m, record.features.rms),
-                    exceeds(limits.std_m, record.features.std)};
-  }
-  return told;
-}
-
-std::string repeat_name(const ParityRecord& record) {
-  return record.repeat ? fmt::format("{}", *record.repeat) : std::string("mean");
+std::string repeat_name(const std::optional<int>& repeat) {
+  return repeat ? fmt::format("{}", *repeat) : "mean";
 }
 
 std::filesystem::path series_file(const std::string& condition) {
@@ -76,10 +25,10 @@ std::string series_csv(const ParityCondition& condition) {
   Table table;
   table.add("time_s", condition.time_s);
   table.add("healthy_model_m", condition.model_m);
-  for (const ParityRecord& record : condition.records) {
-    if (!record.failure.empty()) continue;
+  for (const ParityResidual& record : condition.records) {
+    if (record.failure) continue;
     const auto add = [&](const char* what, const std::vector<double>& values) {
-      table.add(fmt::format("{}_{}_m", what, repeat_name(record)), values);
+      table.add(fmt::format("{}_{}_m", what, repeat_name(record.repeat)), values);
     };
     add("parity", record.parity_m);
     add("residual", record.residual_m);
@@ -105,41 +54,35 @@ StoredParity stored(const ParityResult& result) {
   file.false_alarm_probability = result.false_alarm;
   file.signals = result.parity.signals;
   for (const ParityCondition& condition : result.parity.conditions)
-    for (const ParityRecord& record : condition.records)
-      file.records.push_back(stored(result, record));
+    file.records.insert(file.records.end(), condition.records.begin(), condition.records.end());
   file.false_alarm_check = result.parity.check;
   file.warnings = result.parity.warnings;
   file.provenance = stored(result.provenance);
   return file;
 }
 
-std::string parity_csv(const ParityResult& result) {
+std::string parity_csv(const StoredParity& parity) {
+  using R = decltype(StoredParity::records)::value_type;
+  using Features = decltype(R::features);
+  const auto threshold_m = [&](const R& record) -> std::optional<double> {
+    for (const ParitySignal& signal : parity.signals)
+      if (record.alarm && signal.signal == record.signal) return signal.threshold_m;
+    return std::nullopt;
+  };
+  CsvColumns<R> columns;
+  columns.members(&R::condition)
+      .add("repeat", [](const R& record) { return repeat_name(record.repeat); })
+      .members(&R::signal, &R::leak_level, &R::healthy, &R::sets_threshold, &R::peak_m)
+      .add("threshold_m", threshold_m)
+      .members(&R::alarm, &R::time_to_alarm_s)
+      .add("feature_mean_m", &R::features, &Features::mean_m)
+      .add("feature_rms_m", &R::features, &Features::rms_m)
+      .add("feature_std_m", &R::features, &Features::std_m)
+      .members(&R::failure);
   std::string text;
-  if (const LeakStatus status = status_of(result); status != LeakStatus::done) {
-    text = csv_comment(
-               fmt::format("status: {}: {}", to_string(status), fmt::join(result.reasons, "; "))) +
-           "\n";
-  }
-  text += csv_row({"condition", "repeat", "signal", "leak_level", "healthy", "sets_threshold",
-                   "peak_m", "threshold_m", "alarm", "time_to_alarm_s", "feature_mean_m",
-                   "feature_rms_m", "feature_std_m", "failure"});
-  for (const ParityCondition& condition : result.parity.conditions) {
-    for (const ParityRecord& record : condition.records) {
-      const bool ok = record.failure.empty();
-      const ParitySignal* signal = signal_of(result, record);
-      const bool judged = is_judged(signal, record);
-      const auto value = [&](double x) { return ok ? csv_number(x) : std::string(); };
-      text += csv_row({csv_text(record.condition), repeat_name(record), csv_text(record.signal),
-                       csv_text(result.campaign.find(record.condition)->leak_level.value_or("")),
-                       record.is_healthy ? "1" : "0", record.sets_threshold ? "1" : "0",
-                       value(record.peak_m), judged ? csv_number(signal->threshold_m) : "",
-                       judged ? (record.alarm ? "1" : "0") : "",
-                       judged && record.alarm ? csv_number(record.alarm_time_s) : "",
-                       value(record.features.mean), value(record.features.rms),
-                       value(record.features.std), csv_text(record.failure)});
-    }
-  }
-  return text;
+  if (parity.status != LeakStatus::done)
+    text = csv_status(to_string(parity.status), parity.reasons) + "\n";
+  return text + columns.table(parity.records);
 }
 
 PlannedFiles planned_parity(const datasets::Campaign& campaign) {

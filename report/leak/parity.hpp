@@ -25,7 +25,7 @@ LeakStatus status_of(const ParityResult& result);
 StoredParity stored(const ParityResult& result);
 
 /// Writes parity.csv with one row per record.
-std::string parity_csv(const ParityResult& result);
+std::string parity_csv(const StoredParity& parity);
 
 /// Writes parity/<condition>.csv with time_s, the position of the healthy model and, for each
 /// repeat, the parity residual, the residual minus that of healthy records, and its moving root

@@ -13,19 +13,10 @@
 namespace rigcal::report {
 namespace {
 
-TableLimit limit_of(const StoredLeakEntry& entry, const JsonNode& node) {
-  TableLimit limit;
-  limit.waveform = entry.waveform;
-  limit.frequency_hz = entry.frequency_hz;
-  const auto amplitude = entry.amplitude_m ? entry.amplitude_m : entry.amplitude_v;
-  if (!amplitude) node.fail("an entry with 'amplitude_m' or 'amplitude_v'");
-  limit.amplitude = *amplitude;
-  limit.target_percent = entry.target_percent;
-  limit.coefficients = entry.coefficients;
-  if (entry.coefficients_ci95) limit.ranges_95 = *entry.coefficients_ci95;
-  if (limit.ranges_95.size() != limit.coefficients.size())
+void require_complete(const calib::LeakEntry& entry, const JsonNode& node) {
+  if (!entry.drive.amplitude()) node.fail("an entry with 'amplitude_m' or 'amplitude_v'");
+  if (entry.coefficients_ci95.size() != entry.coefficients.size())
     node["coefficients_ci95"].fail("an interval, or null, for each coefficient");
-  return limit;
 }
 
 /// Compares two values up to rounding, because writing and reading a file may change the last
@@ -53,9 +44,10 @@ EarlierLeakTable read_leak_table(const std::filesystem::path& file, model::Plant
   }
   const std::vector<JsonNode> entries = root["entries"].items();
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    table.limits.push_back(limit_of(stored.entries[i], entries[i]));
+    require_complete(stored.entries[i], entries[i]);
     table.targets_percent.push_back(stored.entries[i].target_percent);
   }
+  table.limits = std::move(stored.entries);
   std::sort(table.targets_percent.begin(), table.targets_percent.end());
   table.targets_percent.erase(
       std::unique(table.targets_percent.begin(), table.targets_percent.end()),

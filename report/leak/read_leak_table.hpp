@@ -5,25 +5,17 @@
 #include <string>
 #include <vector>
 
+#include "calib/published/leak_table.hpp"
 #include "datasets/campaign/campaign.hpp"
 #include "datasets/campaign/diagnosis_settings.hpp"
 #include "report/store/validity.hpp"
 
 namespace rigcal::report {
 
-/// An entry of a leak table, used as the limit of a class.
-struct TableLimit {
-  datasets::Waveform waveform = datasets::Waveform::sine;
-  double frequency_hz = 0.0;
-  double amplitude = 0.0;  ///< [m], or [V] if the loop has no controller
-  double target_percent = 0.0;
-  std::vector<double> coefficients;             ///< all roots in increasing order
-  std::vector<std::optional<Range>> ranges_95;  ///< interval for each root
-};
-
 /// The data in leak_table.json that a diagnosis needs.
 struct EarlierLeakTable {
-  std::vector<TableLimit> limits;
+  std::vector<calib::LeakEntry> limits;     ///< each with an amplitude, and an interval, or null,
+                                            ///< for each coefficient
   std::vector<double> targets_percent;      ///< values of the table rows, in increasing order
   std::vector<std::pair<int, double>> rig;  ///< row of the parameter table, and value in SI units
 };

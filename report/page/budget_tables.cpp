@@ -107,7 +107,7 @@ doc::Fold contributions(const std::string& what, const std::vector<BudgetOf>& bu
                    {"Source"},
                    {"u", Kind::number},
                    {"Unit", Kind::unit},
-                   {"Share of the variance, %", Kind::number}};
+                   {"Fraction of the variance, %", Kind::number}};
   for (const BudgetOf& each : budgets) add_lines(each, lines.rows);
   std::string summary = fmt::format("Contributions one by one ({})", lines.rows.size());
   return {std::move(summary), {std::move(lines)}};

@@ -1,5 +1,3 @@
-#include "report/page/page_average.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include "datasets/record.hpp"
 #include "report/figure/decimate.hpp"
 #include "report/figure/time_plots.hpp"
+#include "report/page/page_parts.hpp"
 #include "report/text/readable.hpp"
 
 namespace rigcal::report {

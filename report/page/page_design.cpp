@@ -1,5 +1,3 @@
-#include "report/page/page_design.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include "metrics/frequency_response.hpp"
 #include "report/figure/decimate.hpp"
 #include "report/figure/time_plots.hpp"
+#include "report/page/page_parts.hpp"
 #include "report/text/readable.hpp"
 
 namespace rigcal::report {
@@ -213,19 +212,19 @@ std::vector<Figure> design_figures(const PlanFiles& files) {
 }
 
 doc::Verdict design_headline(const StoredDesign& design) {
-  bool told = true;
+  bool all_determined = true;
   std::string words;
   for (const calib::DesignedParameter& parameter : design.parameters) {
     if (!parameter.named) continue;
     const auto half = half_width_percent(parameter.sd, parameter.value);
-    told = told && half.has_value();
+    all_determined = all_determined && half.has_value();
     words += fmt::format("{}{} to {}", words.empty() ? "" : ", ", parameter.label(),
                          half ? fmt::format("± {} %", percent_of(half)) : "no interval");
     if (const auto own = half_width_percent(parameter.sd_own_signals, parameter.value))
       words += fmt::format(" (own signals: ± {} %)", percent_of(own));
   }
   doc::Verdict verdict{
-      {told && !design.stopped() ? doc::State::good : doc::State::warn, "DESIGN"},
+      {all_determined && !design.stopped() ? doc::State::good : doc::State::warn, "DESIGN"},
       {fmt::format(
           "A {} of {:g} s with {} repeat{} determines {}. Every limit that is stated is kept.",
           words_of(design.family), design.duration_s, design.repeats,

@@ -160,8 +160,8 @@ struct ForeseenDays {
 ///
 /// @param first  first date of the trend, in days since 1970-01-01
 /// @param end    last day that can be foreseen; replaces a later end, or one that is not known
-std::optional<ForeseenDays> foreseen_days(const std::optional<StoredNextLimit>& limit, int first,
-                                          double end) {
+std::optional<ForeseenDays> foreseen_days(const std::optional<diagnosis::NextLimit>& limit,
+                                          int first, double end) {
   if (!limit) return std::nullopt;
   const auto reached = day_of(limit->reached);
   const auto earliest = day_of(limit->earliest);
@@ -171,7 +171,7 @@ std::optional<ForeseenDays> foreseen_days(const std::optional<StoredNextLimit>& 
                       latest ? std::min<double>(*latest - first, end) : end};
 }
 
-bool is_of(const StoredState& state, const StoredLeakTrend& trend) {
+bool is_of(const StoredState& state, const diagnosis::LeakTrend& trend) {
   return state.leak_level == trend.leak_level && state.specimen == trend.specimen;
 }
 
@@ -179,7 +179,7 @@ bool is_of(const StoredState& state, const StoredLeakTrend& trend) {
 /// foreseen, when they reach the next limit. Line and band pass through the last share, because the
 /// days of the limit are counted from there. Returns std::nullopt without that share.
 std::optional<Plot> leak_trend_plot(const StoredDiagnosis& diagnosis,
-                                    const StoredLeakTrend& trend) {
+                                    const diagnosis::LeakTrend& trend) {
   const auto first = day_of(trend.first_date);
   const auto last_day = day_of(trend.last_date);
   if (!first || !last_day) return std::nullopt;
@@ -237,15 +237,15 @@ std::optional<Plot> leak_trend_plot(const StoredDiagnosis& diagnosis,
 }
 
 struct MethodName {
-  diagnosis::Accuracy StoredMethods::*accuracy;
+  diagnosis::Accuracy diagnosis::Methods::*accuracy;
   const char* name;
 };
 constexpr std::array kMethods{
-    MethodName{&StoredMethods::fitted_leak_single, "Fitted leak, single repeats"},
-    MethodName{&StoredMethods::fitted_leak_averaged, "Fitted leak, averages"},
-    MethodName{&StoredMethods::features_leave_one_repeat_out,
+    MethodName{&diagnosis::Methods::fitted_leak_single, "Fitted leak, single repeats"},
+    MethodName{&diagnosis::Methods::fitted_leak_averaged, "Fitted leak, averages"},
+    MethodName{&diagnosis::Methods::features_leave_one_repeat_out,
                "Paper's features, learned without the repeat"},
-    MethodName{&StoredMethods::features_leave_one_signal_out,
+    MethodName{&diagnosis::Methods::features_leave_one_signal_out,
                "Paper's features, learned without the signal"}};
 
 /// Returns a row with the accuracy of a classification method.
@@ -337,7 +337,7 @@ doc::Badge state_badge(const StoredState& state) {
   return {doc::State::none, state.leak.leakage_coefficient ? "undecided" : "no verdict"};
 }
 
-std::string distance_text(const std::optional<StoredNearestLimit>& limit) {
+std::string distance_text(const std::optional<diagnosis::LimitDistance>& limit) {
   if (!limit) return "";
   const double points = limit->distance_percentage_points;
   const std::string_view name = to_string(limit->class_);
@@ -346,7 +346,7 @@ std::string distance_text(const std::optional<StoredNearestLimit>& limit) {
                      points < 0.0 ? "below" : "above", name, limit->percent);
 }
 
-std::string agreement_text_of(const std::optional<StoredSignalsAgreement>& agreement) {
+std::string agreement_text_of(const std::optional<diagnosis::SignalsAgreement>& agreement) {
   if (!agreement) return "one signal";
   return fmt::format("{} ({})", agreement->agree ? "agree" : "disagree",
                      p_value_text(agreement->p));
@@ -405,7 +405,7 @@ doc::Verdict headline_of_states(const StoredDiagnosis& diagnosis, const std::str
   else if (open == 0)
     badge = {doc::State::good, "NO LEAK"};
   doc::Verdict verdict{std::move(badge), {sentence}};
-  for (const StoredLeakTrend& trend : diagnosis.trends)
+  for (const diagnosis::LeakTrend& trend : diagnosis.trends)
     if (trend.significant) add_reason(verdict, trend.sentence, "diagnosis");
   for (std::size_t i = 1; i < states.size(); ++i)
     add_reason(verdict, states[i].sentence, "diagnosis");
@@ -440,7 +440,7 @@ std::vector<Figure> diagnosis_figures(const StoredDiagnosis& diagnosis) {
   if (std::any_of(records.begin(), records.end(),
                   [](const auto& record) { return record.is_average(); }))
     figures.push_back({"diagnosis", share_plot(diagnosis)});
-  for (const StoredLeakTrend& trend : diagnosis.trends) {
+  for (const diagnosis::LeakTrend& trend : diagnosis.trends) {
     auto plot = leak_trend_plot(diagnosis, trend);
     if (!plot) continue;
     const std::string machine = trend.leak_level.value_or("") + " " + trend.specimen.value_or("");
@@ -482,7 +482,7 @@ void add_averages(const StoredDiagnosis& diagnosis, doc::Blocks& blocks) {
   blocks.emplace_back(std::move(table));
 }
 
-void add_methods(const StoredMethods& methods, doc::Blocks& blocks) {
+void add_methods(const diagnosis::Methods& methods, doc::Blocks& blocks) {
   doc::Table accuracies{"How often each method is right"};
   accuracies.columns = {{"Method"},
                         {"Right", Kind::number},
@@ -594,7 +594,7 @@ std::vector<doc::Section> diagnosis_sections(const StoredDiagnosis& diagnosis) {
     blocks.emplace_back(doc::Heading{{"Trend"}});
     doc::Gallery gallery;
     gallery.wide = true;
-    for (const StoredLeakTrend& trend : diagnosis.trends) {
+    for (const diagnosis::LeakTrend& trend : diagnosis.trends) {
       blocks.emplace_back(doc::reading(trend.sentence));
       auto plot = leak_trend_plot(diagnosis, trend);
       if (!plot) continue;

@@ -23,16 +23,15 @@ constexpr double kWideInterval = 0.1;
 constexpr std::array kLevelStyles{"model", "residual", "servo", "leak", "reference"};
 
 /// Names the drive of an entry or of the fault-free rig: "sine 0.1 Hz, 50.8 mm".
-template <typename Entry>
-std::string drive_name(const Entry& entry) {
-  std::string text = fmt::format("{} {:.6g} Hz", to_string(entry.waveform), entry.frequency_hz);
-  if (entry.amplitude_m) text += ", " + readable(*entry.amplitude_m, "m", 4);
-  if (entry.amplitude_v) text += ", " + readable(*entry.amplitude_v, "V", 4);
+std::string drive_name(const calib::LeakDrive& drive) {
+  std::string text = fmt::format("{} {:.6g} Hz", to_string(drive.waveform), drive.frequency_hz);
+  if (drive.amplitude_m) text += ", " + readable(*drive.amplitude_m, "m", 4);
+  if (drive.amplitude_v) text += ", " + readable(*drive.amplitude_v, "V", 4);
   return text;
 }
 
 /// Lists all roots of an entry, with "~" before roots that the share barely determines.
-Line coefficients_line(const StoredLeakEntry& entry) {
+Line coefficients_line(const calib::LeakEntry& entry) {
   Line line;
   for (const double root : entry.coefficients) {
     if (!std::isfinite(root)) continue;
@@ -46,10 +45,9 @@ Line coefficients_line(const StoredLeakEntry& entry) {
 
 /// Formats the intervals of the roots; empty for results without a fit and for results from before
 /// intervals were introduced.
-std::string intervals_text(const StoredLeakEntry& entry) {
+std::string intervals_text(const calib::LeakEntry& entry) {
   std::string text;
-  if (!entry.coefficients_ci95) return text;
-  for (const auto& range : *entry.coefficients_ci95) {
+  for (const auto& range : entry.coefficients_ci95) {
     if (!range || !std::isfinite(range->low) || !std::isfinite(range->high)) continue;
     const double half = (range->high - range->low) / (range->high + range->low);
     text += text.empty() ? "" : ", ";
@@ -64,7 +62,7 @@ std::string error_text(const std::optional<double>& percent) {
   return percent ? fmt::format("{:+.1f} %", *percent) : std::string("–");
 }
 
-doc::Tile leak_tile(const StoredLeakEntry& entry) {
+doc::Tile leak_tile(const calib::LeakEntry& entry) {
   doc::Tile tile{doc::badge(entry.grade), coefficients_line(entry)};
   const std::string interval = intervals_text(entry);
   if (!interval.empty()) tile.below.push_back({interval});
@@ -76,7 +74,7 @@ doc::Tile leak_tile(const StoredLeakEntry& entry) {
 
 /// Returns a cell with the share at the published coefficient and the range that its rounding
 /// allows.
-doc::Cell published_share_cell(const StoredLeakEntry& entry) {
+doc::Cell published_share_cell(const calib::LeakEntry& entry) {
   if (!entry.published_coefficient) return doc::Cell("–");
   doc::Cell cell{Line{doc::in_unit(entry.share_at_published_percent, 1.0, 3)}};
   if (const auto& range = entry.share_by_rounding_percent)
@@ -89,28 +87,29 @@ doc::Cell published_share_cell(const StoredLeakEntry& entry) {
 ///
 /// @param cell_of  makes the cell of an entry
 template <typename CellOf>
-void add_leak_rows(const std::vector<StoredLeakEntry>& entries, const std::vector<double>& targets,
+void add_leak_rows(const std::vector<calib::LeakEntry>& entries, const std::vector<double>& targets,
                    CellOf cell_of, doc::Table& table) {
   std::vector<std::string> names;
-  for (const StoredLeakEntry& entry : entries) {
-    const std::string name = drive_name(entry);
+  for (const calib::LeakEntry& entry : entries) {
+    const std::string name = drive_name(entry.drive);
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   }
   for (const std::string& name : names) {
     doc::Row row{{name}};
     for (const double target : targets) {
       doc::Cell& cell = row.cells.emplace_back();
-      for (const StoredLeakEntry& entry : entries) {
-        if (drive_name(entry) == name && entry.target_percent == target) cell = cell_of(entry);
+      for (const calib::LeakEntry& entry : entries) {
+        if (drive_name(entry.drive) == name && entry.target_percent == target)
+          cell = cell_of(entry);
       }
     }
     table.rows.push_back(std::move(row));
   }
 }
 
-std::vector<double> targets_of(const std::vector<StoredLeakEntry>& entries) {
+std::vector<double> targets_of(const std::vector<calib::LeakEntry>& entries) {
   std::vector<double> targets;
-  for (const StoredLeakEntry& entry : entries) {
+  for (const calib::LeakEntry& entry : entries) {
     if (std::find(targets.begin(), targets.end(), entry.target_percent) == targets.end())
       targets.push_back(entry.target_percent);
   }
@@ -119,7 +118,7 @@ std::vector<double> targets_of(const std::vector<StoredLeakEntry>& entries) {
 
 /// Plots computed over published coefficients. With perfect agreement all points would be on the
 /// line.
-Plot agreement_plot(const std::vector<StoredLeakEntry>& entries) {
+Plot agreement_plot(const std::vector<calib::LeakEntry>& entries) {
   Plot plot;
   plot.title = "Computed over published leakage coefficients";
   plot.x_label = "published coefficient";
@@ -131,7 +130,7 @@ Plot agreement_plot(const std::vector<StoredLeakEntry>& entries) {
   double high = 0.0;
   Trace met = empty_trace(Trace::Kind::points, "model", "within 16 %");
   Trace outliers = empty_trace(Trace::Kind::points, "residual", "outlier");
-  for (const StoredLeakEntry& entry : entries) {
+  for (const calib::LeakEntry& entry : entries) {
     const auto& published = entry.published_coefficient;
     if (!published || *published <= 0.0) continue;
     Trace& into = entry.grade == calib::LeakGrade::outlier ? outliers : met;
@@ -168,7 +167,7 @@ doc::Cell against_published(double computed, const std::optional<double>& publis
   return cell;
 }
 
-doc::Table feature_table(const std::vector<StoredFeatures>& features) {
+doc::Table feature_table(const std::vector<calib::FeatureRow>& features) {
   doc::Table table{"Flows and features by level"};
   table.columns = {{"Level"},
                    {"Coefficient", Kind::number},
@@ -177,7 +176,7 @@ doc::Table feature_table(const std::vector<StoredFeatures>& features) {
                    {"Mean", Kind::number},
                    {"RMS", Kind::number},
                    {"Std", Kind::number}};
-  for (const StoredFeatures& f : features) {
+  for (const calib::FeatureRow& f : features) {
     doc::Row row{{f.level, doc::in_unit(f.coefficient, 1.0, 4),
                   against_published(f.servo_flow_l_per_min, f.published_servo_flow_l_per_min),
                   against_published(f.leak_flow_l_per_min, f.published_leak_flow_l_per_min),
@@ -278,8 +277,9 @@ Plot flows_plot(const std::string& level, const Table& table) {
 }
 
 /// Returns, for example, "Critical: 30.6 % of the servo flow leak, at the coefficient 0.6".
-std::string level_caption(const std::vector<StoredFeatures>& features, const std::string& level) {
-  for (const StoredFeatures& f : features) {
+std::string level_caption(const std::vector<calib::FeatureRow>& features,
+                          const std::string& level) {
+  for (const calib::FeatureRow& f : features) {
     if (f.level != level) continue;
     if (!(f.servo_flow_l_per_min > 0.0) || std::isnan(f.leak_flow_l_per_min)) break;
     return fmt::format("{}: {:.3g} % of the servo flow leak, at the coefficient {:g}", level,
@@ -298,8 +298,8 @@ std::string leak_sentence(const StoredLeakTable& table) {
                      summary.within_10_percent, summary.published, summary.within_16_percent);
 }
 
-std::string noted(const StoredLeakEntry& entry) {
-  return fmt::format("{} at {:g} %: {}", drive_name(entry), entry.target_percent, entry.note);
+std::string noted(const calib::LeakEntry& entry) {
+  return fmt::format("{} at {:g} %: {}", drive_name(entry.drive), entry.target_percent, entry.note);
 }
 
 /// Compares the published coefficients with the computed ones.
@@ -340,22 +340,23 @@ void add_features(const LeakTableFiles& stored, doc::Blocks& blocks) {
   blocks.emplace_back(feature_table(table.features));
 }
 
-void add_normals(const std::vector<StoredNormal>& normals, doc::Blocks& blocks) {
+void add_normals(const std::vector<calib::NormalEntry>& normals, doc::Blocks& blocks) {
   if (normals.empty()) return;
   doc::Table table{"Without a fault"};
   table.caption = {table.label};
   table.columns = {
       {"Signal"}, {"Published coefficient", Kind::number}, {"Share at it, %", Kind::number}};
-  for (const StoredNormal& normal : normals)
-    table.rows.push_back({{drive_name(normal), doc::in_unit(normal.published_coefficient, 1.0, 4),
-                           doc::in_unit(normal.share_at_published_percent, 1.0, 3)}});
+  for (const calib::NormalEntry& normal : normals)
+    table.rows.push_back(
+        {{drive_name(normal.drive), doc::in_unit(normal.published_coefficient, 1.0, 4),
+          doc::in_unit(normal.share_at_published_percent, 1.0, 3)}});
   blocks.emplace_back(std::move(table));
 }
 
 doc::Fold assumptions_fold(const StoredLeakTable& table) {
   doc::Table values{"Values in use"};
   values.columns = {{"Parameter"}, {"Value", Kind::number}, {"Source", Kind::words}};
-  for (const StoredAssumption& each : table.assumptions)
+  for (const calib::UsedValue& each : table.assumptions)
     values.rows.push_back({{each.key, doc::readable(each.value, each.unit, 5), each.source}});
   doc::Fold fold{"What it rests on", {std::move(values)}};
   if (table.fixed_combinations.empty()) return fold;
@@ -374,7 +375,7 @@ doc::Fold assumptions_fold(const StoredLeakTable& table) {
 doc::Verdict leak_table_headline(const LeakTableFiles& stored) {
   const StoredLeakTable& table = stored.result;
   doc::Verdict verdict{{doc::State::none, "LEAK TABLE"}, {leak_sentence(table)}};
-  for (const StoredLeakEntry& entry : table.entries) {
+  for (const calib::LeakEntry& entry : table.entries) {
     if (entry.grade == calib::LeakGrade::outlier) add_reason(verdict, noted(entry), "leak-table");
   }
   return verdict;
@@ -418,7 +419,7 @@ std::vector<doc::Section> leak_table_sections(const LeakTableFiles& stored) {
     coefficients.columns.push_back({fmt::format("{:g} %", target)});
   add_leak_rows(
       table.entries, targets,
-      [](const StoredLeakEntry& entry) {
+      [](const calib::LeakEntry& entry) {
         doc::Cell cell;
         cell.tiles = {leak_tile(entry)};
         return cell;
@@ -427,7 +428,7 @@ std::vector<doc::Section> leak_table_sections(const LeakTableFiles& stored) {
   blocks.emplace_back(std::move(coefficients));
   add_published(table, targets, blocks);
   std::vector<std::string> notes;
-  for (const StoredLeakEntry& entry : table.entries)
+  for (const calib::LeakEntry& entry : table.entries)
     if (!entry.note.empty()) notes.push_back(noted(entry));
   blocks.emplace_back(list_of(notes, doc::State::warn));
   add_normals(table.normal, blocks);

@@ -38,7 +38,7 @@ struct Summary {
 
 std::vector<Summary> summaries(const StoredParity& parity) {
   std::vector<Summary> list;
-  for (const StoredParityRecord& record : parity.records) {
+  for (const diagnosis::ParityRecord& record : parity.records) {
     if (list.empty() || list.back().condition != record.condition) {
       Summary& fresh = list.emplace_back();
       fresh.condition = record.condition;

@@ -144,4 +144,30 @@ std::vector<doc::Section> comparison_sections(const StoredComparison& comparison
 doc::Verdict batch_headline(const StoredBatch& batch);
 std::vector<doc::Section> batch_sections(const StoredBatch& batch);
 
+/// Functions for average.json, which shows how well the repeats of each condition agree.
+doc::Verdict average_headline(const AverageFiles& stored);
+std::vector<doc::Section> average_sections(const AverageFiles& stored);
+/// Draws, for each output channel of a condition, the mean with the standard deviation of the
+/// repeats, and that standard deviation over time.
+std::vector<Figure> average_figures(const std::string& condition, const Table& series);
+/// Draws the figures of every condition.
+std::vector<Figure> average_figures(const AverageFiles& stored);
+/// Plots the delay of each repeat relative to the mean; no traces for a single repeat.
+Plot offset_plot(const StoredRecord& record);
+
+/// Functions for plan.json: how much information each existing or planned record gives about each
+/// parameter. With `plan --design` it also contains the designed test.
+doc::Verdict plan_headline(const PlanFiles& files);
+std::vector<doc::Section> plan_sections(const PlanFiles& files);
+/// Plots, for each parameter, the fraction of the total information (1 / variance) that each record
+/// provides on its own, followed by the figures of the design.
+std::vector<Figure> plan_figures(const PlanFiles& files);
+
+/// Functions for `design` in plan.json: the test that `plan --design` designed.
+doc::Verdict design_headline(const StoredDesign& design);
+/// @param files  must contain a design
+doc::Section design_section(const PlanFiles& files);
+/// Draws the drive, the response and the spectrum; empty without a design.
+std::vector<Figure> design_figures(const PlanFiles& files);
+
 }  // namespace rigcal::report

@@ -1,11 +1,9 @@
-#include "report/page/page_plan.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "report/page/page_design.hpp"
+#include "report/page/page_parts.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -59,7 +57,7 @@ std::vector<Figure> share_figures(const StoredPlan& plan) {
     const std::optional<double>& all = parameter.sd_all;
     if (!all || !(*all > 0.0)) continue;
     Plot plot;
-    plot.title = fmt::format("{}: share of the precision of all records that each has alone",
+    plot.title = fmt::format("{}: fraction of the precision of all records that each has alone",
                              parameter.label());
     plot.x_label = "record";
     plot.y_label = fmt::format("{} [%]", parameter.label());
@@ -81,14 +79,14 @@ std::vector<Figure> share_figures(const StoredPlan& plan) {
 doc::Verdict records_headline(const StoredPlan& plan) {
   const auto recorded = std::count_if(plan.records.begin(), plan.records.end(),
                                       [](const auto& record) { return record.recorded; });
-  const auto told =
+  const auto determined =
       std::count_if(plan.parameters.begin(), plan.parameters.end(),
                     [](const auto& parameter) { return parameter.sd_all.has_value(); });
-  const bool whole = static_cast<std::size_t>(told) == plan.parameters.size();
+  const bool whole = static_cast<std::size_t>(determined) == plan.parameters.size();
   doc::Verdict verdict{
       {whole ? doc::State::good : doc::State::warn, "PLAN"},
       {fmt::format("{} of {} records exist; all together determine {} of {} parameters.", recorded,
-                   plan.records.size(), told, plan.parameters.size())}};
+                   plan.records.size(), determined, plan.parameters.size())}};
   for (const calib::PlannedParameter& parameter : plan.parameters) {
     if (parameter.sd_all) continue;
     add_reason(verdict,

@@ -1,10 +1,8 @@
 #include <algorithm>
 
 #include "report/page/calibration/page_calibration.hpp"
-#include "report/page/page_average.hpp"
 #include "report/page/page_batch.hpp"
 #include "report/page/page_overlay.hpp"
-#include "report/page/page_plan.hpp"
 #include "report/page/section.hpp"
 #include "report/store/result_files.hpp"
 

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "metrics/metric_table.hpp"
-#include "report/store/csv_fields.hpp"
+#include "report/store/csv_columns.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -14,27 +14,42 @@ namespace {
 std::string status_line(const calib::Fit& fit) {
   const calib::FitStatus status = status_of(fit);
   if (status == calib::FitStatus::converged) return {};
-  return csv_comment(fmt::format("status: {}: {}", to_string(status), fit.message));
+  return csv_status(to_string(status), {fit.message});
 }
 
-void add_agreement(const std::optional<metrics::Agreement>& agreement,
-                   std::vector<std::string>& fields) {
-  for (const metrics::MetricSpec& metric : metrics::kMetrics)
-    fields.push_back(agreement ? csv_number((*agreement).*metric.value) : std::string());
+/// A row of the scorecard.
+struct ScoreRow {
+  const calib::ConditionScore* score;
+  const datasets::Condition* condition;
+  const calib::ChannelScore* channel;  ///< null for a condition without scores
+  const datasets::ChannelInfo* about;  ///< null as well
+  std::string verdict;
+  std::string problem;
+};
+
+std::vector<ScoreRow> score_rows(const Result& result) {
+  std::vector<ScoreRow> rows;
+  for (const calib::ConditionScore& score : result.fit.conditions) {
+    const datasets::Condition* condition = result.campaign.find(score.id);
+    if (condition == nullptr) continue;
+    if (score.channels.empty())
+      rows.push_back(
+          {&score, condition, nullptr, nullptr, csv_field(score.verdict), score.failure});
+    for (const calib::ChannelScore& channel : score.channels) {
+      const auto verdict = score.verdict_of(channel.channel);
+      rows.push_back({&score, condition, &channel, &info(channel.channel),
+                      verdict ? csv_field(verdict) : "not judged",
+                      channel.problem.empty() ? score.failure : channel.problem});
+    }
+  }
+  return rows;
 }
 
-std::vector<std::string> score_fields(const calib::ChannelScore& score) {
-  std::vector<std::string> fields;
-  add_agreement(score.agreement, fields);
-  const auto& floor = score.noise_floor;
-  fields.push_back(floor ? csv_number(floor->rho2) : std::string());
-  fields.push_back(floor ? csv_number(floor->ccc) : std::string());
-  fields.push_back(floor ? csv_number(floor->absolute_error_percent) : std::string());
-  fields.push_back(csv_number(score.gain_ratio));
-  fields.push_back(csv_number(score.phase_deg));
-  fields.push_back(csv_number(score.delay_s));
-  return fields;
-}
+/// A row of the repeatability.
+struct RepeatabilityRow {
+  const datasets::Record* record;
+  datasets::Repeatability of_channel;
+};
 
 double at(std::span<const double> values, std::size_t i) {
   return i < values.size() ? values[i] : std::nan("");
@@ -54,53 +69,39 @@ std::span<const double> sd_of(const Result& result, const std::string& condition
 }  // namespace
 
 std::string scorecard_csv(const Result& result) {
-  const datasets::ChannelInfo& drive = info(drive_channel(result.campaign));
+  using calib::ChannelScore;
+  using calib::ConditionScore;
+  using datasets::ChannelInfo;
+  using datasets::Condition;
+  using metrics::NoiseFloor;
+  using R = ScoreRow;
+  const ChannelInfo& drive = info(drive_channel(result.campaign));
   const std::string_view suffix = drive.name.substr(drive.key.size());  // "reference_m" gives "_m"
-  std::vector<std::string> titles{
-      "condition",  "use",     "waveform", "frequency_hz", fmt::format("amplitude{}", suffix),
-      "leak_level", "samples", "verdict",  "channel",      "unit"};
-  for (const metrics::MetricSpec& metric : metrics::kMetrics) titles.emplace_back(metric.name);
-  for (const char* title :
-       {"noise_floor_rho2", "noise_floor_ccc", "noise_floor_absolute_error_percent", "gain_ratio",
-        "phase_deg", "delay_s", "problem"}) {
-    titles.emplace_back(title);
-  }
+  CsvColumns<R> columns;
+  columns.add("condition", &R::score, &ConditionScore::id)
+      .add("use", &R::score, &ConditionScore::use)
+      .add("waveform", &R::condition, &Condition::waveform)
+      .add("frequency_hz", &R::condition, &Condition::frequency_hz)
+      .add(fmt::format("amplitude{}", suffix), &R::condition, &Condition::amplitude)
+      .add("leak_level", &R::condition, &Condition::leak_level)
+      .add("samples", &R::score, &ConditionScore::samples)
+      .add("verdict", &R::verdict)
+      .add("channel", &R::about, &ChannelInfo::key)
+      .add("unit", &R::about, &ChannelInfo::unit);
   for (const metrics::MetricSpec& metric : metrics::kMetrics)
-    titles.push_back(fmt::format("{}_expanded_uncertainty", metric.name));
-  std::string text = status_line(result.fit) + csv_row(titles);
-  for (const calib::ConditionScore& score : result.fit.conditions) {
-    const datasets::Condition* condition = result.campaign.find(score.id);
-    if (condition == nullptr) continue;
-    const std::vector<std::string> of_condition{score.id,
-                                                std::string(to_string(score.use)),
-                                                std::string(to_string(condition->waveform)),
-                                                csv_number(condition->frequency_hz),
-                                                csv_number(condition->amplitude),
-                                                csv_text(condition->leak_level.value_or("")),
-                                                fmt::format("{}", score.samples)};
-    const auto add = [&](const std::string& verdict, const std::string& channel,
-                         const std::string& unit, const calib::ChannelScore& values,
-                         const std::string& problem) {
-      std::vector<std::string> fields = of_condition;
-      fields.push_back(verdict);
-      fields.push_back(channel);
-      fields.push_back(unit);
-      for (std::string& field : score_fields(values)) fields.push_back(std::move(field));
-      fields.push_back(csv_text(problem));
-      add_agreement(values.expanded_uncertainty, fields);
-      text += csv_row(fields);
-    };
-    if (score.channels.empty())
-      add(score.verdict ? std::string(to_string(*score.verdict)) : "", "", "", {}, score.failure);
-    for (const calib::ChannelScore& channel : score.channels) {
-      const datasets::ChannelInfo& about = info(channel.channel);
-      const auto verdict = score.verdict_of(channel.channel);
-      add(verdict ? std::string(to_string(*verdict)) : "not judged", std::string(about.key),
-          std::string(about.unit), channel,
-          channel.problem.empty() ? score.failure : channel.problem);
-    }
-  }
-  return text;
+    columns.add(std::string(metric.name), &R::channel, &ChannelScore::agreement, metric.value);
+  columns.add("noise_floor_rho2", &R::channel, &ChannelScore::noise_floor, &NoiseFloor::rho2)
+      .add("noise_floor_ccc", &R::channel, &ChannelScore::noise_floor, &NoiseFloor::ccc)
+      .add("noise_floor_absolute_error_percent", &R::channel, &ChannelScore::noise_floor,
+           &NoiseFloor::absolute_error_percent)
+      .add("gain_ratio", &R::channel, &ChannelScore::gain_ratio)
+      .add("phase_deg", &R::channel, &ChannelScore::phase_deg)
+      .add("delay_s", &R::channel, &ChannelScore::delay_s)
+      .add("problem", &R::problem);
+  for (const metrics::MetricSpec& metric : metrics::kMetrics)
+    columns.add(fmt::format("{}_expanded_uncertainty", metric.name), &R::channel,
+                &ChannelScore::expanded_uncertainty, metric.value);
+  return status_line(result.fit) + columns.table(score_rows(result));
 }
 
 Table residual_table(const Result& result, const calib::ConditionScore& score) {
@@ -161,31 +162,41 @@ std::string averaged_csv(const datasets::Record& record) {
 }
 
 std::string repeatability_csv(const std::vector<datasets::Record>& records) {
-  std::string text =
-      csv_row({"condition", "channel", "unit", "repeats", "pooled_sd", "sd_of_mean",
-               "noise_floor_rho2", "noise_floor_ccc", "noise_floor_absolute_error_percent",
-               "offset_range_s", "repeat_offsets_s", "repeat_deviations", "outliers"});
-  for (const datasets::Record& record : records) {
-    std::vector<std::string> offsets;
-    std::vector<std::string> deviations;
-    for (const datasets::RepeatReport& report : record.repeat_reports) {
-      offsets.push_back(csv_number(report.offset_s));
-      deviations.push_back(csv_number(report.deviation));
-    }
-    for (const datasets::Repeatability& r : datasets::repeatability(record)) {
-      const datasets::ChannelInfo& about = info(r.channel);
-      const auto& floor = r.noise_floor;
-      text += csv_row(
-          {record.condition, std::string(about.key), std::string(about.unit),
-           fmt::format("{}", r.repeats), csv_number(r.pooled_sd), csv_number(r.sd_of_mean),
-           floor ? csv_number(floor->rho2) : "", floor ? csv_number(floor->ccc) : "",
-           floor ? csv_number(floor->absolute_error_percent) : "",
-           csv_number(datasets::offset_range_s(record)), fmt::format("{}", fmt::join(offsets, " ")),
-           fmt::format("{}", fmt::join(deviations, " ")),
-           csv_text(fmt::format("{}", fmt::join(datasets::outliers(record), "; ")))});
-    }
-  }
-  return text;
+  using datasets::Record;
+  using datasets::Repeatability;
+  using datasets::RepeatReport;
+  using metrics::NoiseFloor;
+  using R = RepeatabilityRow;
+  std::vector<R> rows;
+  for (const Record& record : records)
+    for (const Repeatability& each : datasets::repeatability(record))
+      rows.push_back({&record, each});
+  const auto about = [](auto member) {
+    return [member](const Repeatability& each) { return info(each.channel).*member; };
+  };
+  const auto of_repeats = [](auto member) {
+    return [member](const Record& record) {
+      std::vector<double> values;
+      for (const RepeatReport& each : record.repeat_reports) values.push_back(each.*member);
+      return values;
+    };
+  };
+  return CsvColumns<R>()
+      .add("condition", &R::record, &Record::condition)
+      .add("channel", &R::of_channel, about(&datasets::ChannelInfo::key))
+      .add("unit", &R::of_channel, about(&datasets::ChannelInfo::unit))
+      .add("repeats", &R::of_channel, &Repeatability::repeats)
+      .add("pooled_sd", &R::of_channel, &Repeatability::pooled_sd)
+      .add("sd_of_mean", &R::of_channel, &Repeatability::sd_of_mean)
+      .add("noise_floor_rho2", &R::of_channel, &Repeatability::noise_floor, &NoiseFloor::rho2)
+      .add("noise_floor_ccc", &R::of_channel, &Repeatability::noise_floor, &NoiseFloor::ccc)
+      .add("noise_floor_absolute_error_percent", &R::of_channel, &Repeatability::noise_floor,
+           &NoiseFloor::absolute_error_percent)
+      .add("offset_range_s", &R::record, datasets::offset_range_s)
+      .add("repeat_offsets_s", &R::record, of_repeats(&RepeatReport::offset_s))
+      .add("repeat_deviations", &R::record, of_repeats(&RepeatReport::deviation))
+      .add("outliers", &R::record, datasets::outliers)
+      .table(rows);
 }
 
 std::string simulation_csv(std::span<const double> time_s, std::string_view reference_name,
@@ -196,9 +207,8 @@ std::string simulation_csv(std::span<const double> time_s, std::string_view refe
   if (!simulation.ok()) {
     const char* status =
         simulation.status == model::SimulationStatus::cancelled ? "stopped" : "failed";
-    text += csv_comment(fmt::format("status: {}: {} at {:.6g} s: {}", status,
-                                    to_string(simulation.status), simulation.failed_at_s,
-                                    simulation.reason));
+    text += csv_status(status, {fmt::format("{} at {:.6g} s: {}", to_string(simulation.status),
+                                            simulation.failed_at_s, simulation.reason)});
   }
   const std::size_t rows = simulation.ok() ? time_s.size() : 0;
   Table table;

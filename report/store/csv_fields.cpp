@@ -29,10 +29,6 @@ std::string csv_number(double value) {
   return std::isfinite(value) ? fmt::format("{}", value) : std::string();
 }
 
-std::string csv_number(const std::optional<double>& value) {
-  return value ? csv_number(*value) : std::string();
-}
-
 std::string csv_text(const std::string& text) {
   const std::string safe = is_formula(text) ? "'" + text : text;
   if (safe.find_first_of(",\"\r\n") == std::string::npos) return safe;
@@ -49,6 +45,10 @@ std::string csv_comment(std::string text) {
     if (c == '\n' || c == '\r') c = ' ';
   }
   return "# " + text + "\n";
+}
+
+std::string csv_status(std::string_view status, const std::vector<std::string>& reasons) {
+  return csv_comment(fmt::format("status: {}: {}", status, fmt::join(reasons, "; ")));
 }
 
 std::string csv_row(const std::vector<std::string>& fields) {

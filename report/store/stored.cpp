@@ -136,7 +136,7 @@ std::variant<Calibration, StoredTablesFit> load_calibration(const ReadFile& read
 LeakTableFiles load_leak_table(const ReadFile& read, const std::string& where) {
   LeakTableFiles stored{load<StoredLeakTable>(read, where, "leak_table.json"), {}};
   const ReadFile own = files_of_run(read, stored.result.provenance, where, "leak_table.json");
-  for (const StoredFeatures& feature : stored.result.features) {
+  for (const calib::FeatureRow& feature : stored.result.features) {
     const std::string name = "levels/" + level_file(feature.level);
     if (const auto series = own(name))
       stored.levels.emplace_back(feature.level, parse_table(*series, path_in(where, name)));
@@ -147,7 +147,7 @@ LeakTableFiles load_leak_table(const ReadFile& read, const std::string& where) {
 ParityFiles load_parity(const ReadFile& read, const std::string& where) {
   ParityFiles stored{load<StoredParity>(read, where, "parity.json"), {}};
   const ReadFile own = files_of_run(read, stored.result.provenance, where, "parity.json");
-  for (const StoredParityRecord& record : stored.result.records) {
+  for (const diagnosis::ParityRecord& record : stored.result.records) {
     require_id(record.condition, "condition", path_in(where, "parity.json"));
     if (stored.series.contains(record.condition)) continue;
     const std::string name = "parity/" + record.condition + ".csv";

@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "common/error.hpp"
-#include "common/parse_double.hpp"
+#include "datasets/read/csv/csv_text.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -17,16 +17,6 @@ namespace {
 constexpr std::size_t kMostColumns = 10'000;
 /// Maximum length of a double's shortest text, such as -2.2250738585072014e-308.
 constexpr std::size_t kLongestNumber = 24;
-
-std::vector<std::string> split(std::string_view line) {
-  std::vector<std::string> fields;
-  for (std::size_t begin = 0; begin <= line.size();) {
-    const std::size_t end = std::min(line.find(',', begin), line.size());
-    fields.emplace_back(line.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return fields;
-}
 
 }  // namespace
 
@@ -65,7 +55,8 @@ Table parse_table(std::string_view text, const std::string& file) {
     text.remove_prefix(std::min(end + 1, text.size()));
     if (line.empty() || line.front() == '#') continue;
     if (table.names.empty()) {
-      table.names = split(line);
+      for (const datasets::CsvName& name : datasets::header_names(line, ','))
+        table.names.push_back(name.full);
       if (table.names.size() > kMostColumns)
         throw InputError({file, line_number}, fmt::format("{} columns; expected at most {}",
                                                           table.names.size(), kMostColumns));
@@ -74,26 +65,24 @@ Table parse_table(std::string_view text, const std::string& file) {
                                       table.names.begin());
       continue;
     }
-    const char* at = line.data();
-    const char* const stop = line.data() + line.size();
-    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    datasets::CsvFields fields(line, ',');
+    datasets::CsvField field;
+    bool is_there = fields.next(field);
+    for (std::size_t i = 0; is_there || i < table.names.size(); ++i) {
       const auto fail = [&](const std::string& expected) {
-        const auto column = static_cast<long>(at - line.data()) + 1;
-        throw InputError({file, line_number, column},
-                         fmt::format("column '{}': expected {}", table.names[i], expected));
+        throw InputError({file, line_number, static_cast<long>(field.begin) + 1},
+                         fmt::format("column '{}': expected {}",
+                                     table.names[std::min(i, table.names.size() - 1)], expected));
       };
-      double value = std::numeric_limits<double>::quiet_NaN();
-      if (at != stop && *at != ',') {
-        const auto [next, error] = parse_double(at, stop, value);
-        if (error != std::errc() || (next != stop && *next != ',')) fail("a number");
-        at = next;
-      }
+      if (!is_there || i == table.names.size())
+        fail(fmt::format("{} fields in a row", table.names.size()));
+      const auto number = datasets::csv_number(field.text, false);
+      if (!number && !field.text.empty()) fail("a number");
+      const double value = number.value_or(std::numeric_limits<double>::quiet_NaN());
       if (i == time && !(value > before_s)) fail("a time after the one before it");
       if (i == time) before_s = value;
       table.columns[i].push_back(value);
-      const bool last = i + 1 == table.columns.size();
-      if (last != (at == stop)) fail(fmt::format("{} fields in a row", table.names.size()));
-      if (!last) ++at;
+      is_there = fields.next(field);
     }
   }
   return table;

@@ -218,7 +218,7 @@ TEST_CASE("plan --design: a signal ends the search with the best drive until the
                                                {"evaluations = 16", "evaluations = 100000"}}));
   const Outcome outcome =
       folder.run_and_signal({"plan", "campaign.toml", "--design", "damping", "--out", "out"},
-                            "multisine, 16 of 100000", SIGTERM);
+                            "of 100000 drives (multisine)", SIGTERM);
   CAPTURE(outcome.err);
   REQUIRE(outcome.exit_code == 4);
   const auto json = nlohmann::json::parse(folder.read("out/plan.json"));

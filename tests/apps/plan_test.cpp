@@ -39,7 +39,7 @@ use = "fit"
   CHECK_THAT(outcome.out, Contains("planned_10Hz (planned)"));
   const std::string page = folder.read("out/report.html");
   CHECK_THAT(page, Contains("id=\"plan\"") && Contains("planned_10Hz (planned)") &&
-                       Contains("share of the precision of all records"));
+                       Contains("fraction of the precision of all records"));
   CHECK(folder.run({"report", "out"}).exit_code == 0);
   CHECK(folder.read("out/report.html") == page);
 }

@@ -65,7 +65,7 @@ TEST_CASE("excavator: angle and both pressures of the arm, out", "[calib]") {
   CHECK(least_rho2(*arm, datasets::Channel::pressure_b) > 0.91);
 }
 
-TEST_CASE("excavator: angle and both pressures of the boom, up", "[calib]") {
+TEST_CASE("excavator: angle and both pressures of the boom, up", "[calib][long]") {
   const auto boom = fitted("boom_up");
   if (!boom) return;
   CHECK(boom->conditions.size() == 3);
@@ -74,7 +74,7 @@ TEST_CASE("excavator: angle and both pressures of the boom, up", "[calib]") {
   CHECK(least_rho2(*boom, datasets::Channel::pressure_b) > 0.8);
 }
 
-TEST_CASE("excavator: angle and both pressures of the arm, in", "[calib]") {
+TEST_CASE("excavator: angle and both pressures of the arm, in", "[calib][long]") {
   const auto arm = fitted("arm_in");
   if (!arm) return;
   CHECK(arm->conditions.size() == 3);

@@ -208,7 +208,7 @@ TEST_CASE("leak_trends: each date has a day of its own, and all share the refere
   // variance between days.
   const auto square_with = [&](double days_factor) {
     const diagnosis::LeakTrend trend = trend_with(true, days_factor);
-    return std::pow(trend.share_per_day_ci95.high - trend.share_per_day, 2);
+    return std::pow(trend.share_percent_per_day_ci95.high - trend.share_percent_per_day, 2);
   };
   CHECK(trend_with(true, 0.0).significant);
   CHECK_THAT(square_with(4.0) - square_with(0.0),
@@ -261,7 +261,7 @@ TEST_CASE("leak_trends: sizes from few healthy dates widen the interval by t", "
   const auto states = four_weeks(0.01, [](int week) { return 0.3 + 0.02 * week; });
   const auto half = [&](double freedom) {
     const diagnosis::LeakTrend trend = only_trend(states, {1.0, freedom});
-    return trend.share_per_day_ci95.high - trend.share_per_day;
+    return trend.share_percent_per_day_ci95.high - trend.share_percent_per_day;
   };
   // Half of the variance has three degrees of freedom, so the sum has twelve: 2.1788 for 1.9600.
   CHECK_THAT(half(3.0) / half(metrics::kManyDegrees), WithinRel(2.178813 / 1.959964, 1e-4));

@@ -87,10 +87,11 @@ TEST_CASE("diagnose: every repeat and average in its class, by the true shares",
   const Diagnosis found = diagnosis::diagnose(campaign, records, known_rig(campaign), options);
   CHECK(found.usable());
   CHECK(found.records.size() == 16);
-  CHECK(found.single.records == 12);
-  CHECK(found.single.right == 12);
-  CHECK(found.averaged.records == 3);  // the healthy average is the reference for the others
-  CHECK(found.averaged.right == 3);
+  CHECK(found.methods.fitted_leak_single.records == 12);
+  CHECK(found.methods.fitted_leak_single.right == 12);
+  CHECK(found.methods.fitted_leak_averaged.records ==
+        3);  // the healthy average is the reference for the others
+  CHECK(found.methods.fitted_leak_averaged.right == 3);
   for (const auto& record : found.records) {
     CAPTURE(record.condition, record.repeat.value_or(0));
     REQUIRE(record.fit.ok());
@@ -113,7 +114,7 @@ TEST_CASE("diagnose: every repeat and average in its class, by the true shares",
   const double of_single = found.signals.front().smallest_single_leak->coefficient;
   CHECK(of_average > 0.2 * of_single);
   CHECK(of_average < 1.2 * of_single);
-  // The scatter between repeats, noise included, is all that gives the error of the reference.
+  // The variation between repeats, noise included, is all that gives the error of the reference.
   const auto reference = std::find_if(found.records.begin(), found.records.end(),
                                       [](const auto& each) { return each.is_reference; });
   REQUIRE(reference != found.records.end());
@@ -138,9 +139,9 @@ TEST_CASE("diagnose: a record that stays undecided counts as one that is not rig
   campaign.diagnosis.least_probability = 1.0 + 1e-9;
   const Diagnosis found =
       diagnosis::diagnose(campaign, records_of(campaign), known_rig(campaign), {});
-  CHECK(found.single.records == 3);
-  CHECK(found.single.undecided == 3);
-  CHECK(found.single.right == 0);
+  CHECK(found.methods.fitted_leak_single.records == 3);
+  CHECK(found.methods.fitted_leak_single.undecided == 3);
+  CHECK(found.methods.fitted_leak_single.right == 0);
 }
 
 TEST_CASE("diagnose: a coefficient of the leak table has the table's share", "[diagnosis]") {
@@ -162,17 +163,17 @@ TEST_CASE("diagnose: a coefficient of the leak table has the table's share", "[d
     table.targets_percent = {10.0};
     const auto entry =
         calib::leak_table(datasets::true_campaign(campaign), table, {}).entries.at(0);
-    REQUIRE(entry.roots.size() == 1);
+    REQUIRE(entry.coefficients.size() == 1);
     for (Condition& condition : campaign.conditions) condition.sample_rate_hz = 100.0;
     campaign.conditions[1].overrides = {
-        {row_of(campaign, "leakage_coefficient"), entry.roots[0].coefficient}};
+        {row_of(campaign, "leakage_coefficient"), entry.coefficients[0]}};
     campaign.synthetic_settings->repeats = 3;
     diagnosis::DiagnosisOptions options;
     options.truth.emplace();
     for (const auto& [index, value] : campaign.synthetic_settings->parameters)
       options.truth->push_back({index, datasets::Scope::rig, "", value});
     options.truth->push_back({row_of(campaign, "leakage_coefficient"), datasets::Scope::condition,
-                              campaign.conditions[1].id, entry.roots[0].coefficient});
+                              campaign.conditions[1].id, entry.coefficients[0]});
     const auto found =
         diagnosis::diagnose(campaign, records_of(campaign, 1, 3000), known_rig(campaign), options);
     const auto& average = found.records.at(4);
@@ -194,8 +195,8 @@ TEST_CASE("diagnose: what healthy records lack too is no leak", "[diagnosis]") {
   disturbed.synthetic_settings->variation[row_of(campaign, "supply_pressure")] = 0.005;
   const Diagnosis found =
       diagnosis::diagnose(campaign, records_of(disturbed), known_rig(campaign), {});
-  CHECK(found.single.right >= 11);
-  CHECK(found.single.off_by_two_or_more == 0);
+  CHECK(found.methods.fitted_leak_single.right >= 11);
+  CHECK(found.methods.fitted_leak_single.off_by_two_or_more == 0);
   for (const auto& record : found.records)
     CHECK(record.reference_repeats == (record.truth == LeakClass::normal && record.repeat ? 2 : 3));
 }
@@ -264,7 +265,7 @@ TEST_CASE("diagnose: a supply half a percent lower on another day is no leak", "
 }
 
 TEST_CASE("diagnose: over many days alarms are as stated, and the smallest leak is found",
-          "[diagnosis]") {
+          "[diagnosis][long]") {
   // A small version of bench/days_study.cpp. The supplies are quantiles of the difference between
   // two days, one of which is the day of the reference.
   constexpr int kDays = 20;

@@ -3,6 +3,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "common/calendar.hpp"
+
 using namespace rigcal;
 using Catch::WithinAbs;
 using Catch::WithinRel;
@@ -54,13 +56,14 @@ TEST_CASE("leak_trends: the line through three dates, in their order", "[diagnos
       only_trend({on("2026-01-11", 0.5, 0.03, 4.0), on("2026-01-01", 0.3, 0.03, 4.0),
                   on("2026-01-06", 0.4, 0.01, 1.0)});
   CHECK(trend.dates == 3);
-  CHECK(trend.last_day - trend.first_day == 10);
+  CHECK(trend.first_date == "2026-01-01");
+  CHECK(trend.last_date == "2026-01-11");
   CHECK_THAT(trend.coefficient_per_day, WithinRel(0.02, 1e-9));
-  CHECK_THAT(trend.share_per_day, WithinRel(0.004, 1e-9));
+  CHECK_THAT(trend.share_percent_per_day, WithinRel(0.4, 1e-9));
   // The error is 0.03 sqrt(2) / 10 per day. The factor is the 97.5 % quantile of t with 8 degrees
   // of freedom.
-  CHECK_THAT(trend.share_per_day_ci95.high - trend.share_per_day,
-             WithinRel(0.2 * 0.003 * std::sqrt(2.0) * 2.306004135, 1e-6));
+  CHECK_THAT(trend.share_percent_per_day_ci95.high - trend.share_percent_per_day,
+             WithinRel(20.0 * 0.003 * std::sqrt(2.0) * 2.306004135, 1e-6));
   CHECK(trend.significant);
   CHECK(trend.widened == 1.0);
 }
@@ -70,12 +73,14 @@ TEST_CASE("leak_trends: when the line reaches the next limit", "[diagnosis]") {
   // medium begins, 20 days later.
   const LeakTrend trend = only_trend(
       {on("2026-01-01", 0.06, 1e-3), on("2026-01-02", 0.08, 1e-3), on("2026-01-03", 0.1, 1e-3)});
-  REQUIRE(trend.next_class == datasets::LeakClass::medium);
-  CHECK_THAT(trend.next_limit, WithinAbs(0.1, 1e-12));
-  CHECK_THAT(trend.reached_day - trend.last_day, WithinRel(20.0, 1e-9));
-  CHECK(trend.earliest_day < trend.reached_day);
-  REQUIRE(trend.latest_day);
-  CHECK(*trend.latest_day > trend.reached_day);
+  REQUIRE(trend.next_limit);
+  CHECK(trend.next_limit->class_ == datasets::LeakClass::medium);
+  CHECK_THAT(trend.next_limit->percent, WithinAbs(10.0, 1e-10));
+  const int last_day = day_of(trend.last_date).value();
+  CHECK_THAT(trend.next_limit->reached_day - last_day, WithinRel(20.0, 1e-9));
+  CHECK(trend.next_limit->earliest < "2026-01-23");
+  REQUIRE(trend.next_limit->latest);
+  CHECK(*trend.next_limit->latest > "2026-01-23");
   // If the share falls, or is beyond the last limit, there is no limit to reach.
   for (const double change : {-0.1, 0.2}) {
     const double first = change < 0.0 ? 0.3 : 2.0;
@@ -83,7 +88,7 @@ TEST_CASE("leak_trends: when the line reaches the next limit", "[diagnosis]") {
         only_trend({on("2026-01-01", first, 1e-3), on("2026-01-02", first + change, 1e-3),
                     on("2026-01-03", first + 2.0 * change, 1e-3)});
     CHECK(other.significant);
-    CHECK_FALSE(other.next_class);
+    CHECK_FALSE(other.next_limit);
   }
 }
 
@@ -91,13 +96,13 @@ TEST_CASE("leak_trends: no trend within the errors", "[diagnosis]") {
   const LeakTrend trend = only_trend(
       {on("2026-01-01", 0.30, 0.02), on("2026-01-02", 0.31, 0.02), on("2026-01-03", 0.30, 0.02)});
   CHECK_FALSE(trend.significant);
-  CHECK_THAT(trend.p, WithinAbs(1.0, 1e-9));
-  CHECK_FALSE(trend.next_class);
+  CHECK_THAT(trend.p_value, WithinAbs(1.0, 1e-9));
+  CHECK_FALSE(trend.next_limit);
   const LeakTrend rise = only_trend(
       {on("2026-01-01", 0.30, 0.02), on("2026-01-02", 0.305, 0.02), on("2026-01-03", 0.31, 0.02)});
   CHECK(rise.coefficient_per_day > 0.0);
   CHECK_FALSE(rise.significant);
-  CHECK_FALSE(rise.next_class);
+  CHECK_FALSE(rise.next_limit);
 }
 
 TEST_CASE("leak_trends: an error that all dates share is no trend", "[diagnosis]") {
@@ -110,7 +115,7 @@ TEST_CASE("leak_trends: an error that all dates share is no trend", "[diagnosis]
   };
   const LeakTrend exact = only_trend(states(0.0), rig);
   const LeakTrend shared = only_trend(states(0.3), rig);
-  CHECK_THAT(shared.p, WithinRel(exact.p, 1e-6));
+  CHECK_THAT(shared.p_value, WithinRel(exact.p_value, 1e-6));
   CHECK_THAT(shared.coefficient_per_day, WithinRel(0.01, 1e-9));
   // The error matters only if it shifts the estimate of one date more than that of another: here by
   // 0.1 * 0.5 over ten days.
@@ -118,7 +123,8 @@ TEST_CASE("leak_trends: an error that all dates share is no trend", "[diagnosis]
       only_trend({on("2026-01-01", 0.3, 0.01, 1e6, 0.3), on("2026-01-06", 0.35, 0.01, 1e6, 0.35),
                   on("2026-01-11", 0.4, 0.01, 1e6, 0.4)},
                  rig);
-  const double error = (uneven.share_per_day_ci95.high - uneven.share_per_day) / (0.2 * 1.95996);
+  const double error =
+      (uneven.share_percent_per_day_ci95.high - uneven.share_percent_per_day) / (20.0 * 1.95996);
   CHECK_THAT(error, WithinRel(std::sqrt(2e-4 + 0.0025) / 10.0, 1e-3));
 }
 
@@ -148,7 +154,7 @@ TEST_CASE("leak_trends: one for each machine, of dated verdicts alone", "[diagno
   states.back().failure = "no verdict";
   const auto trends = diagnosis::leak_trends(states, kNoRig, {});
   REQUIRE(trends.size() == 2);
-  CHECK(trends[0].specimen.empty());
+  CHECK_FALSE(trends[0].specimen);
   CHECK(trends[0].dates == 3);
   CHECK(trends[1].specimen == "B");
   CHECK(diagnosis::leak_trends({on("2026-01-01", 0.3, 0.01)}, kNoRig, {}).empty());

@@ -86,12 +86,12 @@ TEST_CASE("pooled_leak: members that disagree widen the interval by Birge's rati
 TEST_CASE("nearest_limit: how far a share is from the next class", "[diagnosis]") {
   const datasets::DiagnosisSettings settings;  // limits are 1, 10, 20 and 30 %
   const auto below = diagnosis::nearest_limit(estimate_of(0.17, 0.165, 0.175), settings);
-  CHECK(below.above == datasets::LeakClass::critical);
-  CHECK_THAT(below.distance, WithinAbs(-0.03, 1e-12));
+  CHECK(below.class_ == datasets::LeakClass::critical);
+  CHECK_THAT(below.distance_percentage_points, WithinAbs(-3.0, 1e-10));
   CHECK_FALSE(below.on_limit);
   const auto above = diagnosis::nearest_limit(estimate_of(0.12, 0.11, 0.13), settings);
-  CHECK(above.above == datasets::LeakClass::medium);
-  CHECK_THAT(above.distance, WithinAbs(0.02, 1e-12));
+  CHECK(above.class_ == datasets::LeakClass::medium);
+  CHECK_THAT(above.distance_percentage_points, WithinAbs(2.0, 1e-10));
   CHECK(diagnosis::nearest_limit(estimate_of(0.12, 0.095, 0.145), settings).on_limit);
   // A share within 5 % of the limit counts as on it, however certain it is, because a table may
   // list rounded shares.

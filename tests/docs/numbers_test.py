@@ -24,7 +24,7 @@ class Numbers(unittest.TestCase):
         """Returns exit code, standard output and error, and the document afterwards."""
         self.document.write_text(text)
         done = subprocess.run([ROOT / "scripts" / "docs-numbers", *options, self.document], capture_output=True, text=True,
-                              check=False, env={**os.environ, "RIGCAL_DATA": str(self.folder), **environment})
+                              check=False, env={**os.environ, "RIGCAL_DATA": str(self.folder), "RIGCAL_RUNS": str(self.folder / "runs"), **environment})
         return done.returncode, done.stdout, done.stderr, self.document.read_text()
 
     def test_a_stale_block_is_shown_and_stays(self):
@@ -90,6 +90,15 @@ class Numbers(unittest.TestCase):
         for ends, wanted in ((0, 0), (1, 0), (2, 2), (3, 2), (4, 2)):
             code, _, told, _ = self.numbers(document_with("ls {results}/leak_table"), "--write", RIGCAL=self.program(ends))
             self.assertEqual(code, wanted, told)
+
+    def test_a_run_is_made_again_only_for_another_program(self):
+        program = self.folder / "program"
+        for text, shown in (("one", "one"), ("one", "one"), ("two", "two")):
+            program.write_text(f'#!/bin/sh\nwhile [ "$1" != --out ]; do shift; done\nmkdir "$2"\necho {text} > "$2/told"\necho >> {self.folder}/calls\n')
+            program.chmod(0o755)
+            left = self.numbers(document_with("cat {results}/leak_table/told"), "--write", RIGCAL=str(program))[3]
+            self.assertIn(f"\n{shown}\n", left)
+        self.assertEqual((self.folder / "calls").read_text(), "\n\n")
 
     def test_a_block_needs_its_end(self):
         for text in ("<!-- numbers: echo 7 -->\n6\n", "6\n<!-- end of numbers -->\n"):

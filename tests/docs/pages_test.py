@@ -18,8 +18,8 @@ from browser import Browser, chromium  # noqa: E402
 
 # Reports that take only seconds. Those that need recordings are made only if these are available.
 NAMES = ["uis_leak_table", "martensson", "moog", "karpenko"]
-PAGES = ["index.html", "gallery.html", "tutorial.html", "paper.html", "campaign-file.html", "reference/python.html",
-         "reference/cpp-calib.html", "decisions/index.html"]
+PAGES = ["index.html", "gallery.html", "tutorial.html", "paper.html", "campaign-file.html", "campaign-records.html",
+         "reference/python.html", "reference/cpp-calib.html", "decisions/index.html"]
 
 
 def check(holds, what):

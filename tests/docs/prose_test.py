@@ -51,5 +51,19 @@ class Documents(unittest.TestCase):
             self.assertEqual(self.places(f"{words}\n"), [1], words)
 
 
+class Sources(unittest.TestCase):
+    def places(self, path, text):
+        return [line for line, _ in prose().problems_of_source(pathlib.Path(path), text)]
+
+    def test_comments_and_docstrings_do_not_continue_their_name(self):
+        self.assertEqual(self.places("calib/fit.hpp", "int n;  ///< of the fit\nint m;  ///< number of fits\n"), [1])
+        self.assertEqual(self.places("python/fits.cpp", 'int n;\n(a, "Of the solver.")\n(a, "Steps of it.")\n'), [2])
+        self.assertEqual(self.places("report/page.cpp", '(a, "Of the solver.")\n'), [])
+
+    def test_messages_avoid_overused_verbs(self):
+        self.assertEqual(self.places("calib/fit.cpp", 'fail("nothing tells them apart");\n'), [1])
+        self.assertEqual(self.places("tests/calib/fit_test.cpp", 'fail("nothing tells them apart");\n'), [])
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -134,7 +134,7 @@ def significance(generator):
         yield "sign_test", [better, worse, stats.binomtest(better, better + worse).pvalue]
     x = rounded(generator.uniform(0, 40, 8))
     error = rounded(generator.uniform(0.5, 2, 8))
-    # Scatter above the errors widens the interval and uses Student's t; smaller scatter leaves the
+    # Deviations above the errors widen the interval and use Student's t; smaller ones leave the
     # errors unchanged and uses the normal distribution.
     for name, scatter in (("trend_wide", 3.0), ("trend_narrow", 0.3)):
         y = rounded(1 + 0.07 * x + scatter * error * generator.standard_normal(8))

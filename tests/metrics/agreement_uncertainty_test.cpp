@@ -75,7 +75,7 @@ TEST_CASE("agreement_uncertainty: of a constant error it is t times the standard
 }
 
 TEST_CASE("agreement_uncertainty: two-sided, the score of unlimited repeats is within it",
-          "[metrics]") {
+          "[metrics][long]") {
   // The model is exact, off by less than the noise, or off by more. The noise is white or
   // autocorrelated.
   std::mt19937_64 random(20261126);
@@ -104,7 +104,7 @@ TEST_CASE("agreement_uncertainty: two-sided, the score of unlimited repeats is w
 }
 
 TEST_CASE("agreement_uncertainty: the score of unlimited repeats is seldom worse than it allows",
-          "[metrics]") {
+          "[metrics][long]") {
   // A quarter of the draws is dominated by the gain of each repeat, and a quarter by noise.
   std::mt19937_64 random(20261125);
   const std::vector<double> truth = sine(400, 1.0);

@@ -146,7 +146,7 @@ TEST_CASE("periodic_response: one period tells no scatter", "[metrics]") {
   CHECK(points[0].independent == 1.0);
 }
 
-TEST_CASE("periodic_response: 95 % intervals hold the truth about as often", "[metrics]") {
+TEST_CASE("periodic_response: 95 % intervals hold the truth about as often", "[metrics][long]") {
   const double f = 2.0;
   const std::complex<double> h = lag(f, 0.05);
   constexpr int kRecords = 400;
@@ -199,7 +199,7 @@ TEST_CASE("periodic_response: what the drive does not cause has no coherence", "
   CHECK(points[0].coherence < kLeastCoherence);
 }
 
-TEST_CASE("broadband_response: noise through a first-order lag", "[metrics]") {
+TEST_CASE("broadband_response: noise through a first-order lag", "[metrics][long]") {
   const double step_s = 2e-3;
   const double time_constant_s = 0.02;
   const Values t = even_times(10001, step_s);

@@ -72,7 +72,7 @@ TEST_CASE("trend: few false alarms where the errors tell the scatter", "[metrics
 }
 
 TEST_CASE("trend: a day effect that no error tells makes few false alarms", "[metrics]") {
-  // Three points leave one degree of freedom for the scatter.
+  // Three points leave one degree of freedom for the deviations.
   struct Case {
     std::size_t points;
     double most;

@@ -203,22 +203,26 @@ def check_agreement(page, channels):
     page.run("document.querySelectorAll('details.agreement').forEach(d => { d.open = false; })")
 
 
+def printed(page, folder):
+    """Returns the text of the printed page, or None if nothing can read it."""
+    if shutil.which("pdftotext") is None:
+        return None
+    page.pdf(folder / "page.pdf")
+    return subprocess.run(["pdftotext", "-layout", folder / "page.pdf", "-"], capture_output=True, check=True).stdout.decode()
+
+
 def check_printed(page, folder, words):
     """Checks that the printed page contains these words, whatever the screen shows."""
-    if shutil.which("pdftotext") is None:
-        return
-    page.pdf(folder / "page.pdf")
-    text = subprocess.run(["pdftotext", "-layout", folder / "page.pdf", "-"], capture_output=True, check=True).stdout.decode()
-    for word in words:
+    text = printed(page, folder)
+    for word in words if text is not None else []:
         check(word in text, f"on paper: {word}")
 
 
 def check_first_sheet(page, folder):
     """Checks that the signed part is on the first page and that the foot of every page names the report."""
-    if shutil.which("pdftotext") is None:
+    text = printed(page, folder)
+    if text is None:
         return
-    page.pdf(folder / "page.pdf")
-    text = subprocess.run(["pdftotext", "-layout", folder / "page.pdf", "-"], capture_output=True, check=True).stdout.decode()
     sheets = text.split("\f")[:-1]
     for word in ("PASS", "expanded uncertainty U", "Measured − model", "Why this verdict", "Decision rule", "SHA-256",
                  "Approved by A. Head", "Date"):
@@ -331,6 +335,22 @@ def check_many(binary, work):
         check_printed(page, work, ["The other 71 conditions", last.removeprefix("condition-")])
         check_widths(page)
         check_quiet(page, path)
+
+
+def check_sheets(binary, work, sources):
+    """Checks that a page of 24 conditions prints on at most 15 sheets, with four conditions on one."""
+    rig = sources / "datasets" / "rigs" / "uis_shake_table" / "campaign.toml"
+    check(rigcal(binary, work, "synthesize", str(rig), "--seed", "1", "--out", "six_signals") == 0, "six signals at four leaks")
+    check(rigcal(binary, work, "fit", "six_signals/campaign.toml", "--out", "sheets") == 0, "their fit is good")
+    with Browser() as page:
+        page.open(work / "sheets" / "report.html")
+        text = printed(page, work)
+        if text is None:
+            return
+        sheets = text.split("\f")[:-1]
+        conditions = [sheet.count("Residual tests: position") for sheet in sheets]
+        check(sum(conditions) == 24 and max(conditions) == 4, f"four conditions on a sheet: {conditions}")
+        check(len(sheets) <= 15, f"24 conditions on {len(sheets)} sheets")
 
 
 def check_bad(binary, work):
@@ -576,6 +596,7 @@ def main():
         check(rigcal(binary, work, "synthesize", "truth.toml", "--seed", "3", "--out", "twin") == 0, "synthesize")
         check_good(binary, work)
         check_many(binary, work)
+        check_sheets(binary, work, sources)
         check_bad(binary, work)
         check_leak_table(binary, work, sources)
         check_diagnosis(binary, work)

@@ -148,12 +148,18 @@ class Scripts(unittest.TestCase):
         self.assertEqual(len(list((self.tree / "figures").iterdir())), 5)
 
     def test_performance(self):
-        (self.tree / "docs").mkdir()
+        document = self.tree / "docs" / "quality.md"
+        document.parent.mkdir()
+        document.write_text("above\n<!-- scripts/performance -->\nold\n<!-- end -->\nbelow\n<!-- end -->\n")
         make_program(self.tree / "scripts" / "performance-job")
         self.assertTrue(self.run_script("performance", "3").endswith("performance-job --recorded\nperformance-job \nperformance-job --conditions\nperformance-job --page\n"))
-        self.assertTrue((self.tree / "docs" / "performance.md").read_text().endswith("\nrigcal_speed 3\n"))
+        self.assertEqual(document.read_text(),
+                         "above\n<!-- scripts/performance -->\nrigcal_speed 3\n<!-- end -->\nbelow\n<!-- end -->\n")
         self.assertTrue(self.run_script("performance", "--job", "1", "2").endswith("performance-job 1 2\n"))
         self.assertIn("scripts/performance [rounds]", self.run_script("performance", "--jop", fails=True))
+        document.write_text("no block\n")
+        self.assertIn("docs/quality.md has no block", self.run_script("performance", "3", fails=True))
+        self.assertEqual(document.read_text(), "no block\n")
 
     def test_report_performance(self):
         printed = self.run_script("report-performance")

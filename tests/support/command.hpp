@@ -8,6 +8,7 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <functional>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -59,22 +60,13 @@ class CommandFolder {
 
   /// Runs the command, sends `signal` once its stderr contains `sign`, and waits for the end.
   Outcome run_and_signal(const Arguments& arguments, const std::string& sign, int signal) const {
-    const pid_t process = start(arguments, {});
-    for (int tries = 0; tries < 6000 && text_of(err_file()).find(sign) == std::string::npos;
-         ++tries) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    ::kill(process, signal);
-    return finish(process);
+    return signalled(arguments, signal, sign,
+                     [&] { return text_of(err_file()).find(sign) != std::string::npos; });
   }
 
   /// Runs the command, sends `signal` once `path` is in its working folder, and waits for the end.
   Outcome run_and_signal_at(const Arguments& arguments, const std::string& path, int signal) const {
-    const pid_t process = start(arguments, {});
-    for (int tries = 0; tries < 6000 && !has(path); ++tries)
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    ::kill(process, signal);
-    return finish(process);
+    return signalled(arguments, signal, path, [&] { return has(path); });
   }
 
   /// Runs the command and kills it once a file in its working folder contains `sign`. Returns how
@@ -94,6 +86,30 @@ class CommandFolder {
  private:
   std::filesystem::path out_file() const { return root_ / "stdout"; }
   std::filesystem::path err_file() const { return root_ / "stderr"; }
+
+  /// Runs the command and sends `signal` once `is_time`. A command that ends before is not signalled.
+  ///
+  /// @throws std::runtime_error if it runs for a minute and `awaited` does not appear
+  Outcome signalled(const Arguments& arguments, int signal, const std::string& awaited,
+                    const std::function<bool()>& is_time) const {
+    const pid_t process = start(arguments, {});
+    const auto has_ended = [&] {
+      siginfo_t info{};
+      return ::waitid(P_PID, static_cast<id_t>(process), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+             info.si_pid == process;
+    };
+    constexpr int kMostTries = 6000;
+    for (int tries = 0; !is_time() && !has_ended(); ++tries) {
+      if (tries == kMostTries) {
+        ::kill(process, SIGKILL);
+        const Outcome outcome = finish(process);
+        throw std::runtime_error("no '" + awaited + "' within a minute: " + outcome.err);
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    ::kill(process, signal);
+    return finish(process);
+  }
 
   pid_t start(const Arguments& arguments, const std::string& out) const {
     std::vector<char*> argv{const_cast<char*>("rigcal")};

@@ -35,9 +35,7 @@ std::size_t field_end(std::string_view line, std::size_t begin, char separator) 
     if (!quoted) return line.size();
     // A quote that is never closed is an ordinary character.
   }
-  for (; first < line.size(); ++first)
-    if (line[first] == separator) return first;
-  return line.size();
+  return std::min(line.find(separator, first), line.size());
 }
 
 /// Whether the bytes can be UTF-8: every lead byte is followed by its continuation bytes.

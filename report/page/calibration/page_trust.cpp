@@ -82,7 +82,7 @@ doc::Row bootstrap_row(const calib::FittedParameter& parameter,
 }
 
 doc::Table lack_of_fit_table(const StoredFit& fit) {
-  const StoredLackOfFit& lack = *fit.lack_of_fit;
+  const calib::LackOfFitTests& lack = *fit.lack_of_fit;
   doc::Table table{"Lack of fit by condition"};
   table.columns = {{"Condition"},
                    {"Channel"},
@@ -110,7 +110,7 @@ doc::Table lack_of_fit_table(const StoredFit& fit) {
   return table;
 }
 
-doc::Badge lack_badge(const StoredLackOfFit& lack) {
+doc::Badge lack_badge(const calib::LackOfFitTests& lack) {
   if (lack.misfit == true) return {doc::State::warn, "Significant lack of fit."};
   if (lack.misfit == false) return {doc::State::good, "No lack of fit detected."};
   return {doc::State::none, lack.tests.empty()
@@ -121,7 +121,7 @@ doc::Badge lack_badge(const StoredLackOfFit& lack) {
 
 void add_lack_of_fit(const StoredFit& fit, doc::Blocks& blocks) {
   if (!fit.lack_of_fit || fit.status == calib::FitStatus::failed) return;
-  const StoredLackOfFit& lack = *fit.lack_of_fit;
+  const calib::LackOfFitTests& lack = *fit.lack_of_fit;
   blocks.emplace_back(doc::Heading{{"Lack of fit"}});
   Line line{lack_badge(lack)};
   if (fit.aic && fit.bic)

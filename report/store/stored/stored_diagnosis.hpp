@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/accuracy.hpp"
+#include "diagnosis/diagnose.hpp"
 #include "metrics/residual_features.hpp"
 #include "report/store/stored/stored_leak.hpp"
 #include "report/store/stored/stored_provenance.hpp"
@@ -37,21 +37,6 @@ struct StoredClassLimit {
   RIGCAL_DESCRIBE(signal, share_percent, class_, coefficients, coefficients_ci95)
 };
 
-struct StoredNearestLimit {
-  datasets::LeakClass class_ = datasets::LeakClass::normal;  ///< this is the lower limit of the
-                                                             ///< class
-  double percent = 0.0, distance_percentage_points = 0.0;
-  bool on_limit = false;
-  RIGCAL_DESCRIBE(class_, percent, distance_percentage_points, on_limit)
-};
-
-/// Test of whether the signals recorded in one state give the same leak.
-struct StoredSignalsAgreement {
-  double p = 1.0, chi_squared = 0.0, freedom = 0.0, widened = 1.0;
-  bool agree = true;
-  RIGCAL_DESCRIBE(p, chi_squared, freedom, widened, agree)
-};
-
 /// Verdict on one state of the machine.
 struct StoredState {
   std::string state;
@@ -65,39 +50,14 @@ struct StoredState {
   std::optional<double> leak_area_m2;
   std::optional<Range> leak_area_ci95_m2;
   std::optional<std::string> duty;  ///< signal to which the leak share refers
-  std::optional<StoredNearestLimit> nearest_limit;
-  std::optional<StoredSignalsAgreement> agreement;  ///< absent for a single signal
+  std::optional<diagnosis::LimitDistance> nearest_limit;
+  std::optional<diagnosis::SignalsAgreement> agreement;  ///< absent for a single signal
   RIGCAL_DESCRIBE(state, leak_level, specimen, date, sentence, failure, is_reference, conditions,
                   left_out, leak, leak_area_m2, leak_area_ci95_m2, duty, nearest_limit, agreement)
 };
 
 /// Predictions are limited to this multiple of the observed time span.
 inline constexpr double kAhead = 3.0;
-
-/// Predicted dates at which a growing leak reaches the next class limit.
-struct StoredNextLimit {
-  datasets::LeakClass class_ = datasets::LeakClass::normal;
-  double percent = 0.0;
-  std::string reached, earliest;
-  std::optional<std::string> latest;  ///< absent if it may never be reached
-  RIGCAL_DESCRIBE(class_, percent, reached, earliest, latest)
-};
-
-struct StoredLeakTrend {
-  std::optional<std::string> leak_level, specimen;
-  std::string sentence;
-  int dates = 0;
-  std::string first_date, last_date, duty;
-  double coefficient_per_day = 0.0, share_percent_per_day = 0.0;
-  Range share_percent_per_day_ci95;
-  double p_value = 1.0;
-  bool significant = false;
-  double chi_squared = 0.0, freedom = 0.0, widened = 1.0;
-  std::optional<StoredNextLimit> next_limit;
-  RIGCAL_DESCRIBE(leak_level, specimen, sentence, dates, first_date, last_date, duty,
-                  coefficient_per_day, share_percent_per_day, share_percent_per_day_ci95, p_value,
-                  significant, chi_squared, freedom, widened, next_limit)
-};
 
 struct StoredDiagnosedRecord {
   std::string condition;
@@ -123,13 +83,6 @@ struct StoredDiagnosedRecord {
                   class_by_features_of_other_signals, true_class, true_share_percent, warnings)
 
   bool is_average() const { return !repeat; }
-};
-
-struct StoredMethods {
-  diagnosis::Accuracy fitted_leak_single, fitted_leak_averaged;
-  diagnosis::Accuracy features_leave_one_repeat_out, features_leave_one_signal_out;
-  RIGCAL_DESCRIBE(fitted_leak_single, fitted_leak_averaged, features_leave_one_repeat_out,
-                  features_leave_one_signal_out)
 };
 
 /// The smallest detectable leak of a signal [L/min].
@@ -177,12 +130,12 @@ struct StoredDiagnosis {
   StoredDiagnosisSettings settings;
   std::vector<StoredClassLimit> class_limits;  ///< empty without a leak table
   std::vector<StoredState> states;
-  std::vector<StoredLeakTrend> trends;
+  std::vector<diagnosis::LeakTrend> trends;
   std::vector<StoredDiagnosedRecord> records;
   diagnosis::Confusion confusion;  ///< this and the accuracies: fitted leak, single repeats
   std::optional<double> accuracy;
   std::optional<Range> accuracy_ci95;
-  StoredMethods methods;
+  diagnosis::Methods methods;
   std::vector<StoredSmallestLeak> smallest_leak_l_per_min;  ///< one per signal
   Omittable<StoredBetweenDays> between_days;
   std::vector<std::string> warnings;

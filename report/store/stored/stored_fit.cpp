@@ -148,12 +148,11 @@ void add_trust(const calib::Fit& fit, StoredFit& result) {
       fit.independent_residuals > 0.0 ? finite(fit.independent_residuals) : std::nullopt;
   result.interval_advice = fit.interval_advice;
   result.combinations = fit.combinations;
-  result.lack_of_fit = std::optional(StoredLackOfFit{fit.misfit, fit.lack_of_fit});
+  result.lack_of_fit = std::optional(fit.lack_of_fit);
   result.between_repeats = fit.between_repeats;
   result.basins = fit.basins;
   result.agreement = fit.agreement;
-  if (!fit.bootstrap_message.empty())
-    result.bootstrap = StoredBootstrapRun{fit.bootstrap_replicates, fit.bootstrap_message};
+  result.bootstrap = fit.bootstrap;
   result.posterior = fit.posterior;
   if (!fit.cross_validation.empty()) result.cross_validation = fit.cross_validation;
 }

@@ -57,18 +57,6 @@ inline std::string parameter_label(const calib::FittedParameter& p) {
   return parameter_label(p.key, p.scope, p.level);
 }
 
-struct StoredLackOfFit {
-  std::optional<bool> misfit;
-  std::vector<calib::LackOfFit> tests;
-  RIGCAL_DESCRIBE(misfit, tests)
-};
-
-struct StoredBootstrapRun {
-  int replicates = 0;
-  std::string message;
-  RIGCAL_DESCRIBE(replicates, message)
-};
-
 /// Divisor that weights the residuals of a channel.
 struct StoredWeight {
   std::string condition, channel;
@@ -162,13 +150,13 @@ struct StoredFit {
   Omittable<std::optional<double>> independent_residuals;  ///< null if unknown
   Later<std::string> interval_advice;
   Later<std::vector<std::string>> combinations;
-  Later<std::optional<StoredLackOfFit>> lack_of_fit;
+  Later<std::optional<calib::LackOfFitTests>> lack_of_fit;
   Later<std::optional<calib::BetweenRepeats>> between_repeats;
   Omittable<calib::Considered> considered;
   Omittable<std::vector<calib::StabilityCheck>> stability;
   Later<std::vector<calib::Basin>> basins;
   Later<std::string> agreement;  ///< agreement of the starts, in words
-  Omittable<StoredBootstrapRun> bootstrap;
+  Omittable<calib::BootstrapRun> bootstrap;
   Omittable<calib::Posterior> posterior;
   Omittable<std::vector<calib::HeldOut>> cross_validation;
   Later<std::optional<double>> aic, bic;

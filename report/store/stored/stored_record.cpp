@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "datasets/prepare/repeatability.hpp"
-
 namespace rigcal::report {
 
 long StoredRecord::outliers() const {
@@ -22,11 +20,8 @@ StoredRecord stored(const datasets::Condition& condition, const datasets::Record
   told.duration_s = duration_s;
   told.repeats = record.repeats;
   for (const FileState& file : record.files) told.files.push_back(file.path);
-  for (const datasets::Repeatability& r : datasets::repeatability(record)) {
-    StoredRepeatability channel{std::string(info(r.channel).unit), r.repeats, r.pooled_sd,
-                                r.sd_of_mean, r.noise_floor};
-    told.channels.emplace_back(info(r.channel).key, std::move(channel));
-  }
+  for (const datasets::Repeatability& channel : datasets::repeatability(record))
+    told.channels.emplace_back(info(channel.channel).key, channel);
   told.offset_range_s = datasets::offset_range_s(record);
   told.repeat_reports = record.repeat_reports;
   for (const datasets::TimeWindow& window : record.windows)

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "datasets/prepare/repeatability.hpp"
 #include "datasets/record.hpp"
-#include "metrics/noise_floor.hpp"
 #include "report/json/described.hpp"
 #include "report/store/described_campaign.hpp"
 #include "report/store/stored/stored_provenance.hpp"
@@ -16,15 +16,6 @@ namespace rigcal::report {
 
 inline constexpr const char* kAverageSchema = "rigcal.average/1";
 
-/// Agreement of the repeats in one channel, in the unit of the channel.
-struct StoredRepeatability {
-  std::string unit;
-  int repeats = 1;  ///< number of repeats that recorded the channel
-  std::optional<double> pooled_sd, sd_of_mean;
-  std::optional<metrics::NoiseFloor> noise_floor;
-  RIGCAL_DESCRIBE(unit, repeats, pooled_sd, sd_of_mean, noise_floor)
-};
-
 struct StoredRecord {
   std::string condition;
   datasets::Use use = datasets::Use::fit;
@@ -32,7 +23,7 @@ struct StoredRecord {
   std::optional<double> sample_rate_hz, duration_s;
   int repeats = 1;
   std::vector<std::string> files;
-  Keyed<StoredRepeatability> channels;
+  Keyed<datasets::Repeatability> channels;
   std::optional<double> offset_range_s;
   std::vector<datasets::RepeatReport> repeat_reports;
   std::vector<Range> windows_s;  ///< intervals that count; empty: the whole record

@@ -78,7 +78,7 @@ struct ForeignFit {
   }
 };
 
-TEST_CASE("refit: of two effects that act alike the true one leaves less", "[calib]") {
+TEST_CASE("refit: of two effects that act alike the true one leaves less", "[calib][long]") {
   bench::ForeignRig delayed;
   delayed.delay_s = 0.5e-3;
   const ForeignFit delay(delayed, 11);

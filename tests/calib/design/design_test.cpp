@@ -158,7 +158,7 @@ TEST_CASE("design: a flag that is set before there is a drive is an error", "[ca
   }
 }
 
-TEST_CASE("design: real fits scatter as predicted", "[calib]") {
+TEST_CASE("design: real fits scatter as predicted", "[calib][long]") {
   Twin twin = designed_twin();
   twin.campaign.design->evaluations = 40;
   const Design made = designed(twin.campaign, {"mass", "valve_gain"});

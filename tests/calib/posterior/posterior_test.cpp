@@ -74,7 +74,7 @@ void check_same_draws(const Fit& a, const Fit& b) {
 
 }  // namespace
 
-TEST_CASE("posterior: near the optimum it is what the errors say", "[calib]") {
+TEST_CASE("posterior: near the optimum it is what the errors say", "[calib][long]") {
   Twin twin = drawn_rig();
   twin.campaign.acceptance.push_back({datasets::Channel::position, "rho2", 0.9, std::nullopt});
   twin.campaign.acceptance.push_back(
@@ -231,7 +231,7 @@ TEST_CASE("posterior: a limit of evaluations ends it between stretches", "[calib
   check_same_draws(fit(twin.campaign, records, options), stopped);
 }
 
-TEST_CASE("posterior: the ranks of truths among their draws are uniform", "[calib]") {
+TEST_CASE("posterior: the ranks of truths among their draws are uniform", "[calib][long]") {
   // Simulation-based calibration (Talts et al., arXiv:1804.06788): true values are drawn from the
   // prior, and records are simulated from them. bench/posterior_study.cpp does this 500 times.
   constexpr int kCampaigns = test::kSanitized ? 10 : 40;

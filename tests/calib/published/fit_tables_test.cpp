@@ -92,16 +92,17 @@ TEST_CASE("fit_tables: a twin's values come back from a far start, a gain from z
   auto& signal = rig.settings.signals[0];
   const auto table = calib::leak_table(rig.campaign, rig.settings, quick());
   for (const calib::LeakEntry& entry : table.entries) {
-    signal.printed.at(entry.target_percent).value = entry.roots.at(0).coefficient;
+    signal.printed.at(entry.target_percent).value = entry.coefficients.at(0);
   }
   for (std::size_t i = 0; i < table.features.size(); ++i) {
     const calib::FeatureRow& row = table.features[i];
     rig.settings.features[i].left_out.clear();
-    rig.settings.features[i].printed = {{datasets::Feature::servo_flow, row.servo_flow_m3_per_s},
-                                        {datasets::Feature::leak_flow, row.leak_flow_m3_per_s},
-                                        {datasets::Feature::mean, row.features.mean},
-                                        {datasets::Feature::rms, row.features.rms},
-                                        {datasets::Feature::std, row.features.std}};
+    rig.settings.features[i].printed = {
+        {datasets::Feature::servo_flow, row.servo_flow_l_per_min * kLitrePerMinute},
+        {datasets::Feature::leak_flow, row.leak_flow_l_per_min * kLitrePerMinute},
+        {datasets::Feature::mean, row.mean},
+        {datasets::Feature::rms, row.rms},
+        {datasets::Feature::std, row.std}};
   }
   const auto fit = calib::fit_tables(rig.campaign, rig.settings, quick());
   CAPTURE(fit.message);
@@ -125,21 +126,22 @@ TEST_CASE("fit_tables: a twin's values come back from a far start, a gain from z
 
 TEST_CASE("fit_tables: identifiability has the grades of any fit", "[calib]") {
   test::LeakRig rig = small_rig();
-  // What is published scatters by a tenth about the rig without friction.
+  // The published numbers deviate by a tenth from the rig without friction.
   auto& signal = rig.settings.signals[0];
   const auto table = calib::leak_table(rig.campaign, rig.settings, quick());
   double sign = 1.0;
   for (const calib::LeakEntry& entry : table.entries) {
     sign = -sign;
-    signal.printed.at(entry.target_percent).value =
-        entry.roots.at(0).coefficient * (1.0 + 0.1 * sign);
+    signal.printed.at(entry.target_percent).value = entry.coefficients.at(0) * (1.0 + 0.1 * sign);
   }
   for (std::size_t i = 0; i < table.features.size(); ++i) {
     const calib::FeatureRow& row = table.features[i];
     rig.settings.features[i].left_out.clear();
     rig.settings.features[i].printed = {
-        {datasets::Feature::servo_flow, (1.0 + 0.1 * sign) * row.servo_flow_m3_per_s},
-        {datasets::Feature::leak_flow, (1.0 - 0.1 * sign) * row.leak_flow_m3_per_s}};
+        {datasets::Feature::servo_flow,
+         (1.0 + 0.1 * sign) * row.servo_flow_l_per_min * kLitrePerMinute},
+        {datasets::Feature::leak_flow,
+         (1.0 - 0.1 * sign) * row.leak_flow_l_per_min * kLitrePerMinute}};
     sign = -sign;
   }
   const int friction = model::parameter_index(rig.campaign.rig.plant, "coulomb_friction");

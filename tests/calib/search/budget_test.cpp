@@ -80,9 +80,10 @@ TEST_CASE("budget: a stop beside the fit keeps the fit, its scores, and what was
   CHECK(stopped.stopped_in == StoppedIn::bootstrap);
   CHECK(stopped.has_converged());
   CHECK_THAT(stopped.message, Contains("the bootstrap was stopped by the limit of evaluations"));
-  CHECK(stopped.bootstrap_replicates > 0);
-  CHECK(stopped.bootstrap_replicates < 500);
-  CHECK_THAT(stopped.bootstrap_message, Contains("500 were asked for"));
+  REQUIRE(stopped.bootstrap);
+  CHECK(stopped.bootstrap->replicates > 0);
+  CHECK(stopped.bootstrap->replicates < 500);
+  CHECK_THAT(stopped.bootstrap->message, Contains("500 were asked for"));
   CHECK(stopped.verdict == whole.verdict);
   CHECK(score(stopped, "other").channels.at(0).agreement->rho2 ==
         score(whole, "other").channels.at(0).agreement->rho2);
@@ -96,7 +97,7 @@ TEST_CASE("budget: a stop beside the fit keeps the fit, its scores, and what was
     CHECK_THAT(held.problem.value(), Contains("stopped by the limit of evaluations"));
   options.threads = 3;
   const Fit again = job.run(options);
-  CHECK(again.bootstrap_replicates == stopped.bootstrap_replicates);
+  CHECK(again.bootstrap.value().replicates == stopped.bootstrap->replicates);
   for (std::size_t j = 0; j < stopped.parameters.size(); ++j) {
     REQUIRE(again.parameters[j].bootstrap.has_value() ==
             stopped.parameters[j].bootstrap.has_value());

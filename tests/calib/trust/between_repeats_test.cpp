@@ -324,7 +324,7 @@ TEST_CASE("difference by noise: F along the direction of a cause", "[calib]") {
 
 TEST_CASE("difference by noise: for two repeats Student's t of twenty stretches", "[calib]") {
   // All samples weigh alike in a later start of a ramp. A repeat then deviates along it by the mean
-  // of its stretches, and the noise is their scatter.
+  // of its stretches, and the noise is their variation.
   Twin twin;
   twin.free("mass", 80.0, 10.0, 500.0);
   twin.add("square", datasets::Waveform::square, 2.0, 0.01);

@@ -44,7 +44,7 @@ struct OffsetAlone {
     Budget budget;
     bootstrap(problem, optimum, found, score_conditions(problem, optimum.z, 1), options, fit,
               budget);
-    CHECK(fit.bootstrap_replicates == replicates);
+    CHECK(fit.bootstrap.value().replicates == replicates);
     return fit.parameters[0].bootstrap.value();
   }
 };

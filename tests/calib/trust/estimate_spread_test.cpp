@@ -144,7 +144,7 @@ TEST_CASE("estimate_spread: as wide as the widest interval by its own error", "[
   require_box(scene, 5.0, 7.5);
   scene.uncertainty.standard_error[1] = scene.error(1, 9.0);
   require_box(scene, 6.0, 9.0);
-  // Without scatter, robust errors and quantiles have no effect.
+  // Without score covariances, robust errors and quantiles have no effect.
   scene.uncertainty.robust_standard_error[0] = scene.error(0, 50.0);
   scene.uncertainty.robust_quantile = {20.0, 20.0};
   require_box(scene, 6.0, 9.0);

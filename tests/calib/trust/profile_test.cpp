@@ -270,7 +270,7 @@ TEST_CASE("bootstrap: its spread is that of the noise, the same for any number o
   const Fit found = fit(twin.campaign, records, options);
   options.threads = 3;
   const Fit again = fit(twin.campaign, records, options);
-  CHECK(found.bootstrap_replicates == options.bootstrap);
+  CHECK(found.bootstrap.value().replicates == options.bootstrap);
   for (const auto* key : {"mass", "valve_gain"}) {
     const FittedParameter& p = parameter(found, key);
     REQUIRE(p.bootstrap.has_value());

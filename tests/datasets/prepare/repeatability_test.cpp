@@ -29,7 +29,8 @@ TEST_CASE("repeatability: the noise floor is that of the mean", "[datasets]") {
   series.sd_of_mean = 0.1;
   const auto rows = repeatability(record_of(series));
   REQUIRE(rows.size() == 1);
-  CHECK(rows[0].condition == "sine");
+  CHECK(rows[0].channel == Channel::position);
+  CHECK(rows[0].unit == "m");
   CHECK(rows[0].repeats == 4);
   CHECK(rows[0].pooled_sd == 0.2);
   CHECK(rows[0].sd_of_mean == 0.1);

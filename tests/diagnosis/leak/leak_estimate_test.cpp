@@ -275,18 +275,36 @@ TEST_CASE("detection_limit: Currie's sum of both quantiles", "[diagnosis]") {
   CHECK_THAT(detection_limit({0.01, 0.0, 4.0, 0.0}, kSettings), WithinRel(0.0587880, 1e-5));
 }
 
-TEST_CASE("error_of_averages: from the spread between repeats, of both means", "[diagnosis]") {
+TEST_CASE("error_of_averages: noise, misfit and the spread beyond noise, of both means",
+          "[diagnosis]") {
   SignalErrors errors;
   // A record that is its own reference has no residual and therefore no error.
   const LeakFit reference = fit_of(0.0, 0.0);
   CHECK_FALSE(error_of_averages(reference, errors, 5, 5));
-  errors.repeat_m = 0.12e-3;  // 0.12 in terms of the coefficient
+  errors.repeat_m = 0.13e-3;  // 0.13 in terms of the coefficient
+  errors.repeat_noise_m = 0.12e-3;
   errors.repeat_freedom = 4;
-  const auto error = error_of_averages(reference, errors, 5, 3);
-  REQUIRE(error);
-  CHECK_THAT(error->own_se, WithinRel(0.12 * std::sqrt(1.0 / 5.0 + 1.0 / 3.0), 1e-12));
-  CHECK_THAT(error->freedom, WithinRel(4.0, 1e-12));
-  CHECK(error->rig_se == 0.0);
+  const double of_both = 1.0 / 5.0 + 1.0 / 3.0;
+  // The spread of a few repeats is close to the noise that their samples show, so noise is known.
+  const auto noise = error_of_averages(reference, errors, 5, 3);
+  REQUIRE(noise);
+  CHECK_THAT(noise->own_se, WithinRel(0.12 * std::sqrt(of_both), 1e-12));
+  CHECK(noise->freedom == metrics::kManyDegrees);
+  CHECK(noise->rig_se == 0.0);
+  // What is beyond noise has the degrees of freedom of the repeats.
+  errors.between_m = 0.05e-3;
+  const auto beyond = error_of_averages(reference, errors, 5, 3);
+  REQUIRE(beyond);
+  CHECK_THAT(beyond->own_se, WithinRel(0.13 * std::sqrt(of_both), 1e-12));
+  CHECK_THAT(beyond->freedom, WithinRel(4.0 * std::pow(0.13 / 0.05, 4), 1e-3));
+  // Residuals that are not white count as they do in the records that will be diagnosed.
+  errors.between_m = 0.0;
+  errors.residual_ratio = 2.25;
+  errors.residual_freedom = 20.0;
+  const auto misfit = error_of_averages(reference, errors, 5, 3);
+  REQUIRE(misfit);
+  CHECK_THAT(misfit->own_se, WithinRel(0.18 * std::sqrt(of_both), 1e-12));
+  CHECK_THAT(misfit->freedom, WithinRel(20.0, 1e-9));
   LeakFit of_unsure_rig = reference;
   of_unsure_rig.rig_se = 0.05;
   const auto more = error_of_averages(of_unsure_rig, errors, 5, 3);

@@ -99,6 +99,37 @@ TEST_CASE("fit_leak: a supply that differs between repeats is part of the error"
   CHECK(rms_score(1) < score);
 }
 
+TEST_CASE("fit_leak: noise may carry a healthy record below zero, by any number of errors",
+          "[diagnosis]") {
+  HealthySine made = healthy_sine();
+  datasets::Campaign& campaign = made.campaign;
+  constexpr int kRepeats = 100;
+  campaign.synthetic_settings->repeats = kRepeats;
+  const datasets::Campaign truth = datasets::true_campaign(campaign);
+  std::vector<datasets::Repeat> repeats;
+  for (auto& each : datasets::synthetic_repeats(truth, truth.conditions.front(), nullptr, 8))
+    repeats.push_back(std::move(each.record));
+  const auto records = datasets::repeat_records(campaign, campaign.conditions.front(), repeats);
+  const diagnosis::RigFit rig = rig_of(campaign);
+  const diagnosis::LeakProblem problem(campaign, rig);
+  int below = 0;
+  // A search that starts near zero may end just above it.
+  for (const double start : {0.0, 1e-6}) {
+    diagnosis::LeakScan scan;
+    scan.best_coefficient = start;
+    for (const datasets::Record& record : records.singles) {
+      const auto fit =
+          diagnosis::fit_leak(problem.up_to(1.0), rig, problem.campaign.conditions.front(), record,
+                              std::nullopt, 0, &scan, nullptr);
+      INFO(fit.failure);
+      REQUIRE(fit.ok());
+      below += fit.coefficient < -fit.white_se ? 1 : 0;
+    }
+  }
+  // A sixth of them is expected.
+  CHECK(below > 20);
+}
+
 TEST_CASE("fit_leak: the simulation without a leak serves all records that have the same",
           "[diagnosis]") {
   HealthySine made = healthy_sine();

@@ -113,7 +113,28 @@ TEST_CASE("signal_errors: misfit is what all records together show beyond white 
   CHECK_FALSE(misfit(1.0));
   CHECK_FALSE(misfit(1.05));
   CHECK(misfit(1.07));
-  CHECK(signal_errors({}, {}, {}).misfit);  // nothing rules out a misfit
+  CHECK(signal_errors({}, {}, {}).misfit);  // nothing rules out lack of fit
+}
+
+TEST_CASE("signal_errors: residuals count as in the records, white or in clusters", "[diagnosis]") {
+  // Clusters of 9 degrees of freedom that show 4 times the noise in one of two averages. The mean
+  // variance is 2.5, and its degrees of freedom are 9 * (2 * 2.5)^2 / (2 * 4^2).
+  std::vector<LeakFit> fits(2, fit_with(1.0, 1e-3));
+  for (LeakFit& each : fits) {
+    each.white_se = each.cluster_se = 1e-2;
+    each.cluster_freedom = 9;
+  }
+  fits[0].cluster_se = 2e-2;
+  const auto errors = signal_errors({}, {}, {&fits[0], &fits[1]});
+  REQUIRE(errors.misfit);
+  CHECK_THAT(errors.residual_ratio, WithinRel(2.5, 1e-12));
+  CHECK_THAT(errors.residual_freedom, WithinRel(9.0 * 25.0 / 32.0, 1e-4));
+  // Without a misfit of the signal, each record has white noise.
+  fits[0].cluster_se = 1e-2;
+  const auto white = signal_errors({}, {}, {&fits[0], &fits[1]});
+  REQUIRE_FALSE(white.misfit);
+  CHECK(white.residual_ratio == 1.0);
+  CHECK(white.residual_freedom == metrics::kManyDegrees);
 }
 
 TEST_CASE("signal_errors: healthy repeats that correct each other lie farther apart",

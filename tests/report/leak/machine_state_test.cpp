@@ -42,7 +42,7 @@ TEST_CASE("state_sentence: what leaks, how surely, how far from the next class",
         "(probability 0.98), 5.0 percentage points above the limit of medium (10 %). 2 signals "
         "agree.");
   state.pooled.p = 1e-3;
-  state.pooled.disagree = true;
+  state.pooled.agree = false;
   CHECK_THAT(report::state_sentence(state),
              Contains("2 signals disagree (coefficients 0.5 to 0.52, p = 0.001)"));
   state.members.pop_back();

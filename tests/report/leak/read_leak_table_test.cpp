@@ -15,12 +15,10 @@ using datasets::LeakClass;
 
 namespace {
 
-StoredLeakEntry entry(datasets::Waveform waveform, double frequency_hz, double target_percent,
-                      std::vector<double> coefficients, std::vector<std::optional<Range>> ci95) {
-  StoredLeakEntry entry;
-  entry.waveform = waveform;
-  entry.frequency_hz = frequency_hz;
-  entry.amplitude_m = 0.05;
+calib::LeakEntry entry(datasets::Waveform waveform, double frequency_hz, double target_percent,
+                       std::vector<double> coefficients, std::vector<std::optional<Range>> ci95) {
+  calib::LeakEntry entry;
+  entry.drive = calib::LeakDrive{waveform, frequency_hz, 0.05, {}};
   entry.target_percent = target_percent;
   entry.coefficients = std::move(coefficients);
   entry.coefficients_ci95 = std::move(ci95);
@@ -69,9 +67,9 @@ TEST_CASE("read_leak_table: rows, coefficients and the rig", "[report]") {
   CHECK(table.rig[0].second == 85.0);
   REQUIRE(table.limits.size() == 3);
   CHECK(table.limits[1].coefficients == std::vector{0.1, 0.2});
-  CHECK_FALSE(table.limits[1].ranges_95[0].has_value());
-  CHECK(table.limits[1].ranges_95[1] == rigcal::Range{0.19, 0.21});
-  CHECK(table.limits[2].waveform == datasets::Waveform::square);
+  CHECK_FALSE(table.limits[1].coefficients_ci95[0].has_value());
+  CHECK(table.limits[1].coefficients_ci95[1] == rigcal::Range{0.19, 0.21});
+  CHECK(table.limits[2].drive.waveform == datasets::Waveform::square);
   CHECK(table.limits[2].coefficients.empty());
 }
 

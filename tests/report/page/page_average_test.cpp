@@ -1,10 +1,8 @@
-#include "report/page/page_average.hpp"
-
 #include <catch2/catch.hpp>
 
 #include "common/error.hpp"
 #include "report/page/page.hpp"
-#include "report/page/page_plan.hpp"
+#include "report/page/page_parts.hpp"
 
 using Catch::Contains;
 using namespace rigcal::report;
@@ -82,7 +80,7 @@ TEST_CASE("average_figures: the band is the variation between repeats", "[report
   CHECK(band.y[1] == Approx(18.0));  // in mm
   CHECK(band.upper[1] == Approx(22.0));
   CHECK(figures[1].plot.traces[0].y[1] == Approx(2.0));
-  // A single repeat has no scatter.
+  // A single repeat has no standard deviation.
   const Table single =
       parse_table("time_s,position_m_mean,position_m_sd,position_m_count\n0,0.01,,1\n0.1,0.02,,1\n",
                   "sine.csv");

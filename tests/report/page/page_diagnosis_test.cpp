@@ -64,7 +64,7 @@ StoredDiagnosis growing_leak() {
   diagnosis.states.push_back(diagnosis.states.back());
   diagnosis.states.back().specimen = "another machine";
   diagnosis.states.back().leak.leak_share_percent = 50.0;
-  StoredLeakTrend& trend = diagnosis.trends.emplace_back();
+  rigcal::diagnosis::LeakTrend& trend = diagnosis.trends.emplace_back();
   trend.specimen = "A";
   trend.first_date = "2026-01-01";
   trend.last_date = "2026-01-21";

@@ -27,5 +27,8 @@ TEST_CASE("csv_number: nothing for what is no number", "[report]") {
   CHECK(csv_number(0.1) == "0.1");
   CHECK(csv_number(std::numeric_limits<double>::quiet_NaN()).empty());
   CHECK(csv_number(-std::numeric_limits<double>::infinity()).empty());
-  CHECK(csv_number(std::optional<double>()).empty());
+}
+
+TEST_CASE("csv_status: one comment line with all reasons", "[report]") {
+  CHECK(csv_status("failed", {"no start", "no\nend"}) == "# status: failed: no start; no end\n");
 }

@@ -24,11 +24,19 @@ TEST_CASE("table: without a final newline, and without rows", "[report]") {
   CHECK(parse_table("x,y", "t.csv").columns.size() == 2);
 }
 
+TEST_CASE("table: a name in quotes may contain a comma", "[report]") {
+  const Table table = parse_table("time_s,\"leak[33,3 %]\"\n0,2\n", "t.csv");
+  REQUIRE(table.find("leak[33,3 %]") != nullptr);
+  CHECK(table.find("leak[33,3 %]")->front() == 2.0);
+}
+
 TEST_CASE("table: says where it is broken", "[report]") {
   using Catch::Contains;
   CHECK_THROWS_WITH(parse_table("a,b\n1,2\n3,x\n", "t.csv"), Contains("t.csv:3:3"));
   CHECK_THROWS_WITH(parse_table("a,b\n1,2\n3\n", "t.csv"), Contains("t.csv:3"));
-  CHECK_THROWS_WITH(parse_table("a,b\n1,2,3\n", "t.csv"), Contains("2 fields"));
+  CHECK_THROWS_WITH(parse_table("a,b\n1,2,3\n", "t.csv"),
+                    Contains("t.csv:2:5") && Contains("2 fields"));
+  CHECK_THROWS_AS(parse_table("a\ninf\n", "t.csv"), rigcal::InputError);
   CHECK_THROWS_AS(parse_table("a\n1;2\n", "t.csv"), rigcal::InputError);
 }
 

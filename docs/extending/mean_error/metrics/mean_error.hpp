@@ -7,8 +7,8 @@
 
 namespace rigcal::metrics {
 
-/// 100 |mean e| / (max y - min y), in percent: what the model is off on the whole, which no scatter
-/// hides. Of signals as those of metrics/agreement.hpp.
+/// Returns 100 |mean e| / (max y - min y), in percent: the constant error of the model, which noise
+/// does not hide. The signals are those of metrics/agreement.hpp.
 ///
 /// @throws std::domain_error  the measured signal is constant
 inline double mean_error_percent(std::span<const double> measured,

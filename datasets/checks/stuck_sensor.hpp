@@ -18,7 +18,7 @@ enum class RangeEnd { lowest, highest };
 ///   samples, at least ten times: its noise is cut off on one side.
 /// - The drive moves by at least 0.5 % of its range during the run. (If the drive is constant, so
 ///   is the signal, and the noise of a recorded drive is smaller.) The drive must not go to its
-///   other end and back, which would release a clipped sensor (frozen_sensor.hpp). This is enough
+///   other end and back, which would release a clipped sensor (frozen_runs()). This is enough
 ///   if the signal shows noise, because an extreme value then occurs only once or twice by chance.
 ///   Without noise, because the converter is coarse or the signal is simulated, the run must also
 ///   begin and end in the middle of a motion. Within three samples, the signal must then move by at
@@ -30,5 +30,21 @@ enum class RangeEnd { lowest, highest };
 /// @return       in order; empty for a constant signal
 std::vector<EqualRun> clipped_runs(std::span<const double> x, std::span<const double> drive,
                                    RangeEnd end);
+
+/// Finds runs of exactly equal samples that show a frozen sensor, line or recording while the rig
+/// moved. A run must be at least sixteen times as long as the signal's runs are on average. In
+/// addition, one of two conditions must be met:
+/// - The signal shows noise elsewhere, and the drive moves by at least 10 % of its range during the
+///   run. (If the noise is two steps of the converter, a run of this length occurs by chance once
+///   in 1e12 samples.)
+/// - The drive passes through its range and back, and the run interrupts a motion: within three
+///   samples, before the run and after it, the signal moves by at least its typical step and at
+///   least four steps of its resolution. These conditions exclude slow signals from coarse
+///   converters, sweeps that decay below a step of the converter, and a piston that sticks under a
+///   slow drive because of friction.
+/// @param x  shape (n), evenly sampled, finite
+/// @param drive  shape (n), reference or command
+/// @return  in order; empty for a constant signal
+std::vector<EqualRun> frozen_runs(std::span<const double> x, std::span<const double> drive);
 
 }  // namespace rigcal::datasets

@@ -1,7 +1,8 @@
-#include "datasets/checks/clipped_sensor.hpp"
+#include "datasets/checks/stuck_sensor.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "datasets/checks/drive_motion.hpp"
@@ -9,8 +10,8 @@
 namespace rigcal::datasets {
 namespace {
 
-// Thresholds for the row "a clipped sensor" in docs/campaign-file.md. The test has records on both
-// sides of them.
+// Thresholds for the row "a clipped sensor" in docs/campaign-records.md. The test has records on
+// both sides of them.
 constexpr std::size_t kShortestClip = 3;
 constexpr std::size_t kFewestClipped = 8;
 constexpr double kClipDriveMotion = 0.005;
@@ -63,6 +64,18 @@ double flat_top_fall(std::size_t length) {
   return 12.0 / n + 36.0 / (n * n);
 }
 
+// Thresholds for the row "an interrupted sensor" in docs/campaign-records.md. The test has records
+// on both sides of them.
+constexpr std::size_t kShortestFreeze = 16;
+constexpr double kFreezeDriveMotion = 0.1;
+constexpr int kFreezePassages = 2;
+constexpr double kStandSteps = 4.0;
+
+/// Returns the mean length of the runs in samples, without the run in question.
+double length_of_others(std::size_t samples, std::size_t runs, const EqualRun& left_out) {
+  return static_cast<double>(samples - left_out.length) / static_cast<double>(runs - 1);
+}
+
 }  // namespace
 
 std::vector<EqualRun> clipped_runs(std::span<const double> x, std::span<const double> drive,
@@ -98,6 +111,28 @@ std::vector<EqualRun> clipped_runs(std::span<const double> x, std::span<const do
       std::accumulate(found.begin(), found.end(), std::size_t{0},
                       [](std::size_t sum, const EqualRun& run) { return sum + run.length; });
   if (samples < kFewestClipped) found.clear();
+  return found;
+}
+
+std::vector<EqualRun> frozen_runs(std::span<const double> x, std::span<const double> drive) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  std::vector<EqualRun> found;
+  const std::vector<EqualRun> runs = equal_runs(x);
+  if (runs.size() < 2 || drive.size() != x.size()) return found;
+  std::vector<EqualRun> long_enough;
+  for (const EqualRun& run : runs)
+    if (!(static_cast<double>(run.length) <
+          static_cast<double>(kShortestFreeze) * length_of_others(x.size(), runs.size(), run)))
+      long_enough.push_back(run);
+  // Most signals return here. The checks below cost more than everything above.
+  if (long_enough.empty()) return found;
+  const bool noisy = shows_noise(runs, -kInfinity, kInfinity);
+  const double least = std::max(typical_step(runs), kStandSteps * resolution(runs));
+  for (const EqualRun& run : long_enough) {
+    if ((noisy && drive_motion(drive, run) >= kFreezeDriveMotion) ||
+        (drive_passages(drive, run) >= kFreezePassages && cuts_a_motion(x, run, least)))
+      found.push_back(run);
+  }
   return found;
 }
 

@@ -1,4 +1,4 @@
-#include "datasets/checks/coarse_steps.hpp"
+#include "datasets/checks/repeat_checks.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,6 +18,23 @@ bool on_a_grid(const std::vector<double>& values, double step) {
 }
 
 }  // namespace
+
+std::vector<std::size_t> first_identical(const std::vector<Repeat>& repeats,
+                                         const std::vector<std::size_t>& carriers,
+                                         Channel channel) {
+  std::vector<std::size_t> first(carriers.size());
+  for (std::size_t k = 0; k < carriers.size(); ++k) {
+    first[k] = k;
+    const auto& own = repeats[carriers[k]].values.at(channel);
+    if (!info(channel).is_output || is_constant(own)) continue;
+    for (std::size_t earlier = 0; earlier < k; ++earlier) {
+      if (repeats[carriers[earlier]].values.at(channel) != own) continue;
+      first[k] = earlier;
+      break;
+    }
+  }
+  return first;
+}
 
 std::optional<double> coarse_step(const std::vector<Repeat>& repeats, Channel channel,
                                   double noise_sd) {
