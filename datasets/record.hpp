@@ -93,12 +93,12 @@ struct Series {
 
 /// Timing of one repeat, and how well it agrees with the others.
 struct RepeatReport {
-  std::string source;
+  std::string source;     ///< file of the repeat
   double offset_s = 0.0;  ///< delay of this repeat relative to the mean delay
   /// rms distance from the mean of the other repeats, divided by the pooled sd; for the worst
   /// channel
   double deviation = 0.0;
-  bool outlier = false;
+  bool outlier = false;    ///< whether the repeat is too far from the others
   double shifted_s = 0.0;  ///< offset_s if it was subtracted to align the repeat, else 0
   RIGCAL_DESCRIBE(source, offset_s, deviation, outlier)
 };

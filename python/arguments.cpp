@@ -47,7 +47,8 @@ int thread_count(const std::optional<Integer>& threads) {
   return std::clamp(static_cast<int>(found), 1, report::kMostThreads);
 }
 
-std::vector<std::string> assignments(const std::optional<py::dict>& values) {
+std::vector<std::string> assignments(
+    const std::optional<Dict<std::string, std::variant<std::string, double>>>& values) {
   std::vector<std::string> texts;
   if (!values) return texts;
   for (const auto& [name, value] : *values) {

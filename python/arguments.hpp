@@ -9,8 +9,10 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
+#include "python/types.hpp"
 #include "report/run/fit_choices.hpp"
 
 namespace rigcal::python {
@@ -43,7 +45,8 @@ int thread_count(const std::optional<Integer>& threads);
 /// Converts each entry of a dict to name="value unit".
 ///
 /// @throws pybind11::type_error  if a value is neither text nor a number
-std::vector<std::string> assignments(const std::optional<pybind11::dict>& values);
+std::vector<std::string> assignments(
+    const std::optional<Dict<std::string, std::variant<std::string, double>>>& values);
 
 /// Converts text that may contain a file name. Bytes that are not UTF-8 are decoded as by
 /// os.fsdecode().
@@ -57,16 +60,6 @@ auto field(Member Self::*member, Value Member::*value) {
 template <typename Self, typename Member, typename Value>
 auto field(std::shared_ptr<const Member> Self::*member, Value Member::*value) {
   return [=](const Self& self) { return (*(self.*member)).*value; };
-}
-
-/// Returns a getter for an enumerator, which Python receives as text: the enumerator's name.
-template <typename Self, typename Value>
-auto named(Value Self::*value) {
-  return [=](const Self& self) { return to_string(self.*value); };
-}
-template <typename Self, typename Member, typename Holder, typename Value>
-auto named(Member Self::*member, Value Holder::*value) {
-  return [get = field(member, value)](const Self& self) { return to_string(get(self)); };
 }
 
 /// Formats "name=value" in Python notation, for the call recorded in a result.
@@ -85,7 +78,7 @@ namespace pybind11::detail {
 
 template <>
 struct type_caster<rigcal::python::Integer> {
-  PYBIND11_TYPE_CASTER(rigcal::python::Integer, const_name("int"));
+  PYBIND11_TYPE_CASTER(rigcal::python::Integer, const_name("SupportsIndex"));
 
   bool load(handle source, bool /*convert*/) {
     if (!source || PyIndex_Check(source.ptr()) == 0) return false;

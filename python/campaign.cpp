@@ -29,11 +29,11 @@ std::vector<Parameter> campaign_parameters(const Campaign& self) {
   return parameters;
 }
 
-CampaignPtr load_campaign(const std::filesystem::path& campaign,
-                          const std::optional<std::filesystem::path>& data,
-                          const std::optional<py::dict>& set,
-                          const std::optional<std::vector<std::string>>& free,
-                          const std::optional<std::filesystem::path>& root) {
+CampaignPtr load_campaign(
+    const std::filesystem::path& campaign, const std::optional<std::filesystem::path>& data,
+    const std::optional<Dict<std::string, std::variant<std::string, double>>>& set,
+    const std::optional<std::vector<std::string>>& free,
+    const std::optional<std::filesystem::path>& root) {
   require_path("campaign", campaign);
   require_path("data", data);
   require_path("root", root);
@@ -60,8 +60,15 @@ CampaignPtr load_campaign(const std::filesystem::path& campaign,
 void bind_parameter(py::module_& module) {
   using model::ParameterSpec;
   py::class_<Parameter> parameter(module, "Parameter", "A parameter that the campaign gives; SI.");
-  bind_spec(parameter, &Parameter::spec);
   parameter
+      .def_property_readonly("key", field(&Parameter::spec, &ParameterSpec::key),
+                             "Name in the campaign file: \"bulk_modulus\".")
+      .def_property_readonly("name", field(&Parameter::spec, &ParameterSpec::name),
+                             "Name in results, with its unit: \"bulk_modulus_pa\".")
+      .def_property_readonly("symbol", field(&Parameter::spec, &ParameterSpec::symbol),
+                             "Symbol in the equations.")
+      .def_property_readonly("unit", field(&Parameter::spec, &ParameterSpec::unit),
+                             "SI unit; \"1\" for a plain number.")
       .def_property_readonly("meaning", field(&Parameter::spec, &model::ParameterSpec::meaning),
                              "In one line.")
       .def_property_readonly("start",
@@ -76,7 +83,7 @@ void bind_parameter(py::module_& module) {
       .def_property_readonly("free", field(&Parameter::setting, &datasets::ParameterSetting::fit),
                              "Whether it is fitted.")
       .def_property_readonly("scope",
-                             named(&Parameter::setting, &datasets::ParameterSetting::scope),
+                             field(&Parameter::setting, &datasets::ParameterSetting::scope),
                              "Scope of one value: \"rig\", \"leak_level\" or \"condition\".")
       .def_property_readonly("nuisance",
                              field(&Parameter::setting, &datasets::ParameterSetting::nuisance),
@@ -99,10 +106,8 @@ void bind_condition(py::module_& module) {
   py::class_<Condition>(module, "Condition",
                         "A signal at a leak level, recorded once or several times; SI.")
       .def_readonly("id", &Condition::id, "Its name in campaign and results.")
-      .def_property_readonly("use", named(&Condition::use),
-                             "\"fit\", \"validate\", \"diagnose\" or \"ignore\".")
-      .def_property_readonly("waveform", named(&Condition::waveform),
-                             "\"sine\", \"square\", \"recorded\"...")
+      .def_readonly("use", &Condition::use, "\"fit\", \"validate\", \"diagnose\" or \"ignore\".")
+      .def_readonly("waveform", &Condition::waveform, "\"sine\", \"square\", \"recorded\"...")
       .def_readonly("frequency_hz", &Condition::frequency_hz, "[Hz]; of a chirp, where it begins.")
       .def_readonly("amplitude", &Condition::amplitude,
                     "[m], or [V] where no controller is in the loop.")
@@ -136,8 +141,8 @@ CampaignClass bind_campaign(py::module_& module) {
       .def_property_readonly("file", field(&Campaign::campaign, &datasets::Campaign::file),
                              "Path of the campaign file.")
       .def_property_readonly(
-          "plant", [](const Campaign& self) { return to_string(self.campaign.rig.plant); },
-          "\"load_pressure\" or \"two_chamber\".")
+          "plant", [](const Campaign& self) { return self.campaign.rig.plant; },
+          "Kind of plant: \"load_pressure\", \"two_chamber\" or \"linkage\".")
       .def_property_readonly("synthetic",
                              field(&Campaign::campaign, &datasets::Campaign::synthetic),
                              "Whether its records were made by `rigcal synthesize`.")

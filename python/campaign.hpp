@@ -3,7 +3,6 @@
 #include <pybind11/pybind11.h>
 
 #include <cmath>
-#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -33,26 +32,6 @@ struct Campaign {
 };
 using CampaignPtr = std::shared_ptr<Campaign>;
 using CampaignClass = pybind11::class_<Campaign, CampaignPtr>;
-
-/// Binds the properties that come from the plant's parameter table.
-///
-/// @param row  returns, for a parameter, the object with these members; the default is itself
-template <typename Parameter, typename Row = std::identity>
-void bind_spec(pybind11::class_<Parameter>& parameter, Row row = {}) {
-  parameter
-      .def_property_readonly(
-          "key", [row](const Parameter& self) { return std::invoke(row, self).key; },
-          "Name in the campaign file: \"bulk_modulus\".")
-      .def_property_readonly(
-          "name", [row](const Parameter& self) { return std::invoke(row, self).name; },
-          "Name in results, with its unit: \"bulk_modulus_pa\".")
-      .def_property_readonly(
-          "symbol", [row](const Parameter& self) { return std::invoke(row, self).symbol; },
-          "Symbol in the equations.")
-      .def_property_readonly(
-          "unit", [row](const Parameter& self) { return std::invoke(row, self).unit; },
-          "SI unit; \"1\" for a plain number.");
-}
 
 /// Returns None for an unknown number.
 inline std::optional<double> none_if_nan(double value) {

@@ -13,6 +13,7 @@
 #include "calib/fit.hpp"
 #include "common/suggest.hpp"
 #include "python/arrays.hpp"
+#include "python/described_members.hpp"
 #include "python/fit_result.hpp"
 #include "python/holding.hpp"
 #include "python/interruptible.hpp"
@@ -49,8 +50,7 @@ namespace fs = std::filesystem;
 
 /// Runs a job that makes a fit, and reports progress to `progress`.
 FitResultPtr made(const CampaignPtr& self, const std::string& call,
-                  const std::optional<Integer>& threads,
-                  const std::optional<py::function>& progress,
+                  const std::optional<Integer>& threads, const FitProgress& progress,
                   const std::function<report::JobResult(std::shared_ptr<const datasets::Campaign>,
                                                         const report::JobTerms&)>& job) {
   std::atomic<bool> cancel{false};
@@ -123,8 +123,7 @@ FitResultPtr fit(const CampaignPtr& self, const std::optional<Integer>& starts, 
                  const Integer& bootstrap, bool profiles, const std::optional<Integer>& posterior,
                  bool cross_validate, std::optional<double> max_time_s,
                  const std::optional<Integer>& max_evaluations,
-                 const std::optional<Integer>& threads,
-                 const std::optional<py::function>& progress) {
+                 const std::optional<Integer>& threads, const FitProgress& progress) {
   const report::FitChoices choices = choices_of(starts, seed, bootstrap, profiles, posterior,
                                                 cross_validate, max_time_s, max_evaluations);
   return made(
@@ -135,8 +134,7 @@ FitResultPtr fit(const CampaignPtr& self, const std::optional<Integer>& starts, 
 }
 
 FitResultPtr validate(const CampaignPtr& self, const std::optional<FitArgument>& fit,
-                      const std::optional<Integer>& threads,
-                      const std::optional<py::function>& progress) {
+                      const std::optional<Integer>& threads, const FitProgress& progress) {
   const report::ValidationRequest request{fit_source(fit, self->campaign.rig.plant)};
   const std::string call = self->call + ".validate(" + (fit ? written_fit(*fit) : "") + ")";
   return made(
@@ -183,8 +181,8 @@ calib::FittedParameter parameter_of(const FitResult& self, const std::string& ke
                                   level.value_or("None"), fmt::join(levels, ", ")));
 }
 
-py::dict scored_conditions(const FitResultPtr& self) {
-  py::dict conditions;
+Dict<std::string, ScoredCondition> scored_conditions(const FitResultPtr& self) {
+  Dict<std::string, ScoredCondition> conditions;
   for (const calib::ConditionScore& score : self->fit.conditions) {
     conditions[py::str(score.id)] =
         ScoredCondition{std::shared_ptr<const calib::ConditionScore>(self, &score)};
@@ -206,7 +204,7 @@ std::vector<fs::path> write(const FitResult& self, const fs::path& out,
   return paths;
 }
 
-py::object json_of_result(const FitResult& self) {
+JsonDict json_of_result(const FitResult& self) {
   std::string text;
   {
     const py::gil_scoped_release released;
@@ -233,19 +231,8 @@ Page explore(const FitResult& self) {
 
 void bind_start(py::module_& module) {
   using calib::StartReport;
-  py::class_<StartReport>(module, "Start", "One start of a fit.")
-      .def_readonly("number", &StartReport::number, "Number of the start, from 1.")
-      .def_property_readonly("status", named(&StartReport::status),
-                             "\"converged\", \"stopped\" or \"failed\".")
-      .def_readonly("message", &StartReport::message, "How it ended, in words.")
-      .def_readonly("start_values", &StartReport::start_values,
-                    "Start values in SI, one for each unknown.")
-      .def_readonly(
-          "end_values", &StartReport::end_values,
-          "Final values in SI, one for each unknown; empty where it could not be simulated.")
-      .def_readonly("initial_cost", &StartReport::initial_cost, "Cost at the start values.")
-      .def_readonly("final_cost", &StartReport::final_cost, "Cost at the final values.")
-      .def_readonly("iterations", &StartReport::iterations, "Iterations of all stages.");
+  py::class_<StartReport> start(module, "Start", struct_doc<StartReport>());
+  bind_members(start);
 }
 
 /// Returns a getter for a property that is a member of the fit.
@@ -263,22 +250,19 @@ void bind_result(py::module_& module) {
       .def_property_readonly(
           "kind",
           [](const Self& self) {
-            return self.kind == report::ResultKind::fit ? "fit" : "validation";
+            return Typed<"Literal['fit', 'validation']">(
+                self.kind == report::ResultKind::fit ? "fit" : "validation");
           },
           "\"fit\" or \"validation\".")
       .def_property_readonly(
           "campaign", [](const Self& self) { return self.source; }, "What it was made from.")
       .def_property_readonly(
-          "status", [](const Self& self) { return to_string(report::status_of(self.fit)); },
+          "status", [](const Self& self) { return report::status_of(self.fit); },
           "\"converged\", \"stopped\" (the best so far) or \"failed\".")
       .def_property_readonly("message", of_fit(&calib::Fit::message),
                              "In words: why it stopped, what is not to be trusted.")
-      .def_property_readonly(
-          "verdict",
-          [](const Self& self) {
-            return self.fit.verdict ? std::optional(to_string(*self.fit.verdict)) : std::nullopt;
-          },
-          "\"PASS\", \"WARN\" or \"FAIL\"; None where nothing was judged.")
+      .def_property_readonly("verdict", of_fit(&calib::Fit::verdict),
+                             "\"PASS\", \"WARN\" or \"FAIL\"; None where nothing was judged.")
       .def_property_readonly("assessment", of_fit(&calib::Fit::assessment),
                              "The four aspects that the verdict follows from.")
       .def_property_readonly("warnings", of_fit(&calib::Fit::warnings), "In words.")
@@ -374,12 +358,13 @@ Shown in a notebook; `write(path)` saves it.
 
 Raises:
     UsageError: this module was built without the WebAssembly tools)")
-      .def("to_frame", of_notebook("to_frame"),
+      .def("to_frame", of_notebook<Frame>("to_frame"),
            "The parameters as a pandas DataFrame, a row each; ImportError without pandas.")
       .def(
           "plot",
-          [](const py::object& self, const py::object& condition, const py::object& channel) {
-            return notebook("plot")(self, condition, channel);
+          [](const py::object& self, const std::optional<std::string>& condition,
+             const std::optional<std::string>& channel) {
+            return Figure(notebook("plot")(self, condition, channel));
           },
           py::arg("condition") = py::none(), py::arg("channel") = py::none(),
           R"(Measurement, model and residual of a condition, by matplotlib.

@@ -1,16 +1,56 @@
 #include <pybind11/pybind11.h>
 
 #include <string>
+#include <type_traits>
+#include <vector>
 
 #include "python/campaign.hpp"
 #include "python/errors.hpp"
 #include "report/store/provenance.hpp"
+#include "report/store/stored/stored_fit.hpp"
+
+namespace rigcal::report {
+
+template <>
+inline std::vector<model::SimulationStatus> every() {
+  using enum model::SimulationStatus;
+  return {ok,          bad_parameters, not_finite,    step_too_small, too_many_steps,
+          out_of_time, cancelled,      no_equilibrium};
+}
+
+}  // namespace rigcal::report
+
+namespace rigcal::python {
+namespace {
+
+template <typename... Enums>
+pybind11::dict texts_of() {
+  pybind11::dict texts;
+  const auto add = [&]<typename Enum>(std::type_identity<Enum>) {
+    pybind11::list all;
+    for (const Enum each : report::every<Enum>()) all.append(to_string(each));
+    texts[pybind11::str(pybind11::type_id<Enum>())] = all;
+  };
+  (add(std::type_identity<Enums>()), ...);
+  return texts;
+}
+
+/// Returns the texts of all enumerations that occur in signatures, by the C++ name.
+pybind11::dict enumerations() {
+  return texts_of<calib::AspectState, calib::FitStatus, calib::Identifiability,
+                  calib::IntervalSource, calib::Verdict, datasets::Scope, datasets::Use,
+                  datasets::Waveform, model::PlantKind, model::SimulationStatus>();
+}
+
+}  // namespace
+}  // namespace rigcal::python
 
 PYBIND11_MODULE(_rigcal, module) {
   using namespace rigcal::python;
   module.doc() = "What rigcal/__init__.py takes from the libraries of the command.";
   module.attr("__version__") = std::string(rigcal::report::version());
   module.attr("__revision__") = std::string(rigcal::report::revision());
+  module.attr("_enumerations") = enumerations();
   translate_errors();
   CampaignClass campaign = bind_campaign(module);
   bind_records(module, campaign);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "python/campaign.hpp"
+#include "python/described_members.hpp"
 
 namespace rigcal::python {
 
@@ -39,26 +40,17 @@ void Progress::rethrow() const {
 }
 
 void bind_progress(py::module_& module) {
-  py::class_<Iteration>(module, "Iteration",
-                        "What a fit reports to its `progress` about one iteration.")
-      .def_readonly("start", &Iteration::start, "Number of the start, from 1.")
-      .def_readonly("iteration", &Iteration::iteration,
-                    "Number of the iteration within this call of the solver, from 0.")
-      .def_readonly("cost", &Iteration::cost, "Half the sum of squared weighted residuals.")
-      .def_readonly("relative_change", &Iteration::relative_change,
-                    "Relative change of the cost; below zero: the step was rejected.")
-      .def("__repr__", [](const Iteration& self) {
-        return fmt::format("<rigcal.Iteration {} of start {}: cost {:.6g}>", self.iteration,
-                           self.start, self.cost);
-      });
-  py::class_<Pieces>(module, "Pieces",
-                     "What a fit reports to its `progress` about the work beside it.")
-      .def_readonly("work", &Pieces::work, "\"replicates of the bootstrap\"...")
-      .def_readonly("done", &Pieces::done, "Number of pieces that are done.")
-      .def_readonly("all", &Pieces::all, "Number of all pieces.")
-      .def("__repr__", [](const Pieces& self) {
-        return fmt::format("<rigcal.Pieces: {} of {} {}>", self.done, self.all, self.work);
-      });
+  py::class_<Iteration> iteration(module, "Iteration", struct_doc<Iteration>());
+  iteration.def("__repr__", [](const Iteration& self) {
+    return fmt::format("<rigcal.Iteration {} of start {}: cost {:.6g}>", self.iteration, self.start,
+                       self.cost);
+  });
+  bind_members(iteration);
+  py::class_<Pieces> pieces(module, "Pieces", struct_doc<Pieces>());
+  pieces.def("__repr__", [](const Pieces& self) {
+    return fmt::format("<rigcal.Pieces: {} of {} {}>", self.done, self.all, self.work);
+  });
+  bind_members(pieces);
 }
 
 }  // namespace rigcal::python

@@ -6,25 +6,34 @@
 #include <exception>
 #include <optional>
 #include <string>
+#include <variant>
 
 #include "calib/search/fit_options.hpp"
+#include "common/describe.hpp"
+#include "python/types.hpp"
 
 namespace rigcal::python {
 
-/// Progress of one iteration.
+/// What a fit reports to its `progress` about one iteration.
 struct Iteration {
-  int start = 1;
-  int iteration = 0;
-  double cost = 0.0;
-  double relative_change = 0.0;
+  int start = 1;      ///< number of the start, counted from 1
+  int iteration = 0;  ///< number of the iteration in this call of the solver, counted from 0
+  double cost = 0.0;  ///< half the sum of squared weighted residuals
+  double relative_change = 0.0;  ///< change in the cost; below zero, the step was rejected
+  RIGCAL_DESCRIBE(start, iteration, cost, relative_change)
 };
 
-/// Progress of the other parts of a fit, such as the bootstrap.
+/// What a job reports to its `progress` about other work, such as the bootstrap.
 struct Pieces {
-  std::string work;
-  int done = 0;
-  int all = 0;
+  std::string work;  ///< "replicates of the bootstrap" and the like
+  int done = 0;      ///< number of pieces that are done
+  int all = 0;       ///< number of all pieces
+  RIGCAL_DESCRIBE(work, done, all)
 };
+
+/// The function that a fit, or another job, reports to.
+using FitProgress = std::optional<Callback<std::variant<Iteration, Pieces>>>;
+using JobProgress = std::optional<Callback<Pieces>>;
 
 /// Reports the progress of a fit to a Python function from any thread. If the function raises an
 /// exception, the fit ends.

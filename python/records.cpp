@@ -12,6 +12,7 @@
 #include "datasets/checks/short_records.hpp"
 #include "python/arrays.hpp"
 #include "python/campaign.hpp"
+#include "python/described_members.hpp"
 #include "python/holding.hpp"
 #include "python/result.hpp"
 #include "report/job/job.hpp"
@@ -40,8 +41,8 @@ struct Checked {
   std::string text;
 };
 
-py::dict channels_of(const RecordPtr& record) {
-  py::dict channels;
+Dict<std::string, RecordedChannel> channels_of(const RecordPtr& record) {
+  Dict<std::string, RecordedChannel> channels;
   for (const auto& [channel, series] : record->channels) {
     const datasets::ChannelInfo& about = info(channel);
     channels[py::str(about.key.data(), about.key.size())] =
@@ -50,7 +51,8 @@ py::dict channels_of(const RecordPtr& record) {
   return channels;
 }
 
-py::dict average(const Campaign& self, const std::optional<fs::path>& out, bool force) {
+Dict<std::string, RecordPtr> average(const Campaign& self, const std::optional<fs::path>& out,
+                                     bool force) {
   require_path("out", out);
   std::vector<Record> records;
   const std::string call =
@@ -69,7 +71,7 @@ py::dict average(const Campaign& self, const std::optional<fs::path>& out, bool 
     records = report::averaged_records(self.campaign, terms);
     if (held) report::write_job(*held, threads, report::average_job(self.campaign, records, terms));
   }
-  py::dict by_condition;
+  Dict<std::string, RecordPtr> by_condition;
   for (Record& record : records) {
     const std::string id = record.condition;
     by_condition[py::str(id)] = std::make_shared<Record>(std::move(record));
@@ -132,19 +134,15 @@ void bind_channel(py::module_& module) {
 
 void bind_repeat(py::module_& module) {
   using datasets::RepeatReport;
-  py::class_<RepeatReport>(module, "Repeat", "What became of one repeat when it was averaged.")
+  py::class_<RepeatReport> repeat(module, "Repeat", struct_doc<RepeatReport>());
+  repeat
       .def_property_readonly(
-          "source", [](const RepeatReport& self) { return decoded(self.source); }, "Its file.")
-      .def_readonly("offset_s", &RepeatReport::offset_s,
-                    "By how much it came later than the mean of all [s].")
-      .def_readonly("shifted_s", &RepeatReport::shifted_s,
-                    "The offset, where it was taken off to align the repeat; else 0 [s].")
-      .def_readonly("deviation", &RepeatReport::deviation,
-                    "Its rms distance from the mean of the others over the pooled standard\n"
-                    "deviation, in its worst channel.")
-      .def_readonly("outlier", &RepeatReport::outlier, "Whether it is too far from the others.")
+          "source", [](const RepeatReport& self) { return decoded(self.source); },
+          member_doc<RepeatReport>("source"))
+      .def_readonly("shifted_s", &RepeatReport::shifted_s, member_doc<RepeatReport>("shifted_s"))
       .def("__repr__",
            [](const RepeatReport& self) { return fmt::format("<rigcal.Repeat {}>", self.source); });
+  bind_members(repeat);
 }
 
 void bind_record(py::module_& module) {
@@ -177,11 +175,11 @@ void bind_record(py::module_& module) {
             return files;
           },
           "Every file that was read for it.")
-      .def("to_frame", of_notebook("to_frame"),
+      .def("to_frame", of_notebook<Frame>("to_frame"),
            "Time, and mean, sd and count of each channel, as a pandas DataFrame; ImportError "
            "without\n"
            "pandas.")
-      .def("plot", of_notebook("plot"),
+      .def("plot", of_notebook<Figure>("plot"),
            "Mean of each channel over time, with its standard deviation as a band, by matplotlib.\n"
            "Returns the Figure.")
       .def("__repr__", [](const Record& self) {

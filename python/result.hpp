@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "datasets/campaign/campaign.hpp"
+#include "python/types.hpp"
 #include "report/store/folder.hpp"
 
 namespace rigcal::python {
@@ -45,8 +46,9 @@ inline pybind11::object notebook(const char* name) {
   return pybind11::module_::import("rigcal.notebook").attr(name);
 }
 /// Returns a method without arguments that calls a function from rigcal/notebook.py.
-inline auto of_notebook(const char* name) {
-  return [name](const pybind11::object& self) { return notebook(name)(self); };
+template <typename Returned>
+auto of_notebook(const char* name) {
+  return [name](const pybind11::object& self) { return Returned(notebook(name)(self)); };
 }
 
 }  // namespace rigcal::python

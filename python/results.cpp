@@ -34,7 +34,6 @@ namespace {
 
 namespace py = pybind11;
 namespace fs = std::filesystem;
-using ProgressFunction = std::optional<py::function>;
 using Levels = std::vector<std::string>;
 
 // ---- functions that make results
@@ -42,7 +41,7 @@ using Levels = std::vector<std::string>;
 /// Runs a job in a thread, so that Ctrl-C still works, and stores its files in a result.
 ResultPtr job_result(const char* kind, std::string name, std::string call,
                      const report::CampaignChoice& choice, const std::optional<Integer>& threads,
-                     const ProgressFunction& progress,
+                     const JobProgress& progress,
                      const std::function<report::JobResult(const report::JobTerms&)>& job) {
   std::atomic<bool> cancel{false};
   Progress told(progress, cancel);
@@ -89,7 +88,7 @@ std::string path_text(const char* name, const fs::path& path) {
 
 ResultPtr diagnose(const CampaignPtr& self, const std::optional<FitArgument>& fit,
                    const std::optional<fs::path>& table, const std::optional<Levels>& healthy,
-                   const std::optional<Integer>& threads, const ProgressFunction& progress) {
+                   const std::optional<Integer>& threads, const JobProgress& progress) {
   require_path("table", table);
   const report::DiagnosisRequest request{fit_source(fit, self->campaign.rig.plant),
                                          table.value_or(""), healthy.value_or(Levels{})};
@@ -105,7 +104,7 @@ ResultPtr diagnose(const CampaignPtr& self, const std::optional<FitArgument>& fi
 
 ResultPtr parity(const CampaignPtr& self, const FitArgument& fit, double false_alarms,
                  const std::optional<Levels>& healthy, const std::optional<Integer>& threads,
-                 const ProgressFunction& progress) {
+                 const JobProgress& progress) {
   if (!(false_alarms > 0.0 && false_alarms < 0.5)) {
     throw py::value_error(fmt::format(
         "false_alarms: found {:g}, expected a probability above 0 and below 0.5", false_alarms));
@@ -146,7 +145,7 @@ ResultPtr leak_table(const CampaignPtr& self, const std::optional<FitArgument>& 
 
 ResultPtr plan(const CampaignPtr& self, const std::optional<FitArgument>& fit,
                const std::optional<std::vector<std::string>>& design,
-               const std::optional<Integer>& threads, const ProgressFunction& progress) {
+               const std::optional<Integer>& threads, const JobProgress& progress) {
   const report::PlanRequest request{fit_source(fit, self->campaign.rig.plant),
                                     design.value_or(std::vector<std::string>{})};
   CallText call(self->call + ".plan");
@@ -175,7 +174,7 @@ ResultPtr batch(const fs::path& folder, const fs::path& out,
                 const std::optional<Integer>& starts, const Integer& seed, const Integer& bootstrap,
                 bool profiles, const std::optional<Integer>& posterior, bool cross_validate,
                 std::optional<double> max_time_s, const std::optional<Integer>& max_evaluations,
-                const std::optional<Integer>& threads, const ProgressFunction& progress) {
+                const std::optional<Integer>& threads, const JobProgress& progress) {
   require_path("folder", folder);
   require_path("out", out);
   require_path("root", root);
@@ -258,7 +257,7 @@ std::vector<fs::path> write_files_of(const Result& self, const fs::path& out,
   return paths;
 }
 
-py::object content_of(const Result& self) {
+JsonDict content_of(const Result& self) {
   return py::module_::import("json").attr("loads")(self.files.back().content);
 }
 
@@ -267,8 +266,8 @@ std::string page_of(const Result& self) {
   return report::result_page(report::files_in(self.files), self.name, 1).html;
 }
 
-py::dict files_of(const Result& self) {
-  py::dict files;
+Dict<std::string, std::string> files_of(const Result& self) {
+  Dict<std::string, std::string> files;
   for (const report::ResultFile& file : self.files)
     files[py::str(file.path.generic_string())] = decoded(file.content);
   return files;
@@ -349,8 +348,8 @@ void bind_results(py::module_& module) {
       .def_property_readonly("page", &page_of, "The page that write() writes, as HTML.")
       .def(
           "to_frame",
-          [](const py::object& self, const py::object& table) {
-            return notebook("to_frame")(self, table);
+          [](const py::object& self, const std::optional<std::string>& table) {
+            return Frame(notebook("to_frame")(self, table));
           },
           py::arg("table") = py::none(),
           R"(A table of the result as a pandas DataFrame; ImportError without pandas.
@@ -360,7 +359,7 @@ Args:
 
 Raises:
     KeyError: there is no such table)")
-      .def("plot", of_notebook("plot"),
+      .def("plot", of_notebook<Figure>("plot"),
            "The values of most interest with their intervals, by matplotlib. Returns the Figure.")
       .def("write", &write_files_of, py::arg("out"), py::kw_only(), py::arg("threads") = py::none(),
            py::arg("force") = false,

@@ -8,6 +8,7 @@
 
 #include "metrics/metric_table.hpp"
 #include "python/arrays.hpp"
+#include "python/described_members.hpp"
 #include "python/fit_result.hpp"
 
 namespace rigcal::python {
@@ -45,8 +46,10 @@ py::array_t<double> residual(const ScoredChannel& self) {
   return array;
 }
 
-py::dict by_name(const std::optional<metrics::Agreement>& agreement) {
-  py::dict values;
+/// Returns the metrics by name. A value is None if there is no agreement.
+template <typename Value>
+Dict<std::string, Value> by_name(const std::optional<metrics::Agreement>& agreement) {
+  Dict<std::string, Value> values;
   for (const metrics::MetricSpec& metric : metrics::kMetrics) {
     const py::str name(metric.name.data(), metric.name.size());
     values[name] = agreement ? py::object(py::float_((*agreement).*metric.value)) : py::none();
@@ -54,30 +57,22 @@ py::dict by_name(const std::optional<metrics::Agreement>& agreement) {
   return values;
 }
 
-py::dict metrics_of(const ScoredChannel& self) { return by_name(self.score.agreement); }
-
-std::optional<py::dict> expanded_uncertainty_of(const ScoredChannel& self) {
+std::optional<Dict<std::string, double>> expanded_uncertainty_of(const ScoredChannel& self) {
   if (!self.score.expanded_uncertainty) return std::nullopt;
-  return by_name(self.score.expanded_uncertainty);
+  return by_name<double>(self.score.expanded_uncertainty);
 }
 
-py::dict budgets_of(const ScoredChannel& self) {
-  py::dict budgets;
-  for (const auto& [metric, budget] : self.score.budgets) budgets[py::str(metric)] = budget;
-  return budgets;
-}
-
-std::optional<py::dict> noise_floor_of(const ScoredChannel& self) {
+std::optional<Dict<std::string, double>> noise_floor_of(const ScoredChannel& self) {
   if (!self.score.noise_floor) return std::nullopt;
-  py::dict floor;
+  Dict<std::string, double> floor;
   floor["rho2"] = self.score.noise_floor->rho2;
   floor["ccc"] = self.score.noise_floor->ccc;
   floor["absolute_error_percent"] = self.score.noise_floor->absolute_error_percent;
   return floor;
 }
 
-py::dict scored_channels_of(const ScoredCondition& self) {
-  py::dict channels;
+Dict<std::string, ScoredChannel> scored_channels_of(const ScoredCondition& self) {
+  Dict<std::string, ScoredChannel> channels;
   for (const calib::ChannelScore& score : self.score->channels) {
     const datasets::ChannelInfo& about = info(score.channel);
     channels[py::str(about.key.data(), about.key.size())] = ScoredChannel{self.score, about, score};
@@ -85,23 +80,11 @@ py::dict scored_channels_of(const ScoredCondition& self) {
   return channels;
 }
 
-std::optional<std::string> none_if_empty(const std::string& text) {
-  return text.empty() ? std::nullopt : std::optional(text);
-}
-
 void bind_limit_check(py::module_& module) {
   using calib::LimitCheck;
-  py::class_<LimitCheck>(module, "LimitCheck", "A metric of a channel against its limit.")
-      .def_property_readonly(
-          "channel", [](const LimitCheck& self) { return info(self.channel).key; },
-          "Key of the channel.")
-      .def_readonly("metric", &LimitCheck::metric, "Its name.")
-      .def_readonly("value", &LimitCheck::value, "None where it does not exist, see `words`.")
-      .def_readonly("limit", &LimitCheck::limit, "Beyond it: FAIL.")
-      .def_readonly("warn", &LimitCheck::warn, "Between it and the limit: WARN.")
-      .def_property_readonly("verdict", named(&LimitCheck::verdict),
-                             "\"PASS\", \"WARN\" or \"FAIL\".")
-      .def_readonly("words", &LimitCheck::words, "Why WARN or FAIL; empty for PASS.");
+  py::class_<LimitCheck> check(module, "LimitCheck", struct_doc<LimitCheck>());
+  check.def_readonly("words", &LimitCheck::words, member_doc<LimitCheck>("words"));
+  bind_members(check);
 }
 
 void bind_scored_channel(py::module_& module) {
@@ -122,7 +105,10 @@ void bind_scored_channel(py::module_& module) {
       .def_property_readonly("residual", &residual,
                              "Measured minus simulated, shape (samples), in `unit`.")
       .def_property_readonly(
-          "metrics", &metrics_of,
+          "metrics",
+          [](const ScoredChannel& self) {
+            return by_name<std::optional<double>>(self.score.agreement);
+          },
           "Metrics by name, \"ccc\", \"rho2\"...; None where one does not exist.")
       .def_property_readonly("noise_floor", &noise_floor_of,
                              "What a perfect model would reach, by name; None where the noise is\n"
@@ -130,9 +116,10 @@ void bind_scored_channel(py::module_& module) {
       .def_property_readonly("expanded_uncertainty", &expanded_uncertainty_of,
                              "Expanded uncertainty (95 %) of each of `metrics`, from repeats and\n"
                              "sensor; None with fewer than two repeats.")
-      .def_property_readonly("budgets", &budgets_of,
-                             "Contributions to the two-sided uncertainty of each of `metrics`, by\n"
-                             "name; empty with fewer than two repeats.")
+      .def_property_readonly(
+          "budgets", [](const ScoredChannel& self) { return dict_of(self.score.budgets); },
+          "Contributions to the two-sided uncertainty of each of `metrics`, by\n"
+          "name; empty with fewer than two repeats.")
       .def_property_readonly(
           "gain_ratio", field(&ScoredChannel::score, &calib::ChannelScore::gain_ratio),
           "Simulated over measured amplitude of the fundamental; None where there is none.")
@@ -142,7 +129,7 @@ void bind_scored_channel(py::module_& module) {
       .def_property_readonly("delay_s", field(&ScoredChannel::score, &calib::ChannelScore::delay_s),
                              "Delay of the simulated fundamental [s]; or None.")
       .def_property_readonly(
-          "problem", [](const ScoredChannel& self) { return none_if_empty(self.score.problem); },
+          "problem", [](const ScoredChannel& self) { return unless_empty(self.score.problem); },
           "Why a metric does not exist, in words; or None.")
       .def("__repr__", [](const ScoredChannel& self) {
         return fmt::format("<rigcal.ScoredChannel {} of {}>", self.about.key, self.condition->id);
@@ -160,15 +147,10 @@ void bind_scores(py::module_& module) {
                    "cannot be written to.")
       .def_property_readonly("id", field(&Self::score, &calib::ConditionScore::id),
                              "Id of the condition.")
-      .def_property_readonly("use", named(&Self::score, &calib::ConditionScore::use),
+      .def_property_readonly("use", field(&Self::score, &calib::ConditionScore::use),
                              "\"fit\" or \"validate\".")
-      .def_property_readonly(
-          "verdict",
-          [](const Self& self) {
-            return self.score->verdict ? std::optional(to_string(*self.score->verdict))
-                                       : std::nullopt;
-          },
-          "\"PASS\", \"WARN\" or \"FAIL\"; None without limits.")
+      .def_property_readonly("verdict", field(&Self::score, &calib::ConditionScore::verdict),
+                             "\"PASS\", \"WARN\" or \"FAIL\"; None without limits.")
       .def_property_readonly("reasons", field(&Self::score, &calib::ConditionScore::reasons),
                              "Reasons for WARN or FAIL, in words.")
       .def_property_readonly("checks", field(&Self::score, &calib::ConditionScore::checks),
@@ -176,10 +158,10 @@ void bind_scores(py::module_& module) {
       .def_property_readonly("warnings", field(&Self::score, &calib::ConditionScore::data_warnings),
                              "What is doubtful about the recording, in words.")
       .def_property_readonly(
-          "failure", [](const Self& self) { return none_if_empty(self.score->failure); },
+          "failure", [](const Self& self) { return unless_empty(self.score->failure); },
           "Why it could not be simulated, in words; or None.")
       .def_property_readonly(
-          "not_scored", [](const Self& self) { return none_if_empty(self.score->not_scored); },
+          "not_scored", [](const Self& self) { return unless_empty(self.score->not_scored); },
           "Why it was not scored, in words; or None.")
       .def_property_readonly("samples", field(&Self::score, &calib::ConditionScore::samples),
                              "Number of samples inside the windows.")

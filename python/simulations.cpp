@@ -54,8 +54,10 @@ bool is_signal(const SimulatedPtr& self, model::Output output) {
   return output == model::Output::payload_acceleration || has_output(self->values, output);
 }
 
-py::dict signals_of(const SimulatedPtr& self) {
-  py::dict signals;
+using Signals = Dict<std::string, py::array_t<double>>;
+
+Signals signals_of(const SimulatedPtr& self) {
+  Signals signals;
   for (std::size_t i = 0; i < model::kAllOutputs.size(); ++i) {
     const model::Output output = model::kAllOutputs[i];
     if (!is_signal(self, output)) continue;
@@ -66,10 +68,10 @@ py::dict signals_of(const SimulatedPtr& self) {
 }
 
 /// Returns, for each parameter, the derivatives of all signals with respect to it.
-py::dict sensitivities_of(const SimulatedPtr& self) {
-  py::dict all;
+Dict<std::string, Signals> sensitivities_of(const SimulatedPtr& self) {
+  Dict<std::string, Signals> all;
   for (std::size_t j = 0; j < self->free.size(); ++j) {
-    py::dict of_parameter;
+    Signals of_parameter;
     for (std::size_t i = 0; i < self->simulation.sensitivities.size(); ++i) {
       if (!is_signal(self, model::kAllOutputs[i])) continue;
       const Eigen::MatrixXd& matrix = self->simulation.sensitivities[i];
@@ -132,11 +134,10 @@ std::vector<const datasets::Condition*> wanted(const datasets::Campaign& campaig
 }
 
 /// A condition, or the id of one.
-using ConditionArgument = std::optional<std::variant<std::string, datasets::Condition>>;
-std::optional<std::string> id_of(const ConditionArgument& condition) {
-  if (!condition) return std::nullopt;
-  if (const auto* id = std::get_if<std::string>(&*condition)) return *id;
-  return std::get<datasets::Condition>(*condition).id;
+using ConditionArgument = std::variant<std::string, datasets::Condition>;
+std::string id_of(const ConditionArgument& condition) {
+  if (const auto* id = std::get_if<std::string>(&condition)) return *id;
+  return std::get<datasets::Condition>(condition).id;
 }
 
 std::vector<SimulatedPtr> simulated(const Campaign& self, const Wanted& asked, int threads,
@@ -175,14 +176,14 @@ std::vector<SimulatedPtr> simulated(const Campaign& self, const Wanted& asked, i
   return results;
 }
 
-py::object simulate(const Campaign& self, const ConditionArgument& condition,
-                    const std::optional<std::map<std::string, double>>& values,
-                    const std::optional<std::vector<std::string>>& sensitivities,
-                    const std::optional<Integer>& threads, const std::optional<fs::path>& out,
-                    bool force) {
+std::vector<SimulatedPtr> simulate(const Campaign& self, std::optional<std::string> condition,
+                                   const std::optional<std::map<std::string, double>>& values,
+                                   const std::optional<std::vector<std::string>>& sensitivities,
+                                   const std::optional<Integer>& threads,
+                                   const std::optional<fs::path>& out, bool force) {
   require_path("out", out);
   const int count = thread_count(threads);
-  Wanted wanted{id_of(condition), values.value_or(std::map<std::string, double>{}),
+  Wanted wanted{std::move(condition), values.value_or(std::map<std::string, double>{}),
                 sensitivities.value_or(std::vector<std::string>{})};
   for (const auto& [key, value] : wanted.values) {
     if (!std::isfinite(value))
@@ -193,9 +194,26 @@ py::object simulate(const Campaign& self, const ConditionArgument& condition,
   const auto raised = run_interruptibly(
       cancel, [&] { results = simulated(self, wanted, count, out, force, cancel); });
   if (raised) std::rethrow_exception(raised);
-  if (condition) return py::cast(results.front());
-  py::dict by_condition;
-  for (const SimulatedPtr& result : results) by_condition[py::str(result->condition)] = result;
+  return results;
+}
+
+SimulatedPtr simulate_one(const Campaign& self, const ConditionArgument& condition,
+                          const std::optional<std::map<std::string, double>>& values,
+                          const std::optional<std::vector<std::string>>& sensitivities,
+                          const std::optional<Integer>& threads, const std::optional<fs::path>& out,
+                          bool force) {
+  return simulate(self, id_of(condition), values, sensitivities, threads, out, force).front();
+}
+
+Dict<std::string, SimulatedPtr> simulate_all(
+    const Campaign& self, const py::none& /*condition*/,
+    const std::optional<std::map<std::string, double>>& values,
+    const std::optional<std::vector<std::string>>& sensitivities,
+    const std::optional<Integer>& threads, const std::optional<fs::path>& out, bool force) {
+  Dict<std::string, SimulatedPtr> by_condition;
+  for (const SimulatedPtr& result :
+       simulate(self, std::nullopt, values, sensitivities, threads, out, force))
+    by_condition[py::str(result->condition)] = result;
   return by_condition;
 }
 
@@ -207,7 +225,7 @@ void bind_simulations(py::module_& module, CampaignClass& campaign) {
       "A simulated condition; SI. Its arrays cannot be written to; they are empty where it could\n"
       "not be simulated.");
   simulation.def_readonly("condition", &Simulated::condition, "Id of the condition.")
-      .def_property_readonly("status", named(&Simulated::simulation, &model::Simulation::status),
+      .def_property_readonly("status", field(&Simulated::simulation, &model::Simulation::status),
                              "\"ok\", or why there is none.")
       .def_property_readonly("reason", field(&Simulated::simulation, &model::Simulation::reason),
                              "Why it failed, in words; empty if it did not.")
@@ -236,12 +254,12 @@ void bind_simulations(py::module_& module, CampaignClass& campaign) {
           "sensitivities", &sensitivities_of,
           "Derivatives of every signal by each parameter that simulate() was asked\n"
           "for, by its key and then as in `signals`: SI over SI, shape (samples).")
-      .def("to_frame", of_notebook("to_frame"),
+      .def("to_frame", of_notebook<Frame>("to_frame"),
            "Time and signals as a pandas DataFrame; ImportError without pandas.")
       .def(
           "plot",
-          [](const py::object& self, const py::object& signals) {
-            return notebook("plot")(self, signals);
+          [](const py::object& self, const std::optional<std::vector<std::string>>& signals) {
+            return Figure(notebook("plot")(self, signals));
           },
           py::arg("signals") = py::none(), R"(Signals over time, by matplotlib.
 
@@ -279,7 +297,8 @@ Returns:
         name.c_str(), [i](const SimulatedPtr& self) { return signal(self, i); },
         (std::string(about[i]) + " Shape (samples).").c_str());
   }
-  campaign.def("simulate", &simulate, py::arg("condition") = py::none(), py::kw_only(),
+  // Two overloads, because the type of the result depends on whether a condition is given.
+  campaign.def("simulate", &simulate_one, py::arg("condition"), py::kw_only(),
                py::arg("values") = py::none(), py::arg("sensitivities") = py::none(),
                py::arg("threads") = py::none(), py::arg("out") = py::none(),
                py::arg("force") = false,
@@ -305,6 +324,11 @@ Raises:
     ValueError: a value is not finite
 
 Records that drive the model are read once.)");
+  campaign.def("simulate", &simulate_all, py::arg("condition") = py::none(), py::kw_only(),
+               py::arg("values") = py::none(), py::arg("sensitivities") = py::none(),
+               py::arg("threads") = py::none(), py::arg("out") = py::none(),
+               py::arg("force") = false,
+               "Simulates all conditions that are not ignored; returns a dict by their ids.");
 }
 
 }  // namespace rigcal::python

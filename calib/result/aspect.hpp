@@ -28,8 +28,8 @@ struct Reason {
   std::string code;                       ///< "limit_broken", "lack_of_fit", ...; docs/report.md
   AspectState state = AspectState::pass;  ///< state that the reason supports
   std::optional<std::string> subject;     ///< condition or parameter; absent for the whole result
-  Keyed<double> numbers;
-  std::string words;
+  Keyed<double> numbers;                  ///< numbers that the reason is based on, by name
+  std::string words;                      ///< the reason in words
   RIGCAL_DESCRIBE(code, state, subject, numbers, words)
 };
 
@@ -39,8 +39,8 @@ Reason reason(AspectState state, std::string code, std::string words,
 
 /// One aspect of a result, with all reasons for and against it.
 struct Aspect {
-  AspectState state = AspectState::not_assessed;
-  std::vector<Reason> reasons;  ///< sorted, most serious first
+  AspectState state = AspectState::not_assessed;  ///< state of the most serious reason
+  std::vector<Reason> reasons;                    ///< sorted, most serious first
   RIGCAL_DESCRIBE(state, reasons)
 };
 
@@ -48,7 +48,7 @@ struct Aspect {
 /// same state keep their order.
 Aspect aspect_of(std::vector<Reason> reasons);
 
-/// The four aspects, each judged separately. verdict_of() derives the verdict from them.
+/// The four aspects, each judged separately. The verdict follows from them.
 struct Assessment {
   Aspect agreement;   ///< compares every scored condition with the limits of the campaign
   Aspect validation;  ///< compares conditions that were not fitted with the same limits

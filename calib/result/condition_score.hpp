@@ -48,15 +48,15 @@ std::string_view to_string(Verdict verdict);
 
 /// Comparison of one metric of one channel with its limit.
 struct LimitCheck {
-  datasets::Channel channel = datasets::Channel::position;
-  std::string metric;
-  std::optional<double> value;  ///< absent if the metric does not exist; `words` says why
-  std::optional<double> limit, warn;
+  datasets::Channel channel = datasets::Channel::position;  ///< key of the channel
+  std::string metric;                                       ///< name of the metric
+  std::optional<double> value;        ///< absent if the metric does not exist; `words` says why
+  std::optional<double> limit, warn;  ///< beyond `limit` FAIL, between `warn` and `limit` WARN
   /// Distance of the value from the ideal, divided by the distance of the limit from the ideal.
   /// Absent if there is no value.
   std::optional<double> tolerance_used;
   Omittable<double> expanded_uncertainty;  ///< uncertainty of the value; absent if unknown
-  Verdict verdict = Verdict::pass;
+  Verdict verdict = Verdict::pass;         ///< "PASS", "WARN" or "FAIL"
   /// True if WARN was given because the margin to the limit is below the uncertainty.
   bool in_guard_band = false;
   std::string words;  ///< reason for WARN or FAIL; empty for PASS

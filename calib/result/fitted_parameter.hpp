@@ -33,7 +33,7 @@ RIGCAL_NAMES(IntervalSource, standard_error, robust_standard_error)
 
 /// One end of a profile, at which the cost has risen to the limit of a 95 % interval.
 struct ProfileEnd {
-  std::optional<double> value;  ///< absent if the cost is still below the limit at `reached`
+  std::optional<double> value;  ///< end of the interval; absent if the cost never rises so far
   double reached = 0.0;         ///< value up to which the profile was followed
   /// Whether the profile was abandoned because an inner fit failed or was cancelled. If it was not,
   /// an end without a value is unbounded. Absent if unknown.
@@ -46,26 +46,26 @@ struct ProfileEnd {
 /// Profile likelihood of one unknown: the cost at fixed values of this unknown, minimised over all
 /// others.
 struct Profile {
-  ProfileEnd low, high;
-  std::vector<double> values;  ///< SI, ascending
-  /// Rise in 2 cost as a fraction of the threshold; the interval ends at 1.
+  ProfileEnd low, high;        ///< where the profile ends on this side
+  std::vector<double> values;  ///< values of the unknown, shape (points), ascending, SI
+  /// Rise in 2 cost as a fraction of the threshold, shape (points); the 95 % interval ends at 1.
   std::vector<double> rises;
   bool lower_cost_found = false;  ///< true if the fit was not at the minimum; not stored
   RIGCAL_DESCRIBE(low, high, values, rises)
 };
 
-/// Statistics of one parameter over the bootstrap replicates.
+/// Statistics of one parameter over the bootstrap replicates, in the unit of the parameter.
 struct BootstrapSpread {
-  double standard_error = 0.0;
-  double bias = 0.0;          ///< mean of the replicates minus the estimate
-  double freedom = 0.0;       ///< degrees of freedom of the standard error
-  std::optional<Range> ci95;  ///< percentiles, widened to account for the degrees of freedom
+  double standard_error = 0.0;  ///< standard deviation of the replicates
+  double bias = 0.0;            ///< mean of the replicates minus the estimate
+  double freedom = 0.0;         ///< degrees of freedom of the standard error
+  std::optional<Range> ci95;    ///< percentiles, widened to account for the degrees of freedom
   RIGCAL_DESCRIBE(standard_error, bias, freedom, ci95)
 };
 
 /// Weighted average of an estimate over several models.
 struct AveragedEstimate {
-  double value = 0.0;  ///< SI
+  double value = 0.0;  ///< the average, SI
   /// Combines the errors within the models and the variation between them, SI.
   double standard_error = 0.0;
   RIGCAL_DESCRIBE(value, standard_error)
@@ -74,21 +74,22 @@ struct AveragedEstimate {
 /// One parameter of the result, fitted or known. Numbers are in SI; files have null for a number
 /// that is not finite.
 struct FittedParameter {
-  int index = 0;       ///< row of the plant's parameter table; not stored
-  std::string name;    ///< name in result files: "mass_kg"
-  std::string key;     ///< name in campaign files: "mass"
-  std::string symbol;  ///< symbol in the equations: "m"
-  std::string unit;    ///< SI unit: "kg"; "1" if dimensionless
-  datasets::Scope scope = datasets::Scope::rig;
-  std::optional<std::string> level;  ///< leak level or condition; absent for the rig
-  double value = 0.0;
+  int index = 0;                                 ///< row of the plant's parameter table; not stored
+  std::string name;                              ///< name in result files: "mass_kg"
+  std::string key;                               ///< name in campaign files: "mass"
+  std::string symbol;                            ///< symbol in the equations: "m"
+  std::string unit;                              ///< SI unit: "kg"; "1" if dimensionless
+  datasets::Scope scope = datasets::Scope::rig;  ///< scope of the value
+  std::optional<std::string> level;              ///< leak level or condition; absent for the rig
+  double value = 0.0;                            ///< the estimate, or the known value
   double start = 0.0;                  ///< where the fit began; the value itself if it is known
   std::optional<double> lower, upper;  ///< bounds of the fit; absent for a known value
-  bool fitted = false;
-  bool nuisance = false;
+  bool fitted = false;                 ///< false for a known value
+  bool nuisance = false;               ///< fitted, but of no interest itself
   /// If true and it has an error, it has a row in the correlation matrix. Not stored.
   bool correlated = true;
-  std::optional<double> standard_error;  ///< absent if the Jacobian does not determine it
+  /// Standard error for independent residuals; absent if the Jacobian does not determine it.
+  std::optional<double> standard_error;
   /// Computed from the residuals themselves, and therefore larger if they are correlated in time.
   std::optional<double> robust_standard_error;
   /// Interval for the real rig. It includes the effects that the model omits, if they were
@@ -111,10 +112,10 @@ struct FittedParameter {
   /// Largest possible change in the estimate due to a significant model error that no effect
   /// explains, SI. Not stored.
   double moved_by_unexplained = 0.0;
-  Omittable<BootstrapSpread> bootstrap;
-  Omittable<Profile> profile;
-  Omittable<PosteriorSpread> posterior;
-  bool at_bound = false;
+  Omittable<BootstrapSpread> bootstrap;  ///< absent unless the fit was asked for a bootstrap
+  Omittable<Profile> profile;            ///< absent unless the fit was asked for profiles
+  Omittable<PosteriorSpread> posterior;  ///< absent unless the fit was asked for draws
+  bool at_bound = false;                 ///< whether the estimate is at one of its bounds
   std::optional<Identifiability> identifiability;  ///< absent for a known value
   std::string reason;  ///< why it has no error or is weak, or at which bound it is, in words
   RIGCAL_DESCRIBE(name, key, symbol, unit, scope, level, value, start, lower, upper, fitted,

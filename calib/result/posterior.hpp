@@ -12,12 +12,12 @@
 
 namespace rigcal::calib {
 
-/// Statistics of one parameter over the draws. SI.
+/// Statistics of one parameter over the draws of the posterior, in the unit of the parameter.
 struct PosteriorSpread {
-  double median = 0.0;
-  double sd = 0.0;
+  double median = 0.0;        ///< median of the draws
+  double sd = 0.0;            ///< standard deviation of the draws
   std::optional<Range> ci95;  ///< 2.5 % and 97.5 % quantiles
-  double r_hat = 0.0;         ///< rank-normalised split R-hat
+  double r_hat = 0.0;         ///< rank-normalised split R-hat; above 1.01 the chains disagree
   double bulk_draws = 0.0;    ///< effective sample size for the centre of the distribution
   double tail_draws = 0.0;    ///< effective sample size for the tails
   RIGCAL_DESCRIBE(median, sd, ci95, r_hat, bulk_draws, tail_draws)

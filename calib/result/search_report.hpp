@@ -34,14 +34,14 @@ std::string_view to_string(StoppedIn stage);
 
 /// One start of a multi-start fit.
 struct StartReport {
-  int number = 1;
-  std::vector<double> start_values;  ///< in the order of the unknowns, SI
-  std::vector<double> end_values;
-  double initial_cost = kNone;  ///< NaN if the start cannot be simulated
-  double final_cost = kNone;    ///< NaN if the end point cannot be simulated
-  int iterations = 0;
-  FitStatus status = FitStatus::failed;
-  std::string message;
+  int number = 1;                        ///< counted from 1
+  std::vector<double> start_values;      ///< in the order of the unknowns, SI
+  std::vector<double> end_values;        ///< likewise; empty if the end point cannot be simulated
+  double initial_cost = kNone;           ///< NaN if the start cannot be simulated
+  double final_cost = kNone;             ///< NaN if the end point cannot be simulated
+  int iterations = 0;                    ///< sum over all stages
+  FitStatus status = FitStatus::failed;  ///< how the search ended
+  std::string message;                   ///< how the search ended, in words
   RIGCAL_DESCRIBE(number, status, message, start_values, end_values, initial_cost, final_cost,
                   iterations)
 

@@ -25,11 +25,11 @@ struct BudgetLine {
 /// Uncertainty budget of a result (JCGM 100:2008, 5.1 and annex G), in the unit of the result. The
 /// squared contributions add up to the square of the combined standard uncertainty.
 struct Budget95 {
-  std::vector<BudgetLine> lines;
+  std::vector<BudgetLine> lines;    ///< the contributions; their squares add up
   double combined = 0.0;            ///< standard uncertainty
   double degrees_of_freedom = 0.0;  ///< effective degrees of freedom of `combined`
-  double coverage_factor = 0.0;
-  double expanded = 0.0;  ///< `coverage_factor` times `combined`
+  double coverage_factor = 0.0;     ///< k, for 95 %
+  double expanded = 0.0;            ///< `coverage_factor` times `combined`
   /// Offset of the interval's centre from an estimate due to the effects. The estimate itself is
   /// not corrected for them.
   double shift = 0.0;

@@ -124,4 +124,4 @@ def prepare(root, out, *, live, gallery_folder, module_folder, say):
     (out / "reference").mkdir()
     reference_cpp.write(root, out / "reference")
     if not reference_python.write(root, module_folder, out / "reference"):
-        say("the reference of Python has no docstrings: the module is not built")
+        say("the reference of Python has only the errors: the module is not built")

@@ -14,6 +14,7 @@ of the command. See docs/python.md.
 from rigcal._rigcal import (
     Aspect,
     Assessment,
+    AveragedEstimate,
     BootstrapSpread,
     BudgetLine,
     Campaign,
@@ -51,6 +52,7 @@ from rigcal.errors import InputError, Interrupted, NoResultError, RigcalError, U
 __all__ = [
     "Aspect",
     "Assessment",
+    "AveragedEstimate",
     "BootstrapSpread",
     "BudgetLine",
     "Campaign",
