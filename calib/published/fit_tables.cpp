@@ -96,15 +96,17 @@ void add_uncertainty(const TableResiduals::Evaluation& optimum, model::PlantKind
   const double t = metrics::student_t_quantile(0.975, freedom);
   fit.correlation.matrix.setIdentity(n, n);
   for (Eigen::Index j = 0; j < n; ++j) {
-    FittedAssumption& parameter = fit.parameters[static_cast<std::size_t>(j)];
+    FittedParameter& parameter = fit.parameters[static_cast<std::size_t>(j)];
     if (open(j) > kRankThreshold || !(covariance(j, j) > 0.0)) continue;
     parameter.standard_error = std::sqrt(covariance(j, j));
-    parameter.degrees_of_freedom = freedom;
-    parameter.ci95 = {parameter.value - t * *parameter.standard_error,
-                      parameter.value + t * *parameter.standard_error};
+    parameter.degrees_of_freedom = std::optional(freedom);
+    const double half_width = t * *parameter.standard_error;
+    parameter.ci95 = {parameter.value - half_width, parameter.value + half_width};
+    parameter.ci95_if_exact = parameter.ci95;
+    parameter.ci95_from = std::optional(IntervalSource::standard_error);
     parameter.identifiability =
-        grade_of(datasets::assumption_spec(plant, parameter.index), parameter.value,
-                 t * *parameter.standard_error, parameter.lower < 0.0 && parameter.upper > 0.0);
+        grade_of(datasets::assumption_spec(plant, parameter.index), parameter.value, half_width,
+                 parameter.lower < 0.0 && parameter.upper > 0.0);
     for (Eigen::Index k = 0; k < n; ++k) {
       if (covariance(k, k) > 0.0) {
         fit.correlation.matrix(j, k) =
@@ -112,6 +114,14 @@ void add_uncertainty(const TableResiduals::Evaluation& optimum, model::PlantKind
       }
     }
   }
+}
+
+std::string reason_of(const FittedParameter& p) {
+  if (p.at_bound) return "at its bound";
+  if (!p.standard_error || !p.ci95) return "the published numbers do not determine it";
+  if (p.identifiability == Identifiability::identified) return "";
+  if (p.identifiability == Identifiability::bounded) return "not significantly different from zero";
+  return half_width_words(0.5 * (p.ci95->high - p.ci95->low) / std::abs(p.value));
 }
 
 std::vector<std::string> left_out(const datasets::LeakTableSettings& settings) {
@@ -141,14 +151,16 @@ TablesFit fit_tables(const datasets::Campaign& campaign,
     free.push_back(assumption.index);
     intervals.push_back({assumption.lower, assumption.upper, assumption.lower > 0.0});
     z.push_back(intervals.back().place(assumption.start));
-    FittedAssumption parameter;
+    FittedParameter parameter;
     parameter.index = assumption.index;
+    parameter.name_after(datasets::assumption_spec(campaign.rig.plant, assumption.index));
+    parameter.fitted = true;
+    parameter.identifiability = Identifiability::not_identifiable;
     parameter.start = assumption.start;
     parameter.lower = assumption.lower;
     parameter.upper = assumption.upper;
-    fit.parameters.push_back(parameter);
-    fit.correlation.names.emplace_back(
-        datasets::assumption_spec(campaign.rig.plant, parameter.index).name);
+    fit.correlation.names.push_back(parameter.name);
+    fit.parameters.push_back(std::move(parameter));
   }
   if (free.empty()) {
     throw InputError({campaign.file.string()},
@@ -169,7 +181,7 @@ TablesFit fit_tables(const datasets::Campaign& campaign,
   fit.iterations = descent.iterations;
   const std::vector<double> values = values_at(intervals, z);
   for (std::size_t j = 0; j < free.size(); ++j) {
-    FittedAssumption& parameter = fit.parameters[j];
+    FittedParameter& parameter = fit.parameters[j];
     parameter.value = values[j];
     parameter.at_bound = bound_side(z[j]) != BoundSide::inside;
     for (datasets::Assumption& assumption : fit.settings.assumptions) {
@@ -184,19 +196,24 @@ TablesFit fit_tables(const datasets::Campaign& campaign,
                                  : residuals.evaluate(values, true);
   if (optimum.failure.empty()) {
     fit.cost = 0.5 * optimum.residuals.squaredNorm();
-    fit.rms = std::sqrt(2.0 * fit.cost / static_cast<double>(residuals.size()));
+    fit.rms = std::sqrt(2.0 * *fit.cost / static_cast<double>(residuals.size()));
     for (std::size_t i = 0; i < residuals.size(); ++i) {
       const double weight = residuals.weight(i);
       fit.residuals.push_back(
           {residuals.name(i), weight, optimum.residuals(static_cast<Eigen::Index>(i)) / weight});
     }
+    fit.residual_count = static_cast<long>(fit.residuals.size());
     add_uncertainty(optimum, campaign.rig.plant, fit);
   }
+  for (FittedParameter& parameter : fit.parameters) parameter.reason = reason_of(parameter);
   if (cancelled) {
     fit.status = FitStatus::stopped;
     fit.message = "stopped on request";
   } else if (!optimum.failure.empty() || !descent.failure.empty()) {
     fit.message = optimum.failure.empty() ? descent.failure : optimum.failure;
+    fit.cost.reset();
+    fit.rms.reset();
+    for (FittedParameter& parameter : fit.parameters) parameter.value = std::nan("");
   } else if (descent.converged) {
     fit.status = FitStatus::converged;
     fit.message = fmt::format("converged after {} iterations", fit.iterations);

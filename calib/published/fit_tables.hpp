@@ -8,23 +8,9 @@
 #include "calib/published/leak_table.hpp"
 #include "calib/result/fit_result.hpp"
 #include "calib/search/fit_options.hpp"
-#include "common/range.hpp"
+#include "common/describe.hpp"
 
 namespace rigcal::calib {
-
-/// An assumption whose value was estimated.
-struct FittedAssumption {
-  int index = 0;  ///< row of the parameter table, or datasets::kResidualScale
-  double value = 0.0;
-  double start = 0.0;
-  double lower = 0.0;
-  double upper = 0.0;
-  std::optional<double> standard_error;  ///< absent if the tables do not determine the value
-  std::optional<Range> ci95;
-  std::optional<double> degrees_of_freedom;
-  bool at_bound = false;
-  Identifiability identifiability = Identifiability::not_identifiable;
-};
 
 /// Comparison of a published number with the computed one at the end of the fit.
 struct TableResidual {
@@ -38,16 +24,19 @@ struct TableResidual {
 struct TablesFit {
   FitStatus status = FitStatus::failed;
   std::string message;
-  double cost = 0.0;  ///< half the sum of (weight ln(computed / published))^2
-  int iterations = 0;
+  std::optional<double> cost;  ///< half the sum of (weight ln(computed / published))^2
+  long residual_count = 0;
+  std::optional<double> rms;  ///< root mean square of the weighted residuals
   int evaluations = 0;
+  int iterations = 0;
   double wall_seconds = 0.0;
-  double rms = 0.0;  ///< root mean square of the weighted residuals
-  std::vector<FittedAssumption> parameters;
+  std::vector<FittedParameter> parameters;  ///< `index` may be datasets::kResidualScale
   Correlation correlation;  ///< correlation of the estimates, in the order of `parameters`
   std::vector<TableResidual> residuals;
   std::vector<std::string> left_out;     ///< published numbers that were not used, and why
-  datasets::LeakTableSettings settings;  ///< the settings with the estimated values inserted
+  datasets::LeakTableSettings settings;  ///< the settings with the estimated values; not stored
+  RIGCAL_DESCRIBE(status, message, cost, residual_count, rms, evaluations, iterations, wall_seconds,
+                  parameters, correlation, residuals, left_out)
 };
 
 /// Weight of the logarithm of a leak share at its published coefficient. Flows and features have

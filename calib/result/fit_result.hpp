@@ -23,6 +23,7 @@ struct Correlation {
   RIGCAL_DESCRIBE(names, matrix)
 };
 
+/// The replicates of a bootstrap. Their spread is in the parameters.
 struct BootstrapRun {
   int replicates = 0;   ///< number of replicates that converged
   std::string message;  ///< how the replicates were drawn, and any problem

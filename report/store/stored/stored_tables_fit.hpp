@@ -2,7 +2,6 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "calib/published/fit_tables.hpp"
 #include "report/store/stored/stored_fit.hpp"
@@ -13,22 +12,11 @@ namespace rigcal::report {
 
 inline constexpr const char* kOfTables = "published tables";
 
-struct StoredTablesFit {
-  calib::FitStatus status = calib::FitStatus::failed;
+struct StoredTablesFit : calib::TablesFit {
   std::string schema = kFitSchema;
   std::optional<calib::Verdict> verdict;
-  std::string message, campaign;
+  std::string campaign;
   std::string of = kOfTables;
-  std::optional<double> cost;
-  long residual_count = 0;
-  std::optional<double> rms;
-  long evaluations = 0;
-  long iterations = 0;
-  std::optional<double> wall_seconds;
-  std::vector<calib::FittedParameter> parameters;
-  calib::Correlation correlation;
-  std::vector<calib::TableResidual> residuals;
-  std::vector<std::string> left_out;
   StoredProvenance provenance;
   RIGCAL_DESCRIBE(status, schema, verdict, message, campaign, of, cost, residual_count, rms,
                   evaluations, iterations, wall_seconds, parameters, correlation, residuals,

@@ -108,7 +108,7 @@ TEST_CASE("fit_tables: a twin's values come back from a far start, a gain from z
   CAPTURE(fit.message);
   REQUIRE(fit.status == calib::FitStatus::converged);
   CHECK(fit.rms < 3e-3);
-  for (const calib::FittedAssumption& p : fit.parameters) {
+  for (const calib::FittedParameter& p : fit.parameters) {
     const auto& spec = datasets::assumption_spec(rig.campaign.rig.plant, p.index);
     CAPTURE(spec.key, p.start, p.value);
     CHECK(p.start != rig.settings.assumption(p.index)->value);
@@ -157,7 +157,7 @@ TEST_CASE("fit_tables: identifiability has the grades of any fit", "[calib]") {
   CAPTURE(fit.message);
   bool bounded = false;
   bool wide = false;
-  for (const calib::FittedAssumption& p : fit.parameters) {
+  for (const calib::FittedParameter& p : fit.parameters) {
     if (!p.ci95) continue;
     const double half_width = 0.5 * (p.ci95->high - p.ci95->low);
     const double share = half_width / p.value;
@@ -194,5 +194,5 @@ TEST_CASE("fit_tables: a start that cannot be simulated is a failed fit with a r
   const auto fit = calib::fit_tables(rig.campaign, rig.settings, options);
   CHECK(fit.status == calib::FitStatus::failed);
   CHECK_THAT(fit.message, Contains("too many steps"));
-  for (const calib::FittedAssumption& p : fit.parameters) CHECK_FALSE(p.ci95);
+  for (const calib::FittedParameter& p : fit.parameters) CHECK_FALSE(p.ci95);
 }
