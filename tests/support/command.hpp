@@ -87,7 +87,8 @@ class CommandFolder {
   std::filesystem::path out_file() const { return root_ / "stdout"; }
   std::filesystem::path err_file() const { return root_ / "stderr"; }
 
-  /// Runs the command and sends `signal` once `is_time`. A command that ends before is not signalled.
+  /// Runs the command and sends `signal` once `is_time`. A command that ends before is not
+  /// signalled.
   ///
   /// @throws std::runtime_error if it runs for a minute and `awaited` does not appear
   Outcome signalled(const Arguments& arguments, int signal, const std::string& awaited,
