@@ -22,7 +22,7 @@ std::string schema_text(const std::string& file, const Json& rules) {
        "SI units unless a name says otherwise; a name ends in its unit. null where there "
        "is no number. Further keys may be added."}};
   schema.update(rules);
-  return compact_json(schema, "  ") + "\n";
+  return rigcal::compact_json(schema, "  ") + "\n";
 }
 
 void check_schema(const std::string& name, const Json& rules) {
