@@ -61,7 +61,8 @@ std::optional<datasets::LeakTableSettings> leak_table_of(const Campaign& campaig
   const bool periodic =
       std::any_of(campaign.conditions.begin(), campaign.conditions.end(),
                   [](const Condition& condition) { return is_periodic(condition.waveform); });
-  if (!periodic) return std::nullopt;
+  // A leak table is made of loops on position, or of none.
+  if (!periodic || campaign.rig.feedback != model::Feedback::position) return std::nullopt;
   datasets::LeakTableSettings settings = leak_table_settings(campaign);
   if (settings.assumptions.empty()) return std::nullopt;
   return settings;

@@ -99,7 +99,7 @@ class Gallery(unittest.TestCase):
         loader = importlib.machinery.SourceFileLoader("gallery", str(ROOT / "scripts" / "gallery"))
         gallery = importlib.util.module_from_spec(importlib.util.spec_from_loader("gallery", loader))
         loader.exec_module(gallery)
-        shown = {pathlib.PurePath(entry.run.arguments.split()[1]).parent.name for entry in gallery.ENTRIES}
+        shown = {pathlib.PurePath(gallery.RUNS[entry.run].arguments.split()[1]).parent.name for entry in gallery.ENTRIES}
         self.assertEqual(shown, {path.name for path in (ROOT / "datasets" / "rigs").iterdir()})
         for entry in gallery.ENTRIES:
             self.assertTrue(entry.document == "" or (ROOT / "docs" / entry.document).is_file(), entry)
@@ -107,9 +107,9 @@ class Gallery(unittest.TestCase):
     def test_without_recordings_a_rig_is_left_out(self):
         with tempfile.TemporaryDirectory() as folder:
             done = subprocess.run([ROOT / "scripts" / "gallery", "--out", folder, "--without-pictures", "festo"], capture_output=True,
-                                  text=True, check=False, env={**os.environ, "RIGCAL": "/bin/true", "RIGCAL_DATA": folder})
+                                  text=True, check=False, env={**os.environ, "RIGCAL": "/bin/true", "RIGCAL_DATA": folder, "RIGCAL_RUNS": f"{folder}/runs"})
             self.assertEqual(done.returncode, 0, done.stderr)
-            self.assertIn("gallery: without festo: no recordings in ", done.stderr)
+            self.assertIn("gallery: without festo: no recordings festo_tp511_servo_cylinder in ", done.stderr)
             self.assertEqual((pathlib.Path(folder) / "gallery.json").read_text(), "[]")
 
 

@@ -32,6 +32,12 @@ TEST_CASE("live rig: the leak table with its assumptions, then the conditions", 
   CHECK(cases.back().task.time_s.size() == 3001);
 }
 
+TEST_CASE("live rig: a loop on something else than position has no leak table", "[report][live]") {
+  datasets::Campaign campaign = uis();
+  campaign.rig.feedback = model::Feedback::acceleration;
+  CHECK(live_cases(campaign).size() == campaign.conditions.size());
+}
+
 TEST_CASE("live rig: ranges are the bounds of the campaign, else around the value",
           "[report][live]") {
   const datasets::Campaign campaign = uis();
