@@ -323,7 +323,7 @@ LeakTable leak_table(const datasets::Campaign& campaign,
   });
   for (Column& column : columns) {
     for (LeakEntry& entry : column.entries) table.entries.push_back(std::move(entry));
-    if (column.normal) table.normal.push_back(std::move(*column.normal));
+    if (column.normal) table.normal.push_back(*column.normal);
   }
   table.fixed_combinations = fixed_combinations(campaign, values);
   table.summary = summary_of(table.entries);
