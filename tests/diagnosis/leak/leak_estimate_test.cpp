@@ -289,7 +289,7 @@ TEST_CASE("error_of_averages: noise, misfit and the spread beyond noise, of both
   const auto noise = error_of_averages(reference, errors, 5, 3);
   REQUIRE(noise);
   CHECK_THAT(noise->own_se, WithinRel(0.12 * std::sqrt(of_both), 1e-12));
-  CHECK(noise->freedom == metrics::kManyDegrees);
+  CHECK(noise->freedom == rigcal::metrics::kManyDegrees);
   CHECK(noise->rig_se == 0.0);
   // What is beyond noise has the degrees of freedom of the repeats.
   errors.between_m = 0.05e-3;

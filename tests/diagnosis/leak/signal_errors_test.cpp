@@ -134,7 +134,7 @@ TEST_CASE("signal_errors: residuals count as in the records, white or in cluster
   const auto white = signal_errors({}, {}, {&fits[0], &fits[1]});
   REQUIRE_FALSE(white.misfit);
   CHECK(white.residual_ratio == 1.0);
-  CHECK(white.residual_freedom == metrics::kManyDegrees);
+  CHECK(white.residual_freedom == rigcal::metrics::kManyDegrees);
 }
 
 TEST_CASE("signal_errors: healthy repeats that correct each other lie farther apart",
