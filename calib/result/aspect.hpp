@@ -29,7 +29,7 @@ struct Reason {
   AspectState state = AspectState::pass;  ///< state that the reason supports
   std::optional<std::string> subject;     ///< condition or parameter; absent for the whole result
   Keyed<double> numbers;                  ///< numbers that the reason is based on, by name
-  std::string words;                      ///< the reason in words
+  std::string words;                      ///< the reason, a sentence
   RIGCAL_DESCRIBE(code, state, subject, numbers, words)
 };
 

@@ -126,7 +126,7 @@ TEST_CASE("fit_leak: noise may carry a healthy record below zero, by any number 
       below += fit.coefficient < -fit.white_se ? 1 : 0;
     }
   }
-  // A sixth of them is expected.
+  // A sixth of normal errors is below minus one standard error.
   CHECK(below > 20);
 }
 
