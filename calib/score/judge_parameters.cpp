@@ -292,13 +292,14 @@ Aspect judge_parameters(const Campaign& campaign, const Fit& fit) {
   if (estimated == 0) {
     reasons.push_back(reason(AspectState::pass, "stated_values",
                              "no parameter was estimated: the values are those of the campaign"));
-  } else if (identified > 0) {
-    reasons.push_back(reason(AspectState::pass, "identified",
-                             fmt::format("{} of {} estimated parameter{} identified", identified,
-                                         estimated, estimated == 1 ? " is" : "s are"),
-                             {},
-                             {{"identified", static_cast<double>(identified)},
-                              {"estimated", static_cast<double>(estimated)}}));
+  } else if (identified > 0) {  // first, since it sums up the others
+    reasons.insert(reasons.begin(),
+                   reason(AspectState::pass, "identified",
+                          fmt::format("{} of {} estimated parameter{} identified", identified,
+                                      estimated, estimated == 1 ? " is" : "s are"),
+                          {},
+                          {{"identified", static_cast<double>(identified)},
+                           {"estimated", static_cast<double>(estimated)}}));
   }
   note_further_starts(fit, reasons);
   judge_considered(campaign, fit, reasons);

@@ -43,9 +43,10 @@ bool may_be_absent(const ParameterSpec& spec) {
                                spec.key == "leakage_coefficient" || model::is_lag(spec));
 }
 
+/// Writes the end of an interval with two significant digits, as reports do.
 std::string number(const ParameterSpec& spec, double value) {
-  return spec.unit == "1" ? fmt::format("{:.4g}", value)
-                          : fmt::format("{:.4g} {}", value, spec.unit);
+  return spec.unit == "1" ? fmt::format("{:.2g}", value)
+                          : fmt::format("{:.2g} {}", value, spec.unit);
 }
 
 /// Returns, for example, "; correlated 0.98 with mass_kg", or an empty string.

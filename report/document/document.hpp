@@ -43,8 +43,12 @@ struct Link {
   std::string to;  ///< "#id" or a file
   std::string words;
 };
-/// Symbols and remarks, shown in a lighter colour.
+/// Remarks, shown in a lighter colour.
 struct Soft {
+  std::string words;
+};
+/// Symbol of a quantity in the equations: "k_sv".
+struct Symbol {
   std::string words;
 };
 struct Strong {
@@ -58,7 +62,7 @@ struct Code {
 struct Aside {
   std::string words;
 };
-using Inline = std::variant<std::string, Quantity, Badge, Mark, Link, Soft, Strong, Code, Aside>;
+using Inline = std::variant<std::string, Quantity, Badge, Mark, Link, Soft, Symbol, Strong, Code, Aside>;
 using Line = std::vector<Inline>;
 using Lines = std::vector<Line>;
 

@@ -13,6 +13,7 @@
 #include "report/document/overloaded.hpp"
 #include "report/figure/decimate.hpp"
 #include "report/text/escape.hpp"
+#include "report/text/readable.hpp"
 
 namespace rigcal::report::doc {
 namespace {
@@ -59,6 +60,13 @@ std::string html_of(const Inline& part) {
           },
           [](const Soft& soft) {
             return fmt::format("<span class=\"soft\">{}</span>", escaped(soft.words));
+          },
+          [](const Symbol& symbol) {
+            const PrintedSymbol printed = printed_symbol(symbol.words);
+            std::string text = escaped(printed.letter);
+            if (!printed.subscript.empty())
+              text += fmt::format("<sub>{}</sub>", escaped(printed.subscript));
+            return fmt::format("<var class=\"soft\">{}{}</var>", text, escaped(printed.argument));
           },
           [](const Strong& strong) {
             return fmt::format("<strong>{}</strong>", escaped(strong.words));

@@ -120,7 +120,10 @@
     const number = make("input", {id, type: "number", step: "any", inputmode: "decimal", min: about.lowest == null ? null : about.lowest / about.si,
                                   max: about.highest == null ? null : about.highest / about.si});
     const label = make("label", {for: id, text: about.label});
-    if (about.symbol) label.append(make("span", {class: "symbol", text: about.symbol}));
+    if (about.symbol) {
+      const {letter, subscript, argument} = about.symbol;
+      label.append(make("var", {class: "symbol"}, letter, ...(subscript ? [make("sub", {text: subscript})] : []), argument));
+    }
     const node = make("div", {class: "control"}, label,
                       make("span", {class: "field"}, number, make("span", {class: "unit", text: about.unit})));
     const range = about.slider && make("input", {type: "range", min: 0, max: 1, step: 0.001, "aria-label": `${about.label}, slider`});

@@ -135,17 +135,20 @@ Json live_parameter(const Campaign& campaign, int index, double value) {
   const auto range = slider_range(setting, spec, value);
   const ReadableUnit unit = readable_unit(value != 0.0 || !range ? value : range->upper, spec.unit);
   const bool bounded = setting != nullptr && setting->fit;
-  Json row{{"index", index},
-           {"key", spec.key},
-           {"symbol", spec.symbol},
-           {"meaning", spec.meaning},
-           {"group", group_of(setting, spec.kind)},
-           {"unit", unit.name},
-           {"si", unit.si},
-           {"si_unit", spec.unit == "1" ? "" : spec.unit},
-           {"lowest", number_or_null(bounded ? setting->lower : spec.lower)},
-           {"highest", number_or_null(bounded ? setting->upper : spec.upper)},
-           {"slider", nullptr}};
+  const PrintedSymbol symbol = printed_symbol(spec.symbol);
+  Json row{
+      {"index", index},
+      {"key", spec.key},
+      {"symbol",
+       {{"letter", symbol.letter}, {"subscript", symbol.subscript}, {"argument", symbol.argument}}},
+      {"meaning", spec.meaning},
+      {"group", group_of(setting, spec.kind)},
+      {"unit", unit.name},
+      {"si", unit.si},
+      {"si_unit", spec.unit == "1" ? "" : spec.unit},
+      {"lowest", number_or_null(bounded ? setting->lower : spec.lower)},
+      {"highest", number_or_null(bounded ? setting->upper : spec.upper)},
+      {"slider", nullptr}};
   if (range) {
     row["slider"] = {{"lower", range->lower}, {"upper", range->upper}, {"scale", range->scale}};
   }

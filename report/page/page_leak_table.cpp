@@ -51,7 +51,7 @@ std::string intervals_text(const calib::LeakEntry& entry) {
     if (!range || !std::isfinite(range->low) || !std::isfinite(range->high)) continue;
     const double half = (range->high - range->low) / (range->high + range->low);
     text += text.empty() ? "" : ", ";
-    text += half < kWideInterval ? fmt::format("±{:.2g} %", 100.0 * half)
+    text += half < kWideInterval ? fmt::format("± {:.2g} %", 100.0 * half)
                                  : fmt::format("{:.3g} … {:.3g}", range->low, range->high);
   }
   return text;
@@ -409,7 +409,7 @@ std::vector<doc::Section> leak_table_sections(const LeakTableFiles& stored) {
       fit_notes.empty() ? "" : " Small: 95 % interval by the covariance of the fit.")));
   blocks.emplace_back(
       list_of(table.warnings.value_or(std::vector<std::string>()), doc::State::warn));
-  for (const std::string& note : fit_notes) blocks.emplace_back(doc::reading(note + "."));
+  for (const std::string& note : fit_notes) blocks.emplace_back(doc::reading(capitalised(note) + "."));
   doc::Table coefficients{"Leakage coefficients"};
   coefficients.caption = {"Leakage coefficient by signal and share of the servo flow"};
   coefficients.shape = doc::Table::Shape::matrix;

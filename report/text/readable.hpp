@@ -11,6 +11,14 @@ struct ReadableUnit {
   double si = 1.0;
 };
 
+/// A symbol as it is printed in formulas: "k_sv" is k with the subscript "sv".
+struct PrintedSymbol {
+  std::string letter, subscript;
+  std::string argument;  ///< what follows the subscript: "(0)" or "'"
+};
+/// Splits a symbol, with Greek letters for their names: "tau_v", "C_leak", "P_L(0)", "K_dtheta".
+PrintedSymbol printed_symbol(std::string_view symbol);
+
 /// Writes a unit with its printed symbols: "m3/s" -> "m³/s", "um" -> "µm".
 std::string typographic(std::string_view unit);
 

@@ -266,14 +266,22 @@ Line uncertainty_line(const calib::FittedParameter& p, const doc::Interval& inte
   return estimate.has_interval ? estimate.interval() : Line{"–"};
 }
 
+/// Keeps a short text, such as "33.33 %", on one line.
+std::string unbroken(std::string text) {
+  constexpr std::string_view kNoBreakSpace = "\u00a0";
+  for (std::size_t i = 0; (i = text.find(' ', i)) != std::string::npos; i += kNoBreakSpace.size())
+    text.replace(i, 1, kNoBreakSpace);
+  return text;
+}
+
 /// @param both  whether to include the uncertainty that would apply if the model were exact
 doc::Row value_row(const calib::FittedParameter& p, bool judged, bool both) {
   const ReadableUnit unit = unit_of(p);
   const doc::Estimate estimate =
       doc::estimate(p.value, judged ? p.ci95 : std::nullopt, unit.si,
                     {p.lower.value_or(kAnywhere.low), p.upper.value_or(kAnywhere.high)});
-  Line name{capitalised(spaced(p.key)), " ", doc::Soft{p.symbol}};
-  if (p.level) name.emplace_back(", " + *p.level);
+  Line name{capitalised(spaced(p.key)), " ", doc::Symbol{p.symbol}};
+  if (p.level) name.emplace_back(", " + unbroken(*p.level));
   doc::Row row{{{std::move(name)},
                 estimate.value,
                 {judged ? uncertainty_line(p, p.ci95, unit) : Line{"–"}}}};
@@ -413,23 +421,33 @@ std::string signal_words(const StoredCondition& condition) {
   return text;
 }
 
+/// Returns the values on the same side of the limit, which a rounded score must not leave.
+Range side_of_limit(double value, const std::optional<double>& limit) {
+  if (!limit) return kAnywhere;
+  return value <= *limit ? Range{kAnywhere.low, *limit}
+                         : Range{std::nextafter(*limit, HUGE_VAL), kAnywhere.high};
+}
+
 /// Adds the score in the deciding check: "rho2 0.9987 ± 0.0002, limit 0.99".
 void add_score(const Judged& signal, doc::Cell& cell) {
   const calib::LimitCheck& check = *signal.check;
-  cell.line = {check.metric == "absolute_error_percent" ? "error % " : spaced(check.metric) + " ",
-               doc::score(check.metric, check.value)};
+  const bool is_error = check.metric == "absolute_error_percent";
+  doc::Quantity score = doc::score(check.metric, check.value);
   Line limit;
   if (const auto* known = signal.condition->printed_uncertainty_of(signal.channel)) {
     for (const metrics::MetricSpec& metric : metrics::kMetrics) {
       const double half = known->*metric.value;
       if (metric.name != check.metric || !std::isfinite(half)) continue;
       limit = {"U ", doc::in_unit(half, 1.0, kErrorDigits), ", "};
+      if (is_error && check.value)
+        score.text = matched(*check.value, half, side_of_limit(*check.value, check.limit));
     }
   }
   if (check.limit) {
     limit.emplace_back("limit ");
     limit.emplace_back(doc::in_unit(check.limit, 1.0, 6));
   }
+  cell.line = {is_error ? "error % " : spaced(check.metric) + " ", std::move(score)};
   cell.below = {std::move(limit)};
 }
 

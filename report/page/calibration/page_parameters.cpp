@@ -39,7 +39,7 @@ doc::Cell error_cell(const calib::FittedParameter& p, const std::optional<double
 doc::Row fitted_row(const calib::FittedParameter& p, bool judged, const std::string& reason) {
   const ReadableUnit unit = unit_of(p);
   const doc::Estimate estimate = doc::estimate(p.value, p.ci95, unit.si, bounds_of(p));
-  Line name{p.key, " ", doc::Soft{p.symbol}};
+  Line name{p.key, " ", doc::Symbol{p.symbol}};
   if (p.nuisance) name.emplace_back(doc::Soft{" nuisance"});
   const double half_width = relative_half_width(p);
   doc::Cell interval{estimate.interval()};
@@ -68,7 +68,7 @@ doc::Row fitted_row(const calib::FittedParameter& p, bool judged, const std::str
 
 doc::Row known_row(const calib::FittedParameter& p) {
   const ReadableUnit unit = unit_of(p);
-  return {{Line{p.key, " ", doc::Soft{p.symbol}}, p.level.value_or("rig"),
+  return {{Line{p.key, " ", doc::Symbol{p.symbol}}, p.level.value_or("rig"),
            doc::in_unit(p.value, unit.si, 6), unit.name, p.reason}};
 }
 

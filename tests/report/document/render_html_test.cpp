@@ -24,6 +24,7 @@ TEST_CASE("render_html: whatever stands in a document is text", "[report]") {
                         doc::Mark{doc::State::bad, kHostileText},
                         doc::Link{"#" + kHostileText, kHostileText},
                         doc::Soft{kHostileText},
+                        doc::Symbol{kHostileText},
                         doc::Strong{kHostileText},
                         doc::Code{kHostileText}};
   doc::Table table{kHostileText, every};

@@ -40,3 +40,18 @@ TEST_CASE("readable: a rounded zero has no sign", "[report]") {
 TEST_CASE("readable: no exponent where the digits before the point do", "[report]") {
   CHECK(readable(0.168, "s", 2) == "170 ms");
 }
+
+TEST_CASE("printed_symbol: letter, subscript and argument", "[report]") {
+  const auto parts = [](std::string_view symbol) {
+    const PrintedSymbol printed = printed_symbol(symbol);
+    return printed.letter + "|" + printed.subscript + "|" + printed.argument;
+  };
+  CHECK(parts("m") == "m||");
+  CHECK(parts("beta") == "β||");
+  CHECK(parts("k_sv") == "k|sv|");
+  CHECK(parts("tau_hn") == "τ|hn|");
+  CHECK(parts("K_dtheta") == "K|dθ|");
+  CHECK(parts("P_L(0)") == "P|L|(0)");
+  CHECK(parts("omega(0)") == "ω||(0)");
+  CHECK(parts("Q_1'") == "Q|1|'");
+}
