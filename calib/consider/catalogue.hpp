@@ -39,6 +39,8 @@ struct Effect {
   bool curved = false;
   /// Size at which the secant is computed, as a multiple of the plausible size.
   double secant = 1.0;
+  /// True if the secant is to the point at which the estimates have followed the effect.
+  bool followed = false;
   ConsideredEffect about;
 
   /// Returns true if the effect changes the reading of the motion sensor rather than the motion

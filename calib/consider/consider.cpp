@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "calib/consider/catalogue.hpp"
 #include "calib/consider/refit.hpp"
@@ -40,6 +41,9 @@ constexpr double kSameSize = 0.5;
 /// errors for white noise.
 constexpr int kMostChords = 12;
 constexpr double kSettledMove = 0.3;
+/// Fraction of an estimate beyond which a move that an effect causes is not linear: its square is a
+/// tenth of the 20 % at which an interval is asymmetric.
+constexpr double kFarMove = 0.05;
 /// Maximum number of times that secants are recomputed.
 constexpr int kMostSecants = 2;
 /// Maximum number of missing effects to name; more than this would be a guess.
@@ -272,7 +276,74 @@ MatrixXd correlation_of(const MatrixXd& covariance) {
   return correlation;
 }
 
-/// Recomputes the secants of curved effects at the sizes that follow from prior and records.
+/// Returns true if a value cannot be zero, by its nature or, for a lag, by the bounds of the fit.
+bool is_above_zero(const model::ParameterSpec& spec, const Unknown& unknown) {
+  return spec.lower > 0.0 || (model::is_lag(spec) && unknown.lower > 0.0);
+}
+
+/// Returns true if the fit mistakes an effect of plausible size for so large a change of an
+/// estimate that the model is no longer linear over it.
+///
+/// @param taken  change of the estimates, shape (all directions of the root)
+bool moves_far(const Problem& problem, std::span<const double> z, const Uncertainty& found,
+               const VectorXd& taken) {
+  for (std::size_t j = 0; j < z.size(); ++j) {
+    const auto unknown = static_cast<int>(j);
+    if (!is_above_zero(problem.spec(j), problem.map.unknowns()[j])) continue;
+    const double move =
+        problem.map.slope(unknown, z[j]) * found.root.times(static_cast<Index>(j), taken)(0);
+    if (std::abs(move) > kFarMove * problem.map.to_physical(unknown, z[j])) return true;
+  }
+  return false;
+}
+
+/// Returns the parameters after a move of the estimates, in the unit box. Returns std::nullopt if
+/// they would leave the box.
+///
+/// @param move  change of the estimates, shape (all directions of the root)
+std::optional<std::vector<double>> moved_by(std::span<const double> z, const Uncertainty& found,
+                                            const VectorXd& move) {
+  std::vector<double> there(z.begin(), z.end());
+  for (std::size_t j = 0; j < there.size(); ++j) {
+    there[j] += found.root.times(static_cast<Index>(j), move)(0);
+    if (!(there[j] >= 0.0 && there[j] <= 1.0)) return std::nullopt;
+  }
+  return there;
+}
+
+/// An effect and the estimates that have followed it, in the unit box.
+struct Followed {
+  Index effect;
+  std::vector<double> there;
+};
+
+/// Replaces the columns of effects that the estimates have followed. A column is the change in the
+/// weighted outputs of one condition, less the first-order change due to the estimates.
+///
+/// @param taken  change of the estimates per plausible size, shape (directions of the condition,
+///               effects)
+void follow(const Problem& problem, std::size_t condition, std::span<const double> z,
+            const std::vector<Followed>& followed, const std::vector<Effect>& effects,
+            const ScoreRows& scores, const MatrixXd& taken, const std::atomic<bool>* cancel,
+            EffectColumns& columns) {
+  if (followed.empty()) return;
+  const auto outputs = [&](std::span<const double> at, const std::vector<Effect>& with) {
+    return outputs_with(problem, condition, at, with,
+                        VectorXd::Ones(static_cast<Index>(with.size())), Derivatives::none, cancel)
+        .outputs;
+  };
+  const VectorXd base = outputs(z, {});
+  for (const Followed& each : followed) {
+    const VectorXd with = outputs(each.there, {effects[static_cast<std::size_t>(each.effect)]});
+    if (base.size() == 0 || with.size() == 0) continue;
+    const VectorXd change = with - base + scores.all_rows() * taken.col(each.effect);
+    if (change.allFinite()) columns.col(each.effect) = change.cast<float>();
+  }
+}
+
+/// Recomputes the secants of curved effects at the sizes that follow from prior and records. An
+/// effect that would move an estimate far is simulated once more at its plausible size, at the
+/// estimates that have followed it: what it leaves in the residuals is not linear over such a move.
 ///
 /// @return  true if any secant was recomputed. In that case `columns` contains the columns of all
 ///          effects, and `seen` no longer has its rows, because keeping both would take half of a
@@ -282,27 +353,38 @@ bool take_again(const Problem& problem, std::span<const double> z, const Uncerta
                 std::vector<EffectColumns>& columns) {
   std::vector<Effect> again;
   std::vector<Index> which;
+  std::vector<Followed> followed;
   for (std::size_t e = 0; e < seen.effects.size(); ++e) {
     const auto k = static_cast<Index>(e);
     Effect& effect = seen.effects[e];
-    const double size = std::sqrt(sizes.mean(k) * sizes.mean(k) + sizes.covariance(k, k));
-    if (!effect.curved || std::abs(std::log(size / effect.secant)) < kSameSize) continue;
-    effect.secant = std::max(size, kLeastSecant);
-    again.push_back(effect);
-    which.push_back(k);
+    if (effect.curved) {
+      const double size = std::sqrt(sizes.mean(k) * sizes.mean(k) + sizes.covariance(k, k));
+      if (std::abs(std::log(size / effect.secant)) < kSameSize) continue;
+      effect.secant = std::max(size, kLeastSecant);
+      again.push_back(effect);
+      which.push_back(k);
+    } else if (!effect.followed && !effect.is_of_sensor() &&
+               moves_far(problem, z, found, seen.taken.col(k))) {
+      auto there = moved_by(z, found, -seen.taken.col(k));
+      if (!there) continue;
+      effect.followed = true;
+      followed.push_back({k, std::move(*there)});
+    }
   }
-  if (again.empty()) return false;
+  if (again.empty() && followed.empty()) return false;
   const MatrixXd felt = seen.left * seen.basis;
   parallel_for(columns.size(), threads, [&](std::size_t i) {
-    columns[i] = MatrixXd(seen.rows[i].all_rows() * felt.transpose() +
-                          found.scores[i].all_rows() * taken_in(i, found, seen))
-                     .cast<float>();
+    const MatrixXd taken = taken_in(i, found, seen);
+    columns[i] =
+        MatrixXd(seen.rows[i].all_rows() * felt.transpose() + found.scores[i].all_rows() * taken)
+            .cast<float>();
     seen.rows[i].narrow.resize(0, 0);
     const MatrixXd anew = effect_rows(problem, i, z, again, cancel);
     for (std::size_t a = 0; a < which.size(); ++a) {
       const auto column = static_cast<Index>(a);
       if (anew.col(column).allFinite()) columns[i].col(which[a]) = anew.col(column).cast<float>();
     }
+    follow(problem, i, z, followed, seen.effects, found.scores[i], taken, cancel, columns[i]);
   });
   return true;
 }
@@ -329,17 +411,15 @@ bool follow_curvature(const Problem& problem, std::span<const double> z, const U
     base[i] = outputs_with(problem, i, z, seen.effects, none, Derivatives::none, cancel).outputs;
   });
   for (int chord = 0; chord < kMostChords; ++chord) {
-    std::vector<double> there(z.begin(), z.end());
-    for (std::size_t j = 0; j < there.size(); ++j) {
-      there[j] += found.root.times(static_cast<Index>(j), move)(0);
-      if (!(there[j] >= 0.0 && there[j] <= 1.0)) return false;
-    }
+    const auto there = moved_by(z, found, move);
+    if (!there) return false;
     std::vector<VectorXd> scores(base.size());
     std::vector<VectorXd> taken(base.size());
     std::atomic<bool> failed = false;
     parallel_for(base.size(), threads, [&](std::size_t i) {
       const VectorXd outputs =
-          outputs_with(problem, i, there, seen.effects, at.mean, Derivatives::none, cancel).outputs;
+          outputs_with(problem, i, *there, seen.effects, at.mean, Derivatives::none, cancel)
+              .outputs;
       if (outputs.size() == 0 || base[i].size() == 0) {
         failed = true;
         return;
@@ -720,11 +800,6 @@ VectorXd unexplained_moves(const Problem& problem, const std::vector<ScoreRows>&
       squares(*whose[t]) += moves[t].cwiseAbs2();
   }
   return squares.cwiseSqrt();
-}
-
-/// Returns true if a value cannot be zero, by its nature or, for a lag, by the bounds of the fit.
-bool is_above_zero(const model::ParameterSpec& spec, const Unknown& unknown) {
-  return spec.lower > 0.0 || (model::is_lag(spec) && unknown.lower > 0.0);
 }
 
 /// Returns the upper end of the interval of a value that cannot be zero, if its logarithm is linear

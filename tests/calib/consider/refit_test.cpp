@@ -93,6 +93,19 @@ TEST_CASE("refit: of two effects that act alike the true one leaves less", "[cal
   CHECK_THAT(effect.alone.value(), WithinAbs(5e-12, 2.0 * effect.alone_half_width.value()));
 }
 
+TEST_CASE("refit: an effect that moves an estimate far is seen where the estimates follow it",
+          "[calib]") {
+  bench::ForeignRig leaking;
+  leaking.laminar_m3_per_s_pa = 3e-12;  // takes the bulk modulus along by a tenth
+  leaking.valve_gain_m_per_v = 4.9e-5;
+  leaking.leak_coefficient = 0.4;
+  const ForeignFit leak(leaking, 14);
+  CHECK(leak.named == "laminar_leakage");
+  CHECK(leak.held == 5);
+  const ConsideredEffect& effect = *leak.fit.considered->find("laminar_leakage");
+  CHECK_THAT(effect.alone.value(), WithinAbs(3e-12, 1.5 * effect.alone_half_width.value()));
+}
+
 TEST_CASE("refit: a rig without effects asks for none, and its values are held", "[calib]") {
   const ForeignFit none(bench::ForeignRig{}, 13);
   CHECK(none.named.empty());
