@@ -13,7 +13,7 @@ bool is_mat_file(const FileStart& start);
 
 /// Columns wanted from a MAT file.
 struct MatRequest {
-  std::vector<std::string> columns;  ///< MATLAB names (mat_path.hpp), in the order of the result
+  std::vector<std::string> columns;  ///< names in MATLAB, in the order of the result
   std::string time_column;           ///< one of `columns`, checked to increase; may be empty
 };
 
