@@ -41,7 +41,7 @@ struct EffectSize {
 };
 
 /// One row of the catalogue. To add an effect, add a row here, and its key to
-/// datasets/considered_settings.cpp. The rows kp, ki and kd represent the gains of whichever loop
+/// datasets/stated_sizes.cpp. The rows kp, ki and kd represent the gains of whichever loop
 /// the rig has.
 struct CatalogueRow {
   const char* key;
@@ -540,7 +540,7 @@ Eigen::VectorXd reading_error(const Effect& effect, const Eigen::VectorXd& readi
 }
 
 std::vector<Effect> effects_of(const Problem& problem, std::span<const double> z) {
-  const datasets::ConsideredSettings& stated = problem.campaign->considered;
+  const datasets::StatedSizes& stated = problem.campaign->considered;
   std::vector<Effect> result;
   for (Effect& effect : possible_effects(problem, z)) {
     if (stated.leaves_out(effect.about.key)) continue;

@@ -14,13 +14,12 @@
 #include "common/error.hpp"
 #include "common/file.hpp"
 #include "common/quantity.hpp"
-#include "datasets/between_days_settings.hpp"
 #include "datasets/campaign/design/design_settings.hpp"
 #include "datasets/campaign/diagnosis_settings.hpp"
 #include "datasets/campaign/report_settings.hpp"
 #include "datasets/campaign/waveform.hpp"
-#include "datasets/considered_settings.hpp"
 #include "datasets/record.hpp"
+#include "datasets/stated_sizes.hpp"
 #include "model/plant/parameter.hpp"
 #include "model/simulate.hpp"
 
@@ -244,8 +243,8 @@ struct Campaign {
   AcceptanceBounds acceptance_bounds;
   FitSettings fit;
   SimulationSettings simulation;
-  ConsideredSettings considered;
-  BetweenDaysSettings between_days;
+  StatedSizes considered;
+  StatedSizes between_days;
   DiagnosisSettings diagnosis;
   ReportSettings report;
   std::optional<DesignSettings> design;
