@@ -11,7 +11,6 @@
 
 #include "common/error.hpp"
 #include "datasets/campaign/campaign_sections.hpp"
-#include "datasets/checks/median.hpp"
 #include "datasets/prepare/time_holes.hpp"
 
 namespace rigcal::datasets {
@@ -19,13 +18,6 @@ namespace {
 
 constexpr double kLostSample = 1.5;  // median steps: at least one sample is missing
 constexpr double kRounding = 1e-9;   // relative to the length of a hole
-
-double median_step(const std::vector<double>& time_s) {
-  std::vector<double> steps;
-  steps.reserve(time_s.size());
-  for (std::size_t i = 1; i < time_s.size(); ++i) steps.push_back(time_s[i] - time_s[i - 1]);
-  return median(std::move(steps));
-}
 
 bool is_held_input(const Campaign& campaign, Channel channel) {
   const auto setting = campaign.channels.find(channel);
