@@ -166,6 +166,11 @@ struct Condition {
   Location where;
 
   bool has_record() const { return averaged.has_value() || !repeats.empty(); }
+  /// Whether a value of the scope applies here. `level` is a leak level or the id of a condition.
+  bool is_within(Scope scope, const std::string& level) const {
+    if (scope == Scope::rig) return true;
+    return level == (scope == Scope::condition ? id : leak_level.value_or(""));
+  }
 };
 
 enum class InitialMode { rest, record, fit };
