@@ -60,7 +60,9 @@ struct ParameterSetting {
 using Overrides = std::vector<std::pair<int, double>>;
 
 enum class ChannelRole { input, output, ignore };
+RIGCAL_NAMES(ChannelRole, input, output, ignore)
 enum class Interpolation { hold, linear };
+RIGCAL_NAMES(Interpolation, hold, linear)
 
 /// The unit that the campaign states for a column, to be compared with the labels in the record
 /// file.
@@ -174,10 +176,14 @@ struct Condition {
 };
 
 enum class InitialMode { rest, record, fit };
+RIGCAL_NAMES(InitialMode, rest, record, fit)
 enum class Alignment { correlate, none };
+RIGCAL_NAMES(Alignment, correlate, none)
 enum class SpikeTreatment { report, exclude };
+RIGCAL_NAMES(SpikeTreatment, report, exclude)
 
 enum class Loss { squared, huber, cauchy, soft_l1 };
+RIGCAL_NAMES(Loss, squared, huber, cauchy, soft_l1)
 
 /// Accepted numbers of posterior draws per chain. Fewer draws give no useful quantiles.
 inline constexpr int kLeastPosteriorDraws = 100;

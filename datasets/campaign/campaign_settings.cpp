@@ -192,7 +192,6 @@ const KeyTable<AcceptanceBounds>& bound_keys() {
   static const KeyTable<AcceptanceBounds> keys({
       Row::word<DecisionRule>(
           "decision", &AcceptanceBounds::decision,
-          {{"simple", DecisionRule::simple}, {"guard_band", DecisionRule::guard_band}},
           {.doc =
                "How the uncertainty of a score counts. With `guard_band` a limit is kept without "
                "reservation only by more than the score is uncertain",
@@ -389,10 +388,6 @@ const KeyTable<FitSettings>& fit_keys() {
   using Row = KeyRow<FitSettings>;
   static const KeyTable<FitSettings> keys({
       Row::word<Loss>("loss", &FitSettings::loss,
-                      {{"squared", Loss::squared},
-                       {"huber", Loss::huber},
-                       {"cauchy", Loss::cauchy},
-                       {"soft_l1", Loss::soft_l1}},
                       {.doc = "How a residual counts: squared, or less where it is large"}),
       Row::number("loss_scale", &FitSettings::loss_scale, kSizes,
                   {.doc = "Where the loss bends, in standard deviations of a residual"}),
