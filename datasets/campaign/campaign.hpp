@@ -264,6 +264,8 @@ struct Campaign {
 
   const Condition* find(std::string_view id) const;
   const ParameterSetting* setting(int index) const;
+  /// Whether a channel is an input that keeps its value from one sample to the next.
+  bool is_held_input(Channel channel) const;
   /// Limits for a condition: its own, or else the campaign's.
   const std::vector<AcceptanceLimit>& limits(const Condition& condition) const;
   /// Whether `not_judged` allows an output channel to have no limit in a condition.

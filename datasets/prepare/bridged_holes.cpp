@@ -19,12 +19,6 @@ namespace {
 constexpr double kLostSample = 1.5;  // median steps: at least one sample is missing
 constexpr double kRounding = 1e-9;   // relative to the length of a hole
 
-bool is_held_input(const Campaign& campaign, Channel channel) {
-  const auto setting = campaign.channels.find(channel);
-  return setting != campaign.channels.end() && setting->second.role == ChannelRole::input &&
-         setting->second.interpolation == Interpolation::hold;
-}
-
 /// Returns the number of samples that are missing before each sample.
 std::vector<std::size_t> missing_before(const std::vector<double>& time_s, double longest_s) {
   const double step_s = median_step(time_s);
@@ -74,7 +68,7 @@ void bridge_holes(const Campaign& campaign, Repeat& repeat) {
   }
   repeat.time_s = filled(repeat.time_s, missing, false);
   for (auto& [channel, values] : repeat.values)
-    values = filled(values, missing, is_held_input(campaign, channel));
+    values = filled(values, missing, campaign.is_held_input(channel));
   std::erase_if(repeat.holes, [&](const TimeHole& hole) {
     return hole.to_s - hole.from_s <= *campaign.longest_bridge_s * (1.0 + kRounding);
   });
@@ -138,7 +132,7 @@ std::string guessed_drive_warning(const Campaign& campaign, const Condition& con
       "nobody recorded the {} in {} hole{}, the longest between {:.6g} s and {:.6g} s: the model "
       "takes {}, and what the drive did there instead is in none of the intervals",
       info(drive).key, holes.size(), holes.size() == 1 ? "" : "s", longest->from_s, longest->to_s,
-      is_held_input(campaign, drive) ? "its last value" : "a line across");
+      campaign.is_held_input(drive) ? "its last value" : "a line across");
 }
 
 }  // namespace rigcal::datasets
