@@ -24,11 +24,12 @@ Range finite_range(std::span<const double> signal, std::string_view function,
 }
 
 void require_increasing(std::span<const double> time_s, std::string_view function) {
-  finite_range(time_s, function, "time");
+  finite_range(time_s, function, "time_s");
   for (std::size_t i = 1; i < time_s.size(); ++i) {
     if (!(time_s[i] > time_s[i - 1]))
-      throw std::invalid_argument(fmt::format("{}: time[{}] = {} does not come after {}", function,
-                                              i, time_s[i], time_s[i - 1]));
+      throw std::invalid_argument(
+          fmt::format("{}: time_s[{}] is {} after {}, expected increasing times", function, i,
+                      time_s[i], time_s[i - 1]));
   }
 }
 
