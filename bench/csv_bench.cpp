@@ -20,9 +20,9 @@ void load_csv_4_columns(benchmark::State& state) {
       file << fmt::format("{:.3f},{:.4f},{:.4f},{:.2f}\n", t, std::sin(t), std::cos(t), 60.0 * t);
     }
   }
-  const datasets::CsvRequest request{{"t_s", "ref_mm", "x_mm", "p_bar"}, 0, "t_s"};
+  const datasets::RecordRequest request{{"t_s", "ref_mm", "x_mm", "p_bar"}, "t_s"};
   for (auto _ : state) {
-    const datasets::CsvTable table = datasets::load_csv(path, request);
+    const datasets::RecordTable table = datasets::load_csv_record(path, request);
     benchmark::DoNotOptimize(table.columns.data());
   }
   state.counters["rows_per_s"] = benchmark::Counter(static_cast<double>(state.range(0)),

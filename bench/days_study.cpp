@@ -60,7 +60,7 @@ struct DaysRow {
   bool same_day = false;  ///< true if all records are from the day of the reference
   bool trend = false;
   int healthy_dates = 1;
-  std::function<void(datasets::BetweenDaysSettings&)> state = [](auto&) {};
+  std::function<void(datasets::StatedSizes&)> state = [](auto&) {};
 };
 
 const std::vector<DaysRow>& days_rows() {
@@ -69,14 +69,14 @@ const std::vector<DaysRow>& days_rows() {
     all.push_back({"the day of the reference", {}, true});
     all.push_back({"other days, usual sizes", kUsualDaySizes});
     DaysRow supply{"other days, the supply alone, stated", {5e-3, 0.0, 0.0, 0.0}};
-    supply.state = [](datasets::BetweenDaysSettings& days) {
-      days.sds["supply_pressure"] = 31e3;
+    supply.state = [](datasets::StatedSizes& days) {
+      days.sizes["supply_pressure"] = 31e3;
       days.left_out = {"bulk_modulus", "position_offset", datasets::kTriggerKey};
     };
     all.push_back(supply);
     DaysRow ignored = supply;
     ignored.name = "other days, the supply alone, between_days = false";
-    ignored.state = [](datasets::BetweenDaysSettings& days) { days.none = true; };
+    ignored.state = [](datasets::StatedSizes& days) { days.none = true; };
     all.push_back(ignored);
     DaysRow dates{"other days, twice the usual sizes, six healthy dates",
                   times(2.0, kUsualDaySizes)};

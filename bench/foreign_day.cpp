@@ -20,12 +20,12 @@ ForeignRig rig_of_day(ForeignRig rig, const DaySizes& sizes, boost::random::mt19
   return rig;
 }
 
-datasets::BetweenDaysSettings stated_days(const ForeignRig& rig, const DaySizes& sizes) {
-  datasets::BetweenDaysSettings stated;
-  stated.sds["supply_pressure"] = sizes.supply * rig.supply_pa;
-  stated.sds["bulk_modulus"] = sizes.bulk_modulus * rig.bulk_modulus_pa;
-  stated.sds["position_offset"] = sizes.zero_m;
-  stated.sds[datasets::kTriggerKey] = sizes.trigger_s;
+datasets::StatedSizes stated_days(const ForeignRig& rig, const DaySizes& sizes) {
+  datasets::StatedSizes stated;
+  stated.sizes["supply_pressure"] = sizes.supply * rig.supply_pa;
+  stated.sizes["bulk_modulus"] = sizes.bulk_modulus * rig.bulk_modulus_pa;
+  stated.sizes["position_offset"] = sizes.zero_m;
+  stated.sizes[datasets::kTriggerKey] = sizes.trigger_s;
   return stated;
 }
 

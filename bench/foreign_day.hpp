@@ -4,7 +4,7 @@
 #include <string>
 
 #include "bench/foreign_rig.hpp"
-#include "datasets/between_days_settings.hpp"
+#include "datasets/stated_sizes.hpp"
 
 namespace rigcal::bench {
 
@@ -26,7 +26,7 @@ DaySizes times(double factor, const DaySizes& sizes);
 ForeignRig rig_of_day(ForeignRig rig, const DaySizes& sizes, boost::random::mt19937_64& stream);
 
 /// Returns the sizes as a user would state them for a rig in `[between_days]`.
-datasets::BetweenDaysSettings stated_days(const ForeignRig& rig, const DaySizes& sizes);
+datasets::StatedSizes stated_days(const ForeignRig& rig, const DaySizes& sizes);
 
 /// Returns a date in 2026; days are counted from January 1, in months of 28 days.
 std::string date_of(int day);

@@ -67,7 +67,7 @@ void print_phases(const datasets::Campaign& campaign, int rounds) {
       {"parse",
        [&] {
          for (const auto& [path, columns] : files)
-           datasets::load_csv(path, {columns, campaign.separator, campaign.time_column});
+           datasets::load_csv_record(path, {columns, campaign.time_column, campaign.separator});
        }},
       {"read and average",
        [&] {

@@ -128,8 +128,8 @@ struct LawRow {
 std::vector<LawRow> law_rows() {
   std::vector<LawRow> rows;
   for (const bool pressures : {true, false}) {
-    for (const LeakLaw truth : datasets::kLeakLaws) {
-      for (const LeakLaw fitted : datasets::kLeakLaws) {
+    for (const LeakLaw truth : enumerators_like(LeakLaw{})) {
+      for (const LeakLaw fitted : enumerators_like(LeakLaw{})) {
         rows.push_back({fmt::format("{}: {} leak fitted as {}",
                                     pressures ? "position and pressures" : "position alone",
                                     to_string(truth), to_string(fitted)),

@@ -213,12 +213,7 @@ std::vector<ResponsePoint> periodic_response(std::span<const double> time_s,
   if (time_s.size() < kLeastPerPeriod)
     throw std::invalid_argument(fmt::format("periodic_response: {} samples, expected at least {}",
                                             time_s.size(), kLeastPerPeriod));
-  finite_range(time_s, "periodic_response", "time_s");
-  for (std::size_t i = 1; i < time_s.size(); ++i)
-    if (time_s[i] <= time_s[i - 1])
-      throw std::invalid_argument(
-          fmt::format("periodic_response: time_s[{}] is {} after {}, expected increasing times", i,
-                      time_s[i], time_s[i - 1]));
+  require_increasing(time_s, "periodic_response");
   if (finite_range(input, "periodic_response", "input").constant() ||
       finite_range(output, "periodic_response", "output").constant())
     return {};

@@ -33,12 +33,7 @@ void check(std::span<const double> time_s, std::span<const double> signal, std::
   if (!std::isfinite(frequency_hz) || frequency_hz <= 0.0)
     throw std::invalid_argument(fmt::format(
         "fundamental: the frequency is {} Hz, expected a positive finite one", frequency_hz));
-  finite_range(time_s, "fundamental", "time_s");
-  for (std::size_t i = 1; i < time_s.size(); ++i)
-    if (time_s[i] <= time_s[i - 1])
-      throw std::invalid_argument(
-          fmt::format("fundamental: time_s[{}] is {} after {}, expected increasing times", i,
-                      time_s[i], time_s[i - 1]));
+  require_increasing(time_s, "fundamental");
 }
 
 /// Index of the first sample in the whole periods at the end of the record.

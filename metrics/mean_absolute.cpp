@@ -37,14 +37,8 @@ void check(std::span<const double> time_s, std::span<const double> signal,
     throw std::invalid_argument(fmt::format("{}: {} times but {} samples of the {} signal",
                                             function, time_s.size(), signal.size(), name));
   }
-  finite_range(time_s, function, "time");
+  require_increasing(time_s, function);
   finite_range(signal, function, name);
-  for (std::size_t i = 1; i < time_s.size(); ++i) {
-    if (!(time_s[i] > time_s[i - 1])) {
-      throw std::invalid_argument(fmt::format("{}: time[{}] = {} does not come after {}", function,
-                                              i, time_s[i], time_s[i - 1]));
-    }
-  }
 }
 
 }  // namespace

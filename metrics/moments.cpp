@@ -23,6 +23,16 @@ Range finite_range(std::span<const double> signal, std::string_view function,
   return range;
 }
 
+void require_increasing(std::span<const double> time_s, std::string_view function) {
+  finite_range(time_s, function, "time_s");
+  for (std::size_t i = 1; i < time_s.size(); ++i) {
+    if (!(time_s[i] > time_s[i - 1]))
+      throw std::invalid_argument(
+          fmt::format("{}: time_s[{}] is {} after {}, expected increasing times", function, i,
+                      time_s[i], time_s[i - 1]));
+  }
+}
+
 double to_double(Extended value, std::string_view function) {
   if (std::abs(value) > wide(std::numeric_limits<double>::max()))
     throw std::domain_error(fmt::format("{}: the result is beyond the largest double", function));

@@ -52,6 +52,11 @@ struct Range {
 Range finite_range(std::span<const double> signal, std::string_view function,
                    std::string_view name);
 
+/// Checks that at least two times are finite and increase.
+///
+/// @throws std::invalid_argument  if they do not
+void require_increasing(std::span<const double> time_s, std::string_view function);
+
 /// Converts the result of `function` to a double.
 ///
 /// @throws std::domain_error  if it exceeds the largest double

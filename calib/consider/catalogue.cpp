@@ -41,7 +41,7 @@ struct EffectSize {
 };
 
 /// One row of the catalogue. To add an effect, add a row here, and its key to
-/// datasets/considered_settings.cpp. The rows kp, ki and kd represent the gains of whichever loop
+/// datasets/stated_sizes.cpp. The rows kp, ki and kd represent the gains of whichever loop
 /// the rig has.
 struct CatalogueRow {
   const char* key;
@@ -283,17 +283,6 @@ double value_of_key(const Problem& problem, const model::ParameterValues& values
 
 double first_finite(double a, double b) { return std::isfinite(a) ? a : b; }
 
-double shortest_interval(const Problem& problem) {
-  double least = HUGE_VAL;
-  for (const ProblemCondition& each : problem.conditions) {
-    const auto& time_s = each.record->time_s;
-    if (time_s.size() > 1)
-      least = std::min(least,
-                       (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1));
-  }
-  return least;
-}
-
 /// Area of the piston [m2]; of a rotary actuator its displacement, which is an area on a lever of 1
 /// m/rad.
 double usual_area(const Problem& problem, const model::ParameterValues& values) {
@@ -338,7 +327,7 @@ RigScale scale_of(const Problem& problem, std::span<const double> z) {
     rig.flow_m3_per_s = get("discharge_coefficient") * get("area_gradient") * get("pilot_gain") *
                         get("pilot_range") * std::sqrt(rig.pressure_pa / get("density"));
   }
-  rig.sample_s = shortest_interval(problem);
+  rig.sample_s = problem.shortest_interval_s();
   const model::FeedbackRow& loop = model::gain_keys(problem.campaign->rig.feedback);
   rig.kp = get(loop.kp);
   rig.kd = get(loop.kd);
@@ -540,7 +529,7 @@ Eigen::VectorXd reading_error(const Effect& effect, const Eigen::VectorXd& readi
 }
 
 std::vector<Effect> effects_of(const Problem& problem, std::span<const double> z) {
-  const datasets::ConsideredSettings& stated = problem.campaign->considered;
+  const datasets::StatedSizes& stated = problem.campaign->considered;
   std::vector<Effect> result;
   for (Effect& effect : possible_effects(problem, z)) {
     if (stated.leaves_out(effect.about.key)) continue;

@@ -281,7 +281,7 @@ void leave_symmetric_open(const TrialRig& rig, int threads, Design& design) {
 
 std::vector<DriveFamily> tried_families(const datasets::DesignSettings& settings) {
   if (settings.family) return {*settings.family};
-  return {datasets::kDriveFamilies.begin(), datasets::kDriveFamilies.end()};
+  return enumerators_like(datasets::DriveFamily{});
 }
 
 }  // namespace

@@ -65,9 +65,9 @@ Eigen::VectorXd rate_of(const Eigen::VectorXd& x, std::span<const double> time_s
 
 std::vector<DayQuantity> day_quantities(const datasets::Campaign& campaign,
                                         const model::ParameterValues& values, double sample_s) {
-  const datasets::BetweenDaysSettings& stated = campaign.between_days;
+  const datasets::StatedSizes& stated = campaign.between_days;
   std::vector<DayQuantity> result;
-  for (const datasets::DayQuantityName& name : datasets::day_quantity_names(campaign.rig.plant)) {
+  for (const datasets::SizedQuantity& name : datasets::day_quantity_names(campaign.rig.plant)) {
     if (stated.leaves_out(name.key)) continue;
     const UsualSize usual = usual_size(campaign, values, sample_s, name.key);
     DayQuantity quantity;
@@ -77,7 +77,7 @@ std::vector<DayQuantity> day_quantities(const datasets::Campaign& campaign,
     quantity.sd = usual.sd;
     quantity.sd_from = usual.from;
     quantity.index = model::parameter_index(campaign.rig.plant, name.key);
-    if (const auto sd = stated.sd(name.key)) {
+    if (const auto sd = stated.size(name.key)) {
       quantity.sd = *sd;
       quantity.sd_from = "[between_days]";
     }

@@ -71,10 +71,7 @@ model::ParameterValues values_with(const Campaign& campaign, const Condition& co
   for (const int index : needed) {
     if (is_nuisance(campaign, index) || known_in(campaign, condition, index)) continue;
     const auto found = std::find_if(fitted.begin(), fitted.end(), [&](const FittedValue& value) {
-      if (value.index != index) return false;
-      if (value.scope == Scope::rig) return true;
-      return value.level ==
-             (value.scope == Scope::condition ? condition.id : condition.leak_level.value_or(""));
+      return value.index == index && condition.is_within(value.scope, value.level);
     });
     if (found == fitted.end()) fail_missing(campaign, condition, index, fitted);
     values.set(index, found->value);

@@ -123,12 +123,9 @@ ParameterMap::ParameterMap(const Campaign& campaign,
     std::vector<int>& acting = acting_.emplace_back();
     for (std::size_t j = 0; j < unknowns_.size(); ++j) {
       const Unknown& unknown = unknowns_[j];
-      if (known_in(campaign, *condition, unknown.index)) continue;
-      const bool acts =
-          unknown.scope == Scope::rig ||
-          unknown.level == (unknown.scope == Scope::condition ? condition->id
-                                                              : condition->leak_level.value_or(""));
-      if (acts) acting.push_back(static_cast<int>(j));
+      if (!known_in(campaign, *condition, unknown.index) &&
+          condition->is_within(unknown.scope, unknown.level))
+        acting.push_back(static_cast<int>(j));
     }
   }
   const bool apart = unknowns_.size() > kMostTogether;

@@ -5,11 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 
 #include "calib/problem/initial_state.hpp"
-#include "calib/problem/known_sd.hpp"
 #include "calib/problem/known_values.hpp"
 #include "datasets/synthetic/model_output.hpp"
 
@@ -227,6 +225,17 @@ double Problem::share_at(const Fidelity& fidelity) const {
   return static_cast<double>(seen) / static_cast<double>(all);
 }
 
+double Problem::shortest_interval_s() const {
+  double shortest_s = std::numeric_limits<double>::infinity();
+  for (const ProblemCondition& each : conditions) {
+    const auto& time_s = each.record->time_s;
+    if (time_s.size() < 2) continue;
+    shortest_s = std::min(
+        shortest_s, (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1));
+  }
+  return shortest_s;
+}
+
 long Problem::residual_count() const {
   std::size_t count = 0;
   for (const ProblemCondition& condition : conditions)
@@ -372,6 +381,13 @@ Problem make_problem(const Campaign& campaign, const std::vector<Record>& record
     }
   }
   return problem;
+}
+
+double known_sd(const datasets::Campaign& campaign, datasets::Channel channel,
+                const datasets::Series& series) {
+  if (std::isfinite(series.sd_of_mean) && series.sd_of_mean > 0.0) return series.sd_of_mean;
+  const auto sd = campaign.channels.at(channel).sd;
+  return sd && *sd > 0.0 ? *sd : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace rigcal::calib

@@ -99,6 +99,8 @@ struct Problem {
   /// Fidelity with which start values are evaluated. Derivatives are useful only if the optimiser
   /// begins with whole records.
   Fidelity of_starts() const { return repeats_itself() ? Fidelity::cost : Fidelity::coarse; }
+  /// Mean sampling interval of the record that is sampled fastest; infinite without samples.
+  double shortest_interval_s() const;
   /// Number of weighted residuals, including priors.
   long residual_count() const;
   bool has_estimated_sd() const;
@@ -146,5 +148,11 @@ Problem make_problem(const datasets::Campaign& campaign,
                      const std::vector<datasets::Record>& records,
                      const std::vector<const datasets::Condition*>& conditions, bool nuisance_only,
                      const std::vector<datasets::FittedValue>* fitted);
+
+/// Returns the standard deviation of a channel's averaged samples, SI, by which residuals are
+/// divided. It comes from the repeats, or otherwise from the campaign's `sd`; NaN if there is
+/// neither.
+double known_sd(const datasets::Campaign& campaign, datasets::Channel channel,
+                const datasets::Series& series);
 
 }  // namespace rigcal::calib

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "calib/descent/adaptive_descent.hpp"
-#include "calib/search/obstacle.hpp"
+#include "calib/search/optimum.hpp"
 
 namespace rigcal::calib {
 namespace {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace rigcal::calib {
 namespace {
@@ -28,7 +27,6 @@ std::size_t own_unknowns(const Problem& problem, std::size_t condition) {
 
 std::vector<double> horizons_s(const Problem& problem) {
   double longest_s = 0.0;
-  double interval_s = std::numeric_limits<double>::infinity();
   std::size_t samples = 0;
   for (std::size_t i = 0; i < problem.conditions.size(); ++i) {
     const ProblemCondition& each = problem.conditions[i];
@@ -36,11 +34,8 @@ std::vector<double> horizons_s(const Problem& problem) {
     const auto& time_s = each.record->time_s;
     const double last_s = time_s[each.rows[each.first_period_rows - 1]];
     longest_s = std::max(longest_s, last_s - time_s[each.rows.front()]);
-    if (time_s.size() < 2) continue;
-    interval_s = std::min(
-        interval_s, (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1));
   }
-  const double shortest_s = static_cast<double>(samples) * interval_s;
+  const double shortest_s = static_cast<double>(samples) * problem.shortest_interval_s();
   const double growth = std::log(std::max(1.0, longest_s / shortest_s));
   const double steps = std::ceil(growth / std::log(kGrowth));
   std::vector<double> result;

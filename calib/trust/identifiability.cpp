@@ -188,14 +188,12 @@ void describe_bound(const Problem& problem, const OptimumCheck& check, std::size
 
 /// Returns true if a value from an earlier fit applies to at least one of the problem's conditions.
 bool holds_somewhere(const Problem& problem, const FittedValue& value) {
-  return std::any_of(
-      problem.conditions.begin(), problem.conditions.end(), [&](const ProblemCondition& each) {
-        const datasets::Condition& condition = *each.condition;
-        if (known_in(*problem.campaign, condition, value.index)) return false;
-        if (value.scope == Scope::rig) return true;
-        return value.level ==
-               (value.scope == Scope::condition ? condition.id : condition.leak_level.value_or(""));
-      });
+  return std::any_of(problem.conditions.begin(), problem.conditions.end(),
+                     [&](const ProblemCondition& each) {
+                       const datasets::Condition& condition = *each.condition;
+                       return !known_in(*problem.campaign, condition, value.index) &&
+                              condition.is_within(value.scope, value.level);
+                     });
 }
 
 FittedParameter known(const datasets::Campaign& campaign, int index, Scope scope,

@@ -152,21 +152,16 @@ Eigen::VectorXd day_errors(const Problem& problem, std::span<const double> z,
                            const std::vector<ConditionRows>& rows, const ArrowRoot& root,
                            int threads) {
   if (problem.conditions.empty()) return Eigen::VectorXd::Zero(root.unknowns());
-  double interval_s = HUGE_VAL;
   std::vector<std::string> days;
   std::vector<Eigen::Index> day_of;  // for each condition, the index of its day
   for (const ProblemCondition& each : problem.conditions) {
-    const auto& time_s = each.record->time_s;
-    if (time_s.size() > 1)
-      interval_s = std::min(
-          interval_s, (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1));
     const std::string day = each.condition->date.value_or("");
     const auto found = std::find(days.begin(), days.end(), day);
     day_of.push_back(found - days.begin());
     if (found == days.end()) days.push_back(day);
   }
   const std::vector<DayQuantity> quantities =
-      day_quantities(*problem.campaign, problem.values_at(0, z), interval_s);
+      day_quantities(*problem.campaign, problem.values_at(0, z), problem.shortest_interval_s());
   const std::vector<int> indices = further_rows(quantities, {});
   const auto count = static_cast<Eigen::Index>(quantities.size());
   const Eigen::Index columns = count * static_cast<Eigen::Index>(days.size());

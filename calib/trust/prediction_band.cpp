@@ -109,16 +109,8 @@ Eigen::MatrixXd spread_of(const Problem& problem, std::span<const double> z,
 /// known value of its own.
 bool acts(const Problem& problem, const ProblemCondition& condition,
           const EstimateSpread::Estimate& estimate) {
-  if (known_in(*problem.campaign, *condition.condition, estimate.index)) return false;
-  switch (estimate.scope) {
-    case datasets::Scope::rig:
-      return true;
-    case datasets::Scope::leak_level:
-      return condition.condition->leak_level.value_or("") == estimate.level;
-    case datasets::Scope::condition:
-      return condition.condition->id == estimate.level;
-  }
-  return false;
+  return !known_in(*problem.campaign, *condition.condition, estimate.index) &&
+         condition.condition->is_within(estimate.scope, estimate.level);
 }
 
 /// Computes the component of the residuals that the uncertainty of the estimates explains, by one

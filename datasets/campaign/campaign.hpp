@@ -14,13 +14,12 @@
 #include "common/error.hpp"
 #include "common/file.hpp"
 #include "common/quantity.hpp"
-#include "datasets/between_days_settings.hpp"
 #include "datasets/campaign/design/design_settings.hpp"
 #include "datasets/campaign/diagnosis_settings.hpp"
 #include "datasets/campaign/report_settings.hpp"
 #include "datasets/campaign/waveform.hpp"
-#include "datasets/considered_settings.hpp"
 #include "datasets/record.hpp"
+#include "datasets/stated_sizes.hpp"
 #include "model/plant/parameter.hpp"
 #include "model/simulate.hpp"
 
@@ -61,7 +60,9 @@ struct ParameterSetting {
 using Overrides = std::vector<std::pair<int, double>>;
 
 enum class ChannelRole { input, output, ignore };
+RIGCAL_NAMES(ChannelRole, input, output, ignore)
 enum class Interpolation { hold, linear };
+RIGCAL_NAMES(Interpolation, hold, linear)
 
 /// The unit that the campaign states for a column, to be compared with the labels in the record
 /// file.
@@ -167,13 +168,22 @@ struct Condition {
   Location where;
 
   bool has_record() const { return averaged.has_value() || !repeats.empty(); }
+  /// Whether a value of the scope applies here. `level` is a leak level or the id of a condition.
+  bool is_within(Scope scope, const std::string& level) const {
+    if (scope == Scope::rig) return true;
+    return level == (scope == Scope::condition ? id : leak_level.value_or(""));
+  }
 };
 
 enum class InitialMode { rest, record, fit };
+RIGCAL_NAMES(InitialMode, rest, record, fit)
 enum class Alignment { correlate, none };
+RIGCAL_NAMES(Alignment, correlate, none)
 enum class SpikeTreatment { report, exclude };
+RIGCAL_NAMES(SpikeTreatment, report, exclude)
 
 enum class Loss { squared, huber, cauchy, soft_l1 };
+RIGCAL_NAMES(Loss, squared, huber, cauchy, soft_l1)
 
 /// Accepted numbers of posterior draws per chain. Fewer draws give no useful quantiles.
 inline constexpr int kLeastPosteriorDraws = 100;
@@ -244,8 +254,8 @@ struct Campaign {
   AcceptanceBounds acceptance_bounds;
   FitSettings fit;
   SimulationSettings simulation;
-  ConsideredSettings considered;
-  BetweenDaysSettings between_days;
+  StatedSizes considered;
+  StatedSizes between_days;
   DiagnosisSettings diagnosis;
   ReportSettings report;
   std::optional<DesignSettings> design;
@@ -254,6 +264,8 @@ struct Campaign {
 
   const Condition* find(std::string_view id) const;
   const ParameterSetting* setting(int index) const;
+  /// Whether a channel is an input that keeps its value from one sample to the next.
+  bool is_held_input(Channel channel) const;
   /// Limits for a condition: its own, or else the campaign's.
   const std::vector<AcceptanceLimit>& limits(const Condition& condition) const;
   /// Whether `not_judged` allows an output channel to have no limit in a condition.

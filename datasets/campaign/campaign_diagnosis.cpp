@@ -7,18 +7,6 @@
 namespace rigcal::datasets {
 namespace {
 
-std::vector<std::pair<std::string, LeakClass>> class_choices() {
-  std::vector<std::pair<std::string, LeakClass>> choices;
-  for (const LeakClass each : kLeakClasses) choices.emplace_back(to_string(each), each);
-  return choices;
-}
-
-std::vector<std::pair<std::string, LeakLaw>> law_choices() {
-  std::vector<std::pair<std::string, LeakLaw>> choices;
-  for (const LeakLaw each : kLeakLaws) choices.emplace_back(to_string(each), each);
-  return choices;
-}
-
 std::vector<std::string> bounded_classes() {
   std::vector<std::string> bounded;
   for (std::size_t i = 0; i < DiagnosisSettings().limits.size(); ++i)
@@ -69,7 +57,7 @@ const KeyTable<DiagnosisSettings>& diagnosis_keys() {
                            fmt::format("{:g}", 100.0 * usual.limits[i])});
   static const KeyTable<DiagnosisSettings> keys({
       Row::word<LeakLaw>(
-          "leak_law", &DiagnosisSettings::leak_law, law_choices(),
+          "leak_law", &DiagnosisSettings::leak_law,
           {.doc = "Law of the leak that is fitted to each record: `orifice` estimates "
                   "`leakage_coefficient`, `laminar` estimates `laminar_leakage`"}),
       Row::custom("limits_percent", limits, read_class_limits,
@@ -88,10 +76,10 @@ const KeyTable<DiagnosisSettings>& diagnosis_keys() {
                         "stated",
                  .otherwise = "the slowest generated sine, of these the largest",
                  .example = "\"sine\""}),
-      Row::custom("level_class", entries_form(word_form(words_of(class_choices()))),
+      Row::custom("level_class", entries_form(word_form(words_of(enumerator_words<LeakClass>()))),
                   [](const TomlNode& node, DiagnosisSettings& settings) {
                     for (const auto& [level, entry] : node.entries())
-                      settings.level_class[level] = entry.choice(class_choices());
+                      settings.level_class[level] = entry.choice(enumerator_words<LeakClass>());
                   },
                   {.doc = "Leak levels whose class is known, `{ \"0 %\" = \"normal\" }`: what the "
                           "diagnosis is judged by, and which records are healthy",

@@ -187,7 +187,6 @@ const KeyTable<Campaign>& averaging_keys() {
   static const KeyTable<Campaign> keys({
       Row::word<Alignment>(
           "align", &Campaign::alignment,
-          {{"correlate", Alignment::correlate}, {"none", Alignment::none}},
           {.doc = "`\"correlate\"` shifts each repeat to fit the others and reports by how much; "
                   "`\"none\"` takes them as they are",
            .example = "\"correlate\"",

@@ -89,10 +89,8 @@ KeyTable<ParameterSetting> setting_keys(const KeyForm& value) {
                       .otherwise = "ten times `start` (below)"}),
       Row::flag("fit", &ParameterSetting::fit,
                 {.doc = "Whether `rigcal fit` estimates it (`--free` names others)"}),
-      Row::word<Scope>(
-          "scope", &ParameterSetting::scope,
-          {{"rig", Scope::rig}, {"leak_level", Scope::leak_level}, {"condition", Scope::condition}},
-          {.doc = "One value for the rig, one per leak level, or one per condition"}),
+      Row::word<Scope>("scope", &ParameterSetting::scope,
+                       {.doc = "One value for the rig, one per leak level, or one per condition"}),
       Row::described(
           "prior", quantity,
           {.doc = "Mean of what is known beforehand. Needs `prior_sd`", .otherwise = "none"}),

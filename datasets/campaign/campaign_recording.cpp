@@ -194,9 +194,6 @@ KeyTable<ChannelSetting> channel_keys(std::string_view unit) {
                   "estimates the noise from the residual of the channel over all such conditions",
            .otherwise = "from the repeats"}),
       Row::word<ChannelRole>("role", &ChannelSetting::role,
-                             {{"input", ChannelRole::input},
-                              {"output", ChannelRole::output},
-                              {"ignore", ChannelRole::ignore}},
                              {.doc = "Input of the model, or output (compared with the model)",
                               .otherwise = "by channel (below)"}),
       Row::flag(
@@ -204,7 +201,6 @@ KeyTable<ChannelSetting> channel_keys(std::string_view unit) {
           {.doc = "For `reference` or `command`: a recorded drive that equals a generated one "
                   "is simulated as generated (*Drives that are recognised*)"}),
       Row::word<Interpolation>("interpolation", &ChannelSetting::interpolation,
-                               {{"hold", Interpolation::hold}, {"linear", Interpolation::linear}},
                                {.doc = "Of an input between samples"}),
   };
   rows.insert(rows.end(), more.begin(), more.end());
@@ -315,7 +311,6 @@ const KeyTable<Campaign>& recording_keys() {
   static const KeyTable<Campaign> keys({
       Row::word<InitialMode>(
           "initial", &Campaign::initial,
-          {{"rest", InitialMode::rest}, {"record", InitialMode::record}, {"fit", InitialMode::fit}},
           {.doc = "State at the first sample. `\"rest\"`: all states zero (two chambers: the "
                   "pressures balance the load, at half the supply). `\"record\"`: mean over "
                   "`initial_window`, within which the piston has to rest (a warning says where it "
@@ -343,7 +338,6 @@ const KeyTable<Campaign>& recording_keys() {
                      .hint = "if the records are denser than the model needs"}),
       Row::word<SpikeTreatment>(
           "spikes", &Campaign::spikes,
-          {{"report", SpikeTreatment::report}, {"exclude", SpikeTreatment::exclude}},
           {.doc = "With `\"exclude\"` a line between its neighbours takes the place of each spike "
                   "(below)"}),
       Row::described("holes", word_form(words_of(hole_words())),

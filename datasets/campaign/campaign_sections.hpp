@@ -35,11 +35,11 @@ FitSettings read_fit(const TomlNode& node, const Campaign& campaign);
 
 KeyForm considered_form();
 /// Reads [considered]; needs the rig.
-ConsideredSettings read_considered(const TomlNode& node, const Campaign& campaign);
+StatedSizes read_considered(const TomlNode& node, const Campaign& campaign);
 
 KeyForm between_days_form();
 /// Reads [between_days]; needs the rig.
-BetweenDaysSettings read_between_days(const TomlNode& node, const Campaign& campaign);
+StatedSizes read_between_days(const TomlNode& node, const Campaign& campaign);
 
 const KeyTable<DiagnosisSettings>& diagnosis_keys();
 DiagnosisSettings read_diagnosis(const TomlNode& node);

@@ -192,7 +192,6 @@ const KeyTable<AcceptanceBounds>& bound_keys() {
   static const KeyTable<AcceptanceBounds> keys({
       Row::word<DecisionRule>(
           "decision", &AcceptanceBounds::decision,
-          {{"simple", DecisionRule::simple}, {"guard_band", DecisionRule::guard_band}},
           {.doc =
                "How the uncertainty of a score counts. With `guard_band` a limit is kept without "
                "reservation only by more than the score is uncertain",
@@ -211,6 +210,106 @@ const KeyTable<AcceptanceBounds>& bound_keys() {
           {.doc = "Channels that need no limit", .otherwise = "none", .example = "[\"position\"]"}),
   });
   return keys;
+}
+
+/// A section that states sizes: a table with a key per quantity, or `false`.
+struct SizesSection {
+  std::vector<SizedQuantity> (*quantities)(model::PlantKind plant);
+  std::string_view noun;     ///< what a key names
+  std::string_view without;  ///< what it means if the section is `false`
+  std::string_view size;     ///< what a value is
+  std::string (*meaning)(const model::ParameterSpec* spec);
+  /// Returns the largest size of a quantity. `index` is its parameter, or below 0.
+  double (*most)(const TomlNode& entry, const Campaign& campaign, int index,
+                 const SizedQuantity& quantity);
+};
+
+double most_considered(const TomlNode& entry, const Campaign& campaign, int index,
+                       const SizedQuantity& effect) {
+  if (index < 0) return effect.unit == "1" ? 1.0 : effect.unit == "Pa" ? 1e9 : 1e3;
+  const ParameterSetting* setting = campaign.setting(index);
+  if (setting != nullptr && (setting->fit || setting->prior))
+    entry.fail("is in the model already, with an estimate or a prior: expected no size here");
+  return spec_of(campaign.rig.plant, index).upper;
+}
+
+double most_between_days(const TomlNode& /*entry*/, const Campaign& campaign, int index,
+                         const SizedQuantity& /*quantity*/) {
+  if (index < 0) return kMostTriggerSd_s;
+  const ParameterSetting* setting = campaign.setting(index);
+  if (setting != nullptr && setting->value > 0.0) return setting->value;
+  return spec_of(campaign.rig.plant, index).upper;
+}
+
+constexpr SizesSection kConsideredSection{
+    effect_names,
+    "effect",
+    "the model counts as exact",
+    "a plausible size",
+    [](const model::ParameterSpec* spec) {
+      return std::string(spec == nullptr ? "Plausible size of this effect" : spec->meaning);
+    },
+    most_considered};
+constexpr SizesSection kBetweenDaysSection{
+    day_quantity_names,
+    "quantity",
+    "no day differs from another",
+    "a standard deviation between days",
+    [](const model::ParameterSpec* /*spec*/) {
+      return std::string("Standard deviation from one day to another");
+    },
+    most_between_days};
+
+KeyForm sizes_form(const SizesSection& section) {
+  KeyForm left_out = plain_form(KeyForm::Kind::flag);
+  KeyForm table = plain_form(KeyForm::Kind::table);
+  for (const std::string& name : model::plant_names()) {
+    const model::PlantKind plant = model::plant_from_name(name).value();
+    for (const SizedQuantity& each : section.quantities(plant)) {
+      if (find_key(table.keys, each.key) != nullptr) continue;
+      const int index = model::parameter_index(plant, each.key);
+      table.keys.push_back({each.key, either_form({quantity_form(each.unit), left_out}, ""),
+                            section.meaning(index < 0 ? nullptr : &spec_of(plant, index))});
+    }
+  }
+  return either_form({left_out, std::move(table)}, "table");
+}
+
+StatedSizes read_sizes(const TomlNode& node, const Campaign& campaign,
+                       const SizesSection& section) {
+  StatedSizes stated;
+  if (node.is_boolean()) {
+    if (node.boolean())
+      node.fail(
+          fmt::format("is true: expected a table of sizes, or false where {}", section.without));
+    stated.none = true;
+    return stated;
+  }
+  const auto quantities = section.quantities(campaign.rig.plant);
+  for (const auto& [key, entry] : node.entries()) {
+    const auto quantity = std::ranges::find(quantities, key, &SizedQuantity::key);
+    if (quantity == quantities.end()) {
+      std::vector<std::string> known;
+      for (const SizedQuantity& each : quantities) known.push_back(each.key);
+      node.fail_unknown(key, section.noun, known);
+    }
+    const int index = model::parameter_index(campaign.rig.plant, key);
+    const double most = section.most(entry, campaign, index, *quantity);
+    if (entry.is_boolean()) {
+      if (entry.boolean())
+        entry.fail(fmt::format("is true: expected {}, or false to leave it out", section.size));
+      stated.left_out.insert(key);
+      continue;
+    }
+    const double size = entry.difference(quantity->unit);
+    if (!(size > 0.0))
+      entry.fail(fmt::format("is not above zero: expected {}, or false", section.size));
+    if (!(size <= most))
+      entry.fail(fmt::format("is larger than {:g} {}, which it may be at most: expected {}", most,
+                             quantity->unit, section.size));
+    stated.sizes[key] = size;
+  }
+  return stated;
 }
 
 }  // namespace
@@ -289,10 +388,6 @@ const KeyTable<FitSettings>& fit_keys() {
   using Row = KeyRow<FitSettings>;
   static const KeyTable<FitSettings> keys({
       Row::word<Loss>("loss", &FitSettings::loss,
-                      {{"squared", Loss::squared},
-                       {"huber", Loss::huber},
-                       {"cauchy", Loss::cauchy},
-                       {"soft_l1", Loss::soft_l1}},
                       {.doc = "How a residual counts: squared, or less where it is large"}),
       Row::number("loss_scale", &FitSettings::loss_scale, kSizes,
                   {.doc = "Where the loss bends, in standard deviations of a residual"}),
@@ -333,113 +428,14 @@ FitSettings read_fit(const TomlNode& node, const Campaign& campaign) {
   return fit;
 }
 
-ConsideredSettings read_considered(const TomlNode& node, const Campaign& campaign) {
-  ConsideredSettings considered;
-  if (node.is_boolean()) {
-    if (node.boolean())
-      node.fail("is true: expected a table of sizes, or false where the model counts as exact");
-    considered.none = true;
-    return considered;
-  }
-  const model::PlantKind plant = campaign.rig.plant;
-  const auto names = effect_names(plant);
-  for (const auto& [key, entry] : node.entries()) {
-    const auto name = std::ranges::find(names, key, &EffectName::key);
-    if (name == names.end()) {
-      std::vector<std::string> known;
-      for (const EffectName& each : names) known.push_back(each.key);
-      node.fail_unknown(key, "effect", known);
-    }
-    const int index = model::parameter_index(plant, key);
-    const ParameterSetting* setting = index < 0 ? nullptr : campaign.setting(index);
-    if (setting != nullptr && (setting->fit || setting->prior))
-      entry.fail("is in the model already, with an estimate or a prior: expected no size here");
-    if (entry.is_boolean()) {
-      if (entry.boolean()) entry.fail("is true: expected a size, or false to leave it out");
-      considered.left_out.insert(key);
-      continue;
-    }
-    const double size = entry.difference(name->unit);
-    if (!(size > 0.0)) entry.fail("is not above zero: expected a plausible size, or false");
-    const double of_no_parameter = name->unit == "1" ? 1.0 : name->unit == "Pa" ? 1e9 : 1e3;
-    const double most = index < 0 ? of_no_parameter : spec_of(plant, index).upper;
-    if (!(size <= most))
-      entry.fail(
-          fmt::format("is larger than {:g} {}, which such a term may be at most: expected "
-                      "a plausible size",
-                      most, name->unit));
-    considered.sizes[key] = size;
-  }
-  return considered;
+KeyForm considered_form() { return sizes_form(kConsideredSection); }
+StatedSizes read_considered(const TomlNode& node, const Campaign& campaign) {
+  return read_sizes(node, campaign, kConsideredSection);
 }
 
-KeyForm considered_form() {
-  KeyForm left_out = plain_form(KeyForm::Kind::flag);
-  KeyForm table = plain_form(KeyForm::Kind::table);
-  for (const std::string& plant : model::plant_names()) {
-    const model::PlantKind kind = model::plant_from_name(plant).value();
-    for (const EffectName& effect : effect_names(kind)) {
-      if (find_key(table.keys, effect.key) != nullptr) continue;
-      const int index = model::parameter_index(kind, effect.key);
-      table.keys.push_back({effect.key, either_form({quantity_form(effect.unit), left_out}, ""),
-                            index < 0 ? std::string("Plausible size of this effect")
-                                      : std::string(spec_of(kind, index).meaning)});
-    }
-  }
-  return either_form({left_out, std::move(table)}, "table");
-}
-
-KeyForm between_days_form() {
-  KeyForm left_out = plain_form(KeyForm::Kind::flag);
-  KeyForm table = plain_form(KeyForm::Kind::table);
-  for (const std::string& plant : model::plant_names()) {
-    for (const DayQuantityName& day : day_quantity_names(model::plant_from_name(plant).value())) {
-      if (find_key(table.keys, day.key) == nullptr)
-        table.keys.push_back({day.key, either_form({quantity_form(day.unit), left_out}, ""),
-                              "Standard deviation from one day to another"});
-    }
-  }
-  return either_form({left_out, std::move(table)}, "table");
-}
-
-BetweenDaysSettings read_between_days(const TomlNode& node, const Campaign& campaign) {
-  BetweenDaysSettings days;
-  if (node.is_boolean()) {
-    if (node.boolean())
-      node.fail("is true: expected a table of sizes, or false where no day differs from another");
-    days.none = true;
-    return days;
-  }
-  const model::PlantKind plant = campaign.rig.plant;
-  const auto names = day_quantity_names(plant);
-  for (const auto& [key, entry] : node.entries()) {
-    const auto name = std::ranges::find(names, key, &DayQuantityName::key);
-    if (name == names.end()) {
-      std::vector<std::string> known;
-      for (const DayQuantityName& each : names) known.push_back(each.key);
-      node.fail_unknown(key, "quantity", known);
-    }
-    if (entry.is_boolean()) {
-      if (entry.boolean())
-        entry.fail("is true: expected a standard deviation, or false where it does not differ");
-      days.left_out.insert(key);
-      continue;
-    }
-    const double sd = entry.difference(name->unit);
-    if (!(sd > 0.0))
-      entry.fail("is not above zero: expected a standard deviation between days, or false");
-    const int index = model::parameter_index(plant, key);
-    const auto* setting = index < 0 ? nullptr : campaign.setting(index);
-    double most = index < 0 ? kMostTriggerSd_s : spec_of(plant, index).upper;
-    if (setting != nullptr && setting->value > 0.0) most = setting->value;
-    if (!(sd <= most))
-      entry.fail(
-          fmt::format("is larger than {:g} {}, which it may be at most: expected a standard "
-                      "deviation between days",
-                      most, name->unit));
-    days.sds[key] = sd;
-  }
-  return days;
+KeyForm between_days_form() { return sizes_form(kBetweenDaysSection); }
+StatedSizes read_between_days(const TomlNode& node, const Campaign& campaign) {
+  return read_sizes(node, campaign, kBetweenDaysSection);
 }
 
 const KeyTable<SimulationSettings>& simulation_keys() {

@@ -113,6 +113,12 @@ const ParameterSetting* Campaign::setting(int index) const {
   return found == parameters.end() ? nullptr : &*found;
 }
 
+bool Campaign::is_held_input(Channel channel) const {
+  const auto found = channels.find(channel);
+  return found != channels.end() && found->second.role == ChannelRole::input &&
+         found->second.interpolation == Interpolation::hold;
+}
+
 void set_value(Campaign& campaign, std::string_view assignment) {
   const auto [option, name, index, value] = read_assignment(campaign, assignment);
   if (overridden_everywhere(campaign, index)) {

@@ -21,8 +21,6 @@ inline constexpr std::array kLeakClasses{LeakClass::normal, LeakClass::slight, L
 enum class LeakLaw { orifice, laminar };
 RIGCAL_NAMES(LeakLaw, orifice, laminar)
 
-inline constexpr std::array kLeakLaws{LeakLaw::orifice, LeakLaw::laminar};
-
 /// Returns the key of the parameter that a diagnosis with this law fits.
 const char* leak_parameter(LeakLaw law);
 

@@ -11,7 +11,6 @@
 
 #include "common/error.hpp"
 #include "datasets/campaign/campaign_sections.hpp"
-#include "datasets/checks/median.hpp"
 #include "datasets/prepare/time_holes.hpp"
 
 namespace rigcal::datasets {
@@ -19,19 +18,6 @@ namespace {
 
 constexpr double kLostSample = 1.5;  // median steps: at least one sample is missing
 constexpr double kRounding = 1e-9;   // relative to the length of a hole
-
-double median_step(const std::vector<double>& time_s) {
-  std::vector<double> steps;
-  steps.reserve(time_s.size());
-  for (std::size_t i = 1; i < time_s.size(); ++i) steps.push_back(time_s[i] - time_s[i - 1]);
-  return median(std::move(steps));
-}
-
-bool is_held_input(const Campaign& campaign, Channel channel) {
-  const auto setting = campaign.channels.find(channel);
-  return setting != campaign.channels.end() && setting->second.role == ChannelRole::input &&
-         setting->second.interpolation == Interpolation::hold;
-}
 
 /// Returns the number of samples that are missing before each sample.
 std::vector<std::size_t> missing_before(const std::vector<double>& time_s, double longest_s) {
@@ -82,7 +68,7 @@ void bridge_holes(const Campaign& campaign, Repeat& repeat) {
   }
   repeat.time_s = filled(repeat.time_s, missing, false);
   for (auto& [channel, values] : repeat.values)
-    values = filled(values, missing, is_held_input(campaign, channel));
+    values = filled(values, missing, campaign.is_held_input(channel));
   std::erase_if(repeat.holes, [&](const TimeHole& hole) {
     return hole.to_s - hole.from_s <= *campaign.longest_bridge_s * (1.0 + kRounding);
   });
@@ -146,7 +132,7 @@ std::string guessed_drive_warning(const Campaign& campaign, const Condition& con
       "nobody recorded the {} in {} hole{}, the longest between {:.6g} s and {:.6g} s: the model "
       "takes {}, and what the drive did there instead is in none of the intervals",
       info(drive).key, holes.size(), holes.size() == 1 ? "" : "s", longest->from_s, longest->to_s,
-      is_held_input(campaign, drive) ? "its last value" : "a line across");
+      campaign.is_held_input(drive) ? "its last value" : "a line across");
 }
 
 }  // namespace rigcal::datasets

@@ -17,12 +17,6 @@ namespace {
 /// Drives are excluded because they may jump on purpose.
 bool is_measured(Channel channel) { return !is_drive(channel); }
 
-bool is_held(const Campaign& campaign, Channel channel) {
-  const auto setting = campaign.channels.find(channel);
-  return setting != campaign.channels.end() && setting->second.role == ChannelRole::input &&
-         setting->second.interpolation == Interpolation::hold;
-}
-
 /// A spike and the repeat that contains it.
 struct Found {
   const Repeat* repeat = nullptr;
@@ -107,8 +101,8 @@ void decimate(const Campaign& campaign, std::vector<Repeat>& repeats, Conditioni
   const AntiAliasFilter filter = anti_alias_filter(factor);
   for (Repeat& repeat : repeats) {
     for (auto& [channel, values] : repeat.values)
-      values =
-          is_held(campaign, channel) ? decimated_hold(values, factor) : decimated(values, filter);
+      values = campaign.is_held_input(channel) ? decimated_hold(values, factor)
+                                               : decimated(values, filter);
     std::vector<double> time_s;
     for (std::size_t i = 0; i < repeat.time_s.size(); i += factor)
       time_s.push_back(repeat.time_s[i]);

@@ -8,19 +8,13 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "datasets/prepare/resample.hpp"
+
 namespace rigcal::datasets {
 namespace {
 
 constexpr double kRippleDb = 66.0;        // 0.05 %; 0.1 % including the error of the formula
 constexpr double kTransitionShare = 0.2;  // transition band, from 0.4 to 0.6 of the new sample rate
-
-double value_beyond(const std::vector<double>& x, long index) {
-  const long last = static_cast<long>(x.size()) - 1;
-  const auto at = [&](long k) { return x[static_cast<std::size_t>(std::clamp(k, 0L, last))]; };
-  if (index < 0) return 2.0 * x.front() - at(-index);
-  if (index > last) return 2.0 * x.back() - at(2 * last - index);
-  return at(index);
-}
 
 }  // namespace
 
@@ -60,7 +54,7 @@ std::vector<double> decimated(const std::vector<double>& x, const AntiAliasFilte
     double sum = 0.0;
     for (std::size_t j = 0; j < filter.taps.size(); ++j) {
       const long at = first + static_cast<long>(j);
-      sum += filter.taps[j] * (inner ? x[static_cast<std::size_t>(at)] : value_beyond(x, at));
+      sum += filter.taps[j] * (inner ? x[static_cast<std::size_t>(at)] : reflected(x, at));
     }
     result.push_back(sum);
   }

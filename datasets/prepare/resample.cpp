@@ -28,6 +28,8 @@ std::array<double, 2 * kReach> band_limited_weights(double fraction) {
   return weights;
 }
 
+}  // namespace
+
 double reflected(const std::vector<double>& x, long index) {
   const long last = static_cast<long>(x.size()) - 1;
   const auto value = [&](long k) { return x[static_cast<std::size_t>(std::clamp(k, 0L, last))]; };
@@ -35,8 +37,6 @@ double reflected(const std::vector<double>& x, long index) {
   if (index > last) return 2.0 * x.back() - value(2 * last - index);
   return value(index);
 }
-
-}  // namespace
 
 std::vector<double> shifted(const std::vector<double>& x, double shift, std::size_t samples,
                             Interpolator interpolator) {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "datasets/checks/equal_runs.hpp"
 #include "datasets/checks/median.hpp"
 
 namespace rigcal::datasets {
@@ -43,25 +44,16 @@ double off_line(const std::vector<double>& x, std::size_t i) {
   return std::abs(x[i] - (x[i - 1] + 0.5 * (x[i + 1] - x[i - 1])));
 }
 
-/// Returns the median nonzero difference between neighbours. If a converter is coarser than the
-/// noise, this is its step.
-double typical_step(const std::vector<double>& x) {
-  std::vector<double> steps;
-  steps.reserve(x.size());
-  for (std::size_t i = 1; i < x.size(); ++i)
-    if (x[i] != x[i - 1]) steps.push_back(std::abs(x[i] - x[i - 1]));
-  return steps.empty() ? 0.0 : median(std::move(steps));
-}
-
 /// Returns the excursion above which a run counts as a spike, given the median excursion `off` of
 /// single samples.
 double limit_by(double off) { return kDeviations * off / kMedianOfNormal; }
 
+/// If a converter is coarser than the noise, the typical step of the record is its step.
 double limit_of(const std::vector<double>& x) {
   std::vector<double> off;
   off.reserve(x.size());
   for (std::size_t i = 1; i + 1 < x.size(); ++i) off.push_back(off_line(x, i));
-  return std::max(limit_by(median(std::move(off))), kSteps * typical_step(x));
+  return std::max(limit_by(median(std::move(off))), kSteps * typical_step(equal_runs(x)));
 }
 
 /// Whether the two samples before a run and the two after it agree, compared with their distance

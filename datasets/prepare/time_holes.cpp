@@ -21,12 +21,16 @@ bool counts(const TimeHole& hole, const std::vector<TimeWindow>& windows, bool i
 
 }  // namespace
 
+double median_step(const std::vector<double>& time_s) {
+  std::vector<double> steps;
+  steps.reserve(time_s.size());
+  for (std::size_t i = 1; i < time_s.size(); ++i) steps.push_back(time_s[i] - time_s[i - 1]);
+  return median(std::move(steps));
+}
+
 std::vector<TimeHole> time_holes(const std::vector<double>& time_s) {
   if (time_s.size() < 3) return {};
-  std::vector<double> steps;
-  steps.reserve(time_s.size() - 1);
-  for (std::size_t i = 1; i < time_s.size(); ++i) steps.push_back(time_s[i] - time_s[i - 1]);
-  const double longest = kLongestStep * median(steps);
+  const double longest = kLongestStep * median_step(time_s);
   std::vector<TimeHole> holes;
   for (std::size_t i = 1; i < time_s.size(); ++i)
     if (time_s[i] - time_s[i - 1] > longest) holes.push_back({i + 1, time_s[i - 1], time_s[i]});

@@ -8,6 +8,9 @@
 
 namespace rigcal::datasets {
 
+/// Returns the median time step of at least two samples.
+double median_step(const std::vector<double>& time_s);
+
 /// Finds time steps longer than three times the median. `time_s` has the shape (samples).
 std::vector<TimeHole> time_holes(const std::vector<double>& time_s);
 

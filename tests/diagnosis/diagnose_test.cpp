@@ -272,7 +272,7 @@ TEST_CASE("diagnose: over many days alarms are as stated, and the smallest leak 
   Campaign campaign = small_campaign();
   campaign.conditions.resize(1);
   const Condition healthy = campaign.conditions.front();
-  campaign.between_days.sds["supply_pressure"] = 31e3;
+  campaign.between_days.sizes["supply_pressure"] = 31e3;
   campaign.between_days.left_out = {"bulk_modulus", "position_offset", datasets::kTriggerKey};
   const auto reference = records_of(campaign);
   const auto diagnosed = [&](double coefficient) {

@@ -11,11 +11,11 @@ namespace {
 
 void read_all(const std::filesystem::path& file, const std::vector<std::string>& names,
               bool has_time, bool leaves_out_rows) {
-  CsvRequest request;
+  RecordRequest request;
   request.columns = names;
   if (has_time && !names.empty()) request.time_column = names.front();
   request.leaves_out_rows = leaves_out_rows;
-  const CsvTable table = load_csv(file, request);
+  const RecordTable table = load_csv_record(file, request);
   fuzz::require(table.columns.size() == names.size(), "one column per name");
   for (const std::vector<double>& column : table.columns) {
     fuzz::require(column.size() == table.columns.front().size(), "columns of one length");

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <random>
 #include <stdexcept>
 #include <string>
@@ -332,4 +333,17 @@ TEST_CASE("agreement: a result beyond the doubles is refused, not infinite", "[m
                     Contains("rho2: the result is beyond the largest double"));
   CHECK(correlation(Values{1e-200, 2e-200}, Values{1e200, -1e200}) == -1.0);
   CHECK(rho2(Values{largest, -largest}, Values{largest, -largest}) == 1.0);
+}
+
+TEST_CASE("allowed_rms: an error of this size leaves just the limit of rho2", "[metrics]") {
+  std::vector<double> measured;
+  std::vector<double> simulated;
+  for (int i = 0; i < 400; ++i) {
+    measured.push_back(3.0 + std::sin(2.0 * std::numbers::pi * 0.01 * i));
+    simulated.push_back(measured.back() + (i % 2 == 0 ? 0.125 : -0.125));
+  }
+  const double limit = rho2(measured, simulated);
+  CHECK_THAT(allowed_rms(measured, limit), WithinRel(0.125, 1e-9));
+  CHECK(allowed_rms(measured, 1.0) == 0.0);
+  CHECK(allowed_rms(std::vector<double>{1.0}, 0.9) == 0.0);
 }

@@ -80,7 +80,7 @@ TEST_CASE("mean_absolute: what cannot be is said", "[metrics]") {
   CHECK_THROWS_WITH(mean_absolute(t, std::vector{1.0, 2.0}),
                     Catch::Contains("3 times but 2 samples"));
   CHECK_THROWS_WITH(mean_absolute(std::vector{0.0, 1.0, 1.0}, q),
-                    Catch::Contains("time[2] = 1 does not come after 1"));
+                    Catch::Contains("time_s[2] is 1 after 1"));
   CHECK_THROWS_WITH(mean_absolute(t, std::vector{1.0, std::nan(""), 1.0}), Catch::Contains("[1]"));
   CHECK_THROWS_AS(mean_absolute(std::vector{0.0}, std::vector{1.0}), std::invalid_argument);
 }

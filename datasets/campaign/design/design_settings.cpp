@@ -23,13 +23,6 @@ constexpr QuantityRange kCommands_v{1e-6, 1e3};
 /// Amplitude of a reference or command, in metres, volts, newtons or pascals.
 constexpr QuantityRange kDriveAmplitudes{1e-9, 1e9};
 
-template <typename Value, std::size_t N>
-Words<Value> choices_of(const std::array<Value, N>& values) {
-  Words<Value> choices;
-  for (const Value value : values) choices.emplace_back(to_string(value), value);
-  return choices;
-}
-
 std::pair<TomlNode, TomlNode> two_of(const TomlNode& node, const char* expected) {
   if (!node.is_array()) node.fail_type(expected);
   const auto items = node.items();
@@ -137,10 +130,9 @@ const KeyTable<DesignSettings>& design_keys() {
                    .example = "[\"0.2 Hz\", \"50 Hz\"]"}),
       Row::word<DesignCriterion>(
           "criterion", &DesignSettings::criterion,
-          choices_of(std::array{DesignCriterion::determinant, DesignCriterion::worst}),
           {.doc = "What is made small: the volume of the confidence ellipsoid (D-optimal), or the "
                   "widest relative interval"}),
-      Row::word<DriveFamily>("family", &DesignSettings::family, choices_of(kDriveFamilies),
+      Row::word<DriveFamily>("family", &DesignSettings::family,
                              {.doc = "Kind of the drive", .otherwise = "the best of all"}),
       Row::whole("repeats", &DesignSettings::repeats, 1, kMostDesignRepeats,
                  {.doc = "Planned ones"}),

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -24,8 +23,6 @@ RIGCAL_NAMES(DesignCriterion, determinant, worst)
 /// Kinds of drives to try.
 enum class DriveFamily { multisine, chirp, steps, prbs };
 RIGCAL_NAMES(DriveFamily, multisine, chirp, steps, prbs)
-inline constexpr std::array kDriveFamilies{DriveFamily::multisine, DriveFamily::chirp,
-                                           DriveFamily::steps, DriveFamily::prbs};
 
 /// A limit for the rig during the test, SI, with its place in the campaign file.
 struct StatedLimit {

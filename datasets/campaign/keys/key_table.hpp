@@ -27,6 +27,14 @@ std::vector<std::string> words_of(const Words<T>& words) {
   return texts;
 }
 
+/// Returns the names of an enumeration that has RIGCAL_NAMES.
+template <typename Enum>
+Words<Enum> enumerator_words() {
+  Words<Enum> words;
+  for (const Enum each : enumerators_like(Enum{})) words.emplace_back(to_string(each), each);
+  return words;
+}
+
 /// Texts about a key; see CampaignKey.
 struct KeyAbout {
   std::string doc{};
@@ -169,6 +177,11 @@ struct KeyRow {
           std::invoke(member, settings) = node.date();
         },
         about);
+  }
+
+  template <typename Enum, typename Member>
+  static KeyRow word(std::string_view key, Member member, const KeyAbout& about) {
+    return word<Enum>(key, member, enumerator_words<Enum>(), about);
   }
 
   template <typename T, typename Member>

@@ -8,7 +8,6 @@
 #include <limits>
 #include <optional>
 #include <span>
-#include <stdexcept>
 #include <string_view>
 #include <system_error>
 
@@ -26,6 +25,7 @@ namespace rigcal::datasets {
 namespace {
 
 constexpr std::size_t kMostColumns = 10'000;
+constexpr std::size_t kMostCsvBytes = std::size_t{4} << 30;
 
 constexpr std::size_t kMostHeadLines = 500;  // number of lines searched for the header
 constexpr std::size_t kMostHeadBytes = 4'000'000;
@@ -259,7 +259,8 @@ struct Wanted {
 /// Reads rows one by one into a table, and keeps track of the position for its messages.
 class RowReader {
  public:
-  RowReader(const Header& header, const CsvRequest& request) : header_(header), request_(request) {
+  RowReader(const Header& header, const RecordRequest& request)
+      : header_(header), request_(request) {
     for (std::size_t i = 0; i < request.columns.size(); ++i)
       wanted_.push_back(
           {find_column(header, request.columns[i]), i, request.columns[i] == request.time_column});
@@ -273,7 +274,7 @@ class RowReader {
   }
 
   void read(std::string_view line, long line_number) {
-    if (rows_ == 0) table_.first_data_line = line_number;
+    if (rows_ == 0) first_line_ = line_number;
     if ((rows_ + 1) * wanted_.size() > kMostValues)
       throw InputError({header_.file, line_number},
                        fmt::format("more than {} numbers ({} rows of {} columns), the limit of one "
@@ -293,10 +294,10 @@ class RowReader {
   std::size_t left_out() const { return left_out_; }
   const std::string& first_left_out() const { return first_left_out_; }
 
-  /// Sets `cut_short` if the file ends without a newline in the shortest number of its column.
+  /// Adds a warning if the file ends without a newline in the shortest number of its column.
   void judge_end() {
     if (last_line_ == 0 || !(last_length_ < shortest_length_) || rows_ < 2) return;
-    table_.cut_short = fmt::format(
+    table_.warning = fmt::format(
         "{}:{}: the file ends without a newline in the shortest number of column '{}', of {} "
         "character{}, where all others have {} or more: it may have been cut",
         header_.file, last_line_, shown(header_.names.back().full), last_length_,
@@ -304,7 +305,7 @@ class RowReader {
   }
 
   /// Returns the table, after freeing capacity that is mostly unused.
-  CsvTable take() {
+  RecordTable take() {
     if (left_out_ > 0)
       table_.left_out = fmt::format("{} row{} without a number: {}", left_out_,
                                     left_out_ == 1 ? "" : "s", first_left_out_);
@@ -442,7 +443,7 @@ class RowReader {
   [[noreturn]] void fail_on_number(std::string_view line, long line_number, const CsvField& field,
                                    std::size_t index) const {
     const std::string& name = header_.names[index].full;
-    if (line_number == table_.first_data_line && is_text_only(line))
+    if (line_number == first_line_ && is_text_only(line))
       throw error(
           line, line_number, field.begin,
           fmt::format("no numbers in the first row ('{}' in column '{}'), as in a second header "
@@ -492,11 +493,12 @@ class RowReader {
   }
 
   const Header& header_;
-  const CsvRequest& request_;
+  const RecordRequest& request_;
   std::vector<Wanted> wanted_;
   std::vector<double> values_;  ///< values of the row being read, in the order of wanted_
-  CsvTable table_;
+  RecordTable table_;
   std::size_t rows_ = 0;
+  long first_line_ = 0;  ///< line of the first row
   std::optional<TimeStamp> first_stamp_;
   long comma_line_ = 0;         ///< line of the first decimal comma; 0: none
   long point_line_ = 0;         ///< line of the first decimal point; 0: none
@@ -509,7 +511,7 @@ class RowReader {
 
 /// Returns a request without the times that no column of the file contains. It has one column at
 /// least.
-CsvRequest without_lvm_time(CsvRequest request, const Header& header) {
+RecordRequest without_lvm_time(RecordRequest request, const Header& header) {
   std::erase(request.columns, kLvmTime);
   if (request.time_column == kLvmTime) request.time_column.clear();
   if (request.columns.empty()) request.columns.push_back(header.names.front().full);
@@ -518,7 +520,7 @@ CsvRequest without_lvm_time(CsvRequest request, const Header& header) {
 
 /// Inserts the times of samples at equal distances where they were requested.
 /// @throws InputError  if the distance is too small for a double
-void insert_lvm_time(const CsvRequest& request, const Header& header, CsvTable& table) {
+void insert_lvm_time(const RecordRequest& request, const Header& header, RecordTable& table) {
   const std::size_t rows = table.columns.front().size();
   std::vector<double> time_s(rows);
   for (std::size_t i = 0; i < rows; ++i) {
@@ -529,7 +531,7 @@ void insert_lvm_time(const CsvRequest& request, const Header& header, CsvTable& 
                                    "expected a larger distance between samples",
                                    header.time->step_s, header.time->start_s));
   }
-  CsvTable with_times = std::move(table);
+  RecordTable with_times = std::move(table);
   std::vector<std::vector<double>> columns;
   std::vector<ColumnLabel> labels;
   std::size_t next = 0;
@@ -556,16 +558,12 @@ std::size_t most_rows(const std::filesystem::path& path, const Header& header) {
 
 }  // namespace
 
-CsvTable load_csv(const std::filesystem::path& path, const CsvRequest& request) {
-  const auto& names = request.columns;
-  if (!request.time_column.empty() &&
-      std::find(names.begin(), names.end(), request.time_column) == names.end())
-    throw std::invalid_argument("load_csv: time_column '" + request.time_column +
-                                "' is not among the columns");
-  CsvLines file(path, request.max_bytes);
+RecordTable load_csv_record(const std::filesystem::path& path, const RecordRequest& request) {
+  require_time_column(request);
+  CsvLines file(path, kMostCsvBytes);
   HeadedLines lines(file);
   const Header header = read_header(lines, path.string(), request.separator);
-  const CsvRequest in_rows = header.time ? without_lvm_time(request, header) : request;
+  const RecordRequest in_rows = header.time ? without_lvm_time(request, header) : request;
   RowReader reader(header, in_rows);
   reader.reserve(most_rows(path, header));
   long empty_line = 0;
@@ -589,13 +587,13 @@ CsvTable load_csv(const std::filesystem::path& path, const CsvRequest& request) 
                                : std::string("no rows after the header")) +
             "; expected at least one row of numbers");
   if (file.ends_without_newline()) reader.judge_end();
-  CsvTable table = reader.take();
+  RecordTable table = reader.take();
   if (header.time) insert_lvm_time(request, header, table);
   return table;
 }
 
 std::vector<RecordColumn> csv_record_columns(const std::filesystem::path& path) {
-  CsvLines file(path, CsvRequest{}.max_bytes);
+  CsvLines file(path, kMostCsvBytes);
   HeadedLines lines(file);
   const Header header = read_header(lines, path.string(), 0);
   std::vector<RecordColumn> columns;
@@ -604,17 +602,6 @@ std::vector<RecordColumn> csv_record_columns(const std::filesystem::path& path) 
     columns.push_back(
         {header.names[i].full, header.units.empty() ? std::string() : header.units[i]});
   return columns;
-}
-
-RecordTable load_csv_record(const std::filesystem::path& path, const RecordRequest& request) {
-  CsvRequest wanted;
-  wanted.columns = request.columns;
-  wanted.separator = request.separator;
-  wanted.time_column = request.time_column;
-  wanted.leaves_out_rows = request.leaves_out_rows;
-  CsvTable table = load_csv(path, wanted);
-  return {std::move(table.columns), std::move(table.cut_short), std::move(table.labels),
-          std::move(table.left_out)};
 }
 
 }  // namespace rigcal::datasets

@@ -10,7 +10,6 @@
 
 #include "common/error.hpp"
 #include "datasets/read/hdf5/hdf5_attributes.hpp"
-#include "datasets/read/hdf5/hdf5_error.hpp"
 #include "datasets/read/limits.hpp"
 #include "datasets/read/mat/mat_array.hpp"
 

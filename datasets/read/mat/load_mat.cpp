@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <fstream>
-#include <stdexcept>
 #include <utility>
 
 #include "common/error.hpp"
@@ -100,13 +99,11 @@ bool is_mat_file(const FileStart& start) {
          start.bytes.starts_with("MATLAB 7.3");
 }
 
-Table load_mat(const std::filesystem::path& path, const MatRequest& request) {
-  const auto time = std::find(request.columns.begin(), request.columns.end(), request.time_column);
-  if (!request.time_column.empty() && time == request.columns.end())
-    throw std::invalid_argument("load_mat: time_column '" + request.time_column +
-                                "' is not among the columns");
+RecordTable load_mat_record(const std::filesystem::path& path, const RecordRequest& request) {
+  require_time_column(request);
   Table table = read_table(path, request.columns);
-  if (request.time_column.empty()) return table;
+  const auto time = std::find(request.columns.begin(), request.columns.end(), request.time_column);
+  if (time == request.columns.end()) return {std::move(table), {}};
   const auto& t = table[static_cast<std::size_t>(time - request.columns.begin())];
   for (std::size_t i = 1; i < t.size(); ++i)
     if (!(t[i] > t[i - 1]))
@@ -114,7 +111,7 @@ Table load_mat(const std::filesystem::path& path, const MatRequest& request) {
                        fmt::format("time '{}' does not increase: element {} is {} after {}; "
                                    "expected a larger value in each",
                                    request.time_column, i + 1, t[i], t[i - 1]));
-  return table;
+  return {std::move(table), {}};
 }
 
 std::vector<RecordColumn> mat_record_columns(const std::filesystem::path& path) {
@@ -131,10 +128,6 @@ std::vector<RecordColumn> mat_record_columns(const std::filesystem::path& path) 
     const Hdf5Source source(path);
     return is_from_elsewhere(source, path) ? list_hdf5_here(path) : described(source);
   });
-}
-
-RecordTable load_mat_record(const std::filesystem::path& path, const RecordRequest& request) {
-  return {load_mat(path, {request.columns, request.time_column}), {}};
 }
 
 }  // namespace rigcal::datasets

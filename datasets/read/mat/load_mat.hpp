@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
 #include <vector>
 
 #include "datasets/read/record_table.hpp"
@@ -11,11 +10,9 @@ namespace rigcal::datasets {
 /// Whether to read a file as a MAT file, judging by its name (.mat) or its first bytes.
 bool is_mat_file(const FileStart& start);
 
-/// Columns wanted from a MAT file.
-struct MatRequest {
-  std::vector<std::string> columns;  ///< MATLAB names (mat_path.hpp), in the order of the result
-  std::string time_column;           ///< one of `columns`, checked to increase; may be empty
-};
+/// Lists every column that load_mat_record() can read, in file order: vectors, and the columns of
+/// matrices with up to 100 columns.
+std::vector<RecordColumn> mat_record_columns(const std::filesystem::path& path);
 
 /// Reads vectors from a MAT file of version 5 (also compressed: "v6", "v7") or 7.3, strictly.
 ///
@@ -30,17 +27,9 @@ struct MatRequest {
 /// Version 5 is read by Level5Source. Version 7.3 is read by HDF5 in a separate process with limits
 /// on memory and time, because a damaged file can crash HDF5 or keep it busy forever.
 ///
-/// @return             one vector per column, of the same length
 /// @throws InputError  if the file is not as described; the message gives file, column and element,
 ///                     what was found and what was expected
-/// @throws std::invalid_argument  if time_column is not among the columns
-std::vector<std::vector<double>> load_mat(const std::filesystem::path& path,
-                                          const MatRequest& request);
-
-/// These functions have the signatures that the table of readers requires (record_reader.hpp). The
-/// first lists every column that load_mat() can read, in file order: vectors, and the columns of
-/// matrices with up to 100 columns.
-std::vector<RecordColumn> mat_record_columns(const std::filesystem::path& path);
+/// @throws std::invalid_argument  if the time column is not among the columns
 RecordTable load_mat_record(const std::filesystem::path& path, const RecordRequest& request);
 
 }  // namespace rigcal::datasets

@@ -14,7 +14,8 @@ inline constexpr std::string_view kHowToSaveMat =
     "of a timeseries save its numbers: t = ts.Time; x = squeeze(ts.Data); save file.mat t x; or "
     "log to a \"Structure With Time\"";
 
-/// Reads one column of a MAT file, given its name in MATLAB (mat_path.hpp).
+/// Reads one column of a MAT file, given its name in MATLAB: "x", "log.time",
+/// "log.signals(2).values(:,1)".
 ///
 /// @param values_so_far  number of values already read from the file, which count towards the limit
 /// @throws InputError  if the column cannot be read; the message gives file, column and element,

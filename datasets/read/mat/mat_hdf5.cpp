@@ -9,7 +9,7 @@
 #include <type_traits>
 
 #include "common/error.hpp"
-#include "datasets/read/hdf5/hdf5_error.hpp"
+#include "datasets/read/hdf5/hdf5_file.hpp"
 
 namespace rigcal::datasets {
 namespace {

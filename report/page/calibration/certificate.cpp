@@ -8,7 +8,7 @@
 
 #include "calib/score/acceptance.hpp"
 #include "calib/score/assessment.hpp"
-#include "metrics/allowed_rms.hpp"
+#include "metrics/agreement.hpp"
 #include "report/document/quantity.hpp"
 #include "report/document/words.hpp"
 #include "report/figure/decimate.hpp"

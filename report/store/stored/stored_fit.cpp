@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 
-#include "calib/problem/known_sd.hpp"
+#include "calib/problem/problem.hpp"
 #include "report/store/identity.hpp"
 #include "report/store/stored/stored_residual_tests.hpp"
 #include "report/store/stored/stored_tables_fit.hpp"

@@ -39,7 +39,7 @@ Eigen::MatrixXd replayed(const datasets::Campaign& campaign, const Design& made)
 
 TEST_CASE("design: every family keeps every limit, and uses one of them", "[calib]") {
   Twin twin = designed_twin();
-  for (const DriveFamily family : datasets::kDriveFamilies) {
+  for (const DriveFamily family : enumerators_like(DriveFamily{})) {
     CAPTURE(datasets::to_string(family));
     twin.campaign.design->family = family;
     const Design made = designed(twin.campaign, {"mass"});

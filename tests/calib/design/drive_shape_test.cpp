@@ -18,7 +18,7 @@ Eigen::VectorXd point_of(DriveFamily family, double value) {
 
 TEST_CASE("drive shapes: within their range, from the beginning back to it", "[calib]") {
   const DriveGrid grid{1001, 100.0, 0.2, 10.0};
-  for (const DriveFamily family : datasets::kDriveFamilies) {
+  for (const DriveFamily family : enumerators_like(DriveFamily{})) {
     for (const double value : {0.0, 0.3, 0.5, 0.77, 1.0}) {
       CAPTURE(datasets::to_string(family), value);
       const DriveShape shape = drive_shape(family, point_of(family, value), grid);
@@ -35,7 +35,7 @@ TEST_CASE("drive shapes: within their range, from the beginning back to it", "[c
 
 TEST_CASE("drive shapes: each coordinate changes the drive", "[calib]") {
   const DriveGrid grid{1001, 100.0, 0.2, 10.0};
-  for (const DriveFamily family : datasets::kDriveFamilies) {
+  for (const DriveFamily family : enumerators_like(DriveFamily{})) {
     const DriveShape middle = drive_shape(family, point_of(family, 0.4), grid);
     for (Eigen::Index j = 0; j < drive_coordinates(family); ++j) {
       CAPTURE(datasets::to_string(family), j);

@@ -49,7 +49,7 @@ TEST_CASE("day_quantities: usual sizes by the rig, and those that the campaign s
   // Triggers are late by a fraction of a millisecond, however slowly a record is sampled.
   CHECK_THAT(sizes(0.1).at(datasets::kTriggerKey), WithinRel(0.5e-3, 1e-12));
   CHECK_THAT(sizes(1e-6).at(datasets::kTriggerKey), WithinRel(0.05e-3, 1e-12));
-  twin.campaign.between_days.sds["supply_pressure"] = 7e4;
+  twin.campaign.between_days.sizes["supply_pressure"] = 7e4;
   CHECK(sizes(0.4e-3).at("supply_pressure") == 7e4);
 }
 
@@ -97,7 +97,7 @@ TEST_CASE("day_errors: an estimate moves with the supply of its day", "[calib]")
   CHECK(*only(fit).between_days_error > 1e-3 * only(fit).value);
 
   twin.setting("supply_pressure").value = supply;
-  twin.campaign.between_days.sds["supply_pressure"] = 0.01 * supply;
+  twin.campaign.between_days.sizes["supply_pressure"] = 0.01 * supply;
   CHECK_THAT(*only(fitted()).between_days_error,
              WithinRel(2.0 * *only(fit).between_days_error, 1e-6));
   twin.campaign.between_days.none = true;

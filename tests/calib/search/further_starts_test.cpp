@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "calib/problem/scaled_svd.hpp"
-#include "calib/search/obstacle.hpp"
+#include "calib/search/optimum.hpp"
 #include "calib/search/search.hpp"
 #include "datasets/prepare/load_record.hpp"
 #include "tests/calib/twin.hpp"
@@ -131,7 +131,7 @@ TEST_CASE("further starts: a start that is stopped at no minimum goes on with th
   }));
 }
 
-TEST_CASE("obstacle: the valley that a search stopped in is named", "[calib]") {
+TEST_CASE("optimum: the valley that a search stopped in is named", "[calib]") {
   Twin twin;
   twin.free("mass", 60.0, 10.0, 500.0);
   twin.free("bulk_modulus", 600e6, 70e6, 7000e6);
@@ -161,7 +161,7 @@ TEST_CASE("obstacle: the valley that a search stopped in is named", "[calib]") {
   CHECK_THAT(words, Contains("along") && Contains(problem.name(static_cast<std::size_t>(most))));
 }
 
-TEST_CASE("obstacle: a bound that the cost presses against is named", "[calib]") {
+TEST_CASE("optimum: a bound that the cost presses against is named", "[calib]") {
   Twin twin;
   twin.free("mass", 40.0, 20.0, 60.0);  // true value 85 kg
   twin.free("valve_gain", 0.03e-3, 0.01e-3, 0.2e-3);

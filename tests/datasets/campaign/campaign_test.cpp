@@ -442,3 +442,16 @@ TEST_CASE("load_campaign: the example of the documentation", "[datasets]") {
   CHECK(campaign.conditions.size() == 1);
   CHECK(setting_of(campaign, "mass").fit);
 }
+
+TEST_CASE("condition: a value counts where its scope says", "[datasets]") {
+  datasets::Condition condition;
+  condition.id = "sine";
+  condition.leak_level = "33 %";
+  CHECK(condition.is_within(datasets::Scope::rig, ""));
+  CHECK(condition.is_within(datasets::Scope::leak_level, "33 %"));
+  CHECK_FALSE(condition.is_within(datasets::Scope::leak_level, "sine"));
+  CHECK(condition.is_within(datasets::Scope::condition, "sine"));
+  CHECK_FALSE(condition.is_within(datasets::Scope::condition, "33 %"));
+  condition.leak_level.reset();
+  CHECK_FALSE(condition.is_within(datasets::Scope::leak_level, "33 %"));
+}

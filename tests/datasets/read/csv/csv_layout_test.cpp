@@ -21,12 +21,12 @@ struct ReadText {
   TemporaryFolder folder;
   std::filesystem::path path;
   explicit ReadText(const std::string& text) : path(folder.write("a.txt", text)) {}
-  CsvTable table(const std::string& time, const std::string& x, char separator = 0) const {
-    CsvRequest request;
+  RecordTable table(const std::string& time, const std::string& x, char separator = 0) const {
+    RecordRequest request;
     request.columns = {time, x};
     request.time_column = time;
     request.separator = separator;
-    return load_csv(path, request);
+    return load_csv_record(path, request);
   }
 };
 
@@ -88,7 +88,7 @@ TEST_CASE("csv_layout: units of LabVIEW's .lvm, and times that no column contain
   CHECK(csv_record_columns(without_times.path) ==
         std::vector<RecordColumn>{
             {"X_Value", "s", true}, {"Position", "mm"}, {"Signal", "Volts"}, {"Comment", ""}});
-  const CsvTable table = without_times.table("X_Value", "Signal");
+  const RecordTable table = without_times.table("X_Value", "Signal");
   REQUIRE(table.columns.size() == 2);
   CHECK(table.columns[1] == std::vector<double>{7, 8, 9});
   for (std::size_t i = 0; i < 3; ++i)
@@ -149,9 +149,8 @@ TEST_CASE("csv_layout: columns between blanks", "[datasets]") {
 
 TEST_CASE("csv_layout: a row of units", "[datasets]") {
   const ReadText units("Log of rig 3\nt,x\n[s],[mm]\n0,1.5\n0.1,2.5\n0.2,3.5\n");
-  const CsvTable table = units.table("t", "x");
+  const RecordTable table = units.table("t", "x");
   CHECK(table.columns == kNumbers);
-  CHECK(table.first_data_line == 4);
   CHECK(table.labels[1].unit == "mm");
   CHECK(table.labels[1].line == 3);
   CHECK(ReadText("t,x\n[s],[mm]\n\n0,1.5\n0.1,2.5\n0.2,3.5\n").table("t", "x").labels[1].line == 2);

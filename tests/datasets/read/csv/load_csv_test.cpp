@@ -11,11 +11,13 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "common/error.hpp"
+#include "datasets/read/csv/csv_lines.hpp"
 #include "tests/support/sanitized.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -24,9 +26,10 @@ using Catch::Contains;
 using Catch::Matchers::EndsWith;
 using Catch::Matchers::StartsWith;
 using rigcal::InputError;
-using rigcal::datasets::CsvRequest;
-using rigcal::datasets::CsvTable;
-using rigcal::datasets::load_csv;
+using rigcal::datasets::CsvLines;
+using rigcal::datasets::load_csv_record;
+using rigcal::datasets::RecordRequest;
+using rigcal::datasets::RecordTable;
 using Columns = std::vector<std::vector<double>>;
 
 namespace {
@@ -42,21 +45,22 @@ class File {
   rigcal::test::TemporaryFolder folder_;
 };
 
-CsvRequest request(std::vector<std::string> columns, const std::string& time = "") {
-  CsvRequest result;
+RecordRequest request(std::vector<std::string> columns, const std::string& time = "") {
+  RecordRequest result;
   result.columns = std::move(columns);
   result.time_column = time;
   return result;
 }
 
-CsvTable load(const std::string& content, const CsvRequest& wanted = request({"t", "x"}, "t")) {
-  return load_csv(File(content).path(), wanted);
+RecordTable load(const std::string& content,
+                 const RecordRequest& wanted = request({"t", "x"}, "t")) {
+  return load_csv_record(File(content).path(), wanted);
 }
 
 /// Error message on reading a file, from the name of the file on: "a.csv:2:3: ...".
-std::string refusal_of(const fs::path& path, const CsvRequest& wanted) {
+std::string refusal_of(const fs::path& path, const RecordRequest& wanted) {
   try {
-    load_csv(path, wanted);
+    load_csv_record(path, wanted);
   } catch (const InputError& error) {
     CHECK(error.code() == rigcal::ExitCode::bad_input);
     const std::string message = error.what();
@@ -68,7 +72,7 @@ std::string refusal_of(const fs::path& path, const CsvRequest& wanted) {
 }
 
 std::string refusal(const std::string& content,
-                    const CsvRequest& wanted = request({"t", "x"}, "t")) {
+                    const RecordRequest& wanted = request({"t", "x"}, "t")) {
   return refusal_of(File(content).path(), wanted);
 }
 
@@ -77,9 +81,8 @@ std::string refusal(const std::string& content,
 // ---- What is accepted ----------------------------------------------------------------------
 
 TEST_CASE("load_csv: wanted columns in the wanted order", "[datasets]") {
-  const CsvTable table = load("t,u,x\n0,text,1.5\n0.1,,-2e-3\n", request({"x", "t"}, "t"));
+  const RecordTable table = load("t,u,x\n0,text,1.5\n0.1,,-2e-3\n", request({"x", "t"}, "t"));
   CHECK(table.columns == Columns{{1.5, -2e-3}, {0.0, 0.1}});
-  CHECK(table.first_data_line == 2);
 }
 
 TEST_CASE("load_csv: one column may be wanted twice", "[datasets]") {
@@ -88,7 +91,7 @@ TEST_CASE("load_csv: one column may be wanted twice", "[datasets]") {
 }
 
 TEST_CASE("load_csv: numbers are read to the last digit", "[datasets]") {
-  const CsvTable table =
+  const RecordTable table =
       load("x\n0.1\n1e-300\n+5\n.5\n5.\n-0\n1.7976931348623157e308\n0.30000000000000004\n 7 \n",
            request({"x"}));
   CHECK(table.columns.front() == std::vector<double>{0.1, 1e-300, 5, 0.5, 5, 0,
@@ -107,7 +110,7 @@ TEST_CASE("load_csv: separators are found by themselves", "[datasets]") {
 }
 
 TEST_CASE("load_csv: a given separator counts", "[datasets]") {
-  CsvRequest wanted = request({"t;s", "x"});
+  RecordRequest wanted = request({"t;s", "x"});
   wanted.separator = ',';
   CHECK(load("t;s,x\n0,1.5\n", wanted).columns == Columns{{0}, {1.5}});
   wanted.separator = '|';
@@ -145,9 +148,8 @@ TEST_CASE("load_csv: quoted header, and quoted text in columns that are not want
 }
 
 TEST_CASE("load_csv: comments before the header", "[datasets]") {
-  const CsvTable table = load("# rig 3; day 2\n  # more\nt,x\n0,1\n");
+  const RecordTable table = load("# rig 3; day 2\n  # more\nt,x\n0,1\n");
   CHECK(table.columns == Columns{{0}, {1}});
-  CHECK(table.first_data_line == 4);
 }
 
 TEST_CASE("load_csv: line ends, byte-order mark, end of file", "[datasets]") {
@@ -165,7 +167,7 @@ TEST_CASE("load_csv: header in Latin-1", "[datasets]") {
 TEST_CASE("load_csv: an error names columns without their units", "[datasets]") {
   CHECK_THAT(refusal("# c\nt [s];x;;y (m)\n0;1;2;3\n", request({"speed"})),
              Contains("(known: t, x, , y)"));
-  CsvRequest by_comma = request({"speed"});
+  RecordRequest by_comma = request({"speed"});
   by_comma.separator = ',';
   CHECK_THAT(refusal("a;b,c\n0;1,2\n", by_comma), Contains("(known: a;b, c)"));
 }
@@ -245,7 +247,7 @@ TEST_CASE("load_csv: rows without a number are left out on request only", "[data
   CHECK_THAT(refusal(text), StartsWith("a.csv:3:5: 'NaN' in column 'x'"));
   auto tolerant = request({"t", "x", "y"}, "t");
   tolerant.leaves_out_rows = true;
-  const CsvTable table = load(text, tolerant);
+  const RecordTable table = load(text, tolerant);
   CHECK(table.columns == Columns{{0, 0.3}, {1, 4}, {2, 5}});
   CHECK(table.left_out == "3 rows without a number: line 3 has 'NaN' in column 'x'");
   // Only a number may be missing.
@@ -261,7 +263,7 @@ TEST_CASE("load_csv: a clock as time is in seconds since its first stamp", "[dat
   const std::string text =
       "x;clock\n1,5;2024-02-29 23:59:59.500\n2,5;2024-03-01 00:00:00.000\n3,5;2024-03-01 "
       "00:00:01.25\n";
-  const CsvTable table = load(text, request({"clock", "x"}, "clock"));
+  const RecordTable table = load(text, request({"clock", "x"}, "clock"));
   CHECK(table.columns == Columns{{0, 0.5, 1.75}, {1.5, 2.5, 3.5}});
   CHECK(table.labels[0].unit == "s");
   CHECK(table.labels[0].place == "time stamps");
@@ -360,7 +362,7 @@ TEST_CASE("load_csv: files longer than the window of the reader", "[datasets]") 
         .append("\n");
   text.pop_back();
   REQUIRE(text.size() > std::size_t{3} << 23);
-  const CsvTable table = load(text);
+  const RecordTable table = load(text);
   REQUIRE(table.columns[0].size() == kRows);
   long wrong = 0;
   for (long i = 0; i < kRows; ++i) {
@@ -378,10 +380,9 @@ TEST_CASE("load_csv: a file above the limit of bytes is refused unread", "[datas
   CHECK_THAT(refusal_of(file.path(), request({"t"})),
              StartsWith("a.csv: has 5368709120 bytes, more than the limit of 4294967296") &&
                  EndsWith("split it into several files"));
-  CsvRequest wanted = request({"t"});
-  wanted.max_bytes = 8;
-  CHECK(load("t,x\n0,1\n", wanted).columns == Columns{{0}});
-  CHECK_THAT(refusal("t,x\n0,12\n", wanted), Contains("limit of 8"));
+  const auto open = [](const std::string& text) { CsvLines(File(text).path(), 8); };
+  CHECK_NOTHROW(open("t,x\n0,1\n"));
+  CHECK_THROWS_WITH(open("t,x\n0,12\n"), Contains("limit of 8"));
 }
 
 namespace {
@@ -404,9 +405,10 @@ struct EndlessResult {
   long grown_megabytes = 0;  ///< increase of the peak memory
 };
 
-/// Loads, in a separate process, a pipe that delivers `head` and then `body` over and over.
-EndlessResult load_endless(const std::string& head, const std::string& body,
-                           const CsvRequest& wanted) {
+/// Calls `read`, in a separate process, with a pipe that delivers `head` and then `body` over and
+/// over.
+EndlessResult read_endless(const std::string& head, const std::string& body,
+                           const std::function<void(const fs::path&)>& read) {
   const File file("");
   const fs::path pipe = file.folder() / "endless.csv";
   REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
@@ -417,7 +419,7 @@ EndlessResult load_endless(const std::string& head, const std::string& body,
   if (child == 0) {
     std::string message = "no error";
     try {
-      load_csv(pipe, wanted);
+      read(pipe);
     } catch (const std::exception& error) {
       message = error.what();
     }
@@ -459,7 +461,8 @@ TEST_CASE("load_csv: a huge file is given up early and within 200 MB", "[dataset
   const auto [head, row, names] =
       GENERATE(table<std::string, std::string, std::vector<std::string>>(
           {{"x\n", "1\n", {"x"}}, {"a,b,c,d\n", "1,2,3,4\n", {"a", "b", "c", "d"}}}));
-  const EndlessResult result = load_endless(head, row, request(names));
+  const EndlessResult result =
+      read_endless(head, row, [&](const fs::path& pipe) { load_csv_record(pipe, request(names)); });
   CAPTURE(result.bytes_given, result.grown_megabytes);
   CHECK_THAT(result.message, Contains("endless.csv:") && Contains("more than 12000000 numbers") &&
                                  Contains("decimate the record, or split it"));
@@ -483,7 +486,7 @@ TEST_CASE("load_csv: a huge file on disk is refused within 200 MB", "[datasets]"
   REQUIRE(child >= 0);
   if (child == 0) {
     try {
-      load_csv(file.path(), request({"x"}));
+      load_csv_record(file.path(), request({"x"}));
     } catch (const InputError& error) {
       ::_exit(error.where().line == 12'000'002 ? 2 : 3);
     }
@@ -497,23 +500,27 @@ TEST_CASE("load_csv: a huge file on disk is refused within 200 MB", "[datasets]"
 }
 
 TEST_CASE("load_csv: a line without end is given up early", "[datasets]") {
-  const EndlessResult result = load_endless("t,x\n0,1\n", "1234567890", request({"t"}));
+  const EndlessResult result = read_endless("t,x\n0,1\n", "1234567890", [](const fs::path& pipe) {
+    load_csv_record(pipe, request({"t"}));
+  });
   CHECK_THAT(result.message, Contains("endless.csv:3: the line has 16 MiB or more"));
   CHECK(result.bytes_given < 80'000'000);
   CHECK(result.grown_megabytes < kMostMegabytes);
 }
 
 TEST_CASE("load_csv: a pipe above the limit of bytes", "[datasets]") {
-  CsvRequest wanted = request({"x"});
-  wanted.max_bytes = 1'000'000;
-  const EndlessResult result = load_endless("x\n", "1\n", wanted);
+  const EndlessResult result = read_endless("x\n", "1\n", [](const fs::path& pipe) {
+    CsvLines lines(pipe, 1'000'000);
+    while (lines.next() != nullptr) {
+    }
+  });
   CHECK_THAT(result.message, Contains("is longer than the limit of 1000000 bytes"));
   CHECK(result.bytes_given < 80'000'000);
 }
 
 TEST_CASE("load_csv: a file that may have been cut within its last number", "[datasets]") {
   const auto cut = [](const std::string& content, const std::vector<std::string>& columns) {
-    return load_csv(File(content).path(), request(columns)).cut_short;
+    return load_csv_record(File(content).path(), request(columns)).warning;
   };
   const std::string rows = "t,x\n0.0,3.4209\n0.1,-1.2345\n0.2,2.5";
   CHECK_THAT(cut(rows, {"t", "x"}), Contains(":4: the file ends without a newline") &&
@@ -543,7 +550,7 @@ TEST_CASE("load_csv: decimal comma and decimal point in one file are refused", "
 }
 
 TEST_CASE("load_csv: how the columns are labelled", "[datasets]") {
-  const CsvTable table = load("# rig 2\nt [s],x [mm]\n0,1\n", request({"x", "t"}));
+  const RecordTable table = load("# rig 2\nt [s],x [mm]\n0,1\n", request({"x", "t"}));
   REQUIRE(table.labels.size() == 2);
   CHECK(table.labels[0].name == "x [mm]");
   CHECK(table.labels[1].name == "t [s]");

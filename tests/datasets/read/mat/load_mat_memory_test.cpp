@@ -27,7 +27,7 @@ TEST_CASE("load_mat: a huge file is refused within 200 MB", "[datasets]") {
   REQUIRE(child >= 0);
   if (child == 0) {
     try {
-      load_mat(path, {{"x"}, ""});
+      load_mat_record(path, {{"x"}, ""});
     } catch (const rigcal::InputError& error) {
       const std::string message = error.what();
       ::_exit(message.find("more than 12000000, the limit of one file") == message.npos ? 3 : 2);

@@ -28,8 +28,8 @@ using Catch::Contains;
 
 namespace {
 
-std::string message_of(const std::filesystem::path& path, const MatRequest& request) {
-  return message_when([&] { load_mat(path, request); });
+std::string message_of(const std::filesystem::path& path, const RecordRequest& request) {
+  return message_when([&] { load_mat_record(path, request); });
 }
 
 /// Message when reading the column `name` from a file with these variables.
@@ -100,9 +100,11 @@ TEST_CASE("load_mat: variables, fields and columns of a matrix", "[datasets]") {
              mat_array("data", Numbers{1, 2, 3, 4, 5, 6}, {3, 2}),
              mat_array("deep", Numbers{7, 8, 9}, {1, 1, 3}),
              mat_array("wide", Numbers{1, 10, 2, 20, 3, 30}, {2, 1, 3}), logged("log")});
-  const auto table = load_mat(path, {{"t", "x", "data(:,2)", "deep", "wide(2,1,:)", "log.time",
-                                      "log.signals(1).values", "log.signals(2).values(:,2)"},
-                                     "t"});
+  const auto table =
+      load_mat_record(path, {{"t", "x", "data(:,2)", "deep", "wide(2,1,:)", "log.time",
+                              "log.signals(1).values", "log.signals(2).values(:,2)"},
+                             "t"})
+          .columns;
   CHECK(table[0] == Numbers{0.0, 0.5, 1.0});
   CHECK(table[1] == Numbers{1, 2, 3});
   CHECK(table[2] == Numbers{4, 5, 6});
@@ -129,7 +131,8 @@ TEST_CASE("load_mat: an element of a matrix of structs", "[datasets]") {
             {mat_struct("run", {element(11), element(21), element(12), element(22)}, {2, 2})});
   for (const int row : {1, 2}) {
     for (const int column : {1, 2}) {
-      const auto table = load_mat(path, {{fmt::format("run({},{}).x", row, column)}, ""});
+      const auto table =
+          load_mat_record(path, {{fmt::format("run({},{}).x", row, column)}, ""}).columns;
       CHECK(table[0] == Numbers{10.0 * row + column});
     }
   }
@@ -141,7 +144,7 @@ TEST_CASE("load_mat: 12 million numbers of one file, those of other columns coun
   const auto path = folder.path() / "run.mat";
   write_mat(path, MatFormat::v7, {mat_array("x", std::vector<std::int8_t>(100'000, 1))});
   std::vector<std::string> columns(120, "x");
-  CHECK(load_mat(path, {columns, ""}).size() == 120);
+  CHECK(load_mat_record(path, {columns, ""}).columns.size() == 120);
   columns.emplace_back("x");
   CHECK_THAT(message_of(path, {columns, ""}),
              Contains("'x' has 100000 elements, which with the 12000000 of other columns"));
@@ -156,7 +159,7 @@ TEST_CASE("load_mat: every real number class", "[datasets]") {
              mat_array("i8", std::vector<std::int8_t>{-128, 127}),
              mat_array("u16", std::vector<std::uint16_t>{0, 65535}),
              mat_array("i64", std::vector<std::int64_t>{-9007199254740992, 3})});
-  const auto table = load_mat(path, {{"f", "i8", "u16", "i64"}, ""});
+  const auto table = load_mat_record(path, {{"f", "i8", "u16", "i64"}, ""}).columns;
   CHECK(table[0] == Numbers{static_cast<double>(0.1F), -2.5});
   CHECK(table[1] == Numbers{-128, 127});
   CHECK(table[2] == Numbers{0, 65535});
@@ -237,7 +240,7 @@ TEST_CASE("load_mat: lengths that differ, and time that does not increase", "[da
              Contains("'x' has 2 elements, but 't' has 3; expected as many"));
   CHECK_THAT(message_of(path, {{"back", "t"}, "back"}),
              Contains("time 'back' does not increase: element 3 is 1 after 1"));
-  CHECK_THROWS_AS(load_mat(path, {{"x"}, "t"}), std::invalid_argument);
+  CHECK_THROWS_AS(load_mat_record(path, {{"x"}, "t"}), std::invalid_argument);
 }
 
 TEST_CASE("load_mat: an object says how to save it", "[datasets]") {
@@ -247,7 +250,7 @@ TEST_CASE("load_mat: an object says how to save it", "[datasets]") {
   std::ofstream(path, std::ios::binary | std::ios::app) << opaque_variable();
   CHECK_THAT(message_of(path, {{"ts"}, ""}),
              Contains("'ts' is an object") && Contains("a timeseries") && Contains("ts.Time"));
-  CHECK(load_mat(path, {{"t"}, "t"})[0] == Numbers{0, 1, 2});
+  CHECK(load_mat_record(path, {{"t"}, "t"}).columns[0] == Numbers{0, 1, 2});
   CHECK(columns_of(path) == std::vector<std::string>{"t"});
 
   // In version 7.3, an object is a reference whose class is not one of MATLAB's number classes.
@@ -279,9 +282,9 @@ TEST_CASE("load_mat: a file of version 7.3 that Python wrote is read as HDF5", "
                               [](const RecordColumn& column) { return column.name == "/log/x"; });
   REQUIRE(x != columns.end());
   CHECK(x->unit == "mm");
-  CHECK(load_mat(path, {{"/t", "/log/x", "/p(:,2)"}, "/t"}) ==
+  CHECK(load_mat_record(path, {{"/t", "/log/x", "/p(:,2)"}, "/t"}).columns ==
         std::vector<Numbers>{{0.0, 0.1, 0.2}, {1.5, 2.5, 3.5}, {2, 4, 6}});
-  CHECK(load_mat(path, {{"t"}, "t"}) == std::vector<Numbers>{{0.0, 0.1, 0.2}});
+  CHECK(load_mat_record(path, {{"t"}, "t"}).columns == std::vector<Numbers>{{0.0, 0.1, 0.2}});
   CHECK_THAT(message_of(path, {{"/y"}, ""}), Contains("run.mat") && Contains("/y"));
 }
 

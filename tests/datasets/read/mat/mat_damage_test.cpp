@@ -18,7 +18,7 @@ namespace rigcal::test {
 namespace {
 
 namespace fs = std::filesystem;
-using datasets::load_mat;
+using datasets::load_mat_record;
 
 /// A small file with everything that a MAT file may contain: vector, matrix, integers, nested
 /// struct, text.
@@ -37,8 +37,8 @@ Ending mat_ending(const fs::path& path, bool all_columns) {
     const auto columns = datasets::mat_record_columns(path);
     bool finite = true;
     for (std::size_t i = 0; all_columns && i < columns.size(); ++i)
-      finite = all_finite(load_mat(path, {{columns[i].name}, ""})) && finite;
-    load_mat(path, {{"t", "n(:,2)", "log.signals.values", "log.time"}, "t"});
+      finite = all_finite(load_mat_record(path, {{columns[i].name}, ""}).columns) && finite;
+    load_mat_record(path, {{"t", "n(:,2)", "log.signals.values", "log.time"}, "t"});
     return finite;
   });
 }

@@ -23,7 +23,7 @@ namespace {
 
 using Catch::Contains;
 using datasets::Level5Source;
-using datasets::load_mat;
+using datasets::load_mat_record;
 
 struct Level5Writer {
   bool big_endian = false;
@@ -85,7 +85,7 @@ std::string deflated(const std::string& text) {
 
 std::string refusal(const std::string& content) {
   const TemporaryFolder folder;
-  return message_when([&] { load_mat(folder.write("a.mat", content), {{"x"}, ""}); });
+  return message_when([&] { load_mat_record(folder.write("a.mat", content), {{"x"}, ""}); });
 }
 
 const Level5Writer kLittle{};
@@ -108,7 +108,7 @@ TEST_CASE("level 5: either order of bytes, every type that stores numbers", "[da
   const TemporaryFolder folder;
   for (const std::string& data : stored) {
     const auto path = folder.write("a.mat", writer.file(writer.numbers("x", {1, 3}, data)));
-    CHECK(load_mat(path, {{"x"}, ""})[0] == std::vector<double>{1, 2, 100});
+    CHECK(load_mat_record(path, {{"x"}, ""}).columns[0] == std::vector<double>{1, 2, 100});
   }
 }
 
@@ -134,7 +134,7 @@ TEST_CASE("level 5: rows and planes of larger arrays, across blocks of reading",
   const std::string packed = deflated(variable);
   for (const std::string& content : {variable, kLittle.tag(15, packed.size()) + packed}) {
     const auto path = folder.write("a.mat", kLittle.file(content));
-    const auto table = load_mat(path, {{"x(2,:)", "x(3,:)", "x(1,:)"}, ""});
+    const auto table = load_mat_record(path, {{"x(2,:)", "x(3,:)", "x(1,:)"}, ""}).columns;
     for (const std::size_t row : {0U, 1U, 2U}) {
       const auto& line = table[row];
       const double first = std::array{1.0, 2.0, 0.0}[row];

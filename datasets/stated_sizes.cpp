@@ -1,4 +1,4 @@
-#include "datasets/considered_settings.hpp"
+#include "datasets/stated_sizes.hpp"
 
 #include <algorithm>
 #include <array>
@@ -52,10 +52,14 @@ constexpr std::array kOfParameters{"valve_time_constant",
                                    "payload_acceleration_gain",
                                    "payload_acceleration_offset"};
 
+std::string unit_of(model::PlantKind plant, int index) {
+  return std::string(model::parameter_table(plant)[static_cast<std::size_t>(index)].unit);
+}
+
 }  // namespace
 
-std::vector<EffectName> effect_names(model::PlantKind plant) {
-  std::vector<EffectName> names;
+std::vector<SizedQuantity> effect_names(model::PlantKind plant) {
+  std::vector<SizedQuantity> names;
   std::vector<std::string_view> keys(kOfParameters.begin(), kOfParameters.end());
   for (const model::FeedbackRow& loop : model::kFeedbacks)
     for (const std::string_view gain : {loop.kp, loop.ki, loop.kd}) {
@@ -66,8 +70,7 @@ std::vector<EffectName> effect_names(model::PlantKind plant) {
     if (index < 0) continue;
     // In this plant, null leakage is the same term as a laminar leak.
     if (plant == model::PlantKind::load_pressure && key == "valve_null_leakage") continue;
-    const auto& spec = model::parameter_table(plant)[static_cast<std::size_t>(index)];
-    names.push_back({std::string(key), std::string(spec.unit)});
+    names.push_back({std::string(key), unit_of(plant, index)});
   }
   names.push_back({"supply_sag", "1"});
   const bool turns = plant == model::PlantKind::linkage;
@@ -75,6 +78,16 @@ std::vector<EffectName> effect_names(model::PlantKind plant) {
   if (turns) names.push_back({"pilot_hysteresis", "Pa"});
   for (const char* effect : {"_bow", "_wave", "_hysteresis"})
     names.push_back({(turns ? "angle" : "position") + std::string(effect), turns ? "rad" : "m"});
+  return names;
+}
+
+std::vector<SizedQuantity> day_quantity_names(model::PlantKind plant) {
+  std::vector<SizedQuantity> names;
+  for (const char* key : {"supply_pressure", "bulk_modulus", "position_offset"}) {
+    const int index = model::parameter_index(plant, key);
+    if (index >= 0) names.push_back({key, unit_of(plant, index)});
+  }
+  names.push_back({kTriggerKey, "s"});
   return names;
 }
 
