@@ -158,8 +158,8 @@ double maximum_by_cause(const Changed& cause) {
 /// Half width of the two-sided interval: the one without bias, combined with how much the noise in
 /// the mean, and the error of the sensor, have worsened the score.
 ///
-/// Only the repeats tell the bias, whatever else makes the score uncertain. The factor of its error
-/// is therefore that of their own degrees of freedom.
+/// Only the repeats determine the bias, whatever else makes the score uncertain. The factor of its
+/// error is therefore that of their own degrees of freedom.
 ///
 /// @param noise  largest noise in the mean
 /// @param half   half width of the interval without bias
