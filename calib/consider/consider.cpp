@@ -686,7 +686,8 @@ std::vector<BudgetLine> beside_budget(const FittedParameter& parameter, double b
 }
 
 /// Upper limits on how far model error that no effect explains could move each estimate, in the
-/// unit box. The error is assumed to be in phase with the sensitivity everywhere.
+/// unit box. In each signal the error is assumed to be in phase with the sensitivity at every
+/// sample; the moves by different signals add up as squares.
 struct UnexplainedMoves {
   VectorXd shown;   ///< by an error as large as the residual without the effects, if significant
   VectorXd unseen;  ///< by the largest error that adequacy tolerates and that no test would show

@@ -21,7 +21,7 @@ constexpr double kNegligibleShare = 0.2;
 
 /// Half widths by which a model error that nothing shows may move an estimate at most. A pass with
 /// an estimate that is farther off is a false assurance. With a right model and five repeats,
-/// such an error moves estimates by 0.3 to 2.9 half widths (docs/decisions/0066-unseen-error.md).
+/// such an error moves estimates by 0.3 to 3.2 half widths (docs/decisions/0066-unseen-error.md).
 constexpr double kMostUnseen = 3.0;
 
 /// Returns the largest absolute value of the same parameter at other levels or in other conditions,
