@@ -175,7 +175,7 @@ Fit score_at(const Campaign& campaign, const std::vector<Record>& records,
   if (spread != nullptr) {
     const auto changes = predicted_changes(problem, z, effects, options.threads, options.cancel);
     add_prediction_sd(problem, z, *spread, changes, options.threads, fit.conditions);
-    test_predictions(problem, fit.conditions);
+    test_predictions(problem, spread->dates, fit.conditions);
   }
   if (is_raised(late.flag())) {
     fit.status = FitStatus::stopped;
@@ -292,7 +292,8 @@ Fit fit(const Campaign& campaign, const std::vector<Record>& records, const FitO
     }
     if (result.considered && validation && validation->status == FitStatus::converged) {
       repeat_on_validation(make_problem(campaign, records, validated, false, nullptr),
-                           validation->parameters, options.threads, options.cancel, result);
+                           validation->parameters, dates_of(fitted), options.threads,
+                           options.cancel, result);
     }
     if (result.status == FitStatus::stopped) result.stopped_in = StoppedIn::starts;
     if (result.status == FitStatus::converged && validation)

@@ -46,49 +46,9 @@ double jackknife_variance(const std::vector<Agreement>& without, double Agreemen
   return squares * (repeats - 1.0) / repeats;
 }
 
-/// Largest noise in the mean, estimated from the largest deviation of a repeat from the mean.
-double largest_noise(const MeasuredMean& measured) {
-  double largest = 0.0;
-  for (const auto& own : measured.deviations)
-    for (const double d : own)
-      if (!std::isnan(d)) largest = std::max(largest, std::abs(d));
-  return largest / std::sqrt(static_cast<double>(measured.deviations.size()) - 1.0);
-}
-
-/// Half width of the two-sided interval: the one without bias, combined with how much the noise in
-/// the mean has worsened the score.
-///
-/// @param noise   largest noise in the mean
-/// @param half    half width of the interval without bias
-/// @param factor  factor on the standard uncertainty that `half` contains
-double half_with_bias(const std::vector<Agreement>& without, const Agreement& found,
-                      double Agreement::*score, double noise, double half, double factor) {
-  const auto repeats = static_cast<double>(without.size());
-  double away = -(found.*score);
-  for (const Agreement& each : without) away += each.*score / repeats;
-  away = std::abs(away);
-  if (score == &Agreement::maximum_error) return std::hypot(half, noise);
-  const bool fit_percent = score == &Agreement::nrmse_fit_percent;
-  if (score == &Agreement::rmse || score == &Agreement::absolute_error_percent || fit_percent) {
-    // Squared errors have a bias in 1/R. A fit in percent is 100 minus such an error.
-    const auto error_of = [&](const Agreement& each) {
-      return fit_percent ? 100.0 - each.*score : each.*score;
-    };
-    double mean = 0.0;
-    for (const Agreement& each : without) mean += std::pow(error_of(each), 2) / repeats;
-    double squares = 0.0;
-    for (const Agreement& each : without)
-      squares += std::pow(std::pow(error_of(each), 2) - mean, 2);
-    const double square = std::pow(error_of(found), 2);
-    const double error = factor * std::sqrt(squares * (repeats - 1.0) / repeats);
-    const double bias = std::max(0.0, (mean - square) * (repeats - 1.0));
-    return std::max(half, error_of(found) - std::sqrt(std::max(0.0, square - bias - error)));
-  }
-  return half + away * (repeats - 1.0);
-}
-
-/// Scores after a cause has changed the mean by one standard uncertainty, one for each direction or
-/// shape of the change. Empty if the cause does not act.
+/// Scores after a cause has changed the mean by one standard uncertainty. Each shape of the change
+/// has two items, one for each direction; the last shape may lack the second direction. Empty if
+/// the cause does not act.
 using Changed = std::vector<Agreement>;
 
 /// Largest change in a score that a cause makes.
@@ -103,6 +63,13 @@ double largest_change(const Changed& cause, const Agreement& found, double Agree
 struct ChangedBySensor {
   Changed by_gain, by_offset;
   std::vector<Changed> by_others;  ///< one per item of MeasuredMean::changes
+
+  template <typename Visit>
+  void visit(const Visit& each) const {
+    each(by_gain);
+    each(by_offset);
+    for (const Changed& cause : by_others) each(cause);
+  }
 };
 
 ChangedBySensor changed_by_sensor(const MeasuredMean& measured, std::span<const double> simulated) {
@@ -135,6 +102,100 @@ ChangedBySensor changed_by_sensor(const MeasuredMean& measured, std::span<const 
   return result;
 }
 
+/// Largest noise in the mean, estimated from the largest deviation of a repeat from the mean.
+///
+/// R repeats have R - 1 independent deviations of the same distribution as the noise in the mean,
+/// apart from a factor. The noise thus exceeds the largest of them in 1 / R of cases. If there are
+/// fewer than five repeats, the estimate is raised to what five would show: the largest of m values
+/// grows by the variance over the largest value for every factor of e in m (Gumbel).
+double largest_noise(const MeasuredMean& measured) {
+  constexpr double kFreedomOfFive = 4.0;
+  double largest = 0.0;
+  double squares = 0.0;
+  double count = 0.0;
+  for (const auto& own : measured.deviations) {
+    for (const double d : own) {
+      if (std::isnan(d)) continue;
+      largest = std::max(largest, std::abs(d));
+      squares += d * d;
+      count += 1.0;
+    }
+  }
+  const double freedom = static_cast<double>(measured.deviations.size()) - 1.0;
+  const double lacking = std::max(0.0, std::log(kFreedomOfFive / freedom));
+  return (largest + lacking * squares / count / largest) / std::sqrt(freedom);
+}
+
+/// Half width of the 95 % interval of a cause, in standard uncertainties.
+double sensor_factor() { return normal_quantile(0.975); }
+
+/// How far the square of an error could fall if the sensor were not off by a cause. The square is a
+/// parabola of the cause, of which three points are known; the cause is within its 95 % interval.
+template <typename ErrorOf>
+double square_by_cause(const Changed& cause, const Agreement& found, const ErrorOf& error_of) {
+  const auto square = [&](const Agreement& each) { return std::pow(error_of(each), 2); };
+  const double factor = sensor_factor();
+  double most = 0.0;
+  for (std::size_t i = 0; i + 1 < cause.size(); i += 2) {
+    const double more = square(cause[i]) - square(found);
+    const double less = square(cause[i + 1]) - square(found);
+    const double slope = 0.5 * std::abs(more - less);
+    const double curvature = 0.5 * (more + less);
+    const double at = curvature > 0.0 ? std::min(factor, 0.5 * slope / curvature) : factor;
+    most = std::max(most, slope * at - curvature * at * at);
+  }
+  return most;
+}
+
+/// How far the largest error could fall if the sensor were not off by a cause, to first order.
+double maximum_by_cause(const Changed& cause) {
+  double most = 0.0;
+  for (std::size_t i = 0; i + 1 < cause.size(); i += 2)
+    most = std::max(most, std::abs(cause[i].maximum_error - cause[i + 1].maximum_error));
+  return 0.5 * sensor_factor() * most;
+}
+
+/// Half width of the two-sided interval: the one without bias, combined with how much the noise in
+/// the mean, and the error of the sensor, have worsened the score.
+///
+/// Only the repeats determine the bias, whatever else makes the score uncertain. The factor of its
+/// error is therefore that of their own degrees of freedom.
+///
+/// @param noise  largest noise in the mean
+/// @param half   half width of the interval without bias
+double half_with_bias(const std::vector<Agreement>& without, const Agreement& found,
+                      const ChangedBySensor& changed, double Agreement::*score, double noise,
+                      double half) {
+  const auto repeats = static_cast<double>(without.size());
+  const double factor_of_repeats = student_t_quantile(0.975, repeats - 1.0);
+  if (score == &Agreement::maximum_error) {
+    double by_sensor = 0.0;
+    changed.visit([&](const Changed& cause) { by_sensor += maximum_by_cause(cause); });
+    return std::max(std::hypot(half, noise), noise + by_sensor);
+  }
+  const bool fit_percent = score == &Agreement::nrmse_fit_percent;
+  if (score == &Agreement::rmse || score == &Agreement::absolute_error_percent || fit_percent) {
+    // Squared errors have a bias in 1/R. A fit in percent is 100 minus such an error.
+    const auto error_of = [&](const Agreement& each) {
+      return fit_percent ? 100.0 - each.*score : each.*score;
+    };
+    double mean = 0.0;
+    for (const Agreement& each : without) mean += std::pow(error_of(each), 2) / repeats;
+    double squares = 0.0;
+    for (const Agreement& each : without)
+      squares += std::pow(std::pow(error_of(each), 2) - mean, 2);
+    const double square = std::pow(error_of(found), 2);
+    const double error = factor_of_repeats * std::sqrt(squares * (repeats - 1.0) / repeats);
+    double bias = std::max(0.0, (mean - square) * (repeats - 1.0));
+    changed.visit([&](const Changed& cause) { bias += square_by_cause(cause, found, error_of); });
+    return std::max(half, error_of(found) - std::sqrt(std::max(0.0, square - bias - error)));
+  }
+  double away = -(found.*score);
+  for (const Agreement& each : without) away += each.*score / repeats;
+  const double by_repeats = factor_of_repeats * std::sqrt(jackknife_variance(without, score));
+  return std::max(half, by_repeats) + std::abs(away) * (repeats - 1.0);
+}
+
 }  // namespace
 
 std::optional<ScoreUncertainty> agreement_uncertainty(const MeasuredMean& measured,
@@ -151,6 +212,7 @@ std::optional<ScoreUncertainty> agreement_uncertainty(const MeasuredMean& measur
     return std::nullopt;
   }
   const ChangedBySensor changed = changed_by_sensor(measured, simulated);
+  const double noise = largest_noise(measured);
   const double freedom = static_cast<double>(deviations.size()) - 1.0;
   ScoreUncertainty result;
   ScoreContributions& parts = result.contributions;
@@ -172,8 +234,7 @@ std::optional<ScoreUncertainty> agreement_uncertainty(const MeasuredMean& measur
     const double degrees = share > 0.0 ? freedom / (share * share) : kManyDegrees;
     const double factor = share > 0.0 ? student_t_quantile(0.975, degrees) : normal_quantile(0.975);
     const double half = factor * std::sqrt(variance);
-    const double both =
-        half_with_bias(without, found, score, largest_noise(measured), half, factor);
+    const double both = half_with_bias(without, found, changed, score, noise, half);
     result.one_sided.*score = half;
     result.two_sided.*score = both;
     parts.repeats.*score = std::sqrt(by_repeats);

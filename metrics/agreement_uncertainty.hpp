@@ -58,9 +58,14 @@ struct ScoreUncertainty {
 /// Noise that remains in the mean makes a score worse on average. The one-sided uncertainty does
 /// not include this: a limit that is met in spite of the noise is met. The two-sided uncertainty
 /// does, as the jackknife bias of the score (for fractions such as rho2) or of its square (for rms
-/// and absolute errors), depending on how the noise enters. The largest error changes by no more
-/// than the largest noise in the mean. This is estimated from the largest deviation of the repeats,
-/// and its square is added.
+/// and absolute errors), depending on how the noise enters. The error of this bias has the factor
+/// of R - 1 degrees of freedom, even if a sensor contributes most of the uncertainty. An error of
+/// the sensor makes rms and absolute errors worse, too: their square may fall by as much as it does
+/// on the way to the best value of each cause within its 95 % interval.
+///
+/// The largest error changes by no more than the largest noise in the mean. This is estimated from
+/// the largest deviation of the repeats, and its square is added. The interval is at least this
+/// noise plus what all causes together change to first order.
 ///
 /// @return nullopt if there are fewer than two repeats, if all are equal (copies carry no
 ///         information), or if a score is undefined without one of them

@@ -765,15 +765,20 @@ std::vector<BudgetLine> beside_budget(const FittedParameter& parameter, double b
   return lines;
 }
 
-/// Returns an upper limit on how far model error that no effect explains could move each estimate,
-/// in the unit box. If the residual without the effects is significant, the error is assumed to be
-/// as large as that residual, and everywhere in phase with the sensitivity.
-///
+/// Upper limits on how far model error that no effect explains could move each estimate, in the
+/// unit box. In each signal the error is assumed to be in phase with the sensitivity at every
+/// sample; the moves by different signals add up as squares.
+struct UnexplainedMoves {
+  VectorXd shown;   ///< by an error as large as the residual without the effects, if significant
+  VectorXd unseen;  ///< by the largest error that adequacy tolerates and that no test would show
+};
+
 /// @param rows  rows whose residuals exclude the effects
-VectorXd unexplained_moves(const Problem& problem, const std::vector<ScoreRows>& scores,
-                           const std::vector<ScoreRows>& rows, const ArrowRoot& root) {
+UnexplainedMoves unexplained_moves(const Problem& problem, const std::vector<ScoreRows>& scores,
+                                   const std::vector<ScoreRows>& rows, const ArrowRoot& root) {
   std::vector<LackOfFit> tests;
-  std::vector<VectorXd> moves;  // one entry per unknown that acts in the condition
+  std::vector<VectorXd> moves;  // by an error as large as the noise; one entry per unknown that
+                                // acts in the condition
   std::vector<const std::vector<int>*> whose;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const ProblemCondition& condition = problem.conditions[i];
@@ -789,17 +794,21 @@ VectorXd unexplained_moves(const Problem& problem, const std::vector<ScoreRows>&
       tests.push_back(*test);
       whose.push_back(&acting);
       const MatrixXd felt = scores[i].rows(k * samples, samples) * by_direction;
-      const double error = std::sqrt(std::max(0.0, test->ratio - 1.0));
-      moves.push_back(error * std::sqrt(static_cast<double>(samples)) *
-                      felt.colwise().norm().transpose());
+      moves.push_back(std::sqrt(static_cast<double>(samples)) * felt.colwise().norm().transpose());
     }
   }
-  VectorXd squares = VectorXd::Zero(root.unknowns());
+  const auto count = static_cast<double>(tests.size());
+  const double tolerated = problem.campaign->acceptance_bounds.model_error_to_noise;
+  VectorXd shown = VectorXd::Zero(root.unknowns());
+  VectorXd unseen = VectorXd::Zero(root.unknowns());
   for (std::size_t t = 0; t < tests.size(); ++t) {
-    if (tests[t].p * static_cast<double>(tests.size()) < kUnexplainedLevel)
-      squares(*whose[t]) += moves[t].cwiseAbs2();
+    const VectorXd squares = moves[t].cwiseAbs2();
+    if (tests[t].p * count < kUnexplainedLevel)
+      shown(*whose[t]) += std::max(0.0, tests[t].ratio - 1.0) * squares;
+    const double hidden = detectable_error(tests[t], metrics::kWarningLevel / count);
+    unseen(*whose[t]) += std::pow(std::min(tolerated, hidden), 2) * squares;
   }
-  return squares.cwiseSqrt();
+  return {shown.cwiseSqrt(), unseen.cwiseSqrt()};
 }
 
 /// Returns the upper end of the interval of a value that cannot be zero, if its logarithm is linear
@@ -916,7 +925,7 @@ void consider_effects(const Problem& problem, std::span<const double> z, const U
     sizes.likeliest = VectorXd::Zero(0);
   }
   const double simulation_error = largest_simulation_error(problem);
-  const VectorXd unexplained = unexplained_moves(
+  const UnexplainedMoves unexplained = unexplained_moves(
       problem, found.scores, seen->rows.empty() ? found.scores : seen->rows, found.root);
   for (std::size_t j = 0; j < z.size(); ++j) {
     FittedParameter& parameter = fit.parameters[j];
@@ -940,7 +949,8 @@ void consider_effects(const Problem& problem, std::span<const double> z, const U
       *warning = widened;
     else if (parameter.identifiability != Identifiability::identified)
       fit.warnings.push_back(widened);
-    parameter.moved_by_unexplained = slope * unexplained(static_cast<Index>(j));
+    parameter.moved_by_unexplained = std::abs(slope) * unexplained.shown(row);
+    parameter.moved_by_unseen = std::abs(slope) * unexplained.unseen(row);
     if (!models.empty()) {
       const auto best = std::find_if(models.begin(), models.end(), [&](const RefittedFit& each) {
         return each.effects == missing;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "calib/problem/arrow_svd.hpp"
+#include "calib/problem/day_effects.hpp"
 #include "calib/problem/evaluation.hpp"
 #include "calib/search/optimum.hpp"
 #include "calib/trust/uncertainty.hpp"
@@ -55,10 +56,20 @@ std::vector<double> after_step(const Problem& problem, const Evaluation& at) {
   return z;
 }
 
+/// Returns the variance of the difference between two estimates of one unknown that is due to the
+/// days of their records.
+double variance_between_days(const FittedParameter& fitted, const Uncertainty& again,
+                             std::size_t unknown) {
+  const double first = fitted.between_days_error.value_or(0.0);
+  const double second = unknown < again.between_days.size() ? again.between_days[unknown] : 0.0;
+  return std::isfinite(second) ? first * first + second * second : first * first;
+}
+
 }  // namespace
 
 void repeat_on_validation(Problem validation, const std::vector<FittedParameter>& nuisance,
-                          int threads, const std::atomic<bool>* cancel, Fit& fit) {
+                          const std::vector<std::string>& dates, int threads,
+                          const std::atomic<bool>* cancel, Fit& fit) {
   const auto& unknowns = validation.map.unknowns();
   std::vector<double> z = validation.start();
   std::vector<const FittedParameter*> fitted(unknowns.size(), nullptr);
@@ -81,6 +92,9 @@ void repeat_on_validation(Problem validation, const std::vector<FittedParameter>
   std::vector<ConditionRows> rows = std::move(*at.rows);
   at.rows.reset();
   const Uncertainty found = uncertainty(validation, at, std::move(rows), threads);
+  const bool other_day = std::any_of(
+      validation.conditions.begin(), validation.conditions.end(),
+      [&](const ProblemCondition& each) { return is_of_another_day(*each.condition, dates); });
   std::vector<double> p_values;
   for (std::size_t j = 0; j < unknowns.size(); ++j) {
     if (fitted[j] == nullptr || !fitted[j]->budget || !found.robust_standard_error[j]) continue;
@@ -93,9 +107,11 @@ void repeat_on_validation(Problem validation, const std::vector<FittedParameter>
     const std::vector<metrics::ErrorPart> parts{
         {own.combined * own.combined, own.degrees_of_freedom},
         {*found.robust_standard_error[j] * *found.robust_standard_error[j],
-         std::clamp(found.robust_freedom[j], 1.0, metrics::kManyDegrees)}};
-    const metrics::EstimateError error{std::sqrt(parts[0].variance + parts[1].variance),
-                                       metrics::effective_freedom(parts)};
+         std::clamp(found.robust_freedom[j], 1.0, metrics::kManyDegrees)},
+        {other_day ? variance_between_days(*fitted[j], found, j) : 0.0}};
+    double variance = 0.0;
+    for (const metrics::ErrorPart& each : parts) variance += each.variance;
+    const metrics::EstimateError error{std::sqrt(variance), metrics::effective_freedom(parts)};
     if (!(error.standard_error > 0.0)) continue;
     StabilityCheck& check = fit.stability.emplace_back();
     check.key = validation.spec(j).key;

@@ -86,6 +86,12 @@ std::vector<DayQuantity> day_quantities(const datasets::Campaign& campaign,
   return result;
 }
 
+bool is_of_another_day(const datasets::Condition& condition,
+                       const std::vector<std::string>& dates) {
+  return condition.date && !dates.empty() &&
+         std::find(dates.begin(), dates.end(), *condition.date) == dates.end();
+}
+
 std::vector<int> further_rows(const std::vector<DayQuantity>& quantities,
                               std::span<const int> free) {
   std::vector<int> rows;

@@ -28,6 +28,11 @@ struct DayQuantity {
 std::vector<DayQuantity> day_quantities(const datasets::Campaign& campaign,
                                         const model::ParameterValues& values, double sample_s);
 
+/// Returns true if the dates show that a record was made on another day than others.
+///
+/// @param dates  distinct dates of the other records; empty if not all are known
+bool is_of_another_day(const datasets::Condition& condition, const std::vector<std::string>& dates);
+
 /// Returns the rows of the parameter table that the quantities need and `free` does not include.
 std::vector<int> further_rows(const std::vector<DayQuantity>& quantities,
                               std::span<const int> free);

@@ -112,6 +112,9 @@ struct FittedParameter {
   /// Largest possible change in the estimate due to a significant model error that no effect
   /// explains, SI. Not stored.
   double moved_by_unexplained = 0.0;
+  /// Largest possible change in the estimate due to a model error that adequacy tolerates and that
+  /// is too small to be significant, SI. Not stored.
+  double moved_by_unseen = 0.0;
   Omittable<BootstrapSpread> bootstrap;  ///< absent unless the fit was asked for a bootstrap
   Omittable<Profile> profile;            ///< absent unless the fit was asked for profiles
   Omittable<PosteriorSpread> posterior;  ///< absent unless the fit was asked for draws

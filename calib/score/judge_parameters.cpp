@@ -19,6 +19,11 @@ using datasets::Campaign;
 /// elsewhere in the campaign. Estimates with half-widths above the same fraction are called weak.
 constexpr double kNegligibleShare = 0.2;
 
+/// Half widths by which a model error that nothing shows may move an estimate at most. A pass with
+/// an estimate that is farther off is a false assurance. With a right model and five repeats,
+/// such an error moves estimates by 0.3 to 3.2 half widths (docs/decisions/0066-unseen-error.md).
+constexpr double kMostUnseen = 3.0;
+
 /// Returns the largest absolute value of the same parameter at other levels or in other conditions,
 /// fitted or known.
 double elsewhere(const Fit& fit, const FittedParameter& parameter) {
@@ -208,21 +213,40 @@ void judge_stability(const Campaign& campaign, const Fit& fit, std::vector<Reaso
   }
 }
 
+/// Judges model error that is in the residuals although no effect explains it, and model error that
+/// is tolerated and too small to be seen there. Either could act in phase with the sensitivity of
+/// an estimate.
+void judge_unexplained(const FittedParameter& estimate, std::vector<Reason>& reasons) {
+  if (!estimate.ci95) return;
+  const double half = 0.5 * (estimate.ci95->high - estimate.ci95->low);
+  const std::string name = parameter_label(estimate.name, estimate.scope, estimate.level);
+  if (estimate.moved_by_unexplained > half) {
+    const double times = estimate.moved_by_unexplained / half;
+    reasons.push_back(reason(
+        AspectState::reservation, "unexplained_error",
+        fmt::format("{}: the model error that the residuals show, and no small effect explains, "
+                    "could move it by up to {} times the half width of its interval",
+                    name, significant(times, 2)),
+        name, {{"times_half_width", times}}));
+  }
+  if (estimate.moved_by_unseen > kMostUnseen * half) {
+    const double times = estimate.moved_by_unseen / half;
+    reasons.push_back(reason(
+        AspectState::reservation, "unseen_error",
+        fmt::format("{}: a model error that is tolerated, and too small for the residuals to "
+                    "show it, could move it by up to {} times the half width of its "
+                    "interval ({:.2g} allowed)",
+                    name, significant(times, 2), kMostUnseen),
+        name, {{"times_half_width", times}, {"allowed", kMostUnseen}}));
+  }
+}
+
 /// Judges how small effects that the model omits change the estimates.
 void judge_considered(const Campaign& campaign, const Fit& fit, std::vector<Reason>& reasons) {
   if (!fit.considered) return;
   judge_missing(fit, reasons);
   for (const FittedParameter& each : fit.parameters) {
-    if (!each.fitted || each.nuisance || !each.ci95) continue;
-    const double half = 0.5 * (each.ci95->high - each.ci95->low);
-    if (!(each.moved_by_unexplained > half)) continue;
-    const std::string name = parameter_label(each.name, each.scope, each.level);
-    reasons.push_back(reason(
-        AspectState::reservation, "unexplained_error",
-        fmt::format("{}: the model error that the residuals show, and no small effect explains, "
-                    "could move it by up to {} times the half width of its interval",
-                    name, significant(each.moved_by_unexplained / half, 2)),
-        name, {{"times_half_width", each.moved_by_unexplained / half}}));
+    if (each.fitted && !each.nuisance) judge_unexplained(each, reasons);
   }
   if (!fit.considered->left_out.empty()) {
     reasons.push_back(reason(

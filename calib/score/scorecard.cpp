@@ -7,12 +7,14 @@
 #include <stdexcept>
 
 #include "calib/consider/effect_changes.hpp"
+#include "calib/problem/day_effects.hpp"
 #include "calib/score/acceptance.hpp"
 #include "calib/search/late_flag.hpp"
 #include "calib/trust/known_uncertainty.hpp"
 #include "calib/trust/lack_of_fit.hpp"
 #include "common/parallel.hpp"
 #include "metrics/agreement_uncertainty.hpp"
+#include "metrics/distributions.hpp"
 #include "metrics/fundamental.hpp"
 #include "metrics/metric_table.hpp"
 
@@ -225,6 +227,24 @@ ConditionScore score_condition(const Problem& problem, std::size_t i, std::span<
   return score;
 }
 
+/// Returns true if the explained component of a residual is as large as its standard deviation lets
+/// expect. Otherwise estimates, effects or days would have to be off by more than their errors and
+/// sizes allow. Few directions dominate this component, so that its mean square is compared with
+/// the chi-square distribution of one degree of freedom at 1 %, the widest of all.
+///
+/// @param explained  shape (samples in windows)
+/// @param sd         standard deviation of a measurement about the simulation; shape (samples)
+bool is_plausible(const ProblemCondition& condition, std::span<const double> explained,
+                  std::span<const double> sd, double noise_sd) {
+  double squares = 0.0;
+  double expected = 0.0;
+  for (std::size_t j = 0; j < explained.size(); ++j) {
+    squares += explained[j] * explained[j];
+    expected += std::pow(sd[condition.rows[j]], 2) - noise_sd * noise_sd;
+  }
+  return squares <= std::pow(metrics::normal_quantile(0.995), 2) * expected;
+}
+
 }  // namespace
 
 std::vector<ConditionScore> score_conditions(const Problem& problem, std::span<const double> z,
@@ -236,7 +256,8 @@ std::vector<ConditionScore> score_conditions(const Problem& problem, std::span<c
   return scores;
 }
 
-void test_predictions(const Problem& problem, std::vector<ConditionScore>& scores) {
+void test_predictions(const Problem& problem, const std::vector<std::string>& dates,
+                      std::vector<ConditionScore>& scores) {
   for (std::size_t i = 0; i < scores.size(); ++i) {
     const ProblemCondition& condition = problem.conditions[i];
     for (std::size_t k = 0; k < scores[i].channels.size(); ++k) {
@@ -246,8 +267,16 @@ void test_predictions(const Problem& problem, std::vector<ConditionScore>& score
       std::vector<double> simulated;
       for (std::size_t j = 0; j < condition.rows.size(); ++j)
         simulated.push_back(whole[condition.rows[j]] + channel.explained[j]);
-      channel.residual_tests =
-          test_residual(condition, condition.channels[k].measured, simulated, scores[i].drive);
+      const ProblemChannel& data = condition.channels[k];
+      channel.residual_tests = test_residual(condition, data.measured, simulated, scores[i].drive);
+      if (!is_of_another_day(*condition.condition, dates) ||
+          !is_plausible(condition, channel.explained, scores[i].prediction_sd.at(channel.channel),
+                        data.sd))
+        continue;
+      std::vector<double> residual;
+      for (std::size_t j = 0; j < simulated.size(); ++j)
+        residual.push_back(data.measured[j] - simulated[j]);
+      channel.lack_of_fit = lack_of_prediction(condition, data, residual);
     }
   }
 }

@@ -24,8 +24,14 @@ std::vector<ConditionScore> score_conditions(const Problem& problem, std::span<c
 /// estimates explains (ChannelScore::explained). Even if the model is correct, inexact estimates
 /// leave structure in the residual, which is not a model error.
 ///
+/// The test for lack of fit of a record from another day is repeated likewise. What differs between
+/// the days, by the sizes that are stated or usual, is no error of the model. The whole residual
+/// counts on a day of the fit, and if the component is larger than these sizes let expect.
+///
+/// @param dates   dates of the fitted records; empty if not all are known
 /// @param scores  one per condition of the problem, in order
-void test_predictions(const Problem& problem, std::vector<ConditionScore>& scores);
+void test_predictions(const Problem& problem, const std::vector<std::string>& dates,
+                      std::vector<ConditionScore>& scores);
 
 /// Returns entries without scores for the conditions of a problem. Used for validation conditions
 /// whose nuisance parameters could not be estimated.

@@ -8,6 +8,7 @@
 
 #include "calib/trust/sandwich.hpp"
 #include "metrics/distributions.hpp"
+#include "metrics/significance.hpp"
 
 namespace rigcal::calib {
 namespace {
@@ -66,6 +67,13 @@ LackOfFit make_test(const ProblemCondition& condition, const ProblemChannel& cha
 }
 
 }  // namespace
+
+double detectable_error(const LackOfFit& test, double level) {
+  // A stated noise has so many degrees of freedom that F is a chi-square distribution.
+  const double freedom = std::min(test.pure_error_freedom, metrics::kManyDegrees);
+  const double ratio = metrics::fisher_f_upper_quantile(level, test.freedom, freedom);
+  return std::sqrt(std::max(0.0, ratio - 1.0));
+}
 
 const LackOfFit* least_likely(const std::vector<LackOfFit>& tests) {
   const auto found = std::min_element(tests.begin(), tests.end(),

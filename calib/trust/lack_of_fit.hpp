@@ -33,6 +33,10 @@ std::optional<LackOfFit> lack_of_prediction(const ProblemCondition& condition,
                                             const ProblemChannel& channel,
                                             std::span<const double> residual);
 
+/// Returns the smallest model error that a test would reject at a significance level, as a multiple
+/// of the noise. An error of this size is found in about half of cases.
+double detectable_error(const LackOfFit& test, double level);
+
 /// Sets the outcomes of tests that are made together, each at 5 % divided by their number
 /// (Bonferroni).
 void judge_together(std::vector<LackOfFit>& tests);

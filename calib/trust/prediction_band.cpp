@@ -152,9 +152,8 @@ void explain(const ProblemCondition& condition, const std::vector<Eigen::MatrixX
 /// the fit. It combines the deviation on the day of the record with those on the days of the fit.
 /// Returns 0 unless the dates show that the record was made on a different day.
 double day_distance(const datasets::Condition& condition, const std::vector<std::string>& dates) {
-  const bool another = condition.date && !dates.empty() &&
-                       std::find(dates.begin(), dates.end(), *condition.date) == dates.end();
-  return another ? std::sqrt(1.0 + 1.0 / static_cast<double>(dates.size())) : 0.0;
+  if (!is_of_another_day(condition, dates)) return 0.0;
+  return std::sqrt(1.0 + 1.0 / static_cast<double>(dates.size()));
 }
 
 /// Appends columns to the gradients, and the square root of their covariance to `root`.

@@ -24,6 +24,9 @@ std::vector<double> sine(std::size_t samples, double amplitude) {
   return values;
 }
 
+/// Autocorrelation of noise at one sample.
+constexpr double kMemory = 0.95;
+
 /// Repeats of a truth, each with a separate gain and with autocorrelated noise.
 struct Repeats {
   std::vector<double> mean;
@@ -31,7 +34,7 @@ struct Repeats {
 };
 
 Repeats draw(const std::vector<double>& truth, int count, double gain_sd, double noise_sd,
-             std::mt19937_64& random) {
+             std::mt19937_64& random, double memory = kMemory) {
   std::normal_distribution<double> normal;
   Repeats result{std::vector<double>(truth.size(), 0.0), {}};
   for (int r = 0; r < count; ++r) {
@@ -40,7 +43,7 @@ Repeats draw(const std::vector<double>& truth, int count, double gain_sd, double
     std::vector<double>& own = result.deviations.emplace_back();
     for (const double y : truth) {
       own.push_back(gain * y + noise);
-      noise = 0.95 * noise + noise_sd * std::sqrt(1.0 - 0.95 * 0.95) * normal(random);
+      noise = memory * noise + noise_sd * std::sqrt(1.0 - memory * memory) * normal(random);
     }
   }
   for (std::size_t i = 0; i < truth.size(); ++i) {
@@ -76,19 +79,22 @@ TEST_CASE("agreement_uncertainty: of a constant error it is t times the standard
 
 TEST_CASE("agreement_uncertainty: two-sided, the score of unlimited repeats is within it",
           "[metrics][long]") {
-  // The model is exact, off by less than the noise, or off by more. The noise is white or
-  // autocorrelated.
+  // The model is exact, off by less than the noise, or off by more. Half of the draws have repeats
+  // of different gain, and half have white noise.
   std::mt19937_64 random(20261126);
   const std::vector<double> truth = sine(400, 1.0);
   constexpr int kDraws = 400;
+  const int repeats = GENERATE(2, 3, 4, 5);
   for (const double scale : {1.0, 0.995, 0.97}) {
     const std::vector<double> simulated = sine(400, scale);
     const Agreement exact = agreement(truth, simulated);
     std::vector<int> within(kMetrics.size(), 0);
     for (int draw_number = 0; draw_number < kDraws; ++draw_number) {
-      const Repeats repeats = draw(truth, 5, draw_number % 2 == 0 ? 1e-4 : 0.005, 0.02, random);
-      const Agreement found = agreement(repeats.mean, simulated);
-      const auto uncertainty = agreement_uncertainty(measured(repeats), simulated);
+      const double gain_sd = draw_number % 2 == 0 ? 1e-4 : 0.005;
+      const double memory = draw_number % 4 < 2 ? 0.0 : kMemory;
+      const Repeats drawn = draw(truth, repeats, gain_sd, 0.02, random, memory);
+      const Agreement found = agreement(drawn.mean, simulated);
+      const auto uncertainty = agreement_uncertainty(measured(drawn), simulated);
       REQUIRE(uncertainty.has_value());
       for (std::size_t m = 0; m < kMetrics.size(); ++m) {
         const auto score = kMetrics[m].value;
@@ -97,8 +103,48 @@ TEST_CASE("agreement_uncertainty: two-sided, the score of unlimited repeats is w
       }
     }
     for (std::size_t m = 0; m < kMetrics.size(); ++m) {
-      CAPTURE(scale, kMetrics[m].name, within[m]);
+      CAPTURE(repeats, scale, kMetrics[m].name, within[m]);
       CHECK(within[m] >= kDraws * 0.93);
+    }
+  }
+}
+
+TEST_CASE("agreement_uncertainty: two-sided, the score of an ideal sensor is within it",
+          "[metrics][long]") {
+  // The sensor's gain and offset have errors of the stated size, or none. The noise left in the
+  // mean is larger than these errors, so they hardly change a score.
+  std::mt19937_64 random(20261127);
+  std::normal_distribution<double> normal;
+  const std::vector<double> truth = sine(400, 1.0);
+  constexpr int kDraws = 400;
+  constexpr double kSensor = 0.004;
+  const int repeats = GENERATE(2, 3, 5);
+  for (const bool off : {false, true}) {
+    for (const double scale : {1.0, 0.97}) {
+      const std::vector<double> simulated = sine(400, scale);
+      const Agreement exact = agreement(truth, simulated);
+      std::vector<int> within(kMetrics.size(), 0);
+      for (int draw_number = 0; draw_number < kDraws; ++draw_number) {
+        const double memory = draw_number % 2 == 0 ? 0.0 : kMemory;
+        Repeats drawn = draw(truth, repeats, 1e-4, 0.02, random, memory);
+        const double gain = off ? 1.0 + kSensor * normal(random) : 1.0;
+        const double offset = off ? kSensor * normal(random) : 0.0;
+        for (double& y : drawn.mean) y = gain * y + offset;
+        MeasuredMean with = measured(drawn);
+        with.gain_sd = kSensor;
+        with.offset_sd = kSensor;
+        const Agreement found = agreement(drawn.mean, simulated);
+        const auto uncertainty = agreement_uncertainty(with, simulated);
+        REQUIRE(uncertainty.has_value());
+        for (std::size_t m = 0; m < kMetrics.size(); ++m) {
+          const auto score = kMetrics[m].value;
+          if (std::abs(exact.*score - found.*score) <= uncertainty->two_sided.*score) ++within[m];
+        }
+      }
+      for (std::size_t m = 0; m < kMetrics.size(); ++m) {
+        CAPTURE(repeats, off, scale, kMetrics[m].name, within[m]);
+        CHECK(within[m] >= kDraws * 0.93);
+      }
     }
   }
 }
@@ -112,15 +158,16 @@ TEST_CASE("agreement_uncertainty: the score of unlimited repeats is seldom worse
   for (double& s : simulated) s += 0.01;
   const Agreement exact = agreement(truth, simulated);
   constexpr int kDraws = 800;
+  const int repeats = GENERATE(2, 3, 5);
   std::vector<int> worse(kMetrics.size(), 0);
   std::vector<double> widths(kMetrics.size(), 0.0);
   std::vector<double> scatter(kMetrics.size(), 0.0);
   for (int draw_number = 0; draw_number < kDraws; ++draw_number) {
     const double gain_sd = draw_number % 4 == 0 ? 1e-4 : 0.01;
     const double noise_sd = draw_number % 4 == 1 ? 1e-4 : 0.02;
-    const Repeats repeats = draw(truth, 5, gain_sd, noise_sd, random);
-    const Agreement found = agreement(repeats.mean, simulated);
-    const auto uncertainty = agreement_uncertainty(measured(repeats), simulated);
+    const Repeats drawn = draw(truth, repeats, gain_sd, noise_sd, random);
+    const Agreement found = agreement(drawn.mean, simulated);
+    const auto uncertainty = agreement_uncertainty(measured(drawn), simulated);
     REQUIRE(uncertainty.has_value());
     for (std::size_t m = 0; m < kMetrics.size(); ++m) {
       const auto score = kMetrics[m].value;
@@ -132,9 +179,10 @@ TEST_CASE("agreement_uncertainty: the score of unlimited repeats is seldom worse
     }
   }
   for (std::size_t m = 0; m < kMetrics.size(); ++m) {
-    CAPTURE(kMetrics[m].name, worse[m], widths[m], std::sqrt(scatter[m]));
-    CHECK(worse[m] <= kDraws * 0.04);                // 2.5 % plus statistical variation
-    CHECK(widths[m] < 6.0 * std::sqrt(scatter[m]));  // and the interval is not simply huge
+    CAPTURE(repeats, kMetrics[m].name, worse[m], widths[m], std::sqrt(scatter[m]));
+    CHECK(worse[m] <= kDraws * 0.04);  // 2.5 % plus statistical variation
+    // And the interval is not simply huge: Student's t, and as much for the bias.
+    CHECK(widths[m] < 2.2 * student_t_quantile(0.975, repeats - 1.0) * std::sqrt(scatter[m]));
   }
 }
 

@@ -433,6 +433,24 @@ TEST_CASE("considered: nothing is refitted where the residuals ask for nothing",
   for (const FittedParameter& each : found.parameters) CHECK_FALSE(each.averaged);
 }
 
+TEST_CASE("considered: what a model error that nothing shows could move at most", "[calib]") {
+  SmallRig rig;
+  const auto moved = [&](double tolerated) {
+    rig.campaign.acceptance_bounds.model_error_to_noise = tolerated;
+    return parameter(rig.fitted(), "mass");
+  };
+  const FittedParameter little = moved(0.05);
+  // In phase with the sensitivity at each of 1000 samples of a condition.
+  CHECK_THAT(little.moved_by_unseen,
+             WithinRel(0.05 * std::sqrt(1000.0) * little.standard_error.value(), 0.05));
+  CHECK_THAT(moved(0.1).moved_by_unseen, WithinRel(2.0 * little.moved_by_unseen, 1e-6));
+  // A larger error would show, however much is tolerated: F with about 1000 degrees of freedom.
+  const double most = moved(5.0).moved_by_unseen;
+  CHECK(most == moved(50.0).moved_by_unseen);
+  CHECK(most > 4.0 * little.moved_by_unseen);
+  CHECK(most < 10.0 * little.moved_by_unseen);
+}
+
 TEST_CASE("considered: a band of prediction includes an effect less what the fit took for it",
           "[calib]") {
   SmallRig rig;

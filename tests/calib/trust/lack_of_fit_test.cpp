@@ -5,6 +5,7 @@
 #include <boost/random/normal_distribution.hpp>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 
 #include "datasets/synthetic/noise.hpp"
 #include "metrics/distributions.hpp"
@@ -46,6 +47,16 @@ std::vector<datasets::Record> repeated(Twin twin, double rho, std::uint64_t seed
 }
 
 }  // namespace
+
+TEST_CASE("detectable_error: variance ratios beyond 1, from tables", "[calib]") {
+  LackOfFit test;
+  test.freedom = 10.0;
+  test.pure_error_freedom = 20.0;
+  CHECK_THAT(detectable_error(test, 0.05), WithinRel(std::sqrt(2.3479 - 1.0), 1e-4));
+  test.pure_error_freedom = std::numeric_limits<double>::infinity();  // a stated noise
+  CHECK_THAT(detectable_error(test, 0.05), WithinRel(std::sqrt(1.8307 - 1.0), 1e-4));
+  CHECK_THAT(detectable_error(test, 0.01), WithinRel(std::sqrt(2.3209 - 1.0), 1e-4));
+}
 
 TEST_CASE("lack of fit: closed forms of a first-order process", "[calib]") {
   Twin twin = one_square();

@@ -95,7 +95,7 @@ TEST_CASE("test_predictions: an estimate off by its error is no error of the mod
     add_prediction_sd(problem, {}, spread, {}, 1, scores);
     const auto& channel = scores.front().channels.front();
     CHECK(channel.explained.size() == problem.conditions.front().rows.size());
-    test_predictions(problem, scores);
+    test_predictions(problem, {}, scores);
     const auto& tests = channel.residual_tests.value();
     return tests.cross_correlation->failed() || tests.autocorrelation.failed();
   };
@@ -227,6 +227,35 @@ TEST_CASE("prediction band: on another day its own deviation counts, and those o
              WithinRel(one * (1.0 + 1.0 / 4.0) / (1.0 + 1.0), 1e-6));
   CHECK_THAT(by_days({"2026-03-09"}), WithinAbs(0.0, 1e-9 * one));
   CHECK_THAT(by_days({}), WithinAbs(0.0, 1e-9 * one));
+}
+
+TEST_CASE("test_predictions: what differs from day to day is no error of the model", "[calib]") {
+  Twin twin = predicting_twin();
+  twin.campaign.conditions[1].date = "2026-03-09";
+  twin.noise_sd_m = 1e-5;
+  const auto truth = twin.true_values(twin.campaign.conditions[1]);
+  for (const char* key : {"valve_gain", "bulk_modulus"})
+    twin.setting(key).value = truth.value[static_cast<std::size_t>(Twin::index(key))];
+  const auto model_error = [&](const char* key, double value,
+                               const std::vector<std::string>& dates) {
+    twin.offsets["predicted"] = {Twin::index(key), value};
+    const auto records = twin.records(1000, 500.0, 2);
+    const Problem problem = problem_of(twin, records);
+    EstimateSpread spread;
+    spread.dates = dates;
+    std::vector<ConditionScore> scores = score_conditions(problem, problem.start(), 1);
+    add_prediction_sd(problem, problem.start(), spread, {}, 1, scores);
+    test_predictions(problem, dates, scores);
+    return scores[1].channels.front().lack_of_fit.value().ratio - 1.0;
+  };
+  // Two of the usual standard deviations of the supply, 0.5 %.
+  const double supply = 1.01 * twin.setting("supply_pressure").value;
+  CHECK(model_error("supply_pressure", supply, {"2026-03-01"}) < 0.2);
+  CHECK(model_error("supply_pressure", supply, {"2026-03-09"}) > 1.0);
+  CHECK(model_error("supply_pressure", supply, {}) > 1.0);
+  // The usual standard deviation of the zero is 0.03 mm.
+  CHECK(model_error("position_offset", 0.05e-3, {"2026-03-01"}) < 0.2);
+  CHECK(model_error("position_offset", 1e-3, {"2026-03-01"}) > 1.0);
 }
 
 TEST_CASE("prediction band: none of what was not scored or could not be simulated", "[calib]") {
