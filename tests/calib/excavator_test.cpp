@@ -100,7 +100,8 @@ TEST_CASE("excavator: the duty of a record that was held back", "[calib]") {
     Channel head;
     Channel rod;
   };
-  for (const Row& row : {Row{"arm_in", "090", Channel::pressure_b, Channel::pressure_a},
+  for (const Row& row : {Row{"boom_up", "070", Channel::pressure_a, Channel::pressure_b},
+                         Row{"arm_in", "090", Channel::pressure_b, Channel::pressure_a},
                          Row{"boom_down", "070", Channel::pressure_a, Channel::pressure_b}}) {
     CAPTURE(row.rig);
     const auto machine = fitted(row.rig, row.duty);
