@@ -19,7 +19,7 @@
 #include "common/uninterrupted.hpp"
 #include "report/store/checkpoint.hpp"
 #include "report/store/kept_tasks.hpp"
-#include "report/store/stored.hpp"
+#include "report/store/result_files.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -83,7 +83,8 @@ void require_no_folder(const fs::path& file) {
 /// only with --force.
 std::optional<std::string> manifest_there(const fs::path& out) {
   try {
-    return files_in(out)(kManifestFile);
+    const auto file = files_in(out)(kManifestFile);
+    return file ? std::optional(file->content) : std::nullopt;
   } catch (const InputError&) {
     return std::nullopt;
   }
