@@ -83,9 +83,8 @@ Dict<std::string, Signals> sensitivities_of(const SimulatedPtr& self) {
   return all;
 }
 
-/// Arguments of a call, except for the campaign.
+/// What a call changes in the task of a condition.
 struct Wanted {
-  std::optional<std::string> condition;
   std::map<std::string, double> values;  ///< in SI units
   std::vector<std::string> free;
 };
@@ -123,50 +122,44 @@ std::string id_of(const ConditionArgument& condition) {
   return std::get<datasets::Condition>(condition).id;
 }
 
-std::vector<SimulatedPtr> simulated(const Campaign& self, const Wanted& asked, int threads,
-                                    const std::optional<fs::path>& out, bool force,
-                                    const std::atomic<bool>& cancel) {
+std::vector<SimulatedPtr> simulate(const Campaign& self,
+                                   const std::optional<std::string>& condition,
+                                   const std::optional<std::map<std::string, double>>& values,
+                                   const std::optional<std::vector<std::string>>& sensitivities,
+                                   const std::optional<Integer>& threads,
+                                   const std::optional<fs::path>& out, bool force) {
+  require_path("out", out);
+  const Wanted wanted{values.value_or(std::map<std::string, double>{}),
+                      sensitivities.value_or(std::vector<std::string>{})};
+  for (const auto& [key, value] : wanted.values) {
+    if (!std::isfinite(value))
+      throw py::value_error(fmt::format("values: found {} for {}, expected a number", value, key));
+  }
   report::SimulationRequest request{{}, "condition"};
-  if (asked.condition) request.conditions = {*asked.condition};
-  request.task = [&](const auto& condition) { return task_of(self, condition, asked); };
-  report::JobTerms terms{"", {}, threads, cancel, out.value_or("")};
+  if (condition) request.conditions = {*condition};
+  request.task = [&](const auto& each) { return task_of(self, each, wanted); };
+  std::atomic<bool> cancel{false};
+  report::JobTerms terms{"", {}, thread_count(threads), cancel, out.value_or("")};
   std::optional<report::HeldFolder> held;
   terms.hold = [&](report::PlannedFiles planned) {
     if (!out) return;
     held.emplace(*out, holding("simulate", force));
     held->plan(std::move(planned));
   };
-  const report::JobResult made = report::simulation_job(self.campaign, request, terms);
-  if (!made.files.empty()) report::write_results(*held, made.files, made.inputs);
+  report::JobResult made;
+  const auto raised = run_interruptibly(cancel, [&] {
+    made = report::simulation_job(self.campaign, request, terms);
+    if (out && !cancel) report::write_results(*held, made.files, made.inputs);
+  });
+  if (raised) std::rethrow_exception(raised);
   std::vector<SimulatedPtr> results;
   for (std::size_t i = 0; i < made.simulations->tasks.size(); ++i) {
     const calib::SimulationTask& task = made.simulations->tasks[i];
     results.push_back(std::make_shared<Simulated>(
         Simulated{task.condition->id, task.time_s, calib::reference_of(task),
-                  task.rig.feedback == model::Feedback::position, asked.free, task.values,
+                  task.rig.feedback == model::Feedback::position, wanted.free, task.values,
                   std::move(made.simulations->simulations[i])}));
   }
-  return results;
-}
-
-std::vector<SimulatedPtr> simulate(const Campaign& self, std::optional<std::string> condition,
-                                   const std::optional<std::map<std::string, double>>& values,
-                                   const std::optional<std::vector<std::string>>& sensitivities,
-                                   const std::optional<Integer>& threads,
-                                   const std::optional<fs::path>& out, bool force) {
-  require_path("out", out);
-  const int count = thread_count(threads);
-  Wanted wanted{std::move(condition), values.value_or(std::map<std::string, double>{}),
-                sensitivities.value_or(std::vector<std::string>{})};
-  for (const auto& [key, value] : wanted.values) {
-    if (!std::isfinite(value))
-      throw py::value_error(fmt::format("values: found {} for {}, expected a number", value, key));
-  }
-  std::vector<SimulatedPtr> results;
-  std::atomic<bool> cancel{false};
-  const auto raised = run_interruptibly(
-      cancel, [&] { results = simulated(self, wanted, count, out, force, cancel); });
-  if (raised) std::rethrow_exception(raised);
   return results;
 }
 

@@ -16,7 +16,7 @@ WrittenResult write_job(HeldFolder& held, int threads, JobResult job) {
     if (!job.printed) written.documents = add_page(held.path(), threads, job.files);
     write_results(held, job.files, job.inputs);
     for (const ResultFile& file : job.files) written.files.push_back(file.path);
-    written.json = job.files.back().content;
+    written.json = job.printed ? json_text(job.printed->json) : job.files.back().content;
   }
   if (job.written) job.written();
   return written;
