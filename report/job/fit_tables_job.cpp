@@ -1,8 +1,8 @@
 #include "calib/published/fit_tables.hpp"
 #include "report/job/job.hpp"
 #include "report/job/leak_table_files.hpp"
-#include "report/store/json.hpp"
 #include "report/store/parameters_csv.hpp"
+#include "report/store/result_files.hpp"
 #include "report/store/stored/stored_tables_fit.hpp"
 
 namespace rigcal::report {

@@ -255,7 +255,7 @@ void as_read_back(T& value) {
   using namespace described;
   if constexpr (is_a<T, Later>) {
     as_read_back(static_cast<typename LaterOf<T>::Type&>(value));
-  } else if constexpr (std::same_as<T, Json> || HasKeys<T>) {
+  } else if constexpr (std::same_as<T, Json> || std::same_as<T, std::vector<bool>> || HasKeys<T>) {
     return;
   } else if constexpr (std::floating_point<T>) {
     if (!std::isfinite(value)) value = std::numeric_limits<T>::quiet_NaN();
