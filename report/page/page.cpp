@@ -260,17 +260,15 @@ std::vector<doc::Document> documents_of(Parts parts) {
 }
 
 /// Returns the hash of the file that the first result on the page is made from.
-std::string sha256_of(const Parts& parts, const ReadFile& read) {
-  const auto file = read(parts.drawn.front().file);
-  if (!file) return sha256_of_text("");
-  return file->sha256.empty() ? sha256_of_text(file->content) : file->sha256;
+std::string sha256_of_first(const Parts& parts, const ReadFile& read) {
+  return sha256_of(*read(parts.drawn.front().file));
 }
 
 }  // namespace
 
 std::string result_page(const ReadFile& read, const std::string& where, int threads) {
   const Parts parts = parts_of({read, where, threads});
-  return page_of(parts, sha256_of(parts, read), PageExtent::whole);
+  return page_of(parts, sha256_of_first(parts, read), PageExtent::whole);
 }
 
 std::vector<doc::Document> add_page(const fs::path& out, int threads,
@@ -278,7 +276,7 @@ std::vector<doc::Document> add_page(const fs::path& out, int threads,
   const ReadFile own = files_in(files);
   const ReadFile read = either(made ? either(own, made) : own, files_in(out));
   Parts parts = parts_of({read, out.string(), threads});
-  std::string page = page_of(parts, sha256_of(parts, read), PageExtent::whole);
+  std::string page = page_of(parts, sha256_of_first(parts, read), PageExtent::whole);
   std::erase_if(parts.drawn, [&](const Part& part) { return !own(part.file); });
   files.insert(files.end() - 1, {"report.html", std::move(page)});
   return documents_of(std::move(parts));
@@ -291,7 +289,7 @@ std::vector<doc::Document> result_documents(const ReadFile& read, const std::str
 std::string brief_page(const ReadFile& read, const std::string& where) {
   Parts parts = parts_of({read, where, 1, false});
   shorten(parts);
-  return page_of(parts, sha256_of(parts, read), PageExtent::brief);
+  return page_of(parts, sha256_of_first(parts, read), PageExtent::brief);
 }
 
 std::vector<std::pair<fs::path, std::string>> result_figures(const ReadFile& read,

@@ -262,7 +262,7 @@ void require_inputs_kept(const fs::path& out, const std::vector<fs::path>& resul
 
 void ResultsInWriting::add(const ResultFile& file) {
   require_inputs_kept(held_.out_, {file.path}, inputs_);
-  const std::string hash = file.sha256.empty() ? sha256_of_text(file.content) : file.sha256;
+  const std::string hash = sha256_of(file);
   held_.require_replaceable({{file.path, "", hash}});
   writing_.add(held_.out_ / file.path, file.content);
   added_.push_back({file.path.generic_string(), hash, held_.holding_.verb});

@@ -24,6 +24,11 @@ struct ResultFile {
   std::any object = {};
 };
 
+/// Returns the hash of the content, which is computed if it is not known yet.
+inline std::string sha256_of(const ResultFile& file) {
+  return file.sha256.empty() ? sha256_of_text(file.content) : file.sha256;
+}
+
 /// Files that a run may write into its folder.
 struct PlannedFiles {
   std::vector<std::filesystem::path> files;  ///< relative to the folder; the run may omit some

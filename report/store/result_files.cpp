@@ -50,7 +50,7 @@ ResultFile table_file(std::filesystem::path path, Table table) {
 void name_files(std::vector<ResultFile>& files, StoredProvenance& provenance,
                 std::vector<InputFile> named) {
   for (ResultFile& file : files) {
-    if (file.sha256.empty()) file.sha256 = sha256_of_text(file.content);
+    file.sha256 = sha256_of(file);
     named.push_back({file.path.generic_string(), file.sha256});
   }
   provenance.files = std::move(named);
@@ -61,11 +61,12 @@ ReadFile files_of_run(const ReadFile& read, const StoredProvenance& provenance,
   return [read, named = provenance.files.value_or(std::vector<InputFile>()), where,
           file](const std::filesystem::path& path) {
     auto found = read(path);
-    if (!found || found->object.has_value()) return found;
+    const bool has_no_text = found && found->object.has_value() && found->sha256.empty();
+    if (!found || has_no_text) return found;
     const auto listed = std::find_if(named.begin(), named.end(), [&](const InputFile& each) {
       return each.path == path.generic_string();
     });
-    if (listed != named.end() && sha256_of_text(found->content) != listed->sha256)
+    if (listed != named.end() && sha256_of(*found) != listed->sha256)
       throw InputError(
           {(std::filesystem::path(where) / path).string()},
           fmt::format("is not the file that {} was written with: it is of another run, "
