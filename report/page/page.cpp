@@ -193,8 +193,9 @@ void shorten(Parts& parts) {
 
 enum class PageExtent { whole, brief };
 
-std::string page_of(const Parts& parts, const std::string& sha256, PageExtent extent) {
+std::string page_of(const Parts& parts, const ReadFile& read, PageExtent extent) {
   const Part& first = parts.drawn.front();
+  const std::string sha256 = sha256_of(*read(first.file));
   // One unusable result marks the whole page.
   const bool bad = std::any_of(parts.drawn.begin(), parts.drawn.end(), [](const Part& part) {
     return part.verdict.badge.state == doc::State::bad;
@@ -259,16 +260,10 @@ std::vector<doc::Document> documents_of(Parts parts) {
   return {std::make_move_iterator(parts.drawn.begin()), std::make_move_iterator(parts.drawn.end())};
 }
 
-/// Returns the hash of the file that the first result on the page is made from.
-std::string sha256_of_first(const Parts& parts, const ReadFile& read) {
-  return sha256_of(*read(parts.drawn.front().file));
-}
-
 }  // namespace
 
 std::string result_page(const ReadFile& read, const std::string& where, int threads) {
-  const Parts parts = parts_of({read, where, threads});
-  return page_of(parts, sha256_of_first(parts, read), PageExtent::whole);
+  return page_of(parts_of({read, where, threads}), read, PageExtent::whole);
 }
 
 std::vector<doc::Document> add_page(const fs::path& out, int threads,
@@ -276,7 +271,7 @@ std::vector<doc::Document> add_page(const fs::path& out, int threads,
   const ReadFile own = files_in(files);
   const ReadFile read = either(made ? either(own, made) : own, files_in(out));
   Parts parts = parts_of({read, out.string(), threads});
-  std::string page = page_of(parts, sha256_of_first(parts, read), PageExtent::whole);
+  std::string page = page_of(parts, read, PageExtent::whole);
   std::erase_if(parts.drawn, [&](const Part& part) { return !own(part.file); });
   files.insert(files.end() - 1, {"report.html", std::move(page)});
   return documents_of(std::move(parts));
@@ -289,7 +284,7 @@ std::vector<doc::Document> result_documents(const ReadFile& read, const std::str
 std::string brief_page(const ReadFile& read, const std::string& where) {
   Parts parts = parts_of({read, where, 1, false});
   shorten(parts);
-  return page_of(parts, sha256_of_first(parts, read), PageExtent::brief);
+  return page_of(parts, read, PageExtent::brief);
 }
 
 std::vector<std::pair<fs::path, std::string>> result_figures(const ReadFile& read,

@@ -61,8 +61,7 @@ ReadFile files_of_run(const ReadFile& read, const StoredProvenance& provenance,
   return [read, named = provenance.files.value_or(std::vector<InputFile>()), where,
           file](const std::filesystem::path& path) {
     auto found = read(path);
-    const bool has_no_text = found && found->object.has_value() && found->sha256.empty();
-    if (!found || has_no_text) return found;
+    if (!found || (found->object.has_value() && found->sha256.empty())) return found;
     const auto listed = std::find_if(named.begin(), named.end(), [&](const InputFile& each) {
       return each.path == path.generic_string();
     });
