@@ -10,6 +10,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <ranges>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -279,10 +280,12 @@ void as_read_back(T& value) {
       as_read_back(key);
       as_read_back(member);
     }
-  } else if constexpr (is_a<T, std::vector> || is_array<T>) {
+  } else if constexpr (std::ranges::range<T>) {
     for (auto& each : value) as_read_back(each);
   } else if constexpr (Struct<T>) {
     T::describe(value, [](const char* /*name*/, auto& member) { as_read_back(member); });
+  } else {
+    static_assert(std::integral<T> || std::is_enum_v<T>);
   }
 }
 
