@@ -65,6 +65,30 @@ auto field(std::shared_ptr<const Member> Self::*member, Value Member::*value) {
 /// Formats "name=value" in Python notation, for the call recorded in a result.
 std::string written(const char* name, const pybind11::handle& value);
 
+/// The text of a call, such as ".diagnose(fit='fit.json', healthy=['0 %'])".
+class CallText {
+ public:
+  explicit CallText(std::string name) : text_(std::move(name) + "(") {}
+  void add(const std::string& argument) {
+    text_ += (first_ ? "" : ", ") + argument;
+    first_ = false;
+  }
+  template <typename T>
+  void add(const char* name, const std::optional<T>& value) {
+    if (value) add(written(name, pybind11::cast(*value)));
+  }
+  /// Leaves out a value that is the default.
+  template <typename T>
+  void add(const char* name, const T& value, const T& fallback) {
+    if (value != fallback) add(written(name, pybind11::cast(value)));
+  }
+  std::string text() const { return text_ + ")"; }
+
+ private:
+  std::string text_;
+  bool first_ = true;
+};
+
 /// @throws pybind11::value_error  if an argument is out of range
 report::FitChoices choices_of(const std::optional<Integer>& starts, const Integer& seed,
                               const Integer& bootstrap, bool profiles,

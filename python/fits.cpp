@@ -68,28 +68,9 @@ FitResultPtr made(const CampaignPtr& self, const std::string& call,
   return found;
 }
 
-/// A call as text, without the arguments that have their default values.
-class Call {
- public:
-  explicit Call(std::string name) : text_(std::move(name) + "(") {}
-
-  template <typename T>
-  void add(const char* name, const T& value, const T& fallback) {
-    if (value == fallback) return;
-    text_ += std::string(first_ ? "" : ", ") + written(name, py::cast(value));
-    first_ = false;
-  }
-
-  std::string text() const { return text_ + ")"; }
-
- private:
-  std::string text_;
-  bool first_ = true;
-};
-
 std::string call_of(const Campaign& campaign, const report::FitChoices& choices) {
   const report::FitChoices none;
-  Call call(campaign.call + ".fit");
+  CallText call(campaign.call + ".fit");
   call.add("starts", choices.starts, none.starts);
   call.add("seed", choices.seed, none.seed);
   call.add("bootstrap", choices.bootstrap, none.bootstrap);

@@ -26,7 +26,6 @@
 #include "report/job/job.hpp"
 #include "report/live/explore_page.hpp"
 #include "report/page/page.hpp"
-#include "report/run/result_page.hpp"
 #include "report/text/escape.hpp"
 
 namespace rigcal::python {
@@ -54,7 +53,8 @@ ResultPtr job_result(const char* kind, std::string name, std::string call,
     result->kind = kind;
     result->name = std::move(name);
     result->files = std::move(found.files);
-    for (const auto& document : report::documents_in(result->files, result->name))
+    for (const auto& document :
+         report::result_documents(report::files_in(result->files), result->name))
       result->text += render_terminal(document, report::Style{});
     result->inputs = std::move(found.inputs);
   });
@@ -62,25 +62,6 @@ ResultPtr job_result(const char* kind, std::string name, std::string call,
   told.rethrow();
   return result;
 }
-
-/// The text of a call, such as ".diagnose(fit='fit.json', healthy=['0 %'])".
-class CallText {
- public:
-  explicit CallText(std::string name) : text_(std::move(name) + "(") {}
-  void add(const std::string& argument) {
-    text_ += (first_ ? "" : ", ") + argument;
-    first_ = false;
-  }
-  template <typename T>
-  void add(const char* name, const std::optional<T>& value) {
-    if (value) add(written(name, py::cast(*value)));
-  }
-  std::string text() const { return text_ + ")"; }
-
- private:
-  std::string text_;
-  bool first_ = true;
-};
 
 std::string path_text(const char* name, const fs::path& path) {
   return written(name, decoded(path.string()));
@@ -263,7 +244,7 @@ JsonDict content_of(const Result& self) {
 
 std::string page_of(const Result& self) {
   const py::gil_scoped_release released;
-  return report::result_page(report::files_in(self.files), self.name, 1).html;
+  return report::result_page(report::files_in(self.files), self.name, 1);
 }
 
 Dict<std::string, std::string> files_of(const Result& self) {
@@ -323,9 +304,10 @@ report::FitSource fit_source(const std::optional<FitArgument>& fit, model::Plant
   }
   const FitResult& result = *std::get<FitResultPtr>(*fit);
   const py::gil_scoped_release released;
+  report::StoredFit stored = report::stored(result.result());
+  report::as_read_back(stored);
   return {{},
-          std::make_shared<const report::EarlierFit>(
-              report::earlier_fit(report::json_of(report::stored(result.result())), "fit", plant))};
+          std::make_shared<const report::EarlierFit>(report::earlier_fit(stored, "fit", plant))};
 }
 
 std::string written_fit(const FitArgument& fit) {

@@ -20,9 +20,7 @@
 #include "python/holding.hpp"
 #include "python/interruptible.hpp"
 #include "python/result.hpp"
-#include "report/run/simulation_file.hpp"
-#include "report/store/folder.hpp"
-#include "report/store/provenance.hpp"
+#include "report/job/job.hpp"
 
 namespace rigcal::python {
 namespace {
@@ -85,9 +83,8 @@ Dict<std::string, Signals> sensitivities_of(const SimulatedPtr& self) {
   return all;
 }
 
-/// Arguments of a call, except for the campaign.
+/// What a call changes in the task of a condition.
 struct Wanted {
-  std::optional<std::string> condition;
   std::map<std::string, double> values;  ///< in SI units
   std::vector<std::string> free;
 };
@@ -118,21 +115,6 @@ calib::SimulationTask task_of(const Campaign& self, const datasets::Condition& c
   return task;
 }
 
-/// @throws UsageError  if no condition has this id
-std::vector<const datasets::Condition*> wanted(const datasets::Campaign& campaign,
-                                               const std::optional<std::string>& id) {
-  std::vector<const datasets::Condition*> conditions;
-  std::vector<std::string> known;
-  for (const datasets::Condition& condition : campaign.conditions) {
-    known.push_back(condition.id);
-    if (id ? condition.id == *id : condition.use != datasets::Use::ignore)
-      conditions.push_back(&condition);
-  }
-  if (id && conditions.empty())
-    throw UsageError("condition: " + unknown_name_message("condition", *id, known));
-  return conditions;
-}
-
 /// A condition, or the id of one.
 using ConditionArgument = std::variant<std::string, datasets::Condition>;
 std::string id_of(const ConditionArgument& condition) {
@@ -140,60 +122,44 @@ std::string id_of(const ConditionArgument& condition) {
   return std::get<datasets::Condition>(condition).id;
 }
 
-std::vector<SimulatedPtr> simulated(const Campaign& self, const Wanted& asked, int threads,
-                                    const std::optional<fs::path>& out, bool force,
-                                    const std::atomic<bool>& cancel) {
-  std::vector<calib::SimulationTask> tasks;
-  std::vector<datasets::Record> records;
-  for (const datasets::Condition* condition : wanted(self.campaign, asked.condition)) {
-    tasks.push_back(task_of(self, *condition, asked));
-    if (tasks.back().record) records.push_back(*tasks.back().record);
-  }
-  std::optional<report::HeldFolder> held;
-  if (out) {
-    held.emplace(*out, holding("simulate", force));
-    report::PlannedFiles planned;
-    for (const auto& task : tasks) planned.files.emplace_back(task.condition->id + ".csv");
-    held->plan(std::move(planned));
-  }
-  model::SimulationOptions options = calib::simulation_options(self.campaign);
-  options.cancel = &cancel;
-  auto simulations = calib::simulate(tasks, options, threads);
-  std::vector<SimulatedPtr> results;
-  std::vector<report::ResultFile> files;
-  for (std::size_t i = 0; i < tasks.size(); ++i) {
-    if (out) {
-      files.push_back(
-          {tasks[i].condition->id + ".csv", report::simulation_file(tasks[i], simulations[i])});
-    }
-    results.push_back(std::make_shared<Simulated>(
-        Simulated{tasks[i].condition->id, tasks[i].time_s, calib::reference_of(tasks[i]),
-                  tasks[i].rig.feedback == model::Feedback::position, asked.free, tasks[i].values,
-                  std::move(simulations[i])}));
-  }
-  if (out && !cancel)
-    report::write_results(*held, files, report::hash_inputs(self.campaign, records));
-  return results;
-}
-
-std::vector<SimulatedPtr> simulate(const Campaign& self, std::optional<std::string> condition,
+std::vector<SimulatedPtr> simulate(const Campaign& self,
+                                   const std::optional<std::string>& condition,
                                    const std::optional<std::map<std::string, double>>& values,
                                    const std::optional<std::vector<std::string>>& sensitivities,
                                    const std::optional<Integer>& threads,
                                    const std::optional<fs::path>& out, bool force) {
   require_path("out", out);
-  const int count = thread_count(threads);
-  Wanted wanted{std::move(condition), values.value_or(std::map<std::string, double>{}),
-                sensitivities.value_or(std::vector<std::string>{})};
+  const Wanted wanted{values.value_or(std::map<std::string, double>{}),
+                      sensitivities.value_or(std::vector<std::string>{})};
   for (const auto& [key, value] : wanted.values) {
     if (!std::isfinite(value))
       throw py::value_error(fmt::format("values: found {} for {}, expected a number", value, key));
   }
-  std::vector<SimulatedPtr> results;
+  report::SimulationRequest request{{}, "condition"};
+  if (condition) request.conditions = {*condition};
+  request.task = [&](const auto& each) { return task_of(self, each, wanted); };
   std::atomic<bool> cancel{false};
-  const auto raised = run_interruptibly(
-      cancel, [&] { results = simulated(self, wanted, count, out, force, cancel); });
+  report::JobTerms terms{"", {}, thread_count(threads), cancel, out.value_or("")};
+  std::optional<report::HeldFolder> held;
+  terms.hold = [&](report::PlannedFiles planned) {
+    if (!out) return;
+    held.emplace(*out, holding("simulate", force));
+    held->plan(std::move(planned));
+  };
+  report::JobResult made;
+  const auto raised = run_interruptibly(cancel, [&] {
+    made = report::simulation_job(self.campaign, request, terms);
+    if (out && !cancel) report::write_results(*held, made.files, made.inputs);
+  });
   if (raised) std::rethrow_exception(raised);
+  std::vector<SimulatedPtr> results;
+  for (std::size_t i = 0; i < made.simulations->tasks.size(); ++i) {
+    const calib::SimulationTask& task = made.simulations->tasks[i];
+    results.push_back(std::make_shared<Simulated>(
+        Simulated{task.condition->id, task.time_s, calib::reference_of(task),
+                  task.rig.feedback == model::Feedback::position, wanted.free, task.values,
+                  std::move(made.simulations->simulations[i])}));
+  }
   return results;
 }
 

@@ -12,25 +12,6 @@
 #include "report/document/render_terminal.hpp"
 
 namespace rigcal::app {
-namespace {
-
-/// Prints the documents of a result, or its JSON, on stdout, followed by the location of its files.
-///
-/// @param files  the files in the folder that the user should open first
-/// @throws WriteError  if writing to stdout fails
-void print(const JobOptions& options, const std::vector<report::doc::Document>& documents,
-           const std::vector<std::string>& files, const std::string& json) {
-  std::string text;
-  for (const report::doc::Document& document : documents) {
-    if (!text.empty()) text += "\n";
-    text += render_terminal(document, terminal_style(options.print));
-  }
-  text += "files:";
-  for (const std::string& file : files) text += " " + (options.out / file).string();
-  print(options.print, text + "\n", json);
-}
-
-}  // namespace
 
 void add_strict_option(CLI::App& verb, bool& strict) {
   verb.add_flag("--strict", strict, "Exit with 1 on WARN too, not only on FAIL");
@@ -80,9 +61,18 @@ ExitCode run_with(report::JobTerms terms, const char* verb, const JobOptions& op
   }
   const ExitCode code = result.code;
   std::vector<std::string> first = std::move(result.first);
-  first.emplace_back("report.html");
+  const std::optional<report::Printed> printed = result.printed;
+  if (!printed) first.emplace_back("report.html");
   const auto written = report::write_job(held.value(), options.threads, std::move(result));
-  print(options, written.documents, first, written.json);
+  std::string text = printed ? printed->text : std::string();
+  for (const report::doc::Document& document : written.documents) {
+    if (!text.empty()) text += "\n";
+    text += render_terminal(document, terminal_style(options.print));
+  }
+  text += "files:";
+  for (const std::string& file : first) text += " " + (options.out / file).string();
+  print(options.print, text + "\n", written.json);
+  if (printed && !printed->problems.empty()) throw NoResultError(printed->problems);
   return code;
 }
 

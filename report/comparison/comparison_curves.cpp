@@ -126,15 +126,15 @@ std::vector<ResultFile> comparison_curves(const std::vector<Compared>& results) 
       const StoredCondition* condition = results[k].result.find(id);
       if (condition == nullptr || condition->failure) continue;
       const std::filesystem::path folder = results[k].file.parent_path();
-      const std::string name = "residuals/" + id + ".csv";
-      const auto text = files_in(folder)(name);
-      if (!text) continue;
-      found.push_back({k, parse_table(*text, (folder / name).string())});
+      const auto series = table_in(files_in(folder), folder.string(), "residuals/" + id + ".csv");
+      if (!series) continue;
+      found.push_back({k, *series});
       frequency_hz = periodic_frequency(*condition).value_or(0.0);
     }
     if (found.size() < 2) continue;
-    const Table table = overlaid(found, frequency_hz);
-    if (!table.names.empty()) files.push_back({"overlay/" + id + ".csv", csv_of(table)});
+    Table table = overlaid(found, frequency_hz);
+    if (!table.names.empty())
+      files.push_back(table_file("overlay/" + id + ".csv", std::move(table)));
   }
   return files;
 }

@@ -55,13 +55,13 @@ JobResult average_job(const datasets::Campaign& campaign,
   average.synthetic = campaign.synthetic;
   JobResult job;
   for (const datasets::Record& record : records) {
-    job.files.push_back({averaged_file(record.condition), averaged_csv(record)});
+    job.files.push_back(table_file(averaged_file(record.condition), averaged_table(record)));
     average.records.push_back(stored(*campaign.find(record.condition), record));
   }
   job.files.push_back({"repeatability.csv", repeatability_csv(records)});
   average.provenance = stored(provenance);
   name_files(job.files, average.provenance);
-  job.files.push_back({"average.json", json_text(json_of(average))});
+  job.files.push_back(json_file("average.json", std::move(average)));
   job.first = {"average.json", "repeatability.csv", "averaged/"};
   job.inputs = provenance.inputs;
   return job;

@@ -200,7 +200,7 @@ JobResult batch_job(const BatchRequest& request, const RigVerbs& verbs, const Jo
                               inputs_of(runs)};
   batch.provenance = stored(provenance);
   JobResult job;
-  job.files = {{"batch.csv", batch_csv(batch)}, {"batch.json", json_text(json_of(batch))}};
+  job.files = {{"batch.csv", batch_csv(batch)}, json_file("batch.json", batch)};
   job.first = {"batch.json", "batch.csv"};
   job.inputs = provenance.inputs;
   job.code = static_cast<ExitCode>(batch.exit_code);

@@ -29,12 +29,12 @@ JobResult comparison_job(const std::vector<std::filesystem::path>& folders, cons
     provenance.inputs.push_back({each.file.string(), sha256_of_file(each.file)});
   StoredComparison comparison = compared(results, provenance);
   JobResult job;
+  job.code = comparison.status == "done" ? ExitCode::done : ExitCode::no_result;
   job.files = comparison_curves(results);
   name_files(job.files, comparison.provenance);
-  job.files.push_back({"comparison.json", json_text(json_of(comparison))});
+  job.files.push_back(json_file("comparison.json", std::move(comparison)));
   job.first = {"comparison.json"};
   job.inputs = provenance.inputs;
-  job.code = comparison.status == "done" ? ExitCode::done : ExitCode::no_result;
   return job;
 }
 

@@ -137,9 +137,9 @@ JobResult finished(const DiagnosisResult& result, const std::optional<Json>& liv
   StoredDiagnosis diagnosis = stored(result);
   JobResult job;
   job.files = {{"diagnosis.csv", diagnosis_csv(diagnosis)}};
-  if (live) job.files.push_back({kLiveDiagnosisFile, json_line(*live)});
+  if (live) job.files.push_back(json_file(kLiveDiagnosisFile, *live, json_line));
   name_files(job.files, diagnosis.provenance);
-  job.files.push_back({"diagnosis.json", json_text(json_of(diagnosis))});
+  job.files.push_back(json_file("diagnosis.json", std::move(diagnosis)));
   job.first = {"diagnosis.json", "diagnosis.csv"};
   job.inputs = result.provenance.inputs;
   job.code = status_of(result) == LeakStatus::done ? ExitCode::done : ExitCode::no_result;

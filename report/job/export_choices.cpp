@@ -12,7 +12,7 @@
 #include "calib/problem/parameter_map.hpp"
 #include "calib/problem/simulation_task.hpp"
 #include "common/suggest.hpp"
-#include "report/run/chosen_condition.hpp"
+#include "report/run/campaign_choice.hpp"
 #include "report/run/validation.hpp"
 
 namespace rigcal::report {

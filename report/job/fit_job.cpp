@@ -27,61 +27,51 @@ namespace {
 class CheckpointFile {
  public:
   /// @param provenance  provenance of the fit; borrowed
-  CheckpointFile(const std::filesystem::path& out, const Provenance& provenance);
+  CheckpointFile(const std::filesystem::path& out, const Provenance& provenance)
+      : file_(out / kCheckpointFile), provenance_(provenance) {}
 
   /// Reads the checkpoint of an earlier run of the same fit; std::nullopt if there is none.
   ///
   /// @throws InputError  if the file belongs to another fit, or is not a checkpoint
-  std::optional<calib::Checkpoint> read() const;
+  std::optional<calib::Checkpoint> read() const {
+    if (!std::filesystem::exists(file_)) return std::nullopt;
+    return read_checkpoint(file_, provenance_);
+  }
 
   /// Writes a checkpoint unless writing would take more than a twentieth of the time. A checkpoint
   /// that is not written is kept in memory.
-  void keep(const calib::Checkpoint& checkpoint);
+  void keep(const calib::Checkpoint& checkpoint) {
+    unwritten_ = checkpoint;
+    if (Clock::now() >= not_before_) write();
+  }
 
   /// If the fit was stopped, writes the checkpoint that is still in memory. Otherwise removes the
   /// file.
-  void finish(calib::FitStatus status);
+  void finish(calib::FitStatus status) {
+    if (status != calib::FitStatus::stopped) {
+      remove_stale(file_);
+    } else if (unwritten_) {
+      write();
+    }
+  }
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  void write();
+  void write() {
+    constexpr int kShare = 20;  // pause after a write, as a multiple of the time that it took
+    const auto began = Clock::now();
+    write_file_atomically(file_, checkpoint_text(*unwritten_, provenance_));
+    const auto ended = Clock::now();
+    not_before_ = ended + kShare * (ended - began);
+    unwritten_.reset();
+  }
 
   std::filesystem::path file_;
   const Provenance& provenance_;
   std::optional<calib::Checkpoint> unwritten_;
   Clock::time_point not_before_{};
 };
-
-CheckpointFile::CheckpointFile(const std::filesystem::path& out, const Provenance& provenance)
-    : file_(out / kCheckpointFile), provenance_(provenance) {}
-
-std::optional<calib::Checkpoint> CheckpointFile::read() const {
-  if (!std::filesystem::exists(file_)) return std::nullopt;
-  return read_checkpoint(file_, provenance_);
-}
-
-void CheckpointFile::keep(const calib::Checkpoint& checkpoint) {
-  unwritten_ = checkpoint;
-  if (Clock::now() >= not_before_) write();
-}
-
-void CheckpointFile::finish(calib::FitStatus status) {
-  if (status != calib::FitStatus::stopped) {
-    remove_stale(file_);
-  } else if (unwritten_) {
-    write();
-  }
-}
-
-void CheckpointFile::write() {
-  constexpr int kShare = 20;  // pause after a write, as a multiple of the time that the write took
-  const auto began = Clock::now();
-  write_file_atomically(file_, checkpoint_text(*unwritten_, provenance_));
-  const auto ended = Clock::now();
-  not_before_ = ended + kShare * (ended - began);
-  unwritten_.reset();
-}
 
 using calib::FitStatus;
 using datasets::Use;

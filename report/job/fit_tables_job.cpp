@@ -1,8 +1,8 @@
 #include "calib/published/fit_tables.hpp"
 #include "report/job/job.hpp"
 #include "report/job/leak_table_files.hpp"
-#include "report/store/json.hpp"
 #include "report/store/parameters_csv.hpp"
+#include "report/store/result_files.hpp"
 #include "report/store/stored/stored_tables_fit.hpp"
 
 namespace rigcal::report {
@@ -34,7 +34,7 @@ JobResult fit_tables_job(const CampaignChoice& choice, const JobTerms& terms) {
   result.provenance = stored(provenance);
   job.files.push_back(
       {"parameters.csv", parameters_csv(result.status, result.message, result.parameters)});
-  job.files.push_back({"fit.json", json_text(json_of(result))});
+  job.files.push_back(json_file("fit.json", std::move(result)));
   job.first = {"fit.json"};
   job.inputs = provenance.inputs;
   job.code = fit.status == FitStatus::failed    ? ExitCode::no_result

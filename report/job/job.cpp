@@ -1,6 +1,6 @@
 #include "report/job/job.hpp"
 
-#include "report/run/result_page.hpp"
+#include "report/page/page.hpp"
 
 namespace rigcal::report {
 
@@ -13,10 +13,10 @@ WrittenResult write_job(HeldFolder& held, int threads, JobResult job) {
   if (job.fit) {
     written = write_result(held, threads, job.fit->result());
   } else {
-    written.documents = add_page(held.path(), threads, job.files);
+    if (!job.printed) written.documents = add_page(held.path(), threads, job.files);
     write_results(held, job.files, job.inputs);
     for (const ResultFile& file : job.files) written.files.push_back(file.path);
-    written.json = job.files.back().content;
+    written.json = job.printed ? json_text(job.printed->json) : job.files.back().content;
   }
   if (job.written) job.written();
   return written;

@@ -4,11 +4,13 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "calib/fit.hpp"
+#include "calib/problem/simulation_task.hpp"
 #include "common/error.hpp"
 #include "common/task_farm.hpp"
 #include "datasets/record.hpp"
@@ -60,24 +62,53 @@ struct JobTerms {
   bool leads() const { return processes == nullptr || processes->rank() == 0; }
 };
 
+/// Simulated conditions.
+struct SimulationRun {
+  std::vector<calib::SimulationTask> tasks;
+  std::vector<model::Simulation> simulations;  ///< one per task
+};
+
+/// What the command prints for a job that has no page.
+struct Printed {
+  std::string text;
+  Json json;
+  std::string problems;  ///< why parts of the result are missing; empty if none are
+};
+
 /// A finished job.
 struct JobResult {
   /// All files except the page. The last one is the JSON file that marks the result as complete.
   /// Empty for a fit, whose files are created while they are written, because all of them together
   /// would be its peak memory use.
   std::vector<ResultFile> files;
-  std::shared_ptr<FitRun> fit;     ///< null for other jobs
-  std::vector<std::string> first;  ///< files to open first
+  std::shared_ptr<FitRun> fit;                 ///< null for other jobs
+  std::shared_ptr<SimulationRun> simulations;  ///< null for other jobs
+  std::optional<Printed> printed;              ///< absent for a job with a page
+  std::vector<std::string> first;              ///< files to open first
   std::vector<InputFile> inputs;
   ExitCode code = ExitCode::done;
   bool unchanged = false;         ///< the result already existed; `files` contains its JSON file
   std::function<void()> written;  ///< called after the files have been written
 };
 
-/// Draws the page of a job and writes its files.
+/// Draws the page of a job, if it has one, and writes its files.
 ///
 /// @throws WriteError, UsageError  as for write_results()
 WrittenResult write_job(HeldFolder& held, int threads, JobResult job);
+
+struct SimulationRequest {
+  std::vector<std::string> conditions;   ///< ids; empty: all that are not ignored
+  const char* argument = "--condition";  ///< name of these ids in messages
+  /// Makes the task of a condition; empty: with the values of the campaign.
+  std::function<calib::SimulationTask(const datasets::Condition&)> task = {};
+};
+/// Simulates conditions. There is a file for each if the result folder is known.
+///
+/// @param campaign  borrowed by the tasks of the result
+/// @throws InputError  if a record that drives the model is invalid
+/// @throws UsageError  if no condition has one of the ids
+JobResult simulation_job(const datasets::Campaign& campaign, const SimulationRequest& request,
+                         const JobTerms& terms);
 
 /// The fit that a job is based on: a fit.json, or a fit made in this process.
 struct FitSource {

@@ -61,18 +61,18 @@ std::vector<ResultFile> leak_table_files(const LeakTableResult& result) {
   if (table.healthy) {
     const datasets::LeakSignal& signal = *result.settings.feature_signal;
     files.push_back({"features.csv", features_csv(result)});
-    files.push_back({kHealthySeries, level_csv(signal, *table.healthy, nullptr)});
+    files.push_back(table_file(kHealthySeries, level_table(signal, *table.healthy, nullptr)));
     for (const calib::FeatureRow& row : table.features) {
-      files.push_back(
-          {kLevels / level_file(row.level), level_csv(signal, row.series, &*table.healthy)});
+      files.push_back(table_file(kLevels / level_file(row.level),
+                                 level_table(signal, row.series, &*table.healthy)));
     }
   }
   Json rig = live_rig(result.campaign, leak_table_cases(result.campaign, result.settings));
   rig["embedded"] = true;
-  files.push_back({kLiveLeakTableFile, json_line(rig)});
+  files.push_back(json_file(kLiveLeakTableFile, std::move(rig), json_line));
   StoredLeakTable stored = report::stored(result);
   name_files(files, stored.provenance);
-  files.push_back({"leak_table.json", json_text(json_of(stored))});
+  files.push_back(json_file("leak_table.json", std::move(stored)));
   return files;
 }
 

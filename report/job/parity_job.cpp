@@ -17,7 +17,7 @@ JobResult finished(const ParityResult& result) {
   job.files = parity_series(result);
   job.files.push_back({"parity.csv", parity_csv(parity)});
   name_files(job.files, parity.provenance);
-  job.files.push_back({"parity.json", json_text(json_of(parity))});
+  job.files.push_back(json_file("parity.json", std::move(parity)));
   job.first = {"parity.json", "parity.csv", "parity/"};
   job.inputs = result.provenance.inputs;
   job.code = status_of(result) == LeakStatus::done ? ExitCode::done : ExitCode::no_result;

@@ -63,18 +63,15 @@ StoredDesign design_file(const datasets::Campaign& campaign, const calib::Design
 /// the drive.
 Table response_of(const datasets::Campaign& campaign, const calib::Design& design) {
   Table table;
-  const auto add = [&](std::string_view name, std::vector<double> values) {
-    table.names.emplace_back(name);
-    table.columns.push_back(std::move(values));
-  };
-  add("time_s", design.time_s);
-  add(datasets::info(datasets::drive_channel(campaign)).name, design.drive);
+  table.add("time_s", design.time_s);
+  table.add(std::string(datasets::info(datasets::drive_channel(campaign)).name), design.drive);
   const auto outputs = calib::limited_outputs();
   const bool commanded = datasets::drive_channel(campaign) == datasets::Channel::command;
   for (std::size_t k = 0; k < outputs.size(); ++k) {
     if (commanded && outputs[k] == model::Output::command) continue;  // it is the drive
     const auto column = design.response.col(static_cast<Eigen::Index>(k));
-    add(model::output_name(outputs[k]), {column.begin(), column.end()});
+    table.add(std::string(model::output_name(outputs[k])),
+              std::vector<double>(column.begin(), column.end()));
   }
   return table;
 }
@@ -102,23 +99,21 @@ StoredPlan plan_of_records(const datasets::Campaign& campaign,
 }
 
 /// Designs a test and adds it to the result and its files.
-Table add_design(const datasets::Campaign& campaign, const std::vector<datasets::Record>& records,
-                 const std::vector<datasets::FittedValue>* values,
-                 const std::vector<std::string>& names, const JobTerms& terms,
-                 Omittable<StoredDesign>& designed, std::vector<ResultFile>& files) {
+void add_design(const datasets::Campaign& campaign, const std::vector<datasets::Record>& records,
+                const std::vector<datasets::FittedValue>* values,
+                const std::vector<std::string>& names, const JobTerms& terms,
+                Omittable<StoredDesign>& designed, std::vector<ResultFile>& files) {
   const auto progress = [&](datasets::DriveFamily family, int tried, int most) {
     terms.progress(fmt::format("drives ({})", datasets::to_string(family)).c_str(), tried, most);
   };
   const calib::Design design =
       calib::design(campaign, records, names, values, {terms.threads, &terms.cancel, progress});
   designed.emplace(design_file(campaign, design));
-  Table response = response_of(campaign, design);
   files.push_back({kDriveFile, datasets::drive_csv(campaign, design.time_s, design.drive)});
-  files.push_back({kResponseFile, csv_of(response)});
+  files.push_back(table_file(kResponseFile, response_of(campaign, design)));
   files.push_back(
       {kDesignedCampaignFile, datasets::designed_campaign_text(campaign, *campaign.design,
                                                                design.family, design.noise_sd)});
-  return response;
 }
 
 }  // namespace
@@ -141,19 +136,17 @@ JobResult plan_job(const datasets::Campaign& campaign, const PlanRequest& reques
     provenance.options.emplace_back("design", fmt::format("{}", fmt::join(request.design, ",")));
   }
   JobResult job;
-  PlanFiles plan;
   Omittable<StoredDesign> designed;
-  if (has_design)
-    plan.response =
-        add_design(campaign, records, values, request.design, terms, designed, job.files);
-  plan.result = plan_of_records(campaign, records, values, has_design, provenance, terms.threads);
-  plan.result.design = std::move(designed);
-  if (!job.files.empty()) name_files(job.files, plan.result.provenance);
-  job.files.push_back({"plan.json", json_text(json_of(plan.result))});
+  if (has_design) add_design(campaign, records, values, request.design, terms, designed, job.files);
+  StoredPlan plan =
+      plan_of_records(campaign, records, values, has_design, provenance, terms.threads);
+  plan.design = std::move(designed);
+  if (plan.design && plan.design->stopped()) job.code = ExitCode::stopped;
+  if (!job.files.empty()) name_files(job.files, plan.provenance);
+  job.files.push_back(json_file("plan.json", std::move(plan)));
   job.first = {"plan.json"};
   if (has_design) job.first.insert(job.first.end(), {kDriveFile, kDesignedCampaignFile});
   job.inputs = provenance.inputs;
-  if (plan.result.design && plan.result.design->stopped()) job.code = ExitCode::stopped;
   return job;
 }
 

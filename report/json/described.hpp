@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <concepts>
@@ -9,6 +10,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <ranges>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -244,6 +246,46 @@ void read_into(const JsonNode& node, T& value) {
       }
       read_into(node[key], member);
     });
+  }
+}
+
+/// Changes a value to what read_into() would read from its JSON text: a number that is not finite
+/// is NaN or absent, and bytes that are not UTF-8 are replaced.
+template <typename T>
+void as_read_back(T& value) {
+  using namespace described;
+  if constexpr (is_a<T, Later>) {
+    as_read_back(static_cast<typename LaterOf<T>::Type&>(value));
+  } else if constexpr (std::same_as<T, Json> || std::same_as<T, std::vector<bool>> || HasKeys<T>) {
+    return;
+  } else if constexpr (std::floating_point<T>) {
+    if (!std::isfinite(value)) value = std::numeric_limits<T>::quiet_NaN();
+  } else if constexpr (std::same_as<T, std::string>) {
+    if (std::any_of(value.begin(), value.end(), [](char c) { return (c & '\x80') != 0; }))
+      value = Json::parse(Json(value).dump(-1, ' ', false, Json::error_handler_t::replace));
+  } else if constexpr (std::same_as<T, Range>) {
+    as_read_back(value.low);
+    as_read_back(value.high);
+  } else if constexpr (std::same_as<T, Eigen::MatrixXd>) {
+    for (double& number : value.reshaped()) as_read_back(number);
+  } else if constexpr (is_a<T, std::optional> || is_a<T, Omittable>) {
+    if (!value) return;
+    if constexpr (std::floating_point<typename T::value_type>) {
+      if (!std::isfinite(*value)) value.reset();
+    } else {
+      as_read_back(*value);
+    }
+  } else if constexpr (is_keyed<T>) {
+    for (auto& [key, member] : value) {
+      as_read_back(key);
+      as_read_back(member);
+    }
+  } else if constexpr (std::ranges::range<T>) {
+    for (auto& each : value) as_read_back(each);
+  } else if constexpr (Struct<T>) {
+    T::describe(value, [](const char* /*name*/, auto& member) { as_read_back(member); });
+  } else {
+    static_assert(std::integral<T> || std::is_enum_v<T>);
   }
 }
 

@@ -7,6 +7,7 @@
 #include "datasets/campaign/leak_table_settings.hpp"
 #include "report/store/provenance.hpp"
 #include "report/store/stored/stored_leak_table.hpp"
+#include "report/store/table.hpp"
 
 namespace rigcal::report {
 
@@ -30,11 +31,11 @@ std::string leak_table_csv(const LeakTableResult& result);
 /// ones.
 std::string features_csv(const LeakTableResult& result);
 
-/// Writes levels/<level>.csv for one period of the feature signal, with time, reference, position,
-/// flows, and the residual relative to the rig without a leak.
+/// Returns the table of levels/<level>.csv for one period of the feature signal, with time,
+/// reference, position, flows, and the residual relative to the rig without a leak.
 ///
 /// @param healthy  series of the rig without a leak; null when writing that rig itself
-std::string level_csv(const datasets::LeakSignal& signal, const calib::PeriodicSeries& series,
-                      const calib::PeriodicSeries* healthy);
+Table level_table(const datasets::LeakSignal& signal, const calib::PeriodicSeries& series,
+                  const calib::PeriodicSeries* healthy);
 
 }  // namespace rigcal::report

@@ -2,7 +2,6 @@
 
 #include "report/leak/leak_table.hpp"
 #include "report/store/csv_columns.hpp"
-#include "report/store/table.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -50,8 +49,8 @@ std::string features_csv(const LeakTableResult& result) {
       .table(result.table.features);
 }
 
-std::string level_csv(const datasets::LeakSignal& signal, const calib::PeriodicSeries& series,
-                      const calib::PeriodicSeries* healthy) {
+Table level_table(const datasets::LeakSignal& signal, const calib::PeriodicSeries& series,
+                  const calib::PeriodicSeries* healthy) {
   const model::Signal drive =
       datasets::periodic_signal(signal.waveform, signal.amplitude, signal.frequency_hz);
   const std::size_t rows = series.time_s.size();
@@ -67,7 +66,7 @@ std::string level_csv(const datasets::LeakSignal& signal, const calib::PeriodicS
   if (healthy != nullptr)
     table.add("residual_m", rows,
               [&](std::size_t i) { return output(series, i, 0) - output(*healthy, i, 0); });
-  return csv_of(table);
+  return table;
 }
 
 }  // namespace rigcal::report

@@ -4,7 +4,7 @@
 
 #include "report/store/csv_columns.hpp"
 #include "report/store/identity.hpp"
-#include "report/store/table.hpp"
+#include "report/store/result_files.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -21,7 +21,7 @@ std::filesystem::path series_file(const std::string& condition) {
   return std::filesystem::path("parity") / (condition + ".csv");
 }
 
-std::string series_csv(const ParityCondition& condition) {
+Table series_of(const ParityCondition& condition) {
   Table table;
   table.add("time_s", condition.time_s);
   table.add("healthy_model_m", condition.model_m);
@@ -34,7 +34,7 @@ std::string series_csv(const ParityCondition& condition) {
     add("residual", record.residual_m);
     add("moving_rms", record.moving_rms_m);
   }
-  return csv_of(table);
+  return table;
 }
 
 }  // namespace
@@ -96,7 +96,7 @@ std::vector<ResultFile> parity_series(const ParityResult& result) {
   std::vector<ResultFile> files;
   for (const ParityCondition& condition : result.parity.conditions) {
     if (condition.model_m.empty()) continue;
-    files.push_back({series_file(condition.condition), series_csv(condition)});
+    files.push_back(table_file(series_file(condition.condition), series_of(condition)));
   }
   return files;
 }

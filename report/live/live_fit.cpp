@@ -289,9 +289,8 @@ std::optional<Json> live_diagnosis(const datasets::Campaign& campaign,
   return rig;
 }
 
-std::optional<LiveSection> live_section(const std::string& text, const std::string& where) {
+std::optional<LiveSection> live_section(const Json& rig) {
   if (live_module().empty()) return std::nullopt;
-  const Json rig = parse_json(text, where);
   LiveSection section;
   const char* const about =
       rig.contains("intervals")

@@ -42,8 +42,7 @@ struct LiveSection {
 /// Builds the live section. Returns std::nullopt if this program was built without the model for
 /// pages.
 ///
-/// @param text  contents of live.json
-/// @throws InputError  if the text is not JSON
-std::optional<LiveSection> live_section(const std::string& text, const std::string& where);
+/// @param rig  contents of live.json
+std::optional<LiveSection> live_section(const Json& rig);
 
 }  // namespace rigcal::report

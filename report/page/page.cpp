@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <iterator>
 #include <set>
 
 #include "common/error.hpp"
@@ -21,7 +22,7 @@ namespace fs = std::filesystem;
 
 bool has_result(const ResultFolder& folder, const Section& section) {
   return std::any_of(section.files.begin(), section.files.end(),
-                     [&](const std::string& file) { return folder.read(file).has_value(); });
+                     [&](const std::string& file) { return folder.read(file) != nullptr; });
 }
 
 /// Returns, for example, "found neither fit.json nor ... or plan.json; expected a result folder".
@@ -192,8 +193,9 @@ void shorten(Parts& parts) {
 
 enum class PageExtent { whole, brief };
 
-std::string page_of(const Parts& parts, const std::string& sha256, PageExtent extent) {
+std::string page_of(const Parts& parts, const ReadFile& read, PageExtent extent) {
   const Part& first = parts.drawn.front();
+  const std::string sha256 = sha256_of(*read(first.file));
   // One unusable result marks the whole page.
   const bool bad = std::any_of(parts.drawn.begin(), parts.drawn.end(), [](const Part& part) {
     return part.verdict.badge.state == doc::State::bad;
@@ -254,32 +256,35 @@ std::string page_of(const Parts& parts, const std::string& sha256, PageExtent ex
   return page + "</body>\n</html>\n";
 }
 
-std::vector<ResultDocument> documents_of(Parts parts) {
-  std::vector<ResultDocument> documents;
-  for (Part& part : parts.drawn) documents.push_back({part.file, std::move(part)});
-  return documents;
+std::vector<doc::Document> documents_of(Parts parts) {
+  return {std::make_move_iterator(parts.drawn.begin()), std::make_move_iterator(parts.drawn.end())};
 }
 
 }  // namespace
 
-ResultPage result_page(const ReadFile& read, const std::string& where, int threads,
-                       const ReadTable& made) {
-  Parts parts = parts_of({read, where, threads, made});
-  std::string html = page_of(parts, sha256_of_text(read(parts.drawn.front().file).value_or("")),
-                             PageExtent::whole);
-  return {std::move(html), documents_of(std::move(parts))};
+std::string result_page(const ReadFile& read, const std::string& where, int threads) {
+  return page_of(parts_of({read, where, threads}), read, PageExtent::whole);
 }
 
-std::vector<ResultDocument> result_documents(const ReadFile& read, const std::string& where,
-                                             const ReadTable& made) {
-  return documents_of(parts_of({read, where, 1, made, false}));
+std::vector<doc::Document> add_page(const fs::path& out, int threads,
+                                    std::vector<ResultFile>& files, const ReadFile& made) {
+  const ReadFile own = files_in(files);
+  const ReadFile read = either(made ? either(own, made) : own, files_in(out));
+  Parts parts = parts_of({read, out.string(), threads});
+  std::string page = page_of(parts, read, PageExtent::whole);
+  std::erase_if(parts.drawn, [&](const Part& part) { return !own(part.file); });
+  files.insert(files.end() - 1, {"report.html", std::move(page)});
+  return documents_of(std::move(parts));
 }
 
-std::string brief_page(const ReadFile& read, const std::string& where, const ReadTable& made) {
-  Parts parts = parts_of({read, where, 1, made, false});
+std::vector<doc::Document> result_documents(const ReadFile& read, const std::string& where) {
+  return documents_of(parts_of({read, where, 1, false}));
+}
+
+std::string brief_page(const ReadFile& read, const std::string& where) {
+  Parts parts = parts_of({read, where, 1, false});
   shorten(parts);
-  return page_of(parts, sha256_of_text(read(parts.drawn.front().file).value_or("")),
-                 PageExtent::brief);
+  return page_of(parts, read, PageExtent::brief);
 }
 
 std::vector<std::pair<fs::path, std::string>> result_figures(const ReadFile& read,

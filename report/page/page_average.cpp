@@ -118,7 +118,7 @@ std::vector<Figure> average_figures(const std::string& condition, const Table& s
 std::vector<Figure> average_figures(const AverageFiles& stored) {
   std::vector<Figure> figures;
   for (std::size_t i = 0; i < stored.series.size(); ++i)
-    for (Figure& figure : average_figures(stored.result.records[i].condition, stored.series[i]))
+    for (Figure& figure : average_figures(stored.result.records[i].condition, *stored.series[i]))
       figures.push_back(std::move(figure));
   return figures;
 }
@@ -189,7 +189,7 @@ std::vector<doc::Section> average_sections(const AverageFiles& stored) {
     const std::string& id = records[i].condition;
     doc::Gallery gallery;
     gallery.wide = true;
-    for (Figure& figure : average_figures(id, stored.series[i]))
+    for (Figure& figure : average_figures(id, *stored.series[i]))
       gallery.figures.push_back(figure_of(std::move(figure.plot)));
     Plot offsets = offset_plot(records[i]);
     if (!offsets.traces.empty()) gallery.figures.push_back(figure_of(std::move(offsets)));

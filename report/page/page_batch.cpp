@@ -1,5 +1,3 @@
-#include "report/page/page_batch.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include "report/batch/batch.hpp"
 #include "report/comparison/comparison_parts.hpp"
 #include "report/document/words.hpp"
+#include "report/page/section.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -232,10 +231,6 @@ std::vector<Figure> batch_figures(const StoredBatch& batch) {
     }
   }
   return figures;
-}
-
-StoredBatch load_batch(const ReadFile& read, const std::string& where) {
-  return load<StoredBatch>(read, where, "batch.json");
 }
 
 void add_batch(const StoredBatch& batch, Part& part) {

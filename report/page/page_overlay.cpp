@@ -97,9 +97,8 @@ ComparisonFiles load_comparison_files(const ReadFile& read, const std::string& w
     const std::string& id = condition.id;
     const auto same = [&](const auto& each) { return each.first == id; };
     if (!datasets::is_condition_id(id) || std::any_of(curves.begin(), curves.end(), same)) continue;
-    const std::string name = "overlay/" + id + ".csv";
-    if (const auto text = own(name))
-      curves.emplace_back(id, parse_table(*text, (std::filesystem::path(where) / name).string()));
+    if (const auto table = table_in(own, where, "overlay/" + id + ".csv"))
+      curves.emplace_back(id, *table);
   }
   return files;
 }

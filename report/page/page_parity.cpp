@@ -170,8 +170,8 @@ std::vector<Figure> parity_figures(const ParityFiles& stored) {
   for (const Summary& each : summaries(stored.result)) {
     const auto series = stored.series.find(each.condition);
     if (series == stored.series.end()) continue;
-    figures.push_back({each.condition + "_parity", residual_plot(each, series->second)});
-    figures.push_back({each.condition + "_alarm", alarm_plot(each, series->second)});
+    figures.push_back({each.condition + "_parity", residual_plot(each, *series->second)});
+    figures.push_back({each.condition + "_alarm", alarm_plot(each, *series->second)});
   }
   return figures;
 }
@@ -254,8 +254,8 @@ std::vector<doc::Section> parity_sections(const ParityFiles& stored) {
     const auto series = stored.series.find(each.condition);
     if (series == stored.series.end()) continue;
     blocks.emplace_back(doc::Heading{{each.condition + " ", alarm_badge(each)}});
-    blocks.emplace_back(figure_of(residual_plot(each, series->second)));
-    blocks.emplace_back(figure_of(alarm_plot(each, series->second)));
+    blocks.emplace_back(figure_of(residual_plot(each, *series->second)));
+    blocks.emplace_back(figure_of(alarm_plot(each, *series->second)));
   }
   return {std::move(section)};
 }

@@ -16,10 +16,9 @@ namespace rigcal::report {
 /// A result folder as seen by the page.
 struct ResultFolder {
   const ReadFile& read;
-  std::string where;    ///< name of the folder for messages
-  int threads = 1;      ///< number of threads for reading series and drawing
-  ReadTable made = {};  ///< tables made in this run, which need not be read back
-  bool curves = true;   ///< whether the curves of single conditions are drawn
+  std::string where;   ///< name of the folder for messages
+  int threads = 1;     ///< number of threads for reading series and drawing
+  bool curves = true;  ///< whether the curves of single conditions are drawn
 };
 
 /// The part of a page that comes from one result.
@@ -108,6 +107,9 @@ Section section(const SectionTitle& title, Files (*load)(const ReadFile&, const 
   };
   return {title.section, {title.file}, part, drawn};
 }
+
+/// Adds a batch. The folder of the rigs is shown in place of a campaign.
+void add_batch(const StoredBatch& batch, Part& part);
 
 /// Returns every kind of result that the page supports, in display order.
 const std::vector<Section>& sections();

@@ -1,12 +1,19 @@
 #include <algorithm>
 
+#include "report/json/read_json.hpp"
 #include "report/page/calibration/page_calibration.hpp"
-#include "report/page/page_batch.hpp"
 #include "report/page/page_overlay.hpp"
 #include "report/page/section.hpp"
 #include "report/store/result_files.hpp"
 
 namespace rigcal::report {
+namespace {
+
+StoredBatch load_batch(const ReadFile& read, const std::string& where) {
+  return load<StoredBatch>(read, where, "batch.json");
+}
+
+}  // namespace
 
 std::optional<LiveSection> live_of(const StoredProvenance& provenance, const ResultFolder& folder,
                                    const std::string& file) {
@@ -15,9 +22,10 @@ std::optional<LiveSection> live_of(const StoredProvenance& provenance, const Res
       std::find_if(provenance.files->begin(), provenance.files->end(),
                    [](const InputFile& each) { return each.path.ends_with(kLiveFile); });
   if (named == provenance.files->end()) return std::nullopt;
-  const auto text = files_of_run(folder.read, provenance, folder.where, file)(named->path);
-  if (!text) return std::nullopt;
-  return live_section(*text, folder.where + "/" + named->path);
+  const auto rig = files_of_run(folder.read, provenance, folder.where, file)(named->path);
+  if (!rig) return std::nullopt;
+  if (const auto json = made<Json>(rig)) return live_section(*json);
+  return live_section(parse_json(rig->content, folder.where + "/" + named->path));
 }
 
 const std::vector<Section>& sections() {

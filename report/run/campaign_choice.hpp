@@ -23,6 +23,14 @@ struct CampaignChoice {
 /// @throws InputError, UsageError  if the campaign, or a change to it, is invalid
 datasets::Campaign load(const CampaignChoice& choice);
 
+/// Returns the condition with an id.
+///
+/// @param argument  name of the id in messages
+/// @throws UsageError  if no condition has this id
+const datasets::Condition& chosen_condition(const datasets::Campaign& campaign,
+                                            const std::string& id,
+                                            const std::string& argument = "--condition");
+
 /// Returns the choices that affect the numbers, for the provenance.
 std::vector<std::pair<std::string, std::string>> recorded(const CampaignChoice& choice);
 

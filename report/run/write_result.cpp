@@ -11,7 +11,6 @@
 #include "report/live/live_fit.hpp"
 #include "report/page/page.hpp"
 #include "report/run/missing_terms.hpp"
-#include "report/run/result_page.hpp"
 #include "report/store/csv.hpp"
 #include "report/store/csv_fields.hpp"
 #include "report/store/json.hpp"
@@ -106,42 +105,47 @@ std::vector<InputFile> add_residuals(const Result& result, int threads,
   return files;
 }
 
-/// Provides the tables of the residual files, so that the files need not be read back.
-ReadTable tables_of(const Result& result) {
-  return [&result](const fs::path& path) {
+/// Returns a reader that makes the table of a residual file when it is asked for.
+ReadFile tables_of(const Result& result) {
+  return [&result](const fs::path& path) -> std::shared_ptr<const ResultFile> {
     for (const calib::ConditionScore& score : result.fit.conditions)
       if (residual_file(score.id) == path)
-        return std::make_shared<const Table>(residual_table(result, score));
-    return std::shared_ptr<const Table>();
+        return std::make_shared<const ResultFile>(
+            ResultFile{path, {}, {}, std::make_shared<const Table>(residual_table(result, score))});
+    return nullptr;
   };
+}
+
+ResultFile curves_file(const Result& result) {
+  return json_file("residual_tests.json", stored_curves(result), json_line);
 }
 
 /// Creates every file except the residuals and the page.
 ///
 /// @param residuals  names of the residual files, listed in the result with the other files
-/// @param stored     the result; the file names are added to it
 std::vector<ResultFile> files_of(const fs::path& out, const Result& result,
-                                 const std::vector<InputFile>& residuals, StoredFit& stored) {
+                                 const std::vector<InputFile>& residuals) {
+  StoredFit stored = report::stored(result);
   std::vector<ResultFile> files;
   files.push_back({"scorecard.csv", scorecard_csv(result)});
   files.push_back(
       {"parameters.csv", parameters_csv(stored.status, stored.message, stored.parameters)});
   if (const auto& found = result.fit.posterior; found && found->draws > 0)
     files.push_back({kDrawsFile, draws_csv(*found)});
-  files.push_back({"residual_tests.json", json_line(json_of(stored_curves(result)))});
+  files.push_back(curves_file(result));
   if (result.kind == ResultKind::fit && stored.status != FitStatus::failed)
     files.push_back({"fitted.toml", fitted_toml(out, result)});
-  if (const auto live = live_fit(result)) files.push_back({kLiveFile, json_line(*live)});
-  name_files(residuals, files, stored.provenance);
+  if (auto live = live_fit(result))
+    files.push_back(json_file(kLiveFile, std::move(*live), json_line));
+  name_files(files, stored.provenance, residuals);
   // This file is last, so that its presence means that all others exist.
-  files.push_back({main_file(result.kind), json_text(json_of(stored))});
+  files.push_back(json_file(main_file(result.kind), std::move(stored)));
   return files;
 }
 
 /// Returns the files needed for a page without curves.
 std::vector<ResultFile> shown_files(const Result& result) {
-  return {{"residual_tests.json", json_line(json_of(stored_curves(result)))},
-          {main_file(result.kind), json_text(json_of(stored(result)))}};
+  return {curves_file(result), json_file(main_file(result.kind), stored(result))};
 }
 
 }  // namespace
@@ -172,8 +176,7 @@ WrittenResult write_result(HeldFolder& held, int threads, const Result& result) 
       add_residuals(result, threads, [&](const ResultFile& file) { writing.add(file); });
   WrittenResult written;
   for (const InputFile& file : residuals) written.files.emplace_back(file.path);
-  StoredFit stored = report::stored(result);
-  std::vector<ResultFile> files = files_of(out, result, residuals, stored);
+  std::vector<ResultFile> files = files_of(out, result, residuals);
   written.documents = add_page(out, threads, files, tables_of(result));
   for (const ResultFile& file : files) {
     writing.add(file);
@@ -185,22 +188,21 @@ WrittenResult write_result(HeldFolder& held, int threads, const Result& result) 
 }
 
 std::vector<ResultFile> result_files(const Result& result, int threads) {
-  StoredFit fit = stored(result);
   std::vector<ResultFile> files;
   const std::vector<InputFile> residuals =
       add_residuals(result, threads, [&](ResultFile file) { files.push_back(std::move(file)); });
-  for (ResultFile& file : files_of({}, result, residuals, fit)) files.push_back(std::move(file));
+  for (ResultFile& file : files_of({}, result, residuals)) files.push_back(std::move(file));
   return files;
 }
 
 doc::Document document_of(const Result& result) {
   const std::vector<ResultFile> files = shown_files(result);
-  return documents_in(files, result.campaign.name, tables_of(result)).front();
+  return result_documents(either(files_in(files), tables_of(result)), result.campaign.name).front();
 }
 
 std::string brief_page(const Result& result) {
   const std::vector<ResultFile> files = shown_files(result);
-  return brief_page(files_in(files), result.campaign.name, tables_of(result));
+  return brief_page(either(files_in(files), tables_of(result)), result.campaign.name);
 }
 
 }  // namespace rigcal::report

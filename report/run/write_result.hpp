@@ -17,7 +17,7 @@ PlannedFiles planned_result(ResultKind kind, const datasets::Campaign& campaign)
 struct WrittenResult {
   std::vector<std::filesystem::path> files;  ///< relative to the folder; the result file is last
   std::vector<doc::Document> documents;      ///< the results as the page shows them
-  std::string json;                          ///< text of the last file
+  std::string json;                          ///< text of the last file, or what is printed
 };
 
 /// Writes the files of a fit or validation. Removes files left by an earlier run that no longer

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <optional>
+#include <span>
 
 #include "metrics/metric_table.hpp"
 #include "report/store/csv_columns.hpp"
@@ -107,10 +108,7 @@ std::string scorecard_csv(const Result& result) {
 Table residual_table(const Result& result, const calib::ConditionScore& score) {
   Table table;
   const auto add = [&](std::string name, const auto& value) {
-    table.add(std::move(name), score.time_s.size(), [&](std::size_t i) {
-      const double x = value(i);
-      return std::isfinite(x) ? x : std::nan("");
-    });
+    table.add(std::move(name), score.time_s.size(), value);
   };
   const auto add_values = [&](std::string name, std::span<const double> values) {
     add(std::move(name), [&](std::size_t i) { return at(values, i); });
@@ -144,7 +142,7 @@ std::string residuals_csv(const Result& result, const calib::ConditionScore& sco
   return text + csv_of(residual_table(result, score));
 }
 
-std::string averaged_csv(const datasets::Record& record) {
+Table averaged_table(const datasets::Record& record) {
   Table table;
   const std::size_t rows = record.time_s.size();
   table.add("time_s", record.time_s);
@@ -158,7 +156,7 @@ std::string averaged_csv(const datasets::Record& record) {
     add("sd", series.sd);
     add("count", series.count);
   }
-  return csv_of(table);
+  return table;
 }
 
 std::string repeatability_csv(const std::vector<datasets::Record>& records) {
@@ -199,10 +197,7 @@ std::string repeatability_csv(const std::vector<datasets::Record>& records) {
       .table(rows);
 }
 
-std::string simulation_csv(std::span<const double> time_s, std::string_view reference_name,
-                           std::span<const double> reference,
-                           std::span<const model::Output> outputs,
-                           const model::Simulation& simulation) {
+std::string simulation_csv(const calib::SimulationTask& task, const model::Simulation& simulation) {
   std::string text;
   if (!simulation.ok()) {
     const char* status =
@@ -210,15 +205,19 @@ std::string simulation_csv(std::span<const double> time_s, std::string_view refe
     text += csv_status(status, {fmt::format("{} at {:.6g} s: {}", to_string(simulation.status),
                                             simulation.failed_at_s, simulation.reason)});
   }
-  const std::size_t rows = simulation.ok() ? time_s.size() : 0;
+  const std::vector<double> reference = calib::reference_of(task);
+  const std::size_t rows = simulation.ok() ? task.time_s.size() : 0;
   Table table;
-  table.add("time_s", rows, [&](std::size_t i) { return time_s[i]; });
+  table.add("time_s", rows, [&](std::size_t i) { return task.time_s[i]; });
   if (!reference.empty())
-    table.add(std::string(reference_name), rows, [&](std::size_t i) { return reference[i]; });
-  for (const model::Output output : outputs)
+    table.add(std::string(info(datasets::drive_channel(task.rig)).name), rows,
+              [&](std::size_t i) { return reference[i]; });
+  for (const model::Output output : model::kAllOutputs) {
+    if (!has_output(task.values, output)) continue;
     table.add(std::string(output_name(output)), rows, [&](std::size_t i) {
       return simulation.outputs(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(output));
     });
+  }
   return text + csv_of(table);
 }
 

@@ -1,13 +1,12 @@
 #pragma once
 
-#include <span>
 #include <string>
 #include <vector>
 
 #include "calib/fit.hpp"
+#include "calib/problem/simulation_task.hpp"
 #include "datasets/prepare/repeatability.hpp"
 #include "datasets/record.hpp"
-#include "model/simulate.hpp"
 #include "report/store/result.hpp"
 #include "report/store/table.hpp"
 
@@ -30,21 +29,16 @@ std::string residuals_csv(const Result& result, const calib::ConditionScore& sco
 /// Returns the table that residuals_csv() writes, equal to one read back from the file.
 Table residual_table(const Result& result, const calib::ConditionScore& score);
 
-/// Writes averaged/<condition>.csv: time_s, then mean, sd and count for every channel.
-std::string averaged_csv(const datasets::Record& record);
+/// Returns the table of averaged/<condition>.csv: time_s, then mean, sd and count for every
+/// channel.
+Table averaged_table(const datasets::Record& record);
 
 /// Writes repeatability.csv: one row per condition and channel, with the time offset of each
 /// repeat.
 std::string repeatability_csv(const std::vector<datasets::Record>& records);
 
-/// Writes <condition>.csv for `simulate`: time_s, the reference (closed loop), and every output. If
-/// the simulation failed there are no rows, and the first line gives the reason.
-///
-/// @param reference  shape (samples); empty in open loop
-/// @param outputs  outputs to write; simulation.outputs has a column for each of kAllOutputs
-std::string simulation_csv(std::span<const double> time_s, std::string_view reference_name,
-                           std::span<const double> reference,
-                           std::span<const model::Output> outputs,
-                           const model::Simulation& simulation);
+/// Writes <condition>.csv for `simulate`: time_s, the reference (closed loop), and every output of
+/// the rig. If the simulation failed there are no rows, and the first line gives the reason.
+std::string simulation_csv(const calib::SimulationTask& task, const model::Simulation& simulation);
 
 }  // namespace rigcal::report

@@ -19,7 +19,7 @@
 #include "common/uninterrupted.hpp"
 #include "report/store/checkpoint.hpp"
 #include "report/store/kept_tasks.hpp"
-#include "report/store/stored.hpp"
+#include "report/store/result_files.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -83,7 +83,8 @@ void require_no_folder(const fs::path& file) {
 /// only with --force.
 std::optional<std::string> manifest_there(const fs::path& out) {
   try {
-    return files_in(out)(kManifestFile);
+    const auto file = files_in(out)(kManifestFile);
+    return file ? std::optional(file->content) : std::nullopt;
   } catch (const InputError&) {
     return std::nullopt;
   }
@@ -261,7 +262,7 @@ void require_inputs_kept(const fs::path& out, const std::vector<fs::path>& resul
 
 void ResultsInWriting::add(const ResultFile& file) {
   require_inputs_kept(held_.out_, {file.path}, inputs_);
-  const std::string hash = file.sha256.empty() ? sha256_of_text(file.content) : file.sha256;
+  const std::string hash = sha256_of(file);
   held_.require_replaceable({{file.path, "", hash}});
   writing_.add(held_.out_ / file.path, file.content);
   added_.push_back({file.path.generic_string(), hash, held_.holding_.verb});

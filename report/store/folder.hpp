@@ -1,5 +1,6 @@
 #pragma once
 
+#include <any>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -13,12 +14,20 @@
 
 namespace rigcal::report {
 
-/// Complete content of a result file that is not written yet.
+/// Complete content of a result file.
 struct ResultFile {
   std::filesystem::path path;  ///< relative to the result folder
   std::string content;
   std::string sha256 = {};  ///< empty: not computed yet
+  /// The object that this process wrote the content from, as std::shared_ptr<const T> (made() in
+  /// report/store/result_files.hpp); empty for a file that was read.
+  std::any object = {};
 };
+
+/// Returns the hash of the content, which is computed if it is not known yet.
+inline std::string sha256_of(const ResultFile& file) {
+  return file.sha256.empty() ? sha256_of_text(file.content) : file.sha256;
+}
 
 /// Files that a run may write into its folder.
 struct PlannedFiles {

@@ -25,6 +25,8 @@ std::string json_line(const Json& json);
 /// Returns the parameter table of a plant as JSON.
 Json parameters_json(model::PlantKind plant);
 
+struct StoredFit;
+
 /// Data from an earlier fit, for `validate`.
 struct EarlierFit {
   calib::FitStatus status = calib::FitStatus::failed;
@@ -52,11 +54,12 @@ struct EarlierFit {
 ///                     names the file, the line and column or the key, and the expected content
 EarlierFit read_fit(const std::filesystem::path& file, model::PlantKind plant);
 
-/// Reads a fit.json that is already parsed.
+/// Takes what `validate` needs from a fit, as it is read from its file (as_read_back()).
 ///
 /// @param name  file name for messages
-/// @throws InputError  under the conditions of read_fit()
-EarlierFit earlier_fit(const Json& json, const std::string& name, model::PlantKind plant);
+/// @throws InputError  if it is a validation or a fit that failed, or its parameters or their
+///                     correlations are impossible
+EarlierFit earlier_fit(const StoredFit& fit, const std::string& name, model::PlantKind plant);
 
 /// Reads the parameter values from a truth.json, which `synthesize` writes.
 ///

@@ -21,11 +21,30 @@ using datasets::Scope;
 
 constexpr const char* kTruthSchema = "rigcal.truth/1";
 
+/// A fit with the name of its file for messages.
+struct NamedFit {
+  const StoredFit& stored;
+  const std::string& file;
+
+  template <typename T>
+  [[noreturn]] void refuse(const std::string& key, const T& found,
+                           const std::string& expected) const {
+    JsonNode(json_of(found), file, key, "fit.json").fail(expected);
+  }
+
+  /// Returns the row of parameter `i` in the table of the plant.
+  int row(std::size_t i, model::PlantKind plant) const {
+    const Json name = stored.parameters[i].name;
+    return parameter_row({name, file, fmt::format("parameters[{}].name", i), "fit.json"}, plant);
+  }
+};
+
 /// Computes an error for a parameter that the fit could not determine, from its interval or its
 /// bounds. Otherwise its uncertainty would be omitted.
-double undetermined_error(const calib::FittedParameter& p, const JsonNode& node) {
-  if (!p.lower) node["lower"].fail("a number");
-  if (!p.upper) node["upper"].fail("a number");
+double undetermined_error(const NamedFit& fit, std::size_t i) {
+  const calib::FittedParameter& p = fit.stored.parameters[i];
+  if (!p.lower) fit.refuse(fmt::format("parameters[{}].lower", i), p.lower, "a number");
+  if (!p.upper) fit.refuse(fmt::format("parameters[{}].upper", i), p.upper, "a number");
   return calib::undetermined_sd(p.ci95, *p.lower, *p.upper);
 }
 
@@ -48,31 +67,32 @@ double half_in_errors(const calib::FittedParameter& p, double error) {
 }
 
 /// Refuses a matrix that is not a correlation matrix.
-void require_correlations(const calib::Correlation& stored, const JsonNode& matrix) {
-  const auto size = static_cast<Eigen::Index>(stored.names.size());
-  if (stored.matrix.rows() != size || stored.matrix.cols() != size)
-    matrix.fail("one row and one column per name");
-  if (calib::are_correlations(stored.matrix)) return;
-  matrix.fail(
+void require_correlations(const NamedFit& fit) {
+  const Eigen::MatrixXd& matrix = fit.stored.correlation.matrix;
+  const auto size = static_cast<Eigen::Index>(fit.stored.correlation.names.size());
+  if (matrix.rows() != size || matrix.cols() != size)
+    fit.refuse("correlation.matrix", matrix, "one row and one column per name");
+  if (calib::are_correlations(matrix)) return;
+  fit.refuse(
+      "correlation.matrix", matrix,
       "correlations: numbers from -1 to 1, the same on both sides of a diagonal of ones, by which "
       "no combination of the parameters has a negative variance");
 }
 
-Estimates estimates_of(const StoredFit& stored, const JsonNode& root, model::PlantKind plant) {
+Estimates estimates_of(const NamedFit& fit, model::PlantKind plant) {
+  const StoredFit& stored = fit.stored;
   const std::vector<std::string>& names = stored.correlation.names;
-  const JsonNode matrix = root["correlation"]["matrix"];
-  const std::vector<JsonNode> nodes = root["parameters"].items();
   Estimates result;
-  require_correlations(stored.correlation, matrix);
+  require_correlations(fit);
   std::vector<std::optional<Eigen::Index>> places;  // rows in the correlation matrix
   std::vector<double> errors;
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
+  for (std::size_t i = 0; i < stored.parameters.size(); ++i) {
     const calib::FittedParameter& p = stored.parameters[i];
     if (!p.fitted || p.nuisance) continue;
     const auto place =
         std::find(names.begin(), names.end(), parameter_label(p.name, p.scope, p.level));
     const auto error = error_of(p);
-    const calib::EstimateSpread::Estimate estimate{parameter_row(nodes[i]["name"], plant), p.scope,
+    const calib::EstimateSpread::Estimate estimate{fit.row(i, plant), p.scope,
                                                    p.level.value_or("")};
     if (p.scope == Scope::condition && error && *error > 0.0 && place == names.end()) {
       result.own[estimate.level].emplace_back(estimate, *error);
@@ -84,14 +104,16 @@ Estimates estimates_of(const StoredFit& stored, const JsonNode& root, model::Pla
     const bool determined = error && place != names.end();
     places.push_back(determined ? std::optional<Eigen::Index>(place - names.begin())
                                 : std::nullopt);
-    errors.push_back(determined ? *error : undetermined_error(p, nodes[i]));
+    errors.push_back(determined ? *error : undetermined_error(fit, i));
     if (determined && *error > 0.0)
       result.widened = std::max(result.widened, half_in_errors(p, *error) / metrics::kNormal95);
   }
   result.covariance = calib::covariance_of(errors, places, stored.correlation.matrix);
   for (std::size_t i = 0; i < places.size(); ++i) {
-    if (places[i] && result.covariance.row(static_cast<Eigen::Index>(i)).hasNaN())
-      matrix.items()[static_cast<std::size_t>(*places[i])].fail("one number per name");
+    if (!places[i] || !result.covariance.row(static_cast<Eigen::Index>(i)).hasNaN()) continue;
+    const auto row = stored.correlation.matrix.row(*places[i]);
+    fit.refuse(fmt::format("correlation.matrix[{}]", *places[i]),
+               std::vector<double>(row.begin(), row.end()), "one number per name");
   }
   return result;
 }
@@ -108,9 +130,9 @@ std::vector<std::string> dates_of_fit(const StoredFit& stored) {
   return dates;
 }
 
-void read_covariance(const StoredFit& stored, const JsonNode& root, model::PlantKind plant,
-                     EarlierFit& fit) {
-  const Estimates estimates = estimates_of(stored, root, plant);
+void read_covariance(const NamedFit& named, model::PlantKind plant, EarlierFit& fit) {
+  const StoredFit& stored = named.stored;
+  const Estimates estimates = estimates_of(named, plant);
   std::vector<Eigen::Index> of_rig;
   for (std::size_t i = 0; i < estimates.list.size(); ++i) {
     if (estimates.list[i].scope != Scope::rig) continue;
@@ -147,21 +169,20 @@ calib::Aspect judged(const StoredFit& stored, calib::Aspect calib::Assessment::*
 }
 
 /// Reads the fitted values, and the known values with scope rig.
-void read_values(const StoredFit& stored, const JsonNode& root, model::PlantKind plant,
-                 EarlierFit& fit) {
-  const std::vector<JsonNode> nodes = root["parameters"].items();
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const calib::FittedParameter& p = stored.parameters[i];
+void read_values(const NamedFit& named, model::PlantKind plant, EarlierFit& fit) {
+  for (std::size_t i = 0; i < named.stored.parameters.size(); ++i) {
+    const calib::FittedParameter& p = named.stored.parameters[i];
     FittedValue value;
-    value.index = parameter_row(nodes[i]["name"], plant);
+    value.index = named.row(i, plant);
     value.scope = p.scope;
     if (p.scope != Scope::rig) {
-      if (!p.level) nodes[i]["level"].fail("a text");
+      if (!p.level) named.refuse(fmt::format("parameters[{}].level", i), p.level, "a text");
       value.level = *p.level;
     }
     // A nuisance parameter applies only to the records of its own fit.
     if (p.nuisance || (!p.fitted && !std::isfinite(p.value))) continue;
-    if (!std::isfinite(p.value)) nodes[i]["value"].fail("a number");
+    if (!std::isfinite(p.value))
+      named.refuse(fmt::format("parameters[{}].value", i), p.value, "a number");
     value.value = p.value;
     if (p.fitted) {
       fit.values.push_back(std::move(value));
@@ -171,23 +192,31 @@ void read_values(const StoredFit& stored, const JsonNode& root, model::PlantKind
   }
 }
 
+void require_fit(const NamedFit& fit) {
+  if (!is_fit_schema(fit.stored.schema))
+    fit.refuse("schema", fit.stored.schema, fmt::format("\"{}\"", kFitSchema));
+}
+
 }  // namespace
 
 EarlierFit read_fit(const std::filesystem::path& file, model::PlantKind plant) {
-  return earlier_fit(read_json(file, "the fit.json of an earlier fit"), file.string(), plant);
-}
-
-EarlierFit earlier_fit(const Json& json, const std::string& name, model::PlantKind plant) {
-  const JsonNode root(json, name, "", "fit.json");
+  const Json json = read_json(file, "the fit.json of an earlier fit");
+  const JsonNode root(json, file.string(), "", "fit.json");
   if (!json.is_object()) {
-    throw InputError({name}, "found no JSON object, expected the fit.json of an earlier fit");
-  }
-  if (!is_fit_schema(root["schema"].string())) {
-    root["schema"].fail(fmt::format("\"{}\"", kFitSchema));
+    throw InputError({file.string()},
+                     "found no JSON object, expected the fit.json of an earlier fit");
   }
   StoredFit stored;
+  stored.schema = root["schema"].string();
+  require_fit({stored, file.string()});
   read_into(root, stored);
   as_of_now(stored.schema, stored.parameters);
+  return earlier_fit(stored, file.string(), plant);
+}
+
+EarlierFit earlier_fit(const StoredFit& stored, const std::string& name, model::PlantKind plant) {
+  const NamedFit named{stored, name};
+  require_fit(named);
   if (stored.status == calib::FitStatus::failed) {
     throw InputError({name}, fmt::format("this fit failed ({}), its values mean nothing; expected "
                                          "one that converged",
@@ -197,10 +226,10 @@ EarlierFit earlier_fit(const Json& json, const std::string& name, model::PlantKi
   result.status = stored.status;
   result.verdict = stored.verdict;
   result.message = stored.message;
-  read_values(stored, root, plant, result);
+  read_values(named, plant, result);
   result.validity = stored.validity;
   if (stored.validated) result.validated = *stored.validated;
-  read_covariance(stored, root, plant, result);
+  read_covariance(named, plant, result);
   for (const StoredCondition& condition : stored.conditions)
     result.conditions.emplace_back(condition.id, condition.use);
   for (const InputFile& input : stored.provenance.inputs)

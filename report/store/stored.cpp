@@ -2,31 +2,36 @@
 
 #include <fmt/format.h>
 
-#include <system_error>
-
 #include "common/error.hpp"
-#include "common/file.hpp"
 #include "common/parallel.hpp"
 #include "datasets/campaign/condition_id.hpp"
 #include "report/json/json_fields.hpp"
 #include "report/json/read_json.hpp"
-#include "report/store/result_files.hpp"
 
 namespace rigcal::report {
 namespace {
-
-/// Maximum size of a table, enough for about two million rows of 20 columns.
-constexpr std::size_t kMostTableBytes = std::size_t{512} << 20;
 
 std::string path_in(const std::string& where, const std::string& name) {
   return (std::filesystem::path(where) / name).string();
 }
 
 Json parsed(const ReadFile& read, const std::string& where, const std::string& name) {
-  const auto text = read(name);
-  if (!text)
+  const auto file = read(name);
+  if (!file)
     throw InputError({path_in(where, name)}, "is missing; make the result again with this version");
-  return parse_json(*text, path_in(where, name));
+  return parse_json(file->content, path_in(where, name));
+}
+
+/// Returns the schema of the result that residual_tests.json belongs to.
+std::string schema_of_curves(const ReadFile& read, const std::string& where) {
+  if (const auto curves = made<StoredCurves>(read("residual_tests.json"))) return curves->of;
+  return text_of(parsed(read, where, "residual_tests.json"), "of");
+}
+
+std::shared_ptr<const Table> table_or_empty(const ReadFile& read, const std::string& where,
+                                            const std::string& name) {
+  auto table = table_in(read, where, name);
+  return table ? table : std::make_shared<const Table>();
 }
 
 /// Checks the id of a condition. It is part of a file name, and a result from an unknown source
@@ -70,15 +75,6 @@ void require_matching(const StoredFit& fit, const std::string& file) {
 
 }  // namespace
 
-ReadFile files_in(const std::filesystem::path& folder) {
-  return [folder](const std::filesystem::path& path) -> std::optional<std::string> {
-    std::error_code error;
-    if (!std::filesystem::exists(folder / path, error)) return std::nullopt;
-    const std::size_t most = path.extension() == ".json" ? JsonLimits().bytes : kMostTableBytes;
-    return read_file(folder / path, most, "a result of rigcal");
-  };
-}
-
 Json load_json(const ReadFile& read, const std::string& where, const std::string& name) {
   Json json = parsed(read, where, name);
   const bool of_fit = name == "fit.json";
@@ -94,18 +90,21 @@ Json load_json(const ReadFile& read, const std::string& where, const std::string
 }
 
 std::variant<Calibration, StoredTablesFit> load_calibration(const ReadFile& read,
-                                                            const std::string& where, int threads,
-                                                            const ReadTable& made) {
+                                                            const std::string& where, int threads) {
   Calibration stored;
-  const bool has_fit = read("fit.json").has_value();
-  const bool both = has_fit && read("validation.json").has_value();
-  const bool is_fit =
-      both ? is_fit_schema(text_of(parsed(read, where, "residual_tests.json"), "of")) : has_fit;
+  const bool is_fit = read("fit.json") &&
+                      (!read("validation.json") || is_fit_schema(schema_of_curves(read, where)));
   stored.file = is_fit ? "fit.json" : "validation.json";
-  const Json json = load_json(read, where, stored.file);
-  if (is_fit && is_of_tables(json)) return as<StoredTablesFit>(json, where, stored.file);
-  stored.result = as<StoredFit>(json, where, stored.file);
-  as_of_now(stored.result.schema, stored.result.parameters);
+  if (const auto tables = made<StoredTablesFit>(read(stored.file))) return *tables;
+  const auto object = made<StoredFit>(read(stored.file));
+  if (object) {
+    stored.result = *object;
+  } else {
+    const Json json = load_json(read, where, stored.file);
+    if (is_fit && is_of_tables(json)) return as<StoredTablesFit>(json, where, stored.file);
+    stored.result = as<StoredFit>(json, where, stored.file);
+    as_of_now(stored.result.schema, stored.result.parameters);
+  }
   const ReadFile own = files_of_run(read, stored.result.provenance, where, stored.file);
   require_matching(stored.result, path_in(where, stored.file));
   stored.curves = load<StoredCurves>(own, where, "residual_tests.json");
@@ -115,21 +114,16 @@ std::variant<Calibration, StoredTablesFit> load_calibration(const ReadFile& read
     require_id(condition.id, "id", path_in(where, stored.file));
     names.push_back("residuals/" + condition.id + ".csv");
   }
-  if (made) {
-    stored.series = [made, names](std::size_t i) {
-      auto table = made(names[i]);
-      return table != nullptr ? table : std::make_shared<const Table>();
-    };
+  const auto series = [own, where, names](std::size_t i) {
+    return table_or_empty(own, where, names[i]);
+  };
+  if (object) {
+    stored.series = series;
     return stored;
   }
-  const auto tables = std::make_shared<std::vector<Table>>(names.size());
-  parallel_for(names.size(), threads, [&](std::size_t i) {
-    if (const auto text = own(names[i]))
-      (*tables)[i] = parse_table(*text, path_in(where, names[i]));
-  });
-  stored.series = [tables](std::size_t i) {
-    return std::shared_ptr<const Table>(tables, &(*tables)[i]);
-  };
+  std::vector<std::shared_ptr<const Table>> tables(names.size());
+  parallel_for(names.size(), threads, [&](std::size_t i) { tables[i] = series(i); });
+  stored.series = [tables](std::size_t i) { return tables[i]; };
   return stored;
 }
 
@@ -137,9 +131,8 @@ LeakTableFiles load_leak_table(const ReadFile& read, const std::string& where) {
   LeakTableFiles stored{load<StoredLeakTable>(read, where, "leak_table.json"), {}};
   const ReadFile own = files_of_run(read, stored.result.provenance, where, "leak_table.json");
   for (const calib::FeatureRow& feature : stored.result.features) {
-    const std::string name = "levels/" + level_file(feature.level);
-    if (const auto series = own(name))
-      stored.levels.emplace_back(feature.level, parse_table(*series, path_in(where, name)));
+    if (const auto series = table_in(own, where, "levels/" + level_file(feature.level)))
+      stored.levels.emplace_back(feature.level, *series);
   }
   return stored;
 }
@@ -150,9 +143,8 @@ ParityFiles load_parity(const ReadFile& read, const std::string& where) {
   for (const diagnosis::ParityRecord& record : stored.result.records) {
     require_id(record.condition, "condition", path_in(where, "parity.json"));
     if (stored.series.contains(record.condition)) continue;
-    const std::string name = "parity/" + record.condition + ".csv";
-    if (const auto series = own(name))
-      stored.series.emplace(record.condition, parse_table(*series, path_in(where, name)));
+    if (auto series = table_in(own, where, "parity/" + record.condition + ".csv"))
+      stored.series.emplace(record.condition, std::move(series));
   }
   return stored;
 }
@@ -171,9 +163,7 @@ AverageFiles load_average(const ReadFile& read, const std::string& where) {
   const ReadFile own = files_of_run(read, stored.result.provenance, where, "average.json");
   for (const StoredRecord& record : stored.result.records) {
     require_id(record.condition, "condition", path_in(where, "average.json"));
-    const std::string name = "averaged/" + record.condition + ".csv";
-    const auto text = own(name);
-    stored.series.push_back(text ? parse_table(*text, path_in(where, name)) : Table{});
+    stored.series.push_back(table_or_empty(own, where, "averaged/" + record.condition + ".csv"));
   }
   return stored;
 }
@@ -196,8 +186,7 @@ PlanFiles load_plan(const ReadFile& read, const std::string& where) {
                      path_in(where, "plan.json"));
   }
   const ReadFile own = files_of_run(read, plan.provenance, where, "plan.json");
-  if (const auto text = own(kResponseFile))
-    stored.response = parse_table(*text, path_in(where, kResponseFile));
+  if (const auto response = table_in(own, where, kResponseFile)) stored.response = *response;
   return stored;
 }
 

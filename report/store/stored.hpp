@@ -5,12 +5,12 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include "report/store/result_files.hpp"
 #include "report/store/stored/stored_diagnosis.hpp"
 #include "report/store/stored/stored_fit.hpp"
 #include "report/store/stored/stored_leak_table.hpp"
@@ -18,7 +18,6 @@
 #include "report/store/stored/stored_plan.hpp"
 #include "report/store/stored/stored_record.hpp"
 #include "report/store/stored/stored_tables_fit.hpp"
-#include "report/store/table.hpp"
 
 // Reads the files of a result folder. All functions throw InputError if a file is missing or is not
 // valid JSON or a valid table. `where` is the folder, for messages.
@@ -26,15 +25,6 @@
 namespace rigcal::report {
 
 using Json = nlohmann::ordered_json;
-
-/// Returns the text of a file, given its path in the result folder; std::nullopt if it is missing.
-using ReadFile = std::function<std::optional<std::string>(const std::filesystem::path&)>;
-
-/// Returns the table from a file, given its path in the result folder; null if it is missing.
-using ReadTable = std::function<std::shared_ptr<const Table>(const std::filesystem::path&)>;
-
-/// Returns a reader for a folder on disk.
-ReadFile files_in(const std::filesystem::path& folder);
 
 /// A fit or validation.
 struct Calibration {
@@ -48,12 +38,12 @@ struct Calibration {
 /// Loads a fit or validation. If the folder contains both, loads the one that residual_tests.json
 /// belongs to. A fit to published tables has no further files.
 ///
+/// The series of a result that this process has made are asked for one by one when they are needed,
+/// so that not all are in memory at once.
+///
 /// @param threads  number of threads for reading the series
-/// @param made     returns tables from this run, which need not be read back; called for each table
-///                 only when it is needed, so that not all are in memory at once
 std::variant<Calibration, StoredTablesFit> load_calibration(const ReadFile& read,
-                                                            const std::string& where, int threads,
-                                                            const ReadTable& made = {});
+                                                            const std::string& where, int threads);
 
 /// A leak table, with the feature series of each level.
 struct LeakTableFiles {
@@ -65,7 +55,7 @@ LeakTableFiles load_leak_table(const ReadFile& read, const std::string& where);
 /// Parity residuals, with the series of each condition, by its id.
 struct ParityFiles {
   StoredParity result;
-  std::map<std::string, Table> series;
+  std::map<std::string, std::shared_ptr<const Table>> series;
 };
 ParityFiles load_parity(const ReadFile& read, const std::string& where);
 
@@ -74,7 +64,7 @@ StoredDiagnosis load_diagnosis(const ReadFile& read, const std::string& where);
 /// An average, with the mean series of each record, shape (records); empty where a file is missing.
 struct AverageFiles {
   StoredAverage result;
-  std::vector<Table> series;
+  std::vector<std::shared_ptr<const Table>> series;
 };
 AverageFiles load_average(const ReadFile& read, const std::string& where);
 
@@ -98,9 +88,10 @@ Stored as(const Json& json, const std::string& where, const std::string& name) {
   return value;
 }
 
-/// Loads a JSON result as a stored type.
+/// Loads a JSON result as a stored type: the object itself if this process has made the file.
 template <typename Stored>
 Stored load(const ReadFile& read, const std::string& where, const std::string& name) {
+  if (const auto object = made<Stored>(read(name))) return *object;
   return as<Stored>(load_json(read, where, name), where, name);
 }
 

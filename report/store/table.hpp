@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -12,14 +13,19 @@ struct Table {
   std::vector<std::string> names;
   std::vector<std::vector<double>> columns;  ///< shape (names)(rows); NaN where a field is empty
 
+  /// Adds a column. A value that is not finite becomes NaN, as if it was read back from an empty
+  /// field.
+  ///
   /// @param value  called with the index of each row
   template <typename Value>
   void add(std::string name, std::size_t rows, const Value& value) {
-    names.push_back(std::move(name));
-    std::vector<double>& column = columns.emplace_back(rows);
-    for (std::size_t i = 0; i < rows; ++i) column[i] = static_cast<double>(value(i));
+    std::vector<double> values(rows);
+    for (std::size_t i = 0; i < rows; ++i) values[i] = static_cast<double>(value(i));
+    add(std::move(name), std::move(values));
   }
   void add(std::string name, std::vector<double> values) {
+    for (double& value : values)
+      if (!std::isfinite(value)) value = std::nan("");
     names.push_back(std::move(name));
     columns.push_back(std::move(values));
   }

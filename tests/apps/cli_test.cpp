@@ -63,6 +63,13 @@ bool says_something(const json& value) {
   return value.is_string() && !value.get<std::string>().empty();
 }
 
+/// Checks that the page drawn from the objects of a run is the one drawn from its files.
+void check_page_of_files(const CommandFolder& folder, const std::string& out) {
+  const std::string page = folder.read(out + "/report.html");
+  CHECK(folder.run({"report", out}).exit_code == 0);
+  CHECK(folder.read(out + "/report.html") == page);
+}
+
 /// Checks that every number in a fit.json or validation.json is finite, and that a reason is given
 /// for every missing one.
 void check_complete(const std::string& text) {
@@ -644,6 +651,7 @@ TEST_CASE("fit and validate: a twin from its records to its verdict", "[apps]") 
     CHECK_FALSE(folder.has("val/fitted.toml"));
     CHECK_THAT(validation.out, Contains("rigcal.validation/1"));
     check_complete(validation.out);
+    check_page_of_files(folder, "val");
     // The prediction band equals that of the fit, because fit.json contains errors and
     // correlations.
     const auto theirs = column(folder.read("out/residuals/square.csv"), "prediction_sd_position_m");
@@ -762,6 +770,7 @@ TEST_CASE("fit: stopped by a limit of iterations it says so", "[apps]") {
   CHECK_THAT(outcome.out, StartsWith("STOPPED: ") && Contains("not judged"));
   CHECK_THAT(outcome.out, !Contains("identified"));
   check_complete(folder.read("out/fit.json"));
+  check_page_of_files(folder, "out");
   const json fit = json::parse(folder.read("out/fit.json"));
   for (const json& parameter : fit["parameters"]) {
     if (!parameter["fitted"].get<bool>()) continue;
@@ -791,6 +800,7 @@ TEST_CASE("fit: what cannot be simulated gives no parameters", "[apps]") {
   CHECK_THAT(folder.read("out/parameters.csv"), StartsWith("# status: failed: "));
   CHECK_THAT(folder.read("out/residuals/sine.csv"), StartsWith("# status: failed: "));
   CHECK_THAT(folder.read("out/report.html"), Contains("<title>FAILED"));
+  check_page_of_files(folder, "out");
   check_complete(folder.read("out/fit.json"));
   check_bad_input(folder, {"validate", "twin/campaign.toml", "--fit", "out/fit.json"}, {"failed"});
 }

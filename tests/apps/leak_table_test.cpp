@@ -196,6 +196,7 @@ TEST_CASE("leak-table: position and flows at each level are drawn", "[apps]") {
   share << "needle open: " << std::setprecision(3) << percent << " % of the servo flow leak";
   CHECK_THAT(page, Contains(share.str()) && Contains("Position in percent of the amplitude"));
   REQUIRE(folder.run({"report", "out", "--figures"}).exit_code == 0);
+  CHECK(folder.read("out/report.html") == page);
   CHECK_THAT(folder.read("out/figures/leak_positions.svg"),
              Contains("needle open") && Contains("% of the amplitude"));
   CHECK_THAT(folder.read("out/figures/leak_flows_needle_open.svg"),

@@ -67,7 +67,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       if (path.extension() == ".csv") return "time_s,position_residual_m\n0,1\n";
       return std::nullopt;
     };
-    read_or_refuse([&] { result_page(read, "folder", 1); });
+    read_or_refuse([&] { result_page(test::reading(read), "folder", 1); });
   }
   read_or_refuse([&] {
     const auto results = load_compared({fuzz::scratch_folder(), fuzz::scratch_folder()});

@@ -1,12 +1,28 @@
 #pragma once
 
+#include <filesystem>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "report/comparison/comparison.hpp"
 #include "report/store/stored.hpp"
 
 namespace rigcal::test {
+
+/// Makes a reader from a function that returns the text of a file, or std::nullopt.
+template <typename Text>
+report::ReadFile reading(Text text) {
+  return [text = std::move(text)](
+             const std::filesystem::path& path) -> std::shared_ptr<const report::ResultFile> {
+    std::optional<std::string> content = text(path);
+    if (!content) return nullptr;
+    return std::make_shared<const report::ResultFile>(
+        report::ResultFile{path, std::move(*content)});
+  };
+}
 
 /// A residual_tests.json without curves.
 inline constexpr const char* kNoCurves =

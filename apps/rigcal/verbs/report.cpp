@@ -27,7 +27,7 @@ ExitCode run_report(const Options& options) {
   const report::ReadFile read = report::files_in(options.folder);
   const std::string where = options.folder.string();
   std::vector<report::ResultFile> files;
-  files.push_back({"report.html", report::result_page(read, where, options.threads).html});
+  files.push_back({"report.html", report::result_page(read, where, options.threads)});
   if (options.figures) {
     for (auto& [path, text] : report::result_figures(read, where))
       files.push_back({path, std::move(text)});

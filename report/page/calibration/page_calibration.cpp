@@ -79,7 +79,7 @@ Part fit_part(const Calibration& stored, const ResultFolder& folder) {
 }  // namespace
 
 Part calibration_part(const ResultFolder& folder) {
-  const auto stored = load_calibration(folder.read, folder.where, folder.threads, folder.made);
+  const auto stored = load_calibration(folder.read, folder.where, folder.threads);
   if (const auto* tables = std::get_if<StoredTablesFit>(&stored)) return tables_fit_part(*tables);
   const auto& calibration = std::get<Calibration>(stored);
   Part part = fit_part(calibration, folder);
@@ -88,7 +88,7 @@ Part calibration_part(const ResultFolder& folder) {
 }
 
 std::vector<Figure> calibration_figures(const ResultFolder& folder) {
-  const auto stored = load_calibration(folder.read, folder.where, folder.threads, folder.made);
+  const auto stored = load_calibration(folder.read, folder.where, folder.threads);
   std::vector<Figure> figures;
   const auto* fit = std::get_if<Calibration>(&stored);
   if (fit == nullptr) return figures;

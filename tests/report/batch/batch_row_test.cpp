@@ -7,8 +7,8 @@
 
 #include "report/batch/batch.hpp"
 #include "report/document/render_terminal.hpp"
-#include "report/page/page_batch.hpp"
 #include "report/page/page_parts.hpp"
+#include "report/page/section.hpp"
 #include "tests/report/stored_fixture.hpp"
 
 // Tests for the row of a rig and the summary of all rows.

@@ -493,7 +493,8 @@ TEST_CASE("comparison: a comparison.json whose lists are too short is refused by
   const auto complaint = [](const StoredComparison& comparison) -> std::string {
     const std::string text = json_of(comparison).dump();
     try {
-      load_comparison([&](const std::string&) { return std::optional(text); }, "folder");
+      load_comparison(rigcal::test::reading([&](const auto&) { return std::optional(text); }),
+                      "folder");
     } catch (const rigcal::InputError& error) {
       return error.what();
     }

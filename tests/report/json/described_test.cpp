@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 
 #include "common/error.hpp"
 
@@ -82,6 +83,35 @@ TEST_CASE("described: keys of an inlined struct are among the others", "[report]
   read_into(JsonNode(json, "a.json", "", "a.json"), read);
   CHECK(read.part.colour == Colour::green);
   CHECK(schema_of<Holder>()["required"].dump() == R"(["number","name","colour","last"])");
+}
+
+TEST_CASE("described: as it is read back, without its text", "[report]") {
+  const double infinity = std::numeric_limits<double>::infinity();
+  Whole whole = kWhole;
+  whole.value = infinity;
+  whole.maybe = std::nan("");
+  whole.range = Range{-infinity, 2.0};
+  whole.amplitude_m = infinity;
+  whole.parts[0].name = "valve \xfc \xc3\xbc";
+  whole.limits[0] = {"\xff", -infinity};
+  whole.pair = {0.1 + 0.2, infinity};
+  const Whole read = read_text(json_of(whole).dump(-1, ' ', false, Json::error_handler_t::replace));
+  as_read_back(whole);
+  CHECK(std::isnan(whole.value));
+  CHECK_FALSE(whole.maybe);
+  CHECK(std::isnan(whole.range->low));
+  CHECK_FALSE(whole.amplitude_m);
+  CHECK(whole.parts[0].name == "valve \xef\xbf\xbd \xc3\xbc");
+  CHECK(whole.parts[0].name == read.parts[0].name);
+  CHECK(whole.limits[0].first == read.limits[0].first);
+  CHECK(whole.pair[0] == read.pair[0]);
+  CHECK(std::isnan(whole.pair[1]));
+  CHECK(json_of(whole)["parts"] == json_of(read)["parts"]);
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(2, 2);
+  matrix(0, 1) = infinity;
+  as_read_back(matrix);
+  CHECK(std::isnan(matrix(0, 1)));
+  CHECK(matrix(1, 1) == 1.0);
 }
 
 TEST_CASE("described: members are keys in their order", "[report]") {

@@ -3,6 +3,7 @@
 #include "common/error.hpp"
 #include "report/page/page.hpp"
 #include "report/page/page_parts.hpp"
+#include "tests/report/stored_fixture.hpp"
 
 using Catch::Contains;
 using namespace rigcal::report;
@@ -45,14 +46,14 @@ Json stored_plan() {
 }
 
 std::string page_with(const std::string& file, const Json& json) {
-  const ReadFile read = [&](const std::filesystem::path& path) -> std::optional<std::string> {
+  const auto read = [&](const std::filesystem::path& path) -> std::optional<std::string> {
     if (path == file) return json.dump();
     if (path == "averaged/sine.csv")
       return "time_s,position_m_mean,position_m_sd,position_m_count\n"
              "0,0,1e-5,3\n0.1,0.01,2e-5,3\n0.2,0.02,3e-5,3\n0.3,0.01,2e-5,3\n";
     return std::nullopt;
   };
-  return result_page(read, "folder", 1).html;
+  return result_page(rigcal::test::reading(read), "folder", 1);
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ namespace {
 const std::string kNasty = "</script><script>alert(1)</script> \"q\" 'a' & \n\xc3\xbc";
 
 std::string page(const Json& json, const std::string& file = "fit.json", int threads = 2) {
-  const ReadFile read = [&](const std::filesystem::path& path) -> std::optional<std::string> {
+  const auto read = [&](const std::filesystem::path& path) -> std::optional<std::string> {
     if (path == file) return json.dump();
     if (path == "residual_tests.json") return rigcal::test::kNoCurves;
     if (path == "residuals/sine.csv") {
@@ -29,7 +29,7 @@ std::string page(const Json& json, const std::string& file = "fit.json", int thr
     }
     return std::nullopt;
   };
-  return result_page(read, "folder", threads).html;
+  return result_page(rigcal::test::reading(read), "folder", threads);
 }
 
 /// Returns the text inside the first element with this class.
@@ -545,7 +545,7 @@ TEST_CASE("page: the budget of a score, and the U that it adds up to", "[report]
 
 TEST_CASE("page: the band of prediction lies around model and residual", "[report]") {
   const auto drawn = [](const std::string& titles, const std::string& fields) {
-    const ReadFile read = [&](const std::filesystem::path& path) -> std::optional<std::string> {
+    const auto read = [&](const std::filesystem::path& path) -> std::optional<std::string> {
       if (path == "fit.json") return stored_result().dump();
       if (path == "residual_tests.json") return rigcal::test::kNoCurves;
       if (path != "residuals/sine.csv") return std::nullopt;
@@ -556,7 +556,7 @@ TEST_CASE("page: the band of prediction lies around model and residual", "[repor
                fields + ",1,0.001\n";
       return csv;
     };
-    return result_page(read, "folder", 1).html;
+    return result_page(rigcal::test::reading(read), "folder", 1);
   };
   const std::string with = drawn(",prediction_sd_position_m", ",0.0002");
   CHECK_THAT(with, Contains("95 % prediction") && Contains("class=\"band model\""));
@@ -568,13 +568,13 @@ TEST_CASE("page: the band of prediction lies around model and residual", "[repor
 }
 
 TEST_CASE("page: a result that cannot be read is named beside those that can", "[report]") {
-  const ReadFile read = [&](const std::filesystem::path& path) -> std::optional<std::string> {
+  const auto read = [&](const std::filesystem::path& path) -> std::optional<std::string> {
     if (path == "fit.json") return stored_result().dump();
     if (path == "residual_tests.json") return rigcal::test::kNoCurves;
     if (path == "leak_table.json") return R"({"schema": "rigcal.leak_table/1"})";
     return std::nullopt;
   };
-  const std::string html = result_page(read, "folder", 1).html;
+  const std::string html = result_page(rigcal::test::reading(read), "folder", 1);
   CHECK_THAT(word_of(html), Contains("PASS"));
   CHECK_THAT(html, Contains("Left out: folder") && !Contains("id=\"leak-table\""));
 }
@@ -613,13 +613,13 @@ TEST_CASE("page: 24 conditions stay below 8 MB, however long they are", "[report
     for (int k = 0; k < 3; ++k) csv += "," + std::to_string(x);
     csv += "\n";
   }
-  const ReadFile read = [&](const std::filesystem::path& path) -> std::optional<std::string> {
+  const auto read = [&](const std::filesystem::path& path) -> std::optional<std::string> {
     if (path == "fit.json") return json.dump();
     if (path == "residual_tests.json") return rigcal::test::kNoCurves;
     if (path.parent_path() == "residuals") return csv;
     return std::nullopt;
   };
-  const std::string html = result_page(read, "folder", 2).html;
+  const std::string html = result_page(rigcal::test::reading(read), "folder", 2);
   CHECK(html.size() < 8'000'000);
   CHECK(html.size() > 1'000'000);
 }

@@ -1,7 +1,8 @@
 #include <algorithm>
+#include <atomic>
 #include <catch2/catch.hpp>
 
-#include "report/run/simulation_file.hpp"
+#include "report/job/job.hpp"
 #include "tests/report/run/made_rig.hpp"
 
 namespace rigcal::report {
@@ -10,22 +11,46 @@ namespace {
 TEST_CASE("simulation: each condition, with its reference, all outputs", "[report][run]") {
   test::MadeRig rig;
   const datasets::Campaign campaign = load(rig.choice);
-  std::vector<calib::SimulationTask> tasks;
-  for (const datasets::Condition& condition : campaign.conditions)
-    tasks.push_back(calib::simulation_task(campaign, condition));
-  const auto simulations = calib::simulate(tasks, calib::simulation_options(campaign), 2);
+  const std::atomic<bool> cancel{false};
+  JobTerms terms{"", {}, 2, cancel, "out"};
+  PlannedFiles planned;
+  terms.hold = [&](PlannedFiles files) { planned = std::move(files); };
+  const JobResult job = simulation_job(campaign, {}, terms);
+  const std::vector<model::Simulation>& simulations = job.simulations->simulations;
   REQUIRE(simulations.size() == 3);
-  for (std::size_t i = 0; i < tasks.size(); ++i) {
+  REQUIRE(job.files.size() == 3);
+  REQUIRE(planned.files.size() == 3);
+  for (std::size_t i = 0; i < simulations.size(); ++i) {
+    calib::SimulationTask task = job.simulations->tasks[i];
     REQUIRE(simulations[i].ok());
-    const auto samples = static_cast<Eigen::Index>(tasks[i].time_s.size());
+    const auto samples = static_cast<Eigen::Index>(task.time_s.size());
     CHECK(simulations[i].outputs.rows() == samples);
     CHECK(simulations[i].outputs.cols() == static_cast<Eigen::Index>(model::kAllOutputs.size()));
-    CHECK(reference_of(tasks[i]).size() == tasks[i].time_s.size());
-    const std::string text = simulation_file(tasks[i], simulations[i]);
+    CHECK(reference_of(task).size() == task.time_s.size());
+    CHECK(job.files[i].path == planned.files[i]);
+    const std::string& text = job.files[i].content;
     CHECK(std::count(text.begin(), text.end(), '\n') == samples + 1);
-    tasks[i].rig.controller = model::ControllerKind::none;
-    CHECK(reference_of(tasks[i]).empty());
+    task.rig.controller = model::ControllerKind::none;
+    CHECK(reference_of(task).empty());
   }
+  CHECK(job.printed->json.size() == 3);
+  CHECK(job.printed->problems.empty());
+}
+
+TEST_CASE("simulation: the chosen conditions alone, each once, without a folder no files",
+          "[report][run]") {
+  test::MadeRig rig;
+  const datasets::Campaign campaign = load(rig.choice);
+  const std::atomic<bool> cancel{false};
+  JobTerms terms{"", {}, 1, cancel};
+  terms.hold = [](const PlannedFiles&) {};
+  const std::string second = campaign.conditions[1].id;
+  const JobResult job = simulation_job(campaign, {{second, second}}, terms);
+  REQUIRE(job.simulations->tasks.size() == 1);
+  CHECK(job.simulations->tasks[0].condition->id == second);
+  CHECK(job.files.empty());
+  CHECK_THROWS_WITH(simulation_job(campaign, {{"none"}, "condition"}, terms),
+                    Catch::StartsWith("condition: "));
 }
 
 TEST_CASE("simulation: what the campaign says of it counts", "[report][run]") {

@@ -19,7 +19,7 @@ bool warns(const calib::Fit& fit, const std::string& words) {
 TEST_CASE("validation: a fit in memory is the fit of its file", "[report][run]") {
   test::MadeFit fitted;
   const EarlierFit of_memory =
-      earlier_fit(json_of(stored(fitted.result())), "fit", fitted.campaign.rig.plant);
+      earlier_fit(stored(fitted.result()), "fit", fitted.campaign.rig.plant);
   {
     HeldFolder held(fitted.folder / "out", {"fit"});
     write_result(held, 1, fitted.result());
@@ -44,8 +44,7 @@ TEST_CASE("validation: a fit in memory is the fit of its file", "[report][run]")
 
 TEST_CASE("validation: a known value that was another in the fit is told", "[report][run]") {
   test::MadeFit fitted;
-  const EarlierFit earlier =
-      earlier_fit(json_of(stored(fitted.result())), "fit", fitted.campaign.rig.plant);
+  const EarlierFit earlier = earlier_fit(stored(fitted.result()), "fit", fitted.campaign.rig.plant);
   fitted.choice.set = {"density=900 kg/m3"};
   const datasets::Campaign changed = load(fitted.choice);
   const calib::Fit validated =

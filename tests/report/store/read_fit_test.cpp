@@ -31,7 +31,8 @@ Json fit_of(const Json& matrix) {
 
 TEST_CASE("read_fit: correlations are some that can be", "[report]") {
   const auto read = [](const Json& matrix) {
-    return earlier_fit(fit_of(matrix), "fit.json", rigcal::model::PlantKind::load_pressure);
+    return earlier_fit(as<StoredFit>(fit_of(matrix), "", "fit.json"), "fit.json",
+                       rigcal::model::PlantKind::load_pressure);
   };
   const EarlierFit whole = read({{1.0, -0.5}, {-0.5, 1.0}});
   REQUIRE(whole.covariance.rows() == 2);
@@ -61,8 +62,9 @@ TEST_CASE("read_fit: own values of conditions without correlations have their er
     own["standard_error"] = std::string(condition) == "first" ? 0.5 : 0.25;
     fit["parameters"].push_back(own);
   }
-  const auto spread =
-      earlier_fit(fit, "fit.json", rigcal::model::PlantKind::load_pressure).spread.value();
+  const auto spread = earlier_fit(as<StoredFit>(fit, "", "fit.json"), "fit.json",
+                                  rigcal::model::PlantKind::load_pressure)
+                          .spread.value();
   CHECK(spread.estimates.size() == 2);
   const Eigen::MatrixXd shared = spread.root * spread.root.transpose();
   REQUIRE(spread.own.size() == 2);

@@ -20,12 +20,13 @@ struct StoredFiles {
   std::vector<std::string> others;
 
   ReadFile reader() {
-    return [this](const std::filesystem::path& path) -> std::optional<std::string> {
-      const auto found = json.find(path.string());
-      if (found != json.end()) return found->second.dump();
-      others.push_back(path.string());
-      return std::nullopt;
-    };
+    return rigcal::test::reading(
+        [this](const std::filesystem::path& path) -> std::optional<std::string> {
+          const auto found = json.find(path.string());
+          if (found != json.end()) return found->second.dump();
+          others.push_back(path.string());
+          return std::nullopt;
+        });
   }
 };
 
@@ -65,24 +66,41 @@ TEST_CASE("stored: the files of another run are refused", "[report]") {
   CHECK_NOTHROW(load_calibration(files.reader(), "folder", 1));
 }
 
-TEST_CASE("stored: a table that this run has made is not read back", "[report]") {
-  StoredFiles files;
-  files.json["residual_tests.json"] = Json::parse(rigcal::test::kNoCurves);
-  files.json["fit.json"] = rigcal::test::stored_result();
+TEST_CASE("stored: what this run has made is not read back", "[report]") {
+  StoredFiles disk;
+  disk.json["residual_tests.json"] = Json::parse(rigcal::test::kNoCurves);
+  const auto fit = as<StoredFit>(rigcal::test::stored_result(), "", "fit.json");
+  std::vector<ResultFile> files{json_file("fit.json", fit)};
+  files[0].content = "no JSON";
   int asked = 0;
+  const ReadFile tables = [&](const std::filesystem::path& path) {
+    if (path != "residuals/sine.csv") return std::shared_ptr<const ResultFile>();
+    ++asked;
+    return std::make_shared<const ResultFile>(table_file(path, {{"time_s"}, {{0.0, 1.0}}}));
+  };
   const auto stored = std::get<Calibration>(
-      load_calibration(files.reader(), "folder", 1, [&](const std::filesystem::path& path) {
-        ++asked;
-        CHECK(path == "residuals/sine.csv");
-        return std::make_shared<const Table>(Table{{"time_s"}, {{0.0, 1.0}}});
-      }));
+      load_calibration(either(files_in(files), either(tables, disk.reader())), "folder", 1));
+  CHECK(json_of(stored.result) == json_of(fit));
   CHECK(asked == 0);
   CHECK(stored.series(0)->names == std::vector<std::string>{"time_s"});
   CHECK(asked == 1);
-  for (const std::string& other : files.others) CHECK_THAT(other, !Contains("residuals"));
-  const auto none = std::get<Calibration>(load_calibration(
-      files.reader(), "folder", 1, [](const auto&) { return std::shared_ptr<const Table>(); }));
+  for (const std::string& other : disk.others) CHECK_THAT(other, !Contains("residuals"));
+  const auto none =
+      std::get<Calibration>(load_calibration(either(files_in(files), disk.reader()), "folder", 1));
   CHECK(none.series(0)->columns.empty());
+}
+
+TEST_CASE("stored: the files of this run need not be hashed again", "[report]") {
+  StoredProvenance provenance;
+  std::vector<ResultFile> written{table_file("levels/a.csv", {{"time_s"}, {{0.0}}})};
+  name_files(written, provenance);
+  written[0].content = "time_s\n1\n";
+  const ReadFile own = files_of_run(files_in(written), provenance, "folder", "leak_table.json");
+  CHECK(table_in(own, "folder", "levels/a.csv")->columns[0] == std::vector{0.0});
+  CHECK(table_in(own, "folder", "levels/b.csv") == nullptr);
+  written[0] = {"levels/a.csv", "time_s\n1\n"};  // as if it was read from the folder
+  CHECK_THROWS_WITH(table_in(own, "folder", "levels/a.csv"),
+                    Contains("is not the file that leak_table.json was written with"));
 }
 
 TEST_CASE("stored: nor is the condition of a parity record", "[report]") {
