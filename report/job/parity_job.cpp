@@ -20,7 +20,7 @@ JobResult finished(const ParityResult& result) {
   job.files.push_back({"parity.json", json_text(json_of(parity))});
   job.first = {"parity.json", "parity.csv", "parity/"};
   job.inputs = result.provenance.inputs;
-  job.code = status_of(result) == LeakStatus::done ? ExitCode::done : ExitCode::no_result;
+  job.code = parity.status == LeakStatus::done ? ExitCode::done : ExitCode::no_result;
   return job;
 }
 
