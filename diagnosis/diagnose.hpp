@@ -86,7 +86,7 @@ struct SmallestLeak {
   std::optional<double> repeat_sd_m, healthy_leak_m;  ///< see SignalErrors
   std::optional<std::string> reason;                  ///< why there is no such leak
   /// Present if `averaged` and `single` are for a record from another day than its reference,
-  /// because there are such records. The other two are then for a record from that day.
+  /// because there are such records. The two below are then for a record from the same day.
   Omittable<bool> of_another_day;
   Omittable<double> averaged_same_day, single_same_day;
   RIGCAL_DESCRIBE(signal, repeats_averaged, averaged, single, averaged_share_percent, repeat_sd_m,
