@@ -137,13 +137,13 @@ std::optional<std::vector<datasets::FittedValue>> truth_beside(const Campaign& c
 JobResult finished(StoredDiagnosis diagnosis, const Provenance& provenance,
                    const std::optional<Json>& live = {}) {
   JobResult job;
+  job.code = diagnosis.status == LeakStatus::done ? ExitCode::done : ExitCode::no_result;
   job.files = {{"diagnosis.csv", diagnosis_csv(diagnosis)}};
   if (live) job.files.push_back({kLiveDiagnosisFile, json_line(*live)});
   name_files(job.files, diagnosis.provenance);
   job.files.push_back({"diagnosis.json", json_text(json_of(diagnosis))});
   job.first = {"diagnosis.json", "diagnosis.csv"};
   job.inputs = provenance.inputs;
-  job.code = diagnosis.status == LeakStatus::done ? ExitCode::done : ExitCode::no_result;
   return job;
 }
 
