@@ -16,6 +16,7 @@
 #include <cstdlib>
 #include <functional>
 #include <iostream>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -276,17 +277,20 @@ DaysCounts counts_of(const DaysRow& row, std::uint64_t seed) {
   }
   const diagnosis::Diagnosis healthy = with_others("unknown", [](int) { return 0.0; }, {});
   count_healthy(healthy, "unknown", counts);
+  const bool one_day = healthy.between_days.value().other_days.empty();
   std::vector<double> leaks(kDaySignals.size());
   for (std::size_t s = 0; s < kDaySignals.size(); ++s) {
     const std::string& id = made.campaign.conditions[s].id;
-    const auto record = std::find_if(healthy.records.begin(), healthy.records.end(),
-                                     [&](const auto& each) { return each.condition == id; });
-    const auto signal =
-        std::find_if(healthy.signals.begin(), healthy.signals.end(),
-                     [&](const auto& each) { return each.signal == record->signal; });
-    leaks[s] = signal->smallest_leak.value().coefficient;
+    const auto same = std::find_if(healthy.records.begin(), healthy.records.end(),
+                                   [&](const auto& each) { return each.condition == id; });
+    std::optional<diagnosis::DetectionLimit> limit;
+    for (const diagnosis::RecordDiagnosis& each : healthy.records) {
+      const auto& own = one_day ? each.smallest_leak : each.smallest_leak_of_another_day;
+      if (each.is_average() && each.signal == same->signal && own) keep_larger(*own, limit);
+    }
+    leaks[s] = limit.value().coefficient;
     counts.limit_l_per_min +=
-        60e3 * signal->smallest_leak->leak_flow_m3_per_s / static_cast<double>(kDaySignals.size());
+        60e3 * limit->leak_flow_m3_per_s / static_cast<double>(kDaySignals.size());
   }
   count_leaks(with_others(
                   "leaking", [](int) { return 0.0; }, leaks),

@@ -239,9 +239,9 @@ void study_classes(Campaign campaign, const char* variant, int first, int last) 
     features.add(found.methods.features_leave_one_repeat_out);
     other_signals.add(found.methods.features_leave_one_signal_out);
     for (const auto& record : found.records) {
-      if (!record.repeat || !record.truth || record.leak_class == record.truth) continue;
+      if (!record.repeat || !record.true_class || record.leak.class_ == record.true_class) continue;
       ++wrong[record.condition].right;
-      if (!record.leak_class) ++wrong[record.condition].undecided;
+      if (!record.leak.class_) ++wrong[record.condition].undecided;
     }
     std::fflush(stdout);
   }
@@ -474,7 +474,7 @@ RandomLeaks random_leaks(const Campaign& healthy, const std::vector<LeakRange>& 
 void tally_interval(const diagnosis::RecordDiagnosis& record, double coefficient,
                     Coverage& coverage) {
   const auto& e = record.estimate;
-  const double share = *record.true_share;
+  const double share = *record.true_share_percent / 100.0;
   ++coverage.records;
   if (!record.fit.ok()) return;
   coverage.coefficient += coefficient >= e.ci95.low && coefficient <= e.ci95.high ? 1 : 0;
@@ -488,13 +488,13 @@ void tally_interval(const diagnosis::RecordDiagnosis& record, double coefficient
 }
 
 void tally_class(const diagnosis::RecordDiagnosis& record, CoverageTally& tally) {
-  const bool right = record.leak_class == record.truth;
-  Total& own = tally.by_class[*record.truth];
+  const bool right = record.leak.class_ == record.true_class;
+  Total& own = tally.by_class[*record.true_class];
   ++own.records;
   own.right += right ? 1 : 0;
-  own.undecided += record.leak_class ? 0 : 1;
-  if (!record.leak_class) return;
-  const double p = record.estimate.probability[static_cast<std::size_t>(*record.leak_class)];
+  own.undecided += record.leak.class_ ? 0 : 1;
+  if (!record.leak.class_) return;
+  const double p = record.estimate.probability[static_cast<std::size_t>(*record.leak.class_)];
   const std::size_t bin = p < 0.7 ? 0 : p < 0.9 ? 1 : p < 0.99 ? 2 : p < 0.999 ? 3 : 4;
   Calibration& calibration = tally.calibration[bin];
   ++calibration.records;
@@ -515,7 +515,7 @@ void tally_record(const diagnosis::RecordDiagnosis& record,
   const double coefficient = std::find_if(truth.begin(), truth.end(), [&](const auto& value) {
                                return value.level == record.condition;
                              })->value;
-  const bool counted = *record.true_share >= kCounted;
+  const bool counted = *record.true_share_percent >= 100.0 * kCounted;
   tally_interval(record, coefficient, counted ? tally.all : tally.small);
   tally_interval(record, coefficient, tally.by_signal[counted ? record.signal : kSmall]);
   tally_class(record, tally);

@@ -12,6 +12,11 @@ struct Range {
   bool operator==(const Range&) const = default;
 };
 
+/// Multiplies both ends by `scale`, which is not negative.
+constexpr Range operator*(double scale, const Range& range) {
+  return {scale * range.low, scale * range.high};
+}
+
 /// Returns the range if both ends are finite.
 inline std::optional<Range> finite_ends(const std::optional<Range>& range) {
   const bool finite = range && std::isfinite(range->low) && std::isfinite(range->high);

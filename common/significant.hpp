@@ -8,4 +8,17 @@ namespace rigcal {
 /// million have no exponent: with two digits, 170 becomes "170" rather than "1.7e+02".
 std::string significant(double value, int digits);
 
+/// Writes a number with `decimals` decimals, never as "-0.00".
+std::string fixed(double value, int decimals);
+
+/// Rounds a value to the decimal place of the second significant digit of its uncertainty (GUM,
+/// 7.2.6). Smaller digits are dropped: 0.0004 with 0.1 is "0.00".
+///
+/// @param uncertainty  standard error, or half width of an interval, in the unit of the value;
+///                     above zero
+std::string to_uncertainty(double value, double uncertainty);
+
+/// Writes a p-value: "p = 0.012", "p < 0.0001".
+std::string p_value_text(double p);
+
 }  // namespace rigcal

@@ -29,10 +29,8 @@ std::vector<const datasets::Condition*> fitted_conditions(const datasets::Campai
   return result;
 }
 
-double factor_of(const BetweenDays& between) { return std::sqrt(between.variance); }
-
-std::string quantity_in_words(const BetweenDays& between, const calib::DayQuantity& quantity) {
-  const double sd = factor_of(between) * quantity.sd;
+std::string quantity_in_words(const calib::DayQuantity& quantity) {
+  const double sd = quantity.sd;
   const std::string size = quantity.unit == "Pa" && sd >= 1e6 ? significant(1e-6 * sd, 2) + " MPa"
                            : quantity.unit == "Pa"            ? significant(1e-3 * sd, 2) + " kPa"
                            : quantity.unit == "s"             ? significant(1e3 * sd, 2) + " ms"
@@ -44,7 +42,7 @@ std::string quantity_in_words(const BetweenDays& between, const calib::DayQuanti
 }  // namespace
 
 double BetweenDays::error(double weight, const Eigen::VectorXd& effects) const {
-  return weight * factor_of(*this) * effects.norm();
+  return weight * factor * effects.norm();
 }
 
 std::string day_label(const datasets::Condition& condition) {
@@ -85,7 +83,7 @@ BetweenDays between_days_of(const datasets::Campaign& campaign,
     if (place_of(between.days, day) == between.days.size()) between.days.push_back(day);
     if (each->date && is_healthy(campaign, *each)) healthy.insert(*each->date);
   }
-  between.dates = static_cast<int>(healthy.size());
+  between.healthy_dates = static_cast<int>(healthy.size());
   return between;
 }
 
@@ -106,7 +104,7 @@ DayWeights day_weights(const BetweenDays& between, const datasets::Campaign& cam
 }
 
 void estimate_days(const std::vector<HealthyDay>& healthy, BetweenDays& between) {
-  if (between.source == DaySource::stated || between.dates < kLeastHealthyDates) return;
+  if (between.source == DaySource::stated || between.healthy_dates < kLeastHealthyDates) return;
   double beyond = 0.0;
   double expected = 0.0;
   for (const HealthyDay& each : healthy) {
@@ -119,25 +117,27 @@ void estimate_days(const std::vector<HealthyDay>& healthy, BetweenDays& between)
   if (!(expected > 0.0)) return;
   between.source = DaySource::estimated;
   between.variance = std::max(0.0, beyond / expected);
-  between.freedom = between.dates - 1.0;
+  between.factor = std::sqrt(between.variance);
+  between.freedom = between.healthy_dates - 1.0;
+  for (calib::DayQuantity& each : between.quantities) each.sd *= between.factor;
 }
 
-std::string in_words(const BetweenDays& between, const std::vector<std::string>& other_days) {
-  if (other_days.empty()) return {};
-  const std::string who =
-      fmt::format("records of {}: another day than their reference's", fmt::join(other_days, ", "));
+std::optional<std::string> in_words(const BetweenDays& between) {
+  if (between.other_days.empty()) return std::nullopt;
+  const std::string who = fmt::format("records of {}: another day than their reference's",
+                                      fmt::join(between.other_days, ", "));
   if (between.quantities.empty())
     return who +
            ". The campaign says that no day differs (between_days), so whatever has changed "
            "since counts as a leak";
   std::vector<std::string> sizes;
   for (const calib::DayQuantity& each : between.quantities)
-    sizes.push_back(quantity_in_words(between, each));
+    sizes.push_back(quantity_in_words(each));
   std::string from = "usual sizes, which [between_days] changes";
   if (between.source == DaySource::stated) from = "[between_days]";
   if (between.source == DaySource::estimated)
     from = fmt::format("{} times the usual sizes, by healthy records of {} dates",
-                       significant(factor_of(between), 2), between.dates);
+                       significant(between.factor, 2), between.healthy_dates);
   return fmt::format(
       "{}. Between days the rig may differ (standard deviations: {}; {}); intervals, classes, "
       "alarms and smallest leaks include that",

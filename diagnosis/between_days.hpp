@@ -2,10 +2,12 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "calib/problem/day_effects.hpp"
+#include "common/describe.hpp"
 #include "datasets/campaign/campaign.hpp"
 #include "diagnosis/leak/leak_estimate.hpp"
 #include "metrics/significance.hpp"
@@ -14,18 +16,25 @@ namespace rigcal::diagnosis {
 
 /// Source of the assumed size of the variation between days.
 enum class DaySource { usual, stated, estimated };
+RIGCAL_NAMES(DaySource, usual, stated, estimated)
 
 /// Variation between the days of a campaign. On each day, each quantity has an independent
 /// deviation with the standard deviation of that quantity.
 struct BetweenDays {
-  std::vector<calib::DayQuantity> quantities;
-  std::vector<std::string> days;  ///< dates, or the text that replaces a missing date
+  /// Days of records that are not from the day of their reference.
+  std::vector<std::string> other_days;
   DaySource source = DaySource::usual;
-  /// Factor on the variances of the quantities, estimated from healthy days.
-  double variance = 1.0;
-  double freedom = metrics::kManyDegrees;  ///< degrees of freedom of `variance`
-  int dates = 0;                           ///< number of stated dates of healthy records
+  double factor = 1.0;            ///< factor on the usual sizes, estimated from healthy days
+  std::optional<double> freedom;  ///< degrees of freedom of the factor; absent if not estimated
+  int healthy_dates = 0;          ///< number of stated dates of healthy records
+  std::vector<calib::DayQuantity> quantities;
+  std::optional<std::string> sentence;  ///< in_words(); absent without other days
+  RIGCAL_DESCRIBE(other_days, source, factor, freedom, healthy_dates, quantities, sentence)
 
+  double variance = 1.0;          ///< square of the factor; not stored
+  std::vector<std::string> days;  ///< dates, or the text that replaces a missing date; not stored
+
+  double degrees_of_freedom() const { return freedom.value_or(metrics::kManyDegrees); }
   /// Returns the error that the days cause in a coefficient that changes by `effects` per standard
   /// deviation.
   double error(double weight, const Eigen::VectorXd& effects) const;
@@ -80,14 +89,14 @@ inline constexpr int kLeastHealthyDates = 4;
 /// Estimates the factor on the variances from the coefficients of healthy averages. For each
 /// average, the square of the coefficient, minus the variance of its own error, is divided by the
 /// variance that the usual sizes would cause. These ratios are averaged with weights according to
-/// their information. Does nothing if the campaign states sizes or has too few dates.
+/// their information. The sizes of the quantities become the estimated ones. Does nothing if the
+/// campaign states sizes or has too few dates.
 void estimate_days(const std::vector<HealthyDay>& healthy, BetweenDays& between);
 
 /// Describes, in words, how much days are assumed to differ: "records of 2026-03-02: another day
-/// than their reference's ...". Empty if every record is from the day of its reference.
-///
-/// @param other_days  days of those records that are not from the day of their reference
-std::string in_words(const BetweenDays& between, const std::vector<std::string>& other_days);
+/// than their reference's ...". Returns std::nullopt if every record is from the day of its
+/// reference.
+std::optional<std::string> in_words(const BetweenDays& between);
 
 /// Returns an error increased by the contribution of day-to-day differences.
 CoefficientError with_days(CoefficientError error, double days_se, double freedom);

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "common/parallel.hpp"
+#include "common/quantity.hpp"
 #include "datasets/prepare/single_repeats.hpp"
 #include "diagnosis/feature_clusters.hpp"
 #include "diagnosis/healthy_reference.hpp"
@@ -84,7 +85,6 @@ RecordDiagnosis diagnose_record(const LeakProblem& problem, const RigFit& rig, c
   RecordDiagnosis result;
   result.condition = prepared.condition->id;
   result.signal = signal_name(problem.campaign, *prepared.condition);
-  result.true_share = prepared.true_share;
   result.days = day_weights(between, problem.campaign, *prepared.condition, {});
   if (!prepared.failure.empty()) {
     result.fit.failure = prepared.failure;
@@ -98,10 +98,11 @@ RecordDiagnosis diagnose_record(const LeakProblem& problem, const RigFit& rig, c
     covered = records.covered[index - 1];
     result.repeat = static_cast<int>(index);
   } else {
-    result.repeats = records.average.repeats;
+    result.repeats_averaged = records.average.repeats;
   }
-  result.features = features_within(prepared.residuals[index].at(datasets::Channel::position),
-                                    record.time_s, covered);
+  const auto& residual = prepared.residuals[index].at(datasets::Channel::position);
+  const metrics::ResidualFeatures features = features_within(residual, record.time_s, covered);
+  result.features = {features.mean, features.rms, features.std};
 
   std::vector<Reference> references = references_of(problem.campaign, all, result.signal);
   if (is_single || references.size() > prepared.residuals.size() - 1) {
@@ -177,29 +178,36 @@ double healthy_misfit(const SignalRecords& records) {
   return largest;
 }
 
-/// Sets the known class of a record, if there is one.
-void set_truth(const Campaign& campaign, RecordDiagnosis& record) {
+/// Sets the known share and class of a record, if there are any.
+void set_truth(const Campaign& campaign, const std::optional<double>& true_share,
+               RecordDiagnosis& record) {
   const Condition& condition = *campaign.find(record.condition);
   const auto& known = campaign.diagnosis.level_class;
   if (condition.leak_level) {
     const auto level = known.find(*condition.leak_level);
-    if (level != known.end()) record.truth = level->second;
+    if (level != known.end()) record.true_class = level->second;
   }
-  if (record.true_share) record.truth = class_of(campaign.diagnosis, *record.true_share);
+  if (!true_share) return;
+  record.true_share_percent = kInPercent * *true_share;
+  record.true_class = class_of(campaign.diagnosis, *true_share);
 }
 
 void classify_by_features(std::vector<RecordDiagnosis>& records) {
+  const auto features_of = [](const RecordDiagnosis& record) {
+    const auto& [mean_m, rms_m, std_m] = record.features;
+    return metrics::ResidualFeatures{mean_m.value(), rms_m.value(), std_m.value()};
+  };
   std::vector<LabelledFeatures> labelled;
   for (const RecordDiagnosis& record : records) {
-    if (record.fit.ok() && record.truth && record.repeat)
-      labelled.push_back({record.signal, *record.repeat, *record.truth, record.features});
+    if (record.fit.ok() && record.true_class && record.repeat)
+      labelled.push_back({record.signal, *record.repeat, *record.true_class, features_of(record)});
   }
   for (RecordDiagnosis& record : records) {
     if (!record.fit.ok()) continue;
     const LabelledFeatures own{record.signal, record.repeat.value_or(0), LeakClass::normal,
-                               record.features};
-    record.by_features = class_without_repeat(labelled, own);
-    record.by_features_of_other_signals = class_without_signal(labelled, own);
+                               features_of(record)};
+    record.class_by_features = class_without_repeat(labelled, own);
+    record.class_by_features_of_other_signals = class_without_signal(labelled, own);
   }
 }
 
@@ -213,8 +221,8 @@ Accuracy accuracy(const std::vector<RecordDiagnosis>& records, Method method, bo
   std::vector<Judged> judged;
   for (const RecordDiagnosis& record : records) {
     if (method == Method::features && !found(record)) continue;
-    if (record.truth && record.repeat.has_value() == single && !record.is_reference)
-      judged.push_back({record.condition, *record.truth, found(record)});
+    if (record.true_class && record.repeat.has_value() == single && !record.is_reference)
+      judged.push_back({record.condition, *record.true_class, found(record)});
   }
   return accuracy_of(judged);
 }
@@ -224,10 +232,10 @@ Accuracy accuracy(const std::vector<RecordDiagnosis>& records, Method method, bo
 void estimate(const LeakProblem& problem, const RigFit& rig, const Prepared& prepared,
               const SignalErrors& errors, const BetweenDays& between, RecordDiagnosis& record) {
   const CoefficientError of_its_day =
-      coefficient_error(record.fit, errors, record.repeats, record.reference_repeats);
+      coefficient_error(record.fit, errors, record.repeats_averaged, record.reference_repeats);
   const double distance = record.days.norm();
-  const CoefficientError error =
-      with_days(of_its_day, between.error(distance, record.fit.day_effects), between.freedom);
+  const CoefficientError error = with_days(
+      of_its_day, between.error(distance, record.fit.day_effects), between.degrees_of_freedom());
   const datasets::Record& average = prepared.records->average;
   const double least = prepared.least_reach();
   try {
@@ -253,10 +261,10 @@ void estimate(const LeakProblem& problem, const RigFit& rig, const Prepared& pre
     if (!prepared.is_healthy) return;
     // A record that is its own reference has no error relative to it, so the error of an average is
     // used.
-    const auto of_healthy =
-        record.is_reference
-            ? error_of_averages(record.fit, errors, record.repeats, record.reference_repeats)
-            : std::optional(of_its_day);
+    const auto of_healthy = record.is_reference
+                                ? error_of_averages(record.fit, errors, record.repeats_averaged,
+                                                    record.reference_repeats)
+                                : std::optional(of_its_day);
     if (!of_healthy || !(of_healthy->total() > 0.0)) return;
     const auto limit_of = [&](const CoefficientError& each) -> std::optional<DetectionLimit> {
       const double limit = detection_limit(each, problem.campaign.diagnosis);
@@ -268,42 +276,52 @@ void estimate(const LeakProblem& problem, const RigFit& rig, const Prepared& pre
     };
     record.smallest_leak = limit_of(*of_healthy);
     const double another = record.days.norm_of_another_day();
-    record.smallest_leak_of_another_day = limit_of(
-        with_days(*of_healthy, between.error(another, record.fit.day_effects), between.freedom));
+    record.smallest_leak_of_another_day = limit_of(with_days(
+        *of_healthy, between.error(another, record.fit.day_effects), between.degrees_of_freedom()));
   } catch (const NoResultError& failure) {
     record.fit.failure = failure.what();
   }
 }
 
-/// Finds the largest limits of the healthy records of a signal, separately for averages and for
-/// single repeats.
-void take_limits(const SignalRecords& records,
-                 std::optional<DetectionLimit> RecordDiagnosis::*limit,
-                 std::optional<DetectionLimit>& averaged, std::optional<DetectionLimit>& single) {
+/// Returns the largest limit of the healthy averages of a signal, or of its healthy repeats.
+std::optional<DetectionLimit> largest_limit(const SignalRecords& records, bool of_averages,
+                                            std::optional<DetectionLimit> RecordDiagnosis::*limit) {
+  std::optional<DetectionLimit> largest;
   for (const RecordDiagnosis* each : records.healthy) {
-    if (!each->fit.ok() || !(each->*limit)) continue;
-    keep_larger(*(each->*limit), each->repeat ? single : averaged);
+    if (each->fit.ok() && each->*limit && each->is_average() == of_averages)
+      keep_larger(*(each->*limit), largest);
   }
+  return largest;
 }
 
-SignalDiagnosis limits_of(const SignalRecords& records, const SignalErrors& errors,
-                          const std::string& signal, bool of_another_day) {
-  SignalDiagnosis result;
+std::optional<double> flow_l_per_min(const std::optional<DetectionLimit>& limit) {
+  return limit ? std::optional(kLitresPerMinute * limit->leak_flow_m3_per_s) : std::nullopt;
+}
+
+SmallestLeak smallest_leak_of(const SignalRecords& records, const SignalErrors& errors,
+                              const std::string& signal, bool of_another_day) {
+  SmallestLeak result;
   result.signal = signal;
-  result.errors = errors;
-  result.of_another_day = of_another_day;
   for (const RecordDiagnosis* each : records.healthy) {
-    if (!each->repeat && each->smallest_leak) result.repeats = each->repeats;
+    if (each->is_average() && each->smallest_leak) result.repeats_averaged = each->repeats_averaged;
   }
-  take_limits(records, &RecordDiagnosis::smallest_leak, result.smallest_leak_same_day,
-              result.smallest_single_leak_same_day);
-  take_limits(records,
-              of_another_day ? &RecordDiagnosis::smallest_leak_of_another_day
-                             : &RecordDiagnosis::smallest_leak,
-              result.smallest_leak, result.smallest_single_leak);
+  const auto limit = of_another_day ? &RecordDiagnosis::smallest_leak_of_another_day
+                                    : &RecordDiagnosis::smallest_leak;
+  const auto averaged = largest_limit(records, true, limit);
+  result.averaged = flow_l_per_min(averaged);
+  result.single = flow_l_per_min(largest_limit(records, false, limit));
+  if (averaged) result.averaged_share_percent = kInPercent * averaged->share;
+  result.repeat_sd_m = errors.repeat_m;
+  result.healthy_leak_m = errors.healthy_m;
+  if (of_another_day) {
+    const auto same_day = &RecordDiagnosis::smallest_leak;
+    result.of_another_day = true;
+    result.averaged_same_day = flow_l_per_min(largest_limit(records, true, same_day));
+    result.single_same_day = flow_l_per_min(largest_limit(records, false, same_day));
+  }
   if (records.healthy.empty()) {
     result.reason = "no healthy record of this signal";
-  } else if (!result.smallest_leak) {
+  } else if (!averaged) {
     result.reason = "without repeats the variation of healthy records of this signal is unknown";
   }
   return result;
@@ -332,8 +350,8 @@ std::vector<HealthyDay> healthy_days(const Campaign& campaign,
     if (!record.fit.ok() || record.repeat || record.is_reference || !condition.date ||
         !is_healthy(campaign, condition))
       continue;
-    const double own = coefficient_error(record.fit, errors.at(record.signal), record.repeats,
-                                         record.reference_repeats)
+    const double own = coefficient_error(record.fit, errors.at(record.signal),
+                                         record.repeats_averaged, record.reference_repeats)
                            .total();
     const double by_days = record.days.norm() * record.fit.day_effects.norm();
     days.push_back({record.fit.coefficient, own * own, by_days * by_days});
@@ -341,11 +359,25 @@ std::vector<HealthyDay> healthy_days(const Campaign& campaign,
   return days;
 }
 
+/// Sets what results state of a record, whether or not it was judged.
+void complete(RecordDiagnosis& record) {
+  const LeakFit& fit = record.fit;
+  record.undecided = !record.leak.class_ && !record.is_reference && !record.estimate.incompatible;
+  if (!fit.ok()) {
+    record.failure = fit.failure;
+    record.features = {};
+    return;
+  }
+  record.parity_rms_m = fit.parity_rms_m;
+  record.misfit_rms_m = fit.misfit_rms_m;
+  record.noise_rms_m = fit.noise_rms_m;
+}
+
 }  // namespace
 
 bool Diagnosis::usable() const {
   return std::any_of(records.begin(), records.end(),
-                     [](const RecordDiagnosis& record) { return record.fit.ok(); });
+                     [](const RecordDiagnosis& record) { return !record.failure; });
 }
 
 Diagnosable diagnosable(const Campaign& campaign) {
@@ -365,6 +397,7 @@ Diagnosable diagnosable(const Campaign& campaign) {
 Diagnosis diagnose(const Campaign& campaign, const std::vector<datasets::RepeatRecords>& records,
                    const RigFit& rig, const DiagnosisOptions& options) {
   Diagnosis result;
+  result.settings = stated(campaign.diagnosis);
   LeakProblem problem(campaign, rig);
   problem.cancel = options.cancel;
   std::vector<Prepared> prepared(records.size());
@@ -375,10 +408,10 @@ Diagnosis diagnose(const Campaign& campaign, const std::vector<datasets::RepeatR
   // The campaign in `problem` no longer contains the known leaks.
   for (Prepared& each : prepared)
     each.is_healthy = is_healthy(campaign, *campaign.find(each.condition->id));
+  BetweenDays between;
   if (!campaign.conditions.empty())
-    result.between_days =
-        between_days_of(campaign, rig_values(problem), shortest_interval(records));
-  problem.day_quantities = result.between_days.quantities;
+    between = between_days_of(campaign, rig_values(problem), shortest_interval(records));
+  problem.day_quantities = between.quantities;
   for (Prepared& each : prepared)
     each.day_leaks = each.memo(calib::further_rows(problem.day_quantities, {}));
   std::vector<Task> tasks;
@@ -401,8 +434,7 @@ Diagnosis diagnose(const Campaign& campaign, const std::vector<datasets::RepeatR
   parallel_for(prepared.size(), options.threads, [&](std::size_t condition) {
     std::optional<LeakRuns> runs;
     for (std::size_t i = begin[condition]; i < begin[condition + 1]; ++i) {
-      result.records[i] =
-          diagnose_record(problem, rig, tasks[i], prepared, result.between_days, options, runs);
+      result.records[i] = diagnose_record(problem, rig, tasks[i], prepared, between, options, runs);
       half_done();
     }
   });
@@ -413,8 +445,7 @@ Diagnosis diagnose(const Campaign& campaign, const std::vector<datasets::RepeatR
   for (const auto& [signal, members] : signals)
     all_errors.push_back(&(errors[signal] = errors_of(members)));
   separate_noise(all_errors);
-  BetweenDays& between = result.between_days;
-  result.other_days = days_off_reference(campaign, result.records);
+  between.other_days = days_off_reference(campaign, result.records);
   estimate_days(healthy_days(campaign, result.records, errors), between);
   parallel_for(tasks.size(), options.threads, [&](std::size_t i) {
     RecordDiagnosis& record = result.records[i];
@@ -427,30 +458,36 @@ Diagnosis diagnose(const Campaign& campaign, const std::vector<datasets::RepeatR
     for (RecordDiagnosis& record : result.records) {
       if (!record.fit.ok() || record.signal != signal) continue;
       // A difference that may be due to day-to-day differences does not indicate another fault.
-      const double of_days_m =
-          record.days.norm() * std::sqrt(between.variance) * record.fit.day_rms_m;
+      const double of_days_m = record.days.norm() * between.factor * record.fit.day_rms_m;
       judge(record, errors.at(signal), std::hypot(healthy_m, of_days_m), campaign.diagnosis);
     }
-    result.signals.push_back(
-        limits_of(members, errors.at(signal), signal, !result.other_days.empty()));
+    result.smallest_leak_l_per_min.push_back(
+        smallest_leak_of(members, errors.at(signal), signal, !between.other_days.empty()));
   }
-  result.states = machine_states(problem, rig, prepared, result.records, errors,
-                                 {between.variance, between.freedom});
-  result.trends = leak_trends(result.states, rig.covariance, campaign.diagnosis,
-                              {between.variance, between.freedom});
-  for (RecordDiagnosis& record : result.records) set_truth(campaign, record);
+  const DayVariance variance{between.variance, between.degrees_of_freedom()};
+  result.states = machine_states(problem, rig, prepared, result.records, errors, variance);
+  result.trends = leak_trends(result.states, rig.covariance, campaign.diagnosis, variance);
+  for (std::size_t i = 0; i < tasks.size(); ++i)
+    set_truth(campaign, tasks[i].prepared->true_share, result.records[i]);
   classify_by_features(result.records);
-  const auto by_leak = [](const RecordDiagnosis& record) { return record.leak_class; };
+  for (RecordDiagnosis& record : result.records) complete(record);
+  const auto by_leak = [](const RecordDiagnosis& record) { return record.leak.class_; };
   result.methods = {
       accuracy(result.records, Method::fitted_leak, true, by_leak),
       accuracy(result.records, Method::fitted_leak, false, by_leak),
       accuracy(result.records, Method::features, true,
-               [](const RecordDiagnosis& record) { return record.by_features; }),
-      accuracy(result.records, Method::features, true,
-               [](const RecordDiagnosis& record) { return record.by_features_of_other_signals; })};
+               [](const RecordDiagnosis& record) { return record.class_by_features; }),
+      accuracy(result.records, Method::features, true, [](const RecordDiagnosis& record) {
+        return record.class_by_features_of_other_signals;
+      })};
+  const Accuracy& single = result.methods.fitted_leak_single;
+  result.confusion = single.confusion;
+  result.accuracy = single.accuracy;
+  result.accuracy_ci95 = single.accuracy_ci95;
   for (const std::string& each : confounded(campaign)) result.warnings.push_back(each);
-  if (const std::string text = in_words(between, result.other_days); !text.empty())
-    result.warnings.push_back(text);
+  between.sentence = in_words(between);
+  if (between.sentence) result.warnings.push_back(*between.sentence);
+  if (result.usable()) result.between_days = between;
   for (const std::string& each : too_few_dates(result.states)) result.warnings.push_back(each);
   return result;
 }

@@ -6,11 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "common/describe.hpp"
 #include "datasets/campaign/campaign.hpp"
 #include "diagnosis/accuracy.hpp"
 #include "diagnosis/between_days.hpp"
+#include "diagnosis/class_limits.hpp"
 #include "diagnosis/leak/leak_estimate.hpp"
 #include "diagnosis/leak/leak_fit.hpp"
+#include "diagnosis/leak/stated_leak.hpp"
 #include "diagnosis/leak_trend.hpp"
 #include "diagnosis/machine_state.hpp"
 #include "metrics/residual_features.hpp"
@@ -30,62 +33,84 @@ struct DiagnosisOptions {
 /// Diagnosis of one record.
 struct RecordDiagnosis {
   std::string condition;
-  std::string signal;         ///< such as "sine 0.1 Hz, 50.8 mm"
   std::optional<int> repeat;  ///< counted from 1; absent for the average
-  int repeats = 1;            ///< number of repeats averaged in the record
+  int repeats_averaged = 1;   ///< number of repeats averaged in the record
+  std::string signal;         ///< such as "sine 0.1 Hz, 50.8 mm"
   /// Number of healthy repeats of the same signal whose parity residual was subtracted from the
   /// record.
   int reference_repeats = 0;
-  /// True for a repeat of a healthy condition, which is corrected by the other healthy repeats.
-  bool corrects_others = false;
   /// True if the record is itself the healthy reference, so that its leak is zero by construction.
   bool is_reference = false;
-  DayWeights days;                     ///< day of the record relative to the days of its reference
-  LeakFit fit;                         ///< contains the reason if no leak could be fitted
-  metrics::ResidualFeatures features;  ///< features of the uncorrected parity residual, eq. 14 [m]
-  LeakEstimate estimate;               ///< valid only if fit.ok()
+  std::optional<std::string> failure;  ///< why no leak could be fitted
+  Inlined<StatedLeak> leak;
+  std::optional<double> unbounded_leakage_coefficient;  ///< may be negative, see LeakFit
+  bool undecided = false;                               ///< true if a leak has no class
+  /// False if the leak leaves more than a third of the difference from the healthy model
+  /// unexplained, which indicates another fault.
+  std::optional<bool> explained_by_leak;
+  /// Features of the uncorrected parity residual, eq. 14.
+  metrics::ByFeature<std::optional<double>> features;
+  std::optional<double> parity_rms_m, misfit_rms_m, noise_rms_m;  ///< see LeakFit
+  std::optional<double> log_slope;                                ///< d ln share / d ln coefficient
+  /// Class according to the paper's features, with clusters learned without this repeat, or without
+  /// this signal. Absent if there is no labelled record to learn from.
+  std::optional<LeakClass> class_by_features, class_by_features_of_other_signals;
+  std::optional<LeakClass> true_class;
+  std::optional<double> true_share_percent;
+  std::vector<std::string> warnings;
+  RIGCAL_DESCRIBE(condition, repeat, repeats_averaged, signal, reference_repeats, is_reference,
+                  failure, leak, unbounded_leakage_coefficient, undecided, explained_by_leak,
+                  features, parity_rms_m, misfit_rms_m, noise_rms_m, log_slope, class_by_features,
+                  class_by_features_of_other_signals, true_class, true_share_percent, warnings)
+
+  // From what the above follows; not stored.
+
+  /// True for a repeat of a healthy condition, which is corrected by the other healthy repeats.
+  bool corrects_others = false;
+  DayWeights days;        ///< day of the record relative to the days of its reference
+  LeakFit fit;            ///< contains the reason if no leak could be fitted
+  LeakEstimate estimate;  ///< valid only if fit.ok()
   /// For a healthy record whose errors are known, the smallest leak that could be detected in a
   /// record from the day of the reference, and in one from another day.
   std::optional<DetectionLimit> smallest_leak, smallest_leak_of_another_day;
-  /// True if the leak leaves more than a third of the difference from the healthy model
-  /// unexplained, which indicates another fault.
-  bool unexplained = false;
-  std::optional<LeakClass> leak_class;  ///< absent if undecided
-  /// Class according to the paper's features, with clusters learned without this repeat, or without
-  /// this signal. Absent if there is no labelled record to learn from.
-  std::optional<LeakClass> by_features;
-  std::optional<LeakClass> by_features_of_other_signals;
-  std::optional<double> true_share;
-  std::optional<LeakClass> truth;
-  std::vector<std::string> warnings;
+
+  bool is_average() const { return !repeat; }
 };
 
-/// Joint result for the records of one signal.
-struct SignalDiagnosis {
+/// The smallest leak that is detected in records of one signal [L/min].
+struct SmallestLeak {
   std::string signal;
-  SignalErrors errors;
-  std::optional<DetectionLimit> smallest_leak;         ///< in an average of the signal
-  std::optional<DetectionLimit> smallest_single_leak;  ///< in a single repeat
-  /// True if the limits above are for a record from another day than its reference, because there
-  /// are such records.
-  bool of_another_day = false;
-  /// Limits for a record from the day of the reference.
-  std::optional<DetectionLimit> smallest_leak_same_day, smallest_single_leak_same_day;
-  int repeats = 1;     ///< number of repeats in that average
-  std::string reason;  ///< why there are no limits, in words
+  int repeats_averaged = 1;                           ///< number of repeats in an average
+  std::optional<double> averaged, single;             ///< in an average, in a single repeat
+  std::optional<double> averaged_share_percent;       ///< share of `averaged`
+  std::optional<double> repeat_sd_m, healthy_leak_m;  ///< see SignalErrors
+  std::optional<std::string> reason;                  ///< why there is no such leak
+  /// Present if `averaged` and `single` are for a record from another day than its reference,
+  /// because there are such records. The two below are then for a record from the same day.
+  Omittable<bool> of_another_day;
+  Omittable<double> averaged_same_day, single_same_day;
+  RIGCAL_DESCRIBE(signal, repeats_averaged, averaged, single, averaged_share_percent, repeat_sd_m,
+                  healthy_leak_m, reason, of_another_day, averaged_same_day, single_same_day)
 };
 
+/// Result of a diagnosis, as in diagnosis.json.
 struct Diagnosis {
+  StatedSettings settings;
+  std::vector<ClassLimit> class_limits;  ///< if a leak table set the limits
+  std::vector<MachineState> states;      ///< in order of first appearance
+  std::vector<LeakTrend> trends;         ///< trends over states that differ only by date
   /// In campaign order; each average comes before its repeats.
   std::vector<RecordDiagnosis> records;
-  std::vector<SignalDiagnosis> signals;  ///< in order of first appearance
-  std::vector<MachineState> states;      ///< in order of first appearance
-  BetweenDays between_days;              ///< assumed variation between days
-  /// Days of records that are not from the day of their reference.
-  std::vector<std::string> other_days;
-  std::vector<LeakTrend> trends;  ///< trends over states that differ only by date
+  Confusion confusion;  ///< this and the accuracy are those of fitted leaks in single repeats
+  std::optional<double> accuracy;
+  std::optional<Range> accuracy_ci95;
   Methods methods;
+  std::vector<SmallestLeak> smallest_leak_l_per_min;  ///< by signal, in order of first appearance
+  Omittable<BetweenDays> between_days;  ///< assumed variation between days; present if usable
   std::vector<std::string> warnings;
+  RIGCAL_DESCRIBE(settings, class_limits, states, trends, records, confusion, accuracy,
+                  accuracy_ci95, methods, smallest_leak_l_per_min, between_days, warnings)
+
   /// Returns true if at least one record was diagnosed.
   bool usable() const;
 };
@@ -107,6 +132,7 @@ Diagnosable diagnosable(const datasets::Campaign& campaign);
 ///
 /// @param records  records of the diagnosable conditions, identified by the condition of their
 ///                 average
+/// @return  without class limits, which come from a leak table
 /// @throws InputError  if the records or the campaign are wrong
 Diagnosis diagnose(const datasets::Campaign& campaign,
                    const std::vector<datasets::RepeatRecords>& records, const RigFit& rig,

@@ -15,26 +15,20 @@ constexpr double kFlat = 0.1;
 constexpr double kNoticeable = 0.05;
 constexpr double kTooMuch = 1.0 / 3.0;
 
-/// Adds warnings to a record. For the healthy reference, there is only a note that it is the
-/// reference.
 void warn(RecordDiagnosis& record, const SignalErrors& errors, double healthy_m,
           datasets::LeakLaw law) {
-  if (record.is_reference) {
-    record.warnings.emplace_back(
-        "the healthy reference of its signal: its leak is zero by construction");
-    return;
-  }
   const LeakFit& fit = record.fit;
   const LeakEstimate& estimate = record.estimate;
   const double left = unexplained_share(fit, healthy_m);
-  if (!record.unexplained && left > kNoticeable) {
+  const bool explained = record.explained_by_leak.value();
+  if (explained && left > kNoticeable) {
     record.warnings.push_back(
         fmt::format("a leak explains all but {:.0f} % of the difference from the healthy model "
                     "(rms {:.3g} mm); "
                     "what is left, {:.3g} mm, is more than noise: another fault may be part of it",
                     100.0 * left, 1e3 * fit.parity_rms_m, 1e3 * fit.misfit_rms_m));
   }
-  if (record.unexplained) {
+  if (!explained) {
     record.warnings.push_back(fmt::format(
         "not explained by a leak: it takes the difference from the healthy model from {:.3g} mm to "
         "{:.3g} mm rms only, where healthy records leave {:.3g} mm; something else is wrong "
@@ -80,11 +74,18 @@ void warn(RecordDiagnosis& record, const SignalErrors& errors, double healthy_m,
 
 void judge(RecordDiagnosis& record, const SignalErrors& errors, double healthy_m,
            const datasets::DiagnosisSettings& settings) {
-  record.unexplained = !record.is_reference && unexplained_share(record.fit, healthy_m) > kTooMuch;
-  const auto best = static_cast<std::size_t>(record.estimate.most_probable);
-  if (!record.unexplained && !record.is_reference && record.estimate.has_class() &&
-      record.estimate.probability[best] >= settings.least_probability)
-    record.leak_class = record.estimate.most_probable;
+  if (record.is_reference) {
+    record.warnings.emplace_back(
+        "the healthy reference of its signal: its leak is zero by construction");
+    return;
+  }
+  const LeakEstimate& estimate = record.estimate;
+  record.explained_by_leak = !(unexplained_share(record.fit, healthy_m) > kTooMuch);
+  record.leak = stated(estimate, settings.least_probability);
+  if (!*record.explained_by_leak) record.leak.class_.reset();
+  record.unbounded_leakage_coefficient = estimate.coefficient;
+  if (estimate.has_class() && estimate.share > 0.0)
+    record.log_slope = estimate.share_slope * estimate.coefficient / estimate.share;
   warn(record, errors, healthy_m, settings.leak_law);
 }
 

@@ -4,8 +4,8 @@
 
 namespace rigcal::diagnosis {
 
-/// Sets the warnings of a record whose leak has been estimated, and its class if this can be
-/// decided.
+/// States the leak of a record that has been estimated, with its class if this can be decided, and
+/// sets the warnings. The leak of a healthy reference is not stated.
 ///
 /// @param healthy_m  RMS of the structured residual that the healthy model leaves in healthy
 ///                   records of the signal

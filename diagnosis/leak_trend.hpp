@@ -27,7 +27,7 @@ struct NextLimit {
 /// Change in one machine's leak from date to date.
 struct LeakTrend {
   std::optional<std::string> leak_level, specimen;  ///< common to all its states
-  std::string sentence;                             ///< for an operator; set by `report`
+  std::string sentence;                             ///< for an operator
   int dates = 0;
   std::string first_date, last_date;
   std::string duty;  ///< signal whose share is stated
@@ -47,6 +47,13 @@ struct LeakTrend {
                   coefficient_per_day, share_percent_per_day, share_percent_per_day_ci95, p_value,
                   significant, chi_squared, freedom, widened, next_limit)
 };
+
+/// A day is predicted up to this multiple of the observed time span beyond the last date.
+inline constexpr double kAhead = 3.0;
+
+/// Describes a trend in a sentence for an operator: "66.66 %: the leak rises by 1.2 percentage
+/// points of the servo flow in 30 days ...".
+std::string trend_sentence(const LeakTrend& trend);
 
 /// Returns the trend of every machine that was diagnosed on three or more dates, in order of
 /// appearance. States with the same leak level and specimen belong to the same machine.

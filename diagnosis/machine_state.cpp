@@ -22,20 +22,15 @@ double square_of(double x) { return x * x; }
 }  // namespace
 
 StateKey state_of(const datasets::Condition& condition) {
-  StateKey key;
-  key.leak_level = condition.leak_level.value_or(condition.date ? "" : condition.id);
-  key.specimen = condition.specimen.value_or("");
-  key.date = condition.date.value_or("");
-  return key;
+  const bool is_named = condition.leak_level || condition.date;
+  return {is_named ? condition.leak_level : condition.id, condition.specimen, condition.date};
 }
 
 std::string StateKey::name() const {
-  std::string text = leak_level;
-  const auto add = [&](const std::string& part) {
-    if (!part.empty()) text += (text.empty() ? "" : ", ") + part;
-  };
-  if (!specimen.empty()) add("specimen " + specimen);
-  add(date);
+  std::string text = leak_level.value_or("");
+  const auto add = [&](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
+  if (specimen) add("specimen " + *specimen);
+  if (date) add(*date);
   return text;
 }
 

@@ -7,16 +7,18 @@
 #include "common/describe.hpp"
 #include "diagnosis/leak/leak_estimate.hpp"
 #include "diagnosis/leak/leak_fit.hpp"
+#include "diagnosis/leak/stated_leak.hpp"
 #include "metrics/significance.hpp"
 
 namespace rigcal::diagnosis {
 
 /// One machine in one state, identified by leak level, specimen and date.
 struct StateKey {
-  std::string leak_level;  ///< id of the condition if it has neither leak level nor date
-  std::string specimen;
-  std::string date;
-  auto operator<=>(const StateKey&) const = default;
+  std::optional<std::string> leak_level;  ///< id of a condition with neither leak level nor date
+  std::optional<std::string> specimen, date;
+  RIGCAL_DESCRIBE(leak_level, specimen, date)
+
+  bool operator==(const StateKey&) const = default;
   std::string name() const;  ///< "66.66 %, specimen B, 2026-03-01"
 };
 StateKey state_of(const datasets::Condition& condition);
@@ -87,21 +89,30 @@ LimitDistance nearest_limit(const LeakEstimate& estimate,
 
 /// Verdict on one state, based on the averages of its conditions.
 struct MachineState {
-  StateKey key;
-  std::vector<StateMember> members;
-  std::vector<std::string> left_out;  ///< conditions that were left out, with reasons in words
+  std::string state;  ///< name of the key
+  Inlined<StateKey> key;
+  std::string sentence;                ///< for an operator
+  std::optional<std::string> failure;  ///< why there is no verdict
   /// True if every signal is its own healthy reference, so that the leak is zero by construction.
   bool is_reference = false;
-  std::string failure;  ///< why there is no verdict; the members below are then meaningless
-  PooledLeak pooled;
+  std::vector<std::string> conditions;
+  std::vector<std::string> left_out;  ///< conditions that were left out, with reasons in words
+  Inlined<StatedLeak> leak;           ///< at the duty
   /// Coefficient times leakage area; absent if the leak is laminar.
   std::optional<double> leak_area_m2;
-  std::string duty;                     ///< signal whose share is stated
-  LeakEstimate estimate;                ///< leak at that duty
-  double share_slope = 0.0;             ///< d share / d coefficient at that duty
-  std::optional<LeakClass> leak_class;  ///< absent if undecided
-  LimitDistance limit;
-  bool ok() const { return failure.empty() && !is_reference && !members.empty(); }
+  std::optional<Range> leak_area_ci95_m2;
+  std::optional<std::string> duty;  ///< signal to which the leak share refers
+  std::optional<LimitDistance> nearest_limit;
+  std::optional<SignalsAgreement> agreement;  ///< absent for a single signal
+  RIGCAL_DESCRIBE(state, key, sentence, failure, is_reference, conditions, left_out, leak,
+                  leak_area_m2, leak_area_ci95_m2, duty, nearest_limit, agreement)
+
+  // From what the verdict follows; not stored. Meaningless if there is a failure.
+  std::vector<StateMember> members;
+  PooledLeak pooled;
+  LeakEstimate estimate;     ///< leak at the duty
+  double share_slope = 0.0;  ///< d share / d coefficient at the duty
+  bool ok() const { return !failure && !is_reference && !members.empty(); }
 };
 
 }  // namespace rigcal::diagnosis

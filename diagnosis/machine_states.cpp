@@ -10,6 +10,7 @@
 #include "diagnosis/judgement.hpp"
 #include "diagnosis/leak/leak_budget.hpp"
 #include "diagnosis/signal_name.hpp"
+#include "diagnosis/state_verdict.hpp"
 
 namespace rigcal::diagnosis {
 namespace {
@@ -37,9 +38,9 @@ void add_average(const RecordDiagnosis& record, const SignalErrors& errors, Mach
   };
   if (!record.fit.ok()) return leave_out(record.fit.failure);
   if (record.is_reference) return leave_out("the healthy reference of its signal");
-  if (record.unexplained) return leave_out("not explained by a leak");
+  if (record.explained_by_leak == false) return leave_out("not explained by a leak");
   const CoefficientError error =
-      coefficient_error(record.fit, errors, record.repeats, record.reference_repeats);
+      coefficient_error(record.fit, errors, record.repeats_averaged, record.reference_repeats);
   if (!(error.own_se > 0.0)) return leave_out("its residuals hold no noise, so its error is open");
   state.members.push_back({record.condition, record.signal, record.fit.coefficient, error.own_se,
                            error.freedom, record.fit.rig_moves, record.fit.day_effects,
@@ -97,13 +98,7 @@ void judge_state(const LeakProblem& problem, const RigFit& rig, const Prepared& 
                                                pooled.widened * share_days_se);
   } catch (const NoResultError& failure) {
     state.failure = failure.what();
-    return;
   }
-  const LeakEstimate& found = state.estimate;
-  const auto best = static_cast<std::size_t>(found.most_probable);
-  if (found.has_class() && found.probability[best] >= campaign.diagnosis.least_probability)
-    state.leak_class = found.most_probable;
-  state.limit = nearest_limit(found, campaign.diagnosis);
 }
 
 }  // namespace
@@ -132,7 +127,8 @@ std::vector<MachineState> machine_states(const LeakProblem& problem, const RigFi
   const Prepared& duty = duty_of(problem.campaign, all);
   for (MachineState& state : states) {
     if (!duty.failure.empty()) state.failure = duty.failure;
-    if (state.failure.empty()) judge_state(problem, rig, duty, days, state);
+    if (!state.failure) judge_state(problem, rig, duty, days, state);
+    give_verdict(problem.campaign.diagnosis, state);
   }
   return states;
 }

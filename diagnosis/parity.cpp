@@ -338,7 +338,7 @@ class Work {
       parts.push_back({square(value(each)) * (1.0 + 1.0 / n), n - 1.0});
     for (const ResidualValues& each : scatter_.days) {
       parts.push_back({square(day_norm * value(each)) * result_.between_days.variance,
-                       result_.between_days.freedom});
+                       result_.between_days.degrees_of_freedom()});
     }
     return threshold_with(*own, parts, options_.false_alarm);
   }
@@ -444,13 +444,12 @@ Parity parity(const Campaign& campaign, const std::vector<RepeatRecords>& record
   for (const ParityCondition& condition : result.conditions) {
     for (const ParityResidual& record : condition.records) {
       const std::string day = day_label(*campaign.find(condition.condition));
-      auto& days = result.other_days;
+      auto& days = result.between_days.other_days;
       if (record.days.norm() > 0.0 && std::find(days.begin(), days.end(), day) == days.end())
         days.push_back(day);
     }
   }
-  if (const std::string text = in_words(result.between_days, result.other_days); !text.empty())
-    result.warnings.push_back(text);
+  if (const auto text = in_words(result.between_days)) result.warnings.push_back(*text);
   warn_of_undated(campaign, result);
   return result;
 }

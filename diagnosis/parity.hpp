@@ -99,8 +99,6 @@ struct Parity {
   std::vector<ParitySignal> signals;        ///< in order of first appearance
   FalseAlarmCheck check;
   BetweenDays between_days;
-  /// Days of records that are not from the day of their reference.
-  std::vector<std::string> other_days;
   std::vector<std::string> warnings;
   bool usable() const;  ///< true if there is at least one residual
 };

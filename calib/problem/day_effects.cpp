@@ -45,7 +45,7 @@ UsualSize usual_size(const datasets::Campaign& campaign, const model::ParameterV
 /// Returns true if the record of a condition already includes the day's value of a quantity.
 bool is_recorded(const ProblemCondition& condition, const DayQuantity& quantity) {
   if (quantity.index < 0) return condition.condition->waveform == datasets::Waveform::recorded;
-  return quantity.key == "supply_pressure" && condition.inputs.supply_pressure_pa.has_value();
+  return quantity.quantity == "supply_pressure" && condition.inputs.supply_pressure_pa.has_value();
 }
 
 /// Returns the time derivative, by central differences.
@@ -71,7 +71,7 @@ std::vector<DayQuantity> day_quantities(const datasets::Campaign& campaign,
     if (stated.leaves_out(name.key)) continue;
     const UsualSize usual = usual_size(campaign, values, sample_s, name.key);
     DayQuantity quantity;
-    quantity.key = name.key;
+    quantity.quantity = name.key;
     quantity.meaning = usual.meaning;
     quantity.unit = name.unit;
     quantity.sd = usual.sd;

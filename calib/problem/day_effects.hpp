@@ -6,18 +6,21 @@
 #include <vector>
 
 #include "calib/problem/problem.hpp"
+#include "common/describe.hpp"
 
 namespace rigcal::calib {
 
 /// A quantity that varies from day to day, so that repeats recorded on one day do not show the
 /// variation.
 struct DayQuantity {
-  std::string key;      ///< for example "supply_pressure"
-  std::string meaning;  ///< name in messages, for example "supply"
-  std::string unit;     ///< SI unit of the quantity
-  double sd = 0.0;      ///< standard deviation between days
-  std::string sd_from;  ///< source of `sd`: "0.5 % of the supply", or "[between_days]"
-  int index = -1;       ///< row of the parameter table; -1 for the start of the record
+  std::string quantity;  ///< key, for example "supply_pressure"
+  std::string meaning;   ///< name in messages, for example "supply"
+  std::string unit;      ///< SI unit of the quantity
+  double sd = 0.0;       ///< standard deviation between days
+  std::string sd_from;   ///< source of `sd`: "0.5 % of the supply", or "[between_days]"
+  RIGCAL_DESCRIBE(quantity, meaning, unit, sd, sd_from)
+
+  int index = -1;  ///< row of the parameter table; -1 for the start of the record. Not stored
 };
 
 /// Returns the quantities that vary between the days of a campaign. Each standard deviation is the

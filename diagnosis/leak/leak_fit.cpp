@@ -651,7 +651,7 @@ Eigen::VectorXd share_day_effects(const LeakProblem& leak_problem, const Conditi
   for (std::size_t q = 0; q < leak_problem.day_quantities.size(); ++q) {
     const calib::DayQuantity& quantity = leak_problem.day_quantities[q];
     const int place = column_of(memo.further(), quantity.index);
-    if (place < 0 || (supply_recorded && quantity.key == "supply_pressure")) continue;
+    if (place < 0 || (supply_recorded && quantity.quantity == "supply_pressure")) continue;
     moves(static_cast<Eigen::Index>(q)) += quantity.sd * slopes(place);
   }
   return moves;

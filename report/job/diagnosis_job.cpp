@@ -12,6 +12,7 @@
 #include "report/job/job.hpp"
 #include "report/job/leak_records.hpp"
 #include "report/leak/diagnosis.hpp"
+#include "report/leak/read_leak_table.hpp"
 #include "report/live/live_fit.hpp"
 #include "report/page/page_parts.hpp"
 #include "report/store/result_files.hpp"
@@ -78,7 +79,7 @@ std::vector<calib::LeakEntry> take_table(const std::filesystem::path& file,
                                  "--fit with the same campaign and fit.json",
                                  fmt::join(differences, "; ")));
   }
-  take_limits(campaign.diagnosis, table.targets_percent, file.string());
+  diagnosis::take_limits(campaign.diagnosis, table.targets_percent, file.string());
   return table.limits;
 }
 
@@ -133,16 +134,16 @@ std::optional<std::vector<datasets::FittedValue>> truth_beside(const Campaign& c
 }
 
 /// @param live  contents of diagnosis_live.json, if the rig can be simulated in the page
-JobResult finished(const DiagnosisResult& result, const std::optional<Json>& live = {}) {
-  StoredDiagnosis diagnosis = stored(result);
+JobResult finished(StoredDiagnosis diagnosis, const Provenance& provenance,
+                   const std::optional<Json>& live = {}) {
   JobResult job;
+  job.code = diagnosis.status == LeakStatus::done ? ExitCode::done : ExitCode::no_result;
   job.files = {{"diagnosis.csv", diagnosis_csv(diagnosis)}};
   if (live) job.files.push_back(json_file(kLiveDiagnosisFile, *live, json_line));
   name_files(job.files, diagnosis.provenance);
   job.files.push_back(json_file("diagnosis.json", std::move(diagnosis)));
   job.first = {"diagnosis.json", "diagnosis.csv"};
-  job.inputs = result.provenance.inputs;
-  job.code = status_of(result) == LeakStatus::done ? ExitCode::done : ExitCode::no_result;
+  job.inputs = provenance.inputs;
   return job;
 }
 
@@ -164,7 +165,8 @@ JobResult diagnosis_job(Campaign campaign, const DiagnosisRequest& request, cons
   diagnosis::Diagnosis found;
   if (!reasons.empty()) {
     provenance.inputs = hash_inputs(campaign, {}, more_inputs);
-    return finished({campaign, found, reasons, provenance});
+    found.settings = diagnosis::stated(campaign.diagnosis);
+    return finished(stored(campaign, found, reasons, provenance), provenance);
   }
   const EarlierFit earlier = request.fit.read(campaign.rig.plant);
   std::vector<calib::LeakEntry> limits;
@@ -182,10 +184,11 @@ JobResult diagnosis_job(Campaign campaign, const DiagnosisRequest& request, cons
   found.warnings.insert(found.warnings.end(), records.left_out.begin(), records.left_out.end());
   warn_of_validity(campaign, earlier.validity, found);
   warn_of_recordings(records.averages(), found);
+  found.class_limits = diagnosis::class_limits(campaign, limits);
   if (!limits.empty()) warn_of_absent(limits, campaign, found);
   warn_of_fit(earlier, found);
   const auto live = live_diagnosis(campaign, records.averages(), earlier.values, found);
-  return finished({campaign, found, reasons, provenance, limits}, live);
+  return finished(stored(campaign, found, reasons, provenance), provenance, live);
 }
 
 }  // namespace rigcal::report

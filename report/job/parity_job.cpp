@@ -14,13 +14,13 @@ namespace {
 JobResult finished(const ParityResult& result) {
   StoredParity parity = stored(result);
   JobResult job;
+  job.code = parity.status == LeakStatus::done ? ExitCode::done : ExitCode::no_result;
   job.files = parity_series(result);
   job.files.push_back({"parity.csv", parity_csv(parity)});
   name_files(job.files, parity.provenance);
   job.files.push_back(json_file("parity.json", std::move(parity)));
   job.first = {"parity.json", "parity.csv", "parity/"};
   job.inputs = result.provenance.inputs;
-  job.code = status_of(result) == LeakStatus::done ? ExitCode::done : ExitCode::no_result;
   return job;
 }
 

@@ -39,14 +39,9 @@ Table series_of(const ParityCondition& condition) {
 
 }  // namespace
 
-LeakStatus status_of(const ParityResult& result) {
-  if (!result.reasons.empty()) return LeakStatus::declined;
-  return result.parity.usable() ? LeakStatus::done : LeakStatus::failed;
-}
-
 StoredParity stored(const ParityResult& result) {
   StoredParity file;
-  file.status = status_of(result);
+  file.status = leak_status(result.reasons, result.parity.usable());
   file.reasons = result.reasons;
   file.campaign = result.campaign.name;
   file.synthetic = result.campaign.synthetic;

@@ -18,9 +18,6 @@ struct ParityResult {
   const Provenance& provenance;
 };
 
-/// Returns declined if there are reasons for it, and failed if no residual could be computed.
-LeakStatus status_of(const ParityResult& result);
-
 /// Builds the contents of parity.json.
 StoredParity stored(const ParityResult& result);
 

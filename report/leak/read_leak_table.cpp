@@ -83,36 +83,4 @@ std::vector<std::string> rig_differences(const EarlierLeakTable& table,
   return differences;
 }
 
-void take_limits(datasets::DiagnosisSettings& settings, const std::vector<double>& targets_percent,
-                 const std::string& file) {
-  constexpr std::size_t kFewest = 3;
-  const std::size_t rows = targets_percent.size();
-  const std::size_t most = datasets::kLeakClasses.size();
-  if (rows < kFewest || rows > most) {
-    throw InputError({file}, fmt::format("the table has {} rows: expected the limits of slight, "
-                                         "medium and critical, such as --targets 10,20,30, or "
-                                         "five with that of normal and one beyond",
-                                         rows));
-  }
-  const std::size_t first = rows == most ? 0 : 1;
-  for (std::size_t i = first; i < settings.limits.size(); ++i)
-    settings.limits[i] = targets_percent[i - first] / 100.0;
-  if (!(settings.limits[0] < settings.limits[1])) {
-    throw InputError(
-        {file},
-        fmt::format("the first of {} rows, {:g} %, would be the limit of slight, but normal "
-                    "ends at {:g} %: expected five rows where the first is the limit of "
-                    "normal, or another limits_percent of normal in [diagnosis]",
-                    rows, targets_percent.front(), 100.0 * settings.limits[0]));
-  }
-}
-
-std::optional<datasets::LeakClass> class_ending_at(const datasets::DiagnosisSettings& settings,
-                                                   double target_percent) {
-  for (std::size_t i = 0; i < settings.limits.size(); ++i) {
-    if (alike(100.0 * settings.limits[i], target_percent)) return datasets::kLeakClasses[i];
-  }
-  return std::nullopt;
-}
-
 }  // namespace rigcal::report

@@ -1,13 +1,11 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "calib/published/leak_table.hpp"
 #include "datasets/campaign/campaign.hpp"
-#include "datasets/campaign/diagnosis_settings.hpp"
 #include "report/store/validity.hpp"
 
 namespace rigcal::report {
@@ -33,20 +31,5 @@ EarlierLeakTable read_leak_table(const std::filesystem::path& file, model::Plant
 std::vector<std::string> rig_differences(const EarlierLeakTable& table,
                                          const datasets::Campaign& campaign,
                                          const std::vector<datasets::FittedValue>& fitted);
-
-/// Takes the class limits from the rows of a leak table. In increasing order they are the upper
-/// limits of slight, medium and critical. A fourth row is inside supercritical and does not limit
-/// any class. If there are five rows, the first is the upper limit of normal; otherwise the limit
-/// of normal does not change.
-///
-/// @throws InputError  if there are fewer than three or more than five rows, or the first is not
-///                     above the limit of normal
-void take_limits(datasets::DiagnosisSettings& settings, const std::vector<double>& targets_percent,
-                 const std::string& file);
-
-/// Returns the class that has a given row as its upper limit according to take_limits();
-/// std::nullopt if the row does not limit any class.
-std::optional<datasets::LeakClass> class_ending_at(const datasets::DiagnosisSettings& settings,
-                                                   double target_percent);
 
 }  // namespace rigcal::report

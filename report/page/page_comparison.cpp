@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/calendar.hpp"
+#include "common/significant.hpp"
 #include "report/comparison/comparison_parts.hpp"
 #include "report/document/words.hpp"
 #include "report/page/page_parts.hpp"

@@ -6,6 +6,8 @@
 #include <numeric>
 
 #include "common/calendar.hpp"
+#include "common/significant.hpp"
+#include "diagnosis/state_verdict.hpp"
 #include "report/document/words.hpp"
 #include "report/page/budget_tables.hpp"
 #include "report/page/page_parts.hpp"
@@ -19,6 +21,12 @@ using doc::Line;
 using Kind = doc::Column::Kind;
 
 using datasets::LeakClass;
+using diagnosis::ClassLimit;
+using diagnosis::Diagnosis;
+using diagnosis::MachineState;
+using diagnosis::RecordDiagnosis;
+using diagnosis::SmallestLeak;
+using diagnosis::StatedSettings;
 
 std::string class_text(const std::optional<LeakClass>& leak_class) {
   return leak_class ? std::string(to_string(*leak_class)) : std::string();
@@ -27,7 +35,7 @@ std::string class_text(const std::optional<LeakClass>& leak_class) {
 /// Badge for a leak below zero: supply or valve differ from the fit.
 const doc::Badge kIncompatible{doc::State::bad, "incompatible with the model"};
 
-doc::Badge leak_badge(const StoredDiagnosedRecord& record) {
+doc::Badge leak_badge(const RecordDiagnosis& record) {
   if (record.failure) return {doc::State::bad, "not fitted"};
   if (record.is_reference) return {doc::State::none, "reference"};
   if (record.leak.compatible_with_model == false) return kIncompatible;
@@ -54,7 +62,7 @@ doc::Cell probability_cell(const std::optional<double>& p) {
 }
 
 /// @param classes  the classes that have a column
-doc::Row average_row(const StoredDiagnosedRecord& record, std::size_t number,
+doc::Row average_row(const RecordDiagnosis& record, std::size_t number,
                      const std::vector<std::string>& classes) {
   doc::Cell name = doc::Cell(record.condition);
   if (record.is_reference) name.below = {{"reference"}};
@@ -72,7 +80,7 @@ doc::Row average_row(const StoredDiagnosedRecord& record, std::size_t number,
   return row;
 }
 
-doc::Row repeat_row(const StoredDiagnosedRecord& record) {
+doc::Row repeat_row(const RecordDiagnosis& record) {
   doc::Cell share = value_cell(record.leak.leak_share_percent, record.leak.leak_share_ci95_percent);
   Line interval;
   if (!share.below.empty()) interval = std::move(share.below.front());
@@ -91,12 +99,12 @@ doc::Row repeat_row(const StoredDiagnosedRecord& record) {
 /// The averages of one signal, in the order of the table.
 struct SignalRecords {
   std::string signal;
-  std::vector<const StoredDiagnosedRecord*> records;
+  std::vector<const RecordDiagnosis*> records;
 };
 
-std::vector<SignalRecords> averages_by_signal(const StoredDiagnosis& diagnosis) {
+std::vector<SignalRecords> averages_by_signal(const Diagnosis& diagnosis) {
   std::vector<SignalRecords> signals;
-  for (const StoredDiagnosedRecord& record : diagnosis.records) {
+  for (const RecordDiagnosis& record : diagnosis.records) {
     if (!record.is_average()) continue;
     auto found = std::find_if(signals.begin(), signals.end(), [&](const SignalRecords& each) {
       return each.signal == record.signal;
@@ -109,7 +117,7 @@ std::vector<SignalRecords> averages_by_signal(const StoredDiagnosis& diagnosis) 
 
 /// Plots the leak shares with their intervals by signal, and the limits of the classes. The records
 /// of a signal lie side by side, in the order of the table.
-Plot share_plot(const StoredDiagnosis& diagnosis) {
+Plot share_plot(const Diagnosis& diagnosis) {
   // Fraction of the room of a signal; the rest separates it from the next.
   constexpr double kUsed = 0.8;
   const std::vector<SignalRecords> signals = averages_by_signal(diagnosis);
@@ -128,7 +136,7 @@ Plot share_plot(const StoredDiagnosis& diagnosis) {
     plot.x_names.push_back(signal.signal);
     const double step = kUsed / static_cast<double>(signal.records.size());
     double place = static_cast<double>(plot.x_names.size()) - 0.5 * (kUsed + step);
-    for (const StoredDiagnosedRecord* record : signal.records) {
+    for (const RecordDiagnosis* record : signal.records) {
       place += step;
       if (record->true_share_percent) {
         known.x.push_back(place);
@@ -171,15 +179,14 @@ std::optional<ForeseenDays> foreseen_days(const std::optional<diagnosis::NextLim
                       latest ? std::min<double>(*latest - first, end) : end};
 }
 
-bool is_of(const StoredState& state, const diagnosis::LeakTrend& trend) {
-  return state.leak_level == trend.leak_level && state.specimen == trend.specimen;
+bool is_of(const MachineState& state, const diagnosis::LeakTrend& trend) {
+  return state.key.leak_level == trend.leak_level && state.key.specimen == trend.specimen;
 }
 
 /// Plots the shares of a machine over its dates with the rate of their change, and, if it is
 /// foreseen, when they reach the next limit. Line and band pass through the last share, because the
 /// days of the limit are counted from there. Returns std::nullopt without that share.
-std::optional<Plot> leak_trend_plot(const StoredDiagnosis& diagnosis,
-                                    const diagnosis::LeakTrend& trend) {
+std::optional<Plot> leak_trend_plot(const Diagnosis& diagnosis, const diagnosis::LeakTrend& trend) {
   const auto first = day_of(trend.first_date);
   const auto last_day = day_of(trend.last_date);
   if (!first || !last_day) return std::nullopt;
@@ -187,8 +194,8 @@ std::optional<Plot> leak_trend_plot(const StoredDiagnosis& diagnosis,
   Trace spans = empty_trace(Trace::Kind::intervals, "model");
   Trace middles = empty_trace(Trace::Kind::points, "model", "found");
   std::optional<double> last_share;
-  for (const StoredState& state : diagnosis.states) {
-    const auto day = state.date && is_of(state, trend) ? day_of(*state.date) : std::nullopt;
+  for (const MachineState& state : diagnosis.states) {
+    const auto day = state.key.date && is_of(state, trend) ? day_of(*state.key.date) : std::nullopt;
     if (!day || !state.leak.leak_share_percent) continue;
     if (*day == *last_day) last_share = state.leak.leak_share_percent;
     middles.x.push_back(*day - *first);
@@ -196,7 +203,7 @@ std::optional<Plot> leak_trend_plot(const StoredDiagnosis& diagnosis,
     add_interval(spans, middles.x.back(), state.leak.leak_share_ci95_percent);
   }
   if (!last_share) return std::nullopt;
-  const auto foreseen = foreseen_days(trend.next_limit, *first, (1.0 + kAhead) * last);
+  const auto foreseen = foreseen_days(trend.next_limit, *first, (1.0 + diagnosis::kAhead) * last);
   Plot plot;
   plot.title = fmt::format(
       "Share of the servo flow that leaks from {} to {}, and its rate with the 95 % band",
@@ -284,9 +291,9 @@ doc::Table confusion_table(const diagnosis::Accuracy& method, const char* name) 
 }
 
 /// Returns the general warnings, followed by those of the records, without duplicates.
-std::vector<std::string> diagnosis_warnings(const StoredDiagnosis& diagnosis) {
+std::vector<std::string> diagnosis_warnings(const Diagnosis& diagnosis) {
   std::vector<std::pair<std::string, std::string>> told;
-  for (const StoredDiagnosedRecord& record : diagnosis.records) {
+  for (const RecordDiagnosis& record : diagnosis.records) {
     const std::string name = record.is_average()
                                  ? record.condition
                                  : fmt::format("{} repeat {}", record.condition, *record.repeat);
@@ -298,13 +305,13 @@ std::vector<std::string> diagnosis_warnings(const StoredDiagnosis& diagnosis) {
 }
 
 /// Lists the rows of the leak table that define the limits; empty if [diagnosis] defines them.
-doc::Table limits_of_classes(const StoredDiagnosis& diagnosis) {
+doc::Table limits_of_classes(const Diagnosis& diagnosis) {
   doc::Table table{"Coefficient at each limit, by signal"};
   table.columns = {{"Signal"},
                    {"Share, %", Kind::number},
                    {"Ends the class"},
                    {"Coefficient", Kind::number, 0, "95 % interval"}};
-  for (const StoredClassLimit& limit : diagnosis.class_limits) {
+  for (const ClassLimit& limit : diagnosis.class_limits) {
     doc::Cell roots;
     for (std::size_t i = 0; i < limit.coefficients.size(); ++i) {
       doc::Cell root = value_cell(limit.coefficients[i], limit.coefficients_ci95[i]);
@@ -319,18 +326,7 @@ doc::Table limits_of_classes(const StoredDiagnosis& diagnosis) {
   return table;
 }
 
-/// Returns the judged states of the machine, without healthy references, largest leak first.
-std::vector<StoredState> judged_states(const StoredDiagnosis& diagnosis) {
-  std::vector<StoredState> states;
-  for (const StoredState& state : diagnosis.states)
-    if (!state.is_reference) states.push_back(state);
-  std::stable_sort(states.begin(), states.end(), [](const StoredState& a, const StoredState& b) {
-    return a.leak.leak_share_percent.value_or(-1.0) > b.leak.leak_share_percent.value_or(-1.0);
-  });
-  return states;
-}
-
-doc::Badge state_badge(const StoredState& state) {
+doc::Badge state_badge(const MachineState& state) {
   if (state.is_reference) return {doc::State::none, "reference"};
   if (state.leak.compatible_with_model == false) return kIncompatible;
   if (state.leak.class_) return doc::badge(*state.leak.class_);
@@ -353,11 +349,11 @@ std::string agreement_text_of(const std::optional<diagnosis::SignalsAgreement>& 
 }
 
 /// Returns the heading of the column of fitted leaks.
-std::string coefficient_heading(const StoredDiagnosisSettings& settings) {
+std::string coefficient_heading(const StatedSettings& settings) {
   return settings.is_laminar() ? "Conductance, m³/(s Pa)" : "Coefficient";
 }
 
-doc::Table state_table(const StoredDiagnosis& diagnosis) {
+doc::Table state_table(const Diagnosis& diagnosis) {
   constexpr double kSquareMillimetre = 1e-6;
   doc::Table table{"State of the machine"};
   table.style = "states";
@@ -371,7 +367,7 @@ doc::Table state_table(const StoredDiagnosis& diagnosis) {
                    {"Leak area, mm²", Kind::number, 0, "95 % interval"},
                    {"Nearest limit"},
                    {"Signals"}};
-  for (const StoredState& state : diagnosis.states) {
+  for (const MachineState& state : diagnosis.states) {
     doc::Row row{{state.state, state_badge(state),
                   value_cell(state.leak.leak_share_percent, state.leak.leak_share_ci95_percent),
                   state.duty.value_or(""),
@@ -389,26 +385,27 @@ doc::Table state_table(const StoredDiagnosis& diagnosis) {
   return table;
 }
 
-doc::Verdict headline_of_states(const StoredDiagnosis& diagnosis, const std::string& sentence) {
-  const std::vector<StoredState> states = judged_states(diagnosis);
-  const auto is_leak = [](const StoredState& state) {
-    return state.leak.class_ && *state.leak.class_ != LeakClass::normal;
-  };
-  const auto is_open = [](const StoredState& state) { return !state.leak.class_; };
-  const bool leak = std::any_of(states.begin(), states.end(), is_leak);
-  const auto open = std::count_if(states.begin(), states.end(), is_open);
-  doc::Badge badge{doc::State::warn, "UNCLEAR"};
-  if (leak)
-    badge = {doc::State::warn, "LEAK"};
-  else if (open == static_cast<std::ptrdiff_t>(states.size()))
-    badge = {doc::State::none, "NOT JUDGED"};
-  else if (open == 0)
-    badge = {doc::State::good, "NO LEAK"};
-  doc::Verdict verdict{std::move(badge), {sentence}};
+doc::Badge badge_of(diagnosis::Finding finding) {
+  switch (finding) {
+    case diagnosis::Finding::leak:
+      return {doc::State::warn, "LEAK"};
+    case diagnosis::Finding::no_leak:
+      return {doc::State::good, "NO LEAK"};
+    case diagnosis::Finding::unclear:
+      return {doc::State::warn, "UNCLEAR"};
+    case diagnosis::Finding::not_judged:
+      return {doc::State::none, "NOT JUDGED"};
+  }
+  return {};
+}
+
+doc::Verdict headline_of_states(const Diagnosis& diagnosis, const std::string& sentence) {
+  doc::Verdict verdict{badge_of(diagnosis::finding_of(diagnosis.states)), {sentence}};
   for (const diagnosis::LeakTrend& trend : diagnosis.trends)
     if (trend.significant) add_reason(verdict, trend.sentence, "diagnosis");
+  const std::vector<const MachineState*> states = judged_states(diagnosis.states);
   for (std::size_t i = 1; i < states.size(); ++i)
-    add_reason(verdict, states[i].sentence, "diagnosis");
+    add_reason(verdict, states[i]->sentence, "diagnosis");
   return verdict;
 }
 
@@ -417,11 +414,11 @@ std::string diagnosis_sentence(const StoredDiagnosis& diagnosis) {
     return "These records cannot be diagnosed: no leak below may be used.";
   if (diagnosis.status == LeakStatus::failed)
     return "No record could be diagnosed: no number below may be used.";
-  const std::vector<StoredState> states = judged_states(diagnosis);
-  if (states.size() == 1) return states.front().sentence;
+  const std::vector<const MachineState*> states = judged_states(diagnosis.found.states);
+  if (states.size() == 1) return states.front()->sentence;
   if (!states.empty()) {
     return fmt::format("Of {} states of the machine the worst: {}", states.size(),
-                       states.front().sentence);
+                       states.front()->sentence);
   }
   return "Every condition is the healthy reference of its signal: there is nothing to judge.";
 }
@@ -430,18 +427,18 @@ std::string diagnosis_sentence(const StoredDiagnosis& diagnosis) {
 
 doc::Verdict diagnosis_headline(const StoredDiagnosis& diagnosis) {
   const std::string sentence = diagnosis_sentence(diagnosis);
-  if (diagnosis.status == LeakStatus::done) return headline_of_states(diagnosis, sentence);
+  if (diagnosis.status == LeakStatus::done) return headline_of_states(diagnosis.found, sentence);
   return verdict_without_result(diagnosis.status, sentence, diagnosis.reasons, "diagnosis");
 }
 
 std::vector<Figure> diagnosis_figures(const StoredDiagnosis& diagnosis) {
   std::vector<Figure> figures;
-  const auto& records = diagnosis.records;
-  if (std::any_of(records.begin(), records.end(),
+  const Diagnosis& found = diagnosis.found;
+  if (std::any_of(found.records.begin(), found.records.end(),
                   [](const auto& record) { return record.is_average(); }))
-    figures.push_back({"diagnosis", share_plot(diagnosis)});
-  for (const diagnosis::LeakTrend& trend : diagnosis.trends) {
-    auto plot = leak_trend_plot(diagnosis, trend);
+    figures.push_back({"diagnosis", share_plot(found)});
+  for (const diagnosis::LeakTrend& trend : found.trends) {
+    auto plot = leak_trend_plot(found, trend);
     if (!plot) continue;
     const std::string machine = trend.leak_level.value_or("") + " " + trend.specimen.value_or("");
     figures.push_back({plain_name("diagnosis_trend_" + machine), std::move(*plot)});
@@ -451,7 +448,7 @@ std::vector<Figure> diagnosis_figures(const StoredDiagnosis& diagnosis) {
 
 namespace {
 
-void add_averages(const StoredDiagnosis& diagnosis, doc::Blocks& blocks) {
+void add_averages(const Diagnosis& diagnosis, doc::Blocks& blocks) {
   doc::Table table{"Leak of each condition"};
   table.style = "diagnosis";
   table.caption = {"Average of each condition"};
@@ -471,7 +468,7 @@ void add_averages(const StoredDiagnosis& diagnosis, doc::Blocks& blocks) {
     table.columns.push_back({each, Kind::number, 0, "probability"});
   table.columns.push_back({"By features"});
   table.columns.push_back({"Known"});
-  for (const StoredDiagnosedRecord& record : diagnosis.records)
+  for (const RecordDiagnosis& record : diagnosis.records)
     if (record.is_average())
       table.rows.push_back(average_row(record, table.rows.size() + 1, classes));
   if (table.rows.empty()) return;
@@ -507,7 +504,7 @@ void add_methods(const diagnosis::Methods& methods, doc::Blocks& blocks) {
   blocks.emplace_back(std::move(confusions));
 }
 
-void add_smallest_leaks(const StoredDiagnosis& diagnosis, doc::Blocks& blocks) {
+void add_smallest_leaks(const Diagnosis& diagnosis, doc::Blocks& blocks) {
   if (diagnosis.smallest_leak_l_per_min.empty()) return;
   doc::Table table{"Smallest leaks"};
   table.caption = {
@@ -526,7 +523,7 @@ void add_smallest_leaks(const StoredDiagnosis& diagnosis, doc::Blocks& blocks) {
     table.columns.push_back({"Same day, average", Kind::number});
   }
   table.columns.push_back({"Note"});
-  for (const StoredSmallestLeak& each : limits) {
+  for (const SmallestLeak& each : limits) {
     std::vector<doc::Cell> row{each.signal, doc::in_unit(each.single, 1.0, 3),
                                doc::in_unit(each.averaged, 1.0, 3),
                                doc::in_unit(each.averaged_share_percent, 1.0, 3)};
@@ -544,7 +541,7 @@ void add_smallest_leaks(const StoredDiagnosis& diagnosis, doc::Blocks& blocks) {
   blocks.emplace_back(std::move(table));
 }
 
-void add_repeats(const StoredDiagnosis& diagnosis, doc::Blocks& blocks) {
+void add_repeats(const Diagnosis& diagnosis, doc::Blocks& blocks) {
   doc::Table table{"Leak of each repeat"};
   table.columns = {{"Condition"},
                    {"Repeat", Kind::number},
@@ -555,19 +552,19 @@ void add_repeats(const StoredDiagnosis& diagnosis, doc::Blocks& blocks) {
                    {coefficient_heading(diagnosis.settings), Kind::number},
                    {"By features"},
                    {"Known"}};
-  for (const StoredDiagnosedRecord& record : diagnosis.records)
+  for (const RecordDiagnosis& record : diagnosis.records)
     if (!record.is_average()) table.rows.push_back(repeat_row(record));
   if (!table.rows.empty()) blocks.emplace_back(doc::Fold{"Every repeat", {std::move(table)}});
 }
 
 /// Adds the contributions to the uncertainty of the shares of states and averages.
-void add_share_budgets(const StoredDiagnosis& diagnosis, doc::Blocks& blocks) {
+void add_share_budgets(const Diagnosis& diagnosis, doc::Blocks& blocks) {
   const ReadableUnit points{"%", 1.0};
   std::vector<BudgetOf> budgets;
-  for (const StoredState& state : diagnosis.states)
+  for (const MachineState& state : diagnosis.states)
     if (state.leak.share_budget)
       budgets.push_back({state.state, points, &*state.leak.share_budget});
-  for (const StoredDiagnosedRecord& record : diagnosis.records)
+  for (const RecordDiagnosis& record : diagnosis.records)
     if (record.is_average() && record.leak.share_budget)
       budgets.push_back({record.condition, points, &*record.leak.share_budget});
   if (budgets.empty()) return;
@@ -585,18 +582,19 @@ void add_share_budgets(const StoredDiagnosis& diagnosis, doc::Blocks& blocks) {
 }  // namespace
 
 std::vector<doc::Section> diagnosis_sections(const StoredDiagnosis& diagnosis) {
+  const Diagnosis& found = diagnosis.found;
   doc::Section section{"diagnosis", "Diagnosis"};
   doc::Blocks& blocks = section.blocks;
   if (diagnosis.status != LeakStatus::done)
     blocks.emplace_back(list_of(diagnosis.reasons, doc::State::warn));
-  if (!diagnosis.states.empty()) blocks.emplace_back(state_table(diagnosis));
-  if (!diagnosis.trends.empty()) {
+  if (!found.states.empty()) blocks.emplace_back(state_table(found));
+  if (!found.trends.empty()) {
     blocks.emplace_back(doc::Heading{{"Trend"}});
     doc::Gallery gallery;
     gallery.wide = true;
-    for (const diagnosis::LeakTrend& trend : diagnosis.trends) {
+    for (const diagnosis::LeakTrend& trend : found.trends) {
       blocks.emplace_back(doc::reading(trend.sentence));
-      auto plot = leak_trend_plot(diagnosis, trend);
+      auto plot = leak_trend_plot(found, trend);
       if (!plot) continue;
       const bool foreseen = !plot->levels.empty();
       gallery.figures.push_back(
@@ -611,20 +609,20 @@ std::vector<doc::Section> diagnosis_sections(const StoredDiagnosis& diagnosis) {
           "interval of that day, as far as it can be foreseen."));
     }
   }
-  add_averages(diagnosis, blocks);
-  add_share_budgets(diagnosis, blocks);
-  add_methods(diagnosis.methods, blocks);
-  if (!diagnosis.class_limits.empty())
+  add_averages(found, blocks);
+  add_share_budgets(found, blocks);
+  add_methods(found.methods, blocks);
+  if (!found.class_limits.empty())
     blocks.emplace_back(doc::Fold{"Limits of the classes, by the leak table",
-                                  {limits_of_classes(diagnosis)},
-                                  diagnosis.class_limits.size() <= kFew});
-  add_smallest_leaks(diagnosis, blocks);
-  const std::vector<std::string> warnings = diagnosis_warnings(diagnosis);
+                                  {limits_of_classes(found)},
+                                  found.class_limits.size() <= kFew});
+  add_smallest_leaks(found, blocks);
+  const std::vector<std::string> warnings = diagnosis_warnings(found);
   if (!warnings.empty()) {
     blocks.emplace_back(doc::Heading{{"Warnings"}});
     blocks.emplace_back(list_of(warnings, doc::State::warn));
   }
-  add_repeats(diagnosis, blocks);
+  add_repeats(found, blocks);
   return {std::move(section)};
 }
 

@@ -151,7 +151,7 @@ ParityFiles load_parity(const ReadFile& read, const std::string& where) {
 
 StoredDiagnosis load_diagnosis(const ReadFile& read, const std::string& where) {
   auto diagnosis = load<StoredDiagnosis>(read, where, "diagnosis.json");
-  for (const StoredClassLimit& limit : diagnosis.class_limits) {
+  for (const diagnosis::ClassLimit& limit : diagnosis.found.class_limits) {
     require_length(limit.coefficients_ci95.size(), limit.coefficients.size(),
                    "coefficients_ci95 of class_limits", path_in(where, "diagnosis.json"));
   }

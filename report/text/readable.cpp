@@ -108,27 +108,9 @@ std::string readable(double value_si, std::string_view si_unit, int digits) {
   return text;
 }
 
-std::string to_uncertainty(double value, double uncertainty) {
-  constexpr double kRounding = 1e-9;  // 0.1 may be stored as 0.0999999999
-  const int decimals = 1 - static_cast<int>(std::floor(std::log10(uncertainty) + kRounding));
-  if (decimals >= 0) return fixed(value, decimals);
-  const double step = std::pow(10.0, -decimals);
-  return fixed(std::round(value / step) * step, 0);
-}
-
-std::string fixed(double value, int decimals) {
-  std::string text = fmt::format("{:.{}f}", value, decimals);
-  if (text.front() == '-' && text.find_first_not_of("-0.") == std::string::npos) text.erase(0, 1);
-  return text;
-}
-
 std::string agreement_text(double value) {
   const std::string text = fixed(value, 4);
   return text == "1.0000" && value < 1.0 ? std::string("> 0.9999") : text;
-}
-
-std::string p_value_text(double p) {
-  return p < 1e-4 ? std::string("p < 0.0001") : fmt::format("p = {:.2g}", p);
 }
 
 }  // namespace rigcal::report

@@ -30,21 +30,8 @@ ReadableUnit readable_unit(double value_si, std::string_view si_unit);
 /// the value is not finite.
 std::string readable(double value_si, std::string_view si_unit, int digits = 6);
 
-/// Rounds a value to the decimal place of the second significant digit of its uncertainty (GUM,
-/// 7.2.6). Smaller digits are dropped: 0.0004 with 0.1 is "0.00".
-///
-/// @param uncertainty  standard error, or half width of an interval, in the unit of the value;
-///                     above zero
-std::string to_uncertainty(double value, double uncertainty);
-
-/// Writes a number with `decimals` decimals, never as "-0.00".
-std::string fixed(double value, int decimals);
-
 /// Writes an agreement such as rho2 as a fraction with four decimals. Writes "> 0.9999" for a value
 /// that would round to perfect agreement.
 std::string agreement_text(double value);
-
-/// Writes a p-value: "p = 0.012", "p < 0.0001".
-std::string p_value_text(double p);
 
 }  // namespace rigcal::report

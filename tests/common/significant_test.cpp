@@ -13,4 +13,17 @@ TEST_CASE("significant: no exponent where the digits before the point do", "[com
   CHECK(significant(3.2e7, 2) == "3.2e+07");
 }
 
+TEST_CASE("fixed, to_uncertainty: a rounded zero has no sign", "[common]") {
+  CHECK(fixed(-0.0004, 2) == "0.00");
+  CHECK(fixed(-0.04, 1) == "0.0");
+  CHECK(fixed(-0.06, 1) == "-0.1");
+  CHECK(to_uncertainty(-0.0004, 0.1) == "0.00");
+  CHECK(to_uncertainty(168.2, 400.0) == "170");
+}
+
+TEST_CASE("p_value_text: two digits, and no more than four decimals", "[common]") {
+  CHECK(p_value_text(0.0123) == "p = 0.012");
+  CHECK(p_value_text(0.9e-4) == "p < 0.0001");
+}
+
 }  // namespace rigcal

@@ -41,7 +41,7 @@ std::vector<diagnosis::MachineState> four_weeks(double day_effect,
   std::vector<diagnosis::MachineState> states;
   for (int i = 0; i < 4; ++i) {
     diagnosis::MachineState& state = states.emplace_back();
-    state.key = {"seal", "", "2026-01-" + std::to_string(10 + 7 * i)};
+    state.key = diagnosis::StateKey{"seal", {}, "2026-01-" + std::to_string(10 + 7 * i)};
     state.members.emplace_back();
     state.pooled.coefficient = coefficient(i);
     state.pooled.error.own_se = 0.01;
@@ -94,19 +94,22 @@ TEST_CASE("estimate_days: healthy records of four dates tell how days differ", "
   const std::vector<diagnosis::HealthyDay> healthy{{std::sqrt(5.0), 1.0, 2.0},
                                                    {-std::sqrt(10.0), 1.0, 2.0}};
   BetweenDays between = days({});
-  between.dates = 4;
+  between.healthy_dates = 4;
   diagnosis::estimate_days(healthy, between);
   CHECK(between.source == DaySource::estimated);
   CHECK_THAT(between.variance, WithinRel(13.0 / 4.0, 1e-12));
+  CHECK_THAT(between.factor, WithinRel(std::sqrt(13.0 / 4.0), 1e-12));
   CHECK(between.freedom == 3.0);
+  CHECK_THAT(between.quantities[0].sd, WithinRel(31e3 * between.factor, 1e-12));
 
   BetweenDays few = days({});
-  few.dates = 3;
+  few.healthy_dates = 3;
   diagnosis::estimate_days(healthy, few);
   CHECK(few.source == DaySource::usual);
   CHECK(few.variance == 1.0);
+  CHECK(few.degrees_of_freedom() == metrics::kManyDegrees);
   BetweenDays stated = days({});
-  stated.dates = 9;
+  stated.healthy_dates = 9;
   stated.source = DaySource::stated;
   diagnosis::estimate_days(healthy, stated);
   CHECK(stated.variance == 1.0);
@@ -115,7 +118,7 @@ TEST_CASE("estimate_days: healthy records of four dates tell how days differ", "
              WithinRel(2.0 * 5.0 * std::sqrt(13.0 / 4.0), 1e-12));
   // The records vary by no more than their own errors.
   BetweenDays alike = days({});
-  alike.dates = 5;
+  alike.healthy_dates = 5;
   diagnosis::estimate_days({{0.1, 1.0, 2.0}}, alike);
   CHECK(alike.variance == 0.0);
 }
@@ -131,16 +134,16 @@ TEST_CASE("with_days: the error of the days adds in squares, its freedom by Satt
 
 TEST_CASE("in_words: what was taken of the days, or that nothing was", "[diagnosis]") {
   BetweenDays between = days({});
-  CHECK(diagnosis::in_words(between, {}).empty());
-  CHECK_THAT(diagnosis::in_words(between, {"2026-01-02"}),
+  CHECK_FALSE(diagnosis::in_words(between));
+  between.other_days = {"2026-01-02"};
+  CHECK_THAT(diagnosis::in_words(between).value(),
              Contains("2026-01-02") && Contains("supply 31 kPa") && Contains("usual sizes"));
   between.source = DaySource::estimated;
-  between.variance = 4.0;
-  between.dates = 5;
-  CHECK_THAT(diagnosis::in_words(between, {"2026-01-02"}),
-             Contains("supply 62 kPa") && Contains("2 times") && Contains("5 dates"));
+  between.factor = 2.0;
+  between.healthy_dates = 5;
+  CHECK_THAT(diagnosis::in_words(between).value(), Contains("2 times") && Contains("5 dates"));
   between.quantities.clear();
-  CHECK_THAT(diagnosis::in_words(between, {"2026-01-02"}), Contains("counts as a leak"));
+  CHECK_THAT(diagnosis::in_words(between).value(), Contains("counts as a leak"));
 }
 
 TEST_CASE("in_words: each size in the unit of its quantity", "[diagnosis]") {
@@ -149,7 +152,8 @@ TEST_CASE("in_words: each size in the unit of its quantity", "[diagnosis]") {
                         {"position_offset", "position", "m", 2e-5, "", 0},
                         {"trigger", "start", "s", 5e-4, "", -1},
                         {"oil_temperature", "oil", "K", 3.0, "", 0}};
-  CHECK_THAT(diagnosis::in_words(between, {"2026-01-02"}),
+  between.other_days = {"2026-01-02"};
+  CHECK_THAT(diagnosis::in_words(between).value(),
              Contains("supply 2 MPa") && Contains("position 0.02 mm") && Contains("start 0.5 ms") &&
                  Contains("oil 3 K"));
 }
@@ -186,7 +190,7 @@ TEST_CASE("leak_trends: each date has a day of its own, and all share the refere
     std::vector<diagnosis::MachineState> states;
     for (int i = 0; i < 4; ++i) {
       diagnosis::MachineState& state = states.emplace_back();
-      state.key = {"seal", "", "2026-01-0" + std::to_string(1 + 2 * i)};
+      state.key = diagnosis::StateKey{"seal", {}, "2026-01-0" + std::to_string(1 + 2 * i)};
       state.members.emplace_back();
       state.pooled.coefficient = 0.3 + 0.02 * i;
       state.pooled.error.own_se = 0.01;

@@ -13,7 +13,7 @@ namespace {
 /// Returns a record with a medium leak that is certain and explains everything.
 RecordDiagnosis sure_record() {
   RecordDiagnosis record;
-  record.fit.coefficient = 0.4;
+  record.fit.coefficient = record.estimate.coefficient = 0.4;
   record.estimate.share_slope = 0.375;
   record.fit.parity_rms_m = 1e-3;
   record.fit.misfit_rms_m = 1e-5;
@@ -58,18 +58,21 @@ RecordDiagnosis leaving(double left) {
 
 TEST_CASE("judge: a sure leak has its class and nothing to be warned of", "[diagnosis]") {
   const auto record = judged(sure_record());
-  CHECK(record.leak_class == LeakClass::medium);
-  CHECK_FALSE(record.unexplained);
+  CHECK(record.leak.class_ == LeakClass::medium);
+  CHECK(record.explained_by_leak == true);
+  CHECK(record.leak.leak_share_percent == 15.0);
+  CHECK(record.unbounded_leakage_coefficient == 0.4);
+  CHECK_THAT(record.log_slope.value(), Catch::WithinRel(0.375 * 0.4 / 0.15, 1e-12));
   CHECK(told(record).empty());
 }
 
 TEST_CASE("judge: undecided below the least probability", "[diagnosis]") {
   RecordDiagnosis torn = sure_record();
   torn.estimate.probability = {0.0, 0.4, 0.45, 0.15, 0.0};
-  CHECK_FALSE(judged(torn).leak_class);
+  CHECK_FALSE(judged(torn).leak.class_);
   datasets::DiagnosisSettings bold;
   bold.least_probability = 0.45;
-  CHECK(judged(torn, known_errors(), bold).leak_class == LeakClass::medium);
+  CHECK(judged(torn, known_errors(), bold).leak.class_ == LeakClass::medium);
 }
 
 TEST_CASE("judge: from a twentieth unexplained on told of, from a third not classified",
@@ -77,11 +80,11 @@ TEST_CASE("judge: from a twentieth unexplained on told of, from a third not clas
   CHECK(told(judged(leaving(std::sqrt(0.045)))).empty());
   const auto partly = judged(leaving(std::sqrt(0.055)));
   CHECK_THAT(told(partly), Contains("another fault may be part of it"));
-  CHECK(partly.leak_class == LeakClass::medium);
-  CHECK_FALSE(judged(leaving(std::sqrt(0.32))).unexplained);
+  CHECK(partly.leak.class_ == LeakClass::medium);
+  CHECK(judged(leaving(std::sqrt(0.32))).explained_by_leak == true);
   const auto other = judged(leaving(std::sqrt(0.35)));
-  CHECK(other.unexplained);
-  CHECK_FALSE(other.leak_class);
+  CHECK(other.explained_by_leak == false);
+  CHECK_FALSE(other.leak.class_);
   CHECK_THAT(told(other), StartsWith("not explained by a leak"));
 }
 
@@ -93,7 +96,7 @@ TEST_CASE("judge: a leak below zero by more than its error has no class, and say
   fast.estimate.ci95 = {-0.12, -0.08};
   CHECK(told(judged(fast)).empty());
   fast.estimate.incompatible = true;
-  CHECK_FALSE(judged(fast).leak_class);
+  CHECK_FALSE(judged(fast).leak.class_);
   CHECK_THAT(told(judged(fast)), StartsWith("incompatible with the model") &&
                                      Contains("-0.1 (-0.12 to -0.08)") &&
                                      Contains("supply or valve"));
@@ -103,7 +106,7 @@ TEST_CASE("judge: no class of a share that cannot be", "[diagnosis]") {
   RecordDiagnosis beyond = sure_record();
   beyond.estimate.share = 4.99;
   beyond.fit.coefficient = 10.0;
-  CHECK_FALSE(judged(beyond).leak_class);
+  CHECK_FALSE(judged(beyond).leak.class_);
   CHECK_THAT(told(judged(beyond)), StartsWith("a coefficient of 10 would leak more than"));
 }
 
@@ -135,5 +138,7 @@ TEST_CASE("judge: what is not in the interval is told", "[diagnosis]") {
   corrected.is_reference = true;
   CHECK(told(judged(corrected, errors)) ==
         "the healthy reference of its signal: its leak is zero by construction\n");
-  CHECK_FALSE(judged(corrected, errors).leak_class);
+  CHECK_FALSE(judged(corrected, errors).leak.class_);
+  CHECK_FALSE(judged(corrected, errors).leak.leak_share_percent);
+  CHECK_FALSE(judged(corrected, errors).explained_by_leak);
 }

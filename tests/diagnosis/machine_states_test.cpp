@@ -75,8 +75,10 @@ TEST_CASE("machine_states: one state of all signals, at the slowest sine", "[dia
   CHECK_THAT(state.pooled.coefficient, WithinRel(0.3, 1e-12));
   CHECK_THAT(state.leak_area_m2.value(), WithinRel(0.3 * 4.456e-6, 1e-9));
   CHECK(state.share_slope > 0.0);
-  REQUIRE(state.leak_class);
-  CHECK(*state.leak_class == state.estimate.most_probable);
+  CHECK(state.conditions == std::vector<std::string>{"fast", "slow"});
+  CHECK(state.leak.leakage_coefficient == state.pooled.coefficient);
+  CHECK(state.leak.class_ == state.estimate.most_probable);
+  CHECK_THAT(state.sentence, Contains("2 signals agree"));
 }
 
 TEST_CASE("machine_states: members that disagree widen the share's whole interval", "[diagnosis]") {
@@ -117,11 +119,11 @@ TEST_CASE("machine_states: what is no member, and why", "[diagnosis]") {
   REQUIRE(state.left_out.size() == 1);
   CHECK_THAT(state.left_out.front(), Contains("fast: the healthy reference"));
   scene.found[0].is_reference = false;
-  scene.found[0].unexplained = true;
+  scene.found[0].explained_by_leak = false;
   state = scene.only_state();
   CHECK(state.members.size() == 1);
   CHECK_THAT(state.left_out.front(), Contains("fast: not explained by a leak"));
-  scene.found[0].unexplained = false;
+  scene.found[0].explained_by_leak.reset();
   scene.found[0].fit.failure = "too short";
   CHECK_THAT(scene.only_state().left_out.front(), Contains("fast: too short"));
   scene.found[1].is_reference = true;
@@ -137,5 +139,5 @@ TEST_CASE("machine_states: a class that is not probable enough is none", "[diagn
   scene.made.campaign.diagnosis.least_probability = 1.0 + 1e-9;
   const MachineState state = scene.only_state();
   CHECK(state.ok());
-  CHECK_FALSE(state.leak_class);
+  CHECK_FALSE(state.leak.class_);
 }

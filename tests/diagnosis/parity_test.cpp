@@ -200,11 +200,11 @@ TEST_CASE("parity: a record of another day has a threshold of its own", "[diagno
   };
   const Parity same = diagnosis::parity(campaign, records, true_rig(campaign), {});
   CHECK(alarms_of(same) == 5);
-  CHECK(same.other_days.empty());
+  CHECK(same.between_days.other_days.empty());
   campaign.conditions[1].date = "2026-03-01";
   const Parity other = diagnosis::parity(campaign, records, true_rig(campaign), {});
   CHECK(alarms_of(other) == 0);
-  CHECK(other.other_days == std::vector<std::string>{"2026-03-01"});
+  CHECK(other.between_days.other_days == std::vector<std::string>{"2026-03-01"});
   CHECK_FALSE(other.warnings.empty());
   const auto& signal = other.signals.front();
   CHECK(signal.threshold_m == same.signals.front().threshold_m);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/significant.hpp"
 #include "report/document/quantity.hpp"
 #include "report/figure/monotone_curve.hpp"
 #include "report/page/calibration/fit_sections.hpp"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "diagnosis/parity.hpp"
-#include "report/store/stored/stored_leak.hpp"
+#include "report/store/stored/leak_status.hpp"
 #include "report/store/stored/stored_provenance.hpp"
 
 // parity.json (docs/parity.md).

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "common/significant.hpp"
 #include "report/text/readable.hpp"
 
 namespace rigcal::report {

@@ -19,7 +19,7 @@ const std::string kDiagnosisHeadings =
 StoredDiagnosis diagnosed() {
   StoredDiagnosis diagnosis;
   diagnosis.status = LeakStatus::done;
-  auto& record = diagnosis.records.emplace_back();
+  auto& record = diagnosis.found.records.emplace_back();
   record.condition = "sine";
   record.repeat = 2;
   record.signal = "sine 1 Hz, 5 mm";
@@ -31,9 +31,8 @@ StoredDiagnosis diagnosed() {
   record.leak.leak_share_ci95_percent = Range{4.0, 16.0};
   record.leak.leak_flow_l_per_min = 1.5;
   record.leak.class_ = LeakClass::medium;
-  for (const LeakClass each : datasets::kLeakClasses)
-    record.leak.class_probabilities.emplace_back(std::string(to_string(each)),
-                                                 each == LeakClass::medium ? 0.75 : 0.0625);
+  for (auto& [name, probability] : record.leak.class_probabilities)
+    probability = name == "medium" ? 0.75 : 0.0625;
   record.features = {0.001, 0.002, 0.003};
   record.class_by_features = LeakClass::normal;
   record.true_class = LeakClass::critical;
@@ -63,7 +62,7 @@ TEST_CASE("diagnosis_csv: what is absent is an empty field", "[report]") {
   StoredDiagnosis diagnosis;
   diagnosis.status = LeakStatus::failed;
   diagnosis.reasons = {"no record", "no fit"};
-  auto& record = diagnosis.records.emplace_back();
+  auto& record = diagnosis.found.records.emplace_back();
   record.condition = "sine";
   record.signal = "sine";
   record.is_reference = true;
@@ -75,7 +74,7 @@ TEST_CASE("diagnosis_csv: what is absent is an empty field", "[report]") {
 TEST_CASE("diagnosis_csv: in place of a class, why there is none", "[report]") {
   StoredDiagnosis diagnosis = diagnosed();
   CHECK(class_in(diagnosis) == "medium");
-  auto& record = diagnosis.records.front();
+  auto& record = diagnosis.found.records.front();
   record.leak.class_.reset();
   CHECK(class_in(diagnosis) == "undecided");
   record.explained_by_leak = false;
@@ -84,4 +83,26 @@ TEST_CASE("diagnosis_csv: in place of a class, why there is none", "[report]") {
   CHECK(class_in(diagnosis) == "incompatible");
   record.is_reference = true;
   CHECK(class_in(diagnosis) == "reference");
+}
+
+TEST_CASE("stored: a diagnosis and its leaks have their keys in place", "[report]") {
+  datasets::Campaign campaign;
+  campaign.name = "rig";
+  diagnosis::Diagnosis found;
+  diagnosis::MachineState& state = found.states.emplace_back();
+  state.key.specimen = "B";
+  state.leak.class_ = LeakClass::medium;
+  found.records.emplace_back().failure = "too short";
+  StoredDiagnosis file = stored(campaign, found, {}, {});
+  CHECK(file.status == LeakStatus::failed);
+  const Json json = json_of(file);
+  CHECK(json["campaign"] == "rig");
+  CHECK(json["states"][0]["specimen"] == "B");
+  CHECK(json["states"][0]["class"] == "medium");
+  CHECK(json["states"][0]["class_probabilities"]["medium"].is_null());
+  CHECK_FALSE(json["states"][0].contains("share_budget"));
+  CHECK_FALSE(json.contains("between_days"));
+  found.records.front().failure.reset();
+  CHECK(stored(campaign, found, {}, {}).status == LeakStatus::done);
+  CHECK(stored(campaign, found, {"no position"}, {}).status == LeakStatus::declined);
 }

@@ -11,7 +11,6 @@
 using namespace rigcal;
 using namespace rigcal::report;
 using Catch::Contains;
-using datasets::LeakClass;
 
 namespace {
 
@@ -51,12 +50,6 @@ std::string table_complaint(const std::string& from, const std::string& to) {
   return "no complaint";
 }
 
-std::array<double, 4> limits_by(const std::vector<double>& targets_percent) {
-  datasets::DiagnosisSettings settings;
-  take_limits(settings, targets_percent, "leak_table.json");
-  return settings.limits;
-}
-
 }  // namespace
 
 TEST_CASE("read_leak_table: rows, coefficients and the rig", "[report]") {
@@ -82,21 +75,6 @@ TEST_CASE("read_leak_table: what is wrong is named", "[report]") {
   CHECK_THAT(table_complaint("\"square\"", "\"saw\""), Contains("entries[2].waveform"));
   CHECK_THAT(table_complaint("[[0.34,0.36]]", "[]"),
              Contains("entries[0].coefficients_ci95") && Contains("for each coefficient"));
-}
-
-TEST_CASE("take_limits: rows are the upper limits of slight, medium and critical", "[report]") {
-  CHECK(limits_by({8.0, 18.0, 28.0}) == std::array{0.01, 0.08, 0.18, 0.28});
-  CHECK(limits_by({10.0, 20.0, 30.0, 50.0}) == std::array{0.01, 0.10, 0.20, 0.30});
-  CHECK(limits_by({2.0, 8.0, 18.0, 28.0, 50.0}) == std::array{0.02, 0.08, 0.18, 0.28});
-  CHECK_THROWS_WITH(limits_by({10.0, 20.0}), Contains("2 rows"));
-  CHECK_THROWS_WITH(limits_by({1.0, 2.0, 3.0, 4.0, 5.0, 6.0}), Contains("6 rows"));
-  // If the first of four rows were the limit of normal, all classes would shift by one.
-  CHECK_THROWS_WITH(limits_by({1.0, 10.0, 20.0, 30.0}), Contains("normal ends at 1 %"));
-  datasets::DiagnosisSettings settings;
-  take_limits(settings, {10.0, 20.0, 30.0, 50.0}, "leak_table.json");
-  CHECK(class_ending_at(settings, 10.0) == LeakClass::slight);
-  CHECK(class_ending_at(settings, 30.0) == LeakClass::critical);
-  CHECK_FALSE(class_ending_at(settings, 50.0).has_value());
 }
 
 TEST_CASE("rig_differences: names what flows depend on, with both values", "[report]") {

@@ -6,11 +6,12 @@
 
 using namespace rigcal::report;
 using Catch::WithinAbs;
+using rigcal::diagnosis::RecordDiagnosis;
 
 namespace {
 
-StoredDiagnosedRecord record_of(const std::string& signal, double share_percent) {
-  StoredDiagnosedRecord record;
+RecordDiagnosis record_of(const std::string& signal, double share_percent) {
+  RecordDiagnosis record;
   record.condition = signal;
   record.signal = signal;
   record.leak.leak_share_percent = share_percent;
@@ -28,10 +29,10 @@ const Trace& trace_of(const Plot& plot, Trace::Kind kind) {
 TEST_CASE("diagnosis_figures: shares stand at their signals, not in the order of the records",
           "[report]") {
   StoredDiagnosis diagnosis;
-  diagnosis.records = {record_of("sine 1 Hz", 3.0), record_of("square 1 Hz", 4.0),
-                       record_of("sine 1 Hz", 5.0)};
-  diagnosis.records.push_back(record_of("noise", 9.0));
-  diagnosis.records.back().repeat = 1;  // a repeat is not in the figure
+  diagnosis.found.records = {record_of("sine 1 Hz", 3.0), record_of("square 1 Hz", 4.0),
+                             record_of("sine 1 Hz", 5.0)};
+  diagnosis.found.records.push_back(record_of("noise", 9.0));
+  diagnosis.found.records.back().repeat = 1;  // a repeat is not in the figure
   const auto figures = diagnosis_figures(diagnosis);
   REQUIRE(figures.size() == 1);
   const Plot& plot = figures[0].plot;
@@ -54,17 +55,17 @@ StoredDiagnosis growing_leak() {
   StoredDiagnosis diagnosis;
   double share = 4.0;
   for (const char* date : {"2026-01-01", "2026-01-11", "2026-01-21"}) {
-    StoredState& state = diagnosis.states.emplace_back();
-    state.date = date;
-    state.specimen = "A";
+    rigcal::diagnosis::MachineState& state = diagnosis.found.states.emplace_back();
+    state.key.date = date;
+    state.key.specimen = "A";
     state.leak.leak_share_percent = share;
     state.leak.leak_share_ci95_percent = {share - 0.2, share + 0.2};
     share += 1.0;
   }
-  diagnosis.states.push_back(diagnosis.states.back());
-  diagnosis.states.back().specimen = "another machine";
-  diagnosis.states.back().leak.leak_share_percent = 50.0;
-  rigcal::diagnosis::LeakTrend& trend = diagnosis.trends.emplace_back();
+  diagnosis.found.states.push_back(diagnosis.found.states.back());
+  diagnosis.found.states.back().key.specimen = "another machine";
+  diagnosis.found.states.back().leak.leak_share_percent = 50.0;
+  rigcal::diagnosis::LeakTrend& trend = diagnosis.found.trends.emplace_back();
   trend.specimen = "A";
   trend.first_date = "2026-01-01";
   trend.last_date = "2026-01-21";
@@ -107,14 +108,14 @@ TEST_CASE("diagnosis_figures: a trend leads to the limit within the foreseen day
 
 TEST_CASE("diagnosis_figures: a limit too far ahead is not drawn", "[report]") {
   StoredDiagnosis diagnosis = growing_leak();
-  diagnosis.trends[0].next_limit->reached = "2026-03-23";  // after 81 days
+  diagnosis.found.trends[0].next_limit->reached = "2026-03-23";  // after 81 days
   Plot plot = trend_plot_of(diagnosis);
   CHECK(plot.levels.empty());
   CHECK(trace_of(plot, Trace::Kind::line).x.back() == 20.0);
   diagnosis = growing_leak();
-  diagnosis.trends[0].next_limit->latest.reset();  // may never be reached
+  diagnosis.found.trends[0].next_limit->latest.reset();  // may never be reached
   plot = trend_plot_of(diagnosis);
   CHECK(plot.traces[plot.traces.size() - 2].x == std::vector<double>{40.0, 80.0});
-  diagnosis.states.clear();
+  diagnosis.found.states.clear();
   CHECK(diagnosis_figures(diagnosis).empty());
 }

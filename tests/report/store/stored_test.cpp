@@ -118,21 +118,21 @@ TEST_CASE("stored: nor is the condition of a parity record", "[report]") {
 TEST_CASE("stored: what a diagnosis says of a leak has another kind", "[report]") {
   StoredFiles files;
   StoredDiagnosis stored;
-  StoredDiagnosedRecord& record = stored.records.emplace_back();
+  rigcal::diagnosis::RecordDiagnosis& record = stored.found.records.emplace_back();
   record.condition = "sine";
   record.leak.class_ = rigcal::datasets::LeakClass::slight;
   record.leak.ci95 = {0.1, 0.2};
   Json& diagnosis = files.json["diagnosis.json"] = json_of(stored);
   const StoredDiagnosis read = load_diagnosis(files.reader(), "folder");
   CHECK(json_of(read) == diagnosis);
-  CHECK(read.records[0].leak.ci95->high == 0.2);
+  CHECK(read.found.records[0].leak.ci95->high == 0.2);
   diagnosis["records"][0]["class"] = "hardly any";
   CHECK_THROWS_WITH(load_diagnosis(files.reader(), "folder"),
                     Contains("key 'records[0].class': found \"hardly any\"") &&
                         Contains("expected one of normal, slight"));
   diagnosis = json_of(stored);
-  diagnosis["class_limits"] =
-      json_of(std::vector{StoredClassLimit{"sine", 1.0, std::nullopt, {0.1, 0.2}, {std::nullopt}}});
+  diagnosis["class_limits"] = json_of(std::vector{
+      rigcal::diagnosis::ClassLimit{"sine", 1.0, std::nullopt, {0.1, 0.2}, {std::nullopt}}});
   CHECK_THROWS_WITH(load_diagnosis(files.reader(), "folder"),
                     Contains("class_limits: found 1 entries, expected 2"));
 }

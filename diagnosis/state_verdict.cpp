@@ -1,4 +1,4 @@
-#include "report/leak/machine_state.hpp"
+#include "diagnosis/state_verdict.hpp"
 
 #include <fmt/format.h>
 
@@ -6,14 +6,10 @@
 #include <cmath>
 #include <set>
 
-#include "report/leak/leak_estimate.hpp"
-#include "report/text/readable.hpp"
+#include "common/significant.hpp"
 
-namespace rigcal::report {
+namespace rigcal::diagnosis {
 namespace {
-
-using diagnosis::LimitDistance;
-using diagnosis::MachineState;
 
 std::string signals_of(const MachineState& state) {
   std::set<std::string> signals;
@@ -52,14 +48,14 @@ std::string limit_of(const LimitDistance& limit) {
 
 std::string state_sentence(const MachineState& state) {
   const std::string name = state.key.name();
+  const std::string duty = state.duty.value_or("");
   if (state.is_reference)
     return fmt::format("{}: the healthy reference, whose leak is zero by construction.", name);
   if (!state.ok()) {
-    return fmt::format(
-        "{}: no verdict: {}.", name,
-        state.failure.empty() ? "none of its conditions gives its leak" : state.failure);
+    return fmt::format("{}: no verdict: {}.", name,
+                       state.failure.value_or("none of its conditions gives its leak"));
   }
-  const diagnosis::LeakEstimate& e = state.estimate;
+  const LeakEstimate& e = state.estimate;
   if (e.incompatible) {
     return fmt::format(
         "{}: incompatible with the model: the coefficient would be {:.3g} ({:.3g} to "
@@ -72,7 +68,7 @@ std::string state_sentence(const MachineState& state) {
     return fmt::format(
         "{}: undecided: a coefficient of {:.3g} would leak more than the servo valve "
         "delivers at {}.{}",
-        name, e.coefficient, state.duty, agreement_of(state));
+        name, e.coefficient, duty, agreement_of(state));
   }
   // Percentages have at most two decimals, because an operator has no use for more.
   const double error = std::max(0.1, kInPercent * (e.share_ci95.high - e.share_ci95.low) / 4.0);
@@ -84,44 +80,59 @@ std::string state_sentence(const MachineState& state) {
     const std::string low = percent(e.share_ci95.low);
     const std::string high = percent(e.share_ci95.high);
     text = fmt::format("{}: {} % of the servo flow leaks ({}) at {}", name, percent(e.share),
-                       low == high ? "sure to 0.01 %" : fmt::format("{} to {} %", low, high),
-                       state.duty);
+                       low == high ? "sure to 0.01 %" : fmt::format("{} to {} %", low, high), duty);
   } else {
     text = fmt::format("{}: no leak is detected, less than {:.2g} % of the servo flow leaks at {}",
-                       name, std::max(0.01, kInPercent * e.share_ci95.high), state.duty);
+                       name, std::max(0.01, kInPercent * e.share_ci95.high), duty);
   }
   const double probability = e.probability[static_cast<std::size_t>(e.most_probable)];
-  text += state.leak_class
-              ? fmt::format(": {} (probability {:.2f})", to_string(*state.leak_class), probability)
+  text += state.leak.class_
+              ? fmt::format(": {} (probability {:.2f})", to_string(*state.leak.class_), probability)
               : fmt::format(": undecided, {} with a probability of {:.2f} only",
                             to_string(e.most_probable), probability);
-  return text + limit_of(state.limit) + "." + agreement_of(state);
+  const std::string limit = state.nearest_limit ? limit_of(*state.nearest_limit) : "";
+  return text + limit + "." + agreement_of(state);
 }
 
-StoredState stored(const MachineState& state) {
-  const diagnosis::LeakEstimate& e = state.estimate;
-  StoredState told;
-  told.state = state.key.name();
-  told.leak_level = unless_empty(state.key.leak_level);
-  told.specimen = unless_empty(state.key.specimen);
-  told.date = unless_empty(state.key.date);
-  told.sentence = state_sentence(state);
-  told.failure = unless_empty(state.failure);
-  told.is_reference = state.is_reference;
-  for (const auto& member : state.members) told.conditions.push_back(member.condition);
-  told.left_out = state.left_out;
-  told.leak = stored(e, state.leak_class, state.ok());
-  told.duty = unless_empty(state.duty);
-  if (!state.ok()) return told;
-  if (e.incompatible) return told;
-  if (state.leak_area_m2) {
-    const double area = e.coefficient != 0.0 ? *state.leak_area_m2 / e.coefficient : 0.0;
-    told.leak_area_m2 = std::max(0.0, *state.leak_area_m2);
-    if (e.standard_error > 0.0) told.leak_area_ci95_m2 = scaled_ends(e.ci95, area);
+void give_verdict(const datasets::DiagnosisSettings& settings, MachineState& state) {
+  const LeakEstimate& e = state.estimate;
+  state.state = state.key.name();
+  for (const StateMember& member : state.members) state.conditions.push_back(member.condition);
+  if (state.ok()) state.leak = stated(e, settings.least_probability);
+  if (!state.leak.leakage_coefficient) {
+    state.leak_area_m2.reset();
+  } else {
+    if (state.leak_area_m2) {
+      const double area = e.coefficient != 0.0 ? *state.leak_area_m2 / e.coefficient : 0.0;
+      state.leak_area_m2 = std::max(0.0, *state.leak_area_m2);
+      if (e.standard_error > 0.0) state.leak_area_ci95_m2 = area * e.ci95;
+    }
+    if (e.has_share()) state.nearest_limit = nearest_limit(e, settings);
+    if (state.members.size() > 1) state.agreement = state.pooled;
   }
-  if (e.has_share()) told.nearest_limit = state.limit;
-  if (state.members.size() > 1) told.agreement = state.pooled;
-  return told;
+  state.sentence = state_sentence(state);
 }
 
-}  // namespace rigcal::report
+std::vector<const MachineState*> judged_states(const std::vector<MachineState>& states) {
+  std::vector<const MachineState*> judged;
+  for (const MachineState& state : states)
+    if (!state.is_reference) judged.push_back(&state);
+  std::stable_sort(judged.begin(), judged.end(), [](const auto* a, const auto* b) {
+    return a->leak.leak_share_percent.value_or(-1.0) > b->leak.leak_share_percent.value_or(-1.0);
+  });
+  return judged;
+}
+
+Finding finding_of(const std::vector<MachineState>& states) {
+  const std::vector<const MachineState*> judged = judged_states(states);
+  const auto all = [&](auto is) { return std::all_of(judged.begin(), judged.end(), is); };
+  if (!all([](const auto* state) {
+        return state->leak.class_.value_or(LeakClass::normal) == LeakClass::normal;
+      }))
+    return Finding::leak;
+  if (all([](const auto* state) { return !state->leak.class_; })) return Finding::not_judged;
+  return all([](const auto* state) { return state->leak.class_.has_value(); }) ? Finding::no_leak
+                                                                               : Finding::unclear;
+}
+
+}  // namespace rigcal::diagnosis

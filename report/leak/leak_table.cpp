@@ -1,6 +1,5 @@
-#include <optional>
-
 #include "report/leak/leak_table.hpp"
+
 #include "report/store/csv_columns.hpp"
 
 namespace rigcal::report {
@@ -20,6 +19,16 @@ auto ends(double Range::*end) {
 }
 
 }  // namespace
+
+StoredLeakTable stored(const LeakTableResult& result) {
+  StoredLeakTable file;
+  static_cast<calib::LeakTable&>(file) = result.table;
+  file.campaign = result.campaign.name;
+  file.notes = result.notes;
+  file.warnings = result.warnings;
+  file.provenance = stored(result.provenance);
+  return file;
+}
 
 std::string leak_table_csv(const LeakTableResult& result) {
   using R = LeakEntry;
