@@ -8,6 +8,7 @@
 #include <numbers>
 #include <optional>
 
+#include "calib/consider/thinned_line.hpp"
 #include "model/plant/piston_travel.hpp"
 
 namespace rigcal::calib {
@@ -478,7 +479,7 @@ model::Signal sagging_supply(const Effect& effect, const model::ParameterValues&
   const double full = values["supply_pressure"];
   for (Eigen::Index i = 0; i < flow.size(); ++i)
     supply.push_back(full * (1.0 - std::min(0.5, sag * std::abs(flow(i)) / effect.range)));
-  return model::Signal::linear({time_s.begin(), time_s.end()}, std::move(supply));
+  return thinned_line(time_s, supply);
 }
 
 /// Returns the output that drives the valve.
@@ -499,7 +500,7 @@ Eigen::VectorXd with_play(const Eigen::VectorXd& x, double half_width) {
 model::Signal spool_error(std::span<const double> time_s, const Eigen::VectorXd& signal,
                           double half_width) {
   const Eigen::VectorXd error = with_play(signal, half_width) - signal;
-  return model::Signal::linear({time_s.begin(), time_s.end()}, {error.begin(), error.end()});
+  return thinned_line(time_s, {error.data(), static_cast<std::size_t>(error.size())});
 }
 
 model::SimulationOptions effect_options(const Problem& problem, std::size_t condition,
@@ -510,7 +511,10 @@ model::SimulationOptions effect_options(const Problem& problem, std::size_t cond
   if (measured > 0.0)
     options.tolerance =
         std::max(options.tolerance, std::min(kRecordedShare * measured, kLargestSecantTolerance));
-  options.max_steps = problem.conditions[condition].max_steps;
+  // The search's budget follows from the steps at its start, where a run may soon become periodic.
+  // A controller that ticks and an input that follows from a simulation end more steps than that.
+  const ProblemCondition& data = problem.conditions[condition];
+  options.max_steps = std::max(data.max_steps, ample_steps(data.record->time_s.size()));
   return options;
 }
 
