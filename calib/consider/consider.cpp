@@ -285,9 +285,10 @@ bool take_again(const Problem& problem, std::span<const double> z, const Uncerta
   for (std::size_t e = 0; e < seen.effects.size(); ++e) {
     const auto k = static_cast<Index>(e);
     Effect& effect = seen.effects[e];
-    const double size = std::sqrt(sizes.mean(k) * sizes.mean(k) + sizes.covariance(k, k));
+    const double size =
+        std::max(kLeastSecant, std::sqrt(sizes.mean(k) * sizes.mean(k) + sizes.covariance(k, k)));
     if (!effect.curved || std::abs(std::log(size / effect.secant)) < kSameSize) continue;
-    effect.secant = std::max(size, kLeastSecant);
+    effect.secant = size;
     again.push_back(effect);
     which.push_back(k);
   }
