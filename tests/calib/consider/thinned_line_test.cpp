@@ -1,6 +1,6 @@
 #include "calib/consider/thinned_line.hpp"
 
-#include <catch2/catch_test_macros.hpp>
+#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -35,8 +35,8 @@ TEST_CASE("thinned line: a slow sine takes as few pieces as its curvature allows
   for (const double t : time_s) value.push_back(3.0 * std::sin(2.0 * std::numbers::pi * 0.1 * t));
   const model::Signal line = thinned_line(time_s, value);
   CHECK(largest_error(line, time_s, value) <= kThinnedError * 6.0 * (1.0 + 1e-9));
-  // Where the sine is curved most, a chord of length h is off by w^2 h^2 / 8 of the amplitude, and a
-  // period takes 2 pi / sqrt(8 * 2 * kThinnedError) = 157 chords.
+  // Where the sine is curved most, a chord of length h is off by w^2 h^2 / 8 of the amplitude, and
+  // a period takes 2 pi / sqrt(8 * 2 * kThinnedError) = 157 chords.
   CHECK(pieces_of(line, time_s.back()) < 157);
   CHECK(pieces_of(line, time_s.back()) > 50);
 }
