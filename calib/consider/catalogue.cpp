@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "calib/consider/thinned_line.hpp"
+#include "datasets/synthetic/model_output.hpp"
 #include "model/plant/piston_travel.hpp"
 
 namespace rigcal::calib {
@@ -719,24 +720,34 @@ std::vector<Eigen::MatrixXd> effect_changes(const Problem& problem, std::size_t 
       model::ParameterValues changed = values;
       model::SimulationInputs inputs = data.inputs;
       model::Simulation run;
+      std::vector<Output> wanted = outputs;
       if (effect.kind == EffectKind::valve_play) {
-        std::vector<Output> and_drive = outputs;
-        and_drive.push_back(valve_drive(values));
         Eigen::VectorXd driven = drive;
-        for (int round = 0; round < kPlayRounds && run.ok(); ++round) {
+        for (int round = 1; round < kPlayRounds && driven.size() > 0; ++round) {
           inputs.spool_error = spool_error(times_s, driven, size);
-          run = run_with(changed, inputs, and_drive);
-          if (run.ok()) driven = run.outputs.col(kept);
+          run = run_with(changed, inputs, {valve_drive(values)});
+          driven = run.ok() ? Eigen::VectorXd(run.outputs.col(0)) : Eigen::VectorXd();
         }
+        if (driven.size() == 0) continue;
+        inputs.spool_error = spool_error(times_s, driven, size);
+      } else if (effect.kind == EffectKind::supply_sag) {
+        inputs.supply_pressure_pa = sagging_supply(effect, values, times_s, flow, size);
       } else {
-        if (effect.kind == EffectKind::supply_sag)
-          inputs.supply_pressure_pa = sagging_supply(effect, values, times_s, flow, size);
-        else
-          changed.set(effect.index, values.value[static_cast<std::size_t>(effect.index)] + size);
-        run = run_with(changed, inputs, outputs);
+        changed.set(effect.index, values.value[static_cast<std::size_t>(effect.index)] + size);
+        // A sensor changes no reading but its own, since the loop does not use it.
+        if (const auto channel = sensor_channel(effect.about.key))
+          std::erase_if(wanted, [own = datasets::model_output(*channel)](Output each) {
+            return each != own;
+          });
       }
+      if (!wanted.empty()) run = run_with(changed, inputs, wanted);
       if (!run.ok()) continue;
-      change = run.outputs.leftCols(kept) - base.outputs;
+      for (Eigen::Index k = 0; k < kept; ++k) {
+        const auto found =
+            std::find(wanted.begin(), wanted.end(), outputs[static_cast<std::size_t>(k)]);
+        if (found != wanted.end())
+          change.col(k) = run.outputs.col(found - wanted.begin()) - base.outputs.col(k);
+      }
     }
     for (Eigen::Index k = 0; k < kept; ++k)
       result[static_cast<std::size_t>(k)].col(static_cast<Eigen::Index>(e)) =

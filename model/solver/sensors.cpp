@@ -149,6 +149,7 @@ std::optional<SensorTimes> sensor_times(std::span<const Output> outputs,
   const std::vector<double> lags_s = lags_to_follow(outputs, values, free);
   if (lags_s.empty()) return std::nullopt;
   SensorTimes result;
+  result.sample.reserve(samples_s.size());
   for (std::size_t i = 0; i < samples_s.size(); ++i) {
     if (i > 0) append_between(samples_s[i - 1], samples_s[i], lags_s, result.times_s);
     result.sample.push_back(result.times_s.size());
