@@ -11,7 +11,7 @@ model::Signal thinned_line(std::span<const double> time_s, std::span<const doubl
   const double tolerance = kThinnedError * (*high - *low);
   std::vector<double> times{time_s.front()};
   std::vector<double> values{value.front()};
-  // A line from the last kept sample passes all samples since then if its slope lies between these.
+  // Slopes between which a line from the last kept sample is close enough to all samples since.
   double least = -HUGE_VAL;
   double most = HUGE_VAL;
   const auto slope_to = [&](std::size_t i, double off) {
