@@ -8,6 +8,8 @@
 #include <numbers>
 #include <optional>
 
+#include "calib/consider/thinned_line.hpp"
+#include "datasets/synthetic/model_output.hpp"
 #include "model/plant/piston_travel.hpp"
 
 namespace rigcal::calib {
@@ -467,7 +469,7 @@ model::Signal sagging_supply(const Effect& effect, const model::ParameterValues&
   const double full = values["supply_pressure"];
   for (Eigen::Index i = 0; i < flow.size(); ++i)
     supply.push_back(full * (1.0 - std::min(0.5, sag * std::abs(flow(i)) / effect.range)));
-  return model::Signal::linear({time_s.begin(), time_s.end()}, std::move(supply));
+  return thinned_line(time_s, supply);
 }
 
 /// Returns the output that drives the valve.
@@ -488,7 +490,7 @@ Eigen::VectorXd with_play(const Eigen::VectorXd& x, double half_width) {
 model::Signal spool_error(std::span<const double> time_s, const Eigen::VectorXd& signal,
                           double half_width) {
   const Eigen::VectorXd error = with_play(signal, half_width) - signal;
-  return model::Signal::linear({time_s.begin(), time_s.end()}, {error.begin(), error.end()});
+  return thinned_line(time_s, {error.data(), static_cast<std::size_t>(error.size())});
 }
 
 model::SimulationOptions effect_options(const Problem& problem, std::size_t condition,
@@ -499,7 +501,10 @@ model::SimulationOptions effect_options(const Problem& problem, std::size_t cond
   if (measured > 0.0)
     options.tolerance =
         std::max(options.tolerance, std::min(kRecordedShare * measured, kLargestSecantTolerance));
-  options.max_steps = problem.conditions[condition].max_steps;
+  // The search's budget follows from the steps at its start, where a run may soon become periodic.
+  // A controller that ticks and an input that follows from a simulation end more steps than that.
+  const ProblemCondition& data = problem.conditions[condition];
+  options.max_steps = std::max(data.max_steps, ample_steps(data.record->time_s.size()));
   return options;
 }
 
@@ -704,24 +709,34 @@ std::vector<Eigen::MatrixXd> effect_changes(const Problem& problem, std::size_t 
       model::ParameterValues changed = values;
       model::SimulationInputs inputs = data.inputs;
       model::Simulation run;
+      std::vector<Output> wanted = outputs;
       if (effect.kind == EffectKind::valve_play) {
-        std::vector<Output> and_drive = outputs;
-        and_drive.push_back(valve_drive(values));
         Eigen::VectorXd driven = drive;
-        for (int round = 0; round < kPlayRounds && run.ok(); ++round) {
+        for (int round = 1; round < kPlayRounds && driven.size() > 0; ++round) {
           inputs.spool_error = spool_error(times_s, driven, size);
-          run = run_with(changed, inputs, and_drive);
-          if (run.ok()) driven = run.outputs.col(kept);
+          run = run_with(changed, inputs, {valve_drive(values)});
+          driven = run.ok() ? Eigen::VectorXd(run.outputs.col(0)) : Eigen::VectorXd();
         }
+        if (driven.size() == 0) continue;
+        inputs.spool_error = spool_error(times_s, driven, size);
+      } else if (effect.kind == EffectKind::supply_sag) {
+        inputs.supply_pressure_pa = sagging_supply(effect, values, times_s, flow, size);
       } else {
-        if (effect.kind == EffectKind::supply_sag)
-          inputs.supply_pressure_pa = sagging_supply(effect, values, times_s, flow, size);
-        else
-          changed.set(effect.index, values.value[static_cast<std::size_t>(effect.index)] + size);
-        run = run_with(changed, inputs, outputs);
+        changed.set(effect.index, values.value[static_cast<std::size_t>(effect.index)] + size);
+        // A sensor changes no reading but its own, since the loop does not use it.
+        if (const auto channel = sensor_channel(effect.about.key))
+          std::erase_if(wanted, [own = datasets::model_output(*channel)](Output each) {
+            return each != own;
+          });
       }
+      if (!wanted.empty()) run = run_with(changed, inputs, wanted);
       if (!run.ok()) continue;
-      change = run.outputs.leftCols(kept) - base.outputs;
+      for (Eigen::Index k = 0; k < kept; ++k) {
+        const auto found =
+            std::find(wanted.begin(), wanted.end(), outputs[static_cast<std::size_t>(k)]);
+        if (found != wanted.end())
+          change.col(k) = run.outputs.col(found - wanted.begin()) - base.outputs.col(k);
+      }
     }
     for (Eigen::Index k = 0; k < kept; ++k)
       result[static_cast<std::size_t>(k)].col(static_cast<Eigen::Index>(e)) =

@@ -358,9 +358,10 @@ bool take_again(const Problem& problem, std::span<const double> z, const Uncerta
     const auto k = static_cast<Index>(e);
     Effect& effect = seen.effects[e];
     if (effect.curved) {
-      const double size = std::sqrt(sizes.mean(k) * sizes.mean(k) + sizes.covariance(k, k));
+      const double size =
+          std::max(kLeastSecant, std::sqrt(sizes.mean(k) * sizes.mean(k) + sizes.covariance(k, k)));
       if (std::abs(std::log(size / effect.secant)) < kSameSize) continue;
-      effect.secant = std::max(size, kLeastSecant);
+      effect.secant = size;
       again.push_back(effect);
       which.push_back(k);
     } else if (!effect.followed && !effect.is_of_sensor() &&

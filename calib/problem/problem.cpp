@@ -152,7 +152,7 @@ ProblemCondition make_condition(const Campaign& campaign, const std::vector<Reco
   result.first_period_rows = count_first_period(result);
   // Budget for simulating the start point. Later points get a budget based on the steps taken
   // there.
-  result.max_steps = 1'000'000 + 50 * static_cast<long>(result.record->time_s.size());
+  result.max_steps = ample_steps(result.record->time_s.size());
   return result;
 }
 

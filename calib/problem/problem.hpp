@@ -43,6 +43,9 @@ struct ProblemChannel {
   double peak_to_peak = 0.0;     ///< peak-to-peak value of `measured`
 };
 
+/// Step budget for simulating a record of which nothing is known but its number of samples.
+inline long ample_steps(std::size_t samples) { return 1'000'000 + 50 * static_cast<long>(samples); }
+
 /// One condition with everything that its simulation needs. It does not own the campaign and the
 /// record.
 struct ProblemCondition {

@@ -160,12 +160,16 @@ double bandwidth(const RowMajor& scores) {
   double above = 0.0;
   double below = 0.0;
   const Index n = scores.rows();
-  for (Index j = 0; j < scores.cols() && n > 2; ++j) {
-    const auto column = scores.col(j);
-    const double square = column.head(n - 1).squaredNorm();
-    if (!(square > 0.0)) continue;
-    const double rho = std::clamp(column.head(n - 1).dot(column.tail(n - 1)) / square,
-                                  -kMostCorrelation, kMostCorrelation);
+  if (n <= 2) return 0.0;
+  VectorXd squares = VectorXd::Zero(scores.cols());
+  VectorXd products = squares;
+  for (Index t = 0; t + 1 < n; ++t) {
+    squares += scores.row(t).cwiseAbs2().transpose();
+    products += scores.row(t).cwiseProduct(scores.row(t + 1)).transpose();
+  }
+  for (Index j = 0; j < scores.cols(); ++j) {
+    if (!(squares(j) > 0.0)) continue;
+    const double rho = std::clamp(products(j) / squares(j), -kMostCorrelation, kMostCorrelation);
     // Components are scaled by their own size, so that no component dominates.
     above += 4.0 * rho * rho / std::pow(1.0 - rho, 8.0) * std::pow(1.0 - rho * rho, 2.0);
     below += std::pow(1.0 - rho * rho, 2.0) / std::pow(1.0 - rho, 4.0);
@@ -179,14 +183,46 @@ double parzen(double x) {
   return x <= 0.5 ? 1.0 - 6.0 * x * x * (1.0 - x) : 2.0 * std::pow(1.0 - x, 3.0);
 }
 
-MatrixXd kernel_covariance(const RowMajor& scores, double width) {
-  MatrixXd sum = scores.transpose() * scores;
-  for (Index h = 1; static_cast<double>(h) < width && h < scores.rows(); ++h) {
-    const MatrixXd cross =
-        scores.topRows(scores.rows() - h).transpose() * scores.bottomRows(scores.rows() - h);
-    sum += parzen(static_cast<double>(h) / width) * (cross + cross.transpose());
+/// Passes the rows S_t of an array in blocks, together with S_t / 2 + sum_h k(h / width) S_(t + h),
+/// where k is the Parzen kernel. Summing over the lags before multiplying takes one product in all
+/// instead of one per lag.
+///
+/// @param f  f(rows, sums), both of the same shape
+template <typename F>
+void for_each_kernel_sum(const RowMajor& rows, double width, F f) {
+  constexpr Index kBlock = 128;  // a block stays in the cache over all lags
+  const Index n = rows.rows();
+  const Index columns = rows.cols();
+  const Eigen::Map<const Eigen::ArrayXd> all(rows.data(), rows.size());
+  for (Index first = 0; first < n; first += kBlock) {
+    const Index count = std::min(kBlock, n - first);
+    RowMajor sums = 0.5 * rows.middleRows(first, count);
+    Eigen::Map<Eigen::ArrayXd> flat(sums.data(), sums.size());
+    for (Index h = 1; static_cast<double>(h) < width && first + h < n; ++h) {
+      const Index later = std::min(count, n - first - h) * columns;
+      flat.head(later) +=
+          parzen(static_cast<double>(h) / width) * all.segment((first + h) * columns, later);
+    }
+    f(rows.middleRows(first, count), sums);
   }
-  return sum;
+}
+
+MatrixXd kernel_covariance(const RowMajor& scores, double width) {
+  MatrixXd half = MatrixXd::Zero(scores.cols(), scores.cols());
+  for_each_kernel_sum(scores, width, [&](const auto& rows, const RowMajor& sums) {
+    half.noalias() += rows.transpose() * sums;
+  });
+  return half + half.transpose();
+}
+
+/// Returns the diagonal of kernel_covariance().
+VectorXd kernel_variances(const RowMajor& scores, double width) {
+  VectorXd half = VectorXd::Zero(scores.cols());
+  for_each_kernel_sum(scores, width, [&](const auto& rows, const RowMajor& sums) {
+    for (Index t = 0; t < sums.rows(); ++t)
+      half += rows.row(t).cwiseProduct(sums.row(t)).transpose();
+  });
+  return 2.0 * half;
 }
 
 /// Sums over the channels of a condition, each of shape (samples, directions or combinations).
@@ -212,6 +248,8 @@ ChannelSums sum_channels(const ScoreRows& rows, const std::vector<Autoregression
   const MatrixXd c = combinations.transpose();
   const MatrixXd total_c = total * c;
   const VectorXd variance = (c.transpose() * total_c).diagonal();
+  const Eigen::ArrayXd per_error =
+      variance.unaryExpr([](double each) { return each > 0.0 ? 1.0 / std::sqrt(each) : 0.0; });
   ChannelSums sums;
   for (Index k = 0; k < rows.channels; ++k) {
     const Autoregression& model = noise[static_cast<std::size_t>(k)];
@@ -223,9 +261,9 @@ ChannelSums sum_channels(const ScoreRows& rows, const std::vector<Autoregression
     add(sums.scores, std::move(filtered));
     RowMajor own = model.variance * combined;
     own.noalias() -= whitened(model, std::move(channel.jacobian)) * total_c;
-    for (Index j = 0; j < own.cols(); ++j)
-      own.col(j) *= variance(j) > 0.0 ? 1.0 / std::sqrt(variance(j)) : 0.0;
-    add(sums.own, own.cwiseProduct(combined));
+    own.array() *= combined.array();
+    own.array().rowwise() *= per_error.transpose();
+    add(sums.own, std::move(own));
     combined = model.variance * combined.cwiseAbs2();
     add(sums.weights, std::move(combined));
     sums.independent_residuals +=
@@ -246,13 +284,18 @@ ScoreScatter scatter_of(const ScoreRows& rows, std::vector<Autoregression> noise
       std::any_of(noise.begin(), noise.end(), [](const auto& each) { return !each.phi.empty(); });
   result.freedom = VectorXd::Zero(combinations.rows());
   result.own = VectorXd::Zero(combinations.rows());
+  const VectorXd own_variance = kernel_variances(own, width);
+  VectorXd sum = VectorXd::Zero(combinations.rows());
+  VectorXd squares = sum;
+  for (Index t = 0; t < weights.rows(); ++t) {
+    sum += weights.row(t).transpose();
+    squares += weights.row(t).cwiseAbs2().transpose();
+  }
   for (Index j = 0; j < combinations.rows(); ++j) {
-    const double squares = weights.col(j).squaredNorm();
-    if (!(squares > 0.0)) continue;
+    if (!(squares(j) > 0.0)) continue;
     const VectorXd c = combinations.row(j).transpose();
-    if (const double all = c.dot(total * c); all > 0.0)
-      result.own(j) = kernel_covariance(own.col(j), width)(0, 0) / all;
-    const double terms = weights.col(j).sum() * weights.col(j).sum() / squares;
+    if (const double all = c.dot(total * c); all > 0.0) result.own(j) = own_variance(j) / all;
+    const double terms = sum(j) * sum(j) / squares(j);
     result.freedom(j) = 1.0 / (std::max(1.0, kParzenSquare * width) / terms +
                                (whitening ? 2.0 / result.independent_residuals : 0.0));
   }

@@ -23,6 +23,9 @@ constexpr double kFartherFromSample = 1.5;
 constexpr double kFirstBeforeSample = 0.5;
 /// Two times closer than this fraction of that distance are one.
 constexpr double kSameTime = 0.1;
+/// Relative difference up to which two intervals between times count as equal. Rounding of the
+/// times leaves less, and an exponential takes longer than all else that a lag needs.
+constexpr double kSameInterval = 1e-7;
 
 std::string_view sensor_name(Output output) {
   switch (output) {
@@ -89,20 +92,28 @@ void append_between(double from_s, double to_s, std::span<const double> lags_s,
 
 /// Solves y' = (x - y) / lag exactly, with x linear between two times, and computes dy / d lag. For
 /// a lag of zero y is x, and the derivative is -x'.
+///
+/// @param y_by_lag  null if the derivative is not needed
 void follow(const Eigen::VectorXd& x, std::span<const double> times_s, double lag_s,
-            Eigen::VectorXd& y, Eigen::VectorXd& y_by_lag) {
+            Eigen::VectorXd& y, Eigen::VectorXd* y_by_lag) {
   y.resize(x.size());
-  y_by_lag.setZero(x.size());
+  if (y_by_lag != nullptr) y_by_lag->setZero(x.size());
   y(0) = x(0);
+  double known_h = 0.0;
+  double decay = 0.0;
   for (Eigen::Index k = 1; k < x.size(); ++k) {
     const auto i = static_cast<std::size_t>(k);
     const double h = times_s[i] - times_s[i - 1];
-    const double decay = lag_s > 0.0 ? std::exp(-h / lag_s) : 0.0;
-    const double decay_by_lag = decay > 0.0 ? decay * h / (lag_s * lag_s) : 0.0;
+    if (std::abs(h - known_h) > kSameInterval * h) {
+      known_h = h;
+      decay = lag_s > 0.0 ? std::exp(-h / lag_s) : 0.0;
+    }
     const double slope = (x(k) - x(k - 1)) / h;
     y(k) = decay * (y(k - 1) - x(k - 1)) + x(k) - slope * lag_s * (1.0 - decay);
-    y_by_lag(k) = decay * y_by_lag(k - 1) + decay_by_lag * (y(k - 1) - x(k - 1)) -
-                  slope * (1.0 - decay - lag_s * decay_by_lag);
+    if (y_by_lag == nullptr) continue;
+    const double decay_by_lag = decay > 0.0 ? decay * h / (lag_s * lag_s) : 0.0;
+    (*y_by_lag)(k) = decay * (*y_by_lag)(k - 1) + decay_by_lag * (y(k - 1) - x(k - 1)) -
+                     slope * (1.0 - decay - lag_s * decay_by_lag);
   }
 }
 
@@ -138,6 +149,7 @@ std::optional<SensorTimes> sensor_times(std::span<const Output> outputs,
   const std::vector<double> lags_s = lags_to_follow(outputs, values, free);
   if (lags_s.empty()) return std::nullopt;
   SensorTimes result;
+  result.sample.reserve(samples_s.size());
   for (std::size_t i = 0; i < samples_s.size(); ++i) {
     if (i > 0) append_between(samples_s[i - 1], samples_s[i], lags_s, result.times_s);
     result.sample.push_back(result.times_s.size());
@@ -156,13 +168,13 @@ void read_sensors(const std::optional<SensorTimes>& at, std::span<const Output> 
     Eigen::VectorXd by_lag;
     const bool follows = sensor.follows(free);
     if (follows) {
+      const bool is_free = std::find(free.begin(), free.end(), sensor.lag) != free.end();
       Eigen::VectorXd y;
-      Eigen::VectorXd unused;
       for (Eigen::Index j = 0; j < by.cols(); ++j) {
-        follow(by.col(j), at->times_s, sensor.lag_s, y, unused);
+        follow(by.col(j), at->times_s, sensor.lag_s, y, nullptr);
         by.col(j) = y;
       }
-      follow(column, at->times_s, sensor.lag_s, y, by_lag);
+      follow(column, at->times_s, sensor.lag_s, y, is_free ? &by_lag : nullptr);
       column = y;
     }
     const double gain = values.value[static_cast<std::size_t>(sensor.gain)];

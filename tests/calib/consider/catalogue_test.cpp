@@ -127,6 +127,16 @@ TEST_CASE("catalogue: what an effect does to a record is what another integrator
   }
 }
 
+TEST_CASE("catalogue: effects that step at each sample have a budget of their own", "[calib]") {
+  const ForeignProblem foreign({"square", 4.0, 0.02, 0.5});
+  Problem problem = make_problem(foreign.campaign, foreign.records,
+                                 {&foreign.campaign.conditions.front()}, false, nullptr);
+  const std::vector<double> z = problem.start();
+  const auto effects = effects_of(problem, z);
+  problem.conditions.front().max_steps = 20;  // as of a search that began in a steady state
+  CHECK(effect_rows(problem, 0, z, effects, nullptr).allFinite());
+}
+
 TEST_CASE("catalogue: the leak of closed edges is an effect where it is no laminar leak",
           "[calib]") {
   const auto has = [](model::PlantKind plant, const char* key) {
