@@ -329,7 +329,7 @@ TEST_CASE("equations: a cylinder with a load-sensing pump and friction with pre-
   e.set("accumulator_precharge", 1e6).set("relief_pressure", 1.5e7);
   e.set("relief_conductance", 1e-10).set("coulomb_friction", 2e3).set("bristle_stiffness", 1e7);
   e.set("stribeck_friction", 1e3).set("film_velocity", 0.1).set("film_growth_time", 0.05);
-  e.set("film_decay_time", 0.2).set("film_dwell_time", 5.0);
+  e.set("film_decay_time", 0.2).set("film_dwell_time", 5.0).set("seal_friction", 1e-5);
   e.set("external_force", 0.0).inputs.external_force_n = Signal::constant(1e4);
   e.times_s = {0.0, 0.5};
   const Simulation run = e();
@@ -358,15 +358,17 @@ TEST_CASE("equations: a cylinder with a load-sensing pump and friction with pre-
   CHECK(equations->output(Output::pilot_pressure, x) == 2e6);
   CHECK(equations->output(Output::command, x) == 0.0);
   // One indicator each for four edges, both stops, compensators on both sides, both relief valves,
-  // the pressure limit of the pump, the reversal of the bristles, and the growth of the film.
+  // the pressure limit of the pump, the seals, the reversal of the bristles, and the growth of the
+  // film.
   const std::vector<double> indicators = equations->indicators(x);
-  REQUIRE(indicators.size() == 13);
+  REQUIRE(indicators.size() == 14);
   CHECK(indicators[0] == Approx(1e6));
   CHECK(indicators[6] == Approx(x[4] - x[2] - 8e5));
   CHECK(indicators[8] == Approx(1.5e7 - x[2]));
   CHECK(indicators[10] == Approx(2e5 + 2e6 + (x[2] - 2e5) - 2e7));
-  CHECK(indicators[11] == Approx(x[1]));
-  CHECK(indicators[12] == Approx(steady_film(x[1], 0.1, 1e-3) - x[6]).margin(1e-12));
+  CHECK(indicators[11] == Approx(x[2] - x[3]));
+  CHECK(indicators[12] == Approx(x[1]));
+  CHECK(indicators[13] == Approx(steady_film(x[1], 0.1, 1e-3) - x[6]).margin(1e-12));
 }
 
 TEST_CASE("equations: a step that was planned at rest is repeated when the drive jumps",
