@@ -684,18 +684,12 @@ std::optional<ParameterConflict> find_room_conflict(const model::Rig& rig,
   const model::StateCount count = model::count_states(rig, values);
   if (count.needed <= count.room) return std::nullopt;
   const model::FeedbackRow& loop = model::gain_keys(rig.feedback);
-  const std::array<std::string_view, 12> terms{"hose_yield",
-                                               "hose_yield_ratio",
-                                               "payload_mass",
-                                               "pump_second_flow",
-                                               "main_spool_gain",
-                                               "bristle_stiffness",
-                                               "film_velocity",
-                                               loop.acceleration_feedforward,
-                                               loop.velocity_feedforward,
-                                               "sample_time",
-                                               loop.ki,
-                                               loop.kd};
+  std::vector<std::string_view> terms{"hose_yield",       "hose_yield_ratio", "payload_mass",
+                                      "pump_second_flow", "main_spool_gain",  "bristle_stiffness",
+                                      "film_velocity"};
+  if (!model::is_three_variable(rig.feedback))  // its generator has two states in any case
+    terms.insert(terms.end(), {loop.acceleration_feedforward, loop.velocity_feedforward, loop.kd});
+  terms.insert(terms.end(), {"sample_time", loop.ki});
   std::vector<std::string_view> present;
   for (const std::string_view key : terms) {
     if (!key.empty() && values.is_given(key)) present.push_back(key);

@@ -238,8 +238,8 @@ TEST_CASE("load_campaign: what does not go together in a loop on the angle", "[d
             "\"0.1 V s2/rad\"\nderivative_filter = \"200 rad/s\"\nsample_time = \"5 ms\"\n"
             "angle_kd = \"1 V s/rad\"\noutput_limit",
             "the rig has 9 states, and the solver of the plant linkage has room for 8: expected "
-            "fewer of angular_acceleration_feedforward, angular_velocity_feedforward, sample_time, "
-            "angle_ki, angle_kd"},
+            "fewer of angular_acceleration_feedforward, angular_velocity_feedforward, angle_kd, "
+            "sample_time, angle_ki"},
         Row{"valve_gain = \"0.1 mm/V\"",
             "valve_gain = \"0.1 mm/V\"\nvalve_frequency = \"40 Hz\"\nvalve_damping_ratio = 0.7\n"
             "pump_flow = \"100 L/min\"\nsupply_resistance = \"1e9 Pa s/m3\"\nsupply_capacity = "
