@@ -113,7 +113,7 @@ TEST_CASE("guess_column: the part in a loop is apart from the quantity", "[datas
   CHECK(channel("p_ref_bar") == Channel::load_pressure_reference);
   CHECK(channel("ref_deg") == Channel::angle_reference);
   CHECK(channel("Winkel_Soll") == Channel::angle_reference);
-  for (const char* name : {"Drehmoment_Soll_Nm", "torque_ref_Nm", "M_soll_kNm"}) {
+  for (const char* name : {"Drehmoment_Soll_Nm", "torque_ref_Nm", "M_soll_Nm"}) {
     CAPTURE(name);
     CHECK(channel(name) == Channel::torque_reference);
   }
