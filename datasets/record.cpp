@@ -30,6 +30,7 @@ const std::vector<ChannelInfo>& channel_table() {
        false},
       {Channel::angle_reference, "angle_reference", "angle_reference_rad", "rad", false},
       {Channel::torque, "torque", "torque_n_m", "N m", true},
+      {Channel::torque_reference, "torque_reference", "torque_reference_n_m", "N m", false},
   };
   return table;
 }
@@ -46,6 +47,7 @@ bool is_drive(Channel channel) {
     case Channel::load_pressure_reference:
     case Channel::acceleration_reference:
     case Channel::angle_reference:
+    case Channel::torque_reference:
     case Channel::pilot_pressure:
       return true;
     default:

@@ -36,6 +36,7 @@ enum class Channel {
   base_acceleration,        ///< acceleration of what the cylinder is fixed to [m/s2]
   angle_reference,          ///< reference of a loop on the angle of a joint [rad]
   torque,                   ///< moment that the actuator transmits to a joint [N m]
+  torque_reference,         ///< reference of a loop on that moment [N m]
 };
 
 struct ChannelInfo {

@@ -56,6 +56,7 @@ double value_in(const Campaign& campaign, const Condition& condition, const Fit&
 }  // namespace
 
 Validity::Amplitude Validity::amplitude() const {
+  if (amplitude_n_m) return {amplitude_n_m, "N m"};
   if (amplitude_rad) return {amplitude_rad, "rad"};
   if (amplitude_m_per_s2) return {amplitude_m_per_s2, "m/s2"};
   if (amplitude_pa) return {amplitude_pa, "Pa"};

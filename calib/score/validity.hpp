@@ -19,10 +19,11 @@ struct Validity {
   std::optional<Range> supply_pressure_pa;
   std::optional<Range> leakage_coefficient;
   std::vector<std::string> leak_levels;
-  Omittable<Range> amplitude_n, amplitude_pa, amplitude_m_per_s2,
-      amplitude_rad;  ///< in other loops
+  Omittable<Range> amplitude_n, amplitude_pa, amplitude_m_per_s2, amplitude_rad,
+      amplitude_n_m;  ///< in other loops
   RIGCAL_DESCRIBE(frequency_hz, amplitude_m, amplitude_v, supply_pressure_pa, leakage_coefficient,
-                  leak_levels, amplitude_n, amplitude_pa, amplitude_m_per_s2, amplitude_rad)
+                  leak_levels, amplitude_n, amplitude_pa, amplitude_m_per_s2, amplitude_rad,
+                  amplitude_n_m)
 
   struct Amplitude {
     std::optional<Range> range;
@@ -41,6 +42,7 @@ void put_amplitude(std::string_view unit, const std::optional<Value>& amplitude,
   if (unit == "Pa") target.amplitude_pa = *amplitude;
   if (unit == "m/s2") target.amplitude_m_per_s2 = *amplitude;
   if (unit == "rad") target.amplitude_rad = *amplitude;
+  if (unit == "N m") target.amplitude_n_m = *amplitude;
 }
 
 /// Computes the ranges covered by the conditions with the given uses. Values from `fit` take

@@ -207,8 +207,8 @@ void read_amplitude(const TomlNode& amplitude, const Campaign& campaign, Conditi
   const bool pid = campaign.rig.controller == model::ControllerKind::pid;
   const model::FeedbackRow& loop = model::gain_keys(campaign.rig.feedback);
   const bool pilot = campaign.rig.pilot;
-  const bool forces = pilot || (pid && (campaign.rig.feedback == model::Feedback::force ||
-                                        campaign.rig.feedback == model::Feedback::load_pressure));
+  const bool forces =
+      pilot || (pid && (loop.unit == "N" || loop.unit == "N m" || loop.unit == "Pa"));
   const std::string note =
       pid ? fmt::format("with a pid controller the waveform is the {} reference, in {}", loop.name,
                         loop.unit)
@@ -270,7 +270,8 @@ const KeyTable<Condition>& condition_keys() {
                   },
                   {.doc = fmt::format("{}Of a chirp: at its start", drives), .otherwise = "none"}),
       Row::described(
-          "amplitude", quantity_form(std::vector<std::string>{"m", "V", "Pa", "N", "m/s2", "rad"}),
+          "amplitude",
+          quantity_form(std::vector<std::string>{"m", "V", "Pa", "N", "m/s2", "rad", "N m"}),
           {.doc = fmt::format("{}Half of peak to peak: a length; a voltage without a controller (a "
                               "pressure with `pilot_gain`); or the quantity of `feedback`",
                               drives),

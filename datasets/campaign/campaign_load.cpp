@@ -68,9 +68,10 @@ void read_controller(const TomlNode& node, Campaign& campaign) {
   const bool turns = campaign.rig.plant == model::PlantKind::linkage;
   if (!feedback && campaign.rig.controller == Kind::pid && turns)
     campaign.rig.feedback = model::Feedback::angle;
-  if (feedback && turns != (campaign.rig.feedback == model::Feedback::angle))
-    feedback->fail(turns ? "the controller of a linkage acts on the angle of the joint: expected "
-                           "\"angle\""
+  if (feedback && !model::has_loop(campaign.rig.plant, campaign.rig.feedback))
+    feedback->fail(turns ? "the controller of a linkage acts on the angle of the joint, its torque "
+                           "or the pressure difference: expected \"angle\", \"torque\" or "
+                           "\"load_pressure\""
                          : fmt::format("the plant {} has no joint: expected another quantity, or "
                                        "model = \"linkage\"",
                                        to_string(campaign.rig.plant)));

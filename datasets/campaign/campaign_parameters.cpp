@@ -681,13 +681,16 @@ std::optional<ParameterConflict> find_room_conflict(const model::Rig& rig,
                                                     const model::ParameterValues& values) {
   const model::StateCount count = model::count_states(rig, values);
   if (count.needed <= count.room) return std::nullopt;
-  constexpr std::array kTerms{
-      "hose_yield",           "hose_yield_ratio",  "payload_mass",  "pump_second_flow",
-      "main_spool_gain",      "bristle_stiffness", "film_velocity", "acceleration_feedforward",
-      "velocity_feedforward", "sample_time",       "angle_ki",      "angle_kd"};
+  const model::FeedbackRow& loop = model::gain_keys(rig.feedback);
+  std::vector<std::string_view> terms{"hose_yield",       "hose_yield_ratio", "payload_mass",
+                                      "pump_second_flow", "main_spool_gain",  "bristle_stiffness",
+                                      "film_velocity"};
+  if (!model::is_three_variable(rig.feedback))  // its generator has two states in any case
+    terms.insert(terms.end(), {loop.acceleration_feedforward, loop.velocity_feedforward, loop.kd});
+  terms.insert(terms.end(), {"sample_time", loop.ki});
   std::vector<std::string_view> present;
-  for (const char* key : kTerms) {
-    if (values.is_given(key)) present.emplace_back(key);
+  for (const std::string_view key : terms) {
+    if (!key.empty() && values.is_given(key)) present.push_back(key);
   }
   return ParameterConflict{
       present.empty() ? "" : std::string(present.front()),
@@ -724,6 +727,31 @@ std::optional<ParameterConflict> find_generator_conflict(const model::Rig& rig,
   return std::nullopt;
 }
 
+/// Checks that a feed-forward belongs to the loop, and has its filter.
+std::optional<ParameterConflict> find_feedforward_conflict(const model::FeedbackRow& loop,
+                                                           const model::ParameterValues& values) {
+  for (const model::FeedbackRow& row : model::kFeedbacks) {
+    for (const std::string_view key : {row.velocity_feedforward, row.acceleration_feedforward}) {
+      if (key.empty() || !values.is_given(key)) continue;
+      if (key != loop.velocity_feedforward && key != loop.acceleration_feedforward)
+        return ParameterConflict{
+            std::string(key),
+            fmt::format(
+                "{} feeds the rate of {} forward, and this loop is on {}: expected "
+                "feedback = \"{}\"",
+                key,
+                row.kp == model::gain_keys(model::Feedback::angle).kp ? "an angle" : "a position",
+                loop.name, row.name)};
+      if (!values.is_given("derivative_filter"))
+        return ParameterConflict{
+            std::string(key), fmt::format("{} without derivative_filter: expected the corner N of "
+                                          "its filter, such as derivative_filter = \"500 rad/s\"",
+                                          key)};
+    }
+  }
+  return std::nullopt;
+}
+
 /// Checks that a loop has the gains for its controlled quantity, and no others.
 std::optional<ParameterConflict> find_loop_conflict(const model::Rig& rig,
                                                     const model::ParameterValues& values) {
@@ -756,18 +784,8 @@ std::optional<ParameterConflict> find_loop_conflict(const model::Rig& rig,
                     "derivative_filter = \"500 rad/s\"",
                     loop.kd)};
   }
-  for (const char* key : {"velocity_feedforward", "acceleration_feedforward"}) {
-    if (!values.is_given(key) || generator) continue;
-    if (rig.feedback != model::Feedback::position)
-      return ParameterConflict{
-          key, fmt::format("{} feeds the rate of a position forward, and this loop is on {}: "
-                           "expected feedback = \"position\"",
-                           key, loop.name)};
-    if (!values.is_given("derivative_filter"))
-      return ParameterConflict{key, fmt::format("{} without derivative_filter: expected the corner "
-                                                "N of its filter, such as derivative_filter = "
-                                                "\"500 rad/s\"",
-                                                key)};
+  if (!generator) {
+    if (const auto conflict = find_feedforward_conflict(loop, values)) return conflict;
   }
   if (values.is_given("initial_integral") && !values.is_given(loop.ki))
     return ParameterConflict{"initial_integral",

@@ -418,6 +418,8 @@ Channel drive_channel(const model::Rig& rig) {
       return Channel::load_pressure_reference;
     case model::Feedback::angle:
       return Channel::angle_reference;
+    case model::Feedback::torque:
+      return Channel::torque_reference;
     case model::Feedback::acceleration:
     case model::Feedback::three_variable_acceleration:
       return Channel::acceleration_reference;

@@ -104,7 +104,9 @@ std::string known_channels_text(const FileColumns& columns) {
                       in_comment(column.stem));
       continue;
     }
-    if (column.channel == Channel::torque && column_of(columns, Channel::angle) == nullptr) {
+    const bool is_torque =
+        column.channel == Channel::torque || column.channel == Channel::torque_reference;
+    if (is_torque && !turns(columns)) {
       text += fmt::format("# '{}' looks like a torque, which only a rig with an angle has\n",
                           in_comment(column.stem));
       continue;
@@ -209,7 +211,9 @@ std::string blanks_text(const FileColumns& columns, const std::vector<Candidate>
   if (!any && columns.ambiguous.empty() && !columns.channels.empty()) return {};
   std::string text;
   if (motion_of(columns) == nullptr && columns.rows.empty())
-    text += blank_line("position", perhaps(candidates, moves) + "; or angle, of a joint");
+    text += turns(columns)
+                ? blank_line("angle", perhaps(candidates, moves))
+                : blank_line("position", perhaps(candidates, moves) + "; or angle, of a joint");
   if (drive_of(columns) == nullptr && columns.rows.empty())
     text += blank_line("command",
                        perhaps(candidates, drives) + "; or reference, if a controller follows it");
@@ -223,8 +227,7 @@ std::string unknown_columns_text(const FileColumns& columns,
   for (const ChannelColumns& column : columns.channels) taken.push_back(column.channel);
   // A slide has no angle, and a joint neither a position nor a reference.
   if (column_of(columns, Channel::position) != nullptr) taken.push_back(Channel::angle);
-  if (column_of(columns, Channel::angle) != nullptr)
-    taken.insert(taken.end(), {Channel::position, Channel::reference});
+  if (turns(columns)) taken.insert(taken.end(), {Channel::position, Channel::reference});
   std::string text;
   std::vector<std::string> texts;
   for (const Candidate& each : candidates) {

@@ -197,6 +197,8 @@ std::optional<Channel> reference_of(Meaning quantity, const Reading& reading) {
       return Channel::angle_reference;
     case Meaning::force:
       return Channel::force_reference;
+    case Meaning::torque:
+      return Channel::torque_reference;
     case Meaning::acceleration:
       return Channel::acceleration_reference;
     case Meaning::pressure:
@@ -268,8 +270,6 @@ std::string_view other_of(std::optional<Meaning> quantity, const Reading& readin
       return "a velocity";
     case Meaning::flow:
       return "a flow";
-    case Meaning::torque:
-      return "the reference of a torque, which no loop controls";
     case Meaning::rotation:
       return "a speed of rotation";
     case Meaning::position:

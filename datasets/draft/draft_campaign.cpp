@@ -320,7 +320,7 @@ Draft draft_campaign(const std::vector<fs::path>& files, const fs::path& folder)
   text += unreadable;
   auto plant = chambers || has_pilot(columns) ? model::PlantKind::two_chamber
                                               : model::PlantKind::load_pressure;
-  if (column_of(columns, Channel::angle) != nullptr) plant = model::PlantKind::linkage;
+  if (turns(columns)) plant = model::PlantKind::linkage;
   const bool slides = plant != model::PlantKind::linkage;
   const auto recorded = [&own = columns](Channel channel) {
     return column_of(own, channel) != nullptr;

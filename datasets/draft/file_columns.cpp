@@ -178,21 +178,28 @@ const ChannelColumns* column_of(const FileColumns& columns, Channel channel) {
   return found == columns.channels.end() ? nullptr : &*found;
 }
 
+bool turns(const FileColumns& columns) {
+  return column_of(columns, Channel::angle) != nullptr ||
+         (column_of(columns, Channel::torque) != nullptr &&
+          column_of(columns, Channel::torque_reference) != nullptr);
+}
+
 const ChannelColumns* motion_of(const FileColumns& columns) {
   const ChannelColumns* angle = column_of(columns, Channel::angle);
   return angle != nullptr ? angle : column_of(columns, Channel::position);
 }
 
 std::optional<model::Feedback> loop_of(const FileColumns& columns) {
-  const bool turns = column_of(columns, Channel::angle) != nullptr;
+  const auto plant = turns(columns) ? model::PlantKind::linkage : model::PlantKind::two_chamber;
+  std::optional<model::Feedback> found;
   for (std::size_t i = 0; i < model::kFeedbackCount; ++i) {
     const model::Rig rig{{}, model::ControllerKind::pid, {}, static_cast<model::Feedback>(i)};
-    // The only loop of a joint is on its angle.
-    if ((rig.feedback == model::Feedback::angle) == turns &&
-        column_of(columns, drive_channel(rig)) != nullptr)
-      return rig.feedback;
+    if (!model::has_loop(plant, rig.feedback) || column_of(columns, drive_channel(rig)) == nullptr)
+      continue;
+    if (model::controls_motion(rig.feedback)) return rig.feedback;
+    if (!found) found = rig.feedback;
   }
-  return std::nullopt;
+  return found;
 }
 
 bool has_pilot(const FileColumns& columns) {

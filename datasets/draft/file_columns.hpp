@@ -60,6 +60,10 @@ std::vector<std::vector<ChannelColumns>> column_sets(const FileColumns& columns)
 /// Returns the first columns of a channel, or null.
 const ChannelColumns* column_of(const FileColumns& columns, Channel channel);
 
+/// Whether the rig turns an arm: its angle is recorded, or a torque beside the reference of a
+/// torque.
+bool turns(const FileColumns& columns);
+
 /// Returns the columns with the motion of the rig: the angle of a joint, or else the position of a
 /// piston. Null if there are none.
 const ChannelColumns* motion_of(const FileColumns& columns);

@@ -204,9 +204,9 @@ std::string rig_text(model::PlantKind plant, std::optional<model::Feedback> loop
   };
   if (signs.pressures)
     gain("pressure_feedback", "inner loop on the pressure difference, which damps");
-  if (*loop == model::Feedback::position) {
-    gain("velocity_feedforward", "of the rate of the reference");
-    gain("acceleration_feedforward", "of the rate of that rate");
+  if (!row.velocity_feedforward.empty()) {
+    gain(row.velocity_feedforward, "of the rate of the reference");
+    gain(row.acceleration_feedforward, "of the rate of that rate");
   }
   const bool acceleration = *loop == model::Feedback::acceleration;
   if (!signs.payload || !(acceleration || *loop == model::Feedback::position)) return text;

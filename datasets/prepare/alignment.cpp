@@ -90,9 +90,10 @@ std::vector<Channel> alignment_channels(const std::vector<Repeat>& repeats) {
   std::vector<Channel> jumping;
   for (const Channel channel :
        {Channel::reference, Channel::force_reference, Channel::load_pressure_reference,
-        Channel::acceleration_reference, Channel::angle_reference, Channel::command,
-        Channel::pilot_pressure, Channel::position, Channel::angle, Channel::load_pressure,
-        Channel::pressure_a, Channel::pressure_b, Channel::force, Channel::torque}) {
+        Channel::acceleration_reference, Channel::angle_reference, Channel::torque_reference,
+        Channel::command, Channel::pilot_pressure, Channel::position, Channel::angle,
+        Channel::load_pressure, Channel::pressure_a, Channel::pressure_b, Channel::force,
+        Channel::torque}) {
     const bool usable = std::all_of(repeats.begin(), repeats.end(), [&](const Repeat& repeat) {
       const auto found = repeat.values.find(channel);
       return found != repeat.values.end() && !is_constant(found->second);

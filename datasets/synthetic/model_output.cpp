@@ -31,6 +31,7 @@ std::optional<model::Output> model_output(Channel channel) {
     case Channel::load_pressure_reference:
     case Channel::acceleration_reference:
     case Channel::angle_reference:
+    case Channel::torque_reference:
     case Channel::supply_pressure:
     case Channel::tank_pressure:
     case Channel::base_acceleration:

@@ -108,11 +108,15 @@ void plant_indicators(const LinkagePlant::Coefficients<double>& p, const Present
   chamber_indicators(p, terms, x, spool, indicators);
 }
 
-/// Appends the velocity, because the bristle force has a kink where the velocity changes sign, and
-/// what the lubricant film lacks of its steady thickness: it grows at another rate than it decays.
+/// Appends the pressure across the piston, whose magnitude presses the seals, the velocity, because
+/// the bristle force has a kink where the velocity changes sign, and what the lubricant film lacks
+/// of its steady thickness: it grows at another rate than it decays.
 template <typename Plant, typename P, std::size_t N>
 void friction_indicators(const P& p, const PresentTerms& terms, const std::array<double, N>& x,
                          std::vector<double>& indicators) {
+  if constexpr (requires { Plant::pressure_across(x); }) {
+    if (terms.seal_friction) indicators.push_back(Plant::pressure_across(x));
+  }
   if (terms.bristles >= 0) indicators.push_back(x[Plant::velocity]);
   if (terms.film >= 0)
     indicators.push_back(

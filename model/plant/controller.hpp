@@ -12,9 +12,9 @@ struct ControllerOutput {
   X limited{};
 };
 
-/// Copies the gains of a force, pressure, acceleration or angle loop to the members from which the
-/// controller reads the gains of a position loop. The controller uses the same equations for every
-/// loop; the gains are in V per unit of the controlled quantity.
+/// Copies the gains of a force, pressure, acceleration, angle or torque loop to the members from
+/// which the controller reads the gains of a position loop. The controller uses the same equations
+/// for every loop; the gains are in V per unit of the controlled quantity.
 template <typename P>
 void take_gains(Feedback feedback, P& p) {
   switch (feedback) {
@@ -42,6 +42,15 @@ void take_gains(Feedback feedback, P& p) {
         p.kp_v_per_m = p.angle_kp_v_per_rad;
         p.ki_v_per_m_s = p.angle_ki_v_per_rad_s;
         p.kd_v_s_per_m = p.angle_kd_v_s_per_rad;
+        p.velocity_feedforward_v_s_per_m = p.angular_velocity_feedforward_v_s_per_rad;
+        p.acceleration_feedforward_v_s2_per_m = p.angular_acceleration_feedforward_v_s2_per_rad;
+      }
+      return;
+    case Feedback::torque:
+      if constexpr (requires { p.torque_kp_v_per_n_m; }) {
+        p.kp_v_per_m = p.torque_kp_v_per_n_m;
+        p.ki_v_per_m_s = p.torque_ki_v_per_n_m_s;
+        p.kd_v_s_per_m = p.torque_kd_v_s_per_n_m;
       }
       return;
   }

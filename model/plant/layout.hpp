@@ -113,15 +113,20 @@ inline constexpr StateRow kFilteredReference{"controller_filtered_reference", "m
                                              "filtered reference", 1e-6, 0.01};
 inline constexpr StateRow kFilteredRate{"controller_filtered_rate", "m/s",
                                         "filtered rate of the reference", 1e-5, 0.1};
+inline constexpr StateRow kFilteredAngleReference{"controller_filtered_reference", "rad",
+                                                  "filtered reference", 1e-6, 0.1};
+inline constexpr StateRow kFilteredAngularRate{"controller_filtered_rate", "rad/s",
+                                               "filtered rate of the reference", 1e-5, 0.1};
 inline constexpr StateRow kHeldOutput{"controller_held_output", "V",
                                       "output of the sampled controller", 1e-3, 1.0};
 /// Filtered error, in the unit of the controlled quantity. Three-variable control has none.
-inline constexpr std::array<StateRow, 5> kFilteredError{
+inline constexpr std::array<StateRow, 6> kFilteredError{
     StateRow{"controller_filtered_error", "m", "filtered error", 1e-6, 0.01},
     StateRow{"controller_filtered_error", "N", "filtered error", 0.1, 1e3},
     StateRow{"controller_filtered_error", "Pa", "filtered error", 100.0, 0.1},
     StateRow{"controller_filtered_error", "m/s2", "filtered error", 1e-3, 1.0},
-    StateRow{"controller_filtered_error", "rad", "filtered error", 1e-6, 0.1}};
+    StateRow{"controller_filtered_error", "rad", "filtered error", 1e-6, 0.1},
+    StateRow{"controller_filtered_error", "N m", "filtered error", 0.1, 1e3}};
 
 /// The states that a rig has in addition to those of its plant, with their indices in the state
 /// vector.
@@ -143,8 +148,8 @@ struct Layout {
   bool pressure_feedback = false;          ///< the load pressure is fed back inside the loop
   int integral = -1;                       ///< integral action [V]
   int filter = -1;                         ///< filtered error, in the unit of `feedback`
-  int reference = -1;      ///< filtered reference of a feed-forward or of a generator [m]
-  int rate = -1;           ///< its rate, filtered once more for a feed-forward [m/s]
+  int reference = -1;      ///< filtered reference of a feed-forward or of a generator [m, or rad]
+  int rate = -1;           ///< its rate, filtered once more for a feed-forward [m/s, or rad/s]
   bool generator = false;  ///< three-variable control: both states are those of its generator
   int held = -1;           ///< output of a sampled controller, constant between ticks [V]
   PresentTerms terms;
@@ -230,14 +235,17 @@ inline Layout layout_of(const Rig& rig, const ParameterValues& values, std::span
   if (layout.pid) {
     layout.feedback = rig.feedback;
     layout.pressure_feedback = acts("pressure_feedback");
-    if (given(gain_keys(rig.feedback).ki)) layout.integral = layout.add(kIntegral);
+    const FeedbackRow& loop = gain_keys(rig.feedback);
+    const bool turns = rig.feedback == Feedback::angle;
+    const auto forward = [&](std::string_view key) { return !key.empty() && given(key); };
+    if (given(loop.ki)) layout.integral = layout.add(kIntegral);
     layout.generator = is_three_variable(rig.feedback);
-    if (given(gain_keys(rig.feedback).kd) && !layout.generator)
+    if (given(loop.kd) && !layout.generator)
       layout.filter = layout.add(kFilteredError.at(static_cast<std::size_t>(rig.feedback)));
-    if (layout.generator || given("velocity_feedforward") || given("acceleration_feedforward"))
-      layout.reference = layout.add(kFilteredReference);
-    if (layout.generator || given("acceleration_feedforward"))
-      layout.rate = layout.add(kFilteredRate);
+    const bool accelerates = layout.generator || forward(loop.acceleration_feedforward);
+    if (accelerates || forward(loop.velocity_feedforward))
+      layout.reference = layout.add(turns ? kFilteredAngleReference : kFilteredReference);
+    if (accelerates) layout.rate = layout.add(turns ? kFilteredAngularRate : kFilteredRate);
     if (given("sample_time")) layout.held = layout.add(kHeldOutput);
   }
   layout.terms.stribeck = given("stribeck_friction");

@@ -54,6 +54,11 @@ struct LinkageParameters : TwoChamberParameters<T> {
   T angle_kp_v_per_rad{};
   T angle_ki_v_per_rad_s{};
   T angle_kd_v_s_per_rad{};
+  T torque_kp_v_per_n_m{};
+  T torque_ki_v_per_n_m_s{};
+  T torque_kd_v_s_per_n_m{};
+  T angular_velocity_feedforward_v_s_per_rad{};
+  T angular_acceleration_feedforward_v_s2_per_rad{};
 };
 
 /// The joint: replaces mass, stroke and position of a sliding load.
@@ -142,9 +147,9 @@ constexpr auto angle_rows() {
   };
 }
 
-/// Gains of a loop on the angle.
+/// Gains of loops on the angle and on the torque.
 template <typename T>
-constexpr auto angle_loop_rows() {
+constexpr auto joint_loop_rows() {
   using P = LinkageParameters<T>;
   using K = ParameterKind;
   using F = ParameterField<P, T>;
@@ -153,6 +158,11 @@ constexpr auto angle_loop_rows() {
       F{&P::angle_kp_v_per_rad, {"angle_kp", "angle_kp_v_per_rad", "K_ptheta", "V/rad", "proportional gain of a loop on the angle", "docs/model.md", K::controller, 0, 1e9, 0.0}},
       F{&P::angle_ki_v_per_rad_s, {"angle_ki", "angle_ki_v_per_rad_s", "K_itheta", "V/(rad s)", "integral gain of a loop on the angle", "docs/model.md", K::controller, 0, 1e9, 0.0}},
       F{&P::angle_kd_v_s_per_rad, {"angle_kd", "angle_kd_v_s_per_rad", "K_dtheta", "V s/rad", "derivative gain of a loop on the angle", "docs/model.md", K::controller, 0, 1e9, 0.0}},
+      F{&P::torque_kp_v_per_n_m, {"torque_kp", "torque_kp_v_per_n_m", "K_pM", "V/(N m)", "proportional gain of a loop on the torque", "docs/model.md", K::controller, 0, 1e9, 0.0}},
+      F{&P::torque_ki_v_per_n_m_s, {"torque_ki", "torque_ki_v_per_n_m_s", "K_iM", "V/(N m s)", "integral gain of a loop on the torque", "docs/model.md", K::controller, 0, 1e9, 0.0}},
+      F{&P::torque_kd_v_s_per_n_m, {"torque_kd", "torque_kd_v_s_per_n_m", "K_dM", "V s/(N m)", "derivative gain of a loop on the torque", "docs/model.md", K::controller, 0, 1e9, 0.0}},
+      F{&P::angular_velocity_feedforward_v_s_per_rad, {"angular_velocity_feedforward", "angular_velocity_feedforward_v_s_per_rad", "K_vf", "V s/rad", "gain of the rate of the angle's reference, filtered as the derivative is", "docs/model.md", K::controller, -1e9, 1e9, 0.0}},
+      F{&P::angular_acceleration_feedforward_v_s2_per_rad, {"angular_acceleration_feedforward", "angular_acceleration_feedforward_v_s2_per_rad", "K_af", "V s2/rad", "gain of the rate of that rate, filtered once more", "docs/model.md", K::controller, -1e9, 1e9, 0.0}},
       // clang-format on
   };
 }
@@ -231,9 +241,6 @@ constexpr auto linkage_fields() {
                                    Keys("force_kp"),
                                    Keys("force_ki"),
                                    Keys("force_kd"),
-                                   Keys("load_pressure_kp"),
-                                   Keys("load_pressure_ki"),
-                                   Keys("load_pressure_kd"),
                                    Keys("acceleration_kp"),
                                    Keys("acceleration_ki"),
                                    Keys("acceleration_kd"),
@@ -250,7 +257,7 @@ constexpr auto linkage_fields() {
                 rows_without(chamber_term_rows<LinkageParameters, T>(), kOtherTerms),
                 linkage_term_rows<T>(), travel_rows<T>(), metering_rows<LinkageParameters, T>(),
                 angle_rows<T>(), rows_without(sensor_rows<LinkageParameters, T>(), kOtherSensors),
-                chamber_initial_rows<LinkageParameters, T>(), angle_loop_rows<T>(),
+                chamber_initial_rows<LinkageParameters, T>(), joint_loop_rows<T>(),
                 rows_without(controller_rows<LinkageParameters, T>(), kOtherLoops));
 }
 
@@ -259,7 +266,7 @@ inline constexpr auto kLinkageFields = linkage_fields<T>();
 
 static_assert((joint_rows<double>().size() + linkage_term_rows<double>().size() +
                travel_rows<double>().size() + angle_rows<double>().size() +
-               angle_loop_rows<double>().size()) *
+               joint_loop_rows<double>().size()) *
                       sizeof(double) ==
                   sizeof(LinkageParameters<double>) - sizeof(TwoChamberParameters<double>),
               "a parameter was added to the struct but not to the table");

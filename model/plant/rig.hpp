@@ -68,6 +68,7 @@ enum class Feedback {
   load_pressure,
   acceleration,
   angle,
+  torque,
   three_variable,
   three_variable_acceleration,
 };
@@ -79,25 +80,36 @@ struct FeedbackRow {
   std::string_view meaning;
   std::string_view kp, ki, kd;
   std::string_view acceleration;  ///< gain of the acceleration besides kp; empty: none
+  /// Gains of the rate of the reference and of the rate of that rate; empty: no feed-forward.
+  std::string_view velocity_feedforward, acceleration_feedforward;
 };
 inline constexpr std::array kFeedbacks{
-    FeedbackRow{"position", "m", "where the piston is to be", "kp", "ki", "kd", ""},
+    FeedbackRow{"position", "m", "where the piston is to be", "kp", "ki", "kd", "",
+                "velocity_feedforward", "acceleration_feedforward"},
     FeedbackRow{"force", "N", "force that a load cell in the rod is to read", "force_kp",
-                "force_ki", "force_kd", ""},
+                "force_ki", "force_kd", "", "", ""},
     FeedbackRow{"load_pressure", "Pa", "what the pressure of chamber A is to be less that of B",
-                "load_pressure_kp", "load_pressure_ki", "load_pressure_kd", ""},
+                "load_pressure_kp", "load_pressure_ki", "load_pressure_kd", "", "", ""},
     FeedbackRow{"acceleration", "m/s2", "what the acceleration of the piston is to be",
-                "acceleration_kp", "acceleration_ki", "acceleration_kd", ""},
-    FeedbackRow{"angle", "rad", "where the joint is to be", "angle_kp", "angle_ki", "angle_kd", ""},
+                "acceleration_kp", "acceleration_ki", "acceleration_kd", "", "", ""},
+    FeedbackRow{"angle", "rad", "where the joint is to be", "angle_kp", "angle_ki", "angle_kd", "",
+                "angular_velocity_feedforward", "angular_acceleration_feedforward"},
+    FeedbackRow{"torque", "N m", "moment that a transducer at the joint is to read", "torque_kp",
+                "torque_ki", "torque_kd", "", "", ""},
     FeedbackRow{"three_variable", "m", "where the piston is to be", "kp", "ki", "velocity_kp",
-                "acceleration_kp"},
+                "acceleration_kp", "velocity_feedforward", "acceleration_feedforward"},
     FeedbackRow{"three_variable_acceleration", "m/s2",
                 "what the acceleration of the piston is to be", "kp", "ki", "velocity_kp",
-                "acceleration_kp"},
+                "acceleration_kp", "velocity_feedforward", "acceleration_feedforward"},
 };
 inline constexpr std::size_t kFeedbackCount = kFeedbacks.size();
 constexpr const FeedbackRow& gain_keys(Feedback feedback) {
   return kFeedbacks[static_cast<std::size_t>(feedback)];
+}
+
+/// Whether a plant has a loop on a quantity: whether its table has the gain of that loop.
+inline bool has_loop(PlantKind plant, Feedback feedback) {
+  return parameter_index(plant, gain_keys(feedback).kp) >= 0;
 }
 
 /// Whether a loop acts on position, velocity and acceleration together.

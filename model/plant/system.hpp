@@ -513,8 +513,8 @@ class System {
   [[gnu::noinline]] LoopError<Number<K>> other_loop_error(K by, const Numbers<K>& x,
                                                           const Number<K>& drive, double t) const {
     const auto& p = parameters_of(by);
-    // Neither force nor load pressure nor acceleration depends on the spool, so the command is not
-    // needed.
+    // Neither force nor torque nor load pressure nor acceleration depends on the spool, so the
+    // command is not needed.
     const PlantInput<Number<K>> in = plant_input(by, x, Number<K>(0.0), t);
     const Number<K> none(0.0);
     LoopError<Number<K>> loop{drive, none, drive, none, none};
@@ -525,6 +525,9 @@ class System {
         break;
       case Feedback::force:
         loop.error = drive - Plant::output(Output::force, x, in, p, layout_.terms);
+        break;
+      case Feedback::torque:
+        loop.error = drive - Plant::output(Output::torque, x, in, p, layout_.terms);
         break;
       case Feedback::load_pressure:
         loop.error = drive - Plant::output(Output::load_pressure, x, in, p, layout_.terms);

@@ -42,7 +42,52 @@ const std::string kWarmOil =
     "reference_temperature = \"40 degC\"\noil_temperature = \"55 degC\"\nviscosity_decay = "
     "\"0.03 1/K\"\nthermal_expansion = \"7e-4 1/K\"\nbulk_modulus_decay = \"5.5e-3 1/K\"\n";
 
-/// The condition "square" of both campaigns. At 1 Hz its edges are at half seconds.
+/// A vane motor against a spring. The gains of its loop come after `type`, and the amplitude of
+/// both conditions is the reference's.
+std::string vane_campaign(const std::string& controller, const std::string& amplitude) {
+  std::string text = R"toml(schema = "rigcal.campaign/1"
+[rig]
+model = "linkage"
+[rig.parameters]
+inertia = "20 kg m2"
+joint_damping = "500 N m s/rad"
+displacement_per_radian = "200 cm3/rad"
+lower_stop = "-140 deg"
+upper_stop = "140 deg"
+gravity_moment_gradient = "5 kN m/rad"
+joint_friction = "30 N m"
+joint_friction_smoothing = "0.05 rad/s"
+dead_volume_a = "0.2 L"
+dead_volume_b = "0.2 L"
+tank_pressure = "2 bar"
+supply_pressure = "140 bar"
+density = "870 kg/m3"
+bulk_modulus = "800 MPa"
+discharge_coefficient = 0.65
+area_gradient = "20 mm"
+valve_gain = "0.02 mm/V"
+valve_time_constant = "5 ms"
+leakage_coefficient = 0
+leakage_area = "1 mm2"
+[recording]
+initial = "rest"
+[recording.channels]
+time = { column = "t_s", unit = "s" }
+angle = { column = "angle_deg", unit = "deg", sd = "0.5 mrad" }
+[simulation]
+tolerance = 1e-9
+[rig.controller]
+type = "pid"
+)toml";
+  text += controller;
+  for (const auto& [waveform, frequency] : {std::pair{"sine", "2 Hz"}, std::pair{"square", "1 Hz"}})
+    text += "[[condition]]\nid = \"" + std::string(waveform) + "\"\nwaveform = \"" + waveform +
+            "\"\nfrequency = \"" + frequency + "\"\namplitude = \"" + amplitude +
+            "\"\nuse = \"fit\"\nduration = \"0.6 s\"\nsample_rate = \"200 Hz\"\n";
+  return text;
+}
+
+/// The condition "square" of every campaign. At 1 Hz its edges are at half seconds.
 Drive square(double amplitude) {
   return [amplitude](double t) { return std::fmod(t + 1e-9, 1.0) < 0.5 ? amplitude : -amplitude; };
 }
@@ -247,6 +292,31 @@ TEST_CASE("export: every term that an FMU can have is in it", "[apps]") {
                      "\"0.02 V s2/m\"\npressure_feedback = \"5e-8 V/Pa\"\noutput_limit = \"5 V\""});
     folder.write("campaign.toml", edited(kCampaign, edits));
     require_both(folder, "reference", {{"sine", sine(0.005)}, {"square", square(0.004)}});
+  }
+  SECTION("a vane motor under a loop on its torque, with inner feedback") {
+    folder.write("campaign.toml",
+                 vane_campaign("feedback = \"torque\"\ntorque_kp = \"2 V/(kN m)\"\ntorque_ki = "
+                               "\"5 V/(kN m s)\"\ntorque_kd = \"20 mV s/(kN m)\"\n"
+                               "derivative_filter = \"200 rad/s\"\noutput_limit = \"5 V\"\n"
+                               "pressure_feedback = \"5e-8 V/Pa\"\n",
+                               "600 N m"));
+    require_both(folder, "reference", {{"sine", sine(600.0)}, {"square", square(600.0)}});
+  }
+  SECTION("a vane motor under a loop on its load pressure") {
+    folder.write("campaign.toml", vane_campaign("feedback = \"load_pressure\"\n"
+                                                "load_pressure_kp = \"0.04 V/bar\"\n"
+                                                "load_pressure_ki = \"0.1 V/(bar s)\"\n",
+                                                "30 bar"));
+    require_both(folder, "reference", {{"sine", sine(3e6)}, {"square", square(3e6)}});
+  }
+  SECTION("a vane motor under a loop on its angle, with feed-forward") {
+    folder.write("campaign.toml",
+                 vane_campaign("angle_kp = \"10 V/rad\"\nderivative_filter = \"200 rad/s\"\n"
+                               "angular_velocity_feedforward = \"2 V s/rad\"\n"
+                               "angular_acceleration_feedforward = \"0.02 V s2/rad\"\n"
+                               "output_limit = \"8 V\"\n",
+                               "0.1 rad"));
+    require_both(folder, "reference", {{"sine", sine(0.1)}, {"square", square(0.1)}});
   }
   SECTION("edges by a power, with seals") {
     Edits edits = kTwoChamberGeneratedRuns;

@@ -117,13 +117,14 @@ const KeyTable<DesignSettings>& design_keys() {
                  .otherwise = "no limit"}),
       limit_row("flow", &DesignSettings::flow_m3_per_s, "m3/s", kFlows_m3_per_s,
                 {.doc = "Largest flow of the servo valve", .otherwise = "no limit"}),
-      Row::described("amplitude",
-                     quantity_form(std::vector<std::string>{"m", "V", "Pa", "N", "m/s2", "rad"}),
-                     {.doc = "Largest distance of the drive from where it begins, in the unit of "
-                             "its channel; needed where the loop controls something other than "
-                             "position",
-                      .otherwise = "end of the stroke, or `command` without a controller",
-                      .example = "\"5 mm\""}),
+      Row::described(
+          "amplitude",
+          quantity_form(std::vector<std::string>{"m", "V", "Pa", "N", "m/s2", "rad", "N m"}),
+          {.doc = "Largest distance of the drive from where it begins, in the unit of "
+                  "its channel; needed where the loop controls something other than "
+                  "position",
+           .otherwise = "end of the stroke, or `command` without a controller",
+           .example = "\"5 mm\""}),
       Row::custom("band", band, read_band,
                   {.doc = "What the drive contains: `[\"0.2 Hz\", \"50 Hz\"]`",
                    .otherwise = "two periods in the test to ten samples per period",

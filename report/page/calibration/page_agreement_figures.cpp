@@ -33,7 +33,8 @@ constexpr Drive kDrives[] = {{"reference_m", "reference", "m"},
                              {"force_reference_n", "force reference", "N"},
                              {"load_pressure_reference_pa", "load pressure reference", "Pa"},
                              {"acceleration_reference_m_per_s2", "acceleration reference", "m/s2"},
-                             {"angle_reference_rad", "angle reference", "rad"}};
+                             {"angle_reference_rad", "angle reference", "rad"},
+                             {"torque_reference_n_m", "torque reference", "N m"}};
 
 std::vector<double> counted(const std::vector<double>& values, const std::vector<double>* window) {
   if (window == nullptr) return values;

@@ -70,6 +70,7 @@ doc::Line facts_of(const StoredCondition& condition) {
   quantity(condition.amplitude_pa, "Pa", "amplitude ");
   quantity(condition.amplitude_m_per_s2, "m/s²", "amplitude ");
   quantity(condition.amplitude_rad, "rad", "amplitude ");
+  quantity(condition.amplitude_n_m, "N m", "amplitude ");
   if (condition.leak_level) add("leak " + *condition.leak_level);
   if (condition.temperature_k) add(fmt::format("{:.4g} °C", *condition.temperature_k - 273.15));
   if (condition.date) add(*condition.date);

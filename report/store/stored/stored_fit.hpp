@@ -85,8 +85,8 @@ struct StoredCondition {
   Later<std::optional<datasets::Waveform>> waveform;
   Later<std::optional<double>> frequency_hz, amplitude_m;
   Omittable<std::optional<double>> amplitude_v;  ///< open loop only
-  Omittable<double> amplitude_n, amplitude_pa, amplitude_m_per_s2,
-      amplitude_rad;  ///< in other loops
+  Omittable<double> amplitude_n, amplitude_pa, amplitude_m_per_s2, amplitude_rad,
+      amplitude_n_m;  ///< in other loops
   Later<std::optional<std::string>> leak_level;
   datasets::Use use = datasets::Use::fit;
   Omittable<double> temperature_k;
@@ -115,10 +115,11 @@ struct StoredCondition {
   std::optional<calib::Verdict> verdict;
   std::vector<std::string> reasons;
   RIGCAL_DESCRIBE(id, waveform, frequency_hz, amplitude_m, amplitude_v, amplitude_n, amplitude_pa,
-                  amplitude_m_per_s2, amplitude_rad, leak_level, use, temperature_k, date, samples,
-                  record_sha256, windows_s, notes, acceptance, not_judged, warnings, not_scored,
-                  failure, metrics, noise_floor, expanded_uncertainty, two_sided_uncertainty,
-                  score_budgets, residual_tests, limit_checks, channel_verdicts, verdict, reasons)
+                  amplitude_m_per_s2, amplitude_rad, amplitude_n_m, leak_level, use, temperature_k,
+                  date, samples, record_sha256, windows_s, notes, acceptance, not_judged, warnings,
+                  not_scored, failure, metrics, noise_floor, expanded_uncertainty,
+                  two_sided_uncertainty, score_budgets, residual_tests, limit_checks,
+                  channel_verdicts, verdict, reasons)
 
   /// Returns the verdict on a channel; std::nullopt without a limit.
   std::optional<calib::Verdict> verdict_of(const std::string& channel) const;

@@ -154,6 +154,62 @@ TEST_CASE("load_campaign: the controller of a linkage acts on its angle", "[data
                     Catch::Contains("the waveform is the angle reference, in rad"));
 }
 
+TEST_CASE("load_campaign: the controller of a linkage may act on torque or pressure",
+          "[datasets]") {
+  struct Row {
+    const char* feedback;
+    const char* gains;
+    const char* channel;
+    const char* amplitude;
+    Channel drive;
+    const char* kp;
+    double kp_si;
+    double reference_si;  ///< SI value of a reading of 1
+    double amplitude_si;
+    const char* note;
+  };
+  const std::string gains =
+      "angle_kp = \"0.2 V/deg\"\nangle_ki = { start = \"5 V/(rad s)\", lower = \"1 V/(rad s)\", "
+      "upper = \"20 V/(rad s)\", fit = true }";
+  for (const Row& row :
+       {Row{"torque", "torque_kp = \"1 V/(kN m)\"\ntorque_ki = \"2 mV/(N m s)\"",
+            "torque_reference = { column = \"M_kNm\", unit = \"kN m\", recognise = false", "2 kN m",
+            Channel::torque_reference, "torque_kp", 1e-3, 1e3, 2e3,
+            "the waveform is the torque reference, in N m"},
+        Row{"load_pressure", "load_pressure_kp = \"0.02 V/bar\"",
+            "load_pressure_reference = { column = \"p_bar\", unit = \"bar\", recognise = false",
+            "20 bar", Channel::load_pressure_reference, "load_pressure_kp", 2e-7, 1e5, 2e6,
+            "the waveform is the load_pressure reference, in Pa"}}) {
+    CAPTURE(row.feedback);
+    std::string text = replaced(arm_loop(), gains, row.gains);
+    text = replaced(text, "type = \"pid\"",
+                    "type = \"pid\"\nfeedback = \"" + std::string(row.feedback) + "\"");
+    text = replaced(text,
+                    "angle_reference = { column = \"ref_deg\", unit = \"deg\", recognise = false",
+                    row.channel);
+    const Campaign campaign = load_text(text);
+    CHECK(model::gain_keys(campaign.rig.feedback).name == row.feedback);
+    CHECK(drive_channel(campaign) == row.drive);
+    CHECK(campaign.channels.at(row.drive).role == ChannelRole::input);
+    CHECK(campaign.channels.at(row.drive).to_si(1.0) == Approx(row.reference_si));
+    CHECK(value(campaign, row.kp) == Approx(row.kp_si));
+    const std::string sine =
+        replaced(text, "waveform = \"recorded\"",
+                 "waveform = \"sine\"\nfrequency = \"0.5 Hz\"\namplitude = \"" +
+                     std::string(row.amplitude) + "\"");
+    CHECK(*load_text(sine).conditions.front().amplitude == Approx(row.amplitude_si));
+    CHECK_THROWS_WITH(load_text(replaced(sine, row.amplitude, "10 deg")),
+                      Catch::Contains(row.note));
+    CHECK_THROWS_WITH(
+        load_text(replaced(text, "type = \"pid\"",
+                           "type = \"pid\"\nangular_velocity_feedforward = \"1 V s/rad\"\n"
+                           "derivative_filter = \"200 rad/s\"")),
+        Catch::Contains("angular_velocity_feedforward feeds the rate of an angle forward, and this "
+                        "loop is on " +
+                        std::string(row.feedback) + ": expected feedback = \"angle\""));
+  }
+}
+
 TEST_CASE("load_campaign: what does not go together in a loop on the angle", "[datasets]") {
   struct Row {
     const char* part;
@@ -163,12 +219,27 @@ TEST_CASE("load_campaign: what does not go together in a loop on the angle", "[d
   for (const Row& row :
        {Row{"type = \"pid\"", "type = \"pid\"\nfeedback = \"force\"",
             "key 'rig.controller.feedback': the controller of a linkage acts on the angle of the "
-            "joint: expected \"angle\""},
+            "joint, its torque or the pressure difference: expected \"angle\", \"torque\" or "
+            "\"load_pressure\""},
+        Row{"type = \"pid\"", "type = \"pid\"\nfeedback = \"torque\"",
+            "angle_kp is a gain of a loop on angle, and this one is on torque: expected torque_kp, "
+            "or feedback = \"angle\""},
+        Row{"angle_kp", "torque_kp = \"1 mV/(N m)\"\nangle_kp",
+            "torque_kp is a gain of a loop on torque, and this one is on angle"},
         Row{"angle_kp = \"0.2 V/deg\"\n", "", "the pid controller has no angle_kp"},
         Row{"angle_kp", "kp", "unknown parameter 'kp'"},
         Row{"angle_kp", "angle_kd = \"1 V s/rad\"\nangle_kp", "angle_kd without derivative_filter"},
         Row{"output_limit", "velocity_feedforward = \"1 V s/m\"\noutput_limit",
             "unknown parameter 'velocity_feedforward'"},
+        Row{"output_limit", "angular_velocity_feedforward = \"1 V s/rad\"\noutput_limit",
+            "angular_velocity_feedforward without derivative_filter: expected the corner N"},
+        Row{"output_limit",
+            "angular_velocity_feedforward = \"1 V s/rad\"\nangular_acceleration_feedforward = "
+            "\"0.1 V s2/rad\"\nderivative_filter = \"200 rad/s\"\nsample_time = \"5 ms\"\n"
+            "angle_kd = \"1 V s/rad\"\noutput_limit",
+            "the rig has 9 states, and the solver of the plant linkage has room for 8: expected "
+            "fewer of angular_acceleration_feedforward, angular_velocity_feedforward, angle_kd, "
+            "sample_time, angle_ki"},
         Row{"valve_gain = \"0.1 mm/V\"",
             "valve_gain = \"0.1 mm/V\"\nvalve_frequency = \"40 Hz\"\nvalve_damping_ratio = 0.7\n"
             "pump_flow = \"100 L/min\"\nsupply_resistance = \"1e9 Pa s/m3\"\nsupply_capacity = "

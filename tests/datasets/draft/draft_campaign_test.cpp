@@ -192,9 +192,40 @@ TEST_CASE("draft_campaign: a reference beside an angle makes a loop on the angle
                Contains("feedback = \"angle\"  # what the loop controls; angle unless given"));
     CHECK_THAT(draft, Contains("\nangle_kp = \"FILL IN V/rad\"") &&
                           Contains("# pressure_feedback = \"... V/Pa\"") &&
-                          !Contains("velocity_feedforward"));
+                          Contains("\n# angular_velocity_feedforward = \"... V s/rad\"") &&
+                          !Contains("# velocity_feedforward"));
     CHECK_THAT(draft, Contains(fmt::format("angle_reference = {{ column = \"{}\"", reference)));
     CHECK_THAT(draft, Contains("\nvalve_gain = ") && !Contains("\nreference = "));
+  }
+}
+
+TEST_CASE("draft_campaign: the reference of a torque or a pressure makes that loop of a joint",
+          "[datasets]") {
+  struct Row {
+    const char* header;
+    const char* feedback;
+    const char* gain;
+    const char* reference;
+  };
+  for (const Row& row :
+       {Row{"t_s,M_soll_Nm,angle_deg,M_ist_Nm", "torque", "\ntorque_kp = \"FILL IN V/(N m)\"",
+            "\ntorque_reference = { column = \"M_soll_Nm\", unit = \"N m\" }"},
+        Row{"t_s,M_soll_Nm,pA_bar,M_ist_Nm", "torque", "\ntorque_kp = \"FILL IN V/(N m)\"",
+            "\ntorque = { column = \"M_ist_Nm\", unit = \"N m\" }"},
+        Row{"t_s,p_ref_bar,angle_deg,pA_bar", "load_pressure",
+            "\nload_pressure_kp = \"FILL IN V/Pa\"",
+            "\nload_pressure_reference = { column = \"p_ref_bar\", unit = \"bar\" }"},
+        Row{"t_s,p_ref_bar,angle_deg,ref_deg", "angle", "\nangle_kp = \"FILL IN V/rad\"",
+            "\nangle_reference = { column = \"ref_deg\""}}) {
+    CAPTURE(row.header);
+    const TemporaryFolder folder;
+    std::string text = std::string(row.header) + "\n";
+    for (int i = 0; i < 200; ++i)
+      text += fmt::format("{},{},{},{}\n", 0.01 * i, i > 50 ? 100 : 0, 0.1 * i, 20.0 + 0.3 * i);
+    const std::string draft = draft_campaign({folder.write("j.csv", text)}, folder.path()).text;
+    CHECK_THAT(draft, Contains("model = \"linkage\"") && Contains("type = \"pid\""));
+    CHECK_THAT(draft, Contains(fmt::format("\nfeedback = \"{}\"", row.feedback)));
+    CHECK_THAT(draft, Contains(row.gain) && Contains(row.reference));
   }
 }
 

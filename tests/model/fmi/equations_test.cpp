@@ -250,38 +250,75 @@ TEST_CASE("equations: an arm on a triangle, and one with a table, move as they a
   }
 }
 
-TEST_CASE("equations: an arm follows the reference of its angle as it is simulated", "[model]") {
-  Experiment e = arm_rig().unset("pilot_gain").unset("pilot_dead_band");
-  e.rig.pilot = false;
-  e.rig.controller = ControllerKind::pid;
-  e.rig.feedback = Feedback::angle;
-  e.set("valve_gain", 2e-4).set("joint_damping", 1e4).set("angle_kp", 10.0).set("angle_ki", 8.0);
-  e.set("angle_kd", 0.2).set("derivative_filter", 100.0).set("output_limit", 2.0);
-  e.inputs.drive = Signal::constant(0.4);
-  e.times_s = {0.0, 0.7};
-  e.outputs = {Output::angle, Output::command, Output::torque};
-  e.options.tolerance = 1e-10;
-  const Simulation run = e();
-  INFO(run.reason);
-  REQUIRE(run.ok());
-  ExportedRig rig;
-  rig.rig = e.rig;
-  rig.values = e.values;
-  const auto equations = make_equations(rig);
-  RigInputs inputs;
-  inputs.drive.value = 0.4;
-  inputs.supply_pressure_pa.value = 2e7;
-  inputs.tank_pressure_pa.value = 2e5;
-  equations->set(rig.values, inputs, 1.0);
-  std::vector<double> x = equations->initial();
-  REQUIRE(x.size() == 6);
-  CHECK(equations->output(Output::command, x) == 2.0);  // at its limit
-  StepMemory memory;
-  equations->advance(x, memory, 0.0, 0.7, 1e-10);
-  REQUIRE(run.outputs(1, 0) > 0.1);
-  CHECK(x[0] == Approx(run.outputs(1, 0)).epsilon(1e-6));
-  CHECK(equations->output(Output::command, x) == Approx(run.outputs(1, 1)).epsilon(1e-5));
-  CHECK(equations->output(Output::torque, x) == Approx(run.outputs(1, 2)).epsilon(1e-5));
+TEST_CASE("equations: an arm follows the reference of its loop as it is simulated", "[model]") {
+  struct Row {
+    Feedback feedback;
+    double reference;
+    double limit_v;
+    NamedValues gains;
+    std::size_t states;
+  };
+  for (const Row& row :
+       {Row{Feedback::angle,
+            0.4,
+            2.0,
+            {{"angle_kp", 10.0}, {"angle_ki", 8.0}, {"angle_kd", 0.2}, {"pressure_feedback", 2e-8}},
+            6},
+        Row{Feedback::angle,
+            0.4,
+            2.0,
+            {{"angle_kp", 10.0},
+             {"angular_velocity_feedforward", 0.5},
+             {"angular_acceleration_feedforward", 0.01}},
+            6},
+        Row{Feedback::torque,
+            8e3,
+            0.5,
+            {{"torque_kp", 1e-4},
+             {"torque_ki", 5e-4},
+             {"torque_kd", 1e-6},
+             {"joint_friction", 400}},
+            6},
+        Row{Feedback::load_pressure,
+            4e6,
+            0.5,
+            {{"load_pressure_kp", 1e-7}, {"load_pressure_ki", 3e-7}, {"load_pressure_kd", 1e-9}},
+            6}}) {
+    CAPTURE(gain_keys(row.feedback).name, row.gains.back().first);
+    Experiment e = arm_rig().unset("pilot_gain").unset("pilot_dead_band");
+    e.rig.pilot = false;
+    e.rig.controller = ControllerKind::pid;
+    e.rig.feedback = row.feedback;
+    e.set("valve_gain", 2e-4).set("joint_damping", 1e4).set("gravity_moment_gradient", 2e4);
+    e.set("derivative_filter", 100.0).set("output_limit", row.limit_v);
+    for (const auto& [key, value] : row.gains) e.set(key, value);
+    e.inputs.drive = Signal::constant(row.reference);
+    e.times_s = {0.0, 0.7};
+    e.outputs = {Output::angle, Output::command, Output::torque, Output::load_pressure};
+    e.options.tolerance = 1e-10;
+    const Simulation run = e();
+    INFO(run.reason);
+    REQUIRE(run.ok());
+    ExportedRig rig;
+    rig.rig = e.rig;
+    rig.values = e.values;
+    const auto equations = make_equations(rig);
+    RigInputs inputs;
+    inputs.drive.value = row.reference;
+    inputs.supply_pressure_pa.value = 2e7;
+    inputs.tank_pressure_pa.value = 2e5;
+    equations->set(rig.values, inputs, 1.0);
+    std::vector<double> x = equations->initial();
+    REQUIRE(x.size() == row.states);
+    CHECK(equations->output(Output::command, x) == row.limit_v);
+    StepMemory memory;
+    equations->advance(x, memory, 0.0, 0.7, 1e-10);
+    REQUIRE(run.outputs(1, 0) > 0.1);
+    CHECK(x[0] == Approx(run.outputs(1, 0)).epsilon(1e-6));
+    CHECK(equations->output(Output::command, x) == Approx(run.outputs(1, 1)).epsilon(1e-5));
+    CHECK(equations->output(Output::torque, x) == Approx(run.outputs(1, 2)).epsilon(1e-5));
+    CHECK(equations->output(Output::load_pressure, x) == Approx(run.outputs(1, 3)).epsilon(1e-5));
+  }
 }
 
 TEST_CASE("equations: a cylinder with a load-sensing pump and friction with pre-sliding",
@@ -292,7 +329,7 @@ TEST_CASE("equations: a cylinder with a load-sensing pump and friction with pre-
   e.set("accumulator_precharge", 1e6).set("relief_pressure", 1.5e7);
   e.set("relief_conductance", 1e-10).set("coulomb_friction", 2e3).set("bristle_stiffness", 1e7);
   e.set("stribeck_friction", 1e3).set("film_velocity", 0.1).set("film_growth_time", 0.05);
-  e.set("film_decay_time", 0.2).set("film_dwell_time", 5.0);
+  e.set("film_decay_time", 0.2).set("film_dwell_time", 5.0).set("seal_friction", 1e-5);
   e.set("external_force", 0.0).inputs.external_force_n = Signal::constant(1e4);
   e.times_s = {0.0, 0.5};
   const Simulation run = e();
@@ -321,15 +358,17 @@ TEST_CASE("equations: a cylinder with a load-sensing pump and friction with pre-
   CHECK(equations->output(Output::pilot_pressure, x) == 2e6);
   CHECK(equations->output(Output::command, x) == 0.0);
   // One indicator each for four edges, both stops, compensators on both sides, both relief valves,
-  // the pressure limit of the pump, the reversal of the bristles, and the growth of the film.
+  // the pressure limit of the pump, the seals, the reversal of the bristles, and the growth of the
+  // film.
   const std::vector<double> indicators = equations->indicators(x);
-  REQUIRE(indicators.size() == 13);
+  REQUIRE(indicators.size() == 14);
   CHECK(indicators[0] == Approx(1e6));
   CHECK(indicators[6] == Approx(x[4] - x[2] - 8e5));
   CHECK(indicators[8] == Approx(1.5e7 - x[2]));
   CHECK(indicators[10] == Approx(2e5 + 2e6 + (x[2] - 2e5) - 2e7));
-  CHECK(indicators[11] == Approx(x[1]));
-  CHECK(indicators[12] == Approx(steady_film(x[1], 0.1, 1e-3) - x[6]).margin(1e-12));
+  CHECK(indicators[11] == Approx(x[2] - x[3]));
+  CHECK(indicators[12] == Approx(x[1]));
+  CHECK(indicators[13] == Approx(steady_film(x[1], 0.1, 1e-3) - x[6]).margin(1e-12));
 }
 
 TEST_CASE("equations: a step that was planned at rest is repeated when the drive jumps",

@@ -9,8 +9,7 @@
 #include "model/plant/layout.hpp"
 #include "model/plant/linkage.hpp"
 #include "tests/model/both_methods.hpp"
-#include "tests/model/linkage_rig.hpp"
-#include "tests/model/runge_kutta.hpp"
+#include "tests/model/own_arm.hpp"
 
 using namespace rigcal::model;
 using Catch::WithinAbs;
@@ -39,10 +38,11 @@ double angle_reference(double t) { return 0.5 * std::sin(2.0 * kPi * 0.5 * t); }
 
 TEST_CASE("angle loop: a PID with inner feedback follows an integrator of another kind",
           "[model]") {
-  Experiment e = arm_loop(Signal::sine(0.5, 0.5));
-  e.set("angle_ki", 8.0).set("angle_kd", 0.2).set("derivative_filter", 100.0);
-  e.set("pressure_feedback", 5e-8).set("valve_time_constant", 0.01);
-  e.set("lever_gradient", -0.12).set("gravity_moment", 4e3).set("gravity_moment_gradient", 1500.0);
+  Experiment e = own_arm(Feedback::angle);
+  e.inputs.drive = Signal::sine(0.5, 0.5);
+  e.set("angle_kp", kAngleGain_v_per_rad).set("angle_ki", 8.0).set("angle_kd", 0.2);
+  e.set("derivative_filter", 100.0).set("pressure_feedback", 5e-8);
+  e.set("gravity_moment", 4e3).set("gravity_moment_gradient", 1500.0);
   e.times_s = grid(0.0, 1.6, 17);
   e.outputs = {Output::angle,      Output::angular_velocity, Output::pressure_a,
                Output::pressure_b, Output::command,          Output::torque};
@@ -50,8 +50,6 @@ TEST_CASE("angle loop: a PID with inner feedback follows an integrator of anothe
   INFO(first.reason);
   REQUIRE(first.ok());
   using Point = std::array<double, 7>;  // angle, rate, pressures, spool, integral, filtered error
-  const auto lever = [](double angle) { return 0.3 - 0.12 * angle; };
-  const auto travel = [](double angle) { return 0.3 * angle - 0.06 * angle * angle; };
   const auto command = [](const Point& x, double t) {
     const double error = angle_reference(t) - x[0];
     return kAngleGain_v_per_rad * error + x[5] + 0.2 * 100.0 * (error - x[6]) -
@@ -59,23 +57,9 @@ TEST_CASE("angle loop: a PID with inner feedback follows an integrator of anothe
   };
   const Point start{0.0, 0.0, first.outputs(0, 2), first.outputs(0, 3), 0.0, 0.0, 0.0};
   const Eigen::MatrixXd states = runge_kutta(start, e.times_s, 1000, [&](const Point& x, double t) {
-    const auto edge = [](double signal_v, double head_pa) {
-      const double opening_m = 2e-4 * std::max(signal_v, 0.0);
-      return 0.65 * 0.02 * std::sqrt(2.0 / 870.0) * opening_m * rounded_root(head_pa);
-    };
+    const auto arm = own_arm_rates(x, 4e3 + 1500.0 * x[0], command(x, t));
     const double error = angle_reference(t) - x[0];
-    const double flow_a = edge(x[4], 2e7 - x[2]) - edge(-x[4], x[2] - 2e5);
-    const double flow_b = edge(-x[4], 2e7 - x[3]) - edge(x[4], x[3] - 2e5);
-    const double moment =
-        lever(x[0]) * (4e-3 * x[2] - 2.4e-3 * x[3]) - 1e4 * x[1] - 4e3 - 1500.0 * x[0];
-    const double rate = lever(x[0]) * x[1];
-    return Point{x[1],
-                 moment / 400.0,
-                 8e8 / (1e-3 + 4e-3 * (travel(x[0]) - travel(-1.0))) * (flow_a - 4e-3 * rate),
-                 8e8 / (1e-3 + 2.4e-3 * (travel(1.0) - travel(x[0]))) * (flow_b + 2.4e-3 * rate),
-                 (command(x, t) - x[4]) / 0.01,
-                 8.0 * error,
-                 100.0 * (error - x[6])};
+    return Point{arm[0], arm[1], arm[2], arm[3], arm[4], 8.0 * error, 100.0 * (error - x[6])};
   });
   Eigen::MatrixXd expected(states.rows(), 6);
   expected.leftCols(4) = states.leftCols(4);
@@ -83,7 +67,7 @@ TEST_CASE("angle loop: a PID with inner feedback follows an integrator of anothe
     Point x;
     for (std::size_t k = 0; k < x.size(); ++k) x[k] = states(i, static_cast<Eigen::Index>(k));
     expected(i, 4) = command(x, e.times_s[static_cast<std::size_t>(i)]);
-    expected(i, 5) = lever(x[0]) * (4e-3 * x[2] - 2.4e-3 * x[3]);
+    expected(i, 5) = own_moment(x[0], x[2], x[3]);
   }
   REQUIRE(peak(expected.col(0)) > 0.3);
   REQUIRE(peak(expected.col(0)) < 0.9);

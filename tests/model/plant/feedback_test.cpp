@@ -156,53 +156,70 @@ TEST_CASE("feedback: a loop on any quantity follows an integrator of another kin
   }
 }
 
-TEST_CASE("feedback: a loop on the force of unequal areas follows an integrator of another kind",
-          "[model]") {
-  const Loop loop{Feedback::force, Output::force, 8e3, 2e-4, 2e-3, 1e-6};
-  Experiment rig = proportional_rig();
-  rig.rig.controller = ControllerKind::pid;
-  rig.set("stiffness", 2e5).set("valve_dead_band", 0.0).set("output_limit", 10.0);
-  Experiment e = whole_loop(loop, rig);
-  e.outputs = {Output::position, Output::velocity, Output::pressure_a, Output::pressure_b,
-               Output::command};
-  const Simulation start = e();
-  INFO(start.reason);
-  REQUIRE(start.ok());
-  using Point = std::array<double, 7>;  // ..., both pressures, valve, integral, filtered error
-  const auto error = [&](const Point& x, double t) {
-    return reference(loop, t) - (4e-3 * x[2] - 2.4e-3 * x[3]);
-  };
-  const auto command = [&](const Point& x, double t) {
-    return own_command(loop, error(x, t), x[5], x[6], x[2] - x[3]);
-  };
-  const auto rates = [&](const Point& x, double t) {
-    const auto edge = [](double signal, double head_pa) {
-      const double opening = 2e-6 * std::max(signal, 0.0);
-      return 0.65 * 0.02 * std::sqrt(2.0 / 870.0) * opening * rounded_root(head_pa);
+TEST_CASE("feedback: a loop of unequal areas follows an integrator of another kind", "[model]") {
+  for (const Loop& loop :
+       {Loop{Feedback::position, Output::position, 0.02, 60.0, 100.0, 0.2},
+        Loop{Feedback::force, Output::force, 8e3, 2e-4, 2e-3, 1e-6},
+        Loop{Feedback::load_pressure, Output::load_pressure, 2.5e6, 6e-7, 6e-7, 1e-9},
+        Loop{Feedback::acceleration, Output::acceleration, 4.0, 0.4, 4.0, 2e-3}}) {
+    CAPTURE(gain_keys(loop.feedback).name);
+    Experiment rig = proportional_rig();
+    rig.rig.controller = ControllerKind::pid;
+    rig.set("stiffness", 2e5).set("valve_dead_band", 0.0).set("output_limit", 10.0);
+    Experiment e = whole_loop(loop, rig);
+    e.outputs = {Output::position, Output::velocity, Output::pressure_a, Output::pressure_b,
+                 Output::command};
+    const Simulation start = e();
+    INFO(start.reason);
+    REQUIRE(start.ok());
+    using Point = std::array<double, 7>;  // ..., both pressures, valve, integral, filtered error
+    const auto acceleration = [](const Point& x) {
+      return (4e-3 * x[2] - 2.4e-3 * x[3] - 4e4 * x[1] - 2e5 * x[0]) / 2000.0;
     };
-    const double flow_a = edge(x[4], 2e7 - x[2]) - edge(-x[4], x[2] - 2e5);
-    const double flow_b = edge(-x[4], 2e7 - x[3]) - edge(x[4], x[3] - 2e5);
-    return Point{x[1],
-                 (4e-3 * x[2] - 2.4e-3 * x[3] - 4e4 * x[1] - 2e5 * x[0]) / 2000.0,
-                 8e8 / (1e-3 + 4e-3 * (x[0] + 0.5)) * (flow_a - 4e-3 * x[1]),
-                 8e8 / (1e-3 + 2.4e-3 * (0.5 - x[0])) * (flow_b + 2.4e-3 * x[1]),
-                 (command(x, t) - x[4]) / kLoopValveLag_s,
-                 loop.ki * error(x, t),
-                 kLoopFilter_rad_per_s * (error(x, t) - x[6])};
-  };
-  // A rig at rest starts with its valve closed, although the load pressure is not zero.
-  const Eigen::MatrixXd states = runge_kutta(
-      Point{0.0, 0.0, start.outputs(0, 2), start.outputs(0, 3)}, e.times_s, 4000, rates);
-  Eigen::MatrixXd other(13, 5);
-  other.leftCols(4) = states.leftCols(4);
-  for (Eigen::Index i = 0; i < 13; ++i) {
-    Point x;
-    for (std::size_t k = 0; k < x.size(); ++k) x[k] = states(i, static_cast<Eigen::Index>(k));
-    other(i, 4) = command(x, e.times_s[static_cast<std::size_t>(i)]);
+    const auto error = [&](const Point& x, double t) {
+      switch (loop.feedback) {
+        case Feedback::force:
+          return reference(loop, t) - (4e-3 * x[2] - 2.4e-3 * x[3]);
+        case Feedback::load_pressure:
+          return reference(loop, t) - (x[2] - x[3]);
+        case Feedback::acceleration:
+          return reference(loop, t) - acceleration(x);
+        default:
+          return reference(loop, t) - x[0];
+      }
+    };
+    const auto command = [&](const Point& x, double t) {
+      return own_command(loop, error(x, t), x[5], x[6], x[2] - x[3]);
+    };
+    const auto rates = [&](const Point& x, double t) {
+      const auto edge = [](double signal, double head_pa) {
+        const double opening = 2e-6 * std::max(signal, 0.0);
+        return 0.65 * 0.02 * std::sqrt(2.0 / 870.0) * opening * rounded_root(head_pa);
+      };
+      const double flow_a = edge(x[4], 2e7 - x[2]) - edge(-x[4], x[2] - 2e5);
+      const double flow_b = edge(-x[4], 2e7 - x[3]) - edge(x[4], x[3] - 2e5);
+      return Point{x[1],
+                   acceleration(x),
+                   8e8 / (1e-3 + 4e-3 * (x[0] + 0.5)) * (flow_a - 4e-3 * x[1]),
+                   8e8 / (1e-3 + 2.4e-3 * (0.5 - x[0])) * (flow_b + 2.4e-3 * x[1]),
+                   (command(x, t) - x[4]) / kLoopValveLag_s,
+                   loop.ki * error(x, t),
+                   kLoopFilter_rad_per_s * (error(x, t) - x[6])};
+    };
+    // A rig at rest starts with its valve closed, although the load pressure is not zero.
+    const Eigen::MatrixXd states = runge_kutta(
+        Point{0.0, 0.0, start.outputs(0, 2), start.outputs(0, 3)}, e.times_s, 4000, rates);
+    Eigen::MatrixXd other(13, 5);
+    other.leftCols(4) = states.leftCols(4);
+    for (Eigen::Index i = 0; i < 13; ++i) {
+      Point x;
+      for (std::size_t k = 0; k < x.size(); ++k) x[k] = states(i, static_cast<Eigen::Index>(k));
+      other(i, 4) = command(x, e.times_s[static_cast<std::size_t>(i)]);
+    }
+    REQUIRE(peak(other.col(4)) > 0.3);
+    REQUIRE(peak(other.col(4)) < 10.0);
+    check_both_methods(e, other);
   }
-  REQUIRE(peak(other.col(4)) > 0.3);
-  REQUIRE(peak(other.col(4)) < 10.0);
-  check_both_methods(e, other);
 }
 
 TEST_CASE("feedback: integral action leaves no error of force and load pressure", "[model]") {

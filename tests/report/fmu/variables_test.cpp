@@ -136,25 +136,53 @@ TEST_CASE("fmu variables: an arm is told in radians, and its pilot pressure driv
     CHECK_FALSE(has(variables_of(two_chamber_rig()), of_joint));
 }
 
-TEST_CASE("fmu variables: a loop on the angle has its reference and gains in radians", "[report]") {
-  model::Experiment arm = model::arm_rig().unset("pilot_gain").unset("pilot_dead_band");
-  arm.set("valve_gain", 2e-4).set("angle_kp", 10.0).set("angle_ki", 8.0).set("angle_kd", 0.2);
-  arm.set("derivative_filter", 100.0);
-  model::ExportedRig rig;
-  rig.rig = arm.rig;
-  rig.rig.pilot = false;
-  rig.rig.controller = model::ControllerKind::pid;
-  rig.rig.feedback = model::Feedback::angle;
-  rig.values = arm.values;
-  const auto variables = variables_of(rig);
-  CHECK(variables.front().name == "reference");
-  CHECK(variables.front().unit == "rad");
-  CHECK(named(variables, "angle_kd").unit == "V s/rad");
-  CHECK(named(variables, "controller_filtered_error").unit == "rad");
-  CHECK(named(variables, "command").causality == Causality::output);
-  for (const FmuVariable& each : variables) {
-    CAPTURE(each.name, each.unit);
-    CHECK_NOTHROW(report::base_units(each.unit));
+TEST_CASE("fmu variables: a loop of an arm has reference and gains in the units of its quantity",
+          "[report]") {
+  struct Row {
+    model::Feedback feedback;
+    std::vector<const char*> terms;
+    const char* unit;
+    std::vector<std::pair<const char*, const char*>> units;
+  };
+  for (const Row& row : {Row{model::Feedback::angle,
+                             {"angle_kp", "angle_ki", "angle_kd"},
+                             "rad",
+                             {{"angle_kd", "V s/rad"}, {"controller_filtered_error", "rad"}}},
+                         Row{model::Feedback::angle,
+                             {"angle_kp", "angular_acceleration_feedforward"},
+                             "rad",
+                             {{"angular_acceleration_feedforward", "V s2/rad"},
+                              {"controller_filtered_reference", "rad"},
+                              {"controller_filtered_rate", "rad/s"},
+                              {"der(controller_filtered_rate)", "rad/s2"}}},
+                         Row{model::Feedback::torque,
+                             {"torque_kp", "torque_ki", "torque_kd"},
+                             "N m",
+                             {{"torque_ki", "V/(N m s)"},
+                              {"controller_filtered_error", "N m"},
+                              {"der(controller_filtered_error)", "N m/s"}}},
+                         Row{model::Feedback::load_pressure,
+                             {"load_pressure_kp", "load_pressure_kd"},
+                             "Pa",
+                             {{"load_pressure_kd", "V s/Pa"}}}}) {
+    model::Experiment arm = model::arm_rig().unset("pilot_gain").unset("pilot_dead_band");
+    arm.set("valve_gain", 2e-4).set("derivative_filter", 100.0);
+    for (const char* key : row.terms) arm.set(key, 1.0);
+    model::ExportedRig rig;
+    rig.rig = arm.rig;
+    rig.rig.pilot = false;
+    rig.rig.controller = model::ControllerKind::pid;
+    rig.rig.feedback = row.feedback;
+    rig.values = arm.values;
+    const auto variables = variables_of(rig);
+    CHECK(variables.front().name == "reference");
+    CHECK(variables.front().unit == row.unit);
+    for (const auto& [name, unit] : row.units) CHECK(named(variables, name).unit == unit);
+    CHECK(named(variables, "command").causality == Causality::output);
+    for (const FmuVariable& each : variables) {
+      CAPTURE(each.name, each.unit);
+      CHECK_NOTHROW(report::base_units(each.unit));
+    }
   }
 }
 
