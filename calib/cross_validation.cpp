@@ -56,7 +56,8 @@ const ConditionScore* score_of(const Fit& fit, const std::string& id) {
 Keyed<double, datasets::Channel> rmse_of(const ConditionScore& score) {
   Keyed<double, datasets::Channel> result;
   for (const ChannelScore& channel : score.channels) {
-    if (channel.agreement) result.emplace_back(channel.channel, channel.agreement->rmse);
+    if (!std::isnan(channel.metrics.rmse))
+      result.emplace_back(channel.channel, channel.metrics.rmse);
   }
   return result;
 }

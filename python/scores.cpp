@@ -2,6 +2,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -46,20 +47,21 @@ py::array_t<double> residual(const ScoredChannel& self) {
   return array;
 }
 
-/// Returns the metrics by name. A value is None if there is no agreement.
+/// Returns the metrics by name. A value is None if the metric does not exist.
 template <typename Value>
-Dict<std::string, Value> by_name(const std::optional<metrics::Agreement>& agreement) {
+Dict<std::string, Value> by_name(const metrics::Agreement& agreement) {
   Dict<std::string, Value> values;
   for (const metrics::MetricSpec& metric : metrics::kMetrics) {
     const py::str name(metric.name.data(), metric.name.size());
-    values[name] = agreement ? py::object(py::float_((*agreement).*metric.value)) : py::none();
+    const double value = agreement.*metric.value;
+    values[name] = std::isnan(value) ? py::object(py::none()) : py::float_(value);
   }
   return values;
 }
 
 std::optional<Dict<std::string, double>> expanded_uncertainty_of(const ScoredChannel& self) {
   if (!self.score.expanded_uncertainty) return std::nullopt;
-  return by_name<double>(self.score.expanded_uncertainty);
+  return by_name<double>(*self.score.expanded_uncertainty);
 }
 
 std::optional<Dict<std::string, double>> noise_floor_of(const ScoredChannel& self) {
@@ -88,6 +90,9 @@ void bind_limit_check(py::module_& module) {
 }
 
 void bind_scored_channel(py::module_& module) {
+  const auto of_metrics = [](auto member) {
+    return [member](const ScoredChannel& self) { return self.score.metrics.*member; };
+  };
   py::class_<ScoredChannel>(module, "ScoredChannel",
                             "How well the model agrees with one channel of a condition; SI.")
       .def_property_readonly("key", field(&ScoredChannel::about, &datasets::ChannelInfo::key),
@@ -107,7 +112,7 @@ void bind_scored_channel(py::module_& module) {
       .def_property_readonly(
           "metrics",
           [](const ScoredChannel& self) {
-            return by_name<std::optional<double>>(self.score.agreement);
+            return by_name<std::optional<double>>(self.score.metrics);
           },
           "Metrics by name, \"ccc\", \"rho2\"...; None where one does not exist.")
       .def_property_readonly("noise_floor", &noise_floor_of,
@@ -121,16 +126,15 @@ void bind_scored_channel(py::module_& module) {
           "Contributions to the two-sided uncertainty of each of `metrics`, by\n"
           "name; empty with fewer than two repeats.")
       .def_property_readonly(
-          "gain_ratio", field(&ScoredChannel::score, &calib::ChannelScore::gain_ratio),
+          "gain_ratio", of_metrics(&calib::ChannelMetrics::gain_ratio),
           "Simulated over measured amplitude of the fundamental; None where there is none.")
       .def_property_readonly(
-          "phase_deg", field(&ScoredChannel::score, &calib::ChannelScore::phase_deg),
+          "phase_deg", of_metrics(&calib::ChannelMetrics::phase_deg),
           "Phase of the simulated fundamental minus that of the measured one [degrees]; or None.")
-      .def_property_readonly("delay_s", field(&ScoredChannel::score, &calib::ChannelScore::delay_s),
+      .def_property_readonly("delay_s", of_metrics(&calib::ChannelMetrics::delay_s),
                              "Delay of the simulated fundamental [s]; or None.")
-      .def_property_readonly(
-          "problem", [](const ScoredChannel& self) { return unless_empty(self.score.problem); },
-          "Why a metric does not exist, in words; or None.")
+      .def_property_readonly("problem", of_metrics(&calib::ChannelMetrics::problem),
+                             "Why a metric does not exist, in words; or None.")
       .def("__repr__", [](const ScoredChannel& self) {
         return fmt::format("<rigcal.ScoredChannel {} of {}>", self.about.key, self.condition->id);
       });

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <map>
 #include <optional>
 #include <string>
@@ -12,7 +13,7 @@
 #include "common/describe.hpp"
 #include "datasets/campaign/campaign.hpp"
 #include "datasets/record.hpp"
-#include "metrics/agreement.hpp"
+#include "metrics/metric_table.hpp"
 #include "metrics/noise_floor.hpp"
 #include "metrics/residual_tests.hpp"
 
@@ -20,10 +21,31 @@
 
 namespace rigcal::calib {
 
+/// Metrics of one channel in one condition, and its response at the fundamental frequency. A metric
+/// that does not exist is NaN; `problem` says why.
+struct ChannelMetrics : metrics::Agreement {
+  std::optional<double> gain_ratio, phase_deg, delay_s;  ///< simulated to measured; sine and square
+  std::optional<std::string> problem;                    ///< why a value is missing, in words
+
+  ChannelMetrics() {
+    for (const metrics::MetricSpec& metric : metrics::kMetrics) this->*metric.value = std::nan("");
+  }
+  using metrics::Agreement::operator=;
+
+  template <typename Self, typename Visit>
+  static void describe(Self& self, const Visit& visit) {
+    metrics::Agreement::describe(self, visit);
+    visit("gain_ratio", self.gain_ratio);
+    visit("phase_deg", self.phase_deg);
+    visit("delay_s", self.delay_s);
+    visit("problem", self.problem);
+  }
+};
+
 /// Agreement of one channel in one condition.
 struct ChannelScore {
   datasets::Channel channel = datasets::Channel::position;
-  std::optional<metrics::Agreement> agreement;     ///< if absent, `problem` says why
+  ChannelMetrics metrics;
   std::optional<metrics::NoiseFloor> noise_floor;  ///< absent if the noise is unknown
   /// One-sided uncertainty due to repeats and sensor; absent with fewer than two repeats.
   std::optional<metrics::Agreement> expanded_uncertainty;
@@ -32,8 +54,6 @@ struct ChannelScore {
   /// Contributions to the two-sided uncertainty of each metric, in the order of the metrics; empty
   /// if the uncertainty is unknown.
   Keyed<Budget95> budgets;
-  std::optional<double> gain_ratio, phase_deg, delay_s;  ///< at the fundamental (sine, square)
-  std::string problem;                                   ///< why a metric is missing, in words
   /// Tests of the residual (measured minus simulated) over the longest window; absent if the window
   /// is too short or the residual is constant.
   std::optional<metrics::ResidualTests> residual_tests;

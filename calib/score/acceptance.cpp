@@ -58,14 +58,14 @@ LimitCheck check(const datasets::AcceptanceLimit& limit, datasets::DecisionRule 
   result.limit = limit.limit;
   result.warn = limit.warn;
   const auto key = datasets::info(channel.channel).key;
-  if (!channel.agreement) {
+  const metrics::MetricSpec& spec = metric(limit.metric);
+  const double value = channel.metrics.*spec.value;
+  if (std::isnan(value)) {
     result.verdict = Verdict::fail;
     result.words = fmt::format("{}: {} does not exist, so that its limit cannot be evaluated ({})",
-                               key, limit.metric, channel.problem);
+                               key, limit.metric, channel.metrics.problem.value_or(""));
     return result;
   }
-  const metrics::MetricSpec& spec = metric(limit.metric);
-  const double value = (*channel.agreement).*spec.value;
   result.value = value;
   result.tolerance_used = 0.0;
   if (channel.expanded_uncertainty)

@@ -80,8 +80,8 @@ void judge_without_limits(const Campaign& campaign, const Fit& fit, std::vector<
       const bool stated = campaign.may_lack_limits(*condition, channel.channel);
       WithoutLimit& each = found[{channel.channel, stated}];
       ++each.conditions;
-      const double rho2 =
-          channel.agreement ? channel.agreement->rho2 : std::numeric_limits<double>::infinity();
+      const double rho2 = std::isnan(channel.metrics.rho2) ? std::numeric_limits<double>::infinity()
+                                                           : channel.metrics.rho2;
       if (each.worst != nullptr && rho2 >= each.rho2) continue;
       each.worst = &score;
       each.rho2 = rho2;
@@ -122,14 +122,14 @@ void name_poor_agreement(const Fit& fit, std::vector<Reason>& reasons) {
   const ChannelScore* worst = nullptr;
   for (const ConditionScore& score : fit.conditions) {
     for (const ChannelScore& channel : score.channels) {
-      if (!channel.agreement) continue;
-      if (worst != nullptr && channel.agreement->rho2 >= worst->agreement->rho2) continue;
+      if (std::isnan(channel.metrics.rho2)) continue;
+      if (worst != nullptr && channel.metrics.rho2 >= worst->metrics.rho2) continue;
       worst = &channel;
       where = &score;
     }
   }
   if (worst == nullptr) return;
-  const double rho2 = worst->agreement->rho2;
+  const double rho2 = worst->metrics.rho2;
   const bool poor = rho2 < kPoorRho2;
   reasons.push_back(reason(AspectState::not_assessed, poor ? "poor_agreement" : "least_agreement",
                            fmt::format("least agreement: rho2 = {:.4g} of {} in {}{}", rho2,

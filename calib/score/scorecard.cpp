@@ -36,12 +36,12 @@ std::pair<std::size_t, std::size_t> longest_stretch(const std::vector<std::size_
   return best;
 }
 
-void add_problem(ChannelScore& score, const std::string& text) {
-  score.problem += score.problem.empty() ? text : "; " + text;
+void add_problem(ChannelMetrics& metrics, const std::string& text) {
+  metrics.problem = metrics.problem ? *metrics.problem + "; " + text : text;
 }
 
 void compare_at_fundamental(const ProblemCondition& condition, std::span<const double> measured,
-                            std::span<const double> simulated, ChannelScore& score) {
+                            std::span<const double> simulated, ChannelMetrics& result) {
   const Condition& c = *condition.condition;
   if (!is_periodic(c.waveform) || !c.frequency_hz) return;
   const auto [first, count] = longest_stretch(condition.rows);
@@ -49,11 +49,11 @@ void compare_at_fundamental(const ProblemCondition& condition, std::span<const d
   try {
     const auto found = metrics::compare_fundamentals(
         time_s, measured.subspan(first, count), simulated.subspan(first, count), *c.frequency_hz);
-    score.gain_ratio = found.gain_ratio;
-    score.phase_deg = found.phase_deg;
-    score.delay_s = found.delay_s;
+    result.gain_ratio = found.gain_ratio;
+    result.phase_deg = found.phase_deg;
+    result.delay_s = found.delay_s;
   } catch (const std::logic_error& error) {  // no whole period, or no component at that frequency
-    add_problem(score, error.what());
+    add_problem(result, error.what());
   }
 }
 
@@ -140,7 +140,7 @@ ChannelScore score_channel(const datasets::Campaign& campaign, const ProblemCond
   ChannelScore score;
   score.channel = channel.channel;
   try {
-    score.agreement = metrics::agreement(channel.measured, simulated);
+    score.metrics = metrics::agreement(channel.measured, simulated);
     metrics::MeasuredMean mean = measured_mean(campaign, condition, channel);
     std::vector<double> times_s;
     for (const std::size_t row : condition.rows) times_s.push_back(condition.record->time_s[row]);
@@ -153,16 +153,16 @@ ChannelScore score_channel(const datasets::Campaign& campaign, const ProblemCond
       score.budgets = budgets_of(channel.channel, mean, *found, changes);
     }
   } catch (const std::logic_error& error) {  // constant channel, or fewer than two samples
-    add_problem(score, error.what());
+    add_problem(score.metrics, error.what());
   }
   if (channel.sd_known) {
     try {
       score.noise_floor = metrics::noise_floor(channel.measured, channel.sd);
     } catch (const std::logic_error& error) {
-      add_problem(score, error.what());
+      add_problem(score.metrics, error.what());
     }
   }
-  compare_at_fundamental(condition, channel.measured, simulated, score);
+  compare_at_fundamental(condition, channel.measured, simulated, score.metrics);
   score.residual_tests = test_residual(condition, channel.measured, simulated, drive);
   std::vector<double> residual;
   for (std::size_t i = 0; i < simulated.size(); ++i)
@@ -272,11 +272,11 @@ std::vector<std::string> overfitting_warnings(const std::vector<ConditionScore>&
   std::vector<std::string> warnings;
   for (const ConditionScore& score : scores) {
     for (const ChannelScore& channel : score.channels) {
-      if (!channel.agreement || !channel.noise_floor || score.samples < 2) continue;
+      if (std::isnan(channel.metrics.rho2) || !channel.noise_floor || score.samples < 2) continue;
       // The variance estimated from n samples of noise has a relative standard deviation of sqrt(2
       // / n).
       const double scatter = 5.0 * std::sqrt(2.0 / static_cast<double>(score.samples));
-      const double unexplained = 1.0 - channel.agreement->rho2;
+      const double unexplained = 1.0 - channel.metrics.rho2;
       const double least = 1.0 - channel.noise_floor->rho2;
       if (unexplained >= least * (1.0 - std::max(0.2, scatter))) continue;
       warnings.push_back(fmt::format(
@@ -284,7 +284,7 @@ std::vector<std::string> overfitting_warnings(const std::vector<ConditionScore>&
           "any "
           "model: the fit follows the noise (overfitting), or the noise is smaller than its stated "
           "standard deviation",
-          score.id, datasets::info(channel.channel).key, channel.agreement->rho2,
+          score.id, datasets::info(channel.channel).key, channel.metrics.rho2,
           channel.noise_floor->rho2));
     }
   }

@@ -16,16 +16,14 @@ void Badness::add(const LimitCheck& check) {
   tolerance_used = std::max(tolerance_used, known ? *check.tolerance_used : kNoValue);
 }
 
-void Badness::add_rho2(std::optional<double> rho2) {
-  const bool known = rho2 && !std::isnan(*rho2);
-  disagreement = std::max(disagreement, known ? 1.0 - *rho2 : kNoValue);
+void Badness::add_rho2(double rho2) {
+  disagreement = std::max(disagreement, std::isnan(rho2) ? kNoValue : 1.0 - rho2);
 }
 
 Badness badness(const ConditionScore& score) {
   Badness found{!score.failure.empty() || !score.not_scored.empty(), score.verdict};
   for (const LimitCheck& check : score.checks) found.add(check);
-  for (const ChannelScore& channel : score.channels)
-    found.add_rho2(channel.agreement ? std::optional(channel.agreement->rho2) : std::nullopt);
+  for (const ChannelScore& channel : score.channels) found.add_rho2(channel.metrics.rho2);
   return found;
 }
 

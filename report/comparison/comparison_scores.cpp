@@ -30,7 +30,7 @@ std::optional<StoredComparedScore> score_of(const StoredFit& fit, const std::str
   score.temperature_k = condition->temperature_k;
   score.verdict = condition->verdict_of(channel);
   score.failure = condition->failure;
-  const StoredScore* scores = find(condition->metrics, channel);
+  const calib::ChannelMetrics* scores = find(condition->metrics, channel);
   if (scores == nullptr || !is_usable(fit)) return score;
   score.rho2 = finite(scores->rho2);
   score.ccc = finite(scores->ccc);

@@ -70,7 +70,7 @@ TEST_CASE("fit: recovers the truth from noisy positions", "[calib]") {
   // that.
   CHECK_THAT(found.reduced_chi_square, WithinAbs(1.0, 0.075));
   CHECK(found.conditions.size() == 6);
-  CHECK(found.conditions.front().channels.at(0).agreement->rho2 > 0.999);
+  CHECK(found.conditions.front().channels.at(0).metrics.rho2 > 0.999);
   CHECK(found.failure_count == 0);
 }
 

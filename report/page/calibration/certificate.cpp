@@ -459,7 +459,8 @@ doc::Row signal_row(const Calibration& stored, const Judged& signal) {
       allowed = metrics::allowed_rms(counted_samples(*series, "measured_" + column), *check.limit);
   }
   if (!residual.empty()) strip.picture = residual_strip(signal, residual, allowed);
-  if (const StoredScore* scores = find(condition.metrics, signal.channel); scores != nullptr) {
+  if (const calib::ChannelMetrics* scores = find(condition.metrics, signal.channel);
+      scores != nullptr) {
     rms.line = {doc::readable(scores->rmse, channel_unit(signal.channel), 3)};
     if (allowed > 0.0) rms.below = {{"limit ", readable(allowed, channel_unit(signal.channel), 2)}};
   }
@@ -484,7 +485,7 @@ std::string not_judged_words(const StoredFit& fit) {
       const StoredCondition* lowest = nullptr;
       double least = HUGE_VAL;
       for (const StoredCondition& other : fit.conditions) {
-        const StoredScore* score =
+        const calib::ChannelMetrics* score =
             other.verdict_of(channel) ? nullptr : find(other.metrics, channel);
         if (score == nullptr || !(score->rho2 < least)) continue;
         least = score->rho2;

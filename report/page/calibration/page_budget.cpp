@@ -121,7 +121,7 @@ void add_score_budgets(const StoredCondition& condition, doc::Blocks& blocks) {
   if (!condition.score_budgets) return;
   std::vector<BudgetOf> budgets;
   for (const auto& [channel, by_metric] : *condition.score_budgets) {
-    const StoredScore* scores = find(condition.metrics, channel);
+    const calib::ChannelMetrics* scores = find(condition.metrics, channel);
     for (const metrics::MetricSpec& metric : metrics::kMetrics) {
       const calib::Budget95* budget = find(by_metric, std::string(metric.name));
       if (budget == nullptr || scores == nullptr) continue;

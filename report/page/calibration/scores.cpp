@@ -57,7 +57,7 @@ Line caption_of(const StoredFit& fit, const std::string& channel) {
 /// Returns the tile of a condition, or std::nullopt if the channel is not compared in that
 /// condition.
 std::optional<doc::Tile> tile_of(const StoredCondition& condition, const std::string& channel) {
-  const StoredScore* scores = find(condition.metrics, channel);
+  const calib::ChannelMetrics* scores = find(condition.metrics, channel);
   if (scores == nullptr && !condition.failure) return std::nullopt;
   doc::Tile tile{doc::badge(condition.verdict_of(channel)), {}};
   tile.to = "#" + anchor(condition.id);

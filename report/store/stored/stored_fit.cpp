@@ -43,21 +43,10 @@ std::vector<StoredWeight> weights(const Result& result) {
       if (series == record->channels.end()) continue;
       list.push_back({score.id, key_of(channel.channel), score.samples,
                       finite(calib::known_sd(result.campaign, channel.channel, series->second)),
-                      channel.agreement ? std::optional(channel.agreement->rmse) : std::nullopt});
+                      finite(channel.metrics.rmse)});
     }
   }
   return list;
-}
-
-StoredScore stored(const calib::ChannelScore& score) {
-  StoredScore result;
-  for (const metrics::MetricSpec& metric : metrics::kMetrics)
-    result.*metric.value = score.agreement ? (*score.agreement).*metric.value : std::nan("");
-  result.gain_ratio = score.gain_ratio;
-  result.phase_deg = score.phase_deg;
-  result.delay_s = score.delay_s;
-  result.problem = unless_empty(score.problem);
-  return result;
 }
 
 void add_checks(const calib::ConditionScore& score, StoredCondition& condition) {
@@ -114,7 +103,7 @@ StoredCondition stored(const Result& result, const calib::ConditionScore& score)
   condition.two_sided_uncertainty.emplace();
   for (const calib::ChannelScore& channel : score.channels) {
     const std::string key = key_of(channel.channel);
-    condition.metrics.emplace_back(key, stored(channel));
+    condition.metrics.emplace_back(key, channel.metrics);
     condition.noise_floor.emplace_back(key, channel.noise_floor);
     condition.expanded_uncertainty->emplace_back(key, channel.expanded_uncertainty);
     condition.two_sided_uncertainty->emplace_back(key, channel.two_sided_uncertainty);

@@ -65,21 +65,6 @@ struct StoredWeight {
   RIGCAL_DESCRIBE(condition, channel, samples, sd, rms)
 };
 
-/// Scores of one channel in a condition, and the response at the fundamental frequency. A score
-/// that does not exist is NaN.
-struct StoredScore : metrics::Agreement {
-  std::optional<double> gain_ratio, phase_deg, delay_s;
-  std::optional<std::string> problem;
-  template <typename Self, typename Visit>
-  static void describe(Self& self, const Visit& visit) {
-    metrics::Agreement::describe(self, visit);
-    visit("gain_ratio", self.gain_ratio);
-    visit("phase_deg", self.phase_deg);
-    visit("delay_s", self.delay_s);
-    visit("problem", self.problem);
-  }
-};
-
 struct StoredCondition {
   std::string id;
   Later<std::optional<datasets::Waveform>> waveform;
@@ -101,7 +86,7 @@ struct StoredCondition {
   Later<std::vector<std::string>> warnings;
   Later<std::optional<std::string>> not_scored;
   std::optional<std::string> failure;
-  Keyed<StoredScore> metrics;  ///< by channel, as are the next five
+  Keyed<calib::ChannelMetrics> metrics;  ///< by channel, as are the next five
   Keyed<std::optional<metrics::NoiseFloor>> noise_floor;
   /// One-sided, for each score; used as the guard band of its limit.
   Omittable<Keyed<std::optional<metrics::Agreement>>> expanded_uncertainty;

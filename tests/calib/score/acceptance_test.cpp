@@ -26,9 +26,8 @@ ConditionScore scored(const std::string& metric, double value) {
   ConditionScore score;
   ChannelScore channel;
   channel.channel = Channel::position;
-  channel.agreement.emplace();
   for (const metrics::MetricSpec& spec : metrics::kMetrics)
-    if (spec.name == metric) (*channel.agreement).*spec.value = value;
+    if (spec.name == metric) channel.metrics.*spec.value = value;
   score.channels = {channel};
   return score;
 }
@@ -185,7 +184,7 @@ TEST_CASE("acceptance: the verdict is the worst, of the channels that have a lim
   ConditionScore score = scored("rho2", 0.97);
   ChannelScore pressure = score.channels[0];
   pressure.channel = Channel::load_pressure;
-  pressure.agreement->rho2 = 0.5;
+  pressure.metrics.rho2 = 0.5;
   score.channels.push_back(pressure);
   const AcceptanceLimit position{Channel::position, "rho2", 0.9, 0.98};
   const AcceptanceLimit load{Channel::load_pressure, "rho2", 0.4, std::nullopt};

@@ -50,7 +50,7 @@ TEST_CASE("agreement: a limit that is kept within the guard band alone is a rese
 
 TEST_CASE("agreement: a limit that cannot be evaluated fails", "[calib]") {
   AssessmentScene scene;
-  scene.fit.conditions[0].channels[0].agreement.reset();
+  scene.fit.conditions[0].channels[0].metrics = ChannelMetrics{};
   scene.fit.conditions[0].checks.clear();
   judge(scene.campaign.acceptance, datasets::DecisionRule::simple, scene.fit.conditions[0]);
   CHECK(scene.verdict() == Verdict::fail);
@@ -82,8 +82,7 @@ TEST_CASE("agreement: a channel without a limit is a reservation, unless it may 
   AssessmentScene scene;
   ChannelScore pressure;
   pressure.channel = Channel::pressure_a;
-  pressure.agreement.emplace();
-  pressure.agreement->rho2 = -15.0;
+  pressure.metrics.rho2 = -15.0;
   ConditionScore& other = scene.fit.conditions[1];
   other.channels.push_back(pressure);
   scene.rejudge(1, 0.998);

@@ -85,8 +85,8 @@ TEST_CASE("budget: a stop beside the fit keeps the fit, its scores, and what was
   CHECK(stopped.bootstrap->replicates < 500);
   CHECK_THAT(stopped.bootstrap->message, Contains("500 were asked for"));
   CHECK(stopped.verdict == whole.verdict);
-  CHECK(score(stopped, "other").channels.at(0).agreement->rho2 ==
-        score(whole, "other").channels.at(0).agreement->rho2);
+  CHECK(score(stopped, "other").channels.at(0).metrics.rho2 ==
+        score(whole, "other").channels.at(0).metrics.rho2);
   for (std::size_t j = 0; j < whole.parameters.size(); ++j) {
     CHECK(stopped.parameters[j].value == whole.parameters[j].value);
     if (!stopped.parameters[j].profile) continue;  // a nuisance parameter, or a known value

@@ -26,7 +26,7 @@ Twin of_two_minds() {
 }
 
 double rmse(const Fit& found, std::size_t condition) {
-  return found.conditions.at(condition).channels.at(0).agreement->rmse;
+  return found.conditions.at(condition).channels.at(0).metrics.rmse;
 }
 
 }  // namespace

@@ -90,7 +90,7 @@ TEST_CASE("rig_response_figures: the responses of all conditions in one", "[repo
     condition.id = "sine" + std::to_string(stored.result.conditions.size());
     condition.waveform = std::optional(rigcal::datasets::Waveform::sine);
     condition.frequency_hz = std::optional(frequency_hz);
-    condition.metrics.emplace_back("position", StoredScore{});
+    condition.metrics.emplace_back("position", rigcal::calib::ChannelMetrics{});
   }
   stored.series = [](std::size_t i) {
     return std::make_shared<const Table>(driven(5.0, std::pow(2.0, static_cast<double>(i))));

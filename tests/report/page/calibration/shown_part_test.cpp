@@ -25,10 +25,10 @@ TEST_CASE("first_of_last_periods: two periods of a drive with a frequency, else 
 TEST_CASE("shown_channel: the motion if it was compared, else what comes first", "[report]") {
   std::vector<StoredCondition> conditions(2);
   CHECK(shown_channel(conditions).empty());
-  conditions[0].metrics.emplace_back("load_pressure", StoredScore{});
-  conditions[0].metrics.emplace_back("velocity", StoredScore{});
+  conditions[0].metrics.emplace_back("load_pressure", rigcal::calib::ChannelMetrics{});
+  conditions[0].metrics.emplace_back("velocity", rigcal::calib::ChannelMetrics{});
   CHECK(shown_channel(conditions) == "load_pressure");
-  conditions[1].metrics.emplace_back("position", StoredScore{});
+  conditions[1].metrics.emplace_back("position", rigcal::calib::ChannelMetrics{});
   CHECK(shown_channel(conditions) == "position");
 }
 
