@@ -57,9 +57,6 @@ struct ChannelScore {
   /// Tests of the residual (measured minus simulated) over the longest window; absent if the window
   /// is too short or the residual is constant.
   std::optional<metrics::ResidualTests> residual_tests;
-  /// The component of a prediction's residual that the uncertainty of the estimates explains, at
-  /// the samples that count; empty if that uncertainty is unknown. The tests exclude it.
-  std::vector<double> explained;
   std::optional<LackOfFit> lack_of_fit;  ///< test of a prediction; absent if the noise is unknown
 };
 
@@ -84,6 +81,9 @@ struct LimitCheck {
                   verdict)
 };
 
+/// Curves behind the residual tests of each channel; absent if the residual was not tested.
+using ChannelCurves = Keyed<std::optional<metrics::ResidualCurves>, datasets::Channel>;
+
 /// Score of one condition, and the series it was computed from.
 struct ConditionScore {
   std::string id;
@@ -103,6 +103,10 @@ struct ConditionScore {
   /// combines the uncertainty of the estimates with the noise of the record. Absent if the former
   /// is unknown.
   std::map<datasets::Channel, std::vector<double>> prediction_sd;
+  /// The component of a prediction's residual that the uncertainty of the estimates explains, at
+  /// the samples that count. The tests exclude it. Absent if that uncertainty is unknown.
+  std::map<datasets::Channel, std::vector<double>> explained;
+  ChannelCurves residual_curves;
   std::vector<double> drive;  ///< reference [m] or command [V] at time_s
   /// Simulated flows at time_s [m3/s]; empty if the simulation failed.
   std::vector<double> servo_flow_m3_per_s, leakage_flow_m3_per_s;

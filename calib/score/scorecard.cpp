@@ -57,13 +57,19 @@ void compare_at_fundamental(const ProblemCondition& condition, std::span<const d
   }
 }
 
-/// Tests the residual over the longest run of samples without a gap; absent if it cannot be tested.
-std::optional<metrics::ResidualTests> test_residual(const ProblemCondition& condition,
-                                                    std::span<const double> measured,
-                                                    std::span<const double> simulated,
-                                                    std::span<const double> drive) {
+/// Tests the residual of the k-th channel over the longest run of samples without a gap, and
+/// replaces its tests and curves in the score. They are absent if it cannot be tested.
+void test_residual(const ProblemCondition& condition, std::size_t k,
+                   std::span<const double> simulated, ConditionScore& score) {
+  const std::vector<double>& measured = condition.channels[k].measured;
+  std::optional<metrics::ResidualTests>& tests = score.channels[k].residual_tests;
+  score.residual_curves.resize(score.channels.size());
+  auto& [channel, curves] = score.residual_curves[k];
+  channel = condition.channels[k].channel;
+  tests.reset();
+  curves.reset();
   const auto [first, count] = longest_stretch(condition.rows);
-  if (count < 2) return std::nullopt;
+  if (count < 2) return;
   std::vector<double> residual;
   for (std::size_t i = first; i < first + count; ++i)
     residual.push_back(measured[i] - simulated[i]);
@@ -72,9 +78,12 @@ std::optional<metrics::ResidualTests> test_residual(const ProblemCondition& cond
   const double interval_s =
       (time_s[begin + count - 1] - time_s[begin]) / static_cast<double>(count - 1);
   try {
-    return metrics::residual_tests(residual, drive.subspan(begin, count), interval_s);
+    metrics::TestedResidual tested =
+        metrics::residual_tests(residual, std::span(score.drive).subspan(begin, count), interval_s);
+    curves = std::move(tested.curves);
+    tests = std::move(tested);
   } catch (const std::logic_error&) {  // residual too short or constant
-    return std::nullopt;
+    return;
   }
 }
 
@@ -136,7 +145,7 @@ struct ScoredEffects {
 
 ChannelScore score_channel(const datasets::Campaign& campaign, const ProblemCondition& condition,
                            const ProblemChannel& channel, const std::vector<double>& simulated,
-                           std::span<const double> drive, const ScoredEffects& effects) {
+                           const ScoredEffects& effects) {
   ChannelScore score;
   score.channel = channel.channel;
   try {
@@ -163,7 +172,6 @@ ChannelScore score_channel(const datasets::Campaign& campaign, const ProblemCond
     }
   }
   compare_at_fundamental(condition, channel.measured, simulated, score.metrics);
-  score.residual_tests = test_residual(condition, channel.measured, simulated, drive);
   std::vector<double> residual;
   for (std::size_t i = 0; i < simulated.size(); ++i)
     residual.push_back(channel.measured[i] - simulated[i]);
@@ -215,7 +223,8 @@ ConditionScore score_condition(const Problem& problem, std::size_t i, std::span<
       std::vector<double> simulated;
       for (const std::size_t row : condition.rows) simulated.push_back(whole[row]);
       score.channels.push_back(
-          score_channel(*problem.campaign, condition, channel, simulated, score.drive, effects));
+          score_channel(*problem.campaign, condition, channel, simulated, effects));
+      test_residual(condition, k, simulated, score);
       score.series[channel.channel] = {condition.record->channels.at(channel.channel).mean,
                                        std::move(whole)};
     }
@@ -240,14 +249,14 @@ void test_predictions(const Problem& problem, std::vector<ConditionScore>& score
   for (std::size_t i = 0; i < scores.size(); ++i) {
     const ProblemCondition& condition = problem.conditions[i];
     for (std::size_t k = 0; k < scores[i].channels.size(); ++k) {
-      ChannelScore& channel = scores[i].channels[k];
-      if (channel.explained.empty()) continue;
-      const std::vector<double>& whole = scores[i].series.at(channel.channel).second;
+      const datasets::Channel channel = condition.channels[k].channel;
+      const auto explained = scores[i].explained.find(channel);
+      if (explained == scores[i].explained.end()) continue;
+      const std::vector<double>& whole = scores[i].series.at(channel).second;
       std::vector<double> simulated;
       for (std::size_t j = 0; j < condition.rows.size(); ++j)
-        simulated.push_back(whole[condition.rows[j]] + channel.explained[j]);
-      channel.residual_tests =
-          test_residual(condition, condition.channels[k].measured, simulated, scores[i].drive);
+        simulated.push_back(whole[condition.rows[j]] + explained->second[j]);
+      test_residual(condition, k, simulated, scores[i]);
     }
   }
 }

@@ -152,7 +152,8 @@ void explain(const ProblemCondition& condition, const std::vector<Eigen::MatrixX
   for (Eigen::Index k = 0; k < channels; ++k) {
     const double sd = condition.channels[static_cast<std::size_t>(k)].sd;
     const Eigen::VectorXd part = sd * explained.segment(k * samples, samples);
-    score.channels[static_cast<std::size_t>(k)].explained = {part.begin(), part.end()};
+    score.explained[condition.channels[static_cast<std::size_t>(k)].channel] = {part.begin(),
+                                                                                part.end()};
   }
 }
 

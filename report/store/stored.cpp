@@ -51,7 +51,7 @@ void require_matching(const StoredCurves& curves, const std::string& file) {
       const auto require = [&, &id = condition, &key = channel](
                                const auto& list, const auto& beside, const char* name) {
         require_length(list.size(), beside.size(),
-                       fmt::format("{} of {}, condition {}", name, key, id).c_str(), file);
+                       fmt::format("{} of {}, condition {}", name, info(key).key, id).c_str(), file);
       };
       require(found->periodogram.density, found->periodogram.frequency_hz, "periodogram.density");
       require(found->normality.residual_quantile, found->normality.normal_quantile,

@@ -51,7 +51,7 @@ doc::Section starts_section(const StoredFit& fit);
 doc::Section warnings_section(const StoredFit& fit);
 
 /// Adds residual tests and curves for the channels of a condition.
-void add_residual_tests(const StoredCondition& condition, const StoredChannelCurves* curves,
+void add_residual_tests(const StoredCondition& condition, const calib::ChannelCurves* curves,
                         doc::Blocks& blocks);
 
 }  // namespace rigcal::report

@@ -162,7 +162,7 @@ doc::Article facts_article(const StoredCondition& condition) {
 /// @param curves  entry for the condition in residual_tests.json, or null
 /// @param open    whether the curves are unfolded
 void add_curves(const StoredCondition& condition, const Table& series,
-                const StoredChannelCurves* curves, std::size_t points, bool open,
+                const calib::ChannelCurves* curves, std::size_t points, bool open,
                 doc::Blocks& blocks) {
   doc::Fold curves_of{"", {}, open, "curves"};
   const std::size_t plots = add_plots(condition, series, points, curves_of.blocks);

@@ -111,10 +111,9 @@ StoredCondition stored(const Result& result, const calib::ConditionScore& score)
       if (!condition.score_budgets) condition.score_budgets.emplace();
       condition.score_budgets->emplace_back(key, channel.budgets);
     }
-    std::optional<StoredResidualTests> tests;
-    if (channel.residual_tests)
-      tests = report::stored(*channel.residual_tests, info(channel.channel).unit);
-    condition.residual_tests.emplace_back(key, std::move(tests));
+    auto& tests =
+        condition.residual_tests.emplace_back(channel.channel, channel.residual_tests).second;
+    if (tests) add_verdicts(*tests, info(channel.channel).unit);
   }
   add_checks(score, condition);
   condition.verdict = score.verdict;

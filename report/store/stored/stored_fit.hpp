@@ -94,7 +94,7 @@ struct StoredCondition {
   /// Contributions to the two-sided uncertainty, by channel and metric. Channels whose uncertainty
   /// is unknown are left out.
   Omittable<Keyed<Keyed<calib::Budget95>>> score_budgets;
-  Keyed<std::optional<StoredResidualTests>> residual_tests;
+  Keyed<std::optional<metrics::ResidualTests>, datasets::Channel> residual_tests;
   Later<std::vector<calib::LimitCheck>> limit_checks;
   Later<Keyed<calib::Verdict>> channel_verdicts;
   std::optional<calib::Verdict> verdict;
