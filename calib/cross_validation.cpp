@@ -92,8 +92,8 @@ HeldOut leave_out(const Campaign& campaign, const std::vector<datasets::Record>&
     const ConditionScore* predicted = score_of(part, id);
     if (part.status != FitStatus::converged) {
       held.problem = "the fit of the others: " + part.message;
-    } else if (predicted == nullptr || !predicted->failure.empty()) {
-      held.problem = predicted == nullptr ? "not predicted" : predicted->failure;
+    } else if (predicted == nullptr || predicted->failure) {
+      held.problem = predicted == nullptr ? "not predicted" : *predicted->failure;
     } else {
       held.rmse = rmse_of(*predicted);
       add_shift(whole, part, held);

@@ -185,7 +185,7 @@ Fit score_at(const Campaign& campaign, const std::vector<Record>& records,
   }
   if (problem.map.unknowns().empty() &&
       std::all_of(fit.conditions.begin(), fit.conditions.end(),
-                  [](const ConditionScore& score) { return !score.failure.empty(); })) {
+                  [](const ConditionScore& score) { return score.failure.has_value(); })) {
     fit.status = FitStatus::failed;
     fit.message = "no condition could be simulated";
   }

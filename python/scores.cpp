@@ -122,7 +122,10 @@ void bind_scored_channel(py::module_& module) {
                              "Expanded uncertainty (95 %) of each of `metrics`, from repeats and\n"
                              "sensor; None with fewer than two repeats.")
       .def_property_readonly(
-          "budgets", [](const ScoredChannel& self) { return dict_of(self.score.budgets); },
+          "budgets",
+          [](const ScoredChannel& self) {
+            return dict_of(self.score.score_budgets.value_or(Keyed<calib::Budget95>()));
+          },
           "Contributions to the two-sided uncertainty of each of `metrics`, by\n"
           "name; empty with fewer than two repeats.")
       .def_property_readonly(
@@ -157,16 +160,14 @@ void bind_scores(py::module_& module) {
                              "\"PASS\", \"WARN\" or \"FAIL\"; None without limits.")
       .def_property_readonly("reasons", field(&Self::score, &calib::ConditionScore::reasons),
                              "Reasons for WARN or FAIL, in words.")
-      .def_property_readonly("checks", field(&Self::score, &calib::ConditionScore::checks),
+      .def_property_readonly("checks", field(&Self::score, &calib::ConditionScore::limit_checks),
                              "One check per limit.")
-      .def_property_readonly("warnings", field(&Self::score, &calib::ConditionScore::data_warnings),
+      .def_property_readonly("warnings", field(&Self::score, &calib::ConditionScore::warnings),
                              "What is doubtful about the recording, in words.")
-      .def_property_readonly(
-          "failure", [](const Self& self) { return unless_empty(self.score->failure); },
-          "Why it could not be simulated, in words; or None.")
-      .def_property_readonly(
-          "not_scored", [](const Self& self) { return unless_empty(self.score->not_scored); },
-          "Why it was not scored, in words; or None.")
+      .def_property_readonly("failure", field(&Self::score, &calib::ConditionScore::failure),
+                             "Why it could not be simulated, in words; or None.")
+      .def_property_readonly("not_scored", field(&Self::score, &calib::ConditionScore::not_scored),
+                             "Why it was not scored, in words; or None.")
       .def_property_readonly("samples", field(&Self::score, &calib::ConditionScore::samples),
                              "Number of samples inside the windows.")
       .def_property_readonly(

@@ -11,6 +11,7 @@
 #include "calib/result/model_error.hpp"
 #include "calib/result/uncertainty_budget.hpp"
 #include "common/describe.hpp"
+#include "common/range.hpp"
 #include "datasets/campaign/campaign.hpp"
 #include "datasets/record.hpp"
 #include "metrics/metric_table.hpp"
@@ -47,17 +48,25 @@ struct ChannelScore {
   datasets::Channel channel = datasets::Channel::position;
   ChannelMetrics metrics;
   std::optional<metrics::NoiseFloor> noise_floor;  ///< absent if the noise is unknown
-  /// One-sided uncertainty due to repeats and sensor; absent with fewer than two repeats.
-  std::optional<metrics::Agreement> expanded_uncertainty;
+  /// One-sided uncertainty due to repeats and sensor, used as the guard band of a limit; absent
+  /// with fewer than two repeats.
+  Later<std::optional<metrics::Agreement>> expanded_uncertainty;
   /// Two-sided uncertainty, as printed after +-.
-  std::optional<metrics::Agreement> two_sided_uncertainty;
-  /// Contributions to the two-sided uncertainty of each metric, in the order of the metrics; empty
+  Later<std::optional<metrics::Agreement>> two_sided_uncertainty;
+  /// Contributions to the two-sided uncertainty of each metric, in the order of the metrics; absent
   /// if the uncertainty is unknown.
-  Keyed<Budget95> budgets;
+  Omittable<Keyed<Budget95>> score_budgets;
   /// Tests of the residual (measured minus simulated) over the longest window; absent if the window
   /// is too short or the residual is constant.
   std::optional<metrics::ResidualTests> residual_tests;
   std::optional<LackOfFit> lack_of_fit;  ///< test of a prediction; absent if the noise is unknown
+  RIGCAL_DESCRIBE(metrics, noise_floor, expanded_uncertainty, two_sided_uncertainty, score_budgets,
+                  residual_tests)
+
+  std::string_view key() const { return datasets::info(channel).key; }
+  /// Returns the uncertainty that a page prints after "±" and "U"; null if unknown. Files from
+  /// earlier versions only have the one-sided uncertainty, which is returned instead.
+  const metrics::Agreement* printed_uncertainty() const;
 };
 
 enum class Verdict { pass, warn, fail };
@@ -84,18 +93,51 @@ struct LimitCheck {
 /// Curves behind the residual tests of each channel; absent if the residual was not tested.
 using ChannelCurves = Keyed<std::optional<metrics::ResidualCurves>, datasets::Channel>;
 
-/// Score of one condition, and the series it was computed from.
-struct ConditionScore {
+/// Score of one condition, with what campaign and record state about it.
+struct ConditionResult {
   std::string id;
+  Later<std::optional<datasets::Waveform>> waveform;
+  Later<std::optional<double>> frequency_hz, amplitude_m;
+  Omittable<std::optional<double>> amplitude_v;  ///< open loop only
+  Omittable<double> amplitude_n, amplitude_pa, amplitude_m_per_s2,
+      amplitude_rad;  ///< in other loops
+  Later<std::optional<std::string>> leak_level;
   datasets::Use use = datasets::Use::fit;
-  std::vector<ChannelScore> channels;
-  std::vector<LimitCheck> checks;          ///< one for each limit on its channels
-  std::optional<Verdict> verdict;          ///< worst of the checks; absent without limits
-  std::vector<std::string> reasons;        ///< reasons for WARN and FAIL, in words
-  std::vector<std::string> data_warnings;  ///< doubts about the recording, in words
-  std::string failure;                     ///< why the simulation failed; empty if it did not
-  std::string not_scored;  ///< why there is no score although the simulation succeeded; else empty
-  long samples = 0;        ///< number of samples inside the windows
+  Omittable<double> temperature_k;
+  Omittable<std::string> date;
+  long samples = 0;                               ///< number of samples inside the windows
+  Later<std::vector<std::string>> record_sha256;  ///< files that the record is made from
+  Omittable<std::vector<Range>> windows_s;        ///< empty: the whole record
+  Omittable<std::vector<std::string>> notes;
+  Omittable<std::vector<datasets::AcceptanceLimit>>
+      acceptance;                                        ///< limits that replace the campaign's
+  Omittable<std::vector<datasets::Channel>> not_judged;  ///< in addition to those of the campaign
+  Later<std::vector<std::string>> warnings;              ///< doubts about the recording, in words
+  /// Why there is no score although the simulation did not fail.
+  Later<std::optional<std::string>> not_scored;
+  std::optional<std::string> failure;  ///< why the simulation failed; absent if it did not
+  Columns<ChannelScore> channels;
+  Later<std::vector<LimitCheck>> limit_checks;  ///< one for each limit on its channels
+  /// Worst of the checks of each channel that has a limit, in the order of the channels.
+  Later<Keyed<Verdict, datasets::Channel>> channel_verdicts;
+  std::optional<Verdict> verdict;    ///< worst of the checks; absent without limits
+  std::vector<std::string> reasons;  ///< reasons for WARN and FAIL, in words
+  RIGCAL_DESCRIBE(id, waveform, frequency_hz, amplitude_m, amplitude_v, amplitude_n, amplitude_pa,
+                  amplitude_m_per_s2, amplitude_rad, leak_level, use, temperature_k, date, samples,
+                  record_sha256, windows_s, notes, acceptance, not_judged, warnings, not_scored,
+                  failure, channels, limit_checks, channel_verdicts, verdict, reasons)
+
+  /// Returns the verdict on a channel: its worst check, or the condition's verdict if the
+  /// simulation failed; std::nullopt if no limit applies to the channel.
+  std::optional<Verdict> verdict_of(datasets::Channel channel) const;
+  std::optional<Verdict> verdict_of(std::string_view key) const;
+
+  /// Returns the score of the channel with this key; null if there is none.
+  const ChannelScore* find(std::string_view key) const;
+};
+
+/// Score of one condition, and the series it was computed from, which no file of scores has.
+struct ConditionScore : ConditionResult {
   std::vector<double> time_s;
   /// Measured mean and simulated value for each output channel, over the whole record.
   std::map<datasets::Channel, std::pair<std::vector<double>, std::vector<double>>> series;
@@ -111,10 +153,6 @@ struct ConditionScore {
   /// Simulated flows at time_s [m3/s]; empty if the simulation failed.
   std::vector<double> servo_flow_m3_per_s, leakage_flow_m3_per_s;
   std::vector<bool> in_window;  ///< empty if all samples count
-
-  /// Verdict on a channel: its worst check, or the condition's verdict if the simulation failed.
-  /// Absent if no limit applies to the channel.
-  std::optional<Verdict> verdict_of(datasets::Channel of) const;
 };
 
 }  // namespace rigcal::calib

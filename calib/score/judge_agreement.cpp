@@ -23,17 +23,17 @@ constexpr double kPoorRho2 = 0.9;
 void judge_unused_limits(const Campaign& campaign, const Fit& fit, std::vector<Reason>& reasons) {
   const auto by_campaign = [&](const ConditionScore& score) {
     const datasets::Condition* condition = campaign.find(score.id);
-    return condition != nullptr && !condition->acceptance && score.failure.empty() &&
-           score.not_scored.empty();
+    return condition != nullptr && !condition->acceptance && !score.failure && !score.not_scored;
   };
   if (std::none_of(fit.conditions.begin(), fit.conditions.end(), by_campaign)) return;
   for (const datasets::AcceptanceLimit& limit : campaign.acceptance) {
     const bool used =
         std::any_of(fit.conditions.begin(), fit.conditions.end(), [&](const auto& score) {
           return by_campaign(score) &&
-                 std::any_of(score.checks.begin(), score.checks.end(), [&](const auto& check) {
-                   return check.channel == limit.channel && check.metric == limit.metric;
-                 });
+                 std::any_of(
+                     score.limit_checks.begin(), score.limit_checks.end(), [&](const auto& check) {
+                       return check.channel == limit.channel && check.metric == limit.metric;
+                     });
         });
     if (used) continue;
     const auto key = datasets::info(limit.channel).key;
@@ -49,16 +49,15 @@ void judge_recordings(const Fit& fit, std::vector<Reason>& reasons) {
   const ConditionScore* first = nullptr;
   std::size_t count = 0;
   for (const ConditionScore& score : fit.conditions) {
-    if (score.data_warnings.empty()) continue;
+    if (score.warnings.empty()) continue;
     ++count;
     if (first == nullptr) first = &score;
   }
   if (first == nullptr) return;
-  reasons.push_back(
-      reason(AspectState::reservation, "recording_doubtful",
-             fmt::format("recordings of {} are doubtful; {}: {}", conditions_text(count), first->id,
-                         first->data_warnings.front()),
-             first->id, {{"conditions", static_cast<double>(count)}}));
+  reasons.push_back(reason(AspectState::reservation, "recording_doubtful",
+                           fmt::format("recordings of {} are doubtful; {}: {}",
+                                       conditions_text(count), first->id, first->warnings.front()),
+                           first->id, {{"conditions", static_cast<double>(count)}}));
 }
 
 /// Conditions in which an output channel has no limit.
@@ -74,7 +73,7 @@ void judge_without_limits(const Campaign& campaign, const Fit& fit, std::vector<
   std::map<std::pair<datasets::Channel, bool>, WithoutLimit> found;
   for (const ConditionScore& score : fit.conditions) {
     const datasets::Condition* condition = campaign.find(score.id);
-    if (condition == nullptr || !score.failure.empty()) continue;
+    if (condition == nullptr || score.failure) continue;
     for (const ChannelScore& channel : score.channels) {
       if (score.verdict_of(channel.channel)) continue;
       const bool stated = campaign.may_lack_limits(*condition, channel.channel);

@@ -159,7 +159,7 @@ ChannelScore score_channel(const datasets::Campaign& campaign, const ProblemCond
     if (const auto found = metrics::agreement_uncertainty(mean, simulated)) {
       score.expanded_uncertainty = found->one_sided;
       score.two_sided_uncertainty = found->two_sided;
-      score.budgets = budgets_of(channel.channel, mean, *found, changes);
+      score.score_budgets = budgets_of(channel.channel, mean, *found, changes);
     }
   } catch (const std::logic_error& error) {  // constant channel, or fewer than two samples
     add_problem(score.metrics, error.what());

@@ -29,7 +29,8 @@ struct Badness {
   }
 };
 
-Badness badness(const ConditionScore& score);
+/// @param channel  key of the channel; empty: the whole condition
+Badness badness(const ConditionResult& condition, std::string_view channel = {});
 
 /// Whether a goes before b where there is no room for all: first what fails, so that it is never
 /// left out, then validation records, then the others. The worst come first among each kind.

@@ -235,7 +235,7 @@ void bootstrap(const Problem& problem, const Evaluation& optimum, const Uncertai
   }
   std::vector<Source> sources;
   for (std::size_t i = 0; i < problem.conditions.size(); ++i) {
-    if (!scores[i].failure.empty()) {
+    if (scores[i].failure) {
       fit.bootstrap = {
           0, fmt::format("no bootstrap: condition \"{}\" could not be simulated", scores[i].id)};
       return;

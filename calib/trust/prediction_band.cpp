@@ -296,7 +296,7 @@ void add_prediction_sd(const Problem& problem, std::span<const double> z,
                        int threads, std::vector<ConditionScore>& scores) {
   const EffectChanges none;
   parallel_for(scores.size(), threads, [&](std::size_t i) {
-    if (scores[i].failure.empty() && scores[i].not_scored.empty())
+    if (!scores[i].failure && !scores[i].not_scored)
       add_to(problem, i, z, spread, changes.empty() ? none : changes[i], scores[i]);
   });
 }

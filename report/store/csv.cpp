@@ -33,13 +33,13 @@ std::vector<ScoreRow> score_rows(const Result& result) {
     const datasets::Condition* condition = result.campaign.find(score.id);
     if (condition == nullptr) continue;
     if (score.channels.empty())
-      rows.push_back(
-          {&score, condition, nullptr, nullptr, csv_field(score.verdict), score.failure});
+      rows.push_back({&score, condition, nullptr, nullptr, csv_field(score.verdict),
+                      score.failure.value_or("")});
     for (const calib::ChannelScore& channel : score.channels) {
       const auto verdict = score.verdict_of(channel.channel);
       rows.push_back({&score, condition, &channel, &info(channel.channel),
                       verdict ? csv_field(verdict) : "not judged",
-                      channel.metrics.problem.value_or(score.failure)});
+                      channel.metrics.problem.value_or(score.failure.value_or(""))});
     }
   }
   return rows;
@@ -141,7 +141,7 @@ Table residual_table(const Result& result, const calib::ConditionScore& score) {
 
 std::string residuals_csv(const Result& result, const calib::ConditionScore& score) {
   std::string text = status_line(result.fit);
-  if (!score.failure.empty()) text += csv_comment("not simulated: " + score.failure);
+  if (score.failure) text += csv_comment("not simulated: " + *score.failure);
   return text + csv_of(residual_table(result, score));
 }
 

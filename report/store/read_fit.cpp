@@ -99,7 +99,7 @@ Estimates estimates_of(const StoredFit& stored, const JsonNode& root, model::Pla
 /// Lists the dates of the fitted conditions without duplicates; empty if one of them has no date.
 std::vector<std::string> dates_of_fit(const StoredFit& stored) {
   std::vector<std::string> dates;
-  for (const StoredCondition& condition : stored.conditions) {
+  for (const calib::ConditionResult& condition : stored.conditions) {
     if (condition.use != datasets::Use::fit) continue;
     if (!condition.date) return {};
     if (std::find(dates.begin(), dates.end(), *condition.date) == dates.end())
@@ -201,7 +201,7 @@ EarlierFit earlier_fit(const Json& json, const std::string& name, model::PlantKi
   result.validity = stored.validity;
   if (stored.validated) result.validated = *stored.validated;
   read_covariance(stored, root, plant, result);
-  for (const StoredCondition& condition : stored.conditions)
+  for (const calib::ConditionResult& condition : stored.conditions)
     result.conditions.emplace_back(condition.id, condition.use);
   for (const InputFile& input : stored.provenance.inputs)
     result.input_hashes.push_back(input.sha256);

@@ -62,7 +62,7 @@ struct AssessmentScene {
   void rejudge(std::size_t condition, double rho2) {
     ConditionScore& score = fit.conditions.at(condition);
     score.channels[0].metrics.rho2 = rho2;
-    score.checks.clear();
+    score.limit_checks.clear();
     score.reasons.clear();
     score.verdict.reset();
     judge(campaign.acceptance, campaign.acceptance_bounds.decision, score);

@@ -199,9 +199,9 @@ TEST_CASE("acceptance: how much of a tolerance is used, and the worst of several
   ConditionScore score = scored(0.995);
   judge({limit("rho2", 0.99, 0.993), limit("absolute_error_percent", 8.0, 6.0)},
         DecisionRule::simple, score);
-  REQUIRE(score.checks.size() == 2);
-  CHECK_THAT(score.checks[0].tolerance_used.value(), WithinRel(0.5, 1e-9));  // 0.005 of 0.01
-  CHECK_THAT(score.checks[1].tolerance_used.value(), WithinRel(0.25, 1e-9));
+  REQUIRE(score.limit_checks.size() == 2);
+  CHECK_THAT(score.limit_checks[0].tolerance_used.value(), WithinRel(0.5, 1e-9));  // 0.005 of 0.01
+  CHECK_THAT(score.limit_checks[1].tolerance_used.value(), WithinRel(0.25, 1e-9));
   CHECK(score.verdict == Verdict::pass);
   for (const double worse : {1.0, 2.0}) {
     ConditionScore mixed = scored(0.995);
@@ -242,8 +242,8 @@ TEST_CASE("acceptance: by the guard band a limit is kept by more than the uncert
   CHECK(guarded(0.98, 0.1).verdict == Verdict::fail);  // a large uncertainty does not help
   CHECK(judged(0.995, 0.006, DecisionRule::simple).verdict == Verdict::pass);
   const ConditionScore near = guarded(0.995, 0.006);
-  CHECK(near.checks.at(0).in_guard_band);
-  CHECK(near.checks.at(0).expanded_uncertainty == 0.006);
+  CHECK(near.limit_checks.at(0).in_guard_band);
+  CHECK(near.limit_checks.at(0).expanded_uncertainty == 0.006);
   CHECK_THAT(near.reasons.at(0), Contains("keeps 0.99, but not by more than") && Contains("0.006"));
   CHECK_THAT(guarded(0.995, std::nullopt).reasons.at(0), Contains("not known"));
 }

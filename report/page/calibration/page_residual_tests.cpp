@@ -144,22 +144,22 @@ doc::Facts test_facts(const metrics::ResidualTests& tests, const std::string& ch
 
 }  // namespace
 
-void add_residual_tests(const StoredCondition& condition, const calib::ChannelCurves* curves,
+void add_residual_tests(const calib::ConditionResult& condition, const calib::ChannelCurves* curves,
                         doc::Blocks& blocks) {
-  if (condition.residual_tests.empty()) return;
+  if (condition.channels.empty()) return;
   blocks.emplace_back(doc::Heading{{"Residual tests"}, 4});
-  for (const auto& [tested, tests] : condition.residual_tests) {
-    const std::string channel(info(tested).key);
-    if (!tests) {
+  for (const calib::ChannelScore& score : condition.channels) {
+    const std::string channel(score.key());
+    if (!score.residual_tests) {
       blocks.emplace_back(
           doc::reading(channel + ": too few samples, or a constant residual: nothing to test."));
       continue;
     }
-    blocks.emplace_back(test_facts(*tests, channel));
-    const auto* found = curves == nullptr ? nullptr : find(*curves, tested);
+    blocks.emplace_back(test_facts(*score.residual_tests, channel));
+    const auto* found = curves == nullptr ? nullptr : find(*curves, score.channel);
     if (found == nullptr || !*found) continue;
     doc::Gallery gallery;
-    for (Plot& plot : test_plots(**found, info(tested).unit))
+    for (Plot& plot : test_plots(**found, info(score.channel).unit))
       gallery.figures.push_back(figure_of(std::move(plot)));
     blocks.emplace_back(std::move(gallery));
     if (auto fold = whiteness_fold(**found)) blocks.emplace_back(std::move(*fold));

@@ -49,27 +49,6 @@ std::vector<StoredWeight> weights(const Result& result) {
   return list;
 }
 
-void add_checks(const calib::ConditionScore& score, StoredCondition& condition) {
-  condition.limit_checks = score.checks;
-  std::set<datasets::Channel> judged;
-  for (const calib::LimitCheck& check : score.checks) judged.insert(check.channel);
-  for (const datasets::Channel channel : judged)
-    condition.channel_verdicts.emplace_back(key_of(channel), score.verdict_of(channel).value());
-}
-
-void add_stated(const Result& result, const calib::ConditionScore& score, StoredCondition& stated) {
-  const datasets::Condition* condition = result.campaign.find(score.id);
-  if (condition == nullptr) return;
-  stated.waveform = std::optional(condition->waveform);
-  stated.frequency_hz = condition->frequency_hz;
-  calib::put_amplitude(info(drive_channel(result.campaign)).unit, condition->amplitude, stated);
-  stated.leak_level = condition->leak_level;
-  if (condition->temperature_k) stated.temperature_k = *condition->temperature_k;
-  if (condition->date) stated.date = *condition->date;
-  if (condition->acceptance) stated.acceptance = *condition->acceptance;
-  if (!condition->not_judged.empty()) stated.not_judged = keys_of(condition->not_judged);
-}
-
 /// Returns the hashes of a record's files from the provenance.
 std::vector<std::string> hashes_of(const Result& result, const datasets::Record& record) {
   std::vector<std::string> hashes;
@@ -83,41 +62,12 @@ std::vector<std::string> hashes_of(const Result& result, const datasets::Record&
   return hashes;
 }
 
-StoredCondition stored(const Result& result, const calib::ConditionScore& score) {
-  StoredCondition condition;
-  condition.id = score.id;
-  add_stated(result, score, condition);
-  condition.use = score.use;
-  condition.samples = score.samples;
-  if (const datasets::Record* record = record_of(result, score.id)) {
+calib::ConditionResult stored(const Result& result, const calib::ConditionScore& score) {
+  calib::ConditionResult condition = score;
+  if (const datasets::Record* record = record_of(result, score.id))
     condition.record_sha256 = hashes_of(result, *record);
-    condition.windows_s.emplace();
-    for (const datasets::TimeWindow& window : record->windows)
-      condition.windows_s->push_back({window.start_s, window.end_s});
-    condition.notes = record->notes;
-  }
-  condition.warnings = score.data_warnings;
-  condition.not_scored = unless_empty(score.not_scored);
-  condition.failure = unless_empty(score.failure);
-  condition.expanded_uncertainty.emplace();
-  condition.two_sided_uncertainty.emplace();
-  for (const calib::ChannelScore& channel : score.channels) {
-    const std::string key = key_of(channel.channel);
-    condition.metrics.emplace_back(key, channel.metrics);
-    condition.noise_floor.emplace_back(key, channel.noise_floor);
-    condition.expanded_uncertainty->emplace_back(key, channel.expanded_uncertainty);
-    condition.two_sided_uncertainty->emplace_back(key, channel.two_sided_uncertainty);
-    if (!channel.budgets.empty()) {
-      if (!condition.score_budgets) condition.score_budgets.emplace();
-      condition.score_budgets->emplace_back(key, channel.budgets);
-    }
-    auto& tests =
-        condition.residual_tests.emplace_back(channel.channel, channel.residual_tests).second;
-    if (tests) add_verdicts(*tests, info(channel.channel).unit);
-  }
-  add_checks(score, condition);
-  condition.verdict = score.verdict;
-  condition.reasons = score.reasons;
+  for (calib::ChannelScore& channel : condition.channels)
+    if (channel.residual_tests) add_verdicts(*channel.residual_tests, info(channel.channel).unit);
   return condition;
 }
 
@@ -164,20 +114,6 @@ double freedom_of_interval(const calib::FittedParameter& parameter, double error
 
 }  // namespace
 
-std::optional<calib::Verdict> StoredCondition::verdict_of(const std::string& channel) const {
-  if (failure) return verdict;
-  const calib::Verdict* found = find(channel_verdicts, channel);
-  return found == nullptr ? std::nullopt : std::optional(*found);
-}
-
-const metrics::Agreement* StoredCondition::printed_uncertainty_of(
-    const std::string& channel) const {
-  const auto& all = two_sided_uncertainty ? two_sided_uncertainty : expanded_uncertainty;
-  if (!all) return nullptr;
-  const auto* found = report::find(*all, channel);
-  return found != nullptr && found->has_value() ? &**found : nullptr;
-}
-
 void as_of_now(std::string_view schema, std::vector<calib::FittedParameter>& parameters) {
   if (schema == kFitSchema) return;
   for (calib::FittedParameter& each : parameters) {
@@ -216,22 +152,12 @@ StoredFit as_fit(const StoredTablesFit& tables) {
   return fit;
 }
 
-calib::Badness badness(const StoredCondition& condition, const std::string& channel) {
-  calib::Badness found{condition.failure || condition.not_scored,
-                       channel.empty() ? condition.verdict : condition.verdict_of(channel)};
-  for (const calib::LimitCheck& check : condition.limit_checks)
-    if (channel.empty() || info(check.channel).key == channel) found.add(check);
-  for (const auto& [key, scores] : condition.metrics)
-    if (channel.empty() || key == channel) found.add_rho2(scores.rho2);
-  return found;
-}
-
-std::optional<double> periodic_frequency(const StoredCondition& condition) {
+std::optional<double> periodic_frequency(const calib::ConditionResult& condition) {
   if (!condition.waveform || !datasets::is_periodic(*condition.waveform)) return std::nullopt;
   return condition.frequency_hz;
 }
 
-const StoredCondition* StoredFit::find(const std::string& condition) const {
+const calib::ConditionResult* StoredFit::find(const std::string& condition) const {
   const auto found = std::find_if(conditions.begin(), conditions.end(),
                                   [&](const auto& each) { return each.id == condition; });
   return found == conditions.end() ? nullptr : &*found;

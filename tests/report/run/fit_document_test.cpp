@@ -93,7 +93,7 @@ TEST_CASE("fit on a terminal: at most 60 lines, however many conditions and warn
     score.id = "condition_" + std::to_string(i);
     score.verdict = calib::Verdict::pass;
     score.channels.emplace_back().metrics.rho2 = 0.999;
-    calib::LimitCheck& check = score.checks.emplace_back();
+    calib::LimitCheck& check = score.limit_checks.emplace_back();
     check.metric = "rho2";
     check.value = 0.999;
     check.limit = 0.9;

@@ -7,7 +7,7 @@ using namespace rigcal::report;
 TEST_CASE("periodic_frequency: of sine and square alone", "[report]") {
   using rigcal::datasets::Waveform;
   const auto frequency = [](Waveform waveform, std::optional<double> frequency_hz) {
-    StoredCondition condition;
+    rigcal::calib::ConditionResult condition;
     condition.waveform = std::optional(waveform);
     condition.frequency_hz = frequency_hz;
     return periodic_frequency(condition);

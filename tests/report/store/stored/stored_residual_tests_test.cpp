@@ -126,9 +126,9 @@ TEST_CASE("stored residual tests: curves of whiteness are stored, and may be mis
   CHECK(channel["partial_autocorrelation"]["band"] == channel["autocorrelation"]["band"]);
   CHECK(channel["cumulative_periodogram"]["limit"] == tests.periodogram.limit);
   CHECK(channel["cumulative_periodogram"]["fraction"].size() == 51);
-  rigcal::report::StoredCondition condition;
+  rigcal::calib::ConditionResult condition;
   condition.id = "sine";
-  condition.residual_tests.emplace_back(Channel::position, tests);
+  condition.channels.emplace_back().residual_tests = tests;
   const auto page_with = [&](const rigcal::calib::ChannelCurves& shown) {
     rigcal::report::doc::Blocks blocks;
     rigcal::report::add_residual_tests(condition, &shown, blocks);
