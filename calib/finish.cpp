@@ -24,12 +24,12 @@ void add_predictions(Fit& fit) {
   std::vector<LackOfFit> predictions;
   for (const ConditionScore& score : fit.conditions) {
     for (const ChannelScore& channel : score.channels) {
-      if (channel.lack_of_fit && !fit.lack_of_fit.has(score.id, channel.channel))
+      if (channel.lack_of_fit && !fit.lack_of_fit->has(score.id, channel.channel))
         predictions.push_back(*channel.lack_of_fit);
     }
   }
   judge_together(predictions);
-  auto& tests = fit.lack_of_fit.tests;
+  auto& tests = fit.lack_of_fit->tests;
   tests.insert(tests.end(), predictions.begin(), predictions.end());
 }
 

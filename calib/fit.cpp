@@ -89,13 +89,13 @@ void look_again(const Problem& problem, const Campaign& campaign,
     fit.parameters[j].profile.reset();
   }
   const std::string compared = compare_intervals(problem, fit.parameters, solved.spread.known.names,
-                                                 fit.lack_of_fit.misfit.value_or(false));
+                                                 fit.lack_of_fit->misfit.value_or(false));
   if (!compared.empty()) fit.interval_advice += "; " + compared;
   if (options.cross_validate) {
     fit.cross_validation = cross_validate(campaign, records, fit, options, budget);
     note(StoppedIn::cross_validation);
-    fit.interval_advice += "; " + cross_validation_summary(fit.cross_validation);
-    const auto words = cross_validation_words(fit.cross_validation);
+    fit.interval_advice += "; " + cross_validation_summary(*fit.cross_validation);
+    const auto words = cross_validation_words(*fit.cross_validation);
     fit.warnings.insert(fit.warnings.end(), words.begin(), words.end());
   }
 }

@@ -47,30 +47,24 @@ py::array_t<double> residual(const ScoredChannel& self) {
   return array;
 }
 
-/// Returns the metrics by name. A value is None if the metric does not exist.
-template <typename Value>
-Dict<std::string, Value> by_name(const metrics::Agreement& agreement) {
+/// Returns the described numbers of a struct by name; None for one that does not exist.
+template <typename Value = double, typename Numbers>
+Dict<std::string, Value> by_name(const Numbers& numbers) {
   Dict<std::string, Value> values;
-  for (const metrics::MetricSpec& metric : metrics::kMetrics) {
-    const py::str name(metric.name.data(), metric.name.size());
-    const double value = agreement.*metric.value;
+  Numbers::describe(numbers, [&](const char* name, double value) {
     values[name] = std::isnan(value) ? py::object(py::none()) : py::float_(value);
-  }
+  });
   return values;
 }
 
-std::optional<Dict<std::string, double>> expanded_uncertainty_of(const ScoredChannel& self) {
-  if (!self.score.expanded_uncertainty) return std::nullopt;
-  return by_name<double>(*self.score.expanded_uncertainty);
-}
-
-std::optional<Dict<std::string, double>> noise_floor_of(const ScoredChannel& self) {
-  if (!self.score.noise_floor) return std::nullopt;
-  Dict<std::string, double> floor;
-  floor["rho2"] = self.score.noise_floor->rho2;
-  floor["ccc"] = self.score.noise_floor->ccc;
-  floor["absolute_error_percent"] = self.score.noise_floor->absolute_error_percent;
-  return floor;
+/// Returns a getter for a property with the numbers of a member that may be absent.
+template <typename Numbers>
+auto numbers_of(Numbers calib::ChannelScore::*member) {
+  return [member](const ScoredChannel& self) -> std::optional<Dict<std::string, double>> {
+    const auto& found = self.score.*member;
+    if (!found) return std::nullopt;
+    return by_name(*found);
+  };
 }
 
 Dict<std::string, ScoredChannel> scored_channels_of(const ScoredCondition& self) {
@@ -112,13 +106,14 @@ void bind_scored_channel(py::module_& module) {
       .def_property_readonly(
           "metrics",
           [](const ScoredChannel& self) {
-            return by_name<std::optional<double>>(self.score.metrics);
+            return by_name<std::optional<double>, metrics::Agreement>(self.score.metrics);
           },
           "Metrics by name, \"ccc\", \"rho2\"...; None where one does not exist.")
-      .def_property_readonly("noise_floor", &noise_floor_of,
+      .def_property_readonly("noise_floor", numbers_of(&calib::ChannelScore::noise_floor),
                              "What a perfect model would reach, by name; None where the noise is\n"
                              "unknown.")
-      .def_property_readonly("expanded_uncertainty", &expanded_uncertainty_of,
+      .def_property_readonly("expanded_uncertainty",
+                             numbers_of(&calib::ChannelScore::expanded_uncertainty),
                              "Expanded uncertainty (95 %) of each of `metrics`, from repeats and\n"
                              "sensor; None with fewer than two repeats.")
       .def_property_readonly(

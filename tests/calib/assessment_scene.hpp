@@ -39,7 +39,7 @@ struct AssessmentScene {
       test.ratio = 1.0;
       test.outcome = metrics::TestOutcome::passed;
       test.against = "repeats";
-      fit.lack_of_fit.tests.push_back(test);
+      fit.lack_of_fit->tests.push_back(test);
     }
   }
 

@@ -71,37 +71,6 @@ calib::ConditionResult stored(const Result& result, const calib::ConditionScore&
   return condition;
 }
 
-void add_trust(const calib::Fit& fit, StoredFit& result) {
-  result.considered = fit.considered;
-  const bool solved = fit.rank > 0;
-  result.rank = fit.rank;
-  result.singular_values = fit.singular_values;
-  result.correlation = fit.correlation;
-  if (solved) {
-    result.reduced_chi_square = finite(fit.reduced_chi_square);
-    result.aic = finite(fit.aic);
-    result.bic = finite(fit.bic);
-  }
-  result.independent_residuals =
-      fit.independent_residuals > 0.0 ? finite(fit.independent_residuals) : std::nullopt;
-  result.interval_advice = fit.interval_advice;
-  result.combinations = fit.combinations;
-  result.lack_of_fit = std::optional(fit.lack_of_fit);
-  result.between_repeats = fit.between_repeats;
-  result.basins = fit.basins;
-  result.agreement = fit.agreement;
-  result.bootstrap = fit.bootstrap;
-  result.posterior = fit.posterior;
-  if (!fit.cross_validation.empty()) result.cross_validation = fit.cross_validation;
-}
-
-void add_search(const calib::Fit& fit, StoredFit& result) {
-  result.starts = fit.starts;
-  result.best_start = fit.best_start;
-  result.failure_count = fit.failure_count;
-  result.failures = fit.failures;
-}
-
 /// Finds the degrees of freedom for which Student's t times this error gives the half width of
 /// ci95_if_exact. A bound may cut off one end of the interval, so the longer side is used.
 double freedom_of_interval(const calib::FittedParameter& parameter, double error) {
@@ -182,10 +151,8 @@ StoredFit stored(const Result& result) {
   json.evaluations = fit.evaluations;
   json.wall_seconds = finite(fit.wall_seconds);
   json.simulation_tolerance = finite(fit.tolerance);
-  json.parameters = fit.parameters;
+  json.findings() = Inlined<calib::Findings>(fit);
   for (calib::FittedParameter& each : json.parameters) each.reason = reason_of(each);
-  add_trust(fit, json);
-  if (!fit.stability.empty()) json.stability = fit.stability;
   if (result.kind == ResultKind::fit) json.weights = weights(result);
   using datasets::Use;
   const auto covered = [&](const std::vector<Use>& uses) {
@@ -203,7 +170,7 @@ StoredFit stored(const Result& result) {
   for (const calib::ConditionScore& score : fit.conditions)
     json.conditions.push_back(stored(result, score));
   json.groups = calib::groups(result.campaign, fit);
-  add_search(fit, json);
+  json.search() = Inlined<calib::SearchOutcome>(fit);
   json.warnings = fit.warnings;
   json.provenance = stored(result.provenance);
   return json;

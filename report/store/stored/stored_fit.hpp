@@ -65,7 +65,7 @@ struct StoredWeight {
   RIGCAL_DESCRIBE(condition, channel, samples, sd, rms)
 };
 
-struct StoredFit {
+struct StoredFit : Inlined<calib::Findings>, Inlined<calib::SearchOutcome> {
   calib::FitStatus status = calib::FitStatus::failed;
   Later<std::optional<calib::StoppedIn>> stopped_in;
   std::string schema = kFitSchema;
@@ -79,24 +79,6 @@ struct StoredFit {
   long residual_count = 0;
   long evaluations = 0;
   std::optional<double> wall_seconds, simulation_tolerance;
-  std::vector<calib::FittedParameter> parameters;
-  calib::Correlation correlation;
-  int rank = 0;
-  std::vector<double> singular_values;
-  std::optional<double> reduced_chi_square;
-  Omittable<std::optional<double>> independent_residuals;  ///< null if unknown
-  Later<std::string> interval_advice;
-  Later<std::vector<std::string>> combinations;
-  Later<std::optional<calib::LackOfFitTests>> lack_of_fit;
-  Later<std::optional<calib::BetweenRepeats>> between_repeats;
-  Omittable<calib::Considered> considered;
-  Omittable<std::vector<calib::StabilityCheck>> stability;
-  Later<std::vector<calib::Basin>> basins;
-  Later<std::string> agreement;  ///< agreement of the starts, in words
-  Omittable<calib::BootstrapRun> bootstrap;
-  Omittable<calib::Posterior> posterior;
-  Omittable<std::vector<calib::HeldOut>> cross_validation;
-  Later<std::optional<double>> aic, bic;
   Omittable<std::vector<StoredWeight>> weights;
   calib::Validity validity;
   Omittable<calib::Validity> validated;  ///< ranges of the conditions that were not fitted
@@ -105,21 +87,17 @@ struct StoredFit {
   Omittable<std::vector<std::string>> not_judged;  ///< channels that need no limit
   std::vector<calib::ConditionResult> conditions;
   std::vector<calib::Group> groups;
-  std::vector<calib::StartReport> starts;
-  int best_start = 0;
-  long failure_count = 0;
-  std::vector<calib::SimulationFailure> failures;
   std::vector<std::string> warnings;
   StoredProvenance provenance;
   RIGCAL_DESCRIBE(status, stopped_in, schema, verdict, assessment, message, campaign, synthetic,
                   report, model, cost, residual_count, evaluations, wall_seconds,
-                  simulation_tolerance, parameters, correlation, rank, singular_values,
-                  reduced_chi_square, independent_residuals, interval_advice, combinations,
-                  lack_of_fit, between_repeats, considered, stability, basins, agreement, bootstrap,
-                  posterior, cross_validation, aic, bic, weights, validity, validated, decision,
-                  acceptance, not_judged, conditions, groups, starts, best_start, failure_count,
-                  failures, warnings, provenance)
+                  simulation_tolerance, findings(), weights, validity, validated, decision,
+                  acceptance, not_judged, conditions, groups, search(), warnings, provenance)
 
+  Inlined<calib::Findings>& findings() { return *this; }
+  const Inlined<calib::Findings>& findings() const { return *this; }
+  Inlined<calib::SearchOutcome>& search() { return *this; }
+  const Inlined<calib::SearchOutcome>& search() const { return *this; }
   const calib::ConditionResult* find(const std::string& condition) const;
 };
 

@@ -93,7 +93,7 @@ TEST_CASE("budget: a stop beside the fit keeps the fit, its scores, and what was
     CHECK(stopped.parameters[j].profile->low.is_lost());
     CHECK_THAT(stopped.parameters[j].reason, Contains("stopped by the limit of evaluations"));
   }
-  for (const HeldOut& held : stopped.cross_validation)
+  for (const HeldOut& held : stopped.cross_validation.value())
     CHECK_THAT(held.problem.value(), Contains("stopped by the limit of evaluations"));
   options.threads = 3;
   const Fit again = job.run(options);
@@ -118,7 +118,7 @@ TEST_CASE("budget: a condition whose nuisance parameters were not estimated is n
   CHECK_FALSE(stopped.has_converged());
   const ConditionScore& other = score(stopped, "other");
   CHECK_FALSE(other.verdict.has_value());
-  CHECK_THAT(other.not_scored, Contains("stopped"));
+  CHECK_THAT(other.not_scored.value(), Contains("stopped"));
   CHECK(other.channels.empty());
   CHECK(stopped.assessment.validation.state == AspectState::reservation);
 }
