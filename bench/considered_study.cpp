@@ -478,12 +478,12 @@ void count_tests(const metrics::ResidualTests& tests, StudyOutcome& outcome) {
 
 void count_scores(const calib::ConditionScore& condition, const calib::ChannelScore& channel,
                   const std::vector<double>& position, StudyOutcome& outcome) {
-  if (!channel.agreement || !channel.two_sided_uncertainty) return;
+  if (std::isnan(channel.metrics.rho2) || !channel.two_sided_uncertainty) return;
   const std::vector<double>& simulated = condition.series.at(channel.channel).second;
   const metrics::Agreement truth = metrics::agreement(position, simulated);
   for (std::size_t m = 0; m < metrics::kMetrics.size(); ++m) {
     const auto metric = metrics::kMetrics[m].value;
-    const double distance = std::abs(truth.*metric - (*channel.agreement).*metric);
+    const double distance = std::abs(truth.*metric - channel.metrics.*metric);
     outcome.covered[m].add(distance <= (*channel.two_sided_uncertainty).*metric);
   }
 }

@@ -213,7 +213,7 @@ Outcome outcome_of(const calib::Fit& fit, const std::vector<double>& truth) {
     const double half = (interval.high - interval.low) / 2.0;
     result.half_width.push_back(truth[j] == 0.0 ? std::nan("") : half / truth[j]);
   }
-  result.warned = fit.lack_of_fit.misfit.value_or(false) ||
+  result.warned = fit.lack_of_fit->misfit.value_or(false) ||
                   (fit.between_repeats && fit.between_repeats->differ);
   for (std::size_t j = 0; j < kFree.size(); ++j) {
     const auto expected =

@@ -56,7 +56,8 @@ const ConditionScore* score_of(const Fit& fit, const std::string& id) {
 Keyed<double, datasets::Channel> rmse_of(const ConditionScore& score) {
   Keyed<double, datasets::Channel> result;
   for (const ChannelScore& channel : score.channels) {
-    if (channel.agreement) result.emplace_back(channel.channel, channel.agreement->rmse);
+    if (!std::isnan(channel.metrics.rmse))
+      result.emplace_back(channel.channel, channel.metrics.rmse);
   }
   return result;
 }
@@ -91,8 +92,8 @@ HeldOut leave_out(const Campaign& campaign, const std::vector<datasets::Record>&
     const ConditionScore* predicted = score_of(part, id);
     if (part.status != FitStatus::converged) {
       held.problem = "the fit of the others: " + part.message;
-    } else if (predicted == nullptr || !predicted->failure.empty()) {
-      held.problem = predicted == nullptr ? "not predicted" : predicted->failure;
+    } else if (predicted == nullptr || predicted->failure) {
+      held.problem = predicted == nullptr ? "not predicted" : *predicted->failure;
     } else {
       held.rmse = rmse_of(*predicted);
       add_shift(whole, part, held);

@@ -89,13 +89,13 @@ void look_again(const Problem& problem, const Campaign& campaign,
     fit.parameters[j].profile.reset();
   }
   const std::string compared = compare_intervals(problem, fit.parameters, solved.spread.known.names,
-                                                 fit.lack_of_fit.misfit.value_or(false));
+                                                 fit.lack_of_fit->misfit.value_or(false));
   if (!compared.empty()) fit.interval_advice += "; " + compared;
   if (options.cross_validate) {
     fit.cross_validation = cross_validate(campaign, records, fit, options, budget);
     note(StoppedIn::cross_validation);
-    fit.interval_advice += "; " + cross_validation_summary(fit.cross_validation);
-    const auto words = cross_validation_words(fit.cross_validation);
+    fit.interval_advice += "; " + cross_validation_summary(*fit.cross_validation);
+    const auto words = cross_validation_words(*fit.cross_validation);
     fit.warnings.insert(fit.warnings.end(), words.begin(), words.end());
   }
 }
@@ -185,7 +185,7 @@ Fit score_at(const Campaign& campaign, const std::vector<Record>& records,
   }
   if (problem.map.unknowns().empty() &&
       std::all_of(fit.conditions.begin(), fit.conditions.end(),
-                  [](const ConditionScore& score) { return !score.failure.empty(); })) {
+                  [](const ConditionScore& score) { return score.failure.has_value(); })) {
     fit.status = FitStatus::failed;
     fit.message = "no condition could be simulated";
   }

@@ -87,6 +87,14 @@ struct Later : T {
 template <typename T, typename Key = std::string>
 using Keyed = std::vector<std::pair<Key, T>>;
 
+/// A list of structs that a result has in columns: an object for each described member of the
+/// structs, which has its values by their `channel`. The columns are among the keys of the struct
+/// that contains the list.
+template <typename T>
+struct Columns : std::vector<T> {
+  using std::vector<T>::vector;
+};
+
 /// Returns the text, or std::nullopt if it is empty.
 inline std::optional<std::string> unless_empty(const std::string& text) {
   return text.empty() ? std::nullopt : std::optional(text);

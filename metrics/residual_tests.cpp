@@ -71,16 +71,37 @@ std::size_t shown_lags(const std::vector<double>& rho, double band) {
   return std::min(most, std::max<std::size_t>(4 * fall, 50));
 }
 
+/// Keeps every k-th value, so that about 200 values or fewer remain. The value at lag zero is kept.
+///
+/// @param centre  index of lag zero
+Correlogram thinned(std::span<const double> values, std::size_t centre, double band,
+                    double sample_interval_s) {
+  constexpr std::size_t kMost = 200;
+  const std::size_t stride = values.size() / kMost + 1;
+  Correlogram result;
+  result.first_lag_s =
+      (static_cast<double>(centre % stride) - static_cast<double>(centre)) * sample_interval_s;
+  result.lag_step_s = static_cast<double>(stride) * sample_interval_s;
+  result.band = band;
+  for (std::size_t i = centre % stride; i < values.size(); i += stride)
+    result.values.push_back(values[i]);
+  return result;
+}
+
+/// @param lags  number of lags in the curve
 Autocorrelation test_autocorrelation(const std::vector<double>& e, const std::vector<double>& rho,
-                                     double interval_s) {
+                                     std::size_t lags, double interval_s, ResidualCurves& curves) {
   const auto n = static_cast<double>(e.size());
+  const double band = white_band(n);
   Autocorrelation result;
-  result.band = white_band(n);
-  const std::size_t lags = shown_lags(rho, result.band);
-  result.values.assign(rho.begin(), rho.begin() + static_cast<std::ptrdiff_t>(lags) + 1);
+  curves.autocorrelation = thinned(std::span(rho).first(lags + 1), 0, band, interval_s);
   constexpr std::size_t kPartialLags = 50;  // enough to show the order of a model
-  result.partial =
-      partial_autocorrelations(std::span(rho).first(std::min(rho.size() / 2, kPartialLags) + 1));
+  curves.partial_autocorrelation = Correlogram{
+      interval_s,
+      interval_s,
+      band,
+      {},
+      partial_autocorrelations(std::span(rho).first(std::min(rho.size() / 2, kPartialLags) + 1))};
   result.tested_lags = std::min<int>(kTestedLags, static_cast<int>(e.size() / 5));
   double sum = 0.0;
   for (int k = 1; k <= result.tested_lags; ++k) {
@@ -93,10 +114,10 @@ Autocorrelation test_autocorrelation(const std::vector<double>& e, const std::ve
   for (std::size_t i = 1; i < e.size(); ++i) steps += (e[i] - e[i - 1]) * (e[i] - e[i - 1]);
   result.durbin_watson = steps / (n * mean_square(e));
   std::size_t fall = 1;
-  while (fall < e.size() && rho[fall] > result.band) ++fall;
+  while (fall < e.size() && rho[fall] > band) ++fall;
   result.correlation_time_s = fall == 1 ? 0.0 : static_cast<double>(fall) * interval_s;
   conclude(result, judge(result.p_value < kWarningLevel,
-                         {n, result.band, kLargestUsefulBound, "an autocorrelation"}));
+                         {n, band, kLargestUsefulBound, "an autocorrelation"}));
   return result;
 }
 
@@ -105,27 +126,28 @@ std::optional<CrossCorrelation> test_cross_correlation(const std::vector<double>
                                                        const std::vector<Complex>& transform,
                                                        const std::vector<double>& u,
                                                        std::size_t lags, double effective,
-                                                       double interval_s) {
+                                                       double interval_s, ResidualCurves& curves) {
   const double scale =
       static_cast<double>(e.size()) * std::sqrt(mean_square(e)) * std::sqrt(mean_square(u));
   if (!(scale > 0.0) || !std::isfinite(scale)) return std::nullopt;
   const std::vector<double> products = lagged_products(transform, padded_transform(u));
   CrossCorrelation result;
-  result.band = white_band(effective);
-  result.values.resize(2 * lags + 1);
-  for (std::size_t i = 0; i < result.values.size(); ++i) {
+  std::vector<double> values(2 * lags + 1);
+  for (std::size_t i = 0; i < values.size(); ++i) {
     const std::size_t at = i >= lags ? i - lags : products.size() + i - lags;
-    result.values[i] = products[at] / scale;
-    if (std::abs(result.values[i]) > std::abs(result.peak)) {
-      result.peak = result.values[i];
+    values[i] = products[at] / scale;
+    if (std::abs(values[i]) > std::abs(result.peak)) {
+      result.peak = values[i];
       result.peak_lag_s = (static_cast<double>(i) - static_cast<double>(lags)) * interval_s;
     }
   }
-  const double tests = std::min(static_cast<double>(result.values.size()), effective);
+  const double tests = std::min(static_cast<double>(values.size()), effective);
   result.limit = normal_quantile(1.0 - 0.5 * kWarningLevel / tests) / std::sqrt(effective);
   conclude(result,
            judge(std::abs(result.peak) > result.limit,
                  {effective, result.limit, kLargestUsefulBound, "a correlation with the input"}));
+  curves.cross_correlation = thinned(values, lags, white_band(effective), interval_s);
+  curves.cross_correlation->band_of_peak = result.limit;
   return result;
 }
 
@@ -152,7 +174,8 @@ Lines line_powers(const std::vector<double>& e) {
   return {std::move(power), 1.0 / static_cast<double>(values.size())};
 }
 
-Periodogram test_periodogram(const std::vector<double>& e, double interval_s) {
+Periodogram test_periodogram(const std::vector<double>& e, double interval_s,
+                             ResidualCurves& curves) {
   const auto [power, spacing] = line_powers(e);
   const double lines = static_cast<double>(power.size());
   const double line_hz = spacing / interval_s;
@@ -160,15 +183,14 @@ Periodogram test_periodogram(const std::vector<double>& e, double interval_s) {
   for (const double p : power) total += p;
   Periodogram result;
   constexpr std::size_t kSteps = 50;  // number of steps in the cumulative curve, for plots
-  result.cumulative = {0.0};
-  result.last_frequency_hz = lines * line_hz;
+  std::vector<double> cumulative{0.0};
   double sum = 0.0;
   for (std::size_t k = 0; k < power.size(); ++k) {
     // Between two lines the curve is interpolated.
-    while (result.cumulative.size() <= kSteps) {
-      const double at = static_cast<double>(result.cumulative.size()) * lines / kSteps;
+    while (cumulative.size() <= kSteps) {
+      const double at = static_cast<double>(cumulative.size()) * lines / kSteps;
       if (at > static_cast<double>(k + 1)) break;
-      result.cumulative.push_back((sum + power[k] * (at - static_cast<double>(k))) / total);
+      cumulative.push_back((sum + power[k] * (at - static_cast<double>(k))) / total);
     }
     sum += power[k];
     const double share = sum / total;
@@ -182,6 +204,8 @@ Periodogram test_periodogram(const std::vector<double>& e, double interval_s) {
   conclude(result, judge(result.distance > result.limit,
                          {static_cast<double>(e.size()), result.limit, kLargestUsefulBound,
                           "a departure from a flat spectrum"}));
+  curves.cumulative_periodogram =
+      CumulativePower{lines * line_hz, result.limit, std::move(cumulative)};
   const auto peak = static_cast<std::size_t>(
       std::distance(power.begin(), std::max_element(power.begin(), power.end())));
   result.peak_frequency_hz = static_cast<double>(peak + 1) * line_hz;
@@ -197,14 +221,14 @@ Periodogram test_periodogram(const std::vector<double>& e, double interval_s) {
     while (last < power.size() && (last == k || static_cast<double>(last + 1) < upper))
       mean += power[last++];
     const auto count = static_cast<double>(last - k);
-    result.frequency_hz.push_back(static_cast<double>(k + 1 + last) * 0.5 * line_hz);
-    result.density.push_back(mean / count * density);
+    curves.periodogram.frequency_hz.push_back(static_cast<double>(k + 1 + last) * 0.5 * line_hz);
+    curves.periodogram.density.push_back(mean / count * density);
     k = last;
   }
   return result;
 }
 
-Normality test_normality(const std::vector<double>& e, double effective) {
+Normality test_normality(const std::vector<double>& e, double effective, Quantiles& curve) {
   const double sd = std::sqrt(mean_square(e));
   const auto n = static_cast<double>(e.size());
   Normality result;
@@ -232,8 +256,8 @@ Normality test_normality(const std::vector<double>& e, double effective) {
     const double q = last * (2.0 * i / (kPoints - 1) - 1.0);
     const double rank = 0.5 * std::erfc(-q / std::sqrt(2.0)) * n - 0.5;
     const auto at = static_cast<std::size_t>(std::clamp(std::round(rank), 0.0, n - 1.0));
-    result.normal_quantile.push_back(q);
-    result.residual_quantile.push_back(sorted[at] / sd);
+    curve.normal_quantile.push_back(q);
+    curve.residual_quantile.push_back(sorted[at] / sd);
   }
   return result;
 }
@@ -273,8 +297,8 @@ double effective_sample_size(std::span<const double> rho) {
   return std::max(1.0, n / (1.0 + 2.0 * sum));
 }
 
-ResidualTests residual_tests(std::span<const double> residual, std::span<const double> input,
-                             double sample_interval_s) {
+TestedResidual residual_tests(std::span<const double> residual, std::span<const double> input,
+                              double sample_interval_s) {
   if (residual.size() < kLeastSamples)
     throw std::invalid_argument("residual_tests: fewer than 16 samples");
   if (!input.empty() && input.size() != residual.size())
@@ -295,7 +319,7 @@ ResidualTests residual_tests(std::span<const double> residual, std::span<const d
   const double least = 8.0 * std::numeric_limits<double>::epsilon() * largest;
   if (!(variance > least * least)) throw std::domain_error("the residual is constant");
 
-  ResidualTests result;
+  TestedResidual result;
   result.samples = static_cast<long>(e.size());
   result.std = std::sqrt(variance);
   result.sample_interval_s = sample_interval_s;
@@ -304,15 +328,16 @@ ResidualTests residual_tests(std::span<const double> residual, std::span<const d
   rho.resize(e.size());
   for (double& value : rho) value /= static_cast<double>(e.size()) * variance;
 
-  result.autocorrelation = test_autocorrelation(e, rho, sample_interval_s);
+  const std::size_t lags = shown_lags(rho, white_band(static_cast<double>(e.size())));
+  result.autocorrelation = test_autocorrelation(e, rho, lags, sample_interval_s, result.curves);
   result.effective_samples = effective_sample_size(rho);
   if (!input.empty()) {
-    result.cross_correlation = test_cross_correlation(e, transform, centred(input),
-                                                      result.autocorrelation.values.size() - 1,
-                                                      result.effective_samples, sample_interval_s);
+    result.cross_correlation =
+        test_cross_correlation(e, transform, centred(input), lags, result.effective_samples,
+                               sample_interval_s, result.curves);
   }
-  result.periodogram = test_periodogram(e, sample_interval_s);
-  result.normality = test_normality(e, result.effective_samples);
+  result.periodogram = test_periodogram(e, sample_interval_s, result.curves);
+  result.normality = test_normality(e, result.effective_samples, result.curves.normality);
   result.drift = test_drift(residual, e, result.effective_samples, sample_interval_s);
   return result;
 }

@@ -2,9 +2,11 @@
 
 #include <optional>
 #include <span>
-#include <vector>
+#include <string>
+#include <utility>
 
 #include "common/describe.hpp"
+#include "metrics/residual_curves.hpp"
 #include "metrics/test_outcome.hpp"
 
 namespace rigcal::metrics {
@@ -17,10 +19,6 @@ namespace rigcal::metrics {
 
 /// Correlation of the residual with itself. White noise has none.
 struct Autocorrelation : Judged {
-  std::vector<double> values;  ///< shape (lags + 1), from lag 0; biased estimate, values[0] = 1
-  double band = 0.0;           ///< 95 % of the values for white noise are within +-band
-  /// Partial autocorrelations from lag 1 on, at most 50; for white noise they have the same band.
-  std::vector<double> partial;
   double ljung_box = 0.0;  ///< Ljung and Box, Biometrika 65, 1978, over `tested_lags`
   int tested_lags = 0;
   double p_value = 0.0;
@@ -31,23 +29,14 @@ struct Autocorrelation : Judged {
 
 /// Correlation of the residual with the input of the rig.
 struct CrossCorrelation : Judged {
-  std::vector<double> values;  ///< shape (2 lags + 1), from -lags: corr(e(t), u(t - lag))
-  double band = 0.0;           ///< 95 % bound for a single lag, from the effective sample size
-  double limit = 0.0;          ///< 95 % bound for the largest of all lags (Bonferroni)
-  double peak = 0.0;           ///< value with the largest magnitude
-  double peak_lag_s = 0.0;     ///< > 0 if the residual lags behind the input
+  double limit = 0.0;       ///< 95 % bound for the largest of all lags (Bonferroni)
+  double peak = 0.0;        ///< value with the largest magnitude
+  double peak_lag_s = 0.0;  ///< > 0 if the residual lags behind the input
   RIGCAL_DESCRIBE(peak, peak_lag_s, limit)
 };
 
 /// Distribution of the residual's power over frequency.
 struct Periodogram : Judged {
-  std::vector<double> frequency_hz;  ///< shape (bins), logarithmic bins of the periodogram
-  std::vector<double> density;       ///< mean one-sided power density, [unit^2/Hz]
-  /// Fraction of the power from zero up to equally spaced frequencies, the last of which is
-  /// `last_frequency_hz`; shape (51). For white noise, a straight line from 0 to 1, and all values
-  /// are within +-limit of it in 95 % of the records.
-  std::vector<double> cumulative;
-  double last_frequency_hz = 0.0;    ///< half the sampling rate
   double median_frequency_hz = 0.0;  ///< half of the power is below it
   double peak_frequency_hz = 0.0;    ///< frequency of the largest single line
   double peak_share = 0.0;           ///< fraction of the power in that line and its two neighbours
@@ -58,8 +47,6 @@ struct Periodogram : Judged {
 
 /// Distribution of the residual.
 struct Normality : Judged {
-  std::vector<double> normal_quantile;    ///< shape (points), from the standard normal distribution
-  std::vector<double> residual_quantile;  ///< quantiles of (e - mean) / std
   double skewness = 0.0;
   double excess_kurtosis = 0.0;
   double jarque_bera = 0.0;  ///< Jarque and Bera, Economics Letters 6, 1980
@@ -76,16 +63,44 @@ struct Drift : Judged {
   RIGCAL_DESCRIBE(mean, mean_p_value, slope_per_s, slope_p_value)
 };
 
+/// A test with its verdict in words, which its user adds. Verdict and outcome are the last keys in
+/// files.
+template <typename Test>
+struct Worded : Test {
+  std::string verdict;
+
+  Worded() = default;
+  Worded(Test test)
+      : Test(std::move(test)) {}  // NOLINT(google-explicit-constructor): a Test itself
+
+  template <typename Self, typename Visit>
+  static void describe(Self& self, const Visit& visit) {
+    Test::describe(self, visit);
+    visit("verdict", self.verdict);
+    std::optional<bool> passed;  // follows from the outcome; null if not judged
+    if (self.passed() || self.failed()) passed = self.passed();
+    visit("passed", passed);
+    visit("outcome", self.outcome);
+    visit("reason", self.reason);
+  }
+};
+
 struct ResidualTests {
   long samples = 0;
+  double sample_interval_s = 0.0;
   double std = 0.0;                ///< standard deviation of the residual
   double effective_samples = 0.0;  ///< see effective_sample_size()
-  double sample_interval_s = 0.0;
-  Autocorrelation autocorrelation;
-  std::optional<CrossCorrelation> cross_correlation;  ///< absent if the input is constant
-  Periodogram periodogram;
-  Normality normality;
-  Drift drift;
+  Worded<Autocorrelation> autocorrelation;
+  std::optional<Worded<CrossCorrelation>> cross_correlation;  ///< absent if the input is constant
+  Worded<Periodogram> periodogram;
+  Worded<Normality> normality;
+  Worded<Drift> drift;
+  RIGCAL_DESCRIBE(samples, sample_interval_s, std, effective_samples, autocorrelation,
+                  cross_correlation, periodogram, normality, drift)
+};
+
+struct TestedResidual : ResidualTests {
+  ResidualCurves curves;
 };
 
 /// Effective sample size: the number of independent samples that would determine the mean as
@@ -105,7 +120,7 @@ double effective_sample_size(std::span<const double> rho);
 /// @param sample_interval_s  > 0
 /// @throws std::invalid_argument  if sizes differ, n < 16, or a value or the interval is not finite
 /// @throws std::domain_error      if the residual is constant
-ResidualTests residual_tests(std::span<const double> residual, std::span<const double> input,
-                             double sample_interval_s);
+TestedResidual residual_tests(std::span<const double> residual, std::span<const double> input,
+                              double sample_interval_s);
 
 }  // namespace rigcal::metrics

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <concepts>
 #include <string>
 #include <string_view>
 
@@ -30,18 +29,6 @@ const char* member_doc(std::string_view member) {
   return doc_of(pybind11::type_id<Self>() + "::" + std::string(member));
 }
 
-/// Returns the member with this name. It must be described and of this type.
-template <typename Member, typename Self>
-const Member& described_member(const Self& self, std::string_view name) {
-  const Member* found = nullptr;
-  Self::describe(self, [&]<typename Each>(const char* each, const Each& member) {
-    if constexpr (std::same_as<Each, Member>) {
-      if (each == name) found = &member;
-    }
-  });
-  return *found;
-}
-
 /// Adds a read-only property for every described member that the class does not have yet. Members
 /// that Python sees in another form must therefore be added before.
 template <typename Self, typename... Options>
@@ -51,7 +38,7 @@ void bind_members(pybind11::class_<Self, Options...>& target) {
     const std::string key = report::described::key_of(name);
     if (pybind11::hasattr(target, key.c_str())) return;
     const auto get = [name](const Self& self) -> decltype(auto) {
-      const Member& member = described_member<Member>(self, name);
+      const Member& member = report::described::described_member<const Member>(self, name);
       if constexpr (report::HasKeys<Member>) {
         return report::KeysOf<Member>::text(member);
       } else if constexpr (report::described::is_keyed<Member>) {

@@ -217,8 +217,8 @@ void bind_start(py::module_& module) {
 }
 
 /// Returns a getter for a property that is a member of the fit.
-template <typename Value>
-auto of_fit(Value calib::Fit::*value) {
+template <typename Base, typename Value>
+auto of_fit(Value Base::*value) {
   return [=](const FitResult& self) { return self.fit.*value; };
 }
 
@@ -263,10 +263,7 @@ Raises:
                              "Half the sum of squared weighted residuals, priors included; None\n"
                              "where nothing was estimated.")
       .def_property_readonly(
-          "reduced_chi_square",
-          [](const Self& self) {
-            return self.fit.rank > 0 ? std::optional(self.fit.reduced_chi_square) : std::nullopt;
-          },
+          "reduced_chi_square", of_fit(&calib::Fit::reduced_chi_square),
           "Twice the cost over the degrees of freedom: about 1 if the noise is all that is left.")
       .def_property_readonly("residual_count", of_fit(&calib::Fit::residual_count),
                              "Number of residuals.")

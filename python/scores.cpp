@@ -2,6 +2,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -46,29 +47,24 @@ py::array_t<double> residual(const ScoredChannel& self) {
   return array;
 }
 
-/// Returns the metrics by name. A value is None if there is no agreement.
-template <typename Value>
-Dict<std::string, Value> by_name(const std::optional<metrics::Agreement>& agreement) {
+/// Returns the described numbers of a struct by name; None for one that does not exist.
+template <typename Value = double, typename Numbers>
+Dict<std::string, Value> by_name(const Numbers& numbers) {
   Dict<std::string, Value> values;
-  for (const metrics::MetricSpec& metric : metrics::kMetrics) {
-    const py::str name(metric.name.data(), metric.name.size());
-    values[name] = agreement ? py::object(py::float_((*agreement).*metric.value)) : py::none();
-  }
+  Numbers::describe(numbers, [&](const char* name, double value) {
+    values[name] = std::isnan(value) ? py::object(py::none()) : py::float_(value);
+  });
   return values;
 }
 
-std::optional<Dict<std::string, double>> expanded_uncertainty_of(const ScoredChannel& self) {
-  if (!self.score.expanded_uncertainty) return std::nullopt;
-  return by_name<double>(self.score.expanded_uncertainty);
-}
-
-std::optional<Dict<std::string, double>> noise_floor_of(const ScoredChannel& self) {
-  if (!self.score.noise_floor) return std::nullopt;
-  Dict<std::string, double> floor;
-  floor["rho2"] = self.score.noise_floor->rho2;
-  floor["ccc"] = self.score.noise_floor->ccc;
-  floor["absolute_error_percent"] = self.score.noise_floor->absolute_error_percent;
-  return floor;
+/// Returns a getter for a property with the numbers of a member that may be absent.
+template <typename Numbers>
+auto numbers_of(Numbers calib::ChannelScore::*member) {
+  return [member](const ScoredChannel& self) -> std::optional<Dict<std::string, double>> {
+    const auto& found = self.score.*member;
+    if (!found) return std::nullopt;
+    return by_name(*found);
+  };
 }
 
 Dict<std::string, ScoredChannel> scored_channels_of(const ScoredCondition& self) {
@@ -88,6 +84,9 @@ void bind_limit_check(py::module_& module) {
 }
 
 void bind_scored_channel(py::module_& module) {
+  const auto of_metrics = [](auto member) {
+    return [member](const ScoredChannel& self) { return self.score.metrics.*member; };
+  };
   py::class_<ScoredChannel>(module, "ScoredChannel",
                             "How well the model agrees with one channel of a condition; SI.")
       .def_property_readonly("key", field(&ScoredChannel::about, &datasets::ChannelInfo::key),
@@ -107,30 +106,33 @@ void bind_scored_channel(py::module_& module) {
       .def_property_readonly(
           "metrics",
           [](const ScoredChannel& self) {
-            return by_name<std::optional<double>>(self.score.agreement);
+            return by_name<std::optional<double>, metrics::Agreement>(self.score.metrics);
           },
           "Metrics by name, \"ccc\", \"rho2\"...; None where one does not exist.")
-      .def_property_readonly("noise_floor", &noise_floor_of,
+      .def_property_readonly("noise_floor", numbers_of(&calib::ChannelScore::noise_floor),
                              "What a perfect model would reach, by name; None where the noise is\n"
                              "unknown.")
-      .def_property_readonly("expanded_uncertainty", &expanded_uncertainty_of,
+      .def_property_readonly("expanded_uncertainty",
+                             numbers_of(&calib::ChannelScore::expanded_uncertainty),
                              "Expanded uncertainty (95 %) of each of `metrics`, from repeats and\n"
                              "sensor; None with fewer than two repeats.")
       .def_property_readonly(
-          "budgets", [](const ScoredChannel& self) { return dict_of(self.score.budgets); },
+          "budgets",
+          [](const ScoredChannel& self) {
+            return dict_of(self.score.score_budgets.value_or(Keyed<calib::Budget95>()));
+          },
           "Contributions to the two-sided uncertainty of each of `metrics`, by\n"
           "name; empty with fewer than two repeats.")
       .def_property_readonly(
-          "gain_ratio", field(&ScoredChannel::score, &calib::ChannelScore::gain_ratio),
+          "gain_ratio", of_metrics(&calib::ChannelMetrics::gain_ratio),
           "Simulated over measured amplitude of the fundamental; None where there is none.")
       .def_property_readonly(
-          "phase_deg", field(&ScoredChannel::score, &calib::ChannelScore::phase_deg),
+          "phase_deg", of_metrics(&calib::ChannelMetrics::phase_deg),
           "Phase of the simulated fundamental minus that of the measured one [degrees]; or None.")
-      .def_property_readonly("delay_s", field(&ScoredChannel::score, &calib::ChannelScore::delay_s),
+      .def_property_readonly("delay_s", of_metrics(&calib::ChannelMetrics::delay_s),
                              "Delay of the simulated fundamental [s]; or None.")
-      .def_property_readonly(
-          "problem", [](const ScoredChannel& self) { return unless_empty(self.score.problem); },
-          "Why a metric does not exist, in words; or None.")
+      .def_property_readonly("problem", of_metrics(&calib::ChannelMetrics::problem),
+                             "Why a metric does not exist, in words; or None.")
       .def("__repr__", [](const ScoredChannel& self) {
         return fmt::format("<rigcal.ScoredChannel {} of {}>", self.about.key, self.condition->id);
       });
@@ -153,16 +155,14 @@ void bind_scores(py::module_& module) {
                              "\"PASS\", \"WARN\" or \"FAIL\"; None without limits.")
       .def_property_readonly("reasons", field(&Self::score, &calib::ConditionScore::reasons),
                              "Reasons for WARN or FAIL, in words.")
-      .def_property_readonly("checks", field(&Self::score, &calib::ConditionScore::checks),
+      .def_property_readonly("checks", field(&Self::score, &calib::ConditionScore::limit_checks),
                              "One check per limit.")
-      .def_property_readonly("warnings", field(&Self::score, &calib::ConditionScore::data_warnings),
+      .def_property_readonly("warnings", field(&Self::score, &calib::ConditionScore::warnings),
                              "What is doubtful about the recording, in words.")
-      .def_property_readonly(
-          "failure", [](const Self& self) { return unless_empty(self.score->failure); },
-          "Why it could not be simulated, in words; or None.")
-      .def_property_readonly(
-          "not_scored", [](const Self& self) { return unless_empty(self.score->not_scored); },
-          "Why it was not scored, in words; or None.")
+      .def_property_readonly("failure", field(&Self::score, &calib::ConditionScore::failure),
+                             "Why it could not be simulated, in words; or None.")
+      .def_property_readonly("not_scored", field(&Self::score, &calib::ConditionScore::not_scored),
+                             "Why it was not scored, in words; or None.")
       .def_property_readonly("samples", field(&Self::score, &calib::ConditionScore::samples),
                              "Number of samples inside the windows.")
       .def_property_readonly(

@@ -96,6 +96,7 @@ void repeat_on_validation(Problem validation, const std::vector<FittedParameter>
       validation.conditions.begin(), validation.conditions.end(),
       [&](const ProblemCondition& each) { return is_of_another_day(*each.condition, dates); });
   std::vector<double> p_values;
+  std::vector<StabilityCheck> checks;
   for (std::size_t j = 0; j < unknowns.size(); ++j) {
     if (fitted[j] == nullptr || !fitted[j]->budget || !found.robust_standard_error[j]) continue;
     if (bound_side(at.z[j]) != BoundSide::inside) continue;  // at a bound its error is not valid
@@ -113,7 +114,7 @@ void repeat_on_validation(Problem validation, const std::vector<FittedParameter>
     for (const metrics::ErrorPart& each : parts) variance += each.variance;
     const metrics::EstimateError error{std::sqrt(variance), metrics::effective_freedom(parts)};
     if (!(error.standard_error > 0.0)) continue;
-    StabilityCheck& check = fit.stability.emplace_back();
+    StabilityCheck& check = checks.emplace_back();
     check.key = validation.spec(j).key;
     check.unit = validation.spec(j).unit;
     check.scope = unknowns[j].scope;
@@ -125,7 +126,8 @@ void repeat_on_validation(Problem validation, const std::vector<FittedParameter>
   }
   const auto together = metrics::holm(p_values);
   for (std::size_t i = 0; i < together.size(); ++i)
-    fit.stability[i].differs = together[i] < metrics::kWarningLevel;
+    checks[i].differs = together[i] < metrics::kWarningLevel;
+  if (!checks.empty()) fit.stability = std::move(checks);
 }
 
 }  // namespace rigcal::calib

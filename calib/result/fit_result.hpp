@@ -30,42 +30,58 @@ struct BootstrapRun {
   RIGCAL_DESCRIBE(replicates, message)
 };
 
+/// The estimates of a fit, and how far they can be trusted.
+struct Findings {
+  std::vector<FittedParameter> parameters;
+  Correlation correlation;  ///< correlation of the unknowns that have a standard error
+  int rank = 0;             ///< rank of the scaled Jacobian at the optimum
+  std::vector<double> singular_values;
+  /// 2 cost / (residuals - rank), about 1 if there is only noise; absent if the rank is zero.
+  std::optional<double> reduced_chi_square;
+  /// Effective number according to the noise model; null if unknown.
+  Omittable<std::optional<double>> independent_residuals = std::optional<double>();
+  Later<std::string> interval_advice;            ///< which interval to believe, and why
+  Later<std::vector<std::string>> combinations;  ///< combinations that the records determine
+  Later<std::optional<LackOfFitTests>> lack_of_fit = std::optional(LackOfFitTests());
+  Later<std::optional<BetweenRepeats>> between_repeats;  ///< absent if there are no single repeats
+  /// Small effects that the model omits; absent if they were not examined.
+  Omittable<Considered> considered;
+  Omittable<std::vector<StabilityCheck>> stability;  ///< comparison with the validation records
+  Later<std::vector<Basin>> basins;                  ///< sorted by cost
+  /// How well the starts agree, in words; empty for a single start.
+  Later<std::string> agreement;
+  Omittable<BootstrapRun> bootstrap;                 ///< absent if not requested
+  Omittable<Posterior> posterior;                    ///< absent if not requested
+  Omittable<std::vector<HeldOut>> cross_validation;  ///< absent if not requested
+  /// From the independent residuals, for comparing models within a campaign; absent if the rank is
+  /// zero.
+  Later<std::optional<double>> aic, bic;
+  RIGCAL_DESCRIBE(parameters, correlation, rank, singular_values, reduced_chi_square,
+                  independent_residuals, interval_advice, combinations, lack_of_fit,
+                  between_repeats, considered, stability, basins, agreement, bootstrap, posterior,
+                  cross_validation, aic, bic)
+};
+
+/// The starts of a search, and the simulations that failed in it.
+struct SearchOutcome {
+  std::vector<StartReport> starts;
+  int best_start = 0;
+  long failure_count = 0;
+  std::vector<SimulationFailure> failures;
+  RIGCAL_DESCRIBE(starts, best_start, failure_count, failures)
+};
+
 /// Everything that a fit found.
-struct Fit {
+struct Fit : Findings, SearchOutcome {
   FitStatus status = FitStatus::failed;
   StoppedIn stopped_in = StoppedIn::nothing;
   std::string message;  ///< why the fit stopped, and what is unreliable, in words
   double cost = 0.0;    ///< half the sum of squared weighted residuals, priors included
   long residual_count = 0;
-  double reduced_chi_square = 0.0;  ///< 2 cost / (residuals - rank); about 1 if there is only noise
-  long evaluations = 0;             ///< number of evaluations of all residuals
+  long evaluations = 0;  ///< number of evaluations of all residuals
   double wall_seconds = 0.0;
-  double tolerance = 0.0;  ///< tolerance of the simulations
-  /// Effective number according to the noise model; 0 if unknown.
-  double independent_residuals = 0.0;
-  double aic = 0.0,
-         bic = 0.0;  ///< from the independent residuals, for comparing models within a campaign
-  std::vector<FittedParameter> parameters;
-  LackOfFitTests lack_of_fit;
-  std::optional<BetweenRepeats> between_repeats;  ///< absent if there are no single repeats
-  /// Small effects that the model omits; absent if they were not examined.
-  std::optional<Considered> considered;
-  std::vector<StabilityCheck> stability;  ///< comparison with the validation records
-  std::string interval_advice;            ///< which interval to believe, and why
-  std::vector<std::string> combinations;  ///< parameter combinations that the records determine
-  Correlation correlation;  ///< correlation of the unknowns that have a standard error
-  int rank = 0;             ///< rank of the scaled Jacobian at the optimum
-  std::vector<double> singular_values;
-  std::vector<StartReport> starts;
-  int best_start = 0;
+  double tolerance = 0.0;                       ///< tolerance of the simulations
   std::optional<FurtherStarts> further_starts;  ///< absent if no further starts were evaluated
-  std::vector<Basin> basins;                    ///< sorted by cost
-  std::optional<BootstrapRun> bootstrap;        ///< absent if not requested
-  std::optional<Posterior> posterior;           ///< absent if not requested
-  std::vector<HeldOut> cross_validation;
-  std::string agreement;  ///< how well the starts agree, in words; empty for a single start
-  std::vector<SimulationFailure> failures;
-  long failure_count = 0;
   std::vector<std::string> warnings;
   std::vector<ConditionScore> conditions;  ///< `fit` and `validate` conditions in campaign order
   Assessment assessment;

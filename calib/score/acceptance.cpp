@@ -58,14 +58,14 @@ LimitCheck check(const datasets::AcceptanceLimit& limit, datasets::DecisionRule 
   result.limit = limit.limit;
   result.warn = limit.warn;
   const auto key = datasets::info(channel.channel).key;
-  if (!channel.agreement) {
+  const metrics::MetricSpec& spec = metric(limit.metric);
+  const double value = channel.metrics.*spec.value;
+  if (std::isnan(value)) {
     result.verdict = Verdict::fail;
     result.words = fmt::format("{}: {} does not exist, so that its limit cannot be evaluated ({})",
-                               key, limit.metric, channel.problem);
+                               key, limit.metric, channel.metrics.problem.value_or(""));
     return result;
   }
-  const metrics::MetricSpec& spec = metric(limit.metric);
-  const double value = (*channel.agreement).*spec.value;
   result.value = value;
   result.tolerance_used = 0.0;
   if (channel.expanded_uncertainty)
@@ -114,20 +114,24 @@ LimitCheck check(const datasets::AcceptanceLimit& limit, datasets::DecisionRule 
 void judge(const std::vector<datasets::AcceptanceLimit>& limits, datasets::DecisionRule rule,
            ConditionScore& score) {
   if (limits.empty()) return;
-  if (!score.failure.empty()) {
+  if (score.failure) {
     score.verdict = Verdict::fail;
-    score.reasons.push_back("could not be simulated: " + score.failure);
+    score.reasons.push_back("could not be simulated: " + *score.failure);
     return;
   }
+  std::map<datasets::Channel, Verdict> worst;
   for (const datasets::AcceptanceLimit& limit : limits) {
     for (const ChannelScore& channel : score.channels) {
       if (channel.channel != limit.channel) continue;
-      score.checks.push_back(check(limit, rule, channel));
-      const LimitCheck& made = score.checks.back();
+      score.limit_checks.push_back(check(limit, rule, channel));
+      const LimitCheck& made = score.limit_checks.back();
+      Verdict& of_channel = worst.try_emplace(channel.channel, Verdict::pass).first->second;
+      of_channel = std::max(of_channel, made.verdict);
       score.verdict = std::max(score.verdict.value_or(Verdict::pass), made.verdict);
       if (!made.words.empty()) score.reasons.push_back(made.words);
     }
   }
+  score.channel_verdicts.assign(worst.begin(), worst.end());
 }
 
 std::string_view words_of(datasets::DecisionRule rule) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <optional>
 
@@ -48,7 +49,8 @@ void gather(std::vector<Group>& result, const std::string& by, const Label& labe
     if (group == result.end()) group = result.insert(group, Group{by, *text, {}, {}});
     group->conditions.push_back(condition->id);
     for (const ChannelScore& channel : score->channels) {
-      if (channel.agreement) add_score(score_in(*group, channel.channel), *channel.agreement);
+      if (!std::isnan(channel.metrics.rho2))
+        add_score(score_in(*group, channel.channel), channel.metrics);
     }
   }
 }

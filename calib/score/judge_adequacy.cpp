@@ -48,7 +48,7 @@ void judge_lack_of_fit(const Campaign& campaign, const Fit& fit, std::vector<Rea
   /// the standard deviation), the stated noise is too large to be used for a judgement.
   constexpr double kOverstated = 0.25;
   const double bound = campaign.acceptance_bounds.model_error_to_noise;
-  const auto& tests = fit.lack_of_fit.tests;
+  const auto& tests = fit.lack_of_fit->tests;
   if (tests.empty()) return;
   std::vector<const LackOfFit*> beyond;
   std::vector<const LackOfFit*> overstated;
@@ -120,7 +120,7 @@ std::vector<UnjudgedSignal> signals_of_unknown_noise(const Fit& fit) {
   std::vector<UnjudgedSignal> result;
   for (const ConditionScore& score : fit.conditions) {
     for (const ChannelScore& channel : score.channels) {
-      if (!fit.lack_of_fit.has(score.id, channel.channel)) result.push_back({&score, &channel});
+      if (!fit.lack_of_fit->has(score.id, channel.channel)) result.push_back({&score, &channel});
     }
   }
   return result;

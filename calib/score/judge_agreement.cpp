@@ -23,17 +23,17 @@ constexpr double kPoorRho2 = 0.9;
 void judge_unused_limits(const Campaign& campaign, const Fit& fit, std::vector<Reason>& reasons) {
   const auto by_campaign = [&](const ConditionScore& score) {
     const datasets::Condition* condition = campaign.find(score.id);
-    return condition != nullptr && !condition->acceptance && score.failure.empty() &&
-           score.not_scored.empty();
+    return condition != nullptr && !condition->acceptance && !score.failure && !score.not_scored;
   };
   if (std::none_of(fit.conditions.begin(), fit.conditions.end(), by_campaign)) return;
   for (const datasets::AcceptanceLimit& limit : campaign.acceptance) {
     const bool used =
         std::any_of(fit.conditions.begin(), fit.conditions.end(), [&](const auto& score) {
           return by_campaign(score) &&
-                 std::any_of(score.checks.begin(), score.checks.end(), [&](const auto& check) {
-                   return check.channel == limit.channel && check.metric == limit.metric;
-                 });
+                 std::any_of(
+                     score.limit_checks.begin(), score.limit_checks.end(), [&](const auto& check) {
+                       return check.channel == limit.channel && check.metric == limit.metric;
+                     });
         });
     if (used) continue;
     const auto key = datasets::info(limit.channel).key;
@@ -49,16 +49,15 @@ void judge_recordings(const Fit& fit, std::vector<Reason>& reasons) {
   const ConditionScore* first = nullptr;
   std::size_t count = 0;
   for (const ConditionScore& score : fit.conditions) {
-    if (score.data_warnings.empty()) continue;
+    if (score.warnings.empty()) continue;
     ++count;
     if (first == nullptr) first = &score;
   }
   if (first == nullptr) return;
-  reasons.push_back(
-      reason(AspectState::reservation, "recording_doubtful",
-             fmt::format("recordings of {} are doubtful; {}: {}", conditions_text(count), first->id,
-                         first->data_warnings.front()),
-             first->id, {{"conditions", static_cast<double>(count)}}));
+  reasons.push_back(reason(AspectState::reservation, "recording_doubtful",
+                           fmt::format("recordings of {} are doubtful; {}: {}",
+                                       conditions_text(count), first->id, first->warnings.front()),
+                           first->id, {{"conditions", static_cast<double>(count)}}));
 }
 
 /// Conditions in which an output channel has no limit.
@@ -74,14 +73,14 @@ void judge_without_limits(const Campaign& campaign, const Fit& fit, std::vector<
   std::map<std::pair<datasets::Channel, bool>, WithoutLimit> found;
   for (const ConditionScore& score : fit.conditions) {
     const datasets::Condition* condition = campaign.find(score.id);
-    if (condition == nullptr || !score.failure.empty()) continue;
+    if (condition == nullptr || score.failure) continue;
     for (const ChannelScore& channel : score.channels) {
       if (score.verdict_of(channel.channel)) continue;
       const bool stated = campaign.may_lack_limits(*condition, channel.channel);
       WithoutLimit& each = found[{channel.channel, stated}];
       ++each.conditions;
-      const double rho2 =
-          channel.agreement ? channel.agreement->rho2 : std::numeric_limits<double>::infinity();
+      const double rho2 = std::isnan(channel.metrics.rho2) ? std::numeric_limits<double>::infinity()
+                                                           : channel.metrics.rho2;
       if (each.worst != nullptr && rho2 >= each.rho2) continue;
       each.worst = &score;
       each.rho2 = rho2;
@@ -122,14 +121,14 @@ void name_poor_agreement(const Fit& fit, std::vector<Reason>& reasons) {
   const ChannelScore* worst = nullptr;
   for (const ConditionScore& score : fit.conditions) {
     for (const ChannelScore& channel : score.channels) {
-      if (!channel.agreement) continue;
-      if (worst != nullptr && channel.agreement->rho2 >= worst->agreement->rho2) continue;
+      if (std::isnan(channel.metrics.rho2)) continue;
+      if (worst != nullptr && channel.metrics.rho2 >= worst->metrics.rho2) continue;
       worst = &channel;
       where = &score;
     }
   }
   if (worst == nullptr) return;
-  const double rho2 = worst->agreement->rho2;
+  const double rho2 = worst->metrics.rho2;
   const bool poor = rho2 < kPoorRho2;
   reasons.push_back(reason(AspectState::not_assessed, poor ? "poor_agreement" : "least_agreement",
                            fmt::format("least agreement: rho2 = {:.4g} of {} in {}{}", rho2,

@@ -12,7 +12,7 @@ namespace {
 
 double largest_use(const ConditionScore& score) {
   double used = 0.0;
-  for (const LimitCheck& check : score.checks)
+  for (const LimitCheck& check : score.limit_checks)
     used = std::max(used, check.tolerance_used.value_or(0.0));
   return used;
 }
@@ -22,7 +22,7 @@ std::vector<const ConditionScore*> by_use(const std::vector<const ConditionScore
   std::vector<const ConditionScore*> sorted = scores;
   std::stable_sort(sorted.begin(), sorted.end(), [](const auto* a, const auto* b) {
     const auto key = [](const ConditionScore* s) {
-      return std::pair(s->failure.empty() ? 0 : 1, largest_use(*s));
+      return std::pair(s->failure ? 1 : 0, largest_use(*s));
     };
     return key(a) > key(b);
   });
@@ -49,21 +49,21 @@ void judge_limits(const std::vector<const ConditionScore*>& scores, std::vector<
     const std::string words = fmt::format("{}: {}", score->id, fmt::join(score->reasons, "; "));
     const std::vector<std::pair<std::string, double>> numbers{
         {"tolerance_used", largest_use(*score)}};
-    if (!score->not_scored.empty()) {
+    if (score->not_scored) {
       reasons.push_back(reason(AspectState::reservation, "not_scored",
-                               fmt::format("{}: not scored ({})", score->id, score->not_scored),
+                               fmt::format("{}: not scored ({})", score->id, *score->not_scored),
                                score->id));
-    } else if (!score->failure.empty()) {
+    } else if (score->failure) {
       reasons.push_back(reason(AspectState::fail, "not_simulated", words, score->id));
     } else if (score->verdict == Verdict::fail) {
-      const bool evaluated = std::all_of(score->checks.begin(), score->checks.end(),
+      const bool evaluated = std::all_of(score->limit_checks.begin(), score->limit_checks.end(),
                                          [](const LimitCheck& check) { return check.value; });
       reasons.push_back(reason(AspectState::fail,
                                evaluated ? "limit_broken" : "limit_not_evaluable", words, score->id,
                                numbers));
     } else if (score->verdict == Verdict::warn) {
-      const bool guarded =
-          std::all_of(score->checks.begin(), score->checks.end(), [](const LimitCheck& check) {
+      const bool guarded = std::all_of(
+          score->limit_checks.begin(), score->limit_checks.end(), [](const LimitCheck& check) {
             return check.verdict != Verdict::warn || check.in_guard_band;
           });
       reasons.push_back(reason(AspectState::reservation, guarded ? "guard_band" : "limit_near",

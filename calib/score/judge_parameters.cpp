@@ -185,9 +185,10 @@ void judge_missing(const Fit& fit, std::vector<Reason>& reasons) {
 
 /// Judges whether the validation records alone lead to the same estimates.
 void judge_stability(const Campaign& campaign, const Fit& fit, std::vector<Reason>& reasons) {
+  if (!fit.stability) return;
   const auto table = model::parameter_table(campaign.rig.plant);
   std::vector<std::string> words;
-  for (const StabilityCheck& each : fit.stability) {
+  for (const StabilityCheck& each : *fit.stability) {
     if (!each.differs) continue;
     const int row = model::parameter_index(campaign.rig.plant, each.key);
     const auto& spec = table[static_cast<std::size_t>(row)];
@@ -195,10 +196,9 @@ void judge_stability(const Campaign& campaign, const Fit& fit, std::vector<Reaso
                                 parameter_label(std::string(spec.name), each.scope, each.level),
                                 each.value, spec.unit, each.difference, each.expanded));
   }
-  if (fit.stability.empty()) return;
   const std::vector<std::pair<std::string, double>> numbers{
       {"differ", static_cast<double>(words.size())},
-      {"estimated", static_cast<double>(fit.stability.size())}};
+      {"estimated", static_cast<double>(fit.stability->size())}};
   if (words.empty()) {
     reasons.push_back(reason(AspectState::pass, "stable",
                              "the validation records alone lead to the same estimates, within the "
@@ -208,7 +208,7 @@ void judge_stability(const Campaign& campaign, const Fit& fit, std::vector<Reaso
     reasons.push_back(reason(
         AspectState::reservation, "unstable",
         fmt::format("{} of {} estimates differ when made from the validation records alone: {}",
-                    words.size(), fit.stability.size(), fmt::join(words, ", ")),
+                    words.size(), fit.stability->size(), fmt::join(words, ", ")),
         {}, numbers));
   }
 }

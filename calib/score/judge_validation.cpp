@@ -14,7 +14,7 @@ Aspect judge_validation(const datasets::Campaign& campaign, const Fit& fit,
   if (independent.empty()) {
     std::string words =
         "not assessed: every condition with a score was also used to estimate the values";
-    if (!fit.cross_validation.empty())
+    if (fit.cross_validation)
       words += "; see the cross-validation, which leaves out one after the other";
     reasons.push_back(
         reason(AspectState::not_assessed, "no_validation", words, {}, {{"conditions", 0.0}}));

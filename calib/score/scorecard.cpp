@@ -38,12 +38,12 @@ std::pair<std::size_t, std::size_t> longest_stretch(const std::vector<std::size_
   return best;
 }
 
-void add_problem(ChannelScore& score, const std::string& text) {
-  score.problem += score.problem.empty() ? text : "; " + text;
+void add_problem(ChannelMetrics& metrics, const std::string& text) {
+  metrics.problem = metrics.problem ? *metrics.problem + "; " + text : text;
 }
 
 void compare_at_fundamental(const ProblemCondition& condition, std::span<const double> measured,
-                            std::span<const double> simulated, ChannelScore& score) {
+                            std::span<const double> simulated, ChannelMetrics& result) {
   const Condition& c = *condition.condition;
   if (!is_periodic(c.waveform) || !c.frequency_hz) return;
   const auto [first, count] = longest_stretch(condition.rows);
@@ -51,21 +51,27 @@ void compare_at_fundamental(const ProblemCondition& condition, std::span<const d
   try {
     const auto found = metrics::compare_fundamentals(
         time_s, measured.subspan(first, count), simulated.subspan(first, count), *c.frequency_hz);
-    score.gain_ratio = found.gain_ratio;
-    score.phase_deg = found.phase_deg;
-    score.delay_s = found.delay_s;
+    result.gain_ratio = found.gain_ratio;
+    result.phase_deg = found.phase_deg;
+    result.delay_s = found.delay_s;
   } catch (const std::logic_error& error) {  // no whole period, or no component at that frequency
-    add_problem(score, error.what());
+    add_problem(result, error.what());
   }
 }
 
-/// Tests the residual over the longest run of samples without a gap; absent if it cannot be tested.
-std::optional<metrics::ResidualTests> test_residual(const ProblemCondition& condition,
-                                                    std::span<const double> measured,
-                                                    std::span<const double> simulated,
-                                                    std::span<const double> drive) {
+/// Tests the residual of the k-th channel over the longest run of samples without a gap, and
+/// replaces its tests and curves in the score. They are absent if it cannot be tested.
+void test_residual(const ProblemCondition& condition, std::size_t k,
+                   std::span<const double> simulated, ConditionScore& score) {
+  const std::vector<double>& measured = condition.channels[k].measured;
+  std::optional<metrics::ResidualTests>& tests = score.channels[k].residual_tests;
+  score.residual_curves.resize(score.channels.size());
+  auto& [channel, curves] = score.residual_curves[k];
+  channel = condition.channels[k].channel;
+  tests.reset();
+  curves.reset();
   const auto [first, count] = longest_stretch(condition.rows);
-  if (count < 2) return std::nullopt;
+  if (count < 2) return;
   std::vector<double> residual;
   for (std::size_t i = first; i < first + count; ++i)
     residual.push_back(measured[i] - simulated[i]);
@@ -74,9 +80,12 @@ std::optional<metrics::ResidualTests> test_residual(const ProblemCondition& cond
   const double interval_s =
       (time_s[begin + count - 1] - time_s[begin]) / static_cast<double>(count - 1);
   try {
-    return metrics::residual_tests(residual, drive.subspan(begin, count), interval_s);
+    metrics::TestedResidual tested =
+        metrics::residual_tests(residual, std::span(score.drive).subspan(begin, count), interval_s);
+    curves = std::move(tested.curves);
+    tests = std::move(tested);
   } catch (const std::logic_error&) {  // residual too short or constant
-    return std::nullopt;
+    return;
   }
 }
 
@@ -138,11 +147,11 @@ struct ScoredEffects {
 
 ChannelScore score_channel(const datasets::Campaign& campaign, const ProblemCondition& condition,
                            const ProblemChannel& channel, const std::vector<double>& simulated,
-                           std::span<const double> drive, const ScoredEffects& effects) {
+                           const ScoredEffects& effects) {
   ChannelScore score;
   score.channel = channel.channel;
   try {
-    score.agreement = metrics::agreement(channel.measured, simulated);
+    score.metrics = metrics::agreement(channel.measured, simulated);
     metrics::MeasuredMean mean = measured_mean(campaign, condition, channel);
     std::vector<double> times_s;
     for (const std::size_t row : condition.rows) times_s.push_back(condition.record->time_s[row]);
@@ -152,20 +161,19 @@ ChannelScore score_channel(const datasets::Campaign& campaign, const ProblemCond
     if (const auto found = metrics::agreement_uncertainty(mean, simulated)) {
       score.expanded_uncertainty = found->one_sided;
       score.two_sided_uncertainty = found->two_sided;
-      score.budgets = budgets_of(channel.channel, mean, *found, changes);
+      score.score_budgets = budgets_of(channel.channel, mean, *found, changes);
     }
   } catch (const std::logic_error& error) {  // constant channel, or fewer than two samples
-    add_problem(score, error.what());
+    add_problem(score.metrics, error.what());
   }
   if (channel.sd_known) {
     try {
       score.noise_floor = metrics::noise_floor(channel.measured, channel.sd);
     } catch (const std::logic_error& error) {
-      add_problem(score, error.what());
+      add_problem(score.metrics, error.what());
     }
   }
-  compare_at_fundamental(condition, channel.measured, simulated, score);
-  score.residual_tests = test_residual(condition, channel.measured, simulated, drive);
+  compare_at_fundamental(condition, channel.measured, simulated, score.metrics);
   std::vector<double> residual;
   for (std::size_t i = 0; i < simulated.size(); ++i)
     residual.push_back(channel.measured[i] - simulated[i]);
@@ -217,7 +225,8 @@ ConditionScore score_condition(const Problem& problem, std::size_t i, std::span<
       std::vector<double> simulated;
       for (const std::size_t row : condition.rows) simulated.push_back(whole[row]);
       score.channels.push_back(
-          score_channel(*problem.campaign, condition, channel, simulated, score.drive, effects));
+          score_channel(*problem.campaign, condition, channel, simulated, effects));
+      test_residual(condition, k, simulated, score);
       score.series[channel.channel] = {condition.record->channels.at(channel.channel).mean,
                                        std::move(whole)};
     }
@@ -261,22 +270,22 @@ void test_predictions(const Problem& problem, const std::vector<std::string>& da
   for (std::size_t i = 0; i < scores.size(); ++i) {
     const ProblemCondition& condition = problem.conditions[i];
     for (std::size_t k = 0; k < scores[i].channels.size(); ++k) {
-      ChannelScore& channel = scores[i].channels[k];
-      if (channel.explained.empty()) continue;
-      const std::vector<double>& whole = scores[i].series.at(channel.channel).second;
+      const datasets::Channel channel = condition.channels[k].channel;
+      const auto explained = scores[i].explained.find(channel);
+      if (explained == scores[i].explained.end()) continue;
+      const std::vector<double>& whole = scores[i].series.at(channel).second;
       std::vector<double> simulated;
       for (std::size_t j = 0; j < condition.rows.size(); ++j)
-        simulated.push_back(whole[condition.rows[j]] + channel.explained[j]);
+        simulated.push_back(whole[condition.rows[j]] + explained->second[j]);
+      test_residual(condition, k, simulated, scores[i]);
       const ProblemChannel& data = condition.channels[k];
-      channel.residual_tests = test_residual(condition, data.measured, simulated, scores[i].drive);
       if (!is_of_another_day(*condition.condition, dates) ||
-          !is_plausible(condition, channel.explained, scores[i].prediction_sd.at(channel.channel),
-                        data.sd))
+          !is_plausible(condition, explained->second, scores[i].prediction_sd.at(channel), data.sd))
         continue;
       std::vector<double> residual;
       for (std::size_t j = 0; j < simulated.size(); ++j)
         residual.push_back(data.measured[j] - simulated[j]);
-      channel.lack_of_fit = lack_of_prediction(condition, data, residual);
+      scores[i].channels[k].lack_of_fit = lack_of_prediction(condition, data, residual);
     }
   }
 }
@@ -301,11 +310,11 @@ std::vector<std::string> overfitting_warnings(const std::vector<ConditionScore>&
   std::vector<std::string> warnings;
   for (const ConditionScore& score : scores) {
     for (const ChannelScore& channel : score.channels) {
-      if (!channel.agreement || !channel.noise_floor || score.samples < 2) continue;
+      if (std::isnan(channel.metrics.rho2) || !channel.noise_floor || score.samples < 2) continue;
       // The variance estimated from n samples of noise has a relative standard deviation of sqrt(2
       // / n).
       const double scatter = 5.0 * std::sqrt(2.0 / static_cast<double>(score.samples));
-      const double unexplained = 1.0 - channel.agreement->rho2;
+      const double unexplained = 1.0 - channel.metrics.rho2;
       const double least = 1.0 - channel.noise_floor->rho2;
       if (unexplained >= least * (1.0 - std::max(0.2, scatter))) continue;
       warnings.push_back(fmt::format(
@@ -313,7 +322,7 @@ std::vector<std::string> overfitting_warnings(const std::vector<ConditionScore>&
           "any "
           "model: the fit follows the noise (overfitting), or the noise is smaller than its stated "
           "standard deviation",
-          score.id, datasets::info(channel.channel).key, channel.agreement->rho2,
+          score.id, datasets::info(channel.channel).key, channel.metrics.rho2,
           channel.noise_floor->rho2));
     }
   }

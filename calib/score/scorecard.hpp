@@ -21,7 +21,7 @@ std::vector<ConditionScore> score_conditions(const Problem& problem, std::span<c
                                              int threads, const EffectSpread& effects = {});
 
 /// Repeats the residual tests of predictions without the component that the uncertainty of the
-/// estimates explains (ChannelScore::explained). Even if the model is correct, inexact estimates
+/// estimates explains (ConditionScore::explained). Even if the model is correct, inexact estimates
 /// leave structure in the residual, which is not a model error.
 ///
 /// The test for lack of fit of a record from another day is repeated likewise. What differs between

@@ -16,16 +16,17 @@ void Badness::add(const LimitCheck& check) {
   tolerance_used = std::max(tolerance_used, known ? *check.tolerance_used : kNoValue);
 }
 
-void Badness::add_rho2(std::optional<double> rho2) {
-  const bool known = rho2 && !std::isnan(*rho2);
-  disagreement = std::max(disagreement, known ? 1.0 - *rho2 : kNoValue);
+void Badness::add_rho2(double rho2) {
+  disagreement = std::max(disagreement, std::isnan(rho2) ? kNoValue : 1.0 - rho2);
 }
 
-Badness badness(const ConditionScore& score) {
-  Badness found{!score.failure.empty() || !score.not_scored.empty(), score.verdict};
-  for (const LimitCheck& check : score.checks) found.add(check);
-  for (const ChannelScore& channel : score.channels)
-    found.add_rho2(channel.agreement ? std::optional(channel.agreement->rho2) : std::nullopt);
+Badness badness(const ConditionResult& condition, std::string_view channel) {
+  Badness found{condition.failure || condition.not_scored,
+                channel.empty() ? condition.verdict : condition.verdict_of(channel)};
+  for (const LimitCheck& check : condition.limit_checks)
+    if (channel.empty() || datasets::info(check.channel).key == channel) found.add(check);
+  for (const ChannelScore& score : condition.channels)
+    if (channel.empty() || score.key() == channel) found.add_rho2(score.metrics.rho2);
   return found;
 }
 

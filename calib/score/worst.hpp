@@ -20,8 +20,8 @@ struct Badness {
 
   /// Adds a limit. The one that uses most of its tolerance counts.
   void add(const LimitCheck& check);
-  /// Adds the agreement of a channel. The lowest counts.
-  void add_rho2(std::optional<double> rho2);
+  /// Adds the agreement of a channel; NaN if it has none. The lowest counts.
+  void add_rho2(double rho2);
 
   friend bool operator<(const Badness& a, const Badness& b) {
     return std::tie(a.unusable, a.verdict, a.tolerance_used, a.disagreement) <
@@ -29,7 +29,8 @@ struct Badness {
   }
 };
 
-Badness badness(const ConditionScore& score);
+/// @param channel  key of the channel; empty: the whole condition
+Badness badness(const ConditionResult& condition, std::string_view channel = {});
 
 /// Whether a goes before b where there is no room for all: first what fails, so that it is never
 /// left out, then validation records, then the others. The worst come first among each kind.

@@ -230,13 +230,13 @@ void bootstrap(const Problem& problem, const Evaluation& optimum, const Uncertai
                const std::vector<ConditionScore>& scores, const FitOptions& options, Fit& fit,
                Budget& left) {
   if (found.scatter.empty()) {
-    fit.bootstrap = {0, "no bootstrap: there are no residuals to draw from"};
+    fit.bootstrap = BootstrapRun{0, "no bootstrap: there are no residuals to draw from"};
     return;
   }
   std::vector<Source> sources;
   for (std::size_t i = 0; i < problem.conditions.size(); ++i) {
-    if (!scores[i].failure.empty()) {
-      fit.bootstrap = {
+    if (scores[i].failure) {
+      fit.bootstrap = BootstrapRun{
           0, fmt::format("no bootstrap: condition \"{}\" could not be simulated", scores[i].id)};
       return;
     }
@@ -298,7 +298,8 @@ void bootstrap(const Problem& problem, const Evaluation& optimum, const Uncertai
   values.erase(
       std::remove_if(values.begin(), values.end(), [](const auto& each) { return each.empty(); }),
       values.end());
-  fit.bootstrap = {static_cast<int>(values.size()),
+  fit.bootstrap =
+      BootstrapRun{static_cast<int>(values.size()),
                    fmt::format("{} of {} replicates converged", values.size(), made) +
                        (made == replicates ? "" : fmt::format(", {} were asked for", replicates)) +
                        drawn_from(sources)};

@@ -109,17 +109,18 @@ void rate_model(const Uncertainty& spread, Fit& fit) {
   const double residuals = std::max(1.0, static_cast<double>(fit.residual_count));
   const double effective = spread.scatter.empty() ? residuals : spread.independent_residuals;
   const double weighed = 2.0 * fit.cost * std::min(1.0, effective / residuals);
-  fit.aic = weighed + 2.0 * spread.rank;
-  fit.bic = weighed + spread.rank * std::log(std::max(1.0, effective));
+  fit.aic = std::optional(weighed + 2.0 * spread.rank);
+  fit.bic = std::optional(weighed + spread.rank * std::log(std::max(1.0, effective)));
 }
 
 /// Judges, from the residuals, the noise and the intervals that are based on it.
 void judge_residuals(const Problem& problem, const OptimumCheck& check, const Uncertainty& spread,
                      Fit& fit) {
-  fit.independent_residuals = spread.independent_residuals;
-  fit.lack_of_fit.tests = lack_of_fit(problem, spread);
-  fit.lack_of_fit.misfit = misfit(fit.lack_of_fit.tests);
-  fit.interval_advice = interval_advice(problem, check, spread, fit.lack_of_fit.tests);
+  if (spread.independent_residuals > 0.0)
+    fit.independent_residuals = std::optional(spread.independent_residuals);
+  fit.lack_of_fit->tests = lack_of_fit(problem, spread);
+  fit.lack_of_fit->misfit = misfit(fit.lack_of_fit->tests);
+  fit.interval_advice = interval_advice(problem, check, spread, fit.lack_of_fit->tests);
   fit.between_repeats = between_repeats(problem, spread);
   if (fit.between_repeats && fit.between_repeats->differ)
     fit.warnings.push_back(between_repeats_warning(*fit.between_repeats));
@@ -128,7 +129,7 @@ void judge_residuals(const Problem& problem, const OptimumCheck& check, const Un
     fit.interval_advice += fmt::format("; the errors hold those of known values: {}",
                                        fmt::join(spread.known.names, ", "));
   }
-  rate_model(spread, fit);
+  if (spread.rank > 0) rate_model(spread, fit);
 }
 
 /// Adds measures that would determine the parameters which the records leave undetermined. Only the
@@ -188,9 +189,9 @@ std::vector<std::size_t> describe_findings(const Problem& problem, const Evaluat
   fit.cost = optimum.cost;
   fit.rank = spread.rank;
   fit.singular_values = spread.singular_values;
-  fit.reduced_chi_square = spread.reduced_chi_square;
+  if (spread.rank > 0) fit.reduced_chi_square = spread.reduced_chi_square;
   fit.parameters = describe_unknowns(problem, optimum, check, spread);
-  const double variance = std::max(1.0, fit.reduced_chi_square);
+  const double variance = std::max(1.0, spread.reduced_chi_square);
   fit.basins = basins(fit.starts, fit.parameters, variance);
   fit.agreement = agreement_of(fit.starts, fit.basins, variance);
   auto open = judge_identifiability(problem, optimum, spread, threads, fit);

@@ -144,7 +144,8 @@ void explain(const ProblemCondition& condition, const std::vector<Eigen::MatrixX
   for (Eigen::Index k = 0; k < channels; ++k) {
     const double sd = condition.channels[static_cast<std::size_t>(k)].sd;
     const Eigen::VectorXd part = sd * explained.segment(k * samples, samples);
-    score.channels[static_cast<std::size_t>(k)].explained = {part.begin(), part.end()};
+    score.explained[condition.channels[static_cast<std::size_t>(k)].channel] = {part.begin(),
+                                                                                part.end()};
   }
 }
 
@@ -286,7 +287,7 @@ void add_prediction_sd(const Problem& problem, std::span<const double> z,
                        int threads, std::vector<ConditionScore>& scores) {
   const EffectChanges none;
   parallel_for(scores.size(), threads, [&](std::size_t i) {
-    if (scores[i].failure.empty() && scores[i].not_scored.empty())
+    if (!scores[i].failure && !scores[i].not_scored)
       add_to(problem, i, z, spread, changes.empty() ? none : changes[i], scores[i]);
   });
 }

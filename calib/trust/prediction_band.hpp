@@ -46,7 +46,7 @@ using EffectChanges = std::vector<Eigen::MatrixXd>;
 ///
 /// In conditions that no estimate is based on, each channel also gets the component of its residual
 /// that adjusting the estimates would remove, with the covariance of the estimates as the prior
-/// (ChannelScore::explained).
+/// (ConditionScore::explained).
 ///
 /// Small effects that the model omits act directly on a prediction, and the part of them that the
 /// fit has absorbed into the estimates is subtracted. The result shows how far the prediction may

@@ -264,7 +264,8 @@ void profiles(const Problem& problem, const std::vector<datasets::Record>& recor
     if (unknowns[j].nuisance) return {};
     if (left.spent()) return {{}, false};
     Follower follower(problem, records, j, optimum,
-                      threshold_of(fit.parameters[j], fit.reduced_chi_square), options, left);
+                      threshold_of(fit.parameters[j], fit.reduced_chi_square.value_or(1.0)),
+                      options, left);
     const double step = first_step(problem, j, optimum.z[j], fit.parameters[j]);
     const ProfileEnd low = follow(follower, problem, j, optimum.z[j], step, -1.0);
     const ProfileEnd high = follow(follower, problem, j, optimum.z[j], step, 1.0);

@@ -14,7 +14,7 @@ constexpr std::size_t kWorstScores = 3;
 
 std::vector<StoredRigScore> worst_scores(const StoredFit& fit) {
   std::vector<std::pair<calib::Badness, StoredRigScore>> scores;
-  for (const StoredCondition& condition : fit.conditions) {
+  for (const calib::ConditionResult& condition : fit.conditions) {
     StoredRigScore score;
     score.condition = condition.id;
     score.use = condition.use;
@@ -24,12 +24,12 @@ std::vector<StoredRigScore> worst_scores(const StoredFit& fit) {
       scores.emplace_back(badness(condition), score);
       continue;
     }
-    for (const auto& [channel, metrics] : condition.metrics) {
-      score.channel = channel;
-      score.verdict = condition.verdict_of(channel);
-      score.rho2 = finite(metrics.rho2);
-      score.absolute_error_percent = finite(metrics.absolute_error_percent);
-      scores.emplace_back(badness(condition, channel), score);
+    for (const calib::ChannelScore& channel : condition.channels) {
+      score.channel = channel.key();
+      score.verdict = condition.verdict_of(channel.channel);
+      score.rho2 = finite(channel.metrics.rho2);
+      score.absolute_error_percent = finite(channel.metrics.absolute_error_percent);
+      scores.emplace_back(badness(condition, channel.key()), score);
     }
   }
   std::stable_sort(scores.begin(), scores.end(),

@@ -36,7 +36,7 @@ StoredComparedResult stored(const Compared& compared) {
   result.independent_residuals = fit.independent_residuals.value_or(std::nullopt);
   result.conditions = static_cast<long>(fit.conditions.size());
   std::optional<std::array<double, 2>> kelvin;
-  for (const StoredCondition& condition : fit.conditions) {
+  for (const calib::ConditionResult& condition : fit.conditions) {
     if (condition.date) widen(result.dates, *condition.date);
     if (condition.temperature_k) widen(kelvin, *condition.temperature_k);
   }

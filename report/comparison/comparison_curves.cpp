@@ -103,7 +103,7 @@ namespace {
 std::vector<std::string> checked_ids(const std::vector<Compared>& results) {
   std::vector<std::string> ids;
   for (const Compared& compared : results) {
-    for (const StoredCondition& condition : compared.result.conditions) {
+    for (const calib::ConditionResult& condition : compared.result.conditions) {
       const std::string& id = condition.id;
       if (!datasets::is_condition_id(id))
         throw InputError({compared.file.string()},
@@ -123,7 +123,7 @@ std::vector<ResultFile> comparison_curves(const std::vector<Compared>& results) 
     std::vector<ConditionSeries> found;
     double frequency_hz = 0.0;
     for (std::size_t k = 0; k < results.size(); ++k) {
-      const StoredCondition* condition = results[k].result.find(id);
+      const calib::ConditionResult* condition = results[k].result.find(id);
       if (condition == nullptr || condition->failure) continue;
       const std::filesystem::path folder = results[k].file.parent_path();
       const auto series = table_in(files_in(folder), folder.string(), "residuals/" + id + ".csv");

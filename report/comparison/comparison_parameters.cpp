@@ -68,7 +68,7 @@ std::vector<StoredComparedParameter> all_parameters(const std::vector<Compared>&
 /// date.
 std::set<std::string> fitted_dates(const Compared& compared) {
   std::set<std::string> dates;
-  for (const StoredCondition& condition : compared.result.conditions) {
+  for (const calib::ConditionResult& condition : compared.result.conditions) {
     if (condition.use != datasets::Use::fit) continue;
     if (!condition.date) return {};
     dates.insert(*condition.date);

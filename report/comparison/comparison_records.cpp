@@ -15,9 +15,9 @@ bool share_published_numbers(const Compared& a, const Compared& b) {
 }
 
 /// Returns the fitted conditions; empty if the file does not name their records.
-std::vector<const StoredCondition*> fitted_conditions(const StoredFit& fit) {
-  std::vector<const StoredCondition*> fitted;
-  for (const StoredCondition& condition : fit.conditions) {
+std::vector<const calib::ConditionResult*> fitted_conditions(const StoredFit& fit) {
+  std::vector<const calib::ConditionResult*> fitted;
+  for (const calib::ConditionResult& condition : fit.conditions) {
     if (condition.use != datasets::Use::fit) continue;
     if (condition.record_sha256.empty()) return {};
     fitted.push_back(&condition);
@@ -27,7 +27,7 @@ std::vector<const StoredCondition*> fitted_conditions(const StoredFit& fit) {
 
 /// Returns true if the windows of two conditions overlap. A condition without windows uses its
 /// whole record.
-bool overlap(const StoredCondition& a, const StoredCondition& b) {
+bool overlap(const calib::ConditionResult& a, const calib::ConditionResult& b) {
   if (!a.windows_s || a.windows_s->empty() || !b.windows_s || b.windows_s->empty()) return true;
   for (const Range& one : *a.windows_s) {
     for (const Range& other : *b.windows_s)
@@ -36,7 +36,7 @@ bool overlap(const StoredCondition& a, const StoredCondition& b) {
   return false;
 }
 
-bool share_file(const StoredCondition& a, const StoredCondition& b) {
+bool share_file(const calib::ConditionResult& a, const calib::ConditionResult& b) {
   const std::vector<std::string>& theirs = b.record_sha256;
   return std::any_of(a.record_sha256.begin(), a.record_sha256.end(), [&](const auto& hash) {
     return std::find(theirs.begin(), theirs.end(), hash) != theirs.end();
@@ -68,8 +68,8 @@ bool share_fitted_records(const Compared& a, const Compared& b) {
   const auto ours = fitted_conditions(a.result);
   const auto theirs = fitted_conditions(b.result);
   if (ours.empty() || theirs.empty()) return share_records(a, b);
-  for (const StoredCondition* one : ours) {
-    for (const StoredCondition* other : theirs)
+  for (const calib::ConditionResult* one : ours) {
+    for (const calib::ConditionResult* other : theirs)
       if (share_file(*one, *other) && overlap(*one, *other)) return true;
   }
   return false;

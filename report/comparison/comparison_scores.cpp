@@ -21,7 +21,7 @@ constexpr std::array kComparedMetrics{
 
 std::optional<StoredComparedScore> score_of(const StoredFit& fit, const std::string& id,
                                             const std::string& channel) {
-  const StoredCondition* condition = fit.find(id);
+  const calib::ConditionResult* condition = fit.find(id);
   if (condition == nullptr) return std::nullopt;
   StoredComparedScore score;
   score.use = condition->use;
@@ -30,11 +30,11 @@ std::optional<StoredComparedScore> score_of(const StoredFit& fit, const std::str
   score.temperature_k = condition->temperature_k;
   score.verdict = condition->verdict_of(channel);
   score.failure = condition->failure;
-  const StoredScore* scores = find(condition->metrics, channel);
-  if (scores == nullptr || !is_usable(fit)) return score;
-  score.rho2 = finite(scores->rho2);
-  score.ccc = finite(scores->ccc);
-  score.absolute_error_percent = finite(scores->absolute_error_percent);
+  const calib::ChannelScore* found = condition->find(channel);
+  if (found == nullptr || !is_usable(fit)) return score;
+  score.rho2 = finite(found->metrics.rho2);
+  score.ccc = finite(found->metrics.ccc);
+  score.absolute_error_percent = finite(found->metrics.absolute_error_percent);
   return score;
 }
 
@@ -58,20 +58,19 @@ std::optional<calib::ScoreDifference> metric_against(
 std::vector<StoredComparedCondition> compared_conditions(const std::vector<Compared>& results) {
   std::vector<StoredComparedCondition> list;
   for (const Compared& compared : results) {
-    for (const StoredCondition& condition : compared.result.conditions) {
-      for (const auto& [channel, unused] : condition.metrics) {
-        const bool there =
-            std::any_of(list.begin(), list.end(), [&, &name = channel](const auto& e) {
-              return e.id == condition.id && e.channel == name;
-            });
+    for (const calib::ConditionResult& condition : compared.result.conditions) {
+      for (const calib::ChannelScore& score : condition.channels) {
+        const bool there = std::any_of(list.begin(), list.end(), [&](const auto& e) {
+          return e.id == condition.id && e.channel == score.key();
+        });
         if (there) continue;
         // The description is taken from the first result that has the condition.
         const auto first = std::find_if(results.begin(), results.end(), [&](const Compared& each) {
           return each.result.find(condition.id) != nullptr;
         });
-        const StoredCondition& described = *first->result.find(condition.id);
+        const calib::ConditionResult& described = *first->result.find(condition.id);
         list.push_back({condition.id,
-                        channel,
+                        std::string(score.key()),
                         described.waveform,
                         described.frequency_hz,
                         described.leak_level,

@@ -14,7 +14,7 @@ std::optional<double> mean_over(const StoredFit& fit, const calib::FittedParamet
                                 Quantity quantity) {
   double sum = 0.0;
   int count = 0;
-  for (const StoredCondition& condition : fit.conditions) {
+  for (const calib::ConditionResult& condition : fit.conditions) {
     if (condition.use != datasets::Use::fit) continue;
     if (parameter.scope == Scope::leak_level && condition.leak_level != parameter.level) continue;
     if (parameter.scope == Scope::condition && condition.id != parameter.level) continue;
@@ -31,7 +31,7 @@ std::string series_of(const StoredFit& fit, const calib::FittedParameter& parame
   const std::string level = parameter.level.value_or("");
   if (parameter.scope == Scope::rig) return "rig";
   if (parameter.scope == Scope::leak_level) return level;
-  const StoredCondition* condition = fit.find(level);
+  const calib::ConditionResult* condition = fit.find(level);
   return condition == nullptr ? "rig" : condition->leak_level.value_or("rig");
 }
 
@@ -49,13 +49,14 @@ StoredTrendPoint point_of(const Compared& compared, const calib::FittedParameter
   StoredTrendPoint point;
   point.result = compared.name;
   point.level = parameter.level;
-  point.day = mean_over(compared.result, parameter, [](const StoredCondition& condition) {
+  point.day = mean_over(compared.result, parameter, [](const calib::ConditionResult& condition) {
     return std::optional<double>(condition.date ? day_of(*condition.date) : std::nullopt);
   });
-  point.temperature_k = mean_over(compared.result, parameter,
-                                  [](const StoredCondition& condition) -> std::optional<double> {
-                                    return condition.temperature_k;
-                                  });
+  point.temperature_k =
+      mean_over(compared.result, parameter,
+                [](const calib::ConditionResult& condition) -> std::optional<double> {
+                  return condition.temperature_k;
+                });
   point.value = finite(parameter.value);
   if (const auto error = interval_error(parameter)) {
     const bool dated = point.day.has_value();  // the between-day error applies only to points with

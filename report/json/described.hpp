@@ -101,6 +101,23 @@ concept Struct = requires(T& value) {
   T::describe(value, Anything{});
 };
 
+/// Returns the member with this name. It must be described and of this type.
+template <typename Member, typename Self>
+Member& described_member(Self& self, std::string_view name) {
+  Member* found = nullptr;
+  Self::describe(self, [&]<typename Each>(const char* each, Each& member) {
+    if constexpr (std::same_as<Each, Member>) {
+      if (each == name) found = &member;
+    }
+  });
+  return *found;
+}
+
+/// True for members that results may lack.
+template <typename M>
+inline constexpr bool may_be_missing =
+    is_a<M, Omittable> || is_a<M, Later> || std::same_as<M, Json>;
+
 inline std::string key_of(const char* member) {
   std::string key(member);
   if (key.back() == '_') key.pop_back();
@@ -117,6 +134,51 @@ inline std::optional<double> finite(double value) {
 inline std::optional<double> finite(const std::optional<double>& value) {
   return value ? finite(*value) : std::nullopt;
 }
+
+template <typename T>
+Json json_of(const T& value);
+template <typename T>
+void read_into(const JsonNode& node, T& value);
+
+namespace described {
+
+template <typename Row>
+void add_columns(const Columns<Row>& rows, Json& json) {
+  const Row sample{};
+  Row::describe(sample, [&]<typename M>(const char* name, const M& /*member*/) {
+    Json column = Json::object();
+    for (const Row& row : rows) {
+      const M& member = described_member<const M>(row, name);
+      if constexpr (is_a<M, Omittable>) {
+        if (!member) continue;
+      }
+      column[key_text(row.channel)] = json_of(member);
+    }
+    if (!is_a<M, Omittable> || !column.empty()) json[key_of(name)] = std::move(column);
+  });
+}
+
+/// The first column names the rows.
+template <typename Row>
+void read_columns(const JsonNode& node, Columns<Row>& rows) {
+  rows.clear();
+  bool is_first = true;
+  const Row sample{};
+  Row::describe(sample, [&]<typename M>(const char* name, const M& /*member*/) {
+    const std::string key = key_of(name);
+    const bool names_rows = std::exchange(is_first, false);
+    if (may_be_missing<M> && (!node.has(key) || node[key].is_null())) return;
+    for (const auto& [text, value] : node[key].members()) {
+      auto channel = sample.channel;
+      read_key(value, text, channel);
+      if (names_rows) rows.emplace_back().channel = channel;
+      for (Row& row : rows)
+        if (row.channel == channel) read_into(value, described_member<M>(row, name));
+    }
+  });
+}
+
+}  // namespace described
 
 /// Converts a value to JSON. Numbers that are not finite become null, since JSON has neither NaN
 /// nor infinity.
@@ -156,7 +218,11 @@ Json json_of(const T& value) {
       if constexpr (is_a<M, Omittable>) {
         if (!member) return;
       }
-      json[key_of(name)] = json_of(member);
+      if constexpr (is_a<M, Columns>) {
+        add_columns(member, json);
+      } else {
+        json[key_of(name)] = json_of(member);
+      }
     });
     return json;
   } else {
@@ -240,11 +306,15 @@ void read_into(const JsonNode& node, T& value) {
     static_assert(Struct<T>);
     T::describe(value, [&node]<typename M>(const char* name, M& member) {
       const std::string key = key_of(name);
-      if constexpr (is_a<M, Omittable> || is_a<M, Later> || std::same_as<M, Json>) {
+      if constexpr (may_be_missing<M>) {
         member = M();
         if (!node.has(key)) return;
       }
-      read_into(node[key], member);
+      if constexpr (is_a<M, Columns>) {
+        read_columns(node, member);
+      } else {
+        read_into(node[key], member);
+      }
     });
   }
 }
@@ -340,10 +410,16 @@ Json schema_of() {
     Json required = Json::array();
     const T sample{};
     T::describe(sample, [&]<typename M>(const char* name, const M& /*member*/) {
-      const std::string key = key_of(name);
-      properties[key] = schema_of<M>();
-      if constexpr (!is_a<M, Omittable> && !is_a<M, Later> && !std::same_as<M, Json>)
-        required.push_back(key);
+      if constexpr (is_a<M, Columns>) {
+        const Json row = schema_of<typename M::value_type>();
+        for (const auto& [key, schema] : row["properties"].items())
+          properties[key] = {{"type", "object"}, {"additionalProperties", schema}};
+        for (const Json& key : row["required"]) required.push_back(key);
+      } else {
+        const std::string key = key_of(name);
+        properties[key] = schema_of<M>();
+        if constexpr (!may_be_missing<M>) required.push_back(key);
+      }
     });
     return {{"type", "object"},
             {"properties", std::move(properties)},

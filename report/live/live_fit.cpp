@@ -53,8 +53,7 @@ model::ParameterValues values_at_optimum(const datasets::Campaign& campaign,
 std::vector<const calib::ConditionScore*> shown_first(const calib::Fit& fit) {
   std::vector<const calib::ConditionScore*> scores;
   for (const calib::ConditionScore& score : fit.conditions)
-    if (score.failure.empty() && score.not_scored.empty() && score.time_s.size() > 1)
-      scores.push_back(&score);
+    if (!score.failure && !score.not_scored && score.time_s.size() > 1) scores.push_back(&score);
   std::stable_sort(scores.begin(), scores.end(), [](const auto* a, const auto* b) {
     return calib::shown_before(a->use, calib::badness(*a), b->use, calib::badness(*b));
   });
@@ -100,7 +99,7 @@ Json times_of(const std::vector<double>& time_s) {
 
 Json limits_of(const calib::ConditionScore& score, datasets::Channel channel) {
   Json limits = Json::array();
-  for (const calib::LimitCheck& check : score.checks) {
+  for (const calib::LimitCheck& check : score.limit_checks) {
     if (check.channel != channel || !check.limit) continue;
     const auto metric =
         std::find_if(metrics::kMetrics.begin(), metrics::kMetrics.end(),

@@ -115,7 +115,7 @@ struct Figure {
   std::string name;  ///< "position", "position_residual", ...
   Plot plot;
 };
-std::vector<Figure> condition_figures(const StoredCondition& condition, const Table& series);
+std::vector<Figure> condition_figures(const calib::ConditionResult& condition, const Table& series);
 /// Draw the figures of the other kinds of results.
 std::vector<Figure> leak_table_figures(const LeakTableFiles& stored);
 std::vector<Figure> diagnosis_figures(const StoredDiagnosis& diagnosis);

@@ -34,13 +34,13 @@ std::vector<ScoreRow> score_rows(const Result& result) {
     const datasets::Condition* condition = result.campaign.find(score.id);
     if (condition == nullptr) continue;
     if (score.channels.empty())
-      rows.push_back(
-          {&score, condition, nullptr, nullptr, csv_field(score.verdict), score.failure});
+      rows.push_back({&score, condition, nullptr, nullptr, csv_field(score.verdict),
+                      score.failure.value_or("")});
     for (const calib::ChannelScore& channel : score.channels) {
       const auto verdict = score.verdict_of(channel.channel);
       rows.push_back({&score, condition, &channel, &info(channel.channel),
                       verdict ? csv_field(verdict) : "not judged",
-                      channel.problem.empty() ? score.failure : channel.problem});
+                      channel.metrics.problem.value_or(score.failure.value_or(""))});
     }
   }
   return rows;
@@ -70,6 +70,7 @@ std::span<const double> sd_of(const Result& result, const std::string& condition
 }  // namespace
 
 std::string scorecard_csv(const Result& result) {
+  using calib::ChannelMetrics;
   using calib::ChannelScore;
   using calib::ConditionScore;
   using datasets::ChannelInfo;
@@ -90,14 +91,14 @@ std::string scorecard_csv(const Result& result) {
       .add("channel", &R::about, &ChannelInfo::key)
       .add("unit", &R::about, &ChannelInfo::unit);
   for (const metrics::MetricSpec& metric : metrics::kMetrics)
-    columns.add(std::string(metric.name), &R::channel, &ChannelScore::agreement, metric.value);
+    columns.add(std::string(metric.name), &R::channel, &ChannelScore::metrics, metric.value);
   columns.add("noise_floor_rho2", &R::channel, &ChannelScore::noise_floor, &NoiseFloor::rho2)
       .add("noise_floor_ccc", &R::channel, &ChannelScore::noise_floor, &NoiseFloor::ccc)
       .add("noise_floor_absolute_error_percent", &R::channel, &ChannelScore::noise_floor,
            &NoiseFloor::absolute_error_percent)
-      .add("gain_ratio", &R::channel, &ChannelScore::gain_ratio)
-      .add("phase_deg", &R::channel, &ChannelScore::phase_deg)
-      .add("delay_s", &R::channel, &ChannelScore::delay_s)
+      .add("gain_ratio", &R::channel, &ChannelScore::metrics, &ChannelMetrics::gain_ratio)
+      .add("phase_deg", &R::channel, &ChannelScore::metrics, &ChannelMetrics::phase_deg)
+      .add("delay_s", &R::channel, &ChannelScore::metrics, &ChannelMetrics::delay_s)
       .add("problem", &R::problem);
   for (const metrics::MetricSpec& metric : metrics::kMetrics)
     columns.add(fmt::format("{}_expanded_uncertainty", metric.name), &R::channel,
@@ -138,7 +139,7 @@ Table residual_table(const Result& result, const calib::ConditionScore& score) {
 
 std::string residuals_csv(const Result& result, const calib::ConditionScore& score) {
   std::string text = status_line(result.fit);
-  if (!score.failure.empty()) text += csv_comment("not simulated: " + score.failure);
+  if (score.failure) text += csv_comment("not simulated: " + *score.failure);
   return text + csv_of(residual_table(result, score));
 }
 

@@ -121,7 +121,7 @@ Estimates estimates_of(const NamedFit& fit, model::PlantKind plant) {
 /// Lists the dates of the fitted conditions without duplicates; empty if one of them has no date.
 std::vector<std::string> dates_of_fit(const StoredFit& stored) {
   std::vector<std::string> dates;
-  for (const StoredCondition& condition : stored.conditions) {
+  for (const calib::ConditionResult& condition : stored.conditions) {
     if (condition.use != datasets::Use::fit) continue;
     if (!condition.date) return {};
     if (std::find(dates.begin(), dates.end(), *condition.date) == dates.end())
@@ -230,7 +230,7 @@ EarlierFit earlier_fit(const StoredFit& stored, const std::string& name, model::
   result.validity = stored.validity;
   if (stored.validated) result.validated = *stored.validated;
   read_covariance(named, plant, result);
-  for (const StoredCondition& condition : stored.conditions)
+  for (const calib::ConditionResult& condition : stored.conditions)
     result.conditions.emplace_back(condition.id, condition.use);
   for (const InputFile& input : stored.provenance.inputs)
     result.input_hashes.push_back(input.sha256);

@@ -56,7 +56,8 @@ void require_matching(const StoredCurves& curves, const std::string& file) {
       const auto require = [&, &id = condition, &key = channel](
                                const auto& list, const auto& beside, const char* name) {
         require_length(list.size(), beside.size(),
-                       fmt::format("{} of {}, condition {}", name, key, id).c_str(), file);
+                       fmt::format("{} of {}, condition {}", name, info(key).key, id).c_str(),
+                       file);
       };
       require(found->periodogram.density, found->periodogram.frequency_hz, "periodogram.density");
       require(found->normality.residual_quantile, found->normality.normal_quantile,
@@ -110,7 +111,7 @@ std::variant<Calibration, StoredTablesFit> load_calibration(const ReadFile& read
   stored.curves = load<StoredCurves>(own, where, "residual_tests.json");
   require_matching(stored.curves, path_in(where, "residual_tests.json"));
   std::vector<std::string> names;
-  for (const StoredCondition& condition : stored.result.conditions) {
+  for (const calib::ConditionResult& condition : stored.result.conditions) {
     require_id(condition.id, "id", path_in(where, stored.file));
     names.push_back("residuals/" + condition.id + ".csv");
   }

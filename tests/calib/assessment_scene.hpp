@@ -39,7 +39,7 @@ struct AssessmentScene {
       test.ratio = 1.0;
       test.outcome = metrics::TestOutcome::passed;
       test.against = "repeats";
-      fit.lack_of_fit.tests.push_back(test);
+      fit.lack_of_fit->tests.push_back(test);
     }
   }
 
@@ -53,8 +53,7 @@ struct AssessmentScene {
     score.use = use;
     ChannelScore channel;
     channel.channel = datasets::Channel::position;
-    channel.agreement.emplace();
-    channel.agreement->rho2 = rho2;
+    channel.metrics.rho2 = rho2;
     score.channels = {channel};
     judge(campaign.acceptance, campaign.acceptance_bounds.decision, score);
     fit.conditions.push_back(score);
@@ -62,8 +61,8 @@ struct AssessmentScene {
 
   void rejudge(std::size_t condition, double rho2) {
     ConditionScore& score = fit.conditions.at(condition);
-    score.channels[0].agreement->rho2 = rho2;
-    score.checks.clear();
+    score.channels[0].metrics.rho2 = rho2;
+    score.limit_checks.clear();
     score.reasons.clear();
     score.verdict.reset();
     judge(campaign.acceptance, campaign.acceptance_bounds.decision, score);

@@ -40,10 +40,10 @@ TEST_CASE("cross-validation: a shift goes to where the others lead", "[calib]") 
   FitOptions options;
   options.cross_validate = true;
   const Fit found = fit(twin.campaign, records, options);
-  REQUIRE(found.cross_validation.size() == 2);
-  CHECK(found.cross_validation[0].largest_shift.value() > 1.0);   // without the low one
-  CHECK(found.cross_validation[1].largest_shift.value() < -1.0);  // without the high one
-  CHECK(found.cross_validation[0].shifted == "valve_gain_m_per_v");
+  REQUIRE(found.cross_validation->size() == 2);
+  CHECK(found.cross_validation->at(0).largest_shift.value() > 1.0);   // without the low one
+  CHECK(found.cross_validation->at(1).largest_shift.value() < -1.0);  // without the high one
+  CHECK(found.cross_validation->at(0).shifted == "valve_gain_m_per_v");
 
   // The conditions contradict each other, so the residuals are not white. A shift is relative to
   // the error that takes this into account.
@@ -52,7 +52,7 @@ TEST_CASE("cross-validation: a shift goes to where the others lead", "[calib]") 
   const double without_low = parameter(fit(high, records, {}), "valve_gain").value;
   const FittedParameter& gain = parameter(found, "valve_gain");
   REQUIRE(gain.robust_standard_error.value() > 1.5 * gain.standard_error.value());
-  CHECK_THAT(found.cross_validation[0].largest_shift.value(),
+  CHECK_THAT(found.cross_validation->at(0).largest_shift.value(),
              WithinRel((without_low - gain.value) / *gain.robust_standard_error, 0.02));
 
   // Without an iteration, a fit of one condition stays at the estimate of both.
@@ -74,8 +74,8 @@ TEST_CASE("cross-validation: a nuisance parameter may differ between conditions"
   FitOptions options;
   options.cross_validate = true;
   const Fit found = fit(twin.campaign, twin.records(250, 500.0, 3), options);
-  REQUIRE(found.cross_validation.size() == 2);
-  for (const HeldOut& held : found.cross_validation) {
+  REQUIRE(found.cross_validation->size() == 2);
+  for (const HeldOut& held : found.cross_validation.value()) {
     CAPTURE(held.problem, held.largest_shift);
     CHECK(held.shifted == "valve_gain_m_per_v");
   }

@@ -40,7 +40,7 @@ double least_rho2(const Fit& fit, datasets::Channel channel) {
   double least = 1.0;
   for (const ConditionScore& score : fit.conditions) {
     for (const ChannelScore& each : score.channels)
-      if (each.channel == channel) least = std::min(least, each.agreement->rho2);
+      if (each.channel == channel) least = std::min(least, each.metrics.rho2);
   }
   return least;
 }
@@ -49,7 +49,7 @@ double rho2_of(const Fit& fit, const std::string& condition, datasets::Channel c
   for (const ConditionScore& score : fit.conditions) {
     if (score.id != condition) continue;
     for (const ChannelScore& each : score.channels)
-      if (each.channel == channel) return each.agreement->rho2;
+      if (each.channel == channel) return each.metrics.rho2;
   }
   return -1.0;
 }

@@ -70,10 +70,11 @@ void check_same(const Fit& found, const Fit& alone) {
     if (a.profile) CHECK(a.profile->values == b.profile->values);
     if (a.profile) CHECK(a.profile->high.value == b.profile->high.value);
   }
-  REQUIRE(found.cross_validation.size() == alone.cross_validation.size());
-  for (std::size_t i = 0; i < found.cross_validation.size(); ++i) {
-    CHECK(found.cross_validation[i].rmse == alone.cross_validation[i].rmse);
-    CHECK(found.cross_validation[i].largest_shift == alone.cross_validation[i].largest_shift);
+  REQUIRE(found.cross_validation->size() == alone.cross_validation->size());
+  for (std::size_t i = 0; i < found.cross_validation->size(); ++i) {
+    CHECK(found.cross_validation->at(i).rmse == alone.cross_validation->at(i).rmse);
+    CHECK(found.cross_validation->at(i).largest_shift ==
+          alone.cross_validation->at(i).largest_shift);
   }
 }
 

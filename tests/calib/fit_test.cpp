@@ -68,9 +68,17 @@ TEST_CASE("fit: recovers the truth from noisy positions", "[calib]") {
   CHECK(found.correlation.matrix.rows() == 4);
   // With 9000 residuals the standard deviation of chi-square is 1.5 %; the limit is five times
   // that.
-  CHECK_THAT(found.reduced_chi_square, WithinAbs(1.0, 0.075));
+  CHECK_THAT(found.reduced_chi_square.value(), WithinAbs(1.0, 0.075));
   CHECK(found.conditions.size() == 6);
-  CHECK(found.conditions.front().channels.at(0).agreement->rho2 > 0.999);
+  CHECK(found.conditions.front().channels.at(0).metrics.rho2 > 0.999);
+  for (const ConditionScore& score : found.conditions) {
+    const datasets::Condition& stated = *twin.campaign.find(score.id);
+    CHECK(score.waveform.value() == stated.waveform);
+    CHECK(score.frequency_hz.value() == stated.frequency_hz.value());
+    CHECK(score.amplitude_m.value() == stated.amplitude.value());
+    CHECK(score.leak_level.value() == stated.leak_level.value());
+    CHECK(score.windows_s.value().empty());  // the whole record
+  }
   CHECK(found.failure_count == 0);
 }
 
@@ -354,7 +362,7 @@ TEST_CASE("fit: unknown noise is estimated and said so", "[calib]") {
   REQUIRE(found.status == FitStatus::converged);
   CHECK(mentions(found.warnings, "estimated from the residual"));
   CHECK(errors_off(found, "mass", 85.0) < 3.5);
-  CHECK_THAT(found.reduced_chi_square, WithinAbs(1.0, 0.05));  // by construction, to 1 %
+  CHECK_THAT(found.reduced_chi_square.value(), WithinAbs(1.0, 0.05));  // by construction, to 1 %
   const Fit told = fit(twin.campaign, twin.records(500, 500.0, 3), {});
   // The sd of 500 samples is known to 3 %; the limit is four times that.
   CHECK_THAT(parameter(found, "mass").standard_error.value(),

@@ -43,9 +43,8 @@ std::vector<datasets::FittedValue> truth() {
 ConditionScore scored(double rho2) {
   ConditionScore score;
   ChannelScore channel;
-  channel.agreement = metrics::Agreement{};
-  channel.agreement->rho2 = rho2;
-  channel.agreement->absolute_error_percent = 2.0;
+  channel.metrics.rho2 = rho2;
+  channel.metrics.absolute_error_percent = 2.0;
   score.channels.push_back(channel);
   return score;
 }
@@ -68,9 +67,9 @@ TEST_CASE("fit: validate conditions are scored with their own nuisance offset", 
   CHECK(offset.nuisance);
   CHECK(std::abs(offset.value + 2e-3) < 3.5 * offset.standard_error.value());
   const ChannelScore& score = found.conditions[2].channels.at(0);
-  CHECK(score.agreement->ccc > 0.999);  // ccc would detect a wrong offset of 2 mm
+  CHECK(score.metrics.ccc > 0.999);  // ccc would detect a wrong offset of 2 mm
   REQUIRE(score.noise_floor.has_value());
-  CHECK_THAT(score.gain_ratio.value(), WithinAbs(1.0, 0.01));
+  CHECK_THAT(score.metrics.gain_ratio.value(), WithinAbs(1.0, 0.01));
 }
 
 TEST_CASE("validate: estimates nothing but nuisance parameters", "[calib]") {
@@ -116,8 +115,7 @@ TEST_CASE("validate: without values, those of the campaign hold", "[calib]") {
   const Fit found = validate(twin.campaign, twin.records(400, 500.0, 5), nullptr, {});
   CHECK(found.status == FitStatus::converged);
   CHECK(found.evaluations == 0);
-  CHECK(found.conditions.at(0).channels.at(0).agreement->rho2 <
-        0.999);  // scored with the start value
+  CHECK(found.conditions.at(0).channels.at(0).metrics.rho2 < 0.999);  // scored with the start value
 }
 
 TEST_CASE("validate: a leak level that the fit does not have is an error", "[calib]") {
@@ -166,8 +164,8 @@ TEST_CASE("scorecard: a constant record has a problem in words, no number", "[ca
   twin.add("still", Waveform::sine, 2.0, 0.0);
   const Fit found = validate(twin.campaign, twin.records(100, 500.0, 1), nullptr, {});
   const ChannelScore& score = found.conditions.at(0).channels.at(0);
-  CHECK_FALSE(score.agreement.has_value());
-  CHECK_THAT(score.problem, Contains("constant"));
+  CHECK(std::isnan(score.metrics.rho2));
+  CHECK_THAT(score.metrics.problem.value(), Contains("constant"));
 }
 
 TEST_CASE("scorecard: better than the noise allows is called overfitting", "[calib]") {
@@ -177,7 +175,7 @@ TEST_CASE("scorecard: better than the noise allows is called overfitting", "[cal
   score.channels[0].noise_floor = metrics::NoiseFloor{0.999, 0.999, 0.1};
   REQUIRE(overfitting_warnings({score}).size() == 1);
   CHECK_THAT(overfitting_warnings({score})[0], Contains("\"a\"") && Contains("overfitting"));
-  score.channels[0].agreement->rho2 = 0.99901;
+  score.channels[0].metrics.rho2 = 0.99901;
   CHECK(overfitting_warnings({score}).empty());
 }
 
@@ -201,9 +199,9 @@ TEST_CASE("acceptance: how much of a tolerance is used, and the worst of several
   ConditionScore score = scored(0.995);
   judge({limit("rho2", 0.99, 0.993), limit("absolute_error_percent", 8.0, 6.0)},
         DecisionRule::simple, score);
-  REQUIRE(score.checks.size() == 2);
-  CHECK_THAT(score.checks[0].tolerance_used.value(), WithinRel(0.5, 1e-9));  // 0.005 of 0.01
-  CHECK_THAT(score.checks[1].tolerance_used.value(), WithinRel(0.25, 1e-9));
+  REQUIRE(score.limit_checks.size() == 2);
+  CHECK_THAT(score.limit_checks[0].tolerance_used.value(), WithinRel(0.5, 1e-9));  // 0.005 of 0.01
+  CHECK_THAT(score.limit_checks[1].tolerance_used.value(), WithinRel(0.25, 1e-9));
   CHECK(score.verdict == Verdict::pass);
   for (const double worse : {1.0, 2.0}) {
     ConditionScore mixed = scored(0.995);
@@ -244,8 +242,8 @@ TEST_CASE("acceptance: by the guard band a limit is kept by more than the uncert
   CHECK(guarded(0.98, 0.1).verdict == Verdict::fail);  // a large uncertainty does not help
   CHECK(judged(0.995, 0.006, DecisionRule::simple).verdict == Verdict::pass);
   const ConditionScore near = guarded(0.995, 0.006);
-  CHECK(near.checks.at(0).in_guard_band);
-  CHECK(near.checks.at(0).expanded_uncertainty == 0.006);
+  CHECK(near.limit_checks.at(0).in_guard_band);
+  CHECK(near.limit_checks.at(0).expanded_uncertainty == 0.006);
   CHECK_THAT(near.reasons.at(0), Contains("keeps 0.99, but not by more than") && Contains("0.006"));
   CHECK_THAT(guarded(0.995, std::nullopt).reasons.at(0), Contains("not known"));
 }
@@ -254,7 +252,7 @@ TEST_CASE("acceptance: the guard band of an error lies below its limit", "[calib
   ConditionScore score = scored(1.0);
   score.channels[0].expanded_uncertainty.emplace();
   score.channels[0].expanded_uncertainty->absolute_error_percent = 0.5;
-  const double error = score.channels[0].agreement->absolute_error_percent;
+  const double error = score.channels[0].metrics.absolute_error_percent;
   for (const double allowed : {error + 0.4, error + 0.6}) {
     ConditionScore each = score;
     judge({limit("absolute_error_percent", allowed)}, DecisionRule::guard_band, each);
@@ -269,8 +267,8 @@ TEST_CASE("acceptance: what could not be simulated or evaluated fails", "[calib]
   judge(limits, DecisionRule::simple, broken);
   CHECK(broken.verdict == Verdict::fail);
   ConditionScore constant = scored(1.0);
-  constant.channels[0].agreement.reset();
-  constant.channels[0].problem = "constant";
+  constant.channels[0].metrics = ChannelMetrics{};
+  constant.channels[0].metrics.problem = "constant";
   judge(limits, DecisionRule::simple, constant);
   CHECK(constant.verdict == Verdict::fail);
   CHECK_THAT(constant.reasons.at(0), Contains("cannot be evaluated") && Contains("constant"));

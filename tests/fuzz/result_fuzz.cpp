@@ -34,7 +34,7 @@ void read_or_refuse(Attempt attempt) {
 /// A fit with residual tests, so that the page draws their curves.
 std::string tested_fit() {
   auto fit = test::stored_result();
-  fit["conditions"][0]["residual_tests"]["position"] = json_of(StoredResidualTests());
+  fit["conditions"][0]["residual_tests"]["position"] = json_of(metrics::ResidualTests());
   return fit.dump();
 }
 

@@ -64,14 +64,18 @@ TEST_CASE("residual_tests: each is passed by white noise about as often as its l
 
 TEST_CASE("residual_tests: a first-order process has its known autocorrelation", "[metrics]") {
   const double phi = 0.95;
-  const ResidualTests tests = residual_tests(first_order(white(20000, 7), phi), {}, 0.001);
+  const auto tests = residual_tests(first_order(white(20000, 7), phi), {}, 0.001);
   CHECK_FALSE(tests.autocorrelation.passed());
   CHECK_FALSE(tests.periodogram.passed());
   CHECK_FALSE(tests.cross_correlation.has_value());
-  for (const std::size_t lag : {1U, 5U, 20U}) {
+  const auto& curve = tests.curves.autocorrelation;
+  CHECK(curve.first_lag_s == 0.0);
+  REQUIRE(curve.values.size() > 20);
+  for (std::size_t i = 0; static_cast<double>(i) * curve.lag_step_s < 0.0205; ++i) {
+    const double lag = std::round(static_cast<double>(i) * curve.lag_step_s / 0.001);
+    CAPTURE(lag);
     // Bartlett's standard deviation at these lags is below 0.045.
-    CHECK_THAT(tests.autocorrelation.values[lag],
-               Catch::WithinAbs(std::pow(phi, static_cast<double>(lag)), 0.12));
+    CHECK_THAT(curve.values[i], Catch::WithinAbs(std::pow(phi, lag), 0.12));
   }
   CHECK_THAT(tests.autocorrelation.durbin_watson, Catch::WithinAbs(2.0 * (1.0 - phi), 0.01));
   // n (1 - phi) / (1 + phi)
@@ -101,6 +105,29 @@ TEST_CASE("residual_tests: what follows the input late is found at its lag", "[m
   CHECK_THAT(tests.cross_correlation->peak, Catch::WithinAbs(0.5 / std::sqrt(1.25), 0.05));
 }
 
+TEST_CASE("residual_tests: the curve of the cross-correlation lies about lag zero", "[metrics]") {
+  const std::vector<double> input = white(1000, 14);
+  std::vector<double> residual = white(1000, 15);
+  for (std::size_t i = 3; i < residual.size(); ++i) residual[i] += 5.0 * input[i - 3];
+  const auto curve = residual_tests(residual, input, 0.01).curves.cross_correlation.value();
+  const auto peak = std::max_element(curve.values.begin(), curve.values.end());
+  const auto place = static_cast<double>(peak - curve.values.begin());
+  CHECK_THAT(curve.first_lag_s + place * curve.lag_step_s, Catch::WithinAbs(0.03, 1e-9));
+}
+
+TEST_CASE("residual_tests: a curve of many lags is thinned, and keeps lag zero", "[metrics]") {
+  // The autocorrelation of a slow residual needs half of the record to fall: 1000 lags.
+  const std::vector<double> residual = sine(2000, 0.05, 0.01);
+  const auto curves = residual_tests(residual, residual, 0.01).curves;
+  for (const auto& curve : {curves.autocorrelation, curves.cross_correlation.value()}) {
+    CHECK(curve.values.size() > 150);
+    CHECK(curve.values.size() <= 200);
+    const auto at_zero =
+        static_cast<std::size_t>(std::lround(-curve.first_lag_s / curve.lag_step_s));
+    CHECK_THAT(curve.values.at(at_zero), Catch::WithinAbs(1.0, 1e-9));
+  }
+}
+
 TEST_CASE("residual_tests: the periodogram finds a line and keeps the power", "[metrics]") {
   std::vector<double> residual = white(5000, 5);
   const std::vector<double> line = sine(5000, 10.0, 0.001);
@@ -111,17 +138,18 @@ TEST_CASE("residual_tests: the periodogram finds a line and keeps the power", "[
   // The line has 2 of 3 units of variance.
   CHECK_THAT(tests.periodogram.peak_share, Catch::WithinAbs(2.0 / 3.0, 0.05));
   // White noise with variance 1 at 1 kHz has a one-sided density of 2 / 1000.
-  const ResidualTests noise = residual_tests(white(5000, 6), {}, 0.001);
-  CHECK_THAT(noise.periodogram.density.back(), Catch::WithinRel(0.002, 0.2));
+  const auto noise = residual_tests(white(5000, 6), {}, 0.001);
+  CHECK_THAT(noise.curves.periodogram.density.back(), Catch::WithinRel(0.002, 0.2));
 }
 
 TEST_CASE("residual_tests: heavy tails and trends are named", "[metrics]") {
   std::vector<double> cubed = white(2000, 8);
   for (double& value : cubed) value = value * value * value;
-  const ResidualTests heavy = residual_tests(cubed, {}, 0.01);
+  const auto heavy = residual_tests(cubed, {}, 0.01);
   CHECK_FALSE(heavy.normality.passed());
   CHECK(heavy.normality.excess_kurtosis > 5.0);
-  CHECK(heavy.normality.residual_quantile.back() > heavy.normality.normal_quantile.back());
+  CHECK(heavy.curves.normality.residual_quantile.back() >
+        heavy.curves.normality.normal_quantile.back());
 
   std::vector<double> trend = white(2000, 9);
   for (std::size_t i = 0; i < trend.size(); ++i) trend[i] += 0.02 * 0.01 * static_cast<double>(i);
@@ -141,8 +169,8 @@ TEST_CASE("residual_tests: a normal sample lies on the line of the normal plot",
         3.0 * rigcal::metrics::normal_quantile((shuffled + 0.5) / kSamples);
     input[static_cast<std::size_t>(i)] = i % 7;
   }
-  const ResidualTests tests = residual_tests(sample, input, 0.01);
-  const auto& plot = tests.normality;
+  const auto tests = residual_tests(sample, input, 0.01);
+  const auto& plot = tests.curves.normality;
   REQUIRE(plot.normal_quantile.size() == plot.residual_quantile.size());
   for (std::size_t i = 0; i < plot.normal_quantile.size(); ++i) {
     CAPTURE(plot.normal_quantile[i]);
@@ -258,25 +286,30 @@ TEST_CASE("residual_tests: refuses what has no tests", "[metrics]") {
 }
 
 TEST_CASE("residual tests: curves of partial autocorrelation and cumulative power", "[metrics]") {
-  const ResidualTests noise = residual_tests(white(2000, 31), {}, 0.01);
-  REQUIRE(noise.periodogram.cumulative.size() == 51);
-  CHECK(noise.periodogram.cumulative.front() == 0.0);
-  CHECK_THAT(noise.periodogram.cumulative.back(), Catch::WithinAbs(1.0, 1e-9));
-  CHECK_THAT(noise.periodogram.last_frequency_hz, Catch::WithinRel(50.0, 1e-12));
+  const auto power_of = [](const std::vector<double>& residual) {
+    return residual_tests(residual, {}, 0.01).curves.cumulative_periodogram.value();
+  };
+  const auto partial_of = [](const std::vector<double>& residual) {
+    return residual_tests(residual, {}, 0.01).curves.partial_autocorrelation.value().values;
+  };
+  const auto noise = power_of(white(2000, 31));
+  REQUIRE(noise.fraction.size() == 51);
+  CHECK(noise.fraction.front() == 0.0);
+  CHECK_THAT(noise.fraction.back(), Catch::WithinAbs(1.0, 1e-9));
+  CHECK_THAT(noise.last_frequency_hz, Catch::WithinRel(50.0, 1e-12));
   for (std::size_t i = 0; i < 51; ++i)
-    CHECK(std::abs(noise.periodogram.cumulative[i] - static_cast<double>(i) / 50.0) < 0.08);
-  REQUIRE(noise.autocorrelation.partial.size() == 50);
+    CHECK(std::abs(noise.fraction[i] - static_cast<double>(i) / 50.0) < 0.08);
+  REQUIRE(partial_of(white(2000, 31)).size() == 50);
   // A sine at 12.5 Hz, a quarter of the way to 50 Hz, has all its power in one line.
-  const auto line = residual_tests(sine(2000, 12.5, 0.01), {}, 0.01).periodogram.cumulative;
+  const auto line = power_of(sine(2000, 12.5, 0.01)).fraction;
   CHECK(line[12] < 0.01);
   CHECK(line[13] > 0.99);
-  const auto partial =
-      residual_tests(first_order(white(4000, 32), 0.8), {}, 0.01).autocorrelation.partial;
+  const auto partial = partial_of(first_order(white(4000, 32), 0.8));
   CHECK_THAT(partial[0], Catch::WithinAbs(0.8, 0.05));
   CHECK(std::abs(partial[1]) < 0.08);
   // A short record has fewer lags, and lines between which the curve is interpolated.
-  const ResidualTests few = residual_tests(white(16, 33), {}, 0.01);
-  CHECK(few.autocorrelation.partial.size() == 8);
-  CHECK(few.periodogram.cumulative.size() == 51);
-  CHECK(std::is_sorted(few.periodogram.cumulative.begin(), few.periodogram.cumulative.end()));
+  CHECK(partial_of(white(16, 33)).size() == 8);
+  const auto few = power_of(white(16, 33)).fraction;
+  CHECK(few.size() == 51);
+  CHECK(std::is_sorted(few.begin(), few.end()));
 }

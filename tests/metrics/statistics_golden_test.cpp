@@ -71,13 +71,14 @@ TEST_CASE("golden: residual tests", "[metrics]") {
   const std::string name = GENERATE("white", "coloured", "skewed");
   CAPTURE(name);
   const auto value = [&](const char* key) { return golden(name + "." + key).front(); };
-  const ResidualTests tests =
+  const TestedResidual tests =
       residual_tests(golden(name + ".residual"), golden(name + ".input"), 0.01);
 
   const Autocorrelation& own = tests.autocorrelation;
   const std::vector<double> rho = golden(name + ".autocorrelation");
   CHECK(own.tested_lags == static_cast<int>(rho.size()) - 1);
-  check_values({own.values.begin(), own.values.begin() + own.tested_lags + 1}, rho);
+  const std::vector<double>& curve = tests.curves.autocorrelation.values;
+  check_values({curve.begin(), curve.begin() + own.tested_lags + 1}, rho);
   check_value(own.ljung_box, value("ljung_box"));
   check_value(own.p_value, value("ljung_box_p"));
   check_value(own.durbin_watson, value("durbin_watson"));
@@ -87,17 +88,19 @@ TEST_CASE("golden: residual tests", "[metrics]") {
   check_value(tests.cross_correlation->peak, value("cross_correlation"));
   CHECK_THAT(tests.cross_correlation->peak_lag_s, WithinAbs(value("cross_lag_s"), 1e-12));
   check_value(tests.cross_correlation->limit, value("cross_band"));
-  CHECK_THAT(tests.cross_correlation->band,
+  CHECK_THAT(tests.curves.cross_correlation->band,
              WithinRel(1.96 / std::sqrt(value("effective_samples")), 1e-12));
 
   const Periodogram& spectrum = tests.periodogram;
   check_value(spectrum.distance, value("periodogram_distance"));
   // The constant 1.3581 is printed with four digits.
   CHECK_THAT(spectrum.limit, WithinRel(value("periodogram_limit"), 1e-4));
-  check_value(spectrum.frequency_hz.front(), golden(name + ".periodogram_lowest")[0]);
+  check_value(tests.curves.periodogram.frequency_hz.front(),
+              golden(name + ".periodogram_lowest")[0]);
   // If the number of samples is even, the last line represents one frequency rather than two. This
   // changes the other lines by half of its fraction of the power, here at most 3 %.
-  CHECK_THAT(spectrum.density.front(), WithinRel(golden(name + ".periodogram_lowest")[1], 0.04));
+  CHECK_THAT(tests.curves.periodogram.density.front(),
+             WithinRel(golden(name + ".periodogram_lowest")[1], 0.04));
   check_value(spectrum.median_frequency_hz, value("periodogram_median_hz"));
   check_value(spectrum.peak_frequency_hz, golden(name + ".periodogram_peak")[0]);
   check_value(spectrum.peak_share, golden(name + ".periodogram_peak")[1]);

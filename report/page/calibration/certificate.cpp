@@ -38,7 +38,7 @@ std::string plural(std::size_t count, const std::string& noun) {
 
 /// A signal for which there is a limit.
 struct Judged {
-  const StoredCondition* condition = nullptr;
+  const calib::ConditionResult* condition = nullptr;
   std::size_t number = 0;  ///< index of the condition
   std::string channel;
   const calib::LimitCheck* check = nullptr;  ///< the check that uses most of its tolerance
@@ -56,7 +56,7 @@ struct Judged {
 std::vector<Judged> judged_signals(const StoredFit& fit) {
   std::vector<Judged> signals;
   for (std::size_t i = 0; i < fit.conditions.size(); ++i) {
-    const StoredCondition& condition = fit.conditions[i];
+    const calib::ConditionResult& condition = fit.conditions[i];
     if (condition.failure || condition.not_scored) {
       if (!fit.acceptance.empty()) signals.push_back({&condition, i, {}, nullptr});
       continue;
@@ -409,7 +409,7 @@ std::vector<double> counted_samples(const Table& series, const std::string& colu
   return kept;
 }
 
-std::string signal_words(const StoredCondition& condition) {
+std::string signal_words(const calib::ConditionResult& condition) {
   std::string text;
   const auto add = [&](const std::string& word) {
     if (!word.empty()) text += (text.empty() ? "" : ", ") + word;
@@ -434,7 +434,8 @@ void add_score(const Judged& signal, doc::Cell& cell) {
   const bool is_error = check.metric == "absolute_error_percent";
   doc::Quantity score = doc::score(check.metric, check.value);
   Line limit;
-  if (const auto* known = signal.condition->printed_uncertainty_of(signal.channel)) {
+  const calib::ChannelScore* score = signal.condition->find(signal.channel);
+  if (const auto* known = score == nullptr ? nullptr : score->printed_uncertainty()) {
     for (const metrics::MetricSpec& metric : metrics::kMetrics) {
       const double half = known->*metric.value;
       if (metric.name != check.metric || !std::isfinite(half)) continue;
@@ -452,7 +453,7 @@ void add_score(const Judged& signal, doc::Cell& cell) {
 }
 
 doc::Row signal_row(const Calibration& stored, const Judged& signal) {
-  const StoredCondition& condition = *signal.condition;
+  const calib::ConditionResult& condition = *signal.condition;
   doc::Cell name{Line{doc::Link{"#" + anchor(condition.id), condition.id}}};
   const std::string whose = signal_words(condition);
   Line use{doc::Aside{whose + (whose.empty() ? "" : " · ")}};
@@ -477,8 +478,8 @@ doc::Row signal_row(const Calibration& stored, const Judged& signal) {
       allowed = metrics::allowed_rms(counted_samples(*series, "measured_" + column), *check.limit);
   }
   if (!residual.empty()) strip.picture = residual_strip(signal, residual, allowed);
-  if (const StoredScore* scores = find(condition.metrics, signal.channel); scores != nullptr) {
-    rms.line = {doc::readable(scores->rmse, channel_unit(signal.channel), 3)};
+  if (const calib::ChannelScore* found = condition.find(signal.channel)) {
+    rms.line = {doc::readable(found->metrics.rmse, channel_unit(signal.channel), 3)};
     if (allowed > 0.0) rms.below = {{"limit ", readable(allowed, channel_unit(signal.channel), 2)}};
   }
   add_score(signal, score);
@@ -493,19 +494,20 @@ doc::Row signal_row(const Calibration& stored, const Judged& signal) {
 std::string not_judged_words(const StoredFit& fit) {
   std::vector<std::string> found;
   std::vector<std::string> seen;
-  for (const StoredCondition& condition : fit.conditions) {
-    for (const auto& [channel, scores] : condition.metrics) {
+  for (const calib::ConditionResult& condition : fit.conditions) {
+    for (const calib::ChannelScore& each : condition.channels) {
+      const std::string channel(each.key());
       if (condition.verdict_of(channel) ||
           std::find(seen.begin(), seen.end(), channel) != seen.end())
         continue;
       seen.push_back(channel);
-      const StoredCondition* lowest = nullptr;
+      const calib::ConditionResult* lowest = nullptr;
       double least = HUGE_VAL;
-      for (const StoredCondition& other : fit.conditions) {
-        const StoredScore* score =
-            other.verdict_of(channel) ? nullptr : find(other.metrics, channel);
-        if (score == nullptr || !(score->rho2 < least)) continue;
-        least = score->rho2;
+      for (const calib::ConditionResult& other : fit.conditions) {
+        const calib::ChannelScore* score =
+            other.verdict_of(channel) ? nullptr : other.find(channel);
+        if (score == nullptr || !(score->metrics.rho2 < least)) continue;
+        least = score->metrics.rho2;
         lowest = &other;
       }
       found.push_back(spaced(channel) + (lowest == nullptr

@@ -29,7 +29,7 @@ doc::Section parameters_section(const std::vector<calib::FittedParameter>& param
 void add_budget(const std::vector<calib::FittedParameter>& parameters, doc::Blocks& blocks);
 /// Adds the contributions to the uncertainty of each score of a condition. Adds nothing if they are
 /// unknown.
-void add_score_budgets(const StoredCondition& condition, doc::Blocks& blocks);
+void add_score_budgets(const calib::ConditionResult& condition, doc::Blocks& blocks);
 /// Returns one article for each condition, with its description, scores, plots and residual tests.
 ///
 /// @param curves  whether plots and residual tests are drawn
@@ -51,7 +51,7 @@ doc::Section starts_section(const StoredFit& fit);
 doc::Section warnings_section(const StoredFit& fit);
 
 /// Adds residual tests and curves for the channels of a condition.
-void add_residual_tests(const StoredCondition& condition, const StoredChannelCurves* curves,
+void add_residual_tests(const calib::ConditionResult& condition, const calib::ChannelCurves* curves,
                         doc::Blocks& blocks);
 
 }  // namespace rigcal::report

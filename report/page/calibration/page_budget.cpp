@@ -117,19 +117,18 @@ void add_budget(const std::vector<calib::FittedParameter>& parameters, doc::Bloc
   blocks.emplace_back(contributions("Parameter", budgets));
 }
 
-void add_score_budgets(const StoredCondition& condition, doc::Blocks& blocks) {
-  if (!condition.score_budgets) return;
+void add_score_budgets(const calib::ConditionResult& condition, doc::Blocks& blocks) {
   std::vector<BudgetOf> budgets;
-  for (const auto& [channel, by_metric] : *condition.score_budgets) {
-    const StoredScore* scores = find(condition.metrics, channel);
+  for (const calib::ChannelScore& score : condition.channels) {
+    if (!score.score_budgets) continue;
     for (const metrics::MetricSpec& metric : metrics::kMetrics) {
-      const calib::Budget95* budget = find(by_metric, std::string(metric.name));
-      if (budget == nullptr || scores == nullptr) continue;
+      const calib::Budget95* budget = find(*score.score_budgets, std::string(metric.name));
+      if (budget == nullptr) continue;
       ReadableUnit unit{metric.unit == "1" ? std::string() : std::string(metric.unit), 1.0};
       if (metric.unit == "channel")
-        unit = readable_unit(scores->*metric.value, channel_unit(channel));
-      budgets.push_back(
-          {fmt::format("{} of {}", metric.title, spaced(channel)), std::move(unit), budget});
+        unit = readable_unit(score.metrics.*metric.value, info(score.channel).unit);
+      budgets.push_back({fmt::format("{} of {}", metric.title, spaced(std::string(score.key()))),
+                         std::move(unit), budget});
     }
   }
   if (budgets.empty()) return;

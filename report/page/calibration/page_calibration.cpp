@@ -94,7 +94,7 @@ std::vector<Figure> calibration_figures(const ResultFolder& folder) {
   if (fit == nullptr) return figures;
   figures = rig_response_figures(*fit);
   for (std::size_t i = 0; i < fit->result.conditions.size(); ++i) {
-    const StoredCondition& condition = fit->result.conditions[i];
+    const calib::ConditionResult& condition = fit->result.conditions[i];
     for (Figure& figure : condition_figures(condition, *fit->series(i)))
       figures.push_back({condition.id + "_" + figure.name, std::move(figure.plot)});
   }

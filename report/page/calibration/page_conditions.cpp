@@ -20,11 +20,11 @@ namespace {
 
 using Kind = doc::Column::Kind;
 
-void add_scores(const StoredCondition& condition, doc::Blocks& blocks) {
-  if (condition.metrics.empty()) return;
-  const bool uncertain = std::any_of(
-      condition.metrics.begin(), condition.metrics.end(),
-      [&](const auto& each) { return condition.printed_uncertainty_of(each.first) != nullptr; });
+void add_scores(const calib::ConditionResult& condition, doc::Blocks& blocks) {
+  if (condition.channels.empty()) return;
+  const bool uncertain =
+      std::any_of(condition.channels.begin(), condition.channels.end(),
+                  [](const auto& each) { return each.printed_uncertainty() != nullptr; });
   if (uncertain)
     blocks.emplace_back(doc::reading(
         "± expanded uncertainty of a score (95 %, two-sided), from the variation between "
@@ -34,16 +34,17 @@ void add_scores(const StoredCondition& condition, doc::Blocks& blocks) {
   for (doc::Column& column : score_columns()) table.columns.push_back(std::move(column));
   for (const char* title : {"Noise ceiling of rho2", "Gain ratio", "Phase °", "Delay"})
     table.columns.push_back({title, Kind::number});
-  for (const auto& [channel, scores] : condition.metrics) {
-    const doc::Badge verdict = doc::badge(condition.verdict_of(channel));
-    const auto* floor = find(condition.noise_floor, channel);
-    const bool has_floor = floor != nullptr && floor->has_value();
-    doc::Row row{{doc::Line{doc::Mark{verdict.state, verdict.words}, " " + channel}}};
+  for (const calib::ChannelScore& score : condition.channels) {
+    const calib::ChannelMetrics& scores = score.metrics;
+    const doc::Badge verdict = doc::badge(condition.verdict_of(score.channel));
+    const auto& floor = score.noise_floor;
+    doc::Row row{
+        {doc::Line{doc::Mark{verdict.state, verdict.words}, fmt::format(" {}", score.key())}}};
     for (doc::Cell& cell :
-         score_cells(scores, condition.printed_uncertainty_of(channel), channel_unit(channel)))
+         score_cells(scores, score.printed_uncertainty(), info(score.channel).unit))
       row.cells.push_back(std::move(cell));
     for (doc::Quantity quantity :
-         {doc::agreement(has_floor ? std::optional((*floor)->rho2) : std::nullopt),
+         {doc::agreement(floor ? std::optional(floor->rho2) : std::nullopt),
           doc::in_unit(scores.gain_ratio, 1.0, 5), doc::in_unit(scores.phase_deg, 1.0, 2),
           doc::readable(scores.delay_s, "s", 2)})
       row.cells.push_back({doc::Line{std::move(quantity)}});
@@ -53,7 +54,7 @@ void add_scores(const StoredCondition& condition, doc::Blocks& blocks) {
   blocks.emplace_back(std::move(table));
 }
 
-doc::Line facts_of(const StoredCondition& condition) {
+doc::Line facts_of(const calib::ConditionResult& condition) {
   doc::Line facts;
   const auto add = [&](const std::string& text) {
     facts.emplace_back((facts.empty() ? "" : " · ") + text);
@@ -111,8 +112,8 @@ Json live_plot(const TimePlot& plot, SeriesData& data) {
 ///
 /// @param points  approximate number of points per series
 /// @return        number of plots
-std::size_t add_plots(const StoredCondition& condition, const Table& series, std::size_t points,
-                      doc::Blocks& blocks) {
+std::size_t add_plots(const calib::ConditionResult& condition, const Table& series,
+                      std::size_t points, doc::Blocks& blocks) {
   if (series.columns.empty() || series.columns.front().empty()) return 0;
   SeriesData data(series, points);
   Json plots = Json::array();
@@ -139,7 +140,7 @@ std::size_t add_plots(const StoredCondition& condition, const Table& series, std
 }
 
 /// Describes a condition and lists its scores.
-doc::Article facts_article(const StoredCondition& condition) {
+doc::Article facts_article(const calib::ConditionResult& condition) {
   const doc::Badge verdict = doc::badge(condition.verdict);
   doc::Article article{anchor(condition.id), {verdict, " " + condition.id}, {}};
   doc::Blocks& blocks = article.blocks;
@@ -162,14 +163,14 @@ doc::Article facts_article(const StoredCondition& condition) {
 /// @param series  contents of residuals/<condition>.csv
 /// @param curves  entry for the condition in residual_tests.json, or null
 /// @param open    whether the curves are unfolded
-void add_curves(const StoredCondition& condition, const Table& series,
-                const StoredChannelCurves* curves, std::size_t points, bool open,
+void add_curves(const calib::ConditionResult& condition, const Table& series,
+                const calib::ChannelCurves* curves, std::size_t points, bool open,
                 doc::Blocks& blocks) {
   doc::Fold curves_of{"", {}, open, "curves"};
   const std::size_t plots = add_plots(condition, series, points, curves_of.blocks);
   // Every scored condition must have a series. Without this message the page would look complete
   // although it is not.
-  if (!condition.metrics.empty() && plots == 0)
+  if (!condition.channels.empty() && plots == 0)
     blocks.emplace_back(doc::Paragraph{
         {fmt::format("residuals/{}.csv is missing or has no rows: nothing can be drawn.",
                      condition.id)},
@@ -191,7 +192,7 @@ void add_curves(const StoredCondition& condition, const Table& series,
 constexpr std::size_t kSketchPoints = 400;
 
 /// Returns the last two periods of the measured and simulated signals for the script on the page.
-Json sketched_series(const StoredCondition& condition, const Table& series) {
+Json sketched_series(const calib::ConditionResult& condition, const Table& series) {
   if (series.columns.empty() || series.columns.front().empty()) return nullptr;
   Table part;
   const auto* time_s = series.find("time_s");
@@ -224,12 +225,12 @@ std::string plain_text(const doc::Line& line) {
 }
 
 /// @param series  null: the sketch has no curves
-doc::Sketches::Sketch sketch_of(const StoredCondition& condition, const Table* series) {
+doc::Sketches::Sketch sketch_of(const calib::ConditionResult& condition, const Table* series) {
   doc::Sketches::Sketch sketch{
       anchor(condition.id), doc::badge(condition.verdict), {doc::Strong{condition.id}}, {}};
-  for (const auto& [channel, scores] : condition.metrics) {
-    sketch.line.emplace_back(" · " + spaced(channel) + " ");
-    sketch.line.emplace_back(doc::agreement(scores.rho2));
+  for (const calib::ChannelScore& score : condition.channels) {
+    sketch.line.emplace_back(" · " + spaced(std::string(score.key())) + " ");
+    sketch.line.emplace_back(doc::agreement(score.metrics.rho2));
   }
   if (series == nullptr) return sketch;
   std::vector<std::string> texts{plain_text(facts_of(condition))};
@@ -258,7 +259,8 @@ std::size_t points_of(const Calibration& stored, const std::vector<std::size_t>&
 
 }  // namespace
 
-std::vector<Figure> condition_figures(const StoredCondition& condition, const Table& series) {
+std::vector<Figure> condition_figures(const calib::ConditionResult& condition,
+                                      const Table& series) {
   std::vector<Figure> figures;
   if (series.columns.empty() || series.columns.front().empty()) return figures;
   for (const TimePlot& plot : time_plots(series))
@@ -271,7 +273,7 @@ std::vector<Figure> condition_figures(const StoredCondition& condition, const Ta
 }
 
 doc::Section conditions_section(const Calibration& stored, int threads, bool curves) {
-  const std::vector<StoredCondition>& conditions = stored.result.conditions;
+  const std::vector<calib::ConditionResult>& conditions = stored.result.conditions;
   doc::Section section{"conditions", "Conditions"};
   if (conditions.empty()) {
     section.blocks.emplace_back(doc::reading("No condition was scored."));
@@ -292,7 +294,7 @@ doc::Section conditions_section(const Calibration& stored, int threads, bool cur
   // Each article is rendered immediately. Keeping the series of all articles would account for most
   // of the memory that a page needs.
   parallel_for(conditions.size(), threads, [&](std::size_t i) {
-    const StoredCondition& condition = conditions[i];
+    const calib::ConditionResult& condition = conditions[i];
     const bool in_full = std::binary_search(shown.begin(), shown.end(), i);
     if (in_full) articles[i].blocks = {facts_article(condition)};
     const std::shared_ptr<const Table> series = curves ? stored.series(i) : nullptr;

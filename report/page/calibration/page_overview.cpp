@@ -29,7 +29,8 @@ std::string column_name(const char* what, const std::string& channel) {
   return fmt::format("{}_{}", what, known ? datasets::info(*known).name : channel);
 }
 
-Plot small_plot(const StoredCondition& condition, const Table& series, const std::string& channel) {
+Plot small_plot(const calib::ConditionResult& condition, const Table& series,
+                const std::string& channel) {
   Plot plot;
   plot.title = fmt::format("{} of {}, measured and model", channel, condition.id);
   plot.width = kCellWidth;
@@ -55,20 +56,20 @@ Plot small_plot(const StoredCondition& condition, const Table& series, const std
 /// A score of one channel in one condition.
 struct Extreme {
   double value = 0.0;
-  const StoredCondition* condition = nullptr;
-  std::string channel;
+  const calib::ConditionResult* condition = nullptr;
+  const calib::ChannelScore* score = nullptr;
 };
 
 /// Finds the worst value of a metric over all channels and conditions.
 template <typename Worse>
-std::optional<Extreme> extreme(const std::vector<StoredCondition>& conditions,
+std::optional<Extreme> extreme(const std::vector<calib::ConditionResult>& conditions,
                                double metrics::Agreement::*metric, Worse worse) {
   std::optional<Extreme> found;
-  for (const StoredCondition& condition : conditions) {
-    for (const auto& [channel, scores] : condition.metrics) {
-      if (std::isnan(scores.*metric)) continue;
-      if (!found || worse(scores.*metric, found->value))
-        found = Extreme{scores.*metric, &condition, channel};
+  for (const calib::ConditionResult& condition : conditions) {
+    for (const calib::ChannelScore& score : condition.channels) {
+      const double value = score.metrics.*metric;
+      if (std::isnan(value)) continue;
+      if (!found || worse(value, found->value)) found = Extreme{value, &condition, &score};
     }
   }
   return found;
@@ -77,17 +78,17 @@ std::optional<Extreme> extreme(const std::vector<StoredCondition>& conditions,
 /// Returns, for example, "load pressure of sine_2Hz, limit 0.9, U 0.00021".
 std::string whose(const Extreme& worst, const std::string& metric,
                   double metrics::Agreement::*value) {
-  const StoredCondition& condition = *worst.condition;
-  std::string text = fmt::format("{} of {}", spaced(worst.channel), condition.id);
+  const calib::ConditionResult& condition = *worst.condition;
+  std::string text = fmt::format("{} of {}", spaced(std::string(worst.score->key())), condition.id);
   const auto check = std::find_if(
       condition.limit_checks.begin(), condition.limit_checks.end(), [&](const auto& each) {
-        return info(each.channel).key == worst.channel && each.metric == metric;
+        return each.channel == worst.score->channel && each.metric == metric;
       });
   if (check != condition.limit_checks.end() && check->limit)
     text += fmt::format(", limit {:.6g}", *check->limit);
   else
     text += ", no limit";
-  const metrics::Agreement* uncertainty = condition.printed_uncertainty_of(worst.channel);
+  const metrics::Agreement* uncertainty = worst.score->printed_uncertainty();
   if (uncertainty != nullptr && std::isfinite(uncertainty->*value))
     text += fmt::format(", U {}", significant(uncertainty->*value, kErrorDigits));
   return text;
@@ -133,7 +134,7 @@ doc::Facts three_numbers(const StoredFit& fit) {
 
 /// Returns the responses of the shown channel to the drive that most conditions have.
 std::vector<ResponseCurves> rig_responses(const Calibration& stored, const std::string& channel) {
-  const std::vector<StoredCondition>& conditions = stored.result.conditions;
+  const std::vector<calib::ConditionResult>& conditions = stored.result.conditions;
   std::vector<std::vector<ResponseCurves>> by_drive;
   for (const std::size_t i : shown_in_full(conditions)) {
     const std::shared_ptr<const Table> series = stored.series(i);
@@ -174,7 +175,7 @@ std::vector<Figure> rig_response_figures(const Calibration& stored) {
 }
 
 std::optional<doc::Section> overview_section(const Calibration& stored) {
-  const std::vector<StoredCondition>& conditions = stored.result.conditions;
+  const std::vector<calib::ConditionResult>& conditions = stored.result.conditions;
   const std::string channel = shown_channel(conditions);
   if (channel.empty()) return std::nullopt;
   const std::vector<std::size_t> shown = shown_in_full(conditions);

@@ -22,7 +22,7 @@ Plot small_plot(const std::string& title, const std::string& x_label, const std:
   return plot;
 }
 
-Plot correlation_plot(const StoredCorrelogram& curve, const std::string& title, bool bars) {
+Plot correlation_plot(const metrics::Correlogram& curve, const std::string& title, bool bars) {
   Trace trace;
   trace.kind = bars ? Trace::Kind::bars : Trace::Kind::line;
   trace.style = "residual";
@@ -43,7 +43,7 @@ Plot correlation_plot(const StoredCorrelogram& curve, const std::string& title, 
   return plot;
 }
 
-std::vector<Plot> test_plots(const StoredResidualCurves& curves,
+std::vector<Plot> test_plots(const metrics::ResidualCurves& curves,
                              std::string_view channel_unit_name) {
   std::vector<Plot> plots;
   plots.push_back(correlation_plot(curves.autocorrelation, "autocorrelation", true));
@@ -76,7 +76,7 @@ std::vector<Plot> test_plots(const StoredResidualCurves& curves,
 }
 
 /// Plots the fraction of the power up to each frequency, between the bounds for white noise.
-Plot cumulative_plot(const StoredCumulative& curve) {
+Plot cumulative_plot(const metrics::CumulativePower& curve) {
   Plot plot = small_plot("cumulative periodogram, with the 95 % bounds of white noise",
                          "frequency [Hz]", "fraction of the power");
   Trace power = empty_trace(Trace::Kind::line, "residual");
@@ -97,7 +97,7 @@ Plot cumulative_plot(const StoredCumulative& curve) {
 
 /// Returns the figures that show how a residual differs from white noise, folded. They are not on
 /// paper, where the autocorrelation and the periodogram stand for them.
-std::optional<doc::Fold> whiteness_fold(const StoredResidualCurves& curves) {
+std::optional<doc::Fold> whiteness_fold(const metrics::ResidualCurves& curves) {
   doc::Gallery gallery;
   if (curves.partial_autocorrelation) {
     Plot plot = correlation_plot(*curves.partial_autocorrelation, "partial autocorrelation", true);
@@ -128,7 +128,7 @@ doc::Mark mark_of(metrics::TestOutcome outcome) {
   return {};
 }
 
-doc::Facts test_facts(const StoredResidualTests& tests, const std::string& channel) {
+doc::Facts test_facts(const metrics::ResidualTests& tests, const std::string& channel) {
   doc::Facts facts{"Residual tests of " + channel};
   facts.caption = {channel};
   const auto add = [&](const char* name, const auto& test) {
@@ -144,21 +144,22 @@ doc::Facts test_facts(const StoredResidualTests& tests, const std::string& chann
 
 }  // namespace
 
-void add_residual_tests(const StoredCondition& condition, const StoredChannelCurves* curves,
+void add_residual_tests(const calib::ConditionResult& condition, const calib::ChannelCurves* curves,
                         doc::Blocks& blocks) {
-  if (condition.residual_tests.empty()) return;
+  if (condition.channels.empty()) return;
   blocks.emplace_back(doc::Heading{{"Residual tests"}, 4});
-  for (const auto& [channel, tests] : condition.residual_tests) {
-    if (!tests) {
+  for (const calib::ChannelScore& score : condition.channels) {
+    const std::string channel(score.key());
+    if (!score.residual_tests) {
       blocks.emplace_back(
           doc::reading(channel + ": too few samples, or a constant residual: nothing to test."));
       continue;
     }
-    blocks.emplace_back(test_facts(*tests, channel));
-    const auto* found = curves == nullptr ? nullptr : find(*curves, channel);
+    blocks.emplace_back(test_facts(*score.residual_tests, channel));
+    const auto* found = curves == nullptr ? nullptr : find(*curves, score.channel);
     if (found == nullptr || !*found) continue;
     doc::Gallery gallery;
-    for (Plot& plot : test_plots(**found, channel_unit(channel)))
+    for (Plot& plot : test_plots(**found, info(score.channel).unit))
       gallery.figures.push_back(figure_of(std::move(plot)));
     blocks.emplace_back(std::move(gallery));
     if (auto fold = whiteness_fold(**found)) blocks.emplace_back(std::move(*fold));

@@ -15,7 +15,7 @@ using doc::Line;
 using Kind = doc::Column::Kind;
 
 /// Returns the frequency to sort by, and a name such as "sine 0.1 Hz".
-std::pair<double, std::string> signal_of(const StoredCondition& condition) {
+std::pair<double, std::string> signal_of(const calib::ConditionResult& condition) {
   const std::string waveform =
       condition.waveform ? std::string(to_string(*condition.waveform)) : std::string();
   const std::optional<double>& frequency = condition.frequency_hz;
@@ -23,7 +23,9 @@ std::pair<double, std::string> signal_of(const StoredCondition& condition) {
   return {*frequency, fmt::format("{} {:.6g} Hz", waveform, *frequency)};
 }
 
-std::string level_of(const StoredCondition& condition) { return condition.leak_level.value_or(""); }
+std::string level_of(const calib::ConditionResult& condition) {
+  return condition.leak_level.value_or("");
+}
 
 /// Returns, for example, "rho2 0.99 (warning at 0.995), ccc 0.99"; empty if the channel has no
 /// limits.
@@ -45,7 +47,7 @@ Line caption_of(const StoredFit& fit, const std::string& channel) {
   const std::string limits = limits_text(fit.acceptance, channel);
   std::string rest =
       limits.empty() ? std::string(" – no limits, not judged") : " – limits: " + limits;
-  for (const StoredCondition& condition : fit.conditions) {
+  for (const calib::ConditionResult& condition : fit.conditions) {
     if (!condition.acceptance) continue;
     const std::string own = limits_text(*condition.acceptance, channel);
     rest += fmt::format("; {}: {}", condition.id,
@@ -56,9 +58,10 @@ Line caption_of(const StoredFit& fit, const std::string& channel) {
 
 /// Returns the tile of a condition, or std::nullopt if the channel is not compared in that
 /// condition.
-std::optional<doc::Tile> tile_of(const StoredCondition& condition, const std::string& channel) {
-  const StoredScore* scores = find(condition.metrics, channel);
-  if (scores == nullptr && !condition.failure) return std::nullopt;
+std::optional<doc::Tile> tile_of(const calib::ConditionResult& condition,
+                                 const std::string& channel) {
+  const calib::ChannelScore* score = condition.find(channel);
+  if (score == nullptr && !condition.failure) return std::nullopt;
   doc::Tile tile{doc::badge(condition.verdict_of(channel)), {}};
   tile.to = "#" + anchor(condition.id);
   tile.title = condition.id;
@@ -66,19 +69,19 @@ std::optional<doc::Tile> tile_of(const StoredCondition& condition, const std::st
     tile.line = {"not simulated"};
     return tile;
   }
-  tile.line = {doc::agreement(scores->rho2)};
-  tile.below = {{doc::in_unit(scores->absolute_error_percent, 1.0, 3),
+  tile.line = {doc::agreement(score->metrics.rho2)};
+  tile.below = {{doc::in_unit(score->metrics.absolute_error_percent, 1.0, 3),
                  fmt::format(" % · {}", to_string(condition.use))}};
   return tile;
 }
 
 /// Returns one tile for many conditions in a cell, with the number of each verdict and the worst
 /// condition.
-doc::Tile summary_of(const std::vector<const StoredCondition*>& conditions,
+doc::Tile summary_of(const std::vector<const calib::ConditionResult*>& conditions,
                      const std::string& channel) {
   std::map<std::optional<calib::Verdict>, std::size_t> counts;
-  const StoredCondition* worst = conditions.front();
-  for (const StoredCondition* condition : conditions) {
+  const calib::ConditionResult* worst = conditions.front();
+  for (const calib::ConditionResult* condition : conditions) {
     ++counts[condition->verdict_of(channel)];
     if (badness(*worst, channel) < badness(*condition, channel)) worst = condition;
   }
@@ -98,14 +101,15 @@ constexpr std::size_t kMostTiles = 8;
 std::vector<doc::Table> matrices(const StoredFit& fit) {
   std::vector<std::string> channels;
   std::map<std::pair<double, std::string>,
-           std::map<std::string, std::vector<const StoredCondition*>>>
+           std::map<std::string, std::vector<const calib::ConditionResult*>>>
       by_signal;
   std::vector<std::string> levels;
   const auto remember = [](auto& list, const auto& item) {
     if (std::find(list.begin(), list.end(), item) == list.end()) list.push_back(item);
   };
-  for (const StoredCondition& condition : fit.conditions) {
-    for (const auto& [channel, metrics] : condition.metrics) remember(channels, channel);
+  for (const calib::ConditionResult& condition : fit.conditions) {
+    for (const calib::ChannelScore& score : condition.channels)
+      remember(channels, std::string(score.key()));
     remember(levels, level_of(condition));
     by_signal[signal_of(condition)][level_of(condition)].push_back(&condition);
   }
@@ -124,14 +128,14 @@ std::vector<doc::Table> matrices(const StoredFit& fit) {
         doc::Cell& cell = row.cells.emplace_back();
         const auto found = by_level.find(level);
         if (found == by_level.end()) continue;
-        std::vector<const StoredCondition*> compared;
-        for (const StoredCondition* condition : found->second)
+        std::vector<const calib::ConditionResult*> compared;
+        for (const calib::ConditionResult* condition : found->second)
           if (tile_of(*condition, channel)) compared.push_back(condition);
         if (compared.size() > kMostTiles) {
           cell.tiles = {summary_of(compared, channel)};
           continue;
         }
-        for (const StoredCondition* condition : compared)
+        for (const calib::ConditionResult* condition : compared)
           cell.tiles.push_back(*tile_of(*condition, channel));
         if (cell.tiles.size() > 1)
           for (doc::Tile& tile : cell.tiles) tile.below.push_back({tile.title});

@@ -15,7 +15,7 @@ constexpr double kPeriods = 2.0;
 
 }  // namespace
 
-std::vector<std::size_t> shown_in_full(const std::vector<StoredCondition>& conditions) {
+std::vector<std::size_t> shown_in_full(const std::vector<calib::ConditionResult>& conditions) {
   std::vector<std::size_t> shown(conditions.size());
   std::iota(shown.begin(), shown.end(), 0);
   if (shown.size() <= kMostInFull) return shown;
@@ -27,7 +27,7 @@ std::vector<std::size_t> shown_in_full(const std::vector<StoredCondition>& condi
   return shown;
 }
 
-std::size_t first_of_last_periods(const StoredCondition& condition,
+std::size_t first_of_last_periods(const calib::ConditionResult& condition,
                                   std::span<const double> time_s) {
   const std::optional<double>& frequency = condition.frequency_hz;
   if (time_s.empty() || !frequency || !(*frequency > 0.0)) return 0;
@@ -36,10 +36,11 @@ std::size_t first_of_last_periods(const StoredCondition& condition,
                                   time_s.begin());
 }
 
-std::string shown_channel(const std::vector<StoredCondition>& conditions) {
+std::string shown_channel(const std::vector<calib::ConditionResult>& conditions) {
   std::string first;
-  for (const StoredCondition& condition : conditions) {
-    for (const auto& [channel, scores] : condition.metrics) {
+  for (const calib::ConditionResult& condition : conditions) {
+    for (const calib::ChannelScore& score : condition.channels) {
+      const std::string channel(score.key());
       if (channel == "position" || channel == "angle") return channel;
       if (first.empty()) first = channel;
     }

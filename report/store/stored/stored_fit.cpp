@@ -43,42 +43,10 @@ std::vector<StoredWeight> weights(const Result& result) {
       if (series == record->channels.end()) continue;
       list.push_back({score.id, key_of(channel.channel), score.samples,
                       finite(calib::known_sd(result.campaign, channel.channel, series->second)),
-                      channel.agreement ? std::optional(channel.agreement->rmse) : std::nullopt});
+                      finite(channel.metrics.rmse)});
     }
   }
   return list;
-}
-
-StoredScore stored(const calib::ChannelScore& score) {
-  StoredScore result;
-  for (const metrics::MetricSpec& metric : metrics::kMetrics)
-    result.*metric.value = score.agreement ? (*score.agreement).*metric.value : std::nan("");
-  result.gain_ratio = score.gain_ratio;
-  result.phase_deg = score.phase_deg;
-  result.delay_s = score.delay_s;
-  result.problem = unless_empty(score.problem);
-  return result;
-}
-
-void add_checks(const calib::ConditionScore& score, StoredCondition& condition) {
-  condition.limit_checks = score.checks;
-  std::set<datasets::Channel> judged;
-  for (const calib::LimitCheck& check : score.checks) judged.insert(check.channel);
-  for (const datasets::Channel channel : judged)
-    condition.channel_verdicts.emplace_back(key_of(channel), score.verdict_of(channel).value());
-}
-
-void add_stated(const Result& result, const calib::ConditionScore& score, StoredCondition& stated) {
-  const datasets::Condition* condition = result.campaign.find(score.id);
-  if (condition == nullptr) return;
-  stated.waveform = std::optional(condition->waveform);
-  stated.frequency_hz = condition->frequency_hz;
-  calib::put_amplitude(info(drive_channel(result.campaign)).unit, condition->amplitude, stated);
-  stated.leak_level = condition->leak_level;
-  if (condition->temperature_k) stated.temperature_k = *condition->temperature_k;
-  if (condition->date) stated.date = *condition->date;
-  if (condition->acceptance) stated.acceptance = *condition->acceptance;
-  if (!condition->not_judged.empty()) stated.not_judged = keys_of(condition->not_judged);
 }
 
 /// Returns the hashes of a record's files from the provenance.
@@ -94,74 +62,13 @@ std::vector<std::string> hashes_of(const Result& result, const datasets::Record&
   return hashes;
 }
 
-StoredCondition stored(const Result& result, const calib::ConditionScore& score) {
-  StoredCondition condition;
-  condition.id = score.id;
-  add_stated(result, score, condition);
-  condition.use = score.use;
-  condition.samples = score.samples;
-  if (const datasets::Record* record = record_of(result, score.id)) {
+calib::ConditionResult stored(const Result& result, const calib::ConditionScore& score) {
+  calib::ConditionResult condition = score;
+  if (const datasets::Record* record = record_of(result, score.id))
     condition.record_sha256 = hashes_of(result, *record);
-    condition.windows_s.emplace();
-    for (const datasets::TimeWindow& window : record->windows)
-      condition.windows_s->push_back({window.start_s, window.end_s});
-    condition.notes = record->notes;
-  }
-  condition.warnings = score.data_warnings;
-  condition.not_scored = unless_empty(score.not_scored);
-  condition.failure = unless_empty(score.failure);
-  condition.expanded_uncertainty.emplace();
-  condition.two_sided_uncertainty.emplace();
-  for (const calib::ChannelScore& channel : score.channels) {
-    const std::string key = key_of(channel.channel);
-    condition.metrics.emplace_back(key, stored(channel));
-    condition.noise_floor.emplace_back(key, channel.noise_floor);
-    condition.expanded_uncertainty->emplace_back(key, channel.expanded_uncertainty);
-    condition.two_sided_uncertainty->emplace_back(key, channel.two_sided_uncertainty);
-    if (!channel.budgets.empty()) {
-      if (!condition.score_budgets) condition.score_budgets.emplace();
-      condition.score_budgets->emplace_back(key, channel.budgets);
-    }
-    std::optional<StoredResidualTests> tests;
-    if (channel.residual_tests)
-      tests = report::stored(*channel.residual_tests, info(channel.channel).unit);
-    condition.residual_tests.emplace_back(key, std::move(tests));
-  }
-  add_checks(score, condition);
-  condition.verdict = score.verdict;
-  condition.reasons = score.reasons;
+  for (calib::ChannelScore& channel : condition.channels)
+    if (channel.residual_tests) add_verdicts(*channel.residual_tests, info(channel.channel).unit);
   return condition;
-}
-
-void add_trust(const calib::Fit& fit, StoredFit& result) {
-  result.considered = fit.considered;
-  const bool solved = fit.rank > 0;
-  result.rank = fit.rank;
-  result.singular_values = fit.singular_values;
-  result.correlation = fit.correlation;
-  if (solved) {
-    result.reduced_chi_square = finite(fit.reduced_chi_square);
-    result.aic = finite(fit.aic);
-    result.bic = finite(fit.bic);
-  }
-  result.independent_residuals =
-      fit.independent_residuals > 0.0 ? finite(fit.independent_residuals) : std::nullopt;
-  result.interval_advice = fit.interval_advice;
-  result.combinations = fit.combinations;
-  result.lack_of_fit = std::optional(fit.lack_of_fit);
-  result.between_repeats = fit.between_repeats;
-  result.basins = fit.basins;
-  result.agreement = fit.agreement;
-  result.bootstrap = fit.bootstrap;
-  result.posterior = fit.posterior;
-  if (!fit.cross_validation.empty()) result.cross_validation = fit.cross_validation;
-}
-
-void add_search(const calib::Fit& fit, StoredFit& result) {
-  result.starts = fit.starts;
-  result.best_start = fit.best_start;
-  result.failure_count = fit.failure_count;
-  result.failures = fit.failures;
 }
 
 /// Finds the degrees of freedom for which Student's t times this error gives the half width of
@@ -175,20 +82,6 @@ double freedom_of_interval(const calib::FittedParameter& parameter, double error
 }
 
 }  // namespace
-
-std::optional<calib::Verdict> StoredCondition::verdict_of(const std::string& channel) const {
-  if (failure) return verdict;
-  const calib::Verdict* found = find(channel_verdicts, channel);
-  return found == nullptr ? std::nullopt : std::optional(*found);
-}
-
-const metrics::Agreement* StoredCondition::printed_uncertainty_of(
-    const std::string& channel) const {
-  const auto& all = two_sided_uncertainty ? two_sided_uncertainty : expanded_uncertainty;
-  if (!all) return nullptr;
-  const auto* found = report::find(*all, channel);
-  return found != nullptr && found->has_value() ? &**found : nullptr;
-}
 
 void as_of_now(std::string_view schema, std::vector<calib::FittedParameter>& parameters) {
   if (schema == kFitSchema) return;
@@ -228,22 +121,12 @@ StoredFit as_fit(const StoredTablesFit& tables) {
   return fit;
 }
 
-calib::Badness badness(const StoredCondition& condition, const std::string& channel) {
-  calib::Badness found{condition.failure || condition.not_scored,
-                       channel.empty() ? condition.verdict : condition.verdict_of(channel)};
-  for (const calib::LimitCheck& check : condition.limit_checks)
-    if (channel.empty() || info(check.channel).key == channel) found.add(check);
-  for (const auto& [key, scores] : condition.metrics)
-    if (channel.empty() || key == channel) found.add_rho2(scores.rho2);
-  return found;
-}
-
-std::optional<double> periodic_frequency(const StoredCondition& condition) {
+std::optional<double> periodic_frequency(const calib::ConditionResult& condition) {
   if (!condition.waveform || !datasets::is_periodic(*condition.waveform)) return std::nullopt;
   return condition.frequency_hz;
 }
 
-const StoredCondition* StoredFit::find(const std::string& condition) const {
+const calib::ConditionResult* StoredFit::find(const std::string& condition) const {
   const auto found = std::find_if(conditions.begin(), conditions.end(),
                                   [&](const auto& each) { return each.id == condition; });
   return found == conditions.end() ? nullptr : &*found;
@@ -268,10 +151,8 @@ StoredFit stored(const Result& result) {
   json.evaluations = fit.evaluations;
   json.wall_seconds = finite(fit.wall_seconds);
   json.simulation_tolerance = finite(fit.tolerance);
-  json.parameters = fit.parameters;
+  json.findings() = Inlined<calib::Findings>(fit);
   for (calib::FittedParameter& each : json.parameters) each.reason = reason_of(each);
-  add_trust(fit, json);
-  if (!fit.stability.empty()) json.stability = fit.stability;
   if (result.kind == ResultKind::fit) json.weights = weights(result);
   using datasets::Use;
   const auto covered = [&](const std::vector<Use>& uses) {
@@ -289,7 +170,7 @@ StoredFit stored(const Result& result) {
   for (const calib::ConditionScore& score : fit.conditions)
     json.conditions.push_back(stored(result, score));
   json.groups = calib::groups(result.campaign, fit);
-  add_search(fit, json);
+  json.search() = Inlined<calib::SearchOutcome>(fit);
   json.warnings = fit.warnings;
   json.provenance = stored(result.provenance);
   return json;

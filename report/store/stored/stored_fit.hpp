@@ -65,72 +65,7 @@ struct StoredWeight {
   RIGCAL_DESCRIBE(condition, channel, samples, sd, rms)
 };
 
-/// Scores of one channel in a condition, and the response at the fundamental frequency. A score
-/// that does not exist is NaN.
-struct StoredScore : metrics::Agreement {
-  std::optional<double> gain_ratio, phase_deg, delay_s;
-  std::optional<std::string> problem;
-  template <typename Self, typename Visit>
-  static void describe(Self& self, const Visit& visit) {
-    metrics::Agreement::describe(self, visit);
-    visit("gain_ratio", self.gain_ratio);
-    visit("phase_deg", self.phase_deg);
-    visit("delay_s", self.delay_s);
-    visit("problem", self.problem);
-  }
-};
-
-struct StoredCondition {
-  std::string id;
-  Later<std::optional<datasets::Waveform>> waveform;
-  Later<std::optional<double>> frequency_hz, amplitude_m;
-  Omittable<std::optional<double>> amplitude_v;  ///< open loop only
-  Omittable<double> amplitude_n, amplitude_pa, amplitude_m_per_s2, amplitude_rad,
-      amplitude_n_m;  ///< in other loops
-  Later<std::optional<std::string>> leak_level;
-  datasets::Use use = datasets::Use::fit;
-  Omittable<double> temperature_k;
-  Omittable<std::string> date;
-  long samples = 0;
-  Later<std::vector<std::string>> record_sha256;  ///< files that the record is made from
-  Omittable<std::vector<Range>> windows_s;        ///< empty: the whole record
-  Omittable<std::vector<std::string>> notes;
-  Omittable<std::vector<datasets::AcceptanceLimit>>
-      acceptance;                                  ///< limits that replace the campaign's
-  Omittable<std::vector<std::string>> not_judged;  ///< in addition to those of the campaign
-  Later<std::vector<std::string>> warnings;
-  Later<std::optional<std::string>> not_scored;
-  std::optional<std::string> failure;
-  Keyed<StoredScore> metrics;  ///< by channel, as are the next five
-  Keyed<std::optional<metrics::NoiseFloor>> noise_floor;
-  /// One-sided, for each score; used as the guard band of its limit.
-  Omittable<Keyed<std::optional<metrics::Agreement>>> expanded_uncertainty;
-  Omittable<Keyed<std::optional<metrics::Agreement>>> two_sided_uncertainty;  ///< printed after +-
-  /// Contributions to the two-sided uncertainty, by channel and metric. Channels whose uncertainty
-  /// is unknown are left out.
-  Omittable<Keyed<Keyed<calib::Budget95>>> score_budgets;
-  Keyed<std::optional<StoredResidualTests>> residual_tests;
-  Later<std::vector<calib::LimitCheck>> limit_checks;
-  Later<Keyed<calib::Verdict>> channel_verdicts;
-  std::optional<calib::Verdict> verdict;
-  std::vector<std::string> reasons;
-  RIGCAL_DESCRIBE(id, waveform, frequency_hz, amplitude_m, amplitude_v, amplitude_n, amplitude_pa,
-                  amplitude_m_per_s2, amplitude_rad, amplitude_n_m, leak_level, use, temperature_k,
-                  date, samples, record_sha256, windows_s, notes, acceptance, not_judged, warnings,
-                  not_scored, failure, metrics, noise_floor, expanded_uncertainty,
-                  two_sided_uncertainty, score_budgets, residual_tests, limit_checks,
-                  channel_verdicts, verdict, reasons)
-
-  /// Returns the verdict on a channel; std::nullopt without a limit.
-  std::optional<calib::Verdict> verdict_of(const std::string& channel) const;
-
-  /// Returns the two-sided expanded uncertainty of each score of a channel, which is what a page
-  /// prints after "±" and "U"; null if unknown. Files from earlier versions only have the one-sided
-  /// uncertainty, which is returned instead.
-  const metrics::Agreement* printed_uncertainty_of(const std::string& channel) const;
-};
-
-struct StoredFit {
+struct StoredFit : Inlined<calib::Findings>, Inlined<calib::SearchOutcome> {
   calib::FitStatus status = calib::FitStatus::failed;
   Later<std::optional<calib::StoppedIn>> stopped_in;
   std::string schema = kFitSchema;
@@ -144,55 +79,30 @@ struct StoredFit {
   long residual_count = 0;
   long evaluations = 0;
   std::optional<double> wall_seconds, simulation_tolerance;
-  std::vector<calib::FittedParameter> parameters;
-  calib::Correlation correlation;
-  int rank = 0;
-  std::vector<double> singular_values;
-  std::optional<double> reduced_chi_square;
-  Omittable<std::optional<double>> independent_residuals;  ///< null if unknown
-  Later<std::string> interval_advice;
-  Later<std::vector<std::string>> combinations;
-  Later<std::optional<calib::LackOfFitTests>> lack_of_fit;
-  Later<std::optional<calib::BetweenRepeats>> between_repeats;
-  Omittable<calib::Considered> considered;
-  Omittable<std::vector<calib::StabilityCheck>> stability;
-  Later<std::vector<calib::Basin>> basins;
-  Later<std::string> agreement;  ///< agreement of the starts, in words
-  Omittable<calib::BootstrapRun> bootstrap;
-  Omittable<calib::Posterior> posterior;
-  Omittable<std::vector<calib::HeldOut>> cross_validation;
-  Later<std::optional<double>> aic, bic;
   Omittable<std::vector<StoredWeight>> weights;
   calib::Validity validity;
   Omittable<calib::Validity> validated;  ///< ranges of the conditions that were not fitted
   Omittable<datasets::DecisionRule> decision;
   std::vector<datasets::AcceptanceLimit> acceptance;
   Omittable<std::vector<std::string>> not_judged;  ///< channels that need no limit
-  std::vector<StoredCondition> conditions;
+  std::vector<calib::ConditionResult> conditions;
   std::vector<calib::Group> groups;
-  std::vector<calib::StartReport> starts;
-  int best_start = 0;
-  long failure_count = 0;
-  std::vector<calib::SimulationFailure> failures;
   std::vector<std::string> warnings;
   StoredProvenance provenance;
   RIGCAL_DESCRIBE(status, stopped_in, schema, verdict, assessment, message, campaign, synthetic,
                   report, model, cost, residual_count, evaluations, wall_seconds,
-                  simulation_tolerance, parameters, correlation, rank, singular_values,
-                  reduced_chi_square, independent_residuals, interval_advice, combinations,
-                  lack_of_fit, between_repeats, considered, stability, basins, agreement, bootstrap,
-                  posterior, cross_validation, aic, bic, weights, validity, validated, decision,
-                  acceptance, not_judged, conditions, groups, starts, best_start, failure_count,
-                  failures, warnings, provenance)
+                  simulation_tolerance, findings(), weights, validity, validated, decision,
+                  acceptance, not_judged, conditions, groups, search(), warnings, provenance)
 
-  const StoredCondition* find(const std::string& condition) const;
+  Inlined<calib::Findings>& findings() { return *this; }
+  const Inlined<calib::Findings>& findings() const { return *this; }
+  Inlined<calib::SearchOutcome>& search() { return *this; }
+  const Inlined<calib::SearchOutcome>& search() const { return *this; }
+  const calib::ConditionResult* find(const std::string& condition) const;
 };
 
-/// @param channel  empty: the whole condition
-calib::Badness badness(const StoredCondition& condition, const std::string& channel = {});
-
 /// Returns the drive frequency of a condition, if its drive is periodic.
-std::optional<double> periodic_frequency(const StoredCondition& condition);
+std::optional<double> periodic_frequency(const calib::ConditionResult& condition);
 
 /// Converts a fit or validation to its stored form.
 StoredFit stored(const Result& result);

@@ -26,9 +26,8 @@ ConditionScore scored(const std::string& metric, double value) {
   ConditionScore score;
   ChannelScore channel;
   channel.channel = Channel::position;
-  channel.agreement.emplace();
   for (const metrics::MetricSpec& spec : metrics::kMetrics)
-    if (spec.name == metric) (*channel.agreement).*spec.value = value;
+    if (spec.name == metric) channel.metrics.*spec.value = value;
   score.channels = {channel};
   return score;
 }
@@ -42,10 +41,10 @@ struct Question {
 LimitCheck answer(const Question& question, ConditionScore score) {
   judge({{Channel::position, question.metric, question.limit, question.warn}}, question.rule,
         score);
-  REQUIRE(score.checks.size() == 1);
-  CHECK(score.verdict == score.checks[0].verdict);
+  REQUIRE(score.limit_checks.size() == 1);
+  CHECK(score.verdict == score.limit_checks[0].verdict);
   CHECK(score.reasons.empty() == (score.verdict == Verdict::pass));
-  return score.checks[0];
+  return score.limit_checks[0];
 }
 Verdict verdict(const Question& question, double value) {
   return answer(question, scored(question.metric, value)).verdict;
@@ -185,18 +184,18 @@ TEST_CASE("acceptance: the verdict is the worst, of the channels that have a lim
   ConditionScore score = scored("rho2", 0.97);
   ChannelScore pressure = score.channels[0];
   pressure.channel = Channel::load_pressure;
-  pressure.agreement->rho2 = 0.5;
+  pressure.metrics.rho2 = 0.5;
   score.channels.push_back(pressure);
   const AcceptanceLimit position{Channel::position, "rho2", 0.9, 0.98};
   const AcceptanceLimit load{Channel::load_pressure, "rho2", 0.4, std::nullopt};
   ConditionScore of_position = score;
   judge({position}, DecisionRule::simple, of_position);
   CHECK(of_position.verdict == Verdict::warn);
-  CHECK(of_position.checks.size() == 1);
+  CHECK(of_position.limit_checks.size() == 1);
   for (const auto& limits : {std::vector{position, load}, std::vector{load, position}}) {
     ConditionScore both = score;
     judge(limits, DecisionRule::simple, both);
-    CHECK(both.checks.size() == 2);
+    CHECK(both.limit_checks.size() == 2);
     CHECK(both.verdict == Verdict::warn);
     CHECK(both.reasons.size() == 1);
   }
@@ -210,7 +209,7 @@ TEST_CASE("acceptance: what could not be simulated fails without checks", "[cali
   score.failure = "too many steps";
   judge({{Channel::position, "rho2", 0.4, std::nullopt}}, DecisionRule::simple, score);
   CHECK(score.verdict == Verdict::fail);
-  CHECK(score.checks.empty());
+  CHECK(score.limit_checks.empty());
   REQUIRE(score.reasons.size() == 1);
   CHECK_THAT(score.reasons[0], Contains("could not be simulated: too many steps"));
   ConditionScore unlimited = score;

@@ -20,9 +20,8 @@ calib::ConditionScore score(const char* id, double rho2) {
   calib::ConditionScore s;
   s.id = id;
   calib::ChannelScore channel;
-  channel.agreement = metrics::Agreement{};
-  channel.agreement->rho2 = rho2;
-  channel.agreement->rmse = 1.0 - rho2;
+  channel.metrics.rho2 = rho2;
+  channel.metrics.rmse = 1.0 - rho2;
   s.channels.push_back(channel);
   return s;
 }
@@ -37,7 +36,8 @@ TEST_CASE("groups: means and the worst by signal, frequency, waveform and leak l
   campaign.conditions[2].leak_level.reset();
   calib::Fit fit;
   fit.conditions = {score("a", 0.9), score("b", 0.8), score("c", 0.6)};
-  fit.conditions[1].channels[0].agreement.reset();  // a constant record has no metrics
+  fit.conditions[1].channels[0].metrics =
+      calib::ChannelMetrics{};  // a constant record has no metrics
 
   const auto all = calib::groups(campaign, fit);
   const auto find = [&](const std::string& by, const std::string& label) {

@@ -14,7 +14,7 @@ using Catch::Contains;
 TEST_CASE("adequacy: lack of fit counts where it is significant and larger than allowed",
           "[calib]") {
   AssessmentScene scene;
-  LackOfFit& test = scene.fit.lack_of_fit.tests[0];
+  LackOfFit& test = scene.fit.lack_of_fit->tests[0];
   test.ratio = 1.24;  // model error 0.49 times the noise
   test.outcome = metrics::TestOutcome::failed;
   CHECK(scene.assessed().adequacy.state == AspectState::pass);
@@ -43,7 +43,7 @@ TEST_CASE("adequacy: lack of fit counts where it is significant and larger than 
 
 TEST_CASE("adequacy: without known noise the residual speaks", "[calib]") {
   AssessmentScene scene;
-  scene.fit.lack_of_fit.tests.clear();
+  scene.fit.lack_of_fit->tests.clear();
   CHECK(scene.assessed().adequacy.state == AspectState::not_assessed);
   for (ConditionScore& score : scene.fit.conditions) {
     score.channels[0].residual_tests.emplace();

@@ -50,8 +50,8 @@ TEST_CASE("agreement: a limit that is kept within the guard band alone is a rese
 
 TEST_CASE("agreement: a limit that cannot be evaluated fails", "[calib]") {
   AssessmentScene scene;
-  scene.fit.conditions[0].channels[0].agreement.reset();
-  scene.fit.conditions[0].checks.clear();
+  scene.fit.conditions[0].channels[0].metrics = ChannelMetrics{};
+  scene.fit.conditions[0].limit_checks.clear();
   judge(scene.campaign.acceptance, datasets::DecisionRule::simple, scene.fit.conditions[0]);
   CHECK(scene.verdict() == Verdict::fail);
   CHECK(find(scene.assessed().agreement, "limit_not_evaluable") != nullptr);
@@ -65,12 +65,12 @@ TEST_CASE("agreement: a limit that cannot be evaluated fails", "[calib]") {
 TEST_CASE("agreement: a doubtful recording and a condition that was not scored are reservations",
           "[calib]") {
   AssessmentScene scene;
-  scene.fit.conditions[0].data_warnings = {"40 spikes"};
+  scene.fit.conditions[0].warnings = {"40 spikes"};
   CHECK(find(scene.assessed().agreement, "recording_doubtful")->subject == "fitted");
   CHECK(scene.verdict() == Verdict::warn);
-  scene.fit.conditions[0].data_warnings.clear();
+  scene.fit.conditions[0].warnings.clear();
   ConditionScore& other = scene.fit.conditions[1];
-  other.checks.clear();
+  other.limit_checks.clear();
   other.verdict.reset();
   other.not_scored = "stopped on request";
   CHECK(find(scene.assessed().validation, "not_scored")->subject == "other");
@@ -82,8 +82,7 @@ TEST_CASE("agreement: a channel without a limit is a reservation, unless it may 
   AssessmentScene scene;
   ChannelScore pressure;
   pressure.channel = Channel::pressure_a;
-  pressure.agreement.emplace();
-  pressure.agreement->rho2 = -15.0;
+  pressure.metrics.rho2 = -15.0;
   ConditionScore& other = scene.fit.conditions[1];
   other.channels.push_back(pressure);
   scene.rejudge(1, 0.998);

@@ -29,7 +29,7 @@ ConditionScore checked_score(const std::string& id, const std::vector<Checked>& 
     check.tolerance_used = each.used;
     check.in_guard_band = each.in_guard_band;
     if (each.has_value) check.value = 0.5;
-    score.checks.push_back(check);
+    score.limit_checks.push_back(check);
     score.verdict = std::max(score.verdict.value_or(Verdict::pass), each.verdict);
     if (each.verdict != Verdict::pass) score.reasons.push_back("why of " + id);
   }

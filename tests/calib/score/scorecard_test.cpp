@@ -36,7 +36,7 @@ TEST_CASE("scorecard: the budget of a score adds up by hand to the uncertainty t
   twin.campaign.channels.at(datasets::Channel::position).offset_sd = 2e-5;
   auto records = twin.records(400, 1000.0, 3);
   const Problem alone = problem_of(twin, records);
-  CHECK(score_conditions(alone, alone.start(), 1).at(0).channels.at(0).budgets.empty());
+  CHECK_FALSE(score_conditions(alone, alone.start(), 1).at(0).channels.at(0).score_budgets);
   auto& deviations = records[0].channels[datasets::Channel::position].deviations;
   for (const double gain : {-0.01, 0.004, 0.006}) {
     std::vector<double>& own = deviations.emplace_back();
@@ -51,9 +51,10 @@ TEST_CASE("scorecard: the budget of a score adds up by hand to the uncertainty t
   const ChannelScore score =
       score_conditions(problem, problem.start(), 1, spread).at(0).channels.at(0);
   REQUIRE(score.two_sided_uncertainty.has_value());
-  REQUIRE(score.budgets.size() == metrics::kMetrics.size());
-  for (std::size_t m = 0; m < score.budgets.size(); ++m) {
-    const auto& [name, budget] = score.budgets[m];
+  const auto& budgets = score.score_budgets.value();
+  REQUIRE(budgets.size() == metrics::kMetrics.size());
+  for (std::size_t m = 0; m < budgets.size(); ++m) {
+    const auto& [name, budget] = budgets[m];
     CHECK(name == metrics::kMetrics[m].name);
     double squares = 0.0;
     std::set<std::string> sources;
@@ -68,8 +69,8 @@ TEST_CASE("scorecard: the budget of a score adds up by hand to the uncertainty t
     CHECK(budget.expanded == (*score.two_sided_uncertainty).*metrics::kMetrics[m].value);
     CHECK(budget.shift == 0.0);
   }
-  const Budget95& rmse = score.budgets.at(4).second;
-  CHECK(score.budgets.at(4).first == "rmse");
+  const Budget95& rmse = budgets.at(4).second;
+  CHECK(budgets.at(4).first == "rmse");
   for (const char* kind : {"records", "known_value", "effect"})
     CHECK(rmse.contribution(kind) > 0.0);
 }
@@ -86,7 +87,7 @@ TEST_CASE("scorecard: a job that was ended scores nothing more, and says why", "
   REQUIRE(scores.size() == 2);
   for (const ConditionScore& score : scores) {
     CHECK(score.not_scored == "stopped on request");
-    CHECK(score.failure.empty());
+    CHECK_FALSE(score.failure);
     CHECK(score.channels.empty());
     CHECK(score.series.count(datasets::Channel::position) == 1);
   }

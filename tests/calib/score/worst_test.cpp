@@ -51,10 +51,10 @@ TEST_CASE("worst: what has no score, then by verdict, used tolerance and rho2", 
 TEST_CASE("worst: the worst limit and the lowest rho2 of a condition count", "[calib]") {
   ConditionScore score;
   score.verdict = Verdict::warn;
-  score.checks = {check_of(0.9, 0.8), check_of(0.9, 0.2)};
+  score.limit_checks = {check_of(0.9, 0.8), check_of(0.9, 0.2)};
   for (const double rho2 : {0.95, 0.7, 0.99}) {
     ChannelScore channel;
-    channel.agreement.emplace().rho2 = rho2;
+    channel.metrics.rho2 = rho2;
     score.channels.push_back(channel);
   }
   const Badness found = badness(score);

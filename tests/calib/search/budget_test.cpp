@@ -85,15 +85,15 @@ TEST_CASE("budget: a stop beside the fit keeps the fit, its scores, and what was
   CHECK(stopped.bootstrap->replicates < 500);
   CHECK_THAT(stopped.bootstrap->message, Contains("500 were asked for"));
   CHECK(stopped.verdict == whole.verdict);
-  CHECK(score(stopped, "other").channels.at(0).agreement->rho2 ==
-        score(whole, "other").channels.at(0).agreement->rho2);
+  CHECK(score(stopped, "other").channels.at(0).metrics.rho2 ==
+        score(whole, "other").channels.at(0).metrics.rho2);
   for (std::size_t j = 0; j < whole.parameters.size(); ++j) {
     CHECK(stopped.parameters[j].value == whole.parameters[j].value);
     if (!stopped.parameters[j].profile) continue;  // a nuisance parameter, or a known value
     CHECK(stopped.parameters[j].profile->low.is_lost());
     CHECK_THAT(stopped.parameters[j].reason, Contains("stopped by the limit of evaluations"));
   }
-  for (const HeldOut& held : stopped.cross_validation)
+  for (const HeldOut& held : stopped.cross_validation.value())
     CHECK_THAT(held.problem.value(), Contains("stopped by the limit of evaluations"));
   options.threads = 3;
   const Fit again = job.run(options);
@@ -118,7 +118,7 @@ TEST_CASE("budget: a condition whose nuisance parameters were not estimated is n
   CHECK_FALSE(stopped.has_converged());
   const ConditionScore& other = score(stopped, "other");
   CHECK_FALSE(other.verdict.has_value());
-  CHECK_THAT(other.not_scored, Contains("stopped"));
+  CHECK_THAT(other.not_scored.value(), Contains("stopped"));
   CHECK(other.channels.empty());
   CHECK(stopped.assessment.validation.state == AspectState::reservation);
 }

@@ -26,7 +26,7 @@ Twin of_two_minds() {
 }
 
 double rmse(const Fit& found, std::size_t condition) {
-  return found.conditions.at(condition).channels.at(0).agreement->rmse;
+  return found.conditions.at(condition).channels.at(0).metrics.rmse;
 }
 
 }  // namespace
@@ -51,7 +51,7 @@ TEST_CASE("weights: a channel ends with its residual over all records for its no
   CHECK_THAT(parameter(found, "valve_gain").value,
              WithinAbs(parameter(stated, "valve_gain").value,
                        0.2 * *parameter(stated, "valve_gain").standard_error));
-  CHECK_THAT(found.reduced_chi_square, WithinRel(1.0, 0.1));
+  CHECK_THAT(found.reduced_chi_square.value(), WithinRel(1.0, 0.1));
 }
 
 TEST_CASE("weights: iterations of all rounds count", "[calib]") {
@@ -77,7 +77,7 @@ TEST_CASE("weights: no residual counts as less than simulations resolve", "[cali
       fit(twin.campaign, twin.records(250, 500.0, 1, model::InitialState::rest, false), {});
   REQUIRE(found.status == FitStatus::converged);
   CAPTURE(found.warnings);
-  CHECK(found.reduced_chi_square < 0.5);
+  CHECK(found.reduced_chi_square.value() < 0.5);
 }
 
 }  // namespace rigcal::calib

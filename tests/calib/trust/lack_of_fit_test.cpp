@@ -133,12 +133,12 @@ TEST_CASE("lack of fit: noise alone, white or not, is no misfit", "[calib]") {
   const Twin twin = one_square();
   for (const double rho : {0.0, 0.9}) {
     const Fit found = fit(twin.campaign, repeated(twin, rho, 7), {});
-    REQUIRE(found.lack_of_fit.tests.size() == 1);
-    const LackOfFit& test = found.lack_of_fit.tests[0];
+    REQUIRE(found.lack_of_fit->tests.size() == 1);
+    const LackOfFit& test = found.lack_of_fit->tests[0];
     CAPTURE(rho, test.ratio, test.freedom, test.p);
     CHECK(test.by_repeats());
     CHECK(test.p > 0.001);  // a false alarm once in a thousand
-    CHECK_FALSE(found.lack_of_fit.misfit.value());
+    CHECK_FALSE(found.lack_of_fit->misfit.value());
     CHECK(test.outcome == metrics::TestOutcome::passed);
     CHECK_THAT(test.pure_error_freedom, WithinRel(4.0 * test.freedom, 1e-12));
     CHECK((rho > 0.0) == (found.independent_residuals < 400.0));
@@ -153,23 +153,23 @@ TEST_CASE("lack of fit: unmodelled friction is a misfit, and the advice says so"
   friction.value = 300.0;
   twin.truth.parameters.push_back(friction);
   const Fit found = fit(twin.campaign, repeated(twin, 0.0, 7), {});
-  REQUIRE(found.lack_of_fit.tests.size() == 1);
-  CHECK(found.lack_of_fit.tests[0].ratio > 1.5);
-  CHECK(found.lack_of_fit.misfit.value());
-  CHECK(found.lack_of_fit.tests[0].outcome == metrics::TestOutcome::failed);
+  REQUIRE(found.lack_of_fit->tests.size() == 1);
+  CHECK(found.lack_of_fit->tests[0].ratio > 1.5);
+  CHECK(found.lack_of_fit->misfit.value());
+  CHECK(found.lack_of_fit->tests[0].outcome == metrics::TestOutcome::failed);
   CHECK_THAT(found.interval_advice, Contains("significant lack of fit") && Contains("square"));
 }
 
 TEST_CASE("lack of fit: without repeats the stated sd is compared, without it nothing", "[calib]") {
   const Twin twin = one_square();
   const Fit stated = fit(twin.campaign, twin.records(500, 500.0, 3), {});
-  REQUIRE(stated.lack_of_fit.tests.size() == 1);
-  CHECK_FALSE(stated.lack_of_fit.tests[0].by_repeats());
-  CHECK(std::isinf(stated.lack_of_fit.tests[0].pure_error_freedom));
+  REQUIRE(stated.lack_of_fit->tests.size() == 1);
+  CHECK_FALSE(stated.lack_of_fit->tests[0].by_repeats());
+  CHECK(std::isinf(stated.lack_of_fit->tests[0].pure_error_freedom));
   const Fit unknown =
       fit(twin.campaign, twin.records(500, 500.0, 3, model::InitialState::rest, false), {});
-  CHECK(unknown.lack_of_fit.tests.empty());
-  CHECK_FALSE(unknown.lack_of_fit.misfit.has_value());
+  CHECK(unknown.lack_of_fit->tests.empty());
+  CHECK_FALSE(unknown.lack_of_fit->misfit.has_value());
   CHECK_THAT(unknown.interval_advice, Contains("cannot be separated"));
 }
 
@@ -192,13 +192,13 @@ TEST_CASE("lack of fit: few independent samples cannot be judged", "[calib]") {
   // times the variance of the noise is then not surprising.
   const Twin twin = one_square();
   const Fit found = fit(twin.campaign, repeated(twin, 0.999, 7), {});
-  REQUIRE(found.lack_of_fit.tests.size() == 1);
-  const LackOfFit& test = found.lack_of_fit.tests[0];
+  REQUIRE(found.lack_of_fit->tests.size() == 1);
+  const LackOfFit& test = found.lack_of_fit->tests[0];
   CAPTURE(test.ratio, test.freedom, test.p);
   CHECK(test.freedom < 5.0);
   CHECK(test.outcome == metrics::TestOutcome::not_judged);
   CHECK_THAT(test.reason.value(), Contains("4 times the noise would not be detected"));
-  CHECK_FALSE(found.lack_of_fit.misfit.has_value());
+  CHECK_FALSE(found.lack_of_fit->misfit.has_value());
   CHECK_THAT(found.interval_advice, Contains("lack of fit cannot be judged (condition"));
 }
 

@@ -94,7 +94,8 @@ TEST_CASE("test_predictions: an estimate off by its error is no error of the mod
     spread.root = Eigen::MatrixXd::Constant(1, 1, error * twin.setting("valve_gain").value / off);
     add_prediction_sd(problem, {}, spread, {}, 1, scores);
     const auto& channel = scores.front().channels.front();
-    CHECK(channel.explained.size() == problem.conditions.front().rows.size());
+    CHECK(scores.front().explained.at(channel.channel).size() ==
+          problem.conditions.front().rows.size());
     test_predictions(problem, {}, scores);
     const auto& tests = channel.residual_tests.value();
     return tests.cross_correlation->failed() || tests.autocorrelation.failed();

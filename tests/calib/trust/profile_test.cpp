@@ -125,7 +125,7 @@ TEST_CASE("profile: without an interval it ends where the cost says 95 %", "[cal
   profiles(problem, records, optimum, {}, bare, budget);
   // If the model lacks something, its residuals are larger than the noise: here twice as large.
   Fit lacking = bare;
-  lacking.reduced_chi_square = 4.0 * std::max(1.0, found.reduced_chi_square);
+  lacking.reduced_chi_square = 4.0 * std::max(1.0, found.reduced_chi_square.value());
   profiles(problem, records, optimum, {}, lacking, budget);
   for (std::size_t j = 0; j < z.size(); ++j) {
     const double error = found.parameters[j].standard_error.value();
@@ -315,8 +315,8 @@ TEST_CASE("cross-validation: of one condition there is none", "[calib]") {
   FitOptions options;
   options.cross_validate = true;
   const Fit found = fit(twin.campaign, twin.records(250, 500.0, 3), options);
-  REQUIRE(found.cross_validation.size() == 1);
-  CHECK_THAT(found.cross_validation[0].problem.value(), Contains("only condition"));
+  REQUIRE(found.cross_validation->size() == 1);
+  CHECK_THAT(found.cross_validation->at(0).problem.value(), Contains("only condition"));
 }
 
 TEST_CASE("cross-validation: each condition is predicted from the others", "[calib]") {
@@ -330,9 +330,9 @@ TEST_CASE("cross-validation: each condition is predicted from the others", "[cal
   FitOptions options;
   options.cross_validate = true;
   const Fit found = fit(twin.campaign, twin.records(250, 500.0, 3), options);
-  REQUIRE(found.cross_validation.size() == 3);
+  REQUIRE(found.cross_validation->size() == 3);
   for (std::size_t i : {0U, 1U}) {
-    const HeldOut& held = found.cross_validation[i];
+    const HeldOut& held = found.cross_validation->at(i);
     CAPTURE(held.condition, held.problem);
     REQUIRE(held.rmse.size() == 1);
     // Two parameters compared with 250 samples: the noise dominates, not the condition that was
@@ -340,7 +340,7 @@ TEST_CASE("cross-validation: each condition is predicted from the others", "[cal
     CHECK_THAT(held.rmse[0].second, WithinRel(held.fitted_rmse[0].second, 0.1));
     CHECK(std::abs(held.largest_shift.value()) < 5.0);
   }
-  CHECK_THAT(found.cross_validation[2].problem.value(), Contains("leak"));
+  CHECK_THAT(found.cross_validation->at(2).problem.value(), Contains("leak"));
   CHECK_THAT(found.interval_advice, Contains("2 of 3 conditions predicted from the others"));
 }
 

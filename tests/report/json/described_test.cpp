@@ -71,7 +71,60 @@ struct Holder {
   RIGCAL_DESCRIBE(number, part, last)
 };
 
+/// One of the rows that a file has in columns.
+struct ScoreRow {
+  std::string channel;
+  double score = 0.0;
+  Later<std::optional<double>> error;
+  Omittable<double> floor;
+  RIGCAL_DESCRIBE(score, error, floor)
+};
+
+struct ScoreColumns {
+  int number = 0;
+  Columns<ScoreRow> rows;
+  bool last = false;
+  RIGCAL_DESCRIBE(number, rows, last)
+};
+
+ScoreColumns read_columns_text(const std::string& text) {
+  ScoreColumns rows;
+  const Json json = Json::parse(text);
+  read_into(JsonNode(json, "rows.json", "", "rows.json"), rows);
+  return rows;
+}
+
 }  // namespace
+
+TEST_CASE("described: rows are an object per member, by channel", "[report]") {
+  ScoreColumns rows;
+  CHECK(json_of(rows).dump() == R"({"number":0,"score":{},"error":{},"last":false})");
+  rows.rows = {{"b", 1.0, std::optional(0.5), {}}, {"a", 2.0, {}, 3.0}};
+  const std::string text =
+      R"({"number":0,"score":{"b":1.0,"a":2.0},"error":{"b":0.5,"a":null},"floor":{"a":3.0},)"
+      R"("last":false})";
+  CHECK(json_of(rows).dump() == text);
+  CHECK(json_of(read_columns_text(text)).dump() == text);
+  CHECK(schema_of<ScoreColumns>()["required"].dump() == R"(["number","score","last"])");
+  CHECK(schema_of<ScoreColumns>()["properties"]["floor"].dump() ==
+        R"({"type":"object","additionalProperties":{"type":["number","null"]}})");
+}
+
+TEST_CASE("described: of rows, earlier files lack what came later, and nothing else", "[report]") {
+  const ScoreColumns earlier =
+      read_columns_text(R"({"number":1,"score":{"a":2.0,"b":1.0},"last":true})");
+  REQUIRE(earlier.rows.size() == 2);
+  CHECK(earlier.rows[0].channel == "a");
+  CHECK(earlier.rows[1].score == 1.0);
+  CHECK_FALSE(earlier.rows[0].error.has_value());
+  CHECK_FALSE(earlier.rows[0].floor.has_value());
+  // The first column names the rows.
+  CHECK(read_columns_text(R"({"number":1,"score":{},"error":{"a":0.5},"last":true})").rows.empty());
+  CHECK_THROWS_WITH(read_columns_text(R"({"number":1,"error":{},"last":true})"),
+                    Contains("key 'score' is missing"));
+  CHECK_THROWS_WITH(read_columns_text(R"({"number":1,"score":{"a":"ten"},"last":true})"),
+                    Contains("key 'score.a'") && Contains("a number"));
+}
 
 TEST_CASE("described: keys of an inlined struct are among the others", "[report]") {
   Holder holder;

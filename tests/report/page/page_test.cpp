@@ -304,7 +304,7 @@ TEST_CASE("page: says at its top what cannot be trusted", "[report]") {
   }
   SECTION("a residual that follows the input") {
     using rigcal::metrics::TestOutcome;
-    StoredResidualTests tests;
+    rigcal::metrics::ResidualTests tests;
     const auto page_of = [&](TestOutcome outcome, const char* words) {
       tests.cross_correlation.emplace();
       tests.cross_correlation->outcome = outcome;

@@ -92,8 +92,8 @@ TEST_CASE("fit on a terminal: at most 60 lines, however many conditions and warn
     calib::ConditionScore& score = scene.fit.conditions.emplace_back();
     score.id = "condition_" + std::to_string(i);
     score.verdict = calib::Verdict::pass;
-    score.channels.emplace_back().agreement.emplace().rho2 = 0.999;
-    calib::LimitCheck& check = score.checks.emplace_back();
+    score.channels.emplace_back().metrics.rho2 = 0.999;
+    calib::LimitCheck& check = score.limit_checks.emplace_back();
     check.metric = "rho2";
     check.value = 0.999;
     check.limit = 0.9;

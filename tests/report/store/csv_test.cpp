@@ -124,9 +124,9 @@ TEST_CASE("residual_table: what is read back of the text, to the last bit", "[re
 TEST_CASE("scorecard_csv: gain, phase and delay in columns of their own", "[report]") {
   ThreeSamples result;
   calib::ChannelScore channel;
-  channel.gain_ratio = 0.5;
-  channel.phase_deg = -30.0;
-  channel.delay_s = 0.25;
+  channel.metrics.gain_ratio = 0.5;
+  channel.metrics.phase_deg = -30.0;
+  channel.metrics.delay_s = 0.25;
   result.fit.conditions[0].channels = {channel};
   const std::string text = result.scorecard();
   CHECK(text.find("gain_ratio,phase_deg,delay_s,problem,rho2_expanded_uncertainty,") !=

@@ -86,11 +86,11 @@ TEST_CASE("channel_agreements: none of a few samples, or of no model", "[report]
 TEST_CASE("rig_response_figures: the responses of all conditions in one", "[report]") {
   Calibration stored;
   for (const double frequency_hz : {1.0, 2.0, 4.0}) {
-    StoredCondition& condition = stored.result.conditions.emplace_back();
+    rigcal::calib::ConditionResult& condition = stored.result.conditions.emplace_back();
     condition.id = "sine" + std::to_string(stored.result.conditions.size());
     condition.waveform = std::optional(rigcal::datasets::Waveform::sine);
     condition.frequency_hz = std::optional(frequency_hz);
-    condition.metrics.emplace_back("position", StoredScore{});
+    condition.channels.emplace_back().channel = rigcal::datasets::Channel::position;
   }
   stored.series = [](std::size_t i) {
     return std::make_shared<const Table>(driven(5.0, std::pow(2.0, static_cast<double>(i))));

@@ -10,7 +10,7 @@ namespace {
 TEST_CASE("first_of_last_periods: two periods of a drive with a frequency, else all", "[report]") {
   std::vector<double> time_s;  // 10 s from 5 s on, 10 samples per second
   for (int i = 0; i <= 100; ++i) time_s.push_back(5.0 + 0.1 * i);
-  StoredCondition condition;
+  calib::ConditionResult condition;
   CHECK(first_of_last_periods(condition, time_s) == 0);
   condition.frequency_hz.emplace(0.5);
   const std::size_t first = first_of_last_periods(condition, time_s);
@@ -23,12 +23,12 @@ TEST_CASE("first_of_last_periods: two periods of a drive with a frequency, else 
 }
 
 TEST_CASE("shown_channel: the motion if it was compared, else what comes first", "[report]") {
-  std::vector<StoredCondition> conditions(2);
+  std::vector<calib::ConditionResult> conditions(2);
   CHECK(shown_channel(conditions).empty());
-  conditions[0].metrics.emplace_back("load_pressure", StoredScore{});
-  conditions[0].metrics.emplace_back("velocity", StoredScore{});
+  conditions[0].channels.emplace_back().channel = datasets::Channel::load_pressure;
+  conditions[0].channels.emplace_back().channel = datasets::Channel::pressure_a;
   CHECK(shown_channel(conditions) == "load_pressure");
-  conditions[1].metrics.emplace_back("position", StoredScore{});
+  conditions[1].channels.emplace_back().channel = datasets::Channel::position;
   CHECK(shown_channel(conditions) == "position");
 }
 

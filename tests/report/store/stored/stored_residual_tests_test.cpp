@@ -10,13 +10,15 @@
 #include "report/page/calibration/fit_sections.hpp"
 
 using Catch::Contains;
+using rigcal::datasets::Channel;
 using rigcal::metrics::residual_tests;
 using rigcal::report::Json;
 
 namespace {
 
-Json residual_tests_json(const rigcal::metrics::ResidualTests& tests, std::string_view unit) {
-  return json_of(rigcal::report::stored(tests, unit));
+Json residual_tests_json(rigcal::metrics::ResidualTests tests, std::string_view unit) {
+  rigcal::report::add_verdicts(tests, unit);
+  return rigcal::report::json_of(tests);
 }
 
 std::vector<double> white(std::size_t n, unsigned seed) {
@@ -106,32 +108,11 @@ TEST_CASE("stored residual tests: a trend is told over the whole record", "[repo
              Contains("offset 1.5 mm") && Contains("trend 4 mm over the record"));
 }
 
-TEST_CASE("stored residual tests: the curve of the cross-correlation lies about lag zero",
-          "[report]") {
-  const std::vector<double> input = white(1000, 14);
-  std::vector<double> residual = white(1000, 15);
-  for (std::size_t i = 3; i < residual.size(); ++i) residual[i] += 5.0 * input[i - 3];
-  rigcal::calib::Fit fit;
-  fit.conditions.emplace_back().id = "sine";
-  fit.conditions[0].channels.emplace_back().residual_tests = residual_tests(residual, input, 0.01);
-  const rigcal::datasets::Campaign campaign;
-  const std::vector<rigcal::datasets::Record> records;
-  const rigcal::report::Provenance provenance;
-  const Json json = json_of(rigcal::report::stored_curves(
-      {rigcal::report::ResultKind::fit, campaign, records, fit, provenance}));
-  const Json& curve = json["conditions"]["sine"]["position"]["cross_correlation"];
-  const auto values = curve["values"].get<std::vector<double>>();
-  const auto peak = std::max_element(values.begin(), values.end()) - values.begin();
-  const double lag_s = curve["first_lag_s"].get<double>() +
-                       static_cast<double>(peak) * curve["lag_step_s"].get<double>();
-  CHECK_THAT(lag_s, Catch::WithinAbs(0.03, 1e-9));
-}
-
 TEST_CASE("stored residual tests: curves of whiteness are stored, and may be missing", "[report]") {
   rigcal::calib::Fit fit;
   fit.conditions.emplace_back().id = "sine";
   const auto tests = residual_tests(white(1000, 21), white(1000, 22), 0.01);
-  fit.conditions[0].channels.emplace_back().residual_tests = tests;
+  fit.conditions[0].residual_curves = {{Channel::position, tests.curves}};
   const rigcal::datasets::Campaign campaign;
   const std::vector<rigcal::datasets::Record> records;
   const rigcal::report::Provenance provenance;
@@ -145,10 +126,10 @@ TEST_CASE("stored residual tests: curves of whiteness are stored, and may be mis
   CHECK(channel["partial_autocorrelation"]["band"] == channel["autocorrelation"]["band"]);
   CHECK(channel["cumulative_periodogram"]["limit"] == tests.periodogram.limit);
   CHECK(channel["cumulative_periodogram"]["fraction"].size() == 51);
-  rigcal::report::StoredCondition condition;
+  rigcal::calib::ConditionResult condition;
   condition.id = "sine";
-  condition.residual_tests.emplace_back("position", rigcal::report::stored(tests, "m"));
-  const auto page_with = [&](const rigcal::report::StoredChannelCurves& shown) {
+  condition.channels.emplace_back().residual_tests = tests;
+  const auto page_with = [&](const rigcal::calib::ChannelCurves& shown) {
     rigcal::report::doc::Blocks blocks;
     rigcal::report::add_residual_tests(condition, &shown, blocks);
     std::string html;
