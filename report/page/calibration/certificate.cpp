@@ -432,7 +432,7 @@ Range side_of_limit(double value, const std::optional<double>& limit) {
 void add_score(const Judged& signal, doc::Cell& cell) {
   const calib::LimitCheck& check = *signal.check;
   const bool is_error = check.metric == "absolute_error_percent";
-  doc::Quantity score = doc::score(check.metric, check.value);
+  doc::Quantity printed = doc::score(check.metric, check.value);
   Line limit;
   const calib::ChannelScore* score = signal.condition->find(signal.channel);
   if (const auto* known = score == nullptr ? nullptr : score->printed_uncertainty()) {
@@ -441,14 +441,14 @@ void add_score(const Judged& signal, doc::Cell& cell) {
       if (metric.name != check.metric || !std::isfinite(half)) continue;
       limit = {"U ", doc::in_unit(half, 1.0, kErrorDigits), ", "};
       if (is_error && check.value)
-        score.text = matched(*check.value, half, side_of_limit(*check.value, check.limit));
+        printed.text = matched(*check.value, half, side_of_limit(*check.value, check.limit));
     }
   }
   if (check.limit) {
     limit.emplace_back("limit ");
     limit.emplace_back(doc::in_unit(check.limit, 1.0, 6));
   }
-  cell.line = {is_error ? "error % " : spaced(check.metric) + " ", std::move(score)};
+  cell.line = {is_error ? "error % " : spaced(check.metric) + " ", std::move(printed)};
   cell.below = {std::move(limit)};
 }
 
