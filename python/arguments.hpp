@@ -52,8 +52,8 @@ std::vector<std::string> assignments(
 /// os.fsdecode().
 pybind11::str decoded(std::string_view text);
 
-/// Returns a getter for a property that is a field of a member. The member may be a pointer, and the
-/// field one of its base.
+/// Returns a getter for a property that is a field of a member. The member may be a pointer, and
+/// the field one of its base.
 template <typename Self, typename Member, typename Value>
 auto field(Member Self::*member, Value Member::*value) {
   return [=](const Self& self) { return (self.*member).*value; };

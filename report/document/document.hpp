@@ -62,7 +62,8 @@ struct Code {
 struct Aside {
   std::string words;
 };
-using Inline = std::variant<std::string, Quantity, Badge, Mark, Link, Soft, Symbol, Strong, Code, Aside>;
+using Inline =
+    std::variant<std::string, Quantity, Badge, Mark, Link, Soft, Symbol, Strong, Code, Aside>;
 using Line = std::vector<Inline>;
 using Lines = std::vector<Line>;
 

@@ -409,7 +409,8 @@ std::vector<doc::Section> leak_table_sections(const LeakTableFiles& stored) {
       fit_notes.empty() ? "" : " Small: 95 % interval by the covariance of the fit.")));
   blocks.emplace_back(
       list_of(table.warnings.value_or(std::vector<std::string>()), doc::State::warn));
-  for (const std::string& note : fit_notes) blocks.emplace_back(doc::reading(capitalised(note) + "."));
+  for (const std::string& note : fit_notes)
+    blocks.emplace_back(doc::reading(capitalised(note) + "."));
   doc::Table coefficients{"Leakage coefficients"};
   coefficients.caption = {"Leakage coefficient by signal and share of the servo flow"};
   coefficients.shape = doc::Table::Shape::matrix;

@@ -24,8 +24,9 @@ long unstable(double of_supply, const char* date) {
                            (1.0 + of_supply) * twin.setting("supply_pressure").value};
   const Fit found = fit(twin.campaign, twin.records(1000, 500.0, 1), {});
   REQUIRE(found.status == FitStatus::converged);
-  REQUIRE(found.stability.size() == 2);
-  return std::count_if(found.stability.begin(), found.stability.end(),
+  const std::vector<StabilityCheck>& checks = found.stability.value();
+  REQUIRE(checks.size() == 2);
+  return std::count_if(checks.begin(), checks.end(),
                        [](const StabilityCheck& each) { return each.differs; });
 }
 

@@ -38,7 +38,7 @@ TEST_CASE("day_quantities: usual sizes by the rig, and those that the campaign s
   const auto sizes = [&](double sample_s) {
     std::map<std::string, double> result;
     for (const auto& each : calib::day_quantities(twin.campaign, values, sample_s))
-      result[each.key] = each.sd;
+      result[each.quantity] = each.sd;
     return result;
   };
   const auto usual = sizes(0.4e-3);

@@ -17,7 +17,7 @@ using Catch::WithinRel;
 
 namespace {
 
-constexpr double kLoopFilter_rad_per_s = 100.0;
+constexpr double kJointFilter_rad_per_s = 100.0;
 constexpr double kInnerGain_v_per_pa = 2e-8;
 
 struct JointLoop {
@@ -61,7 +61,7 @@ TEST_CASE("joint loops: on torque and load pressure they follow an integrator of
     CAPTURE(gain_keys(loop.feedback).name);
     Experiment e = joint_loop(loop);
     e.set(gain_keys(loop.feedback).ki, loop.ki).set(gain_keys(loop.feedback).kd, loop.kd);
-    e.set("derivative_filter", kLoopFilter_rad_per_s);
+    e.set("derivative_filter", kJointFilter_rad_per_s);
     e.set("pressure_feedback", kInnerGain_v_per_pa);
     e.set("gravity_moment", 2e3).set("joint_friction", 600.0).set("joint_friction_smoothing", 0.2);
     e.outputs = {Output::angle,      Output::angular_velocity, Output::pressure_a,
@@ -78,7 +78,8 @@ TEST_CASE("joint loops: on torque and load pressure they follow an integrator of
       return reference_of(loop, t) - controlled(x);
     };
     const auto command = [&](const Point& x, double t) {
-      return loop.kp * error(x, t) + x[5] + loop.kd * kLoopFilter_rad_per_s * (error(x, t) - x[6]) -
+      return loop.kp * error(x, t) + x[5] +
+             loop.kd * kJointFilter_rad_per_s * (error(x, t) - x[6]) -
              kInnerGain_v_per_pa * (x[2] - x[3]);
     };
     const Point start{0.0, 0.0, first.outputs(0, 2), first.outputs(0, 3), 0.0, 0.0, 0.0};
@@ -91,7 +92,7 @@ TEST_CASE("joint loops: on torque and load pressure they follow an integrator of
                    arm[3],
                    arm[4],
                    loop.ki * error(x, t),
-                   kLoopFilter_rad_per_s * (error(x, t) - x[6])};
+                   kJointFilter_rad_per_s * (error(x, t) - x[6])};
     };
     const Eigen::MatrixXd states = runge_kutta(start, e.times_s, 1000, rates);
     Eigen::MatrixXd expected(states.rows(), 6);
@@ -208,7 +209,7 @@ TEST_CASE("joint loops: feed-forward of the angle follows an integrator of anoth
   constexpr double kVelocity_v_s_per_rad = 0.6;
   constexpr double kAcceleration_v_s2_per_rad = 0.05;
   Experiment e = own_arm(Feedback::angle);
-  e.set("angle_kp", 6.0).set("angle_ki", 5.0).set("derivative_filter", kLoopFilter_rad_per_s);
+  e.set("angle_kp", 6.0).set("angle_ki", 5.0).set("derivative_filter", kJointFilter_rad_per_s);
   e.set("angular_velocity_feedforward", kVelocity_v_s_per_rad);
   e.set("angular_acceleration_feedforward", kAcceleration_v_s2_per_rad);
   e.set("gravity_moment", 4e3).set("gravity_moment_gradient", 1500.0);
@@ -222,11 +223,11 @@ TEST_CASE("joint loops: feed-forward of the angle follows an integrator of anoth
   using Point = std::array<double, 8>;  // ..., spool, integral, filtered reference and its rate
   const auto reference = [](double t) { return 0.4 * std::sin(kPi * t); };
   const auto rate = [&](const Point& x, double t) {
-    return kLoopFilter_rad_per_s * (reference(t) - x[6]);
+    return kJointFilter_rad_per_s * (reference(t) - x[6]);
   };
   const auto command = [&](const Point& x, double t) {
     return 6.0 * (reference(t) - x[0]) + x[5] + kVelocity_v_s_per_rad * rate(x, t) +
-           kAcceleration_v_s2_per_rad * kLoopFilter_rad_per_s * (rate(x, t) - x[7]);
+           kAcceleration_v_s2_per_rad * kJointFilter_rad_per_s * (rate(x, t) - x[7]);
   };
   const Point start{0.0, 0.0, first.outputs(0, 2), first.outputs(0, 3)};
   const Eigen::MatrixXd states = runge_kutta(start, e.times_s, 1000, [&](const Point& x, double t) {
@@ -234,7 +235,7 @@ TEST_CASE("joint loops: feed-forward of the angle follows an integrator of anoth
     return Point{arm[0],     arm[1],
                  arm[2],     arm[3],
                  arm[4],     5.0 * (reference(t) - x[0]),
-                 rate(x, t), kLoopFilter_rad_per_s * (rate(x, t) - x[7])};
+                 rate(x, t), kJointFilter_rad_per_s * (rate(x, t) - x[7])};
   });
   Eigen::MatrixXd expected(states.rows(), 5);
   expected.leftCols(4) = states.leftCols(4);
