@@ -36,8 +36,8 @@ std::vector<std::string> names_in(const ReadText& text) {
   return names;
 }
 
-using Numbers = std::vector<std::vector<double>>;
-const Numbers kNumbers{{0.0, 0.1, 0.2}, {1.5, 2.5, 3.5}};
+using NumberColumns = std::vector<std::vector<double>>;
+const NumberColumns kNumbers{{0.0, 0.1, 0.2}, {1.5, 2.5, 3.5}};
 
 }  // namespace
 

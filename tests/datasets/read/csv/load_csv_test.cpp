@@ -30,7 +30,7 @@ using rigcal::datasets::CsvLines;
 using rigcal::datasets::load_csv_record;
 using rigcal::datasets::RecordRequest;
 using rigcal::datasets::RecordTable;
-using Numbers = std::vector<std::vector<double>>;
+using NumberColumns = std::vector<std::vector<double>>;
 
 namespace {
 
@@ -82,12 +82,12 @@ std::string refusal(const std::string& content,
 
 TEST_CASE("load_csv: wanted columns in the wanted order", "[datasets]") {
   const RecordTable table = load("t,u,x\n0,text,1.5\n0.1,,-2e-3\n", request({"x", "t"}, "t"));
-  CHECK(table.columns == Numbers{{1.5, -2e-3}, {0.0, 0.1}});
+  CHECK(table.columns == NumberColumns{{1.5, -2e-3}, {0.0, 0.1}});
 }
 
 TEST_CASE("load_csv: one column may be wanted twice", "[datasets]") {
   CHECK(load("t,x\n0,1\n1,2\n", request({"x", "t", "x"}, "t")).columns ==
-        Numbers{{1, 2}, {0, 1}, {1, 2}});
+        NumberColumns{{1, 2}, {0, 1}, {1, 2}});
 }
 
 TEST_CASE("load_csv: numbers are read to the last digit", "[datasets]") {
@@ -100,7 +100,7 @@ TEST_CASE("load_csv: numbers are read to the last digit", "[datasets]") {
 }
 
 TEST_CASE("load_csv: separators are found by themselves", "[datasets]") {
-  const Numbers expected{{0, 1}, {1.5, 2.5}};
+  const NumberColumns expected{{0, 1}, {1.5, 2.5}};
   CHECK(load("t,x\n0,1.5\n1,2.5\n").columns == expected);
   CHECK(load("t;x\n0;1.5\n1;2.5\n").columns == expected);
   CHECK(load("t\tx\n0\t1.5\n1\t2.5\n").columns == expected);
@@ -112,20 +112,20 @@ TEST_CASE("load_csv: separators are found by themselves", "[datasets]") {
 TEST_CASE("load_csv: a given separator counts", "[datasets]") {
   RecordRequest wanted = request({"t;s", "x"});
   wanted.separator = ',';
-  CHECK(load("t;s,x\n0,1.5\n", wanted).columns == Numbers{{0}, {1.5}});
+  CHECK(load("t;s,x\n0,1.5\n", wanted).columns == NumberColumns{{0}, {1.5}});
   wanted.separator = '|';
   CHECK_THAT(refusal("t|x\n0|1\n", wanted), Contains("'|' is no separator") && Contains("tab"));
 }
 
 TEST_CASE("load_csv: decimal commas where the separator allows them", "[datasets]") {
-  const Numbers expected{{0, 0.5}, {-1.5, 2e-3}};
+  const NumberColumns expected{{0, 0.5}, {-1.5, 2e-3}};
   CHECK(load("t;x\n0,0;-1,5\n0,5;2,0e-3\n").columns == expected);
   CHECK(load("t\tx\n0,0\t-1,5\n0,5\t2,0e-3\n").columns == expected);
   CHECK(load("t;x\n0.0;-1.5\n0.5;2.0e-3\n").columns == expected);
 }
 
 TEST_CASE("load_csv: units behind names", "[datasets]") {
-  const Numbers expected{{0}, {1}};
+  const NumberColumns expected{{0}, {1}};
   const std::string header =
       GENERATE("t [s],x [mm]", "t (s),x (mm)", "t[s],x(mm)", "\"t [s]\",\"x (m/(s Pa))\"");
   CAPTURE(header);
@@ -135,7 +135,7 @@ TEST_CASE("load_csv: units behind names", "[datasets]") {
 
 TEST_CASE("load_csv: names with units tell columns of one name apart", "[datasets]") {
   const std::string text = "p (A),p (B)\n1,2\n";
-  CHECK(load(text, request({"p (B)", "p (A)"})).columns == Numbers{{2}, {1}});
+  CHECK(load(text, request({"p (B)", "p (A)"})).columns == NumberColumns{{2}, {1}});
   CHECK_THAT(refusal(text, request({"speed"})), Contains("(known: p (A), p (B))"));
   CHECK_THAT(refusal(text, request({"p"})),
              StartsWith("a.csv:1: ") && Contains("columns 1 and 2 are both named 'p'"));
@@ -143,17 +143,18 @@ TEST_CASE("load_csv: names with units tell columns of one name apart", "[dataset
 
 TEST_CASE("load_csv: quoted header, and quoted text in columns that are not wanted", "[datasets]") {
   CHECK(load("\"t\",\"x \"\"raw\"\" [mm]\",note\n0,1,\"a, b\"\n", request({"t", "x \"raw\""}))
-            .columns == Numbers{{0}, {1}});
-  CHECK(load("t,x,note\n0,1,5\" pipe\n").columns == Numbers{{0}, {1}});  // quote inside a field
+            .columns == NumberColumns{{0}, {1}});
+  CHECK(load("t,x,note\n0,1,5\" pipe\n").columns ==
+        NumberColumns{{0}, {1}});  // quote inside a field
 }
 
 TEST_CASE("load_csv: comments before the header", "[datasets]") {
   const RecordTable table = load("# rig 3; day 2\n  # more\nt,x\n0,1\n");
-  CHECK(table.columns == Numbers{{0}, {1}});
+  CHECK(table.columns == NumberColumns{{0}, {1}});
 }
 
 TEST_CASE("load_csv: line ends, byte-order mark, end of file", "[datasets]") {
-  const Numbers expected{{0, 1}, {1, 2}};
+  const NumberColumns expected{{0, 1}, {1, 2}};
   CHECK(load("t,x\r\n0,1\r\n1,2\r\n").columns == expected);
   CHECK(load("\xEF\xBB\xBFt,x\n0,1\n1,2\n").columns == expected);
   CHECK(load("t,x\n0,1\n1,2").columns == expected);
@@ -161,7 +162,7 @@ TEST_CASE("load_csv: line ends, byte-order mark, end of file", "[datasets]") {
 }
 
 TEST_CASE("load_csv: header in Latin-1", "[datasets]") {
-  CHECK(load("t,\xD6ldruck [bar]\n0,1\n", request({"Öldruck"})).columns == Numbers{{1}});
+  CHECK(load("t,\xD6ldruck [bar]\n0,1\n", request({"Öldruck"})).columns == NumberColumns{{1}});
 }
 
 TEST_CASE("load_csv: an error names columns without their units", "[datasets]") {
@@ -227,14 +228,14 @@ TEST_CASE("load_csv: missing column", "[datasets]") {
 TEST_CASE("load_csv: duplicate names matter where they are wanted", "[datasets]") {
   const std::string text = "t,x,y,x\n0,1,2,3\n";
   CHECK_THAT(refusal(text), StartsWith("a.csv:1: columns 2 and 4 are both named 'x'"));
-  CHECK(load(text, request({"t", "y"}, "t")).columns == Numbers{{0}, {2}});
+  CHECK(load(text, request({"t", "y"}, "t")).columns == NumberColumns{{0}, {2}});
 }
 
 TEST_CASE("load_csv: a second header line that is none of units", "[datasets]") {
   CHECK_THAT(refusal("t,x\ntime,travel\n0,a\n"),
              StartsWith("a.csv:2:1: no numbers in the first row ('time' in column 't')") &&
                  Contains("x [mm]"));
-  CHECK(load("t,x\n[s],\n0,1\n").columns == Numbers{{0}, {1}});
+  CHECK(load("t,x\n[s],\n0,1\n").columns == NumberColumns{{0}, {1}});
 }
 
 TEST_CASE("load_csv: numbers where the header should be", "[datasets]") {
@@ -248,7 +249,7 @@ TEST_CASE("load_csv: rows without a number are left out on request only", "[data
   auto tolerant = request({"t", "x", "y"}, "t");
   tolerant.leaves_out_rows = true;
   const RecordTable table = load(text, tolerant);
-  CHECK(table.columns == Numbers{{0, 0.3}, {1, 4}, {2, 5}});
+  CHECK(table.columns == NumberColumns{{0, 0.3}, {1, 4}, {2, 5}});
   CHECK(table.left_out == "3 rows without a number: line 3 has 'NaN' in column 'x'");
   // Only a number may be missing.
   CHECK_THROWS_WITH(load("t,x,y\n0,1,2\n0.1,2\n", tolerant), Contains("2 columns; expected 3"));
@@ -264,7 +265,7 @@ TEST_CASE("load_csv: a clock as time is in seconds since its first stamp", "[dat
       "x;clock\n1,5;2024-02-29 23:59:59.500\n2,5;2024-03-01 00:00:00.000\n3,5;2024-03-01 "
       "00:00:01.25\n";
   const RecordTable table = load(text, request({"clock", "x"}, "clock"));
-  CHECK(table.columns == Numbers{{0, 0.5, 1.75}, {1.5, 2.5, 3.5}});
+  CHECK(table.columns == NumberColumns{{0, 0.5, 1.75}, {1.5, 2.5, 3.5}});
   CHECK(table.labels[0].unit == "s");
   CHECK(table.labels[0].place == "time stamps");
   // It must be the time, increase, and not change its form.
@@ -282,7 +283,7 @@ TEST_CASE("load_csv: time that does not increase", "[datasets]") {
              StartsWith("a.csv:4:3: time 't' does not increase: 0.1 comes after 0.1"));
   CHECK_THAT(refusal("x,t\n5,0\n5,0.2\n5,0.1\n"),
              StartsWith("a.csv:4:3: time 't' does not increase: 0.1 comes after 0.2"));
-  CHECK(load("x,t\n5,1\n5,0\n", request({"t", "x"})).columns == Numbers{{1, 0}, {5, 5}});
+  CHECK(load("x,t\n5,1\n5,0\n", request({"t", "x"})).columns == NumberColumns{{1, 0}, {5, 5}});
 }
 
 TEST_CASE("load_csv: a time column that is not wanted is a mistake of the caller", "[datasets]") {
@@ -542,11 +543,11 @@ TEST_CASE("load_csv: decimal comma and decimal point in one file are refused", "
   CHECK_THAT(refusal("t;x\n0.5;1.5\n1.5;2.5\n2.5;1,5\n"),
              Contains("a.csv:4:5: '1,5' has a decimal comma, but line 2 has a decimal point"));
   CHECK_THAT(refusal("t\tx\n0,5\t1.5\n"), Contains("has a decimal point, but line 2"));
-  CHECK(load("t;x\n0;1\n1;2,5\n2;3\n").columns == Numbers{{0, 1, 2}, {1, 2.5, 3}});
-  CHECK(load("t;x\n0;1\n1;2.5\n2;3\n").columns == Numbers{{0, 1, 2}, {1, 2.5, 3}});
+  CHECK(load("t;x\n0;1\n1;2,5\n2;3\n").columns == NumberColumns{{0, 1, 2}, {1, 2.5, 3}});
+  CHECK(load("t;x\n0;1\n1;2.5\n2;3\n").columns == NumberColumns{{0, 1, 2}, {1, 2.5, 3}});
   // A column that is not wanted may contain dates.
   CHECK(load("t;date;x\n0;12.03.2026;1,5\n1;12.03.2026;2,5\n").columns ==
-        Numbers{{0, 1}, {1.5, 2.5}});
+        NumberColumns{{0, 1}, {1.5, 2.5}});
 }
 
 TEST_CASE("load_csv: how the columns are labelled", "[datasets]") {
