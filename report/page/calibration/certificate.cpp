@@ -177,6 +177,11 @@ Line doubt_line(const StoredFit& fit, const calib::Reason& reason, const char* s
   return line;
 }
 
+/// Returns true for what the small print below the calibrated values says.
+bool is_below_values(const calib::Reason& reason) {
+  return reason.code == "exact_values" || reason.code == "unseen_error";
+}
+
 /// Collects one doubt of each kind, the most serious first: reasons against the result, notes, and
 /// warnings.
 doc::Doubts doubts_of(const StoredFit& fit) {
@@ -189,7 +194,7 @@ doc::Doubts doubts_of(const StoredFit& fit) {
         const calib::Reason& reason = reasons[i];
         // Two reasons are not doubts: exact values are listed below the table of values, and
         // "further_starts" only reports that further starts were evaluated.
-        if (reason.state == AspectState::pass || reason.code == "exact_values" ||
+        if (reason.state == AspectState::pass || is_below_values(reason) ||
             reason.code == "further_starts")
           continue;
         const auto same = [&](const calib::Reason& other) {
@@ -348,7 +353,7 @@ void add_values(const StoredFit& fit, bool judged, doc::Blocks& blocks) {
   }
   if (fit.assessment) {
     for (const calib::Reason& reason : fit.assessment->parameters.reasons)
-      if (reason.code == "exact_values") notes.emplace_back(capitalised(reason.words) + ". ");
+      if (is_below_values(reason)) notes.emplace_back(capitalised(reason.words) + ". ");
   }
   const std::string correlated =
       correlation_words(correlation_by_key(fit.correlation, fit.parameters));
