@@ -285,7 +285,7 @@ LawCounts count_laws(const LawRow& row, std::uint64_t seed) {
     counts.l_per_min.at(*size) += kFlowsPerMinute * record.estimate.leak_flow_m3_per_s;
   }
   for (const diagnosis::MachineState& state : found.states) {
-    const auto size = size_of(state.key.leak_level);
+    const auto size = size_of(state.key.leak_level.value_or(""));
     if (!size) continue;
     ++counts.states.at(*size);
     counts.found.at(*size) += state.ok() && state.estimate.leak_detected ? 1 : 0;

@@ -30,11 +30,15 @@ std::string agreement_of(const MachineState& state) {
       signals_of(state), low->coefficient, high->coefficient, p_value_text(state.pooled.p));
 }
 
-std::string limit_of(const LimitDistance& limit) {
+/// @param share_ci95  fractions of one
+std::string limit_of(const LimitDistance& limit, const Range& share_ci95) {
   const std::string name(to_string(limit.class_));
   if (limit.on_limit) {
+    const bool includes = kInPercent * share_ci95.low <= limit.percent &&
+                          limit.percent <= kInPercent * share_ci95.high;
     return fmt::format(
-        ", interval includes the limit between {} and {} ({:g} %)",
+        ", {} the limit between {} and {} ({:g} %)",
+        includes ? "interval includes" : "within 5 % of",
         to_string(datasets::kLeakClasses[static_cast<std::size_t>(limit.class_) - 1]), name,
         limit.percent);
   }
@@ -90,7 +94,7 @@ std::string state_sentence(const MachineState& state) {
               ? fmt::format(": {} (probability {:.2f})", to_string(*state.leak.class_), probability)
               : fmt::format(": undecided, {} with a probability of {:.2f} only",
                             to_string(e.most_probable), probability);
-  const std::string limit = state.nearest_limit ? limit_of(*state.nearest_limit) : "";
+  const std::string limit = state.nearest_limit ? limit_of(*state.nearest_limit, e.share_ci95) : "";
   return text + limit + "." + agreement_of(state);
 }
 

@@ -41,13 +41,13 @@ std::string line_of(const SimulationTask& task, const model::Simulation& simulat
                      simulation.failed_at_s, simulation.reason);
 }
 
-Json json_of(const SimulationTask& task, const model::Simulation& simulation) {
+Json simulation_json(const SimulationTask& task, const model::Simulation& simulation) {
   Json json;
   json["condition"] = task.condition->id;
   json["status"] = std::string(to_string(simulation.status));
   json["samples"] = task.time_s.size();
   json["steps"] = simulation.steps;
-  json["failed_at_s"] = simulation.ok() ? Json(nullptr) : report::json_of(simulation.failed_at_s);
+  json["failed_at_s"] = simulation.ok() ? Json(nullptr) : json_of(simulation.failed_at_s);
   json["reason"] = simulation.ok() ? Json(nullptr) : Json(simulation.reason);
   return json;
 }
@@ -80,7 +80,7 @@ JobResult simulation_job(const datasets::Campaign& campaign, const SimulationReq
     job.files.push_back({file_of(task), simulation_csv(task, simulation)});
     printed.text += line_of(task, simulation);
     if (!simulation.ok()) printed.problems += line_of(task, simulation);
-    printed.json.push_back(json_of(task, simulation));
+    printed.json.push_back(simulation_json(task, simulation));
   }
   if (!printed.problems.empty()) printed.problems.pop_back();
   job.first = {""};

@@ -64,6 +64,10 @@ TEST_CASE("state_sentence: what leaks, how surely, how far from the next class",
   state.estimate.share_ci95 = {0.09, 0.13};
   CHECK_THAT(sentence_of(state),
              Contains("interval includes the limit between slight and medium (10 %)"));
+  state.estimate.share = 0.103;
+  state.estimate.share_ci95 = {0.102, 0.104};
+  CHECK_THAT(sentence_of(state),
+             Contains("within 5 % of the limit between slight and medium (10 %)"));
 }
 
 TEST_CASE("state_sentence: no leak, no verdict, the reference", "[diagnosis]") {
