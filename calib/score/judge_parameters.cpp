@@ -180,7 +180,7 @@ void judge_missing(const Fit& fit, std::vector<Reason>& reasons) {
 
 /// Judges whether the validation records alone lead to the same estimates.
 void judge_stability(const Campaign& campaign, const Fit& fit, std::vector<Reason>& reasons) {
-  if (!fit.stability) return;
+  if (!fit.stability || fit.stability->empty()) return;
   const auto table = model::parameter_table(campaign.rig.plant);
   std::vector<std::string> words;
   for (const StabilityCheck& each : *fit.stability) {

@@ -148,7 +148,7 @@ TEST_CASE("leak-table: of a fitted rig, whatever the campaign assumes", "[apps]"
                                  [](const json& a) { return a["key"] == "valve_gain"; });
   CHECK((*used)["value"] == (*gain)["value"]);
   CHECK_THAT((*used)["source"].get<std::string>(), Contains("in place of 5e-05 m/V (a guess)"));
-  CHECK_THAT(text, Contains("the table takes valve_gain, damping from the fit") && Contains("±"));
+  CHECK_THAT(text, Contains("The table takes valve_gain, damping from the fit") && Contains("±"));
   for (const json& entry : fitted["entries"]) {
     const double c = entry["coefficients"].at(0).get<double>();
     const json& range = entry["coefficients_ci95"].at(0);

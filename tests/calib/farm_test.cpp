@@ -70,6 +70,8 @@ void check_same(const Fit& found, const Fit& alone) {
     if (a.profile) CHECK(a.profile->values == b.profile->values);
     if (a.profile) CHECK(a.profile->high.value == b.profile->high.value);
   }
+  REQUIRE(found.cross_validation.has_value() == alone.cross_validation.has_value());
+  if (!alone.cross_validation) return;
   REQUIRE(found.cross_validation->size() == alone.cross_validation->size());
   for (std::size_t i = 0; i < found.cross_validation->size(); ++i) {
     CHECK(found.cross_validation->at(i).rmse == alone.cross_validation->at(i).rmse);
