@@ -462,8 +462,9 @@ TEST_CASE("load_csv: a huge file is given up early and within 200 MB", "[dataset
   const auto [head, row, names] =
       GENERATE(table<std::string, std::string, std::vector<std::string>>(
           {{"x\n", "1\n", {"x"}}, {"a,b,c,d\n", "1,2,3,4\n", {"a", "b", "c", "d"}}}));
+  const RecordRequest wanted = request(names);
   const EndlessResult result =
-      read_endless(head, row, [&](const fs::path& pipe) { load_csv_record(pipe, request(names)); });
+      read_endless(head, row, [&](const fs::path& pipe) { load_csv_record(pipe, wanted); });
   CAPTURE(result.bytes_given, result.grown_megabytes);
   CHECK_THAT(result.message, Contains("endless.csv:") && Contains("more than 12000000 numbers") &&
                                  Contains("decimate the record, or split it"));
