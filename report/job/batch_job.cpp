@@ -57,7 +57,8 @@ RigRun finished(const BatchRequest& request, const fs::path& out, const BatchRig
   try {
     run.result = read_fit_of(out / rig.folder);
   } catch (const InputError& error) {
-    run.code = ExitCode::internal;
+    // A verb may have refused the result already, such as one with a number that is too large.
+    if (end.code != ExitCode::bad_input) run.code = ExitCode::internal;
     run.error = error.what();
     return run;
   }
