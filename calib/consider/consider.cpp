@@ -281,8 +281,8 @@ bool is_above_zero(const model::ParameterSpec& spec, const Unknown& unknown) {
   return spec.lower > 0.0 || (model::is_lag(spec) && unknown.lower > 0.0);
 }
 
-/// Returns true if the fit mistakes an effect of plausible size for so large a change of an
-/// estimate that the model is no longer linear over it.
+/// Returns true if the fit mistakes an effect of plausible size for a change of an estimate so large
+/// that the model is not linear over it.
 ///
 /// @param taken  change of the estimates, shape (all directions of the root)
 bool moves_far(const Problem& problem, std::span<const double> z, const Uncertainty& found,
@@ -778,8 +778,8 @@ struct UnexplainedMoves {
 UnexplainedMoves unexplained_moves(const Problem& problem, const std::vector<ScoreRows>& scores,
                                    const std::vector<ScoreRows>& rows, const ArrowRoot& root) {
   std::vector<LackOfFit> tests;
-  std::vector<VectorXd> moves;  // by an error as large as the noise; one entry per unknown that
-                                // acts in the condition
+  // How far an error as large as the noise could move each unknown that acts in the condition.
+  std::vector<VectorXd> moves;
   std::vector<const std::vector<int>*> whose;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const ProblemCondition& condition = problem.conditions[i];
