@@ -281,8 +281,8 @@ bool is_above_zero(const model::ParameterSpec& spec, const Unknown& unknown) {
   return spec.lower > 0.0 || (model::is_lag(spec) && unknown.lower > 0.0);
 }
 
-/// Returns true if the fit mistakes an effect of plausible size for a change of an estimate so large
-/// that the model is not linear over it.
+/// Returns true if the fit mistakes an effect of plausible size for a change of an estimate so
+/// large that the model is not linear over it.
 ///
 /// @param taken  change of the estimates, shape (all directions of the root)
 bool moves_far(const Problem& problem, std::span<const double> z, const Uncertainty& found,
