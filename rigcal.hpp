@@ -12,7 +12,7 @@
 #include "datasets/prepare/load_record.hpp"
 #include "datasets/synthetic/synthesize.hpp"
 #include "diagnosis/diagnose.hpp"
-#include "diagnosis/parity.hpp"
+#include "diagnosis/parity/parity.hpp"
 #include "metrics/agreement.hpp"
 #include "model/plant/parameter.hpp"
 #include "model/simulate.hpp"

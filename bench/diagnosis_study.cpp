@@ -35,7 +35,7 @@
 #include "datasets/prepare/single_repeats.hpp"
 #include "datasets/synthetic/synthetic_repeat.hpp"
 #include "diagnosis/diagnose.hpp"
-#include "diagnosis/leak/steady_leak.hpp"
+#include "diagnosis/record/steady_leak.hpp"
 
 namespace {
 

@@ -13,7 +13,7 @@ endfunction()
 # less.
 set(rigcal_optimised $<$<BOOL:${RIGCAL_SANITIZE}>:-O1>)
 set(rigcal_less_optimised $<$<CONFIG:Release>:-O1>)
-set(rigcal_light diagnosis report)
+set(rigcal_light report)
 
 # In the layers that read files, libFuzzer tracks which code an input reaches.
 set(rigcal_fuzzed common datasets report)

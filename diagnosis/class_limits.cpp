@@ -3,14 +3,14 @@
 #include <fmt/format.h>
 
 #include "common/error.hpp"
-#include "diagnosis/leak/stated_leak.hpp"
-#include "diagnosis/signal_name.hpp"
+#include "diagnosis/record/signal_name.hpp"
+#include "diagnosis/record/stated_leak.hpp"
 
 namespace rigcal::diagnosis {
 namespace {
 
 /// Describes the signal of a drive in a leak table: "sine 0.1 Hz, 50.8 mm".
-std::string drive_name(const datasets::Campaign& campaign, const calib::LeakDrive& drive) {
+std::string drive_name(const datasets::Campaign& campaign, const LeakDrive& drive) {
   datasets::Condition condition;
   condition.waveform = drive.waveform;
   condition.frequency_hz = drive.frequency_hz;
@@ -64,9 +64,9 @@ void take_limits(datasets::DiagnosisSettings& settings, const std::vector<double
 }
 
 std::vector<ClassLimit> class_limits(const datasets::Campaign& campaign,
-                                     const std::vector<calib::LeakEntry>& entries) {
+                                     const std::vector<LeakEntry>& entries) {
   std::vector<ClassLimit> limits;
-  for (const calib::LeakEntry& entry : entries) {
+  for (const LeakEntry& entry : entries) {
     limits.push_back({drive_name(campaign, entry.drive), entry.target_percent,
                       class_ending_at(campaign.diagnosis, entry.target_percent), entry.coefficients,
                       entry.coefficients_ci95});

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "calib/published/leak_table.hpp"
 #include "common/describe.hpp"
 #include "common/range.hpp"
 #include "datasets/campaign/campaign.hpp"
 #include "datasets/campaign/diagnosis_settings.hpp"
+#include "diagnosis/table/leak_table.hpp"
 
 // The limits of the classes, and the other settings of a diagnosis that results state.
 
@@ -50,6 +50,6 @@ void take_limits(datasets::DiagnosisSettings& settings, const std::vector<double
 /// Describes the entries of a leak table as limits of the classes, which take_limits() has set. A
 /// row inside supercritical does not end a class.
 std::vector<ClassLimit> class_limits(const datasets::Campaign& campaign,
-                                     const std::vector<calib::LeakEntry>& entries);
+                                     const std::vector<LeakEntry>& entries);
 
 }  // namespace rigcal::diagnosis

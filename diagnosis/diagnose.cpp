@@ -12,14 +12,14 @@
 #include "common/quantity.hpp"
 #include "datasets/prepare/single_repeats.hpp"
 #include "diagnosis/feature_clusters.hpp"
-#include "diagnosis/healthy_reference.hpp"
-#include "diagnosis/judgement.hpp"
-#include "diagnosis/leak/leak_budget.hpp"
-#include "diagnosis/leak/residual_rms.hpp"
-#include "diagnosis/machine_states.hpp"
-#include "diagnosis/obstacles.hpp"
-#include "diagnosis/prepared.hpp"
-#include "diagnosis/signal_name.hpp"
+#include "diagnosis/machine/machine_states.hpp"
+#include "diagnosis/record/healthy_reference.hpp"
+#include "diagnosis/record/leak_budget.hpp"
+#include "diagnosis/record/obstacles.hpp"
+#include "diagnosis/record/prepared.hpp"
+#include "diagnosis/record/record_diagnosis.hpp"
+#include "diagnosis/record/residual_rms.hpp"
+#include "diagnosis/record/signal_name.hpp"
 
 namespace rigcal::diagnosis {
 namespace {

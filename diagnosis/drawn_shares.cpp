@@ -8,8 +8,8 @@
 #include "calib/posterior/chains.hpp"
 #include "common/error.hpp"
 #include "common/parallel.hpp"
-#include "diagnosis/duty.hpp"
-#include "diagnosis/leak/steady_leak.hpp"
+#include "diagnosis/record/duty.hpp"
+#include "diagnosis/record/steady_leak.hpp"
 
 namespace rigcal::diagnosis {
 namespace {

@@ -51,7 +51,7 @@ Compared compared_of(const Json& json, const std::filesystem::path& file, const 
   const auto tables = as<StoredTablesFit>(json, where, result);
   compared.result = as_fit(tables);
   as_of_now(tables.schema, compared.result.parameters);
-  for (const calib::TableResidual& residual : tables.residuals)
+  for (const diagnosis::TableResidual& residual : tables.residuals)
     compared.published_numbers.push_back(residual.of);
   return compared;
 }

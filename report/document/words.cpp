@@ -48,15 +48,15 @@ Badge badge(calib::Identifiability grade) {
   return {};
 }
 
-Badge badge(calib::LeakGrade grade) {
+Badge badge(diagnosis::LeakGrade grade) {
   switch (grade) {
-    case calib::LeakGrade::within_10:
+    case diagnosis::LeakGrade::within_10:
       return {State::good, "within 10 %"};
-    case calib::LeakGrade::within_16:
+    case diagnosis::LeakGrade::within_16:
       return {State::warn, "within 16 %"};
-    case calib::LeakGrade::outlier:
+    case diagnosis::LeakGrade::outlier:
       return {State::bad, "outlier"};
-    case calib::LeakGrade::not_published:
+    case diagnosis::LeakGrade::not_published:
       return {State::none, "not published"};
   }
   return {};

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "calib/fit.hpp"
-#include "calib/published/leak_table.hpp"
+#include "diagnosis/table/leak_table.hpp"
 #include "report/document/document.hpp"
 
 // The words for every state of a result. Each function is a switch without a default case, so that
@@ -15,7 +15,7 @@ Badge badge(calib::Verdict verdict);
 Badge badge(const std::optional<calib::Verdict>& verdict);
 Badge badge(calib::AspectState state);
 Badge badge(calib::Identifiability grade);
-Badge badge(calib::LeakGrade grade);
+Badge badge(diagnosis::LeakGrade grade);
 Badge badge(datasets::LeakClass leak_class);
 /// Returns the badge for an estimate.
 ///

@@ -8,7 +8,7 @@
 #include "datasets/checks/record_warnings.hpp"
 #include "datasets/prepare/single_repeats.hpp"
 #include "diagnosis/diagnose.hpp"
-#include "diagnosis/obstacles.hpp"
+#include "diagnosis/record/obstacles.hpp"
 #include "report/job/job.hpp"
 #include "report/job/leak_records.hpp"
 #include "report/leak/diagnosis.hpp"
@@ -63,8 +63,8 @@ void warn_of_recordings(const std::vector<datasets::Record>& averages,
 
 /// Takes the class limits from the rows of a leak table, which must describe the same rig as this
 /// diagnosis.
-std::vector<calib::LeakEntry> take_table(const std::filesystem::path& file,
-                                         const EarlierFit& earlier, Campaign& campaign) {
+std::vector<diagnosis::LeakEntry> take_table(const std::filesystem::path& file,
+                                             const EarlierFit& earlier, Campaign& campaign) {
   if (campaign.diagnosis.leak_law != datasets::LeakLaw::orifice)
     throw InputError(
         {campaign.file.string()},
@@ -84,7 +84,7 @@ std::vector<calib::LeakEntry> take_table(const std::filesystem::path& file,
 }
 
 /// Warns about diagnosed signals for which the leak table has no column.
-void warn_of_absent(const std::vector<calib::LeakEntry>& limits, const Campaign& campaign,
+void warn_of_absent(const std::vector<diagnosis::LeakEntry>& limits, const Campaign& campaign,
                     diagnosis::Diagnosis& found) {
   std::vector<std::string> absent;
   for (const diagnosis::RecordDiagnosis& record : found.records) {
@@ -169,7 +169,7 @@ JobResult diagnosis_job(Campaign campaign, const DiagnosisRequest& request, cons
     return finished(stored(campaign, found, reasons, provenance), provenance);
   }
   const EarlierFit earlier = request.fit.read(campaign.rig.plant);
-  std::vector<calib::LeakEntry> limits;
+  std::vector<diagnosis::LeakEntry> limits;
   if (!request.table.empty()) limits = take_table(request.table, earlier, campaign);
   diagnosis::DiagnosisOptions settings;
   settings.threads = terms.threads;

@@ -1,4 +1,4 @@
-#include "calib/published/fit_tables.hpp"
+#include "diagnosis/table/fit_tables.hpp"
 #include "report/job/job.hpp"
 #include "report/job/leak_table_files.hpp"
 #include "report/store/parameters_csv.hpp"
@@ -17,19 +17,20 @@ JobResult fit_tables_job(const CampaignChoice& choice, const JobTerms& terms) {
   for (const char* file : {"fit.json", "parameters.csv", "fitted.toml"})
     planned.files.emplace_back(file);
   terms.hold(std::move(planned));
-  const calib::LeakTableOptions settings =
+  const diagnosis::LeakTableOptions settings =
       leak_table_options(input.campaign, terms.threads, terms.cancel);
-  const calib::TablesFit fit = calib::fit_tables(input.campaign, input.settings, settings);
+  const diagnosis::TablesFit fit = diagnosis::fit_tables(input.campaign, input.settings, settings);
   const Provenance provenance{terms.command, 1, terms.options, hash_inputs(input.campaign, {})};
   JobResult job;
   if (fit.status == FitStatus::converged) {
-    const calib::LeakTable table = calib::leak_table(input.campaign, fit.settings, settings);
+    const diagnosis::LeakTable table =
+        diagnosis::leak_table(input.campaign, fit.settings, settings);
     job.files = leak_table_files({input.campaign, fit.settings, table, provenance});
     job.files.push_back(
         {"fitted.toml", fitted_leak_table_text(input.campaign, fit.settings, terms.out)});
   }
   StoredTablesFit result;
-  static_cast<calib::TablesFit&>(result) = fit;
+  static_cast<diagnosis::TablesFit&>(result) = fit;
   result.campaign = input.campaign.name;
   result.provenance = stored(provenance);
   job.files.push_back(

@@ -33,9 +33,9 @@ LeakTableInput load_leak_table(const CampaignChoice& choice) {
   return input;
 }
 
-calib::LeakTableOptions leak_table_options(const datasets::Campaign& campaign, int threads,
-                                           const std::atomic<bool>& cancel) {
-  calib::LeakTableOptions result;
+diagnosis::LeakTableOptions leak_table_options(const datasets::Campaign& campaign, int threads,
+                                               const std::atomic<bool>& cancel) {
+  diagnosis::LeakTableOptions result;
   model::SimulationOptions& simulation = result.periodic.simulation;
   simulation.method = campaign.simulation.method;
   simulation.tolerance = campaign.simulation.tolerance.value_or(simulation.tolerance);
@@ -55,14 +55,14 @@ PlannedFiles planned_leak_table(const datasets::LeakTableSettings& settings) {
 }
 
 std::vector<ResultFile> leak_table_files(const LeakTableResult& result) {
-  const calib::LeakTable& table = result.table;
+  const diagnosis::LeakTable& table = result.table;
   std::vector<ResultFile> files;
   files.push_back({"leak_table.csv", leak_table_csv(result)});
   if (table.healthy) {
     const datasets::LeakSignal& signal = *result.settings.feature_signal;
     files.push_back({"features.csv", features_csv(result)});
     files.push_back(table_file(kHealthySeries, level_table(signal, *table.healthy, nullptr)));
-    for (const calib::FeatureRow& row : table.features) {
+    for (const diagnosis::FeatureRow& row : table.features) {
       files.push_back(table_file(kLevels / level_file(row.level),
                                  level_table(signal, row.series, &*table.healthy)));
     }

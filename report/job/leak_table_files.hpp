@@ -3,8 +3,8 @@
 #include <atomic>
 #include <vector>
 
-#include "calib/published/leak_table.hpp"
 #include "datasets/campaign/leak_table_settings.hpp"
+#include "diagnosis/table/leak_table.hpp"
 #include "report/leak/leak_table.hpp"
 #include "report/run/campaign_choice.hpp"
 #include "report/store/folder.hpp"
@@ -23,8 +23,8 @@ struct LeakTableInput {
 LeakTableInput load_leak_table(const CampaignChoice& choice);
 
 /// @param cancel  set to true to stop the computation; borrowed
-calib::LeakTableOptions leak_table_options(const datasets::Campaign& campaign, int threads,
-                                           const std::atomic<bool>& cancel);
+diagnosis::LeakTableOptions leak_table_options(const datasets::Campaign& campaign, int threads,
+                                               const std::atomic<bool>& cancel);
 
 /// Lists the files that leak_table_files() and the page may write.
 PlannedFiles planned_leak_table(const datasets::LeakTableSettings& settings);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "calib/published/leak_table.hpp"
+#include "diagnosis/table/leak_table.hpp"
 #include "report/job/job.hpp"
 #include "report/job/leak_table_files.hpp"
 #include "report/leak/leak_table.hpp"
@@ -20,7 +20,7 @@ using datasets::FittedValue;
 
 /// What a fit contributes to the rig of a leak table.
 struct FittedRig {
-  calib::RigUncertainty uncertainty;
+  diagnosis::RigUncertainty uncertainty;
   std::vector<std::string> notes;     ///< origin of the values, in words
   std::vector<std::string> warnings;  ///< doubts about the fit or the campaign
 };
@@ -30,8 +30,8 @@ const model::ParameterSpec& spec_in(const LeakTableInput& input, int index) {
 }
 
 /// Returns the covariance of those fitted values that the table uses.
-calib::RigUncertainty uncertainty_of(const LeakTableInput& input, const EarlierFit& earlier) {
-  calib::RigUncertainty result;
+diagnosis::RigUncertainty uncertainty_of(const LeakTableInput& input, const EarlierFit& earlier) {
+  diagnosis::RigUncertainty result;
   std::vector<Eigen::Index> rows;
   for (std::size_t i = 0; i < earlier.indices.size(); ++i) {
     const Assumption* taken = input.settings.assumption(earlier.indices[i]);
@@ -62,7 +62,7 @@ void warn_of_changed(const LeakTableInput& input, const EarlierFit& earlier,
 }
 
 void warn_of_fit(const LeakTableInput& input, const EarlierFit& earlier,
-                 const calib::RigUncertainty& uncertainty, std::vector<std::string>& warnings) {
+                 const diagnosis::RigUncertainty& uncertainty, std::vector<std::string>& warnings) {
   if (earlier.status == calib::FitStatus::stopped)
     warnings.push_back("the fit was stopped before it converged: " + earlier.message);
   for (const calib::Reason& reason : earlier.parameters.reasons) {
@@ -166,10 +166,11 @@ JobResult leak_table_job(const CampaignChoice& choice, const LeakTableRequest& r
   choose_targets(request, input.settings);
   choose_signals(request, input.campaign, input.settings);
   terms.hold(planned_leak_table(input.settings));
-  calib::LeakTableOptions settings =
+  diagnosis::LeakTableOptions settings =
       leak_table_options(input.campaign, terms.threads, terms.cancel);
   settings.rig = rig.uncertainty;
-  const calib::LeakTable table = calib::leak_table(input.campaign, input.settings, settings);
+  const diagnosis::LeakTable table =
+      diagnosis::leak_table(input.campaign, input.settings, settings);
   Provenance provenance;
   provenance.command = terms.command;
   provenance.options = terms.options;

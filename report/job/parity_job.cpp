@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
-#include "diagnosis/obstacles.hpp"
-#include "diagnosis/parity.hpp"
+#include "diagnosis/parity/parity.hpp"
+#include "diagnosis/record/obstacles.hpp"
 #include "report/job/job.hpp"
 #include "report/job/leak_records.hpp"
 #include "report/leak/parity.hpp"

@@ -5,8 +5,8 @@
 namespace rigcal::report {
 namespace {
 
-using calib::LeakDrive;
-using calib::LeakEntry;
+using diagnosis::LeakDrive;
+using diagnosis::LeakEntry;
 
 /// Makes a getter that lists the lower or upper ends of the intervals of an entry.
 auto ends(double Range::*end) {
@@ -22,7 +22,7 @@ auto ends(double Range::*end) {
 
 StoredLeakTable stored(const LeakTableResult& result) {
   StoredLeakTable file;
-  static_cast<calib::LeakTable&>(file) = result.table;
+  static_cast<diagnosis::LeakTable&>(file) = result.table;
   file.campaign = result.campaign.name;
   file.notes = result.notes;
   file.warnings = result.warnings;
@@ -49,7 +49,7 @@ std::string leak_table_csv(const LeakTableResult& result) {
 }
 
 std::string features_csv(const LeakTableResult& result) {
-  using R = calib::FeatureRow;
+  using R = diagnosis::FeatureRow;
   return CsvColumns<R>()
       .members(&R::level, &R::coefficient, &R::servo_flow_l_per_min,
                &R::published_servo_flow_l_per_min, &R::leak_flow_l_per_min,
@@ -58,20 +58,20 @@ std::string features_csv(const LeakTableResult& result) {
       .table(result.table.features);
 }
 
-Table level_table(const datasets::LeakSignal& signal, const calib::PeriodicSeries& series,
-                  const calib::PeriodicSeries* healthy) {
+Table level_table(const datasets::LeakSignal& signal, const diagnosis::PeriodicSeries& series,
+                  const diagnosis::PeriodicSeries* healthy) {
   const model::Signal drive =
       datasets::periodic_signal(signal.waveform, signal.amplitude, signal.frequency_hz);
   const std::size_t rows = series.time_s.size();
-  const auto output = [](const calib::PeriodicSeries& of, std::size_t i, Eigen::Index k) {
+  const auto output = [](const diagnosis::PeriodicSeries& of, std::size_t i, Eigen::Index k) {
     return of.run.outputs(static_cast<Eigen::Index>(i), k);
   };
   Table table;
   table.add("time_s", series.time_s);
   table.add("drive", rows, [&](std::size_t i) { return drive.value(series.time_s[i]); });
   for (Eigen::Index k = 0; k < series.run.outputs.cols(); ++k)
-    table.add(std::string(output_name(calib::kFeatureOutputs[static_cast<std::size_t>(k)])), rows,
-              [&](std::size_t i) { return output(series, i, k); });
+    table.add(std::string(output_name(diagnosis::kFeatureOutputs[static_cast<std::size_t>(k)])),
+              rows, [&](std::size_t i) { return output(series, i, k); });
   if (healthy != nullptr)
     table.add("residual_m", rows,
               [&](std::size_t i) { return output(series, i, 0) - output(*healthy, i, 0); });

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "calib/published/leak_table.hpp"
 #include "datasets/campaign/leak_table_settings.hpp"
+#include "diagnosis/table/leak_table.hpp"
 #include "report/store/provenance.hpp"
 #include "report/store/stored/stored_leak_table.hpp"
 #include "report/store/table.hpp"
@@ -15,7 +15,7 @@ namespace rigcal::report {
 struct LeakTableResult {
   const datasets::Campaign& campaign;
   const datasets::LeakTableSettings& settings;
-  const calib::LeakTable& table;
+  const diagnosis::LeakTable& table;
   const Provenance& provenance;
   std::vector<std::string> notes = {};     ///< which values come from a fit, in words
   std::vector<std::string> warnings = {};  ///< doubts about the values
@@ -35,7 +35,7 @@ std::string features_csv(const LeakTableResult& result);
 /// reference, position, flows, and the residual relative to the rig without a leak.
 ///
 /// @param healthy  series of the rig without a leak; null when writing that rig itself
-Table level_table(const datasets::LeakSignal& signal, const calib::PeriodicSeries& series,
-                  const calib::PeriodicSeries* healthy);
+Table level_table(const datasets::LeakSignal& signal, const diagnosis::PeriodicSeries& series,
+                  const diagnosis::PeriodicSeries* healthy);
 
 }  // namespace rigcal::report

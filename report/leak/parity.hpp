@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/parity.hpp"
+#include "diagnosis/parity/parity.hpp"
 #include "report/store/folder.hpp"
 #include "report/store/stored/stored_parity.hpp"
 

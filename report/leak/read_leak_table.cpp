@@ -13,7 +13,7 @@
 namespace rigcal::report {
 namespace {
 
-void require_complete(const calib::LeakEntry& entry, const JsonNode& node) {
+void require_complete(const diagnosis::LeakEntry& entry, const JsonNode& node) {
   if (!entry.drive.amplitude()) node.fail("an entry with 'amplitude_m' or 'amplitude_v'");
   if (entry.coefficients_ci95.size() != entry.coefficients.size())
     node["coefficients_ci95"].fail("an interval, or null, for each coefficient");

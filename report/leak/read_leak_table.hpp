@@ -4,18 +4,18 @@
 #include <string>
 #include <vector>
 
-#include "calib/published/leak_table.hpp"
 #include "datasets/campaign/campaign.hpp"
+#include "diagnosis/table/leak_table.hpp"
 #include "report/store/validity.hpp"
 
 namespace rigcal::report {
 
 /// The data in leak_table.json that a diagnosis needs.
 struct EarlierLeakTable {
-  std::vector<calib::LeakEntry> limits;     ///< each with an amplitude, and an interval, or null,
-                                            ///< for each coefficient
-  std::vector<double> targets_percent;      ///< values of the table rows, in increasing order
-  std::vector<std::pair<int, double>> rig;  ///< row of the parameter table, and value in SI units
+  std::vector<diagnosis::LeakEntry> limits;  ///< each with an amplitude, and an interval, or null,
+                                             ///< for each coefficient
+  std::vector<double> targets_percent;       ///< values of the table rows, in increasing order
+  std::vector<std::pair<int, double>> rig;   ///< row of the parameter table, and value in SI units
 };
 
 /// Reads leak_table.json and rejects anything unexpected.

@@ -7,7 +7,7 @@
 
 #include "common/calendar.hpp"
 #include "common/significant.hpp"
-#include "diagnosis/state_verdict.hpp"
+#include "diagnosis/machine/state_verdict.hpp"
 #include "report/document/words.hpp"
 #include "report/page/budget_tables.hpp"
 #include "report/page/page_parts.hpp"

@@ -23,7 +23,7 @@ constexpr double kWideInterval = 0.1;
 constexpr std::array kLevelStyles{"model", "residual", "servo", "leak", "reference"};
 
 /// Names the drive of an entry or of the fault-free rig: "sine 0.1 Hz, 50.8 mm".
-std::string drive_name(const calib::LeakDrive& drive) {
+std::string drive_name(const diagnosis::LeakDrive& drive) {
   std::string text = fmt::format("{} {:.6g} Hz", to_string(drive.waveform), drive.frequency_hz);
   if (drive.amplitude_m) text += ", " + readable(*drive.amplitude_m, "m", 4);
   if (drive.amplitude_v) text += ", " + readable(*drive.amplitude_v, "V", 4);
@@ -31,7 +31,7 @@ std::string drive_name(const calib::LeakDrive& drive) {
 }
 
 /// Lists all roots of an entry, with "~" before roots that the share barely determines.
-Line coefficients_line(const calib::LeakEntry& entry) {
+Line coefficients_line(const diagnosis::LeakEntry& entry) {
   Line line;
   for (const double root : entry.coefficients) {
     if (!std::isfinite(root)) continue;
@@ -45,7 +45,7 @@ Line coefficients_line(const calib::LeakEntry& entry) {
 
 /// Formats the intervals of the roots; empty for results without a fit and for results from before
 /// intervals were introduced.
-std::string intervals_text(const calib::LeakEntry& entry) {
+std::string intervals_text(const diagnosis::LeakEntry& entry) {
   std::string text;
   for (const auto& range : entry.coefficients_ci95) {
     if (!range || !std::isfinite(range->low) || !std::isfinite(range->high)) continue;
@@ -62,7 +62,7 @@ std::string error_text(const std::optional<double>& percent) {
   return percent ? fmt::format("{:+.1f} %", *percent) : std::string("–");
 }
 
-doc::Tile leak_tile(const calib::LeakEntry& entry) {
+doc::Tile leak_tile(const diagnosis::LeakEntry& entry) {
   doc::Tile tile{doc::badge(entry.grade), coefficients_line(entry)};
   const std::string interval = intervals_text(entry);
   if (!interval.empty()) tile.below.push_back({interval});
@@ -74,7 +74,7 @@ doc::Tile leak_tile(const calib::LeakEntry& entry) {
 
 /// Returns a cell with the share at the published coefficient and the range that its rounding
 /// allows.
-doc::Cell published_share_cell(const calib::LeakEntry& entry) {
+doc::Cell published_share_cell(const diagnosis::LeakEntry& entry) {
   if (!entry.published_coefficient) return doc::Cell("–");
   doc::Cell cell{Line{doc::in_unit(entry.share_at_published_percent, 1.0, 3)}};
   if (const auto& range = entry.share_by_rounding_percent)
@@ -87,10 +87,10 @@ doc::Cell published_share_cell(const calib::LeakEntry& entry) {
 ///
 /// @param cell_of  makes the cell of an entry
 template <typename CellOf>
-void add_leak_rows(const std::vector<calib::LeakEntry>& entries, const std::vector<double>& targets,
-                   CellOf cell_of, doc::Table& table) {
+void add_leak_rows(const std::vector<diagnosis::LeakEntry>& entries,
+                   const std::vector<double>& targets, CellOf cell_of, doc::Table& table) {
   std::vector<std::string> names;
-  for (const calib::LeakEntry& entry : entries) {
+  for (const diagnosis::LeakEntry& entry : entries) {
     const std::string name = drive_name(entry.drive);
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   }
@@ -98,7 +98,7 @@ void add_leak_rows(const std::vector<calib::LeakEntry>& entries, const std::vect
     doc::Row row{{name}};
     for (const double target : targets) {
       doc::Cell& cell = row.cells.emplace_back();
-      for (const calib::LeakEntry& entry : entries) {
+      for (const diagnosis::LeakEntry& entry : entries) {
         if (drive_name(entry.drive) == name && entry.target_percent == target)
           cell = cell_of(entry);
       }
@@ -107,9 +107,9 @@ void add_leak_rows(const std::vector<calib::LeakEntry>& entries, const std::vect
   }
 }
 
-std::vector<double> targets_of(const std::vector<calib::LeakEntry>& entries) {
+std::vector<double> targets_of(const std::vector<diagnosis::LeakEntry>& entries) {
   std::vector<double> targets;
-  for (const calib::LeakEntry& entry : entries) {
+  for (const diagnosis::LeakEntry& entry : entries) {
     if (std::find(targets.begin(), targets.end(), entry.target_percent) == targets.end())
       targets.push_back(entry.target_percent);
   }
@@ -118,7 +118,7 @@ std::vector<double> targets_of(const std::vector<calib::LeakEntry>& entries) {
 
 /// Plots computed over published coefficients. With perfect agreement all points would be on the
 /// line.
-Plot agreement_plot(const std::vector<calib::LeakEntry>& entries) {
+Plot agreement_plot(const std::vector<diagnosis::LeakEntry>& entries) {
   Plot plot;
   plot.title = "Computed over published leakage coefficients";
   plot.x_label = "published coefficient";
@@ -130,10 +130,10 @@ Plot agreement_plot(const std::vector<calib::LeakEntry>& entries) {
   double high = 0.0;
   Trace met = empty_trace(Trace::Kind::points, "model", "within 16 %");
   Trace outliers = empty_trace(Trace::Kind::points, "residual", "outlier");
-  for (const calib::LeakEntry& entry : entries) {
+  for (const diagnosis::LeakEntry& entry : entries) {
     const auto& published = entry.published_coefficient;
     if (!published || *published <= 0.0) continue;
-    Trace& into = entry.grade == calib::LeakGrade::outlier ? outliers : met;
+    Trace& into = entry.grade == diagnosis::LeakGrade::outlier ? outliers : met;
     double nearest = std::nan("");
     for (const double value : entry.coefficients) {
       if (!std::isfinite(value)) continue;
@@ -167,7 +167,7 @@ doc::Cell against_published(double computed, const std::optional<double>& publis
   return cell;
 }
 
-doc::Table feature_table(const std::vector<calib::FeatureRow>& features) {
+doc::Table feature_table(const std::vector<diagnosis::FeatureRow>& features) {
   doc::Table table{"Flows and features by level"};
   table.columns = {{"Level"},
                    {"Coefficient", Kind::number},
@@ -176,7 +176,7 @@ doc::Table feature_table(const std::vector<calib::FeatureRow>& features) {
                    {"Mean", Kind::number},
                    {"RMS", Kind::number},
                    {"Std", Kind::number}};
-  for (const calib::FeatureRow& f : features) {
+  for (const diagnosis::FeatureRow& f : features) {
     doc::Row row{{f.level, doc::in_unit(f.coefficient, 1.0, 4),
                   against_published(f.servo_flow_l_per_min, f.published_servo_flow_l_per_min),
                   against_published(f.leak_flow_l_per_min, f.published_leak_flow_l_per_min),
@@ -277,9 +277,9 @@ Plot flows_plot(const std::string& level, const Table& table) {
 }
 
 /// Returns, for example, "Critical: 30.6 % of the servo flow leak, at the coefficient 0.6".
-std::string level_caption(const std::vector<calib::FeatureRow>& features,
+std::string level_caption(const std::vector<diagnosis::FeatureRow>& features,
                           const std::string& level) {
-  for (const calib::FeatureRow& f : features) {
+  for (const diagnosis::FeatureRow& f : features) {
     if (f.level != level) continue;
     if (!(f.servo_flow_l_per_min > 0.0) || std::isnan(f.leak_flow_l_per_min)) break;
     return fmt::format("{}: {:.3g} % of the servo flow leak, at the coefficient {:g}", level,
@@ -289,7 +289,7 @@ std::string level_caption(const std::vector<calib::FeatureRow>& features,
 }
 
 std::string leak_sentence(const StoredLeakTable& table) {
-  const calib::LeakSummary& summary = table.summary;
+  const diagnosis::LeakSummary& summary = table.summary;
   if (summary.published == 0) {
     return fmt::format("{} leakage coefficients; nothing was published to compare them with.",
                        table.entries.size());
@@ -298,7 +298,7 @@ std::string leak_sentence(const StoredLeakTable& table) {
                      summary.within_10_percent, summary.published, summary.within_16_percent);
 }
 
-std::string noted(const calib::LeakEntry& entry) {
+std::string noted(const diagnosis::LeakEntry& entry) {
   return fmt::format("{} at {:g} %: {}", drive_name(entry.drive), entry.target_percent, entry.note);
 }
 
@@ -340,13 +340,13 @@ void add_features(const LeakTableFiles& stored, doc::Blocks& blocks) {
   blocks.emplace_back(feature_table(table.features));
 }
 
-void add_normals(const std::vector<calib::NormalEntry>& normals, doc::Blocks& blocks) {
+void add_normals(const std::vector<diagnosis::NormalEntry>& normals, doc::Blocks& blocks) {
   if (normals.empty()) return;
   doc::Table table{"Without a fault"};
   table.caption = {table.label};
   table.columns = {
       {"Signal"}, {"Published coefficient", Kind::number}, {"Share at it, %", Kind::number}};
-  for (const calib::NormalEntry& normal : normals)
+  for (const diagnosis::NormalEntry& normal : normals)
     table.rows.push_back(
         {{drive_name(normal.drive), doc::in_unit(normal.published_coefficient, 1.0, 4),
           doc::in_unit(normal.share_at_published_percent, 1.0, 3)}});
@@ -356,14 +356,14 @@ void add_normals(const std::vector<calib::NormalEntry>& normals, doc::Blocks& bl
 doc::Fold assumptions_fold(const StoredLeakTable& table) {
   doc::Table values{"Values in use"};
   values.columns = {{"Parameter"}, {"Value", Kind::number}, {"Source", Kind::words}};
-  for (const calib::UsedValue& each : table.assumptions)
+  for (const diagnosis::UsedValue& each : table.assumptions)
     values.rows.push_back({{each.key, doc::readable(each.value, each.unit, 5), each.source}});
   doc::Fold fold{"What it rests on", {std::move(values)}};
   if (table.fixed_combinations.empty()) return fold;
   doc::Table combinations{"Fixed combinations"};
   combinations.caption = {"Combinations that the shares depend on, and not on the values in them"};
   combinations.columns = {{"Combination"}, {"Value", Kind::number}, {"Unit"}};
-  for (const calib::FixedCombination& each : table.fixed_combinations)
+  for (const diagnosis::FixedCombination& each : table.fixed_combinations)
     combinations.rows.push_back(
         {{each.formula, doc::in_unit(each.value, 1.0, 5), typographic(each.unit)}});
   fold.blocks.emplace_back(std::move(combinations));
@@ -375,8 +375,9 @@ doc::Fold assumptions_fold(const StoredLeakTable& table) {
 doc::Verdict leak_table_headline(const LeakTableFiles& stored) {
   const StoredLeakTable& table = stored.result;
   doc::Verdict verdict{{doc::State::none, "LEAK TABLE"}, {leak_sentence(table)}};
-  for (const calib::LeakEntry& entry : table.entries) {
-    if (entry.grade == calib::LeakGrade::outlier) add_reason(verdict, noted(entry), "leak-table");
+  for (const diagnosis::LeakEntry& entry : table.entries) {
+    if (entry.grade == diagnosis::LeakGrade::outlier)
+      add_reason(verdict, noted(entry), "leak-table");
   }
   return verdict;
 }
@@ -420,7 +421,7 @@ std::vector<doc::Section> leak_table_sections(const LeakTableFiles& stored) {
     coefficients.columns.push_back({fmt::format("{:g} %", target)});
   add_leak_rows(
       table.entries, targets,
-      [](const calib::LeakEntry& entry) {
+      [](const diagnosis::LeakEntry& entry) {
         doc::Cell cell;
         cell.tiles = {leak_tile(entry)};
         return cell;
@@ -429,7 +430,7 @@ std::vector<doc::Section> leak_table_sections(const LeakTableFiles& stored) {
   blocks.emplace_back(std::move(coefficients));
   add_published(table, targets, blocks);
   std::vector<std::string> notes;
-  for (const calib::LeakEntry& entry : table.entries)
+  for (const diagnosis::LeakEntry& entry : table.entries)
     if (!entry.note.empty()) notes.push_back(noted(entry));
   blocks.emplace_back(list_of(notes, doc::State::warn));
   add_normals(table.normal, blocks);

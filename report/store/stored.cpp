@@ -131,7 +131,7 @@ std::variant<Calibration, StoredTablesFit> load_calibration(const ReadFile& read
 LeakTableFiles load_leak_table(const ReadFile& read, const std::string& where) {
   LeakTableFiles stored{load<StoredLeakTable>(read, where, "leak_table.json"), {}};
   const ReadFile own = files_of_run(read, stored.result.provenance, where, "leak_table.json");
-  for (const calib::FeatureRow& feature : stored.result.features) {
+  for (const diagnosis::FeatureRow& feature : stored.result.features) {
     if (const auto series = table_in(own, where, "levels/" + level_file(feature.level)))
       stored.levels.emplace_back(feature.level, *series);
   }

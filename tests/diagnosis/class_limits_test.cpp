@@ -31,10 +31,10 @@ TEST_CASE("class_limits: the rows of a leak table by signal, with the class that
           "[diagnosis]") {
   datasets::Campaign campaign;
   take_limits(campaign.diagnosis, {7.0, 20.0, 29.0, 50.0}, "leak_table.json");
-  std::vector<calib::LeakEntry> entries;
+  std::vector<diagnosis::LeakEntry> entries;
   for (const double target_percent : {7.0, 29.0, 50.0}) {
-    calib::LeakEntry& entry = entries.emplace_back();
-    entry.drive = calib::LeakDrive{datasets::Waveform::sine, 0.1, 0.05, {}};
+    diagnosis::LeakEntry& entry = entries.emplace_back();
+    entry.drive = diagnosis::LeakDrive{datasets::Waveform::sine, 0.1, 0.05, {}};
     entry.target_percent = target_percent;
     entry.coefficients = {0.1, 0.2};
     entry.coefficients_ci95 = {std::nullopt, Range{0.19, 0.21}};

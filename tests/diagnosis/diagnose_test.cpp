@@ -7,9 +7,9 @@
 #include <cmath>
 #include <map>
 
-#include "calib/published/leak_table.hpp"
 #include "datasets/prepare/single_repeats.hpp"
 #include "datasets/synthetic/synthetic_repeat.hpp"
+#include "diagnosis/table/leak_table.hpp"
 #include "metrics/distributions.hpp"
 
 using namespace rigcal;
@@ -186,7 +186,7 @@ TEST_CASE("diagnose: a coefficient of the leak table has the table's share", "[d
     table.signals[0].amplitude = *campaign.conditions[0].amplitude;
     table.targets_percent = {10.0};
     const auto entry =
-        calib::leak_table(datasets::true_campaign(campaign), table, {}).entries.at(0);
+        diagnosis::leak_table(datasets::true_campaign(campaign), table, {}).entries.at(0);
     REQUIRE(entry.coefficients.size() == 1);
     for (Condition& condition : campaign.conditions) condition.sample_rate_hz = 100.0;
     campaign.conditions[1].overrides = {

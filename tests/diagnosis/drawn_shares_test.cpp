@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "calib/fit.hpp"
-#include "diagnosis/leak/steady_leak.hpp"
+#include "diagnosis/record/steady_leak.hpp"
 #include "tests/calib/twin.hpp"
 
 using namespace rigcal;

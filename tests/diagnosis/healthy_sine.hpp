@@ -6,7 +6,7 @@
 #include "datasets/campaign/campaign.hpp"
 #include "datasets/prepare/single_repeats.hpp"
 #include "datasets/synthetic/synthetic_repeat.hpp"
-#include "diagnosis/leak/leak_fit.hpp"
+#include "diagnosis/record/leak_fit.hpp"
 
 namespace rigcal::test {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "calib/published/leak_table.hpp"
+#include "diagnosis/table/leak_table.hpp"
 #include "report/json/described.hpp"
 #include "report/store/described_campaign.hpp"
 #include "report/store/stored/stored_provenance.hpp"
@@ -14,8 +14,8 @@
 namespace rigcal::report {
 
 template <>
-inline std::vector<calib::LeakGrade> every() {
-  using calib::LeakGrade;
+inline std::vector<diagnosis::LeakGrade> every() {
+  using diagnosis::LeakGrade;
   return {LeakGrade::within_10, LeakGrade::within_16, LeakGrade::outlier, LeakGrade::not_published};
 }
 template <>
@@ -26,7 +26,7 @@ inline std::vector<datasets::Feature> every() {
 
 inline constexpr const char* kLeakTableSchema = "rigcal.leak_table/1";
 
-struct StoredLeakTable : calib::LeakTable {
+struct StoredLeakTable : diagnosis::LeakTable {
   std::string status = "done";
   std::string schema = kLeakTableSchema;
   std::string campaign;

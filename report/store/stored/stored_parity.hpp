@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/parity.hpp"
+#include "diagnosis/parity/parity.hpp"
 #include "report/store/stored/leak_status.hpp"
 #include "report/store/stored/stored_provenance.hpp"
 

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "calib/published/fit_tables.hpp"
+#include "diagnosis/table/fit_tables.hpp"
 #include "report/store/stored/stored_fit.hpp"
 
 // fit.json from a fit to published tables, which has no records.
@@ -12,7 +12,7 @@ namespace rigcal::report {
 
 inline constexpr const char* kOfTables = "published tables";
 
-struct StoredTablesFit : calib::TablesFit {
+struct StoredTablesFit : diagnosis::TablesFit {
   std::string schema = kFitSchema;
   std::optional<calib::Verdict> verdict;
   std::string campaign;

@@ -14,10 +14,11 @@ using Catch::Contains;
 
 namespace {
 
-calib::LeakEntry entry(datasets::Waveform waveform, double frequency_hz, double target_percent,
-                       std::vector<double> coefficients, std::vector<std::optional<Range>> ci95) {
-  calib::LeakEntry entry;
-  entry.drive = calib::LeakDrive{waveform, frequency_hz, 0.05, {}};
+diagnosis::LeakEntry entry(datasets::Waveform waveform, double frequency_hz, double target_percent,
+                           std::vector<double> coefficients,
+                           std::vector<std::optional<Range>> ci95) {
+  diagnosis::LeakEntry entry;
+  entry.drive = diagnosis::LeakDrive{waveform, frequency_hz, 0.05, {}};
   entry.target_percent = target_percent;
   entry.coefficients = std::move(coefficients);
   entry.coefficients_ci95 = std::move(ci95);

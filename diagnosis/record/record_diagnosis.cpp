@@ -1,0 +1,92 @@
+#include "diagnosis/record/record_diagnosis.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace rigcal::diagnosis {
+namespace {
+
+/// The share is on a plateau if its relative change is below this fraction of the relative change
+/// in the coefficient.
+constexpr double kFlat = 0.1;
+/// Limits for the fraction of the difference from the healthy model that a leak leaves unexplained.
+/// Above kNoticeable it is reported, and above kTooMuch no class is assigned.
+constexpr double kNoticeable = 0.05;
+constexpr double kTooMuch = 1.0 / 3.0;
+
+void warn(RecordDiagnosis& record, const SignalErrors& errors, double healthy_m,
+          datasets::LeakLaw law) {
+  const LeakFit& fit = record.fit;
+  const LeakEstimate& estimate = record.estimate;
+  const double left = unexplained_share(fit, healthy_m);
+  const bool explained = record.explained_by_leak.value();
+  if (explained && left > kNoticeable) {
+    record.warnings.push_back(
+        fmt::format("a leak explains all but {:.0f} % of the difference from the healthy model "
+                    "(rms {:.3g} mm); "
+                    "what is left, {:.3g} mm, is more than noise: another fault may be part of it",
+                    100.0 * left, 1e3 * fit.parity_rms_m, 1e3 * fit.misfit_rms_m));
+  }
+  if (!explained) {
+    record.warnings.push_back(fmt::format(
+        "not explained by a leak: it takes the difference from the healthy model from {:.3g} mm to "
+        "{:.3g} mm rms only, where healthy records leave {:.3g} mm; something else is wrong "
+        "(friction, valve, sensor), or the fit does not hold for this record",
+        1e3 * fit.parity_rms_m, 1e3 * fit.misfit_rms_m, 1e3 * healthy_m));
+  }
+  if (estimate.incompatible) {
+    record.warnings.push_back(fmt::format(
+        "incompatible with the model: the coefficient would be {:.3g} ({:.3g} to {:.3g}), below "
+        "zero "
+        "by more than its error: the machine is faster than its healthy model, so supply or valve "
+        "are not as they were in the fit",
+        fit.coefficient, estimate.ci95.low, estimate.ci95.high));
+  }
+  if (!estimate.has_share()) {
+    record.warnings.push_back(
+        fmt::format("a coefficient of {:.3g} would leak more than the servo valve delivers, so it "
+                    "has no share and no "
+                    "class",
+                    fit.coefficient));
+  }
+  const double log_slope =
+      estimate.share > 0.0 ? estimate.share_slope * fit.coefficient / estimate.share : 1.0;
+  if (std::abs(log_slope) < kFlat) {
+    record.warnings.push_back(fmt::format(
+        "the share hardly depends on the coefficient here (d ln share / d ln C = {:.2g}): a "
+        "share of this signal cannot give a coefficient",
+        log_slope));
+  }
+  if (!errors.repeat_m)
+    record.warnings.emplace_back(
+        "no repeats of this signal: how one run varies from the next is not in the interval");
+  if (!errors.healthy_m && record.reference_repeats == 0)
+    record.warnings.push_back(fmt::format(
+        "no healthy record of this signal: what the model lacks is not in the interval. If a leak "
+        "level is healthy, say so: --healthy LEVEL, or level_class = {{ \"LEVEL\" = \"normal\" }} "
+        "in "
+        "[diagnosis], or parameters = {{ {} = 0 }} in [leak_level.\"LEVEL\"]",
+        datasets::leak_parameter(law)));
+}
+
+}  // namespace
+
+void judge(RecordDiagnosis& record, const SignalErrors& errors, double healthy_m,
+           const datasets::DiagnosisSettings& settings) {
+  if (record.is_reference) {
+    record.warnings.emplace_back(
+        "the healthy reference of its signal: its leak is zero by construction");
+    return;
+  }
+  const LeakEstimate& estimate = record.estimate;
+  record.explained_by_leak = !(unexplained_share(record.fit, healthy_m) > kTooMuch);
+  record.leak = stated(estimate, settings.least_probability);
+  if (!*record.explained_by_leak) record.leak.class_.reset();
+  record.unbounded_leakage_coefficient = estimate.coefficient;
+  if (estimate.has_class() && estimate.share > 0.0)
+    record.log_slope = estimate.share_slope * estimate.coefficient / estimate.share;
+  warn(record, errors, healthy_m, settings.leak_law);
+}
+
+}  // namespace rigcal::diagnosis
