@@ -11,6 +11,7 @@
 #include <span>
 
 #include "datasets/campaign/keys/key_table.hpp"
+#include "datasets/campaign/toml/quantity_range.hpp"
 
 namespace rigcal::datasets {
 namespace {
@@ -211,10 +212,12 @@ std::vector<CampaignKey> parameter_rows(ParameterGroup group, bool fitted) {
 }
 
 std::optional<std::string> outside_limits(const model::ParameterSpec& spec, double value) {
-  if (value >= spec.lower && value <= spec.upper) return std::nullopt;
+  if (value >= spec.lower && value <= std::min(spec.upper, kSizes.upper)) return std::nullopt;
+  // Infinity stands for a limit that is absent, such as the largest reading of a sensor.
+  if (value == spec.upper) return std::nullopt;
   return fmt::format("{} makes no sense for {} ({}): expected {} to {}", with_unit(spec, value),
                      spec.key, spec.meaning, with_unit(spec, spec.lower),
-                     with_unit(spec, spec.upper));
+                     with_unit(spec, std::min(spec.upper, kSizes.upper)));
 }
 
 std::optional<std::string> complete_bounds(const model::ParameterSpec& spec,

@@ -59,9 +59,12 @@ StoredParity stored(const ParityResult& result) {
 std::string parity_csv(const StoredParity& parity) {
   using R = decltype(StoredParity::records)::value_type;
   using Features = decltype(R::features);
+  // A result of an earlier version states the threshold of the signal alone.
   const auto threshold_m = [&](const R& record) -> std::optional<double> {
+    if (!record.alarm) return std::nullopt;
+    if (record.threshold_m) return record.threshold_m;
     for (const ParitySignal& signal : parity.signals)
-      if (record.alarm && signal.signal == record.signal) return signal.threshold_m;
+      if (signal.signal == record.signal) return signal.threshold_m;
     return std::nullopt;
   };
   CsvColumns<R> columns;
@@ -76,7 +79,7 @@ std::string parity_csv(const StoredParity& parity) {
       .members(&R::failure);
   std::string text;
   if (parity.status != LeakStatus::done)
-    text = csv_status(to_string(parity.status), parity.reasons) + "\n";
+    text = csv_status(to_string(parity.status), parity.reasons);
   return text + columns.table(parity.records);
 }
 

@@ -67,3 +67,14 @@ TEST_CASE("complete_bounds: a tenth and ten times the start, within the limits",
   CHECK(bounds_of(2000.0) == std::pair(200.0, 5000.0));
   CHECK(bounds_of(300.0) == std::pair(100.0, 3000.0));
 }
+
+TEST_CASE("outside_limits: a limit may be absent, but no number is beyond what results may hold",
+          "[datasets]") {
+  const int maximum = model::parameter_index(model::PlantKind::two_chamber, "pressure_a_maximum");
+  const auto& spec = spec_of(model::PlantKind::two_chamber, maximum);
+  CHECK_FALSE(outside_limits(spec, 40e6));
+  CHECK_FALSE(outside_limits(spec, std::numeric_limits<double>::infinity()));
+  REQUIRE(outside_limits(spec, 1e300));
+  CHECK_THAT(*outside_limits(spec, 1e300), Contains("pressure_a_maximum") && Contains("1e+15 Pa"));
+  CHECK(outside_limits(spec, -1e300));
+}

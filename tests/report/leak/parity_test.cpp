@@ -43,6 +43,9 @@ TEST_CASE("parity_csv: a row per record, with the threshold of its signal", "[re
   record.time_to_alarm_s.reset();
   CHECK(parity_csv(parity) ==
         kParityHeadings + "sine_1,3,sine,33 %,0,0,0.5,0.25,0,,0.001,0.002,0.003,\n");
+  record.threshold_m = 0.75;  // on another day than the healthy records
+  CHECK(parity_csv(parity) ==
+        kParityHeadings + "sine_1,3,sine,33 %,0,0,0.5,0.75,0,,0.001,0.002,0.003,\n");
 }
 
 TEST_CASE("parity_csv: no threshold beside a record that is not judged", "[report]") {
@@ -57,5 +60,5 @@ TEST_CASE("parity_csv: no threshold beside a record that is not judged", "[repor
         kParityHeadings + "sine_1,mean,sine,,1,1,0.5,,,,0.001,0.002,0.003,\n");
   parity.status = LeakStatus::declined;
   parity.reasons = {"no healthy record"};
-  CHECK(parity_csv(parity).starts_with("# status: declined: no healthy record\n"));
+  CHECK(parity_csv(parity).starts_with("# status: declined: no healthy record\ncondition,"));
 }
