@@ -75,6 +75,6 @@ TEST_CASE("outside_limits: a limit may be absent, but no number is beyond what r
   CHECK_FALSE(outside_limits(spec, 40e6));
   CHECK_FALSE(outside_limits(spec, std::numeric_limits<double>::infinity()));
   REQUIRE(outside_limits(spec, 1e300));
-  CHECK_THAT(*outside_limits(spec, 1e300), Contains("pressure_a_maximum") && Contains("1e+15 Pa"));
+  CHECK_THAT(*outside_limits(spec, 1e300), Contains("pressure_a_maximum"));
   CHECK(outside_limits(spec, -1e300));
 }
