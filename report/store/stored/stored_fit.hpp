@@ -30,16 +30,6 @@ inline std::vector<model::PlantKind> every() {
   for (const std::string& name : model::plant_names()) all.push_back(*model::plant_from_name(name));
   return all;
 }
-template <>
-inline std::vector<calib::StoppedIn> every() {  // except `nothing`, which is null
-  using calib::StoppedIn;
-  return {StoppedIn::starts,   StoppedIn::validation, StoppedIn::bootstrap,
-          StoppedIn::profiles, StoppedIn::posterior,  StoppedIn::cross_validation};
-}
-template <>
-inline std::vector<calib::Verdict> every() {
-  return {calib::Verdict::pass, calib::Verdict::warn, calib::Verdict::fail};
-}
 
 /// Converts parameters from an earlier schema to the current one: the earlier `ci95` becomes
 /// `ci95_if_exact`.
