@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 
 #include "calib/consider/consider.hpp"
 #include "calib/consider/effect_changes.hpp"

@@ -5,9 +5,7 @@
 #include <algorithm>
 
 #include "common/error.hpp"
-#include "datasets/campaign/campaign_sections.hpp"
 #include "diagnosis/duty.hpp"
-#include "diagnosis/judgement.hpp"
 #include "diagnosis/leak/leak_budget.hpp"
 #include "diagnosis/signal_name.hpp"
 #include "diagnosis/state_verdict.hpp"

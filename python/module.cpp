@@ -2,7 +2,6 @@
 
 #include <string>
 #include <type_traits>
-#include <vector>
 
 #include "python/campaign.hpp"
 #include "python/errors.hpp"

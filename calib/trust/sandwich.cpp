@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <span>
 
 #include "common/parallel.hpp"
 #include "metrics/distributions.hpp"

@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
 #include <span>
-#include <string_view>
 #include <utility>
 #include <vector>
 

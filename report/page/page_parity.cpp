@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "report/figure/decimate.hpp"
 #include "report/page/page_parts.hpp"

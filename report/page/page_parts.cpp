@@ -1,12 +1,7 @@
 #include "report/page/page_parts.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <array>
-#include <cmath>
 
-#include "common/significant.hpp"
 #include "datasets/record.hpp"
 #include "metrics/metric_table.hpp"
 #include "report/text/estimate_text.hpp"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "calib/problem/problem.hpp"
 #include "report/store/identity.hpp"
