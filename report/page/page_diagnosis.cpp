@@ -255,7 +255,6 @@ constexpr std::array kMethods{
     MethodName{&diagnosis::Methods::features_leave_one_signal_out,
                "Paper's features, learned without the signal"}};
 
-/// Returns a row with the accuracy of a classification method.
 doc::Row accuracy_row(const diagnosis::Accuracy& method, const char* name) {
   const auto percent = [](double value) { return doc::in_unit(100.0 * value, 1.0, 4); };
   doc::Cell accuracy;
