@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 
 #include "calib/consider/consider.hpp"
 #include "calib/consider/effect_changes.hpp"
@@ -68,7 +67,7 @@ void look_again(const Problem& problem, const Campaign& campaign,
                 const std::optional<EffectLikelihood>& effects, const FitOptions& options,
                 Budget& budget, Fit& fit) {
   const auto note = [&](StoppedIn stage) {
-    if (budget.spent() && fit.stopped_in == StoppedIn::nothing) fit.stopped_in = stage;
+    if (budget.spent() && !fit.stopped_in) fit.stopped_in = stage;
   };
   if (options.bootstrap > 0) {
     bootstrap(problem, solved.optimum, solved.spread, fit.conditions, options, fit, budget);
@@ -195,8 +194,6 @@ Fit score_at(const Campaign& campaign, const std::vector<Record>& records,
 /// Returns the name of a stage in messages.
 std::string_view words(StoppedIn stage) {
   switch (stage) {
-    case StoppedIn::nothing:
-      break;
     case StoppedIn::starts:
       return "search";
     case StoppedIn::validation:
@@ -307,9 +304,9 @@ Fit fit(const Campaign& campaign, const std::vector<Record>& records, const FitO
           "; bootstrap, profiles, posterior and cross-validation are made of what converged only";
     }
     if (validation) add_validation(std::move(*validation), result);
-    if (result.status == FitStatus::converged && result.stopped_in != StoppedIn::nothing) {
+    if (result.status == FitStatus::converged && result.stopped_in) {
       result.status = FitStatus::stopped;
-      result.message += fmt::format("; the {} was {}", words(result.stopped_in), budget.reason());
+      result.message += fmt::format("; the {} was {}", words(*result.stopped_in), budget.reason());
     }
   }
   const auto known = describe_known(problem);

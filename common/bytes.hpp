@@ -9,7 +9,6 @@
 #include <cereal/types/vector.hpp>
 #include <sstream>
 #include <string>
-#include <tuple>
 
 // Converts values to bytes and back without changing a bit, for exchange between processes. A
 // struct needs a function `template <typename Archive> void serialize(Archive&, Struct&)`.

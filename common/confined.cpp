@@ -17,7 +17,6 @@
 #include <cstring>
 #include <fstream>
 #include <mutex>
-#include <new>
 
 namespace rigcal {
 namespace {

@@ -49,15 +49,33 @@
     return #name;                    \
     __VA_OPT__(RIGCAL_NAME_REST RIGCAL_NOTHING(__VA_ARGS__))
 #define RIGCAL_NAME_REST() RIGCAL_NAME_CASES
-#define RIGCAL_NAMES(Enum, ...)                                     \
-  constexpr std::string_view to_string(Enum value) {                \
-    using enum Enum;                                                \
-    switch (value) { RIGCAL_AGAIN(RIGCAL_NAME_CASES(__VA_ARGS__)) } \
-    return {};                                                      \
-  }                                                                 \
-  inline std::vector<Enum> enumerators_like(Enum) {                 \
-    using enum Enum;                                                \
-    return {__VA_ARGS__};                                           \
+#define RIGCAL_NAMES(Enum, ...) \
+  RIGCAL_TEXTS(Enum, RIGCAL_AGAIN(RIGCAL_NAME_CASES(__VA_ARGS__)), __VA_ARGS__)
+
+// A text that is no identifier follows its enumerator:
+//
+//   RIGCAL_WORDS(Verdict, pass, "PASS", warn, "WARN")
+#define RIGCAL_WORD_CASES(name, words, ...) \
+  case name:                                \
+    return words;                           \
+    __VA_OPT__(RIGCAL_WORD_REST RIGCAL_NOTHING(__VA_ARGS__))
+#define RIGCAL_WORD_REST() RIGCAL_WORD_CASES
+#define RIGCAL_WITHOUT_WORDS(name, words, ...) \
+  name, __VA_OPT__(RIGCAL_WITHOUT_REST RIGCAL_NOTHING(__VA_ARGS__))
+#define RIGCAL_WITHOUT_REST() RIGCAL_WITHOUT_WORDS
+#define RIGCAL_WORDS(Enum, ...)                                    \
+  RIGCAL_TEXTS(Enum, RIGCAL_AGAIN(RIGCAL_WORD_CASES(__VA_ARGS__)), \
+               RIGCAL_AGAIN(RIGCAL_WITHOUT_WORDS(__VA_ARGS__)))
+
+#define RIGCAL_TEXTS(Enum, cases, ...)               \
+  constexpr std::string_view to_string(Enum value) { \
+    using enum Enum;                                 \
+    switch (value) { cases }                         \
+    return {};                                       \
+  }                                                  \
+  inline std::vector<Enum> enumerators_like(Enum) {  \
+    using enum Enum;                                 \
+    return {__VA_ARGS__};                            \
   }
 // NOLINTEND(cppcoreguidelines-macro-usage)
 

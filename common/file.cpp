@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 #include <array>
-#include <atomic>
 #include <cerrno>
 #include <memory>
 #include <mutex>
@@ -33,7 +32,6 @@ std::string reason(int error_number) { return std::generic_category().message(er
   throw WriteError(fmt::format("{}: cannot be written: {}", path.string(), why));
 }
 
-/// An open regular file.
 class RegularFile {
  public:
   RegularFile(const fs::path& path, const std::string& expected) : where_{path.string()} {

@@ -5,7 +5,6 @@
 #include <optional>
 #include <string>
 #include <variant>
-#include <vector>
 
 #include "calib/fit.hpp"
 #include "datasets/record.hpp"

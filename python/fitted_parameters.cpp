@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <optional>
-#include <string>
 
 #include "python/arrays.hpp"
 #include "python/described_members.hpp"

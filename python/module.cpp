@@ -2,23 +2,11 @@
 
 #include <string>
 #include <type_traits>
-#include <vector>
 
 #include "python/campaign.hpp"
 #include "python/errors.hpp"
 #include "report/store/provenance.hpp"
 #include "report/store/stored/stored_fit.hpp"
-
-namespace rigcal::report {
-
-template <>
-inline std::vector<model::SimulationStatus> every() {
-  using enum model::SimulationStatus;
-  return {ok,          bad_parameters, not_finite,    step_too_small, too_many_steps,
-          out_of_time, cancelled,      no_equilibrium};
-}
-
-}  // namespace rigcal::report
 
 namespace rigcal::python {
 namespace {

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
-#include <vector>
 
 #include "report/run/campaign_choice.hpp"
 #include "report/store/folder.hpp"

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "calib/problem/evaluation.hpp"
+#include "calib/problem/simulation_task.hpp"
 #include "calib/trust/information.hpp"
 #include "calib/trust/planned_record.hpp"
 #include "datasets/synthetic/model_output.hpp"
@@ -138,10 +139,8 @@ void TrialRig::rest(const std::map<Channel, double>& noise_sd) {
     outputs.push_back(datasets::model_output(channel).value());
   model::Rig rig = campaign_.rig;
   rig.initial = model::InitialState::rest;
-  model::SimulationOptions options;
-  options.method = campaign_.simulation.method;
+  model::SimulationOptions options = simulation_options(campaign_);
   options.tolerance = kRestTolerance;
-  options.max_seconds = campaign_.simulation.max_seconds;
   options.cancel = cancel_;
   const model::ParameterValues values = datasets::values_in(campaign_, condition_);
   const auto run_with = [&](double drive, std::span<const double> time_s) {

@@ -5,8 +5,6 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <span>
-#include <string>
 #include <vector>
 
 #include "calib/design/design_limits.hpp"

@@ -93,7 +93,6 @@ double r_hat(const Chains& chains) {
   return std::sqrt(found.pooled / found.within);
 }
 
-/// Returns the biased autocovariance of a chain at one lag.
 double autocovariance_at(const std::vector<double>& chain, double mean, std::size_t lag) {
   double sum = 0.0;
   for (std::size_t i = lag; i < chain.size(); ++i)

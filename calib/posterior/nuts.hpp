@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <string>
 #include <vector>
 
 // Samples a density with the no-U-turn sampler (Hoffman and Gelman, Journal of Machine Learning

@@ -9,6 +9,7 @@
 
 #include "calib/problem/initial_state.hpp"
 #include "calib/problem/known_values.hpp"
+#include "calib/problem/simulation_task.hpp"
 #include "datasets/synthetic/model_output.hpp"
 
 namespace rigcal::calib {
@@ -186,10 +187,8 @@ bool Problem::repeats_itself() const {
 }
 
 model::SimulationOptions Problem::simulation_options(const std::atomic<bool>* own) const {
-  model::SimulationOptions options;
-  options.method = campaign->simulation.method;
+  model::SimulationOptions options = calib::simulation_options(*campaign);
   options.tolerance = tolerance;
-  options.max_seconds = campaign->simulation.max_seconds;
   options.cancel = own != nullptr ? own : cancel;
   return options;
 }

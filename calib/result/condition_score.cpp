@@ -4,18 +4,6 @@
 
 namespace rigcal::calib {
 
-std::string_view to_string(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::pass:
-      return "PASS";
-    case Verdict::warn:
-      return "WARN";
-    case Verdict::fail:
-      return "FAIL";
-  }
-  return "";
-}
-
 const metrics::Agreement* ChannelScore::printed_uncertainty() const {
   const auto& known = two_sided_uncertainty ? two_sided_uncertainty : expanded_uncertainty;
   return known ? &*known : nullptr;

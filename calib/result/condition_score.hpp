@@ -70,7 +70,7 @@ struct ChannelScore {
 };
 
 enum class Verdict { pass, warn, fail };
-std::string_view to_string(Verdict verdict);
+RIGCAL_WORDS(Verdict, pass, "PASS", warn, "WARN", fail, "FAIL")
 
 /// Comparison of one metric of one channel with its limit.
 struct LimitCheck {

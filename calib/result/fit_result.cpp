@@ -7,8 +7,7 @@ namespace rigcal::calib {
 
 bool Fit::has_converged() const {
   return status == FitStatus::converged ||
-         (status == FitStatus::stopped && stopped_in != StoppedIn::nothing &&
-          stopped_in != StoppedIn::starts);
+         (status == FitStatus::stopped && stopped_in && stopped_in != StoppedIn::starts);
 }
 
 bool Fit::usable() const {

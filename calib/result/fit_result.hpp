@@ -74,7 +74,7 @@ struct SearchOutcome {
 /// Everything that a fit found.
 struct Fit : Findings, SearchOutcome {
   FitStatus status = FitStatus::failed;
-  StoppedIn stopped_in = StoppedIn::nothing;
+  std::optional<StoppedIn> stopped_in;
   std::string message;  ///< why the fit stopped, and what is unreliable, in words
   double cost = 0.0;    ///< half the sum of squared weighted residuals, priors included
   long residual_count = 0;

@@ -21,16 +21,8 @@ enum class FitStatus {
 RIGCAL_NAMES(FitStatus, converged, stopped, failed)
 
 /// Stage at which a job was stopped.
-enum class StoppedIn {
-  nothing,
-  starts,
-  validation,
-  bootstrap,
-  profiles,
-  posterior,
-  cross_validation
-};
-std::string_view to_string(StoppedIn stage);
+enum class StoppedIn { starts, validation, bootstrap, profiles, posterior, cross_validation };
+RIGCAL_NAMES(StoppedIn, starts, validation, bootstrap, profiles, posterior, cross_validation)
 
 /// One start of a multi-start fit.
 struct StartReport {

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <Eigen/Eigenvalues>
-#include <algorithm>
 #include <cmath>
 #include <limits>
 

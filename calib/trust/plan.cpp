@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <cmath>
-
 #include "calib/search/evaluator.hpp"
 #include "calib/trust/information.hpp"
 #include "calib/trust/known_uncertainty.hpp"

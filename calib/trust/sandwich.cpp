@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <span>
 
 #include "common/parallel.hpp"
 #include "metrics/distributions.hpp"
@@ -21,7 +20,6 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 /// Two-sided integral of the squared Parzen kernel.
 constexpr double kParzenSquare = 0.539285;
 
-/// Rows of one channel.
 struct ChannelRows {
   RowMajor jacobian;
   VectorXd residual;

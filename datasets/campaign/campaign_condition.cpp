@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <charconv>
-#include <cmath>
 
 #include "datasets/campaign/campaign_parameters.hpp"
 #include "datasets/campaign/campaign_sections.hpp"

@@ -4,7 +4,6 @@
 #include <stdexcept>
 
 #include "datasets/campaign/campaign.hpp"
-#include "datasets/campaign/campaign_sections.hpp"
 #include "datasets/campaign/toml/quantity_range.hpp"
 
 namespace rigcal::datasets {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 
@@ -19,15 +18,6 @@ constexpr std::string_view kResidualScaleKey = "residual_scale";
 constexpr double kMostPercent = 1000.0;
 /// The parameter that a leak table varies.
 constexpr std::string_view kVariedKey = "leakage_coefficient";
-
-struct FeatureName {
-  Feature feature;
-  std::string_view key;
-};
-constexpr std::array kFeatures{FeatureName{Feature::servo_flow, "servo_flow"},
-                               FeatureName{Feature::leak_flow, "leak_flow"},
-                               FeatureName{Feature::mean, "mean"}, FeatureName{Feature::rms, "rms"},
-                               FeatureName{Feature::std, "std"}};
 
 bool is_flow(Feature feature) {
   return feature == Feature::servo_flow || feature == Feature::leak_flow;
@@ -135,8 +125,6 @@ const std::vector<CampaignKey>& signal_keys() {
 const KeyTable<PrintedFeatures>& level_keys() {
   using Row = KeyRow<PrintedFeatures>;
   static const KeyTable<PrintedFeatures> keys = [] {
-    std::vector<std::string> names;
-    for (const FeatureName& name : kFeatures) names.emplace_back(name.key);
     std::vector<Row> rows{
         Row::text(
             "level", &PrintedFeatures::level, "a text in quotes",
@@ -148,20 +136,21 @@ const KeyTable<PrintedFeatures>& level_keys() {
                   {.doc = "`false`: the rig without a fault; the coefficient that gives its leak "
                           "flow is sought too"}),
     };
-    for (const FeatureName& name : kFeatures) {
-      const bool flow = is_flow(name.feature);
-      rows.push_back(Row::custom(name.key, flow ? quantity_form("m3/s") : number_form(kSizes),
-                                 [name, flow](const TomlNode& node, PrintedFeatures& row) {
-                                   row.printed[name.feature] =
-                                       flow ? node.quantity("m3/s", kFlows_m3_per_s)
-                                            : node.number(kSizes);
-                                 },
-                                 {.doc = flow ? "Mean of the absolute value"
-                                              : "Of the residual's absolute value, as printed",
-                                  .otherwise = "none"}));
+    for (const Feature feature : enumerators_like(Feature{})) {
+      const bool flow = is_flow(feature);
+      rows.push_back(
+          Row::custom(to_string(feature), flow ? quantity_form("m3/s") : number_form(kSizes),
+                      [feature, flow](const TomlNode& node, PrintedFeatures& row) {
+                        row.printed[feature] =
+                            flow ? node.quantity("m3/s", kFlows_m3_per_s) : node.number(kSizes);
+                      },
+                      {.doc = flow ? "Mean of the absolute value"
+                                   : "Of the residual's absolute value, as printed",
+                       .otherwise = "none"}));
     }
     rows.push_back(Row::described(
-        "left_out", list_form(word_form(names), "list of these names", 0),
+        "left_out",
+        list_form(word_form(words_of(enumerator_words<Feature>())), "list of these names", 0),
         {.doc = "What does not count in `fit-tables`; needs a `reason`", .otherwise = "none"}));
     rows.push_back(Row::described("reason", plain_form(KeyForm::Kind::text),
                                   {.doc = "Why it is left out", .otherwise = "none"}));
@@ -251,8 +240,7 @@ LeakSignal read_signal(const TomlNode& node, const Campaign& campaign,
 PrintedFeatures read_level(const TomlNode& node) {
   PrintedFeatures row;
   level_keys().read(node, row);
-  Words<Feature> names;
-  for (const FeatureName& name : kFeatures) names.emplace_back(name.key, name.feature);
+  const Words<Feature> names = enumerator_words<Feature>();
   if (const auto left_out = node.find("left_out")) {
     for (const TomlNode& item : left_out->items()) row.left_out.push_back(item.choice(names));
     row.reason = node.require("reason", "why these are left out of a fit").name();
@@ -354,13 +342,6 @@ std::vector<LeakSignal> signals_of(const Campaign& campaign) {
 
 std::string LeakSignal::name() const {
   return fmt::format("{}_{:g}Hz", to_string(waveform), frequency_hz);
-}
-
-std::string_view to_string(Feature feature) {
-  for (const FeatureName& name : kFeatures) {
-    if (name.feature == feature) return name.key;
-  }
-  return "";
 }
 
 const model::ParameterSpec& assumption_spec(model::PlantKind plant, int index) {

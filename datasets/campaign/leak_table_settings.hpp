@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "common/describe.hpp"
 #include "common/error.hpp"
 #include "datasets/campaign/campaign.hpp"
 
@@ -34,7 +35,7 @@ struct LeakSignal {
 
 /// Columns in a published table of flows and residual features.
 enum class Feature { servo_flow, leak_flow, mean, rms, std };
-std::string_view to_string(Feature feature);
+RIGCAL_NAMES(Feature, servo_flow, leak_flow, mean, rms, std)
 
 /// One row of a published table of features. Flows in m3/s, features in the printed unit.
 struct PrintedFeatures {

@@ -1,6 +1,5 @@
 #include "datasets/campaign/waveform.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <stdexcept>

@@ -7,8 +7,6 @@
 #include <optional>
 #include <vector>
 
-#include "datasets/campaign/campaign_sections.hpp"
-
 namespace rigcal::datasets {
 namespace {
 

@@ -6,7 +6,6 @@
 #include <set>
 #include <string_view>
 
-#include "datasets/campaign/campaign_sections.hpp"
 #include "datasets/checks/stuck_sensor.hpp"
 
 namespace rigcal::datasets {

@@ -4,14 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
-#include <cctype>
-#include <cmath>
-#include <functional>
 #include <iterator>
-#include <map>
 #include <optional>
-#include <span>
 
 #include "common/error.hpp"
 #include "common/quantity.hpp"

@@ -7,10 +7,8 @@
 #include <cstddef>
 #include <iterator>
 #include <limits>
-#include <utility>
 
 #include "common/error.hpp"
-#include "datasets/campaign/campaign_sections.hpp"
 #include "datasets/prepare/time_holes.hpp"
 
 namespace rigcal::datasets {

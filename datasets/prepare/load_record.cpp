@@ -10,7 +10,6 @@
 
 #include "common/parallel.hpp"
 #include "datasets/campaign/campaign_parameters.hpp"
-#include "datasets/campaign/campaign_sections.hpp"
 #include "datasets/campaign/reading_root.hpp"
 #include "datasets/checks/record_checks.hpp"
 #include "datasets/checks/sensor_warnings.hpp"

@@ -5,7 +5,6 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <functional>
@@ -13,7 +12,6 @@
 #include <numbers>
 #include <vector>
 
-#include "datasets/campaign/campaign_sections.hpp"
 #include "datasets/checks/equal_runs.hpp"
 #include "datasets/prepare/waveform_guess.hpp"
 

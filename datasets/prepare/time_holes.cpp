@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "common/error.hpp"
-#include "datasets/campaign/campaign_sections.hpp"
 #include "datasets/checks/median.hpp"
 
 namespace rigcal::datasets {

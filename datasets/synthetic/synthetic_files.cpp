@@ -6,7 +6,6 @@
 #include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "datasets/campaign/toml/toml_reader.hpp"
 #include "datasets/campaign/toml/toml_writer.hpp"

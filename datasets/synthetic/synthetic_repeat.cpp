@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <numbers>
-#include <optional>
 
 #include "datasets/synthetic/model_output.hpp"
 #include "datasets/synthetic/noise.hpp"

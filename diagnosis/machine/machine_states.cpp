@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "common/error.hpp"
-#include "datasets/campaign/campaign_sections.hpp"
 #include "diagnosis/machine/state_verdict.hpp"
 #include "diagnosis/record/duty.hpp"
 #include "diagnosis/record/leak_budget.hpp"

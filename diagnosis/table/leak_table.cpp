@@ -262,20 +262,6 @@ std::vector<UsedValue> used_values(const datasets::Campaign& campaign,
 
 }  // namespace
 
-std::string_view to_string(LeakGrade grade) {
-  switch (grade) {
-    case LeakGrade::within_10:
-      return "within 10 %";
-    case LeakGrade::within_16:
-      return "within 16 %";
-    case LeakGrade::outlier:
-      return "outlier";
-    case LeakGrade::not_published:
-      return "not published";
-  }
-  return "";
-}
-
 std::vector<FixedCombination> fixed_combinations(const datasets::Campaign& campaign,
                                                  const model::ParameterValues& values) {
   std::vector<FixedCombination> combinations;

@@ -16,7 +16,8 @@ namespace rigcal::diagnosis {
 
 /// How well the computed coefficient agrees with the published one.
 enum class LeakGrade { within_10, within_16, outlier, not_published };
-std::string_view to_string(LeakGrade grade);
+RIGCAL_WORDS(LeakGrade, within_10, "within 10 %", within_16, "within 16 %", outlier, "outlier",
+             not_published, "not published")
 
 /// Drive of an entry.
 struct LeakDrive {

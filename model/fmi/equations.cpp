@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
-#include <utility>
 
 #include "model/fmi/indicators.hpp"
 #include "model/plant/system.hpp"

@@ -16,7 +16,6 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 /// adds up are rounded.
 constexpr double kSamePart = 1e-6;
 
-/// Rounding error of a time.
 double rounding_s(double time_s) {
   return 4.0 * std::numeric_limits<double>::epsilon() * std::abs(time_s);
 }

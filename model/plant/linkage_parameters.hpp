@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <stdexcept>
 #include <string_view>
 
 #include "model/plant/two_chamber_parameters.hpp"

@@ -1,6 +1,5 @@
 #include "model/plant/parameter.hpp"
 
-#include <algorithm>
 #include <array>
 #include <stdexcept>
 #include <tuple>

@@ -4,28 +4,6 @@
 
 namespace rigcal::model {
 
-std::string_view to_string(SimulationStatus status) {
-  switch (status) {
-    case SimulationStatus::ok:
-      return "ok";
-    case SimulationStatus::bad_parameters:
-      return "bad parameters";
-    case SimulationStatus::not_finite:
-      return "not finite";
-    case SimulationStatus::step_too_small:
-      return "step too small";
-    case SimulationStatus::too_many_steps:
-      return "too many steps";
-    case SimulationStatus::out_of_time:
-      return "out of time";
-    case SimulationStatus::cancelled:
-      return "cancelled";
-    case SimulationStatus::no_equilibrium:
-      return "no equilibrium";
-  }
-  return "";
-}
-
 void SimulationOptions::validate() const {
   const auto require = [](bool condition, const char* message) {
     if (!condition) throw std::invalid_argument(std::string("simulate: ") + message);

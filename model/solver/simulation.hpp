@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "common/describe.hpp"
+
 namespace rigcal::model {
 
 enum class Method {
@@ -41,7 +43,9 @@ enum class SimulationStatus {
   cancelled,
   no_equilibrium,  ///< Before::steady was requested, but the rig does not settle
 };
-std::string_view to_string(SimulationStatus status);
+RIGCAL_WORDS(SimulationStatus, ok, "ok", bad_parameters, "bad parameters", not_finite, "not finite",
+             step_too_small, "step too small", too_many_steps, "too many steps", out_of_time,
+             "out of time", cancelled, "cancelled", no_equilibrium, "no equilibrium")
 
 /// A simulated run. The matrices are empty unless `status` is ok, so that nobody takes the output
 /// of a failed run for a result.

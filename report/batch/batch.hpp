@@ -1,11 +1,10 @@
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "common/error.hpp"
+#include "report/batch/batch_rigs.hpp"
 #include "report/comparison/comparison.hpp"
 #include "report/json/described.hpp"
 
@@ -82,17 +81,10 @@ struct StoredBatch {
 };
 
 /// How the run of one rig ended.
-struct RigRun {
-  std::string rig;
-  std::filesystem::path campaign;
-  std::string folder;
-  ExitCode code = ExitCode::internal;
-  bool unchanged = false;
-  double seconds = 0.0;
-  std::string error;
-  std::optional<Compared> result;   ///< contents of its fit.json; absent if this run left none
-  std::vector<Compared> earlier;    ///< earlier results for the same rig, in any order
-  std::vector<std::string> unread;  ///< why some earlier results were left out
+struct RigRun : BatchRig, RigEnd {
+  std::optional<Compared> result{};   ///< contents of its fit.json; absent if this run left none
+  std::vector<Compared> earlier{};    ///< earlier results for the same rig, in any order
+  std::vector<std::string> unread{};  ///< why some earlier results were left out
 };
 
 StoredRig rig_row(const RigRun& run);

@@ -33,12 +33,8 @@ int bins_of(double span, std::vector<double> values) {
 
 Plot histogram_plot(const std::string& title, std::span<const double> residual,
                     const std::string& unit, double si) {
-  Plot plot;
-  plot.title = title;
-  plot.x_label = fmt::format("residual [{}]", unit);
-  plot.y_label = fmt::format("density [1/{}]", unit);
-  plot.width = 300.0;
-  plot.height = 170.0;
+  Plot plot{title, fmt::format("residual [{}]", unit), fmt::format("density [1/{}]", unit), 300.0,
+            170.0};
   std::vector<double> values;
   for (const double value : residual)
     if (std::isfinite(value)) values.push_back(value / si);

@@ -61,12 +61,8 @@ ResidualMoments residual_moments(std::span<const double> measured,
 
 Plot parity_plot(const std::string& title, std::span<const double> measured,
                  std::span<const double> simulated, const std::string& unit, double si) {
-  Plot plot;
-  plot.title = title;
-  plot.x_label = fmt::format("measured [{}]", unit);
-  plot.y_label = fmt::format("model [{}]", unit);
-  plot.width = 290.0;
-  plot.height = 274.0;
+  Plot plot{title, fmt::format("measured [{}]", unit), fmt::format("model [{}]", unit), 290.0,
+            274.0};
   plot.same_axes = true;
   Extent range;
   const std::size_t size = std::min(measured.size(), simulated.size());

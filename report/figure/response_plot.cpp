@@ -15,11 +15,11 @@ double near(double phase, double neighbour) {
 }
 
 Plot empty_plot(const std::string& condition, const ResponseCurves& curves, const char* what) {
-  Plot plot;
-  plot.title = fmt::format("{} of {}, {}, record and model", what, curves.of, condition);
-  plot.x_label = "frequency [Hz]";
-  plot.width = 300.0;
-  plot.height = 170.0;
+  Plot plot{fmt::format("{} of {}, {}, record and model", what, curves.of, condition),
+            "frequency [Hz]",
+            {},
+            300.0,
+            170.0};
   plot.log_x = true;
   return plot;
 }

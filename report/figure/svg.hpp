@@ -28,8 +28,8 @@ inline Trace empty_trace(Trace::Kind kind, std::string style, std::string name =
 
 struct Plot {
   std::string title;  ///< first words for a screen reader
-  std::string x_label;
-  std::string y_label;
+  std::string x_label{};
+  std::string y_label{};
   double width = 720.0;
   double height = 200.0;
   bool log_x = false;
@@ -37,11 +37,11 @@ struct Plot {
   bool bare = false;       ///< only the traces, from edge to edge, as one of many small pictures
   bool whole_x = false;    ///< x counts items: whole-number ticks, room beside the first and last
   bool same_axes = false;  ///< both axes have the same range
-  std::vector<Trace> traces;
-  std::vector<double> levels;  ///< dashed horizontal lines, in units of y
+  std::vector<Trace> traces{};
+  std::vector<double> levels{};  ///< dashed horizontal lines, in units of y
   /// Names of the categories on the x axis, which lie at x = 1, 2, ...; empty if x is a quantity. A
   /// name that is too long for two lines is cut.
-  std::vector<std::string> x_names;
+  std::vector<std::string> x_names{};
 };
 
 /// Renders a picture as SVG. Colours come from the style sheet of the page. All text is escaped.

@@ -143,10 +143,9 @@ bool shows_band(const TimePlot& plot) {
 Plot picture(const TimePlot& plot, const Table& table, const std::string& condition) {
   const std::vector<double>& time_s = table.columns.front();
   const Buckets thin = buckets(time_s.size(), kStaticPoints);
-  Plot result;
-  result.title = fmt::format("{} of {} over time, in {}", plot.title, condition, plot.unit);
-  result.x_label = "time [s]";
-  result.y_label = fmt::format("{} [{}]", plot.name == "flows" ? "flow" : plot.title, plot.unit);
+  Plot result{fmt::format("{} of {} over time, in {}", plot.title, condition, plot.unit),
+              "time [s]",
+              fmt::format("{} [{}]", plot.name == "flows" ? "flow" : plot.title, plot.unit)};
   result.height = plot.height;
   for (const TimeLine& line : plot.lines) {
     Trace trace;
@@ -161,10 +160,7 @@ Plot picture(const TimePlot& plot, const Table& table, const std::string& condit
   if (plot.prediction_sd != nullptr && shows_band(plot))
     result.traces.insert(result.traces.begin(), prediction_band(plot, time_s));
   if (plot.sd != nullptr) {
-    Trace band;
-    band.kind = Trace::Kind::band;
-    band.name = "sd of repeats";
-    band.style = "measured";
+    Trace band = empty_trace(Trace::Kind::band, "measured", "sd of repeats");
     band.x = result.traces.back().x;
     const std::vector<double> sd =
         scaled(thinned_where(*plot.sd, *plot.lines.front().values, thin), plot.si);

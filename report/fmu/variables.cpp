@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string_view>
 
 #include "model/fmi/references.hpp"
 
@@ -43,14 +44,21 @@ constexpr std::array kOutputs{
 };
 static_assert(kOutputs.size() == model::kAllOutputs.size(), "every output has a row");
 
-FmuVariable input(unsigned number, const char* name, const char* unit, const char* meaning,
-                  double start) {
+FmuVariable made(std::string_view name, unsigned reference, Causality causality,
+                 std::string_view unit, std::string_view meaning) {
   FmuVariable variable;
   variable.name = name;
-  variable.reference = model::kInputReference + number;
-  variable.causality = Causality::input;
+  variable.reference = reference;
+  variable.causality = causality;
   variable.unit = unit;
   variable.meaning = meaning;
+  return variable;
+}
+
+FmuVariable input(unsigned number, const char* name, const char* unit, const char* meaning,
+                  double start) {
+  FmuVariable variable =
+      made(name, model::kInputReference + number, Causality::input, unit, meaning);
   variable.start = start;
   return variable;
 }
@@ -82,13 +90,11 @@ bool of_sampled_loop(const Layout& layout, std::size_t state) {
 void add_states(const ExportedRig& rig, const Layout& layout, std::vector<FmuVariable>& variables) {
   const auto states = model::describe_states(rig, layout);
   for (std::size_t i = 0; i < states.size(); ++i) {
-    FmuVariable variable;
-    variable.name = states[i].name;
-    variable.reference = model::kStateReference + static_cast<unsigned>(i);
     // The plant states come first; they are also outputs.
-    if (static_cast<int>(i) < layout.plant_states) variable.causality = Causality::output;
-    variable.unit = states[i].unit;
-    variable.meaning = states[i].meaning;
+    const bool is_output = static_cast<int>(i) < layout.plant_states;
+    FmuVariable variable =
+        made(states[i].name, model::kStateReference + static_cast<unsigned>(i),
+             is_output ? Causality::output : Causality::local, states[i].unit, states[i].meaning);
     variable.nominal = states[i].nominal;
     variable.is_state = true;
     variable.changes_at_ticks = of_sampled_loop(layout, i);
@@ -104,13 +110,8 @@ void add_outputs(const ExportedRig& rig, std::vector<FmuVariable>& variables) {
     const bool is_state = std::any_of(variables.begin(), variables.end(),
                                       [&](const auto& each) { return each.name == row.name; });
     if (is_state) continue;
-    FmuVariable variable;
-    variable.name = row.name;
-    variable.reference = model::kOutputReference + static_cast<unsigned>(row.output);
-    variable.causality = Causality::output;
-    variable.unit = row.unit;
-    variable.meaning = row.meaning;
-    variables.push_back(variable);
+    variables.push_back(made(row.name, model::kOutputReference + static_cast<unsigned>(row.output),
+                             Causality::output, row.unit, row.meaning));
   }
 }
 
@@ -129,11 +130,9 @@ void add_derivatives(std::vector<FmuVariable>& variables) {
   unsigned state = 0;
   for (std::size_t i = 0; i < before; ++i) {
     if (!variables[i].is_state) continue;
-    FmuVariable variable;
-    variable.name = "der(" + variables[i].name + ")";
-    variable.reference = model::kDerivativeReference + state++;
-    variable.unit = rate_unit(variables[i].unit);
-    variable.meaning = "rate of " + variables[i].name;
+    FmuVariable variable =
+        made("der(" + variables[i].name + ")", model::kDerivativeReference + state++,
+             Causality::local, rate_unit(variables[i].unit), "rate of " + variables[i].name);
     variable.derivative_of = i + 1;
     variables.push_back(variable);
   }
@@ -143,13 +142,9 @@ void add_parameters(const ExportedRig& rig, std::vector<FmuVariable>& variables)
   const auto table = model::parameter_table(rig.rig.plant);
   for (const int index : model::exported_parameters(rig)) {
     const ParameterSpec& spec = table[static_cast<std::size_t>(index)];
-    FmuVariable variable;
-    variable.name = spec.key;
-    variable.reference = model::kParameterReference + static_cast<unsigned>(index);
-    variable.causality = Causality::parameter;
+    FmuVariable variable = made(spec.key, model::kParameterReference + static_cast<unsigned>(index),
+                                Causality::parameter, spec.unit, spec.meaning);
     variable.tunable = model::is_tunable(spec);
-    variable.unit = spec.unit;
-    variable.meaning = spec.meaning;
     variable.start = rig.values.value[static_cast<std::size_t>(index)];
     if (std::isfinite(spec.lower)) variable.lower = spec.lower;
     if (std::isfinite(spec.upper)) variable.upper = spec.upper;

@@ -45,14 +45,7 @@ void add_earlier(const BatchRequest& request, RigRun& run) {
 
 RigRun finished(const BatchRequest& request, const fs::path& out, const BatchRig& rig,
                 const RigEnd& end) {
-  RigRun run;
-  run.rig = rig.rig;
-  run.campaign = rig.campaign;
-  run.folder = rig.folder;
-  run.code = end.code;
-  run.unchanged = end.unchanged;
-  run.seconds = end.seconds;
-  run.error = end.error;
+  RigRun run{rig, end};
   if (!end.left_result) return run;
   try {
     run.result = read_fit_of(out / rig.folder);

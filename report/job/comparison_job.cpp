@@ -6,7 +6,6 @@
 #include "report/comparison/comparison.hpp"
 #include "report/comparison/comparison_curves.hpp"
 #include "report/job/job.hpp"
-#include "report/page/page_parts.hpp"
 #include "report/store/result_files.hpp"
 
 namespace rigcal::report {

@@ -2,7 +2,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <functional>
 
 #include "datasets/campaign/reading_root.hpp"
 #include "datasets/checks/record_warnings.hpp"

@@ -13,7 +13,6 @@
 #include "datasets/prepare/time_holes.hpp"
 #include "report/job/job.hpp"
 #include "report/page/page_parts.hpp"
-#include "report/store/csv.hpp"
 #include "report/store/result_files.hpp"
 #include "report/store/stored/stored_plan.hpp"
 #include "report/store/table.hpp"

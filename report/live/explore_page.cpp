@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
 #include <span>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -42,10 +40,8 @@ void add_line(Plot& plot, const char* name, const char* style, const std::vector
 
 Plot still_plot(const LiveCase& shown, const model::Simulation& run, const std::string& title,
                 const std::string& unit, double si, std::span<const StillLine> lines) {
-  Plot plot;
-  plot.title = fmt::format("{}: {}", title, shown.name);
-  plot.x_label = "time [s]";
-  plot.y_label = fmt::format("{} [{}]", title, unit);
+  Plot plot{fmt::format("{}: {}", title, shown.name), "time [s]",
+            fmt::format("{} [{}]", title, unit)};
   for (const StillLine& line : lines) {
     const Eigen::VectorXd column = run.outputs.col(static_cast<Eigen::Index>(line.output));
     add_line(plot, line.name, line.style, shown.task.time_s, {column.begin(), column.end()}, si);

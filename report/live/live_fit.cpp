@@ -112,7 +112,6 @@ Json limits_of(const calib::ConditionScore& score, datasets::Channel channel) {
   return limits;
 }
 
-/// The measured means of a case.
 struct MeasuredCase {
   struct Measured {
     datasets::Channel channel;

@@ -55,7 +55,6 @@ doc::Row budget_row(const BudgetOf& of, const FurtherColumns& further) {
   return row;
 }
 
-/// Adds the rows of one budget.
 void add_lines(const BudgetOf& of, std::vector<doc::Row>& rows) {
   constexpr double kHardly = 1e-3;  // as a fraction of the variance
   const calib::Budget95& budget = *of.budget;

@@ -68,16 +68,11 @@ std::vector<Figure> average_figures(const std::string& condition, const Table& s
     std::string words(about.key);
     std::replace(words.begin(), words.end(), '_', ' ');
     const auto plot_of = [&](const std::string& title, const std::string& what, double size,
-                             double& si) {
+                             double& si) -> Plot {
       const ReadableUnit unit = readable_unit(size, about.unit);
       si = unit.si;
-      Plot plot;
-      plot.title = title;
-      plot.x_label = "time [s]";
-      plot.y_label = fmt::format("{} [{}]", what, unit.name.empty() ? "1" : unit.name);
-      plot.width = 620.0;
-      plot.height = 170.0;
-      return plot;
+      return {title, "time [s]", fmt::format("{} [{}]", what, unit.name.empty() ? "1" : unit.name),
+              620.0, 170.0};
     };
     double si = 1.0;
     Plot plot = plot_of(
@@ -124,12 +119,8 @@ std::vector<Figure> average_figures(const AverageFiles& stored) {
 }
 
 Plot offset_plot(const StoredRecord& record) {
-  Plot plot;
-  plot.title = fmt::format("offset of each repeat of {}", record.condition);
-  plot.x_label = "repeat";
-  plot.y_label = "offset [ms]";
-  plot.width = 620.0;
-  plot.height = 150.0;
+  Plot plot{fmt::format("offset of each repeat of {}", record.condition), "repeat", "offset [ms]",
+            620.0, 150.0};
   plot.whole_x = true;
   plot.levels = {0.0};
   Trace points = empty_trace(Trace::Kind::points, "residual");

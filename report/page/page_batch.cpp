@@ -96,13 +96,10 @@ std::optional<Plot> rig_trend_plot(const StoredRig& rig, const StoredRigTrend& t
     middles.y.push_back(*point.value / unit.si);
     add_interval(spans, *point.day - first, point.ci95, unit.si);
   }
-  Plot plot;
-  plot.title =
-      fmt::format("{} of {} over time, with 95 % intervals and band", trend_name(trend), rig.rig);
-  plot.x_label = "days since " + date_of(first);
-  plot.y_label = trend_name(trend) + (unit.name.empty() ? "" : fmt::format(" [{}]", unit.name));
-  plot.width = 300.0;
-  plot.height = 170.0;
+  Plot plot{
+      fmt::format("{} of {} over time, with 95 % intervals and band", trend_name(trend), rig.rig),
+      "days since " + date_of(first),
+      trend_name(trend) + (unit.name.empty() ? "" : fmt::format(" [{}]", unit.name)), 300.0, 170.0};
   add_trend_line(plot, trend.series.along_date, placed_estimates(points, &StoredTrendPoint::day),
                  {first, last}, unit.si);
   for (Trace& trace : plot.traces)

@@ -91,12 +91,8 @@ std::vector<Figure> parameter_figures(const StoredComparison& comparison) {
     }
     if (middles.x.size() < 2) continue;
     const std::string label = parameter_label(parameter);
-    Plot plot;
-    plot.title = fmt::format("{} by result, with 95 % intervals", label);
-    plot.x_label = "result";
-    plot.y_label = unit.name.empty() ? label : fmt::format("{} [{}]", label, unit.name);
-    plot.width = 300.0;
-    plot.height = 170.0;
+    Plot plot{fmt::format("{} by result, with 95 % intervals", label), "result",
+              unit.name.empty() ? label : fmt::format("{} [{}]", label, unit.name), 300.0, 170.0};
     plot.whole_x = true;
     plot.traces = {std::move(spans), std::move(middles)};
     figures.push_back({"comparison_" + plain_name(label), std::move(plot)});
@@ -134,18 +130,14 @@ Plot trend_plot(const StoredSeries& series, const TrendAxis& axis) {
     add_interval(spans, *at, point.ci95);
   }
   const double origin = axis.by_day ? first : 273.15;
-  Plot plot;
-  plot.title = fmt::format(
-      "Leakage coefficient of {} along {}, with 95 % intervals; the line of the trend, if one "
-      "could "
-      "be tested, with its 95 % band",
-      series.of, axis.by_day ? "dates" : "temperatures");
-  plot.x_label = axis.by_day
-                     ? "days since " + (std::isfinite(first) ? date_of(first) : std::string())
-                     : std::string("temperature [°C]");
-  plot.y_label = "leakage coefficient, " + series.of;
-  plot.width = 460.0;
-  plot.height = 220.0;
+  Plot plot{
+      fmt::format(
+          "Leakage coefficient of {} along {}, with 95 % intervals; the line of the trend, if one "
+          "could be tested, with its 95 % band",
+          series.of, axis.by_day ? "dates" : "temperatures"),
+      axis.by_day ? "days since " + (std::isfinite(first) ? date_of(first) : std::string())
+                  : std::string("temperature [°C]"),
+      "leakage coefficient, " + series.of, 460.0, 220.0};
   add_trend_line(plot, axis.trend_of(series), placed_estimates(series.points, axis.place),
                  {first, last});
   plot.traces.push_back(std::move(spans));

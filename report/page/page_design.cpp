@@ -56,13 +56,8 @@ Trace line_of(const Table& response, const std::vector<double>& values, double s
 }
 
 Plot plot_over_time(const std::string& title, const std::string& what, const ReadableUnit& unit) {
-  Plot plot;
-  plot.title = title;
-  plot.x_label = "time [s]";
-  plot.y_label = fmt::format("{} [{}]", what, unit.name.empty() ? "1" : unit.name);
-  plot.width = 720.0;
-  plot.height = 190.0;
-  return plot;
+  return {title, "time [s]", fmt::format("{} [{}]", what, unit.name.empty() ? "1" : unit.name),
+          720.0, 190.0};
 }
 
 doc::Table prediction_table(const StoredDesign& design) {
@@ -185,12 +180,8 @@ std::vector<Figure> design_figures(const PlanFiles& files) {
     moved.traces = {line_of(response, *position, length.si, "model", "predicted position")};
     figures.push_back({"design_position", std::move(moved)});
   }
-  Plot spectrum;
-  spectrum.title = "Spectrum of drive and predicted position";
-  spectrum.x_label = "frequency [Hz]";
-  spectrum.y_label = "fraction of the largest";
-  spectrum.width = 720.0;
-  spectrum.height = 190.0;
+  Plot spectrum{"Spectrum of drive and predicted position", "frequency [Hz]",
+                "fraction of the largest", 720.0, 190.0};
   spectrum.log_x = true;
   spectrum.log_y = true;
   const auto add = [&](const std::vector<double>& values, const char* style, const char* name) {

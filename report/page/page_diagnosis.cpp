@@ -121,13 +121,10 @@ Plot share_plot(const Diagnosis& diagnosis) {
   // Fraction of the room of a signal; the rest separates it from the next.
   constexpr double kUsed = 0.8;
   const std::vector<SignalRecords> signals = averages_by_signal(diagnosis);
-  Plot plot;
-  plot.title = fmt::format(
-      "Share of the servo flow that leaks, with 95 % intervals and the limits of the classes, by "
-      "signal ({} in all)",
-      signals.size());
-  plot.x_label = "signal";
-  plot.y_label = "share of the servo flow [%]";
+  Plot plot{fmt::format("Share of the servo flow that leaks, with 95 % intervals and the limits of "
+                        "the classes, by signal ({} in all)",
+                        signals.size()),
+            "signal", "share of the servo flow [%]"};
   plot.height = 252.0;
   Trace spans = empty_trace(Trace::Kind::intervals, "model");
   Trace middles = empty_trace(Trace::Kind::points, "model", "found");
@@ -204,14 +201,10 @@ std::optional<Plot> leak_trend_plot(const Diagnosis& diagnosis, const diagnosis:
   }
   if (!last_share) return std::nullopt;
   const auto foreseen = foreseen_days(trend.next_limit, *first, (1.0 + diagnosis::kAhead) * last);
-  Plot plot;
-  plot.title = fmt::format(
-      "Share of the servo flow that leaks from {} to {}, and its rate with the 95 % band",
-      trend.first_date, trend.last_date);
-  plot.x_label = "days since " + trend.first_date;
-  plot.y_label = "share of the servo flow [%]";
-  plot.width = 460.0;
-  plot.height = 220.0;
+  Plot plot{fmt::format(
+                "Share of the servo flow that leaks from {} to {}, and its rate with the 95 % band",
+                trend.first_date, trend.last_date),
+            "days since " + trend.first_date, "share of the servo flow [%]", 460.0, 220.0};
   const auto share_at = [&](double day, double rate) { return *last_share + rate * (day - last); };
   Trace band = empty_trace(Trace::Kind::band, "model");
   Trace line = empty_trace(Trace::Kind::line, "reference");
@@ -255,7 +248,6 @@ constexpr std::array kMethods{
     MethodName{&diagnosis::Methods::features_leave_one_signal_out,
                "Paper's features, learned without the signal"}};
 
-/// Returns a row with the accuracy of a classification method.
 doc::Row accuracy_row(const diagnosis::Accuracy& method, const char* name) {
   const auto percent = [](double value) { return doc::in_unit(100.0 * value, 1.0, 4); };
   doc::Cell accuracy;

@@ -119,13 +119,9 @@ std::vector<double> targets_of(const std::vector<diagnosis::LeakEntry>& entries)
 /// Plots computed over published coefficients. With perfect agreement all points would be on the
 /// line.
 Plot agreement_plot(const std::vector<diagnosis::LeakEntry>& entries) {
-  Plot plot;
-  plot.title = "Computed over published leakage coefficients";
-  plot.x_label = "published coefficient";
-  plot.y_label = "computed coefficient";
+  Plot plot{"Computed over published leakage coefficients", "published coefficient",
+            "computed coefficient", 460.0, 320.0};
   plot.log_x = plot.log_y = true;
-  plot.width = 460.0;
-  plot.height = 320.0;
   double low = HUGE_VAL;
   double high = 0.0;
   Trace met = empty_trace(Trace::Kind::points, "model", "within 16 %");
@@ -190,9 +186,7 @@ doc::Table feature_table(const std::vector<diagnosis::FeatureRow>& features) {
 }
 
 Plot levels_plot(const std::vector<std::pair<std::string, Table>>& levels) {
-  Plot plot;
-  plot.title = "Position without the leak minus position with it, over one period";
-  plot.x_label = "time [s]";
+  Plot plot{"Position without the leak minus position with it, over one period", "time [s]"};
   double size = 0.0;
   for (const auto& [level, table] : levels) {
     const auto* residual = table.find("residual_m");
@@ -234,10 +228,8 @@ Trace level_trace(const Table& table, const char* column, double factor) {
 /// Plots the response of the cylinder to its reference at each level, as in figures 8 and 10 of the
 /// source paper.
 Plot positions_plot(const std::vector<std::pair<std::string, Table>>& levels) {
-  Plot plot;
-  plot.title = "Position in percent of the amplitude of the reference, over one period";
-  plot.x_label = "time [s]";
-  plot.y_label = "position [% of the amplitude]";
+  Plot plot{"Position in percent of the amplitude of the reference, over one period", "time [s]",
+            "position [% of the amplitude]"};
   for (const auto& [level, table] : levels) {
     const auto* drive = table.find("drive");
     if (drive == nullptr || drive->empty()) continue;
@@ -262,10 +254,8 @@ Plot flows_plot(const std::string& level, const Table& table) {
   constexpr std::array kColumns{Column{"servo", "servo_flow_m3_per_s", "servo"},
                                 Column{"work", "work_flow_m3_per_s", "model"},
                                 Column{"leakage", "leakage_flow_m3_per_s", "leak"}};
-  Plot plot;
-  plot.title = fmt::format("Servo, work and leakage flow at the level {}, over one period", level);
-  plot.x_label = "time [s]";
-  plot.y_label = "flow [L/min]";
+  Plot plot{fmt::format("Servo, work and leakage flow at the level {}, over one period", level),
+            "time [s]", "flow [L/min]"};
   for (const Column& each : kColumns) {
     Trace trace = level_trace(table, each.column, kLitresPerMinute);
     if (trace.x.empty()) continue;

@@ -18,13 +18,7 @@ namespace {
 constexpr std::array kResultStyles{"model", "residual", "servo", "leak", "reference"};
 
 Plot time_plot(const std::string& title, const std::string& y_label, double height) {
-  Plot plot;
-  plot.title = title;
-  plot.x_label = "time [s]";
-  plot.y_label = y_label;
-  plot.width = 620.0;
-  plot.height = height;
-  return plot;
+  return {title, "time [s]", y_label, 620.0, height};
 }
 
 std::vector<std::string> names_of_results(const StoredComparison& comparison) {

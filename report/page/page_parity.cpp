@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "report/figure/decimate.hpp"
 #include "report/page/page_parts.hpp"
@@ -93,20 +92,16 @@ void add_lines(const Table& series, const std::string& column, const char* style
 }
 
 Plot residual_plot(const Summary& summary, const Table& series) {
-  Plot plot;
-  plot.title = fmt::format("Parity residual of {}, all repeats", summary.condition);
-  plot.x_label = "time [s]";
-  plot.y_label = "residual [mm]";
+  Plot plot{fmt::format("Parity residual of {}, all repeats", summary.condition), "time [s]",
+            "residual [mm]"};
   add_lines(series, "residual", "residual", "each repeat", plot);
   return plot;
 }
 
 Plot alarm_plot(const Summary& summary, const Table& series) {
-  Plot plot;
-  plot.title = fmt::format("Moving root mean square of {}, all repeats, and its threshold",
-                           summary.condition);
-  plot.x_label = "time [s]";
-  plot.y_label = "moving rms [mm]";
+  Plot plot{fmt::format("Moving root mean square of {}, all repeats, and its threshold",
+                        summary.condition),
+            "time [s]", "moving rms [mm]"};
   plot.height = 160.0;
   add_lines(series, "moving_rms", "model", "each repeat", plot);
   if (summary.threshold_m) plot.levels.push_back(kMillimetres * *summary.threshold_m);

@@ -1,12 +1,7 @@
 #include "report/page/page_parts.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <array>
-#include <cmath>
 
-#include "common/significant.hpp"
 #include "datasets/record.hpp"
 #include "metrics/metric_table.hpp"
 #include "report/text/estimate_text.hpp"
@@ -71,9 +66,7 @@ std::string anchor(const std::string& condition) { return "condition-" + conditi
 
 Plot ranked_points(const std::string& title, const std::string& y_label,
                    const std::vector<double>& values) {
-  Plot plot;
-  plot.title = title;
-  plot.y_label = y_label;
+  Plot plot{title, {}, y_label};
   plot.whole_x = true;
   plot.log_y = true;
   plot.height = 170.0;

@@ -56,13 +56,9 @@ std::vector<Figure> share_figures(const StoredPlan& plan) {
     const calib::PlannedParameter& parameter = plan.parameters[j];
     const std::optional<double>& all = parameter.sd_all;
     if (!all || !(*all > 0.0)) continue;
-    Plot plot;
-    plot.title = fmt::format("{}: fraction of the precision of all records that each has alone",
-                             parameter.label());
-    plot.x_label = "record";
-    plot.y_label = fmt::format("{} [%]", parameter.label());
-    plot.width = 300.0;
-    plot.height = 150.0;
+    Plot plot{fmt::format("{}: fraction of the precision of all records that each has alone",
+                          parameter.label()),
+              "record", fmt::format("{} [%]", parameter.label()), 300.0, 150.0};
     plot.whole_x = true;
     plot.levels = {0.0};
     for (std::size_t i = 0; i < plan.records.size(); ++i) {

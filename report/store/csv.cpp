@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <optional>
 #include <span>
 
 #include "metrics/metric_table.hpp"
@@ -18,7 +17,6 @@ std::string status_line(const calib::Fit& fit) {
   return csv_status(to_string(status), {fit.message});
 }
 
-/// A row of the scorecard.
 struct ScoreRow {
   const calib::ConditionScore* score;
   const datasets::Condition* condition;
@@ -46,7 +44,6 @@ std::vector<ScoreRow> score_rows(const Result& result) {
   return rows;
 }
 
-/// A row of the repeatability.
 struct RepeatabilityRow {
   const datasets::Record* record;
   datasets::Repeatability of_channel;

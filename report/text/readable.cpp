@@ -1,7 +1,5 @@
 #include "report/text/readable.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -12,7 +12,7 @@ inline constexpr const char* kNoUsableResult =
 /// Explains how far a stopped result can be used, which depends on the stage at which it stopped.
 inline std::string stopped_sentence(calib::StoppedIn stage) {
   using calib::StoppedIn;
-  if (stage == StoppedIn::starts || stage == StoppedIn::nothing)
+  if (stage == StoppedIn::starts)
     return "Ended before it converged: these are the best values so far, not a calibration.";
   if (stage == StoppedIn::validation) return "Some conditions were not scored.";
   return "The fit converged and was scored; further work that was requested is not finished.";

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <algorithm>
+#include <catch2/catch.hpp>
 #include <stdexcept>
 #include <string>
 
+#include "common/error.hpp"
 #include "datasets/campaign/campaign.hpp"
 #include "tests/support/replaced.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -13,6 +15,20 @@ namespace rigcal::test {
 inline datasets::Campaign load_text(const std::string& text) {
   const TemporaryFolder folder;
   return datasets::load_campaign(folder.write("campaign.toml", text));
+}
+
+/// Returns the error message of `read`, which must name a line, or "(loaded)" if it accepts the
+/// text.
+template <typename Read>
+std::string complaint_of(const Read& read) {
+  try {
+    read();
+  } catch (const InputError& error) {
+    CHECK(error.code() == ExitCode::bad_input);
+    CHECK(error.where().line > 0);
+    return error.what();
+  }
+  return "(loaded)";
 }
 
 /// Number of the line in which `part` first occurs in `text`, from 1.

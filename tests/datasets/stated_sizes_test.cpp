@@ -2,7 +2,6 @@
 
 #include <catch2/catch.hpp>
 
-#include "common/error.hpp"
 #include "tests/datasets/campaign_fixture.hpp"
 
 using namespace rigcal;
@@ -11,13 +10,8 @@ using Catch::Contains;
 namespace {
 
 std::string complaint(const std::string& section, const std::string& line) {
-  try {
-    test::load_text(test::kExample + "[" + section + "]\n" + line + "\n");
-  } catch (const InputError& error) {
-    CHECK(error.where().line > 1);
-    return error.what();
-  }
-  return "no complaint";
+  return test::complaint_of(
+      [&] { test::load_text(test::kExample + "[" + section + "]\n" + line + "\n"); });
 }
 
 }  // namespace

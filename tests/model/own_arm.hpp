@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <catch2/catch.hpp>
 #include <cmath>
+#include <functional>
 
 #include "tests/model/linkage_rig.hpp"
 #include "tests/model/runge_kutta.hpp"
@@ -50,6 +52,33 @@ std::array<double, 5> own_arm_rates(const std::array<double, N>& x, double load_
           8e8 / (1e-3 + 4e-3 * (travel(x[0]) - travel(-1.0))) * (flow_a - 4e-3 * rate),
           8e8 / (1e-3 + 2.4e-3 * (travel(1.0) - travel(x[0]))) * (flow_b + 2.4e-3 * rate),
           (command_v - x[4]) / 0.01};
+}
+
+/// Checks a sampled loop against one written by hand: proportional gain, integral and a limit with
+/// back-calculation. It samples every 20 ms and reaches its limit.
+///
+/// @param e          has outputs: what is controlled, and the command; its times are set here
+/// @param reference  of a time [s]
+inline void check_sampled_loop(Experiment& e, const std::function<double(double)>& reference,
+                               double kp, double ki, double limit) {
+  constexpr double kSample_s = 0.02;
+  e.set("sample_time", kSample_s).set("output_limit", limit);
+  e.times_s = grid(0.0, 1.6, 161);  // every tick, and halfway between two
+  const Simulation run = e();
+  INFO(run.reason);
+  REQUIRE(run.ok());
+  double integral = 0.0;
+  bool saturated = false;
+  for (Eigen::Index i = 0; i + 1 < run.outputs.rows(); i += 2) {
+    const double error = reference(0.01 * static_cast<double>(i)) - run.outputs(i, 0);
+    const double wanted = kp * error + integral;
+    const double u = std::clamp(wanted, -limit, limit);
+    integral += kSample_s * (ki * error + (u - wanted) * ki / kp);
+    saturated = saturated || u != wanted;
+    CAPTURE(i);
+    CHECK_THAT(run.outputs(i + 1, 1), Catch::WithinAbs(u, 1e-6));
+  }
+  CHECK(saturated);
 }
 
 }  // namespace rigcal::model

@@ -10,7 +10,6 @@
 namespace rigcal::app {
 namespace {
 
-/// Formats the parameter table of a plant.
 std::string parameter_table_text(model::PlantKind plant, const report::Style& style) {
   using report::TextTable;
   using Align = TextTable::Align;

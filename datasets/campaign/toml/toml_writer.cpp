@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <limits>
 #include <sstream>
-#include <tuple>
 #include <vector>
 
 #include "datasets/campaign/toml/toml_reader.hpp"

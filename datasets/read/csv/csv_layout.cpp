@@ -129,7 +129,6 @@ std::optional<CsvLayout> layout_above(std::span<const std::string> lines, std::s
   return layout;
 }
 
-/// First row of numbers.
 struct FirstRow {
   std::size_t line = 0;
   std::size_t width = 0;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <limits>  // csv.h uses it without including it
 #include <string>
 #include <string_view>

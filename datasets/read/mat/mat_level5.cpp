@@ -7,7 +7,6 @@
 #include <cstring>
 #include <limits>
 #include <string_view>
-#include <type_traits>
 
 #include "common/error.hpp"
 #include "common/file.hpp"

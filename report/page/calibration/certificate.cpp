@@ -365,11 +365,12 @@ void add_values(const StoredFit& fit, bool judged, doc::Blocks& blocks) {
 /// Plots the residual of a whole record against the band that its limit allows.
 Plot residual_strip(const Judged& signal, const std::vector<double>& residual, double allowed) {
   constexpr std::size_t kColumns = 250;  // width in pixels
-  Plot plot;
-  plot.title = fmt::format("Measured minus model, {} of {}, whole record", spaced(signal.channel),
-                           signal.condition->id);
-  plot.width = static_cast<double>(kColumns);
-  plot.height = 40.0;
+  Plot plot{fmt::format("Measured minus model, {} of {}, whole record", spaced(signal.channel),
+                        signal.condition->id),
+            {},
+            {},
+            static_cast<double>(kColumns),
+            40.0};
   plot.bare = true;
   Trace band = empty_trace(Trace::Kind::band, "allowed");
   const auto last = static_cast<double>(residual.size());

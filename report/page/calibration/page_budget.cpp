@@ -2,7 +2,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <string_view>
 
 #include "common/significant.hpp"
 #include "metrics/metric_table.hpp"

@@ -31,10 +31,11 @@ std::string column_name(const char* what, const std::string& channel) {
 
 Plot small_plot(const calib::ConditionResult& condition, const Table& series,
                 const std::string& channel) {
-  Plot plot;
-  plot.title = fmt::format("{} of {}, measured and model", channel, condition.id);
-  plot.width = kCellWidth;
-  plot.height = kCellHeight;
+  Plot plot{fmt::format("{} of {}, measured and model", channel, condition.id),
+            {},
+            {},
+            kCellWidth,
+            kCellHeight};
   plot.bare = true;
   const auto* time_s = series.find("time_s");
   if (time_s == nullptr || time_s->empty()) return plot;

@@ -122,20 +122,14 @@ Plot pair_plot(const StoredFit& fit, const calib::Pairs& pairs, std::size_t a, s
   const calib::FittedParameter* const second = named(fit, pairs.names[b]);
   const ReadableUnit x = first != nullptr ? unit_of(*first) : ReadableUnit{};
   const ReadableUnit y = second != nullptr ? unit_of(*second) : ReadableUnit{};
-  Plot plot;
-  plot.title = fmt::format("Draws of {} and {}", pairs.names[a], pairs.names[b]);
-  plot.x_label = axis_label(first != nullptr ? parameter_label(*first) : pairs.names[a], x);
-  plot.y_label = axis_label(second != nullptr ? parameter_label(*second) : pairs.names[b], y);
-  plot.width = 300.0;
-  plot.height = 230.0;
-  Trace draws;
-  draws.kind = Trace::Kind::points;
-  draws.style = "residual";
+  Plot plot{fmt::format("Draws of {} and {}", pairs.names[a], pairs.names[b]),
+            axis_label(first != nullptr ? parameter_label(*first) : pairs.names[a], x),
+            axis_label(second != nullptr ? parameter_label(*second) : pairs.names[b], y), 300.0,
+            230.0};
+  Trace draws = empty_trace(Trace::Kind::points, "residual");
   for (const double value : pairs.values[a]) draws.x.push_back(value / x.si);
   for (const double value : pairs.values[b]) draws.y.push_back(value / y.si);
-  Trace estimate;
-  estimate.kind = Trace::Kind::points;
-  estimate.style = "model";
+  Trace estimate = empty_trace(Trace::Kind::points, "model");
   if (first != nullptr && second != nullptr && std::isfinite(first->value) &&
       std::isfinite(second->value)) {
     estimate.x = {first->value / x.si};

@@ -13,19 +13,11 @@ namespace rigcal::report {
 namespace {
 
 Plot small_plot(const std::string& title, const std::string& x_label, const std::string& y_label) {
-  Plot plot;
-  plot.title = title;
-  plot.x_label = x_label;
-  plot.y_label = y_label;
-  plot.width = 300.0;
-  plot.height = 170.0;
-  return plot;
+  return {title, x_label, y_label, 300.0, 170.0};
 }
 
 Plot correlation_plot(const metrics::Correlogram& curve, const std::string& title, bool bars) {
-  Trace trace;
-  trace.kind = bars ? Trace::Kind::bars : Trace::Kind::line;
-  trace.style = "residual";
+  Trace trace = empty_trace(bars ? Trace::Kind::bars : Trace::Kind::line, "residual");
   double size = 0.0;
   for (std::size_t i = 0; i < curve.values.size(); ++i) {
     const double lag = curve.first_lag_s + curve.lag_step_s * static_cast<double>(i);
@@ -64,9 +56,7 @@ std::vector<Plot> test_plots(const metrics::ResidualCurves& curves,
   Plot quantiles = small_plot("quantiles", "normal quantile", "residual quantile [std]");
   Trace line;
   line.style = "reference";
-  Trace points;
-  points.kind = Trace::Kind::points;
-  points.style = "residual";
+  Trace points = empty_trace(Trace::Kind::points, "residual");
   points.x = curves.normality.normal_quantile;
   points.y = curves.normality.residual_quantile;
   if (!points.x.empty()) line.x = line.y = {points.x.front(), points.x.back()};

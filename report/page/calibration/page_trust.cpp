@@ -36,14 +36,11 @@ std::string end_words(const calib::ProfileEnd& end, const ReadableUnit& unit, co
 /// the increase is 1.
 Plot profile_plot(const calib::FittedParameter& parameter, const calib::Profile& profile) {
   const ReadableUnit unit = unit_of(parameter);
-  Plot plot;
-  plot.title = fmt::format("Profile of {}: the followed points, and a curve through them",
-                           parameter_label(parameter));
-  plot.x_label = unit.name.empty() ? parameter_label(parameter)
-                                   : fmt::format("{} [{}]", parameter_label(parameter), unit.name);
-  plot.y_label = "rise of the cost; 1: end of the interval";
-  plot.width = 300.0;
-  plot.height = 170.0;
+  Plot plot{fmt::format("Profile of {}: the followed points, and a curve through them",
+                        parameter_label(parameter)),
+            unit.name.empty() ? parameter_label(parameter)
+                              : fmt::format("{} [{}]", parameter_label(parameter), unit.name),
+            "rise of the cost; 1: end of the interval", 300.0, 170.0};
   plot.levels = {1.0};
   Trace trace;
   trace.style = "reference";

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "calib/problem/problem.hpp"
 #include "report/store/identity.hpp"
@@ -136,7 +135,7 @@ StoredFit stored(const Result& result) {
   const calib::Fit& fit = result.fit;
   StoredFit json;
   json.status = status_of(fit);
-  if (fit.stopped_in != calib::StoppedIn::nothing) json.stopped_in = std::optional(fit.stopped_in);
+  json.stopped_in = fit.stopped_in;
   json.schema = result.kind == ResultKind::fit ? kFitSchema : kValidationSchema;
   json.verdict = fit.verdict;
   json.assessment = std::optional(fit.assessment);

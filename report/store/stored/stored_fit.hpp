@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,16 +28,6 @@ inline std::vector<model::PlantKind> every() {
   std::vector<model::PlantKind> all;
   for (const std::string& name : model::plant_names()) all.push_back(*model::plant_from_name(name));
   return all;
-}
-template <>
-inline std::vector<calib::StoppedIn> every() {  // except `nothing`, which is null
-  using calib::StoppedIn;
-  return {StoppedIn::starts,   StoppedIn::validation, StoppedIn::bootstrap,
-          StoppedIn::profiles, StoppedIn::posterior,  StoppedIn::cross_validation};
-}
-template <>
-inline std::vector<calib::Verdict> every() {
-  return {calib::Verdict::pass, calib::Verdict::warn, calib::Verdict::fail};
 }
 
 /// Converts parameters from an earlier schema to the current one: the earlier `ci95` becomes

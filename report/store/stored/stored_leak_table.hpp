@@ -13,17 +13,6 @@
 
 namespace rigcal::report {
 
-template <>
-inline std::vector<diagnosis::LeakGrade> every() {
-  using diagnosis::LeakGrade;
-  return {LeakGrade::within_10, LeakGrade::within_16, LeakGrade::outlier, LeakGrade::not_published};
-}
-template <>
-inline std::vector<datasets::Feature> every() {
-  using datasets::Feature;
-  return {Feature::servo_flow, Feature::leak_flow, Feature::mean, Feature::rms, Feature::std};
-}
-
 inline constexpr const char* kLeakTableSchema = "rigcal.leak_table/1";
 
 struct StoredLeakTable : diagnosis::LeakTable {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <utility>
 
 #include "common/significant.hpp"
 #include "report/text/readable.hpp"

@@ -6,6 +6,7 @@
 
 using namespace rigcal;
 using namespace rigcal::datasets;
+using rigcal::test::complaint_of;
 using rigcal::test::kExample;
 using rigcal::test::load_text;
 using rigcal::test::replaced;
@@ -26,14 +27,7 @@ std::string force_loop(const std::string& gains) {
 }
 
 std::string loop_refusal_of(const std::string& text) {
-  try {
-    load_text(text);
-  } catch (const InputError& error) {
-    CHECK(error.code() == ExitCode::bad_input);
-    CHECK(error.where().line > 0);
-    return error.what();
-  }
-  return "(loaded)";
+  return complaint_of([&] { load_text(text); });
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <catch2/catch.hpp>
 
-#include "common/error.hpp"
 #include "tests/datasets/campaign_fixture.hpp"
 
 using namespace rigcal;
@@ -51,13 +50,7 @@ LeakTableSettings settings_of(const std::string& section) {
 
 /// Returns the error message for a section in which `from` was replaced with `to`.
 std::string complaint(const std::string& from, const std::string& to) {
-  try {
-    settings_of(test::replaced(kSection, from, to));
-  } catch (const InputError& error) {
-    CHECK(error.where().line > 0);
-    return error.what();
-  }
-  return "no complaint";
+  return test::complaint_of([&] { settings_of(test::replaced(kSection, from, to)); });
 }
 
 }  // namespace

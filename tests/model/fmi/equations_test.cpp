@@ -18,6 +18,21 @@ ExportedRig rig_with(const std::vector<std::string>& keys) {
   return rig;
 }
 
+ExportedRig exported(const Experiment& experiment) {
+  ExportedRig rig;
+  rig.rig = experiment.rig;
+  rig.values = experiment.values;
+  return rig;
+}
+
+RigInputs inputs_of(double drive, double supply_pressure_pa, double tank_pressure_pa = 0.0) {
+  RigInputs inputs;
+  inputs.drive.value = drive;
+  inputs.supply_pressure_pa.value = supply_pressure_pa;
+  inputs.tank_pressure_pa.value = tank_pressure_pa;
+  return inputs;
+}
+
 std::vector<std::string> names(const ExportedRig& rig) {
   std::vector<std::string> names;
   for (const StateDescription& state : describe_states(rig, make_equations(rig)->layout()))
@@ -66,18 +81,13 @@ TEST_CASE("equations: a shake table moves as it is simulated", "[model]") {
     const Simulation run = e();
     INFO(run.reason);
     REQUIRE(run.ok());
-    ExportedRig rig;
-    rig.rig = e.rig;
-    rig.values = e.values;
+    const ExportedRig rig = exported(e);
     CHECK(names(rig) == std::vector<std::string>{"position", "velocity", "load_pressure",
                                                  "valve_signal", "controller_integral",
                                                  "controller_filtered_reference",
                                                  "controller_filtered_rate"});
     const auto equations = make_equations(rig);
-    RigInputs inputs;
-    inputs.drive.value = drive;
-    inputs.supply_pressure_pa.value = rig.values["supply_pressure"];
-    equations->set(rig.values, inputs, 1.0);
+    equations->set(rig.values, inputs_of(drive, rig.values["supply_pressure"]), 1.0);
     std::vector<double> x = equations->initial();
     StepMemory memory;
     equations->advance(x, memory, 0.0, 0.05, 1e-10);
@@ -93,10 +103,7 @@ TEST_CASE("equations: an indicator is zero where the controller reaches its limi
   rig.values.set("output_limit", 2.0);
   const auto equations = make_equations(rig);
   const auto indicators_at = [&](double reference_m) {
-    RigInputs inputs;
-    inputs.drive.value = reference_m;
-    inputs.supply_pressure_pa.value = 6e6;
-    equations->set(rig.values, inputs, 1.0);
+    equations->set(rig.values, inputs_of(reference_m, 6e6), 1.0);
     return equations->indicators(std::vector<double>(3, 0.0));
   };
   const auto inside = indicators_at(0.019);
@@ -139,16 +146,11 @@ TEST_CASE("equations: a two-stage valve moves as it is simulated, with the limit
   e.outputs = {Output::position, Output::load_pressure, Output::spool};
   const Simulation run = e();
   REQUIRE(run.ok());
-  ExportedRig rig;
-  rig.rig = e.rig;
-  rig.values = e.values;
+  const ExportedRig rig = exported(e);
   CHECK(names(rig) == std::vector<std::string>{"position", "velocity", "load_pressure",
                                                "valve_signal", "pilot_opening"});
   const auto equations = make_equations(rig);
-  RigInputs inputs;
-  inputs.drive.value = 0.5;
-  inputs.supply_pressure_pa.value = rig.values["supply_pressure"];
-  equations->set(rig.values, inputs, 1.0);
+  equations->set(rig.values, inputs_of(0.5, rig.values["supply_pressure"]), 1.0);
   std::vector<double> x = equations->initial();
   // The pilot is fully open until 0.3 V are missing: 60 V/s at 200 1/s.
   const std::vector<double> before = equations->indicators(x);
@@ -173,19 +175,13 @@ TEST_CASE("equations: an arm moves as it is simulated, and its kinks have indica
   const Simulation run = e();
   INFO(run.reason);
   REQUIRE(run.ok());
-  ExportedRig rig;
-  rig.rig = e.rig;
-  rig.values = e.values;
+  const ExportedRig rig = exported(e);
   CHECK(names(rig) == std::vector<std::string>{"angle", "angular_velocity", "pressure_a",
                                                "pressure_b", "valve_supply_pressure", "pump_demand",
                                                "valve_signal"});
   const auto equations = make_equations(rig);
   CHECK(describe_states(rig, equations->layout()).back().unit == "Pa");
-  RigInputs inputs;
-  inputs.drive.value = 3e6;
-  inputs.supply_pressure_pa.value = 2e7;
-  inputs.tank_pressure_pa.value = 2e5;
-  equations->set(rig.values, inputs, 1.0);
+  equations->set(rig.values, inputs_of(3e6, 2e7, 2e5), 1.0);
   std::vector<double> x = equations->initial();
   StepMemory memory;
   equations->advance(x, memory, 0.0, 0.5, 1e-9);
@@ -228,15 +224,9 @@ TEST_CASE("equations: an arm on a triangle, and one with a table, move as they a
     const Simulation run = e();
     INFO(run.reason);
     REQUIRE(run.ok());
-    ExportedRig rig;
-    rig.rig = e.rig;
-    rig.values = e.values;
+    const ExportedRig rig = exported(e);
     const auto equations = make_equations(rig);
-    RigInputs inputs;
-    inputs.drive.value = 1.3e6;
-    inputs.supply_pressure_pa.value = 2e7;
-    inputs.tank_pressure_pa.value = 2e5;
-    equations->set(rig.values, inputs, 1.0);
+    equations->set(rig.values, inputs_of(1.3e6, 2e7, 2e5), 1.0);
     std::vector<double> x = equations->initial();
     StepMemory memory;
     equations->advance(x, memory, 0.0, 0.4, 1e-10);
@@ -299,15 +289,9 @@ TEST_CASE("equations: an arm follows the reference of its loop as it is simulate
     const Simulation run = e();
     INFO(run.reason);
     REQUIRE(run.ok());
-    ExportedRig rig;
-    rig.rig = e.rig;
-    rig.values = e.values;
+    const ExportedRig rig = exported(e);
     const auto equations = make_equations(rig);
-    RigInputs inputs;
-    inputs.drive.value = row.reference;
-    inputs.supply_pressure_pa.value = 2e7;
-    inputs.tank_pressure_pa.value = 2e5;
-    equations->set(rig.values, inputs, 1.0);
+    equations->set(rig.values, inputs_of(row.reference, 2e7, 2e5), 1.0);
     std::vector<double> x = equations->initial();
     REQUIRE(x.size() == row.states);
     CHECK(equations->output(Output::command, x) == row.limit_v);
@@ -335,19 +319,14 @@ TEST_CASE("equations: a cylinder with a load-sensing pump and friction with pre-
   const Simulation run = e();
   INFO(run.reason);
   REQUIRE(run.ok());
-  ExportedRig rig;
-  rig.rig = e.rig;
-  rig.values = e.values;
+  const ExportedRig rig = exported(e);
   CHECK(names(rig) == std::vector<std::string>{"position", "velocity", "pressure_a", "pressure_b",
                                                "valve_supply_pressure", "bristle_force",
                                                "film_thickness"});
   const auto equations = make_equations(rig);
   CHECK(describe_states(rig, equations->layout())[5].unit == "N");
-  RigInputs inputs;
-  inputs.drive.value = 2e6;
+  RigInputs inputs = inputs_of(2e6, 2e7, 2e5);
   inputs.external_force_n.value = 1e4;
-  inputs.supply_pressure_pa.value = 2e7;
-  inputs.tank_pressure_pa.value = 2e5;
   equations->set(rig.values, inputs, 1.0);
   std::vector<double> x = equations->initial();
   StepMemory memory;

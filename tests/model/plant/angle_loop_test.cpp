@@ -92,24 +92,8 @@ TEST_CASE("angle loop: a proportional loop ends off its reference by the null sh
 
 TEST_CASE("angle loop: a sampled loop does what one written by hand does", "[model]") {
   Experiment e = arm_loop(Signal::sine(0.5, 0.5));
-  e.set("angle_ki", 8.0).set("sample_time", 0.02).set("output_limit", 3.0);
-  e.set("valve_time_constant", 0.01);
-  e.times_s = grid(0.0, 1.6, 161);  // every tick, and halfway between two
-  const Simulation run = e();
-  INFO(run.reason);
-  REQUIRE(run.ok());
-  double integral = 0.0;
-  bool saturated = false;
-  for (Eigen::Index i = 0; i + 1 < run.outputs.rows(); i += 2) {
-    const double error = angle_reference(0.01 * static_cast<double>(i)) - run.outputs(i, 0);
-    const double wanted = kAngleGain_v_per_rad * error + integral;
-    const double u = std::clamp(wanted, -3.0, 3.0);
-    integral += 0.02 * (8.0 * error + (u - wanted) * 8.0 / kAngleGain_v_per_rad);
-    saturated = saturated || u != wanted;
-    CAPTURE(i);
-    CHECK_THAT(run.outputs(i + 1, 1), WithinAbs(u, 1e-6));
-  }
-  CHECK(saturated);
+  e.set("angle_ki", 8.0).set("valve_time_constant", 0.01);
+  check_sampled_loop(e, angle_reference, kAngleGain_v_per_rad, 8.0, 3.0);
 }
 
 TEST_CASE("angle loop: it begins settled at its first reference, or waits at the arm's angle",
