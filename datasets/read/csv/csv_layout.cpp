@@ -135,7 +135,7 @@ std::size_t line_above(std::span<const std::string> lines, std::size_t line) {
 /// A line of names or units, and its position.
 struct NamedLine {
   std::size_t line = 0;
-  std::vector<CsvName> names;  ///< empty: the line above holds no names
+  std::vector<CsvName> names;  ///< empty if the line has no names
 };
 
 NamedLine names_above(std::span<const std::string> lines, std::size_t line, char separator,
