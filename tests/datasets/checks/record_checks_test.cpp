@@ -269,7 +269,7 @@ TEST_CASE("mirrored_motion_warning: a sensor of the wrong sign in an open loop",
   CHECK_THAT(open.mirrored(), Contains("the position moves against the command"));
   open.fill(Channel::position, [](double t) { return -0.05 * std::cos(kTurn * t) + 0.01 * t; });
   CHECK(open.mirrored().empty());
-  open.record.time_s.resize(50);  // too short to tell
+  open.record.time_s.resize(50);  // too few blocks
   open.fill(Channel::position, [](double t) { return 0.05 * std::cos(kTurn * t); });
   CHECK(open.mirrored().empty());
 }
