@@ -29,7 +29,7 @@ constexpr double kBeyondReference = 10.0;
 constexpr double kOfReference = 0.002;
 constexpr double kLongestCylinderM = 20.0;
 
-constexpr double kOtherDrive = 0.02;  // rms deviation, as a fraction of the drive's rms
+constexpr double kOtherDrive = 0.02;  // rms deviation, as a fraction of the larger rms
 
 // A loop whose motion lags by half a period has a smaller slope: it would hardly be stable.
 constexpr double kMirroredSlope = -0.5;
@@ -240,7 +240,7 @@ std::string stated_drive_warning(const Campaign& campaign, const Condition& cond
              return window.start_s <= t && t <= window.end_s;
            });
   };
-  double squares = 0.0, all = 0.0, farthest = 0.0, at_s = 0.0;
+  double squares = 0.0, of_stated = 0.0, of_seen = 0.0, farthest = 0.0, at_s = 0.0;
   for (std::size_t i = 0; i < stated.size(); ++i) {
     if (!counts(record.time_s[i]) || !std::isfinite(seen[i])) continue;
     const double before = stated[i > 0 ? i - 1 : i];
@@ -249,16 +249,18 @@ std::string stated_drive_warning(const Campaign& campaign, const Condition& cond
     const double high = std::max({before, stated[i], after});
     const double deviation = std::max({low - seen[i], seen[i] - high, 0.0});
     squares += deviation * deviation;
-    all += stated[i] * stated[i];
+    of_stated += stated[i] * stated[i];
+    of_seen += seen[i] * seen[i];
     if (deviation > farthest) {
       farthest = deviation;
       at_s = record.time_s[i];
     }
   }
+  const double all = std::max(of_stated, of_seen);
   if (!(squares > kOtherDrive * kOtherDrive * all)) return {};
   return fmt::format(
       "the recorded {0} is not the {1} that the campaign states: the rms deviation is {2:.3g} % of "
-      "its rms, the largest {3:.3g} {4} at {5:.6g} s; the {1} is simulated, and waveform = "
+      "its rms, the largest one {3:.3g} {4} at {5:.6g} s; the {1} is simulated, and waveform = "
       "\"recorded\" simulates what was recorded",
       channel.key, to_string(condition.waveform), 100.0 * std::sqrt(squares / all), farthest,
       channel.unit, at_s);

@@ -39,7 +39,7 @@ std::string travel_warning(const Campaign& campaign, const Condition& condition,
                            const Record& record);
 
 /// Returns a warning if a condition states a generated drive and its record shows another one: the
-/// rms deviation of the recorded drive exceeds 2 % of the generated one's rms, within the windows
+/// rms deviation of the two exceeds 2 % of the larger rms, within the windows
 /// of the record. Deviations that a shift by one sample explains do not count. Empty if both agree,
 /// or if the drive was not recorded.
 std::string stated_drive_warning(const Campaign& campaign, const Condition& condition,
