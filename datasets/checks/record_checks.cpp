@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -25,6 +26,15 @@ constexpr double kBeyondStroke = 1.1;  // sensors may be off by a few per cent
 constexpr double kBeyondReference = 10.0;
 constexpr double kOfReference = 0.002;
 constexpr double kLongestCylinderM = 20.0;
+
+constexpr double kOtherDrive = 0.02;  // rms deviation, as a fraction of the larger rms
+
+// A loop whose motion lags by half a period has a smaller slope: it would hardly be stable.
+constexpr double kMirroredSlope = -0.5;
+constexpr double kMirroredCorrelation = -0.7;
+constexpr double kShortestBlock_s = 0.1;  // averages over what is beyond a valve and its oil spring
+constexpr std::size_t kMostBlocks = 200;
+constexpr std::size_t kFewestBlocks = 10;
 
 double range(const std::vector<double>& x) {
   const auto [low, high] = std::minmax_element(x.begin(), x.end());
@@ -61,7 +71,70 @@ std::optional<Extent> reference_extent_m(const Campaign& campaign, const Conditi
   return extent;
 }
 
+/// How a signal y follows a signal x.
+struct Following {
+  double slope = 0.0;
+  double correlation = 0.0;
+};
+
+/// @param x, y  shape (n), finite
+Following following(const std::vector<double>& x, const std::vector<double>& y) {
+  if (x.empty()) return {};
+  const double n = static_cast<double>(x.size());
+  const double mean_x = std::accumulate(x.begin(), x.end(), 0.0) / n;
+  const double mean_y = std::accumulate(y.begin(), y.end(), 0.0) / n;
+  double xx = 0.0, xy = 0.0, yy = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    xx += (x[i] - mean_x) * (x[i] - mean_x);
+    xy += (x[i] - mean_x) * (y[i] - mean_y);
+    yy += (y[i] - mean_y) * (y[i] - mean_y);
+  }
+  if (!(xx > 0.0 && yy > 0.0)) return {};
+  return {xy / xx, xy / std::sqrt(xx * yy)};
+}
+
+/// Leaves out the samples of bridged holes.
+Following of_finite(const std::vector<double>& x, const std::vector<double>& y) {
+  std::vector<double> x_known;
+  std::vector<double> y_known;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (!std::isfinite(y[i])) continue;
+    x_known.push_back(x[i]);
+    y_known.push_back(y[i]);
+  }
+  return following(x_known, y_known);
+}
+
+/// Relates the distance travelled in each of many equal blocks of samples to the mean drive there.
+Following travel_by_drive(const std::vector<double>& time_s, const std::vector<double>& drive,
+                          const std::vector<double>& position) {
+  const std::size_t samples = time_s.size();
+  if (samples < kFewestBlocks) return {};
+  const double step_s = (time_s.back() - time_s.front()) / static_cast<double>(samples - 1);
+  const auto shortest = static_cast<std::size_t>(std::ceil(kShortestBlock_s / step_s));
+  const std::size_t length = std::max({shortest, samples / kMostBlocks, std::size_t{1}});
+  std::vector<double> means;
+  std::vector<double> travels;
+  for (std::size_t begin = 0; begin + length < samples; begin += length) {
+    const auto first = drive.begin() + static_cast<std::ptrdiff_t>(begin);
+    const double travel = position[begin + length] - position[begin];
+    if (!std::isfinite(travel)) continue;  // a bridged hole
+    means.push_back(std::accumulate(first, first + static_cast<std::ptrdiff_t>(length), 0.0) /
+                    static_cast<double>(length));
+    travels.push_back(travel);
+  }
+  return means.size() < kFewestBlocks ? Following{} : following(means, travels);
+}
+
 }  // namespace
+
+std::vector<double> drive_at_samples(const Campaign& campaign, const Condition& condition,
+                                     const Record& record) {
+  const auto drive = inputs_of(campaign, condition, values_in(campaign, condition), &record).drive;
+  std::vector<double> values;
+  for (const double t : record.time_s) values.push_back(drive.value(t));
+  return values;
+}
 
 std::string drive_sampling_warning(const Condition& condition, const Record& record) {
   if (record.time_s.size() < 2) return {};
@@ -147,6 +220,76 @@ std::string travel_warning(const Campaign& campaign, const Condition& condition,
   }
   if (travel <= kLongestCylinderM) return {};
   return fmt::format("position: {:.4g} m of travel: {}", travel, kUnit);
+}
+
+std::string stated_drive_warning(const Campaign& campaign, const Condition& condition,
+                                 const Record& record) {
+  const ChannelInfo& channel = info(drive_channel(campaign));
+  const auto recorded = record.channels.find(channel.channel);
+  const auto setting = campaign.channels.find(channel.channel);
+  const bool in_counts = setting != campaign.channels.end() && setting->second.in_counts;
+  if (condition.waveform == Waveform::recorded || recorded == record.channels.end() || in_counts)
+    return {};
+  const std::vector<double>& seen = recorded->second.mean;
+  const std::vector<double> stated = drive_at_samples(campaign, condition, record);
+  const auto counts = [&](double t) {
+    return record.windows.empty() ||
+           std::any_of(record.windows.begin(), record.windows.end(), [t](const TimeWindow& window) {
+             return window.start_s <= t && t <= window.end_s;
+           });
+  };
+  double squares = 0.0, of_stated = 0.0, of_seen = 0.0, farthest = 0.0, at_s = 0.0;
+  for (std::size_t i = 0; i < stated.size(); ++i) {
+    if (!counts(record.time_s[i]) || !std::isfinite(seen[i])) continue;
+    const double before = stated[i > 0 ? i - 1 : i];
+    const double after = stated[std::min(i + 1, stated.size() - 1)];
+    const double low = std::min({before, stated[i], after});
+    const double high = std::max({before, stated[i], after});
+    const double deviation = std::max({low - seen[i], seen[i] - high, 0.0});
+    squares += deviation * deviation;
+    of_stated += stated[i] * stated[i];
+    of_seen += seen[i] * seen[i];
+    if (deviation > farthest) {
+      farthest = deviation;
+      at_s = record.time_s[i];
+    }
+  }
+  const double all = std::max(of_stated, of_seen);
+  if (!(squares > kOtherDrive * kOtherDrive * all)) return {};
+  return fmt::format(
+      "the recorded {0} is not the {1} that the campaign states: the rms deviation is {2:.3g} % of "
+      "its rms, the largest one {3:.3g} {4} at {5:.6g} s; the {1} is simulated, and waveform = "
+      "\"recorded\" simulates what was recorded",
+      channel.key, to_string(condition.waveform), 100.0 * std::sqrt(squares / all), farthest,
+      channel.unit, at_s);
+}
+
+std::string mirrored_motion_warning(const Campaign& campaign, const Condition& condition,
+                                    const Record& record) {
+  const ChannelInfo& motion = info(motion_channel(campaign));
+  const ChannelInfo& drive = info(drive_channel(campaign));
+  const auto position = record.channels.find(motion.channel);
+  const bool is_recorded = condition.waveform == Waveform::recorded;
+  if (position == record.channels.end() || record.time_s.size() < 2) return {};
+  if (is_recorded && !record.channels.contains(drive.channel)) return {};
+  const std::vector<double>& x = position->second.mean;
+  const std::vector<double> u = drive_at_samples(campaign, condition, record);
+  const auto in_counts = [&](Channel channel) {
+    const auto setting = campaign.channels.find(channel);
+    return setting != campaign.channels.end() && setting->second.in_counts;
+  };
+  if (in_counts(motion.channel) || in_counts(drive.channel)) return {};
+  const bool follows =
+      drive.channel == Channel::reference || drive.channel == Channel::angle_reference;
+  const bool opens = drive.channel == Channel::command || drive.channel == Channel::pilot_pressure;
+  if (!follows && !opens) return {};
+  const Following found = follows ? of_finite(u, x) : travel_by_drive(record.time_s, u, x);
+  if (!(found.correlation < kMirroredCorrelation)) return {};
+  if (follows && !(found.slope < kMirroredSlope)) return {};
+  return fmt::format(
+      "the {} moves against the {} (correlation {:.2f}): is the sign of one of them wrong? gain = "
+      "-1 of its channel reverses it",
+      motion.key, drive.key, found.correlation);
 }
 
 }  // namespace rigcal::datasets

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "datasets/campaign/campaign.hpp"
 #include "datasets/record.hpp"
@@ -8,6 +9,11 @@
 // Doubts about a record that follow from what its campaign states.
 
 namespace rigcal::datasets {
+
+/// Returns the drive of the rig, generated or recorded, at each sample of a record.
+/// @throws InputError  if the drive is a recorded one that the record lacks
+std::vector<double> drive_at_samples(const Campaign& campaign, const Condition& condition,
+                                     const Record& record);
 
 /// Returns a warning if the sample times of a record do not fit the signal that its condition
 /// states. A generated drive needs at least four samples per period (for a chirp, at its highest
@@ -31,5 +37,19 @@ std::string drive_start_proposal(const Campaign& campaign, const Condition& cond
 /// the wrong unit breaks these rules. Empty if the travel is plausible.
 std::string travel_warning(const Campaign& campaign, const Condition& condition,
                            const Record& record);
+
+/// Returns a warning if a condition states a generated drive and its record shows another one: the
+/// rms deviation of the two exceeds 2 % of the larger rms, within the windows
+/// of the record. Deviations that a shift by one sample explains do not count. Empty if both agree,
+/// or if the drive was not recorded.
+std::string stated_drive_warning(const Campaign& campaign, const Condition& condition,
+                                 const Record& record);
+
+/// Returns a warning if the motion is against its drive, as with a sensor of the wrong sign. In a
+/// closed loop the motion follows its reference with a slope below -0.5 and a correlation below
+/// -0.7. In an open loop the distance travelled in each tenth of a second (or longer, at most 200
+/// in a record) has such a correlation with the mean drive. Empty otherwise.
+std::string mirrored_motion_warning(const Campaign& campaign, const Condition& condition,
+                                    const Record& record);
 
 }  // namespace rigcal::datasets

@@ -232,7 +232,7 @@ std::string unknown_columns_text(const FileColumns& columns,
   std::vector<std::string> texts;
   for (const Candidate& each : candidates) {
     if (!each.has_numbers) {
-      texts.push_back(each.column.name);
+      if (!each.column.name.empty()) texts.push_back(each.column.name);
       continue;
     }
     std::string guess = each.column.other;

@@ -4,6 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
 #include <iterator>
 #include <optional>
 
@@ -17,6 +21,7 @@
 #include "datasets/draft/file_columns.hpp"
 #include "datasets/draft/rig_text.hpp"
 #include "datasets/draft/start_motion.hpp"
+#include "datasets/prepare/recognised_drive.hpp"
 #include "datasets/prepare/waveform_guess.hpp"
 #include "datasets/read/record_reader.hpp"
 #include "model/plant/parameter.hpp"
@@ -130,6 +135,25 @@ std::string initial_text(const std::vector<FileGroup>& groups) {
       window_s);
 }
 
+/// Whether a recorded drive equals the generated one that a draft would state, which has neither
+/// offset nor phase. Any other drive is used as recorded: a loop follows its reference, so an error
+/// of the reference would pass into the estimates.
+bool is_generated(const std::pair<std::vector<double>, std::vector<double>>& recorded,
+                  const WaveformGuess& guess, double frequency_hz, double amplitude) {
+  const auto& [time_s, values] = recorded;
+  const auto found = recognised_drive(time_s, values, {}, 0.0);
+  if (!found || !guess.can_be_generated) return false;
+  const model::Signal signal = periodic_signal(guess.waveform, amplitude, frequency_hz);
+  constexpr double kRounding = 1e-6;  // fraction of the amplitude
+  const double most = found->tolerance + kRounding * amplitude;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (!(std::abs(values[i] - signal.value(time_s[i])) <= most)) return false;
+  return true;
+}
+
+/// Rounds a number to the digits that a draft shows.
+double as_shown(double value) { return std::strtod(fmt::format("{:.4g}", value).c_str(), nullptr); }
+
 std::string waveform_text(const fs::path& file, const FileColumns& columns) {
   const ChannelColumns* drive = drive_of(columns);
   if (drive == nullptr)
@@ -147,28 +171,27 @@ std::string waveform_text(const fs::path& file, const FileColumns& columns) {
       time_s.size() < 2 ? 0.0
                         : static_cast<double>(time_s.size() - 1) / (time_s.back() - time_s.front());
   const WaveformGuess guess = guess_waveform(time_s, values);
-  const bool periodic = is_periodic(guess.waveform);
+  const bool periodic =
+      is_periodic(guess.waveform) && guess.frequency_hz.has_value() && guess.amplitude.has_value();
+  // A drive in another unit is recognised when its channel has a gain.
+  const bool has_unit = converts_to(drive->unit, info(drive->channel).unit);
+  const bool generated =
+      periodic && has_unit &&
+      is_generated(*signal, guess, as_shown(*guess.frequency_hz), as_shown(*guess.amplitude));
   std::string text =
       fmt::format("# {}: {}; {} samples at {:.6g} Hz, {:.6g} s\n", info(drive->channel).key,
                   guess.description, time_s.size(), rate_hz, time_s.back() - time_s.front());
-  text += fmt::format(
-      "waveform = \"{}\"{}\n",
-      to_string(periodic && guess.can_be_generated ? guess.waveform : Waveform::recorded),
-      periodic && !guess.can_be_generated ? comment("not generated: it has an offset or a phase")
-                                          : "");
-  if (!guess.frequency_hz || !guess.amplitude) return text;
-  text += fmt::format("frequency = \"{:.4g} Hz\"\n", *guess.frequency_hz);
-  const std::string_view wanted = info(drive->channel).unit;
-  std::string unit = drive->unit.empty() ? kBlank : drive->unit;
-  try {
-    if (!drive->unit.empty()) unit_conversion(drive->unit, wanted);
-  } catch (const QuantityError&) {
-    unit = kBlank;
-  }
-  const bool known = unit != kBlank;
-  return text +
-         fmt::format("amplitude = \"{:.4g} {}\"{}\n", *guess.amplitude, unit,
-                     known ? "" : comment("half of peak to peak, after the gain, with unit"));
+  text += fmt::format("waveform = \"{}\"{}\n",
+                      to_string(generated ? guess.waveform : Waveform::recorded),
+                      periodic && has_unit && !generated
+                          ? comment("not generated: its samples show an offset, a phase, noise or "
+                                    "another shape")
+                          : "");
+  if (guess.frequency_hz && guess.amplitude)
+    text += fmt::format("frequency = \"{:.4g} Hz\"\n", *guess.frequency_hz);
+  if (guess.frequency_hz && guess.amplitude && has_unit)
+    text += fmt::format("amplitude = \"{:.4g} {}\"\n", *guess.amplitude, drive->unit);
+  return text;
 }
 
 constexpr std::size_t kFewestOfARecording = 8;  // samples
@@ -291,7 +314,9 @@ std::vector<FileGroup> readable_among(std::vector<FileGroup> groups,
 
 Draft draft_campaign(const std::vector<fs::path>& files, const fs::path& folder) {
   std::vector<std::string> left_out;
-  const auto groups = readable_among(groups_of(recordings_among(files, left_out)), left_out);
+  auto groups = readable_among(groups_of(recordings_among(files, left_out)), left_out);
+  for (FileGroup& group : groups)
+    for (Recording& recording : group.files) set_sparse_aside(recording.file, recording.columns);
   const auto& [first, columns] = groups.at(0).files.at(0);
   // The unnamed rows may include a reference, so a position loop is assumed.
   auto loop = loop_of(columns);

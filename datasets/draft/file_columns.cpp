@@ -240,8 +240,29 @@ std::string unreadable_rows(const fs::path& file, const FileColumns& columns) {
     const std::string left_out = draft_columns(file, names, columns.time).left_out;
     return left_out.empty() ? left_out : left_out + "; remove what is no number";
   } catch (const InputError& error) {
-    return std::string(error.what()).substr(error.where().file.size() + 1);
+    const std::string message = std::string(error.what()).substr(error.where().file.size() + 1);
+    return error.where().line > 0 ? "line " + message : message;
   }
+}
+
+void set_sparse_aside(const fs::path& file, FileColumns& columns) {
+  if (columns.time.empty() || unreadable_rows(file, columns).empty()) return;
+  const auto rows_with = [&file](const std::string& column) {
+    return columns_or_none(file, {column}).at(0).size();
+  };
+  const std::size_t rows = rows_with(columns.time);
+  const auto is_sparse = [&](const ChannelColumns& channel) {
+    if (!channel.numbers.empty()) return false;
+    const std::size_t numbers = rows_with(channel.stem);
+    if (numbers == 0 || 2 * numbers >= rows) return false;
+    columns.unknown.push_back(
+        {channel.stem, channel.unit,
+         fmt::format("a number in {} of {} rows: sampled more slowly, or with a time of its own; "
+                     "save it as a recording of its own, or leave it out",
+                     numbers, rows)});
+    return true;
+  };
+  std::erase_if(columns.channels, is_sparse);
 }
 
 std::optional<std::pair<std::vector<double>, std::vector<double>>> signal_of(

@@ -51,6 +51,10 @@ struct FileColumns {
 /// @throws InputError  if the file cannot be read
 FileColumns file_columns(const std::filesystem::path& file);
 
+/// Moves channels with a number in less than half of the rows to the unknown columns: they are
+/// sampled more slowly, or have a time of their own.
+void set_sparse_aside(const std::filesystem::path& file, FileColumns& columns);
+
 /// Groups the columns that belong to the same repeats. A new set begins when a channel occurs
 /// again.
 std::vector<std::vector<ChannelColumns>> column_sets(const FileColumns& columns);

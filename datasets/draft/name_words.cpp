@@ -7,8 +7,9 @@ namespace {
 
 using Word = std::string_view;
 
-constexpr std::array<Word, 10> kTime{"time",  "tout",        "timestamp", "zeit",    "messzeit",
-                                     "temps", "zeitstempel", "elapsed",   "seconds", "sekunden"};
+constexpr std::array<Word, 13> kTime{"time",        "tout",    "timestamp", "zeit",     "messzeit",
+                                     "temps",       "elapsed", "seconds",   "sekunden", "clock",
+                                     "zeitstempel", "uhrzeit", "datetime"};
 
 constexpr std::array<Word, 16> kReference{
     "ref",    "reference", "setpoint", "sp",  "set",      "target",      "desired", "des",
@@ -42,10 +43,11 @@ constexpr std::array<Word, 4> kFlow{"flow", "flowrate", "durchfluss", "volumenst
 constexpr std::array<Word, 4> kTorque{"torque", "moment", "drehmoment", "trq"};
 constexpr std::array<Word, 3> kRotation{"rpm", "drehzahl", "revs"};
 
-constexpr std::array<Word, 7> kSideA{"cap",        "head",        "bore",      "blind",
-                                     "bodenseite", "kolbenseite", "kolbenraum"};
-constexpr std::array<Word, 8> kSideB{"rod",          "annulus",   "ring",         "stangen",
-                                     "stangenseite", "ringseite", "kolbenstange", "ringraum"};
+constexpr std::array<Word, 8> kSideA{"cap",   "head",       "bore",        "blind",
+                                     "boden", "bodenseite", "kolbenseite", "kolbenraum"};
+constexpr std::array<Word, 9> kSideB{"rod",       "annulus",      "ring",
+                                     "stangen",   "stange",       "stangenseite",
+                                     "ringseite", "kolbenstange", "ringraum"};
 constexpr std::array<Word, 9> kSupply{"supply", "versorgungs", "system", "pump",    "pumpe",
                                       "pumpen", "versorgung",  "speise", "vordruck"};
 constexpr std::array<Word, 5> kTank{"tank", "return", "rücklauf", "ruecklauf", "reservoir"};

@@ -88,16 +88,6 @@ void require_measurable(const RepeatSource& source, const std::string& column,
                     bad - values.begin() + 1, column, *bad, kLargest));
 }
 
-/// Returns the drive of the rig at each sample of the record.
-std::vector<double> drive_at_samples(const Campaign& campaign, const Condition& condition,
-                                     const Record& record) {
-  const auto drive = inputs_of(campaign, condition, values_in(campaign, condition), &record).drive;
-  std::vector<double> result(record.time_s.size());
-  std::transform(record.time_s.begin(), record.time_s.end(), result.begin(),
-                 [&](double t) { return drive.value(t); });
-  return result;
-}
-
 /// Whether a term of the campaign depends on the drive before the first sample.
 bool delays_its_drive(const Campaign& campaign) {
   return std::any_of(
@@ -265,6 +255,8 @@ Record average_of(const Campaign& campaign, const Condition& condition,
     record.warnings.insert(record.warnings.end(), record.holes.begin(), record.holes.end());
     for (const std::string& warning :
          {drive_sampling_warning(condition, record), travel_warning(campaign, condition, record),
+          stated_drive_warning(campaign, condition, record),
+          mirrored_motion_warning(campaign, condition, record),
           guessed_drive_warning(campaign, condition, record)})
       if (!warning.empty()) record.warnings.push_back(warning);
     if (auto proposal = drive_start_proposal(campaign, condition, record); !proposal.empty())

@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 
+#include "datasets/read/csv/time_stamp.hpp"
 #include "datasets/read/unit_in_name.hpp"
 
 namespace rigcal::datasets {
@@ -12,11 +13,10 @@ namespace {
 constexpr std::array kSeparators{'\t', ';', ',', ' '};
 constexpr std::size_t kFewestColumns = 2;
 
-std::string_view trimmed_line(std::string_view text) {
-  constexpr std::string_view kBlanks = " \t";
-  const std::size_t first = text.find_first_not_of(kBlanks);
+std::string_view trimmed_line(std::string_view text, std::string_view blanks = " \t") {
+  const std::size_t first = text.find_first_not_of(blanks);
   if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
 bool is_plain_text(std::string_view line) {
@@ -33,6 +33,11 @@ std::vector<std::string_view> fields_of(std::string_view line, char separator) {
 
 bool is_number(std::string_view text, char separator) {
   return csv_number(text, separator != ',').has_value();
+}
+
+/// Whether a text may be in a row of numbers: a clock counts.
+bool is_datum(std::string_view text, char separator) {
+  return is_number(text, separator) || time_stamp(text) || is_date(text);
 }
 
 /// Whether a text may precede a row. dSPACE writes "trace_values" before its first row, and nothing
@@ -52,24 +57,44 @@ std::size_t width_of_row(std::string_view line, char separator) {
   const bool numbers =
       std::all_of(fields.begin() + static_cast<std::ptrdiff_t>(begin),
                   fields.begin() + static_cast<std::ptrdiff_t>(end),
-                  [separator](std::string_view text) { return is_number(text, separator); });
+                  [separator](std::string_view text) { return is_datum(text, separator); });
   return numbers ? end : 0;
+}
+
+std::string in_lower_case(std::string_view text) {
+  std::string result(text);
+  std::transform(result.begin(), result.end(), result.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return result;
 }
 
 bool is_unit_text(std::string_view text) {
   if (text.size() > 1 && (text.front() == '[' || text.front() == '('))
     text = text.substr(1, text.size() - 2);
-  return text.empty() || text == "-" || text == "%" || !unit_of_text(text).empty();
+  // What loggers write where a column has no unit.
+  constexpr std::array<std::string_view, 8> kNone{"",    "-",    "%",      "1",
+                                                  "n/a", "none", "counts", "raw"};
+  return std::find(kNone.begin(), kNone.end(), in_lower_case(text)) != kNone.end() ||
+         !unit_of_text(text).empty();
+}
+
+/// Returns the fields of a row of units in brackets, each on its own: "(s)", "(mm)".
+std::vector<CsvName> each_in_brackets(std::string_view line) {
+  std::vector<CsvName> names;
+  for (const std::string_view field : fields_of(line, ' ')) names.push_back(header_name(field));
+  return names;
 }
 
 /// Returns the names in a line, if there is one for each field of a row and at most one more for
 /// comments. The line itself may be a comment.
 std::vector<CsvName> names_in(std::string_view line, char separator, std::size_t width) {
   if (!is_plain_text(line)) return {};
-  line = trimmed_line(line);
+  // Tabs at either end belong to columns without a name.
+  line = trimmed_line(line, separator == '\t' ? " " : " \t");
   while (line.starts_with('#') || line.starts_with('%')) line = line.substr(1);
   if (separator == ' ' || line.empty()) line = trimmed_line(line);
-  std::vector<CsvName> names = header_names(line, separator);
+  const bool in_brackets = separator == ' ' && (line.starts_with('(') || line.starts_with('['));
+  std::vector<CsvName> names = in_brackets ? each_in_brackets(line) : header_names(line, separator);
   const bool has_comment =
       names.size() == width + 1 && (names.back().full == "Comment" || names.back().full.empty());
   const bool any = std::any_of(names.begin(), names.end(),
@@ -86,8 +111,11 @@ std::vector<CsvName> names_in(std::string_view line, char separator, std::size_t
 }
 
 bool is_label_of_units(std::string_view text) {
-  return text == "Unit" || text == "Units" || text == "unit" || text == "units" ||
-         text == "Einheit" || text == "Einheiten";
+  std::string label = in_lower_case(text);
+  if (label.ends_with(':')) label.pop_back();
+  constexpr std::array<std::string_view, 5> kLabels{"unit", "units", "einheit", "einheiten",
+                                                    "trace_units"};
+  return std::find(kLabels.begin(), kLabels.end(), label) != kLabels.end();
 }
 
 /// Whether a row consists of units. Its first field may say so.
@@ -104,28 +132,48 @@ std::size_t line_above(std::span<const std::string> lines, std::size_t line) {
   return lines.size();
 }
 
-/// Finds names and units above the first row of numbers.
+/// A line of names or units, and its position.
+struct NamedLine {
+  std::size_t line = 0;
+  std::vector<CsvName> names;  ///< empty if the line has no names
+};
+
+NamedLine names_above(std::span<const std::string> lines, std::size_t line, char separator,
+                      std::size_t width) {
+  const std::size_t above = line_above(lines, line);
+  if (above == lines.size()) return {};
+  return {above, names_in(lines[above], separator, width)};
+}
+
+/// Finds names and units above the first row of numbers. There may be a line of descriptions, such
+/// as the sensors, between the units and the numbers.
 std::optional<CsvLayout> layout_above(std::span<const std::string> lines, std::size_t data,
                                       char separator, std::size_t width) {
-  const std::size_t above = line_above(lines, data);
-  if (above == lines.size()) return std::nullopt;
-  CsvLayout layout{above, data, separator, names_in(lines[above], separator, width), false, {}, 0};
-  if (layout.names.empty()) return std::nullopt;
+  const NamedLine first = names_above(lines, data, separator, width);
+  if (first.names.empty()) return std::nullopt;
+  const NamedLine second = names_above(lines, first.line, separator, width);
+  NamedLine names = first;
+  NamedLine units;
+  if (are_units(first.names)) {
+    units = first;
+    names = second;
+  } else if (!second.names.empty() && are_units(second.names)) {
+    units = second;
+    names = names_above(lines, second.line, separator, width);
+  }
+  if (names.names.size() != units.names.size() || are_units(names.names)) {
+    names = first;
+    units = {};
+  }
+  CsvLayout layout{names.line, data, separator, names.names, false, {}, 0};
   layout.last_may_lack = layout.names.size() > width;
-  if (!are_units(layout.names)) return layout;
-  const std::size_t higher = line_above(lines, above);
-  if (higher == lines.size()) return layout;
-  std::vector<CsvName> names = names_in(lines[higher], separator, width);
-  if (names.size() != layout.names.size() || are_units(names)) return layout;
-  for (const CsvName& unit : layout.names) {
+  for (const CsvName& unit : units.names) {
     std::string_view text = is_label_of_units(unit.full) ? std::string_view() : unit.full;
     if (text.size() > 1 && (text.front() == '[' || text.front() == '('))
       text = text.substr(1, text.size() - 2);
     layout.units.emplace_back(text);
   }
-  layout.units_line = above;
-  layout.header = higher;
-  layout.names = std::move(names);
+  if (!units.names.empty()) layout.units_line = units.line;
   return layout;
 }
 
@@ -155,7 +203,7 @@ bool is_row_of_numbers(std::string_view line, char separator, std::size_t names)
   const auto fields = fields_of(line, separator);
   return fields.size() == names &&
          std::all_of(fields.begin(), fields.end(),
-                     [separator](std::string_view text) { return is_number(text, separator); });
+                     [separator](std::string_view text) { return is_datum(text, separator); });
 }
 
 std::optional<CsvLayout> find_layout(std::span<const std::string> lines, bool is_whole,

@@ -163,6 +163,8 @@ std::optional<FoundColumn> find_column(const std::vector<CsvName>& names,
 }
 
 std::optional<double> csv_number(std::string_view text, bool decimal_comma) {
+  if (text.size() > 2 && text.front() == '"' && text.back() == '"')
+    text = trimmed(text.substr(1, text.size() - 2));
   std::array<char, 64> pointed{};
   if (decimal_comma && text.find(',') != std::string_view::npos) {
     if (text.size() > pointed.size()) return std::nullopt;

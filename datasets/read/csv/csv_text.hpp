@@ -59,7 +59,8 @@ char find_separator(std::string_view header);
 std::vector<CsvName> header_names(std::string_view header, char separator);
 
 /// Returns the number in a field, or std::nullopt for any other text. The locale has no influence.
-/// Rejects "inf", "nan", numbers beyond the range of a double, and thousands separators.
+/// It may be between double quotes, as some programs write every field. Rejects "inf", "nan",
+/// numbers beyond the range of a double, and thousands separators.
 ///
 /// @param decimal_comma  whether to accept "1,5", too
 std::optional<double> csv_number(std::string_view text, bool decimal_comma);

@@ -39,6 +39,67 @@ double taken_fraction(std::string_view& text) {
   return error == std::errc{} ? value : 0.0;
 }
 
+bool is_figure(char c) { return c >= '0' && c <= '9'; }
+
+/// Reads a number of one or two digits from the beginning of a text, and removes it.
+std::optional<int> taken_short_number(std::string_view& text) {
+  const bool two = text.size() > 1 && is_figure(text[1]);
+  return taken_number(text, two ? 2 : 1);
+}
+
+std::optional<long> day_number(int year, int month, int day) {
+  const std::chrono::year_month_day date{std::chrono::year{year},
+                                         std::chrono::month{static_cast<unsigned>(month)},
+                                         std::chrono::day{static_cast<unsigned>(day)}};
+  if (!date.ok()) return std::nullopt;
+  return std::chrono::sys_days{date}.time_since_epoch().count();
+}
+
+/// Reads a date from the beginning of a text, and removes it: 2024-03-01, 2024/03/01, 1.3.2024 and
+/// 3/1/2024, month first unless that is no date. Only the differences of days matter.
+std::optional<long> taken_date(std::string_view& text) {
+  std::string_view rest = text;
+  if (const auto year = taken_number(rest, 4)) {
+    if (!take_sign(rest, "-/")) return std::nullopt;
+    const auto month = taken_number(rest, 2);
+    if (!month || !take_sign(rest, "-/")) return std::nullopt;
+    const auto day = taken_number(rest, 2);
+    if (!day) return std::nullopt;
+    text = rest;
+    return day_number(*year, *month, *day);
+  }
+  const auto first = taken_short_number(rest);
+  if (!first || rest.empty() || (rest.front() != '.' && rest.front() != '/')) return std::nullopt;
+  const std::string_view sign = rest.substr(0, 1);
+  take_sign(rest, sign);
+  const auto second = taken_short_number(rest);
+  if (!second || !take_sign(rest, sign)) return std::nullopt;
+  const auto year = taken_number(rest, 4);
+  if (!year) return std::nullopt;
+  text = rest;
+  const auto day_first = day_number(*year, *second, *first);
+  if (sign == ".") return day_first;
+  const auto month_first = day_number(*year, *first, *second);
+  return month_first ? month_first : day_first;
+}
+
+/// Takes "AM" or "PM" off the end of a text. Returns the hours that it adds to midnight or noon;
+/// std::nullopt if there is none.
+std::optional<int> taken_half_day(std::string_view& text) {
+  if (text.size() < 2 || (text.back() != 'M' && text.back() != 'm')) return std::nullopt;
+  const char half = text[text.size() - 2];
+  const bool morning = half == 'A' || half == 'a';
+  if (!morning && half != 'P' && half != 'p') return std::nullopt;
+  text.remove_suffix(2);
+  while (text.ends_with(' ')) text.remove_suffix(1);
+  return morning ? 0 : 12;
+}
+
+std::string_view between_quotes(std::string_view text) {
+  const bool quoted = text.size() > 1 && text.front() == '"' && text.back() == '"';
+  return quoted ? text.substr(1, text.size() - 2) : text;
+}
+
 bool is_zone(std::string_view text) {
   if (text.empty() || text == "Z") return true;
   if (!take_sign(text, "+-") || !taken_number(text, 2)) return false;
@@ -48,31 +109,30 @@ bool is_zone(std::string_view text) {
 
 }  // namespace
 
+bool is_date(std::string_view text) {
+  text = between_quotes(text);
+  return taken_date(text) && text.empty();
+}
+
 std::optional<TimeStamp> time_stamp(std::string_view text) {
-  if (text.size() > 1 && text.front() == '"' && text.back() == '"')
-    text = text.substr(1, text.size() - 2);
+  text = between_quotes(text);
   TimeStamp stamp;
   std::string_view rest = text;
-  const auto year = taken_number(rest, 4);
-  if (year && take_sign(rest, "-/")) {
-    const auto month = taken_number(rest, 2);
-    if (!month || !take_sign(rest, "-/")) return std::nullopt;
-    const auto day = taken_number(rest, 2);
-    if (!day || !take_sign(rest, "T ")) return std::nullopt;
-    const std::chrono::year_month_day date{std::chrono::year{*year},
-                                           std::chrono::month{static_cast<unsigned>(*month)},
-                                           std::chrono::day{static_cast<unsigned>(*day)}};
-    if (!date.ok()) return std::nullopt;
-    stamp.day = std::chrono::sys_days{date}.time_since_epoch().count();
+  if (const auto day = taken_date(rest)) {
+    if (!take_sign(rest, "T ")) return std::nullopt;
+    stamp.day = *day;
     text = rest;
   }
-  const auto hour = taken_number(text, 2);
+  const auto half_day = taken_half_day(text);
+  const auto hour = taken_short_number(text);
   if (!hour || *hour > 23 || !take_sign(text, ":")) return std::nullopt;
+  if (half_day && (*hour < 1 || *hour > 12)) return std::nullopt;
   const auto minute = taken_number(text, 2);
   if (!minute || *minute > 59 || !take_sign(text, ":")) return std::nullopt;
   const auto second = taken_number(text, 2);
   if (!second || *second > 60) return std::nullopt;
-  stamp.time_s = 3600.0 * *hour + 60.0 * *minute + *second + taken_fraction(text);
+  const int hours = half_day ? *hour % 12 + *half_day : *hour;
+  stamp.time_s = 3600.0 * hours + 60.0 * *minute + *second + taken_fraction(text);
   return is_zone(text) ? std::optional(stamp) : std::nullopt;
 }
 

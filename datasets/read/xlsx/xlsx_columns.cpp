@@ -74,7 +74,44 @@ struct SheetHeader {
   bool has_text = false;
 };
 
-/// Finds the header while the cells of a sheet are being read.
+/// A row of a sheet that is not empty.
+using SheetRow = std::vector<XlsxCell>;
+
+bool is_text(const SheetRow& row) {
+  return std::all_of(row.begin(), row.end(),
+                     [](const XlsxCell& cell) { return cell.kind == XlsxKind::text; });
+}
+
+/// Whether a row may be one of numbers: it has more of them than texts, such as remarks.
+bool is_numbers(const SheetRow& row) {
+  const auto count = [&row](XlsxKind kind) {
+    return std::count_if(row.begin(), row.end(),
+                         [kind](const XlsxCell& cell) { return cell.kind == kind; });
+  };
+  return count(XlsxKind::number) > count(XlsxKind::text);
+}
+
+std::optional<std::string> unit_of_cell(const XlsxCell& cell) {
+  return cell.kind == XlsxKind::text ? unit_in(header_name(cell.text).full) : std::nullopt;
+}
+
+bool are_units(const SheetRow& row) {
+  return std::all_of(row.begin(), row.end(),
+                     [](const XlsxCell& cell) { return unit_of_cell(cell).has_value(); });
+}
+
+/// Whether each number of a row has a text above it.
+bool names_all(const SheetRow& names, const SheetRow& numbers) {
+  return std::all_of(numbers.begin(), numbers.end(), [&names](const XlsxCell& cell) {
+    return cell.kind != XlsxKind::number ||
+           std::any_of(names.begin(), names.end(),
+                       [&cell](const XlsxCell& name) { return name.column == cell.column; });
+  });
+}
+
+/// Finds the header while the cells of a sheet are being read. It is the highest of the rows of
+/// text directly above the first two rows of numbers (or the last row) that name each of their
+/// columns, so that titles may precede it. Without such rows it is the first row.
 class HeaderFinder {
  public:
   /// Whether the header is complete, so that this cell belongs to the rows of numbers.
@@ -86,27 +123,77 @@ class HeaderFinder {
     return false;
   }
 
+  /// Ends the search at the end of the sheet.
+  void finish() {
+    finish_row();
+    if (is_known_ || pending_.empty()) return;
+    const auto above_last = header_above(pending_.size() - 1);
+    has_table_ = above_last.has_value();
+    settle(above_last.value_or(0));
+  }
+
+  /// Returns the cells below the header and its units that have been read.
+  std::vector<XlsxCell> take_rows() { return std::exchange(rows_, {}); }
+  const SheetHeader& header() const { return header_; }
+  /// Whether the header is above rows of numbers.
+  bool has_table() const { return has_table_; }
+
+ private:
   void finish_row() {
     if (cells_.empty() || is_known_) return;
-    if (header_.row == 0) {
-      const bool is_comment = cells_.front().kind == XlsxKind::text &&
-                              std::string_view(cells_.front().text).starts_with('#');
-      if (!is_comment) take_names();
-    } else {
-      take_units();
-      is_known_ = true;
+    const bool is_comment = pending_.empty() && cells_.front().kind == XlsxKind::text &&
+                            std::string_view(cells_.front().text).starts_with('#');
+    if (!is_comment) {
+      pending_cells_ += cells_.size();
+      pending_.push_back(std::move(cells_));
+      look();
     }
     cells_.clear();
   }
 
-  /// Returns the cells of the row below the header, unless they are units.
-  std::vector<XlsxCell> take_rows() { return std::exchange(rows_, {}); }
-  const SheetHeader& header() const { return header_; }
+  /// Settles the header if the last two rows are the first ones of numbers, or if the search has
+  /// been long.
+  void look() {
+    constexpr std::size_t kMostRows = 200;
+    constexpr std::size_t kMostCells = 100'000;
+    const std::size_t rows = pending_.size();
+    if (rows > 2 && is_numbers(pending_[rows - 1]) && is_numbers(pending_[rows - 2])) {
+      if (const auto at = header_above(rows - 2)) {
+        has_table_ = true;
+        settle(*at);
+        return;
+      }
+    }
+    if (rows >= kMostRows || pending_cells_ >= kMostCells) settle(0);
+  }
 
- private:
-  void take_names() {
-    header_.row = cells_.front().row;
-    for (const XlsxCell& cell : cells_) {
+  /// Returns the index of the header of a row of numbers; nullopt if there is none.
+  std::optional<std::size_t> header_above(std::size_t row) const {
+    if (!is_numbers(pending_[row])) return std::nullopt;
+    std::optional<std::size_t> header;
+    for (std::size_t i = row; i-- > 0;) {
+      const SheetRow& above = pending_[i];
+      const bool is_adjacent = above.front().row + 1 == pending_[i + 1].front().row;
+      const bool has_names = names_all(above, pending_[row]);
+      if (!is_adjacent || !is_text(above) || !(has_names || are_units(above))) break;
+      if (has_names) header = i;
+    }
+    return header;
+  }
+
+  void settle(std::size_t at) {
+    is_known_ = true;
+    take_names(pending_[at]);
+    std::size_t next = at + 1;
+    if (next < pending_.size() && take_units(pending_[next])) ++next;
+    for (; next < pending_.size(); ++next)
+      rows_.insert(rows_.end(), pending_[next].begin(), pending_[next].end());
+    pending_.clear();
+  }
+
+  void take_names(const SheetRow& row) {
+    header_.row = row.front().row;
+    for (const XlsxCell& cell : row) {
       const bool is_text = cell.kind == XlsxKind::text;
       (is_text ? header_.has_text : header_.has_number) = true;
       header_.names.resize(cell.column);
@@ -114,25 +201,22 @@ class HeaderFinder {
     }
   }
 
-  void take_units() {
-    std::vector<std::string> units(header_.names.size());
-    bool are_units = cells_.front().row == header_.row + 1;
-    for (const XlsxCell& cell : cells_) {
-      const auto unit = cell.kind == XlsxKind::text ? unit_in(header_name(cell.text).full)
-                                                    : std::optional<std::string>();
-      are_units = are_units && unit.has_value();
-      if (unit && cell.column <= units.size()) units[cell.column - 1] = *unit;
-    }
-    if (are_units)
-      header_.units = std::move(units);
-    else
-      rows_ = cells_;
+  /// Takes a row for that of units if it is one.
+  bool take_units(const SheetRow& row) {
+    if (row.front().row != header_.row + 1 || !are_units(row)) return false;
+    header_.units.resize(header_.names.size());
+    for (const XlsxCell& cell : row)
+      if (cell.column <= header_.units.size()) header_.units[cell.column - 1] = *unit_of_cell(cell);
+    return true;
   }
 
   SheetHeader header_;
   std::size_t row_ = 0;
   bool is_known_ = false;
-  std::vector<XlsxCell> cells_;
+  bool has_table_ = false;
+  SheetRow cells_;
+  std::vector<SheetRow> pending_;  ///< rows until the header is known
+  std::size_t pending_cells_ = 0;
   std::vector<XlsxCell> rows_;
 };
 
@@ -186,7 +270,7 @@ class SheetReader {
       }
       return true;
     });
-    finder.finish_row();
+    finder.finish();
     begin(finder);
     finish_row();
     if (gap_) fail_at_gap(merged);
@@ -333,21 +417,35 @@ class SheetReader {
 
 std::vector<RecordColumn> list_xlsx_columns(const std::filesystem::path& path) {
   const XlsxBook book(path);
-  std::vector<RecordColumn> columns;
+  struct Sheet {
+    std::vector<RecordColumn> columns;
+    bool has_table = false;
+  };
+  std::vector<Sheet> sheets;
   for (std::size_t i = 0; i < book.sheets().size(); ++i) {
-    const XlsxBook::Sheet& sheet = book.sheets()[i];
+    const XlsxBook::Sheet& own = book.sheets()[i];
     HeaderFinder finder;
-    book.read(sheet, [&](const XlsxCell& cell) { return !finder.is_past(cell); });
-    finder.finish_row();
+    book.read(own, [&](const XlsxCell& cell) { return !finder.is_past(cell); });
+    finder.finish();
     const SheetHeader& header = finder.header();
+    Sheet& sheet = sheets.emplace_back();
+    sheet.has_table = finder.has_table();
     if (!header.has_text) continue;
-    const std::string prefix = i == 0 ? "" : sheet_prefix(sheet.name);
+    const std::string prefix = i == 0 ? "" : sheet_prefix(own.name);
     for (std::size_t k = 0; k < header.names.size(); ++k) {
       const std::string& name = header.names[k].full;
       if (name.empty()) continue;
-      columns.push_back({prefix + name, header.units.empty() ? "" : header.units[k], false, false});
+      sheet.columns.push_back(
+          {prefix + name, header.units.empty() ? "" : header.units[k], false, false});
     }
   }
+  // A sheet of notes beside one of numbers has no columns.
+  const bool any_table =
+      std::any_of(sheets.begin(), sheets.end(), [](const Sheet& sheet) { return sheet.has_table; });
+  std::vector<RecordColumn> columns;
+  for (const Sheet& sheet : sheets)
+    if (sheet.has_table || !any_table)
+      columns.insert(columns.end(), sheet.columns.begin(), sheet.columns.end());
   return columns;
 }
 

@@ -13,6 +13,7 @@
 #include "report/document/words.hpp"
 #include "report/figure/decimate.hpp"
 #include "report/page/calibration/assessed.hpp"
+#include "report/page/calibration/fit_sections.hpp"
 #include "report/page/page_parts.hpp"
 #include "report/store/validity.hpp"
 #include "report/text/readable.hpp"
@@ -229,10 +230,11 @@ doc::Doubts doubts_of(const StoredFit& fit) {
     doubts.items.resize(kDoubts);
     doubts.items.push_back({doc::Link{"#assessment", fmt::format("{} more points", more)}});
   }
-  if (!fit.warnings.empty()) {
-    Line line{doc::Link{"#warnings", plural(fit.warnings.size(), "warning")}, ": "};
-    line.emplace_back(fit.warnings.front());
-    if (fit.warnings.size() > 1) line.emplace_back(" …");
+  const std::vector<std::string> warnings = warnings_to_show(fit);
+  if (!warnings.empty()) {
+    Line line{doc::Link{"#warnings", plural(warnings.size(), "warning")}, ": "};
+    line.emplace_back(warnings.front());
+    if (warnings.size() > 1) line.emplace_back(" …");
     doubts.warnings = std::move(line);
   }
   return doubts;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "report/document/document.hpp"
@@ -47,6 +48,9 @@ void add_considered(const StoredFit& fit, doc::Blocks& blocks);
 /// Adds the estimates from only the validation records next to those of the fit.
 void add_stability(const StoredFit& fit, doc::Blocks& blocks);
 doc::Section starts_section(const StoredFit& fit);
+/// Returns the warnings of a fit except those that only repeat the reason of a parameter, which the
+/// table of parameters shows.
+std::vector<std::string> warnings_to_show(const StoredFit& fit);
 /// Lists failures and warnings.
 doc::Section warnings_section(const StoredFit& fit);
 

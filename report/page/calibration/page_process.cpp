@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "report/document/quantity.hpp"
 #include "report/page/calibration/fit_sections.hpp"
@@ -97,17 +100,22 @@ doc::Section starts_section(const StoredFit& fit) {
   return section;
 }
 
-doc::Section warnings_section(const StoredFit& fit) {
-  doc::Section section{"warnings", "Failures and warnings"};
-  doc::List warnings{{}, doc::State::warn};
+std::vector<std::string> warnings_to_show(const StoredFit& fit) {
+  std::vector<std::string> warnings;
   for (const std::string& warning : fit.warnings) {
-    // The parameter table already shows this reason.
     const bool told = std::any_of(
         fit.parameters.begin(), fit.parameters.end(), [&](const calib::FittedParameter& p) {
           return p.fitted && !p.reason.empty() && warning.ends_with(": " + p.reason);
         });
-    if (!told) warnings.items.push_back({warning});
+    if (!told) warnings.push_back(warning);
   }
+  return warnings;
+}
+
+doc::Section warnings_section(const StoredFit& fit) {
+  doc::Section section{"warnings", "Failures and warnings"};
+  doc::List warnings{{}, doc::State::warn};
+  for (std::string& warning : warnings_to_show(fit)) warnings.items.push_back({std::move(warning)});
   if (warnings.items.empty() && fit.failures.empty())
     section.blocks.emplace_back(doc::reading("None."));
   else

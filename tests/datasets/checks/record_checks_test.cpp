@@ -182,3 +182,94 @@ TEST_CASE("travel_warning: beyond the stroke", "[datasets]") {
   test.campaign.parameters[0].value = 0.4;
   CHECK(test.told().empty());
 }
+
+namespace {
+
+/// A loop on position that states a sine of 1 Hz and 20 mm, or the open loop that the command
+/// drives.
+struct DriveCase {
+  Campaign campaign;
+  Condition condition;
+  Record record;
+  explicit DriveCase(ControllerKind controller = ControllerKind::pid) {
+    campaign.rig.controller = controller;
+    condition.waveform = Waveform::sine;
+    condition.frequency_hz = 1.0;
+    condition.amplitude = controller == ControllerKind::pid ? 0.02 : 2.0;
+    for (int i = 0; i < 400; ++i) record.time_s.push_back(0.01 * i);
+  }
+  void fill(Channel channel, double (*value)(double)) {
+    auto& mean = record.channels[channel].mean;
+    mean.clear();
+    for (const double t : record.time_s) mean.push_back(value(t));
+  }
+  std::string stated() const { return stated_drive_warning(campaign, condition, record); }
+  std::string mirrored() const { return mirrored_motion_warning(campaign, condition, record); }
+};
+
+constexpr double kTurn = 6.283185307179586;
+
+}  // namespace
+
+TEST_CASE("stated_drive_warning: the recorded reference is another signal", "[datasets]") {
+  DriveCase loop;
+  CHECK(loop.stated().empty());  // not recorded
+  loop.fill(Channel::reference, [](double t) { return 0.02 * std::sin(kTurn * t); });
+  CHECK(loop.stated().empty());
+  // A shift by one sample, and noise.
+  loop.fill(Channel::reference, [](double t) {
+    return 0.02 * std::sin(kTurn * (t - 0.01)) + 1e-4 * std::sin(431.0 * t);
+  });
+  CHECK(loop.stated().empty());
+  loop.fill(Channel::reference, [](double t) { return 0.02 * std::sin(kTurn * t - 0.15); });
+  CHECK_THAT(loop.stated(), Contains("the recorded reference is not the sine") &&
+                                Contains("waveform = \"recorded\""));
+  // A triangle has 99 % of its variance in the first harmonic.
+  loop.fill(Channel::reference,
+            [](double t) { return 0.02 * 4.0 / kTurn * std::asin(std::sin(kTurn * t)); });
+  CHECK_FALSE(loop.stated().empty());
+  // What the windows leave out does not count.
+  loop.fill(Channel::reference, [](double t) { return t < 3 ? 0.02 * std::sin(kTurn * t) : 0.0; });
+  CHECK_FALSE(loop.stated().empty());
+  loop.record.windows = {{0.0, 2.9}};
+  CHECK(loop.stated().empty());
+  loop.record.windows.clear();
+  loop.condition.waveform = Waveform::recorded;
+  CHECK(loop.stated().empty());
+}
+
+TEST_CASE("stated_drive_warning: the edges of a square wave", "[datasets]") {
+  DriveCase loop;
+  loop.condition.waveform = Waveform::square;
+  loop.fill(Channel::reference,
+            [](double t) { return std::sin(kTurn * (t + 0.005)) >= 0.0 ? 0.02 : -0.02; });
+  CHECK(loop.stated().empty());
+  loop.fill(Channel::reference,
+            [](double t) { return std::sin(kTurn * (t - 0.05)) >= 0.0 ? 0.02 : -0.02; });
+  CHECK_FALSE(loop.stated().empty());
+}
+
+TEST_CASE("mirrored_motion_warning: a sensor of the wrong sign in a loop", "[datasets]") {
+  DriveCase loop;
+  loop.fill(Channel::position, [](double t) { return 0.1 - 0.018 * std::sin(kTurn * t - 0.3); });
+  CHECK_THAT(loop.mirrored(),
+             Contains("the position moves against the reference") && Contains("gain = -1"));
+  loop.fill(Channel::position, [](double t) { return 0.1 + 0.018 * std::sin(kTurn * t - 0.3); });
+  CHECK(loop.mirrored().empty());
+  // A loop beyond its bandwidth lags by half a period and hardly moves.
+  loop.fill(Channel::position, [](double t) { return -0.006 * std::sin(kTurn * t); });
+  CHECK(loop.mirrored().empty());
+  loop.record.channels.clear();
+  CHECK(loop.mirrored().empty());
+}
+
+TEST_CASE("mirrored_motion_warning: a sensor of the wrong sign in an open loop", "[datasets]") {
+  DriveCase open(ControllerKind::none);
+  open.fill(Channel::position, [](double t) { return 0.05 * std::cos(kTurn * t) + 0.01 * t; });
+  CHECK_THAT(open.mirrored(), Contains("the position moves against the command"));
+  open.fill(Channel::position, [](double t) { return -0.05 * std::cos(kTurn * t) + 0.01 * t; });
+  CHECK(open.mirrored().empty());
+  open.record.time_s.resize(50);  // too few blocks
+  open.fill(Channel::position, [](double t) { return 0.05 * std::cos(kTurn * t); });
+  CHECK(open.mirrored().empty());
+}

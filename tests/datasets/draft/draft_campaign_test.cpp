@@ -287,6 +287,41 @@ TEST_CASE("draft_campaign: repeats, waveform and columns, and loads once it is f
   CHECK(record.channels.contains(Channel::position));
 }
 
+TEST_CASE("draft_campaign: a drive is generated only if its samples are", "[datasets]") {
+  const auto waveform = [](const char* header, double (*reference)(double)) {
+    const TemporaryFolder folder;
+    std::string text = header;
+    for (int i = 0; i < 400; ++i)
+      text += fmt::format("{},{},{}\n", 0.005 * i, reference(0.005 * i),
+                          4.8 * std::sin(12.566370614359172 * 0.005 * i - 0.1));
+    return draft_campaign({folder.write("a.csv", text)}, folder.path()).text;
+  };
+  constexpr double kTwoHz = 12.566370614359172;  // rad/s
+  const char* mm = "t_s,ref_mm,x_mm\n";
+  CHECK_THAT(waveform(mm, [](double t) { return 5.0 * std::sin(kTwoHz * t); }),
+             Contains("waveform = \"sine\""));
+  // A phase of 4 ms, a triangle, and a frequency of more digits than the draft shows.
+  for (const auto reference : {+[](double t) { return 5.0 * std::sin(kTwoHz * t - 0.05); },
+                               +[](double t) { return 5.0 * std::asin(std::sin(kTwoHz * t)); },
+                               +[](double t) { return 5.0 * std::sin(1.0002 * kTwoHz * t); }})
+    CHECK_THAT(waveform(mm, reference),
+               Contains("waveform = \"recorded\"  # not generated") && !Contains("FILL IN mm"));
+  // A reference in volts has an amplitude in metres only after its gain.
+  CHECK_THAT(waveform("t_s,ref_V,x_mm\n", [](double t) { return 5.0 * std::sin(kTwoHz * t); }),
+             Contains("waveform = \"recorded\"") && !Contains("amplitude = "));
+}
+
+TEST_CASE("draft_campaign: a column with few numbers is a comment", "[datasets]") {
+  const TemporaryFolder folder;
+  std::string text = "t_s,ref_mm,x_mm,T_oil_C\n";
+  for (int i = 0; i < 400; ++i)
+    text += fmt::format("{},{},{},{}\n", 0.005 * i, i % 7, i % 5, i % 50 == 0 ? "41.5" : "");
+  const std::string draft = draft_campaign({folder.write("a.csv", text)}, folder.path()).text;
+  CHECK_THAT(draft, !Contains("\ntemperature = ") && !Contains("a campaign refuses"));
+  CHECK_THAT(draft, Contains("# FILL IN = { column = \"T_oil_C\"") &&
+                        Contains("a number in 8 of 400 rows"));
+}
+
 TEST_CASE("draft_campaign: one column per repeat, two sets, no loop", "[datasets]") {
   const TemporaryFolder folder;
   std::string text =
@@ -332,7 +367,7 @@ TEST_CASE("draft_campaign: a MAT file, and a column in volts", "[datasets]") {
   CHECK_THAT(draft, Contains("command = { column = \"log.u_V\", unit = \"V\" }"));
   CHECK_THAT(draft, Contains("position = { column = \"log.position_V\", unit = \"FILL IN\" }") &&
                         Contains("the column is in V"));
-  CHECK_THAT(draft, Contains("not generated: it has an offset or a phase"));
+  CHECK_THAT(draft, Contains("not generated: its samples show an offset, a phase"));
 }
 
 TEST_CASE("draft_campaign: a summary beside the recordings is left out", "[datasets]") {

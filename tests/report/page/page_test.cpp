@@ -712,6 +712,12 @@ TEST_CASE("page: every kind of doubt is told before one signs", "[report]") {
   CHECK_THAT(doubts, Contains("2 warnings</a>: the record is short"));
   CHECK_THAT(doubts, !Contains("conditional on"));  // the note is below the table of values
   CHECK_THAT(html, Contains("Conditional on 2 known values."));
+  // A warning that the table of parameters shows is in no list, and does not count.
+  Json& parameter = json["parameters"].at(0);
+  parameter["fitted"] = true;
+  parameter["reason"] = "its interval is wide";
+  json["warnings"].push_back("mass_kg: its interval is wide");
+  CHECK_THAT(page(json), Contains("2 warnings</a>: the record is short"));
 }
 
 TEST_CASE("page: page one has eight signals, those held back and the worst first", "[report]") {

@@ -167,6 +167,46 @@ TEST_CASE("csv_layout: rows that dSPACE labels", "[datasets]") {
   CHECK(dspace.table("t", "x").columns == kNumbers);
 }
 
+TEST_CASE("csv_layout: rows of dSPACE with names and units", "[datasets]") {
+  const ReadText dspace(
+      "title,run 5\ntrace_names,t,x\ntrace_units,s,mm\ntrace_values,0,1.5\n,0.1,2.5\n,0.2,3.5\n");
+  const RecordTable table = dspace.table("t", "x");
+  CHECK(table.columns == kNumbers);
+  CHECK(table.labels[1].unit == "mm");
+}
+
+TEST_CASE("csv_layout: a line of descriptions below the units", "[datasets]") {
+  const ReadText diadem(
+      "Zeit;Weg;Druck\n[s];[mm];[bar]\nclock 1;LVDT;P8AP\n0;1,5;7\n0,1;2,5;8\n0,2;3,5;9\n");
+  const RecordTable table = diadem.table("Zeit", "Weg");
+  CHECK(table.columns == kNumbers);
+  CHECK(table.labels[1].unit == "mm");
+  CHECK(table.labels[1].line == 2);
+  // Without units, the names are directly above the numbers.
+  CHECK(ReadText("a;b;c\nt;x;note\n0;1,5;7\n0,1;2,5;8\n0,2;3,5;9\n").table("t", "x").columns ==
+        kNumbers);
+}
+
+TEST_CASE("csv_layout: units of some columns only", "[datasets]") {
+  const ReadText units("t;x;state;n\ns;mm;n/a;Counts\n0;1.5;0;1\n0.1;2.5;0;2\n0.2;3.5;1;3\n");
+  CHECK(units.table("t", "x").columns == kNumbers);
+}
+
+TEST_CASE("csv_layout: tabs at the ends of all lines", "[datasets]") {
+  const ReadText mts(
+      "MTS793|MPT\nStation:\trig 3\n\nt\tx\t\ns\tmm\t\n0\t1.5\t\n0.1\t2.5\t\n0.2\t3.5\t\n");
+  const RecordTable table = mts.table("t", "x");
+  CHECK(table.columns == kNumbers);
+  CHECK(table.labels[1].unit == "mm");
+}
+
+TEST_CASE("csv_layout: units in brackets between blanks", "[datasets]") {
+  const ReadText aligned("   t      x\n  (s)   (mm)\n  0.0    1.5\n  0.1    2.5\n  0.2    3.5\n");
+  const RecordTable table = aligned.table("t", "x");
+  CHECK(table.columns == kNumbers);
+  CHECK(table.labels[1].unit == "mm");
+}
+
 TEST_CASE("csv_layout: what is no header is none", "[datasets]") {
   // A row with a number is not a header, there must be as many names as fields (only a column of
   // comments may be left out), and a column of states is not a column of numbers.

@@ -148,6 +148,15 @@ TEST_CASE("load_csv: quoted header, and quoted text in columns that are not want
         NumberColumns{{0}, {1}});  // quote inside a field
 }
 
+TEST_CASE("load_csv: numbers between quotes", "[datasets]") {
+  CHECK(load("\"t\",\"x\"\n\"0\",\"1.5\"\n\"0.1\",\" -2.5e-1\"\n").columns ==
+        NumberColumns{{0, 0.1}, {1.5, -0.25}});
+  CHECK(load("t;x\n\"0,5\";\"1,5\"\n").columns == NumberColumns{{0.5}, {1.5}});
+  CHECK_THAT(refusal("t,x\n0,\"1,234.5\"\n"),
+             StartsWith("a.csv:2:3: '\"1,234.5\"' in column 'x' is not a finite number"));
+  CHECK_THAT(refusal("t,x\n0,\"\"\n"), StartsWith("a.csv:2:"));
+}
+
 TEST_CASE("load_csv: comments before the header", "[datasets]") {
   const RecordTable table = load("# rig 3; day 2\n  # more\nt,x\n0,1\n");
   CHECK(table.columns == NumberColumns{{0}, {1}});
@@ -177,7 +186,7 @@ TEST_CASE("load_csv: an error names columns without their units", "[datasets]") 
 
 TEST_CASE("load_csv: fields that are not numbers", "[datasets]") {
   const std::string field = GENERATE("abc", "nan", "inf", "-inf", "1.5x", "1.2.3", "0x10", "1 2",
-                                     "1e999", "--1", "+-1", "12:00:01", "\"1.5\"", "1'000");
+                                     "1e999", "--1", "+-1", "12:00:01", "\"1,5\"", "1'000");
   CAPTURE(field);
   CHECK_THAT(refusal("t,x\n0,1\n1, " + field + "\n"),
              StartsWith("a.csv:3:4: '" + field + "' in column 'x' is not a finite number") &&
@@ -268,6 +277,16 @@ TEST_CASE("load_csv: a clock as time is in seconds since its first stamp", "[dat
   CHECK(table.columns == NumberColumns{{0, 0.5, 1.75}, {1.5, 2.5, 3.5}});
   CHECK(table.labels[0].unit == "s");
   CHECK(table.labels[0].place == "time stamps");
+  // Loggers of other countries; the units may be below the names.
+  for (const char* clock :
+       {"28.11.2024 9:12:44,5;0\n28.11.2024 9:12:45,0;1\n",
+        "11/28/2024 9:12:44.5 AM;0\n11/28/2024 9:12:45 AM;1\n", "9:12:44,5;0\n9:12:45,0;1\n"}) {
+    CAPTURE(clock);
+    CHECK(load(std::string("rig 7\nclock;x\n;mm\n") + clock, request({"clock", "x"}, "clock"))
+              .columns == NumberColumns{{0, 0.5}, {0, 1}});
+  }
+  CHECK(load("day,t,x\n2024-11-28,9:12:44,0\n2024-11-28,9:12:45,1\n").columns ==
+        NumberColumns{{0, 1}, {0, 1}});
   // It must be the time, increase, and not change its form.
   CHECK_THROWS_WITH(load(text, request({"clock", "x"}, "x")), Contains("2024-02-29 23:59:59.500"));
   CHECK_THROWS_WITH(load("t,x\n12:00:01,1\n12:00:00,2\n", request({"t", "x"}, "t")),

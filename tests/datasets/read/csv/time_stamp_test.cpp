@@ -13,9 +13,19 @@ TEST_CASE("time_stamp: dates with a time of day, and times of day", "[datasets]"
   CHECK(time_stamp("12:00:01")->day == 0);
   CHECK(time_stamp("2024/03/01 12:00:01Z")->day == stamp->day);
   CHECK(time_stamp("\"2024-03-01 12:00:01+01:00\"")->time_s == Approx(43201.0));
-  for (const char* text : {"", "2024-03-01", "2024-02-30 12:00:00", "2024-13-01 12:00:00", "12:00",
-                           "24:00:00", "12:60:00", "12:00:00 pm", "01.03.2024 12:00:00", "1:2:3",
-                           "2024-03-01 12:00:00+1", "2024-03-01  12:00:00", "12:00:00.5x"}) {
+  CHECK(time_stamp("1.3.2024 9:00:01")->day == stamp->day);
+  CHECK(time_stamp("3/1/2024 9:00:01")->day == stamp->day);
+  CHECK(time_stamp("31/12/2024 9:00:01")->day == time_stamp("12/31/2024 9:00:01")->day);
+  CHECK(time_stamp("12:00:01 AM")->time_s == Approx(1.0));
+  CHECK(time_stamp("12:00:01.5 pm")->time_s == Approx(43201.5));
+  CHECK(time_stamp("3/1/2024 1:00:00 PM")->time_s == Approx(46800.0));
+  CHECK(is_date("28.11.2024"));
+  CHECK_FALSE(is_date("28.11.2024 12:00:00"));
+  CHECK_FALSE(is_date("28.11"));
+  for (const char* text :
+       {"", "2024-03-01", "2024-02-30 12:00:00", "2024-13-01 12:00:00", "12:00", "24:00:00",
+        "12:60:00", "13:00:00 pm", "0:00:00 AM", "32.03.2024 12:00:00", "1:2:3",
+        "13/13/2024 12:00:00", "2024-03-01 12:00:00+1", "2024-03-01  12:00:00", "12:00:00.5x"}) {
     CAPTURE(text);
     CHECK_FALSE(time_stamp(text));
   }

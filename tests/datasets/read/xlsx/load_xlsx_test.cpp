@@ -85,6 +85,27 @@ TEST_CASE("load_xlsx: comments, header, a row of units, shared and rich texts", 
                                                                {"B!x [mm]", "", false, false}});
 }
 
+TEST_CASE("load_xlsx: titles above the header, and a sheet of notes", "[datasets]") {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "run.xlsx";
+  write_xlsx(path, {{"Info", {{cell("Specimen"), cell("Position 12")}, {cell("Rate"), cell(500)}}},
+                    {"Log",
+                     {{cell("Run 7 of rig 3")},
+                      {cell("Rate [Hz]"), cell(500)},
+                      {},
+                      {cell("t"), cell("x")},
+                      {cell("s"), cell("mm")},
+                      {cell(0), cell(1.5)},
+                      {cell(1), cell(2.5)}}},
+                    {"Short", {{cell("Title")}, {cell("y"), cell("z")}, {cell(5), cell(6)}}}});
+  CHECK(xlsx_record_columns(path) == std::vector<RecordColumn>{{"Log!t", "s", false, false},
+                                                               {"Log!x", "mm", false, false},
+                                                               {"Short!y", "", false, false},
+                                                               {"Short!z", "", false, false}});
+  CHECK(read_columns(path, {"Log!t", "Log!x"}, "Log!t") == Table{{0, 1}, {1.5, 2.5}});
+  CHECK(read_columns(path, {"Short!z"}, "") == Table{{6}});
+}
+
 TEST_CASE("load_xlsx: numbers as they are stored, in any locale", "[datasets]") {
   const TemporaryFolder folder;
   const auto path = folder.path() / "run.xlsx";
