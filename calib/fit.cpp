@@ -304,7 +304,7 @@ Fit fit(const Campaign& campaign, const std::vector<Record>& records, const FitO
       look_again(problem, campaign, records, solved, effects, options, budget, result);
     } else if (asks_for_more(options)) {
       result.message +=
-          "; bootstrap, profiles, posterior and cross-validation are made of what converged only";
+          "; bootstrap, profiles, posterior and cross-validation require a converged fit";
     }
     if (validation) add_validation(std::move(*validation), result);
     if (result.status == FitStatus::converged && result.stopped_in != StoppedIn::nothing) {

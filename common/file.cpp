@@ -370,8 +370,8 @@ std::string sha256_of_unchanged(const FileState& before) {
   std::string hash = sha256_of_file(before.path);
   if (state_of_file(before.path) == before) return hash;
   throw InputError({before.path},
-                   "was changed while it was read, so that no result can say what it rests on; "
-                   "expected a file that stays as it is");
+                   "was changed while it was read, so a result could not state its inputs; "
+                   "expected a file that does not change");
 }
 
 std::string sha256_of_file(const fs::path& path) {

@@ -317,13 +317,12 @@ std::vector<std::string> overfitting_warnings(const std::vector<ConditionScore>&
       const double unexplained = 1.0 - channel.metrics.rho2;
       const double least = 1.0 - channel.noise_floor->rho2;
       if (unexplained >= least * (1.0 - std::max(0.2, scatter))) continue;
-      warnings.push_back(fmt::format(
-          "condition \"{}\": {} has rho2 = {:.6g}, better than the {:.6g} that its noise allows "
-          "any "
-          "model: the fit follows the noise (overfitting), or the noise is smaller than its stated "
-          "standard deviation",
-          score.id, datasets::info(channel.channel).key, channel.metrics.rho2,
-          channel.noise_floor->rho2));
+      warnings.push_back(
+          fmt::format("condition \"{}\": {} has rho2 = {:.6g}, better than the {:.6g} that a "
+                      "perfect model could reach: the fit follows the noise (overfitting), or the "
+                      "noise is smaller than its stated standard deviation",
+                      score.id, datasets::info(channel.channel).key, channel.metrics.rho2,
+                      channel.noise_floor->rho2));
     }
   }
   return warnings;

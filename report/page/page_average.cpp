@@ -161,7 +161,7 @@ doc::Verdict average_headline(const AverageFiles& stored) {
           1e3 * offset_s)}};
   if (outliers > 0)
     add_reason(verdict,
-               fmt::format("{} repeat{} named outlier", outliers, outliers == 1 ? "" : "s"),
+               fmt::format("{} repeat{} flagged as outlier", outliers, outliers == 1 ? "" : "s"),
                "repeatability");
   for (const std::string& text : warnings) add_reason(verdict, text, "repeatability");
   return verdict;
@@ -200,8 +200,8 @@ std::vector<doc::Section> average_sections(const AverageFiles& stored) {
       "repeatability",
       "Repeatability",
       {doc::reading(
-           "Agreement of the repeats of each condition. Noise floor: the best score that a "
-           "perfect model could reach. Offsets: how far apart the repeats started."),
+           "Agreement of the repeats of each condition. Noise floor: the best score that a perfect "
+           "model could reach. Offsets: time differences between the starts of the repeats."),
        std::move(table)}};
   const std::vector<std::string> warnings = texts_of(stored.result, &StoredRecord::warnings);
   if (!warnings.empty())

@@ -48,7 +48,7 @@ std::string terms_in_comments(const Result& result) {
                         each.line);
   }
   if (text.empty()) return {};
-  return "# The residuals ask for a term that this model lacks. The next campaign may estimate "
+  return "# The residuals indicate a term that this model lacks. The next campaign may estimate "
          "it:\n" +
          text;
 }

@@ -107,7 +107,7 @@ TEST_CASE("diagnose: from synthetic records to classes", "[apps]") {
                     [](const json& file) { return file["path"] == "diagnosis_live.json"; }));
   const std::string page = folder.read("diagnosis/report.html");
   CHECK_THAT(page, Contains("<title>LEAK") && Contains("id=\"diagnosis\"") &&
-                       Contains("Against the known classes"));
+                       Contains("Comparison with the known classes"));
   REQUIRE(folder.run({"report", "diagnosis"}).exit_code == 0);
   CHECK(folder.read("diagnosis/report.html") == page);
 }

@@ -76,7 +76,7 @@ TEST_CASE("fit: by the guard band a limit is kept by more than the score's uncer
   const Outcome one =
       folder.run({"validate", "twin/one.toml", "--fit", "plain/fit.json", "--out", "one"});
   CHECK(one.exit_code == 0);
-  CHECK_THAT(one.out, Catch::Contains("its uncertainty is not known"));
+  CHECK_THAT(one.out, Catch::Contains("its uncertainty is unknown"));
   CHECK(result_of(folder, "one/validation.json")["verdict"] == "WARN");
 }
 

@@ -94,7 +94,7 @@ std::string coverage_words(const std::vector<double>& residual, const std::vecto
     if (std::abs(residual[i]) <= metrics::kNormal95 * sd[i]) ++within;
   }
   if (all == 0) return {};
-  return fmt::format("{:.1f} % of them lie within the 95 % band of prediction.",
+  return fmt::format("{:.1f} % of them are within the 95 % prediction band.",
                      100.0 * static_cast<double>(within) / static_cast<double>(all));
 }
 
@@ -156,11 +156,10 @@ Response response_of(std::optional<double> frequency_hz, const Table& series,
       : frequency_hz
           ? fmt::format("at {} of {} harmonics of the drive", curves.record.size(), estimated)
           : fmt::format("at {} of {} frequencies", curves.record.size(), estimated);
-  std::string words =
-      fmt::format("Gain and phase of {} {}, where the coherence is {:g} or more; {}.", curves.of,
-                  where, metrics::kLeastCoherence,
-                  scatter ? "bars are 95 % intervals by coherence"
-                          : "a single period, without variation and so without an interval");
+  std::string words = fmt::format(
+      "Gain and phase of {} {}, where the coherence is {:g} or more; {}.", curves.of, where,
+      metrics::kLeastCoherence,
+      scatter ? "bars: 95 % intervals, from the coherence" : "a single period, so no interval");
   return {std::move(curves), std::move(words)};
 }
 

@@ -36,14 +36,14 @@ std::string further_starts_of(const StoredFit& fit) {
       if (reason.code == "further_starts") return reason.words + ".";
     }
   }
-  return "One start alone: whether another minimum is lower was not looked for.";
+  return "Only one start: no search for a lower minimum was made.";
 }
 
 /// Summarises all starts.
 ///
 /// @param costs  final costs of the starts, sorted
 std::string start_reading(const StoredFit& fit, const std::vector<double>& costs) {
-  if (costs.empty()) return "No start ended with a cost: there is no answer.";
+  if (costs.empty()) return "No start could be evaluated: there is no result.";
   std::string text =
       fit.starts.size() == 1 ? further_starts_of(fit) : std::string(fit.agreement) + ".";
   if (fit.starts.size() == 1 && !fit.agreement.empty())
@@ -51,8 +51,8 @@ std::string start_reading(const StoredFit& fit, const std::vector<double>& costs
   constexpr double kSameCost = 1e-3;
   if (fit.cost && std::abs(*fit.cost - costs.front()) > kSameCost * costs.front()) {
     text += fmt::format(
-        " These costs are by the noise as it was taken before the last estimate of it; by that of "
-        "the result the cost is {:.6g}.",
+        " These costs use the noise estimate before the last update; with the final estimate the "
+        "cost is {:.6g}.",
         *fit.cost);
   }
   return text;
@@ -64,7 +64,7 @@ doc::Section starts_section(const StoredFit& fit) {
   doc::Section section{"starts", "Starts"};
   doc::Blocks& blocks = section.blocks;
   if (fit.starts.empty()) {
-    blocks.emplace_back(doc::reading("No start was made: nothing was estimated."));
+    blocks.emplace_back(doc::reading("No start was made, because nothing was estimated."));
     return section;
   }
   std::vector<double> costs;
@@ -120,8 +120,8 @@ doc::Section warnings_section(const StoredFit& fit) {
   }
   if (fit.failures.empty()) return section;
   doc::Table table{"Failed simulations"};
-  table.caption = {
-      fmt::format("{} simulations failed on the way; the first of each kind", fit.failure_count)};
+  table.caption = {fmt::format("{} simulations failed during the search; the first of each kind",
+                               fit.failure_count)};
   table.columns = {{"Condition"},
                    {"Start", Kind::number},
                    {"At", Kind::number},

@@ -24,12 +24,11 @@ std::string end_words(const calib::ProfileEnd& end, const ReadableUnit& unit, co
   };
   if (end.value) return fmt::format("{} end {}", which, text(*end.value));
   if (end.is_lost())
-    return fmt::format("not followed to its {} end: stopped, or no fit there", which);
-  return fmt::format(
-      "open at its {} end{}", which,
-      std::isfinite(end.reached)
-          ? fmt::format(": followed to {} without leaving the interval", text(end.reached))
-          : std::string());
+    return fmt::format("{} end not found: stopped, or no fit converged there", which);
+  return fmt::format("open at its {} end{}", which,
+                     std::isfinite(end.reached)
+                         ? fmt::format(": still within the interval at {}", text(end.reached))
+                         : std::string());
 }
 
 /// Plots the increase in cost when a parameter is fixed at each value. The 95 % interval ends where
@@ -41,7 +40,7 @@ Plot profile_plot(const calib::FittedParameter& parameter, const calib::Profile&
                            parameter_label(parameter));
   plot.x_label = unit.name.empty() ? parameter_label(parameter)
                                    : fmt::format("{} [{}]", parameter_label(parameter), unit.name);
-  plot.y_label = "rise of the cost; 1: end of the interval";
+  plot.y_label = "relative rise of the cost; 1: end of the interval";
   plot.width = 300.0;
   plot.height = 170.0;
   plot.levels = {1.0};
@@ -115,7 +114,7 @@ doc::Badge lack_badge(const calib::LackOfFitTests& lack) {
   if (lack.misfit == true) return {doc::State::warn, "Significant lack of fit."};
   if (lack.misfit == false) return {doc::State::good, "No lack of fit detected."};
   return {doc::State::none, lack.tests.empty()
-                                ? "Lack of fit cannot be judged: the noise is not known."
+                                ? "Lack of fit cannot be judged: the noise is unknown."
                                 : "Lack of fit cannot be judged: the records have too few "
                                   "independent samples."};
 }
@@ -151,7 +150,7 @@ std::string prediction_words(const calib::HeldOut& held) {
 
 void add_cross_validation(const StoredFit& fit, doc::Blocks& blocks) {
   if (!fit.cross_validation || fit.cross_validation->empty()) return;
-  const char* const title = "Predictions of conditions that were left out";
+  const char* const title = "Cross-validation: conditions left out and predicted";
   blocks.emplace_back(doc::Heading{{title}});
   doc::Table table{title};
   table.columns = {{"Left out"},
@@ -172,15 +171,15 @@ void add_profiles(const StoredFit& fit, doc::Blocks& blocks) {
   for (const calib::FittedParameter& p : fit.parameters) {
     if (!p.profile) continue;
     doc::Figure figure{[p] { return profile_plot(p, *p.profile); }};
-    figure.caption = fmt::format("How far can {} move?", parameter_label(p));
+    figure.caption = fmt::format("How much can {} change?", parameter_label(p));
     figure.reading = profile_reading(p, *p.profile);
     gallery.figures.push_back(std::move(figure));
   }
   if (gallery.figures.empty()) return;
   blocks.emplace_back(doc::Heading{{"Profiles"}});
-  blocks.emplace_back(doc::reading(
-      "How much worse the fit becomes with one parameter fixed and all others fitted again; at 1 "
-      "the 95 % interval ends."));
+  blocks.emplace_back(
+      doc::reading("Rise of the cost with one parameter fixed and all others refitted; the 95 % "
+                   "interval ends at 1."));
   blocks.emplace_back(std::move(gallery));
 }
 

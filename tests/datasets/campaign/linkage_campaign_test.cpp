@@ -299,7 +299,7 @@ TEST_CASE("load_campaign: what does not go together on a linkage", "[datasets]")
                "the controller's output is a voltage, and pilot_gain makes the pilot pressure"},
            Row{"angle = { column",
                "position = { column = \"x_m\", unit = \"m\" }\nangle = { column",
-               "the plant linkage turns an arm, and its motion is the angle of the joint"},
+               "the plant linkage moves an arm, so its motion is the angle of the joint"},
            Row{"angle = { column",
                "force = { column = \"F_N\", unit = \"N\", role = \"output\" }\nangle = { column",
                "expected the channel torque (unit \"N m\")"},
