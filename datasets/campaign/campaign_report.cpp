@@ -145,7 +145,7 @@ ReportSettings read_report(const TomlNode& node) {
   if (!sensors->is_array()) sensors->fail_type("[[report.sensor]], in double brackets");
   for (const TomlNode& sensor : sensors->items()) {
     sensor.allow_only(names_of(sensor_keys()));
-    sensor.require("channel", "the channel that the sensor is of, such as \"position\"");
+    sensor.require("channel", "the channel that the sensor measures, such as \"position\"");
     settings.sensors.push_back(read_fields(sensor, kSensorFields));
   }
   return settings;

@@ -275,8 +275,8 @@ std::string campaign_schema() {
   OrderedJson schema{{"$schema", "https://json-schema.org/draft/2020-12/schema"},
                      {"title", "Campaign file of rigcal"},
                      {"description",
-                      "For editors. What this refuses rigcal refuses, too; `rigcal check` checks "
-                      "ranges, all units, and keys that depend on one another"}};
+                      "For editors. rigcal rejects whatever this schema rejects; `rigcal check` "
+                      "also checks ranges, all units, and keys that depend on one another"}};
   const OrderedJson root = writer.table(campaign_keys());
   SharedTables shared(root);
   schema.update(shared.without_copies(root));

@@ -102,7 +102,7 @@ TEST_CASE(
       Catch::Contains("derivative_filter filters the derivative of an error"));
   CHECK_THAT(loop_refusal_of(with(control + generator)), Catch::Contains("has no kp"));
   CHECK_THAT(loop_refusal_of(with(kLoopGain + "\n" + generator)),
-             Catch::Contains("reference_frequency belongs to three-variable control, and this loop "
+             Catch::Contains("reference_frequency belongs to three-variable control, but this loop "
                              "is on position"));
   CHECK_THAT(
       loop_refusal_of(with(kLoopGain + "\nvelocity_kp = \"2 V s/m\"")),
@@ -138,7 +138,7 @@ TEST_CASE("load_campaign: a load may fall along the travel, a spring may not", "
   CHECK(values_in(campaign, campaign.conditions.front())["load_gradient"] == Approx(-9000.0));
   CHECK_THAT(
       loop_refusal_of(replaced(kExample, "stiffness = \"0 N/m\"", "stiffness = \"-9 kN/m\"")),
-      Catch::Contains("makes no sense for stiffness"));
+      Catch::Contains("is not plausible for stiffness"));
 }
 
 TEST_CASE("load_campaign: all of a load table or nothing, and no polynomial beside it",

@@ -276,7 +276,8 @@ TEST_CASE("load_campaign: what does not go together on a linkage", "[datasets]")
            Row{gain, "pilot_gain = \"0.3 mm/bar\"\nvalve_gain = \"0.1 mm/V\"",
                "pilot_gain and valve_gain are both given: expected valve_gain (an electric valve"},
            Row{gain, "", "the gain of the valve is unknown"},
-           Row{gain, "valve_gain = \"0.1 mm/V\"", "pilot_dead_band is of a pilot-operated valve"},
+           Row{gain, "valve_gain = \"0.1 mm/V\"",
+               "pilot_dead_band applies to a pilot-operated valve"},
            Row{gain, "pilot_gain = \"0.3 mm/bar\"\nvalve_offset = \"0.1 V\"",
                "valve_offset is in volts"},
            Row{gain, "pilot_gain = \"0.3 mm/bar\"\npump_flow = \"100 L/min\"",
@@ -305,7 +306,7 @@ TEST_CASE("load_campaign: what does not go together on a linkage", "[datasets]")
                "expected the channel torque (unit \"N m\")"},
            Row{"angle = { column",
                "base_acceleration = { column = \"a\", unit = \"m/s2\" }\nangle = { column",
-               "how its base moves the arm depends on lengths"},
+               "the effect of a moving base depends on lengths"},
            Row{"unit = \"deg\", sd", "unit = \"mm\", sd", "angle"},
        }) {
     CAPTURE(row.with);
@@ -345,7 +346,7 @@ TEST_CASE("load_campaign: exactly one law gives the travel of a linkage", "[data
   };
   const std::string lever = kLever;
   for (const Row& row :
-       {Row{"", "how far the piston travels per angle is unknown: expected lever, or a triangle"},
+       {Row{"", "the travel of the piston per angle is unknown: expected lever, or a triangle"},
         Row{"lever_gradient = \"1 m/rad2\"", "by a polynomial needs lever: expected lever as well"},
         Row{lever + "\n" + kTriangle,
             "triangle_base (the travel of the piston by a triangle) is combined with lever"},
@@ -378,8 +379,9 @@ TEST_CASE("load_campaign: a rotary actuator has a displacement, and no linkage",
     CAPTURE(other);
     CHECK_THROWS_WITH(
         load_text(replaced(vane, displacement, displacement + "\n" + other)),
-        Catch::Contains("is of a cylinder on a linkage, and displacement_per_radian makes the rig "
-                        "a rotary actuator: expected one of them"));
+        Catch::Contains(
+            "applies to a cylinder on a linkage, but displacement_per_radian makes the rig "
+            "a rotary actuator: expected only one of them"));
   }
   CHECK_THROWS_WITH(load_text(replaced(vane, displacement, "")),
                     Catch::Contains("no value for area_a: expected a known value or a start in "
