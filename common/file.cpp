@@ -51,7 +51,7 @@ class RegularFile {
     ::close(descriptor_);
     throw InputError(
         where_, fmt::format("is {}; expected {}",
-                            S_ISDIR(status.st_mode) ? "a folder" : "no regular file", expected));
+                            S_ISDIR(status.st_mode) ? "a folder" : "not a regular file", expected));
   }
   RegularFile(const RegularFile&) = delete;
   RegularFile& operator=(const RegularFile&) = delete;

@@ -197,12 +197,13 @@ PeriodicFlow periodic_flow(const PeriodicDrive& drive, const model::ParameterVal
       continue;
     }
     if (sampling > options.tolerance) {
-      flow.failure = fmt::format("{} samples per half period leave {:.2g} of the mean flow open",
-                                 flow.intervals, sampling);
+      flow.failure =
+          fmt::format("with {} samples per half period, {:.2g} of the mean flow is uncertain",
+                      flow.intervals, sampling);
     }
     if (left > options.tolerance) {
       flow.failure = fmt::format(
-          "not periodic after {} periods: the mean flows still change by {:.2g} of themselves",
+          "not periodic after {} periods: the mean flows still change by a fraction of {:.2g}",
           flow.periods, left);
     }
     flow.saturated = saturated_part(run, values);

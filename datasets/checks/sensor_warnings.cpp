@@ -57,13 +57,13 @@ bool counts(const SensorFault& fault, const std::vector<TimeWindow>& windows) {
 std::string_view words(Kind kind) {
   switch (kind) {
     case Kind::clipped_at_highest:
-      return "stays at exactly its highest value, as a clipped sensor or amplifier does";
+      return "stays at exactly its highest value, as if the sensor or amplifier were saturated";
     case Kind::clipped_at_lowest:
-      return "stays at exactly its lowest value, as a clipped sensor or amplifier does";
+      return "stays at exactly its lowest value, as if the sensor or amplifier were saturated";
     case Kind::frozen:
       break;
   }
-  return "does not change while the drive moves on, as an interrupted sensor or line does";
+  return "does not change while the drive does, as if the sensor or its line were interrupted";
 }
 
 std::string text(const std::vector<const SensorFault*>& faults) {

@@ -160,8 +160,9 @@ std::string waveform_text(const fs::path& file, const FileColumns& columns) {
   text += fmt::format(
       "waveform = \"{}\"{}\n",
       to_string(periodic && guess.can_be_generated ? guess.waveform : Waveform::recorded),
-      periodic && !guess.can_be_generated ? comment("not generated: it has an offset or a phase")
-                                          : "");
+      periodic && !guess.can_be_generated
+          ? comment("not simulated as generated: it has an offset or a phase")
+          : "");
   if (!guess.frequency_hz || !guess.amplitude) return text;
   text += fmt::format("frequency = \"{:.4g} Hz\"\n", *guess.frequency_hz);
   const std::string_view wanted = info(drive->channel).unit;

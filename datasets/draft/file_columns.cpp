@@ -238,7 +238,8 @@ std::string unreadable_rows(const fs::path& file, const FileColumns& columns) {
   if (names.empty()) return {};
   try {
     const std::string left_out = draft_columns(file, names, columns.time).left_out;
-    return left_out.empty() ? left_out : left_out + "; remove what is no number";
+    return left_out.empty() ? left_out
+                            : left_out + "; remove text and other contents that are not numbers";
   } catch (const InputError& error) {
     return std::string(error.what()).substr(error.where().file.size() + 1);
   }

@@ -68,9 +68,9 @@ RecordTable read_columns(const Campaign& campaign, const std::filesystem::path& 
     if (may_be_shown(campaign, path)) throw;
     throw InputError(
         error.where(),
-        "is no recording that this campaign fits. The content of the file is not shown, "
-        "since it is neither in the campaign's folder nor in that of --data and is not "
-        "named like a recording; expected one (`rigcal init` and its name may help)");
+        "is not a recording that this campaign describes. The content of the file is not shown, "
+        "because it is neither in the campaign's folder nor in that of --data and is not named "
+        "like a recording; expected a recording (`rigcal init` and its name may help)");
   }
 }
 
@@ -84,9 +84,9 @@ void require_measurable(const RepeatSource& source, const std::string& column,
   if (bad != values.end())
     throw InputError(
         {source.path.string()},
-        fmt::format("number {} of '{}' is {:g} in SI units, which nothing can measure; "
-                    "expected at most {:g}",
-                    bad - values.begin() + 1, column, *bad, kLargest));
+        fmt::format(
+            "number {} of '{}' is {:g} in SI units, beyond any sensor; expected at most {:g}",
+            bad - values.begin() + 1, column, *bad, kLargest));
 }
 
 /// Returns the drive of the rig at each sample of the record.
@@ -115,7 +115,7 @@ void find_moving_windows(const Campaign& campaign, const Condition& condition, R
   if (position == record.channels.end())
     refuse(condition,
            fmt::format("windows = \"moving\" are found from the {0}, which its records do not "
-                       "carry: expected a channel {0}, or window = [\"0.5 s\", \"12 s\"]",
+                       "contain: expected a channel {0}, or window = [\"0.5 s\", \"12 s\"]",
                        info(moving).key));
   const Series& x = position->second;
   const auto motions =

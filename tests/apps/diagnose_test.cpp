@@ -228,7 +228,7 @@ TEST_CASE("diagnose: --healthy names the level that the campaign does not know",
   const Outcome unknown = diagnosed({});
   REQUIRE(unknown.exit_code == 0);
   // Both conditions lack a class. One line reports this, with the remedy.
-  CHECK(count_of(unknown.out, "what the model lacks is not in the interval") == 1);
+  CHECK(count_of(unknown.out, "the interval does not include model error") == 1);
   CHECK_THAT(unknown.out, Contains("no healthy record of this signal") &&
                               Contains("--healthy LEVEL") && Contains("level_class"));
   const json without = json::parse(folder.read("out/diagnosis.json"));

@@ -282,7 +282,7 @@ TEST_CASE("load_hdf5: no other file is opened, and no foreign filter loaded", "[
 TEST_CASE("load_hdf5: what is no HDF5 file", "[datasets]") {
   const TemporaryFolder folder;
   CHECK_THAT(read_refusal(folder.write("a.h5", "t,x\n0,1\n"), {"/t"}),
-             Contains("a.h5: is truncated or damaged, or no HDF5 file"));
+             Contains("a.h5: is truncated or damaged, or not an HDF5 file"));
   CHECK_THAT(read_refusal(folder.write("b.h5", ""), {"/t"}), Contains("b.h5: "));
   CHECK_THAT(read_refusal(folder.path() / "none.h5", {"/t"}), Contains("cannot be opened"));
   CHECK_THAT(message_when([&] {

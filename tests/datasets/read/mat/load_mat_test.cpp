@@ -192,7 +192,7 @@ TEST_CASE("load_mat: what is no column of numbers", "[datasets]") {
       {"position(:", {"'position(:' lacks a closing bracket"}},
       {"position(2)", {"does not name a whole row or column"}},
       {"log(:).time", {"takes all elements of 'log'"}},
-      {"position(0,:)", {"has a subscript that is no number from 1"}},
+      {"position(0,:)", {"has a subscript that is not a number from 1"}},
       {"position mm", {"goes on with 'mm'"}},
       {".position", {"lacks the name of a variable"}}};
   const TemporaryFolder folder;
@@ -322,7 +322,7 @@ TEST_CASE("load_mat: damaged compressed data do not pass", "[datasets]") {
 TEST_CASE("load_mat: what is no MAT file", "[datasets]") {
   const TemporaryFolder folder;
   CHECK_THAT(message_of(folder.write("a.mat", std::string(400, 'x')), {{"t"}, ""}),
-             Contains("is no MAT file of version 5 or 7.3"));
+             Contains("is not a MAT file of version 5 or 7.3"));
   CHECK_THAT(message_of(folder.write("b.mat", ""), {{"t"}, ""}), Contains("is shorter than"));
   CHECK_THAT(message_of(folder.path() / "none.mat", {{"t"}, ""}), Contains("cannot be opened"));
   CHECK_THAT(message_of(folder.path(), {{"t"}, ""}), Contains("is a folder"));
