@@ -54,17 +54,17 @@ FitResultPtr made(const CampaignPtr& self, const std::string& call,
                   const std::function<report::JobResult(std::shared_ptr<const datasets::Campaign>,
                                                         const report::JobTerms&)>& job) {
   std::atomic<bool> cancel{false};
-  Progress told(progress, cancel);
+  Progress reporter(progress, cancel);
   report::JobTerms terms{call, report::recorded(self->choice), thread_count(threads), cancel};
   terms.hold = [](const report::PlannedFiles&) {};
-  terms.watch = [&](calib::FitOptions& settings, const std::string&) { told.attach(settings); };
+  terms.watch = [&](calib::FitOptions& settings, const std::string&) { reporter.attach(settings); };
   FitResultPtr found;
   const auto raised = run_interruptibly(cancel, [&] {
     const std::shared_ptr<const datasets::Campaign> campaign(self, &self->campaign);
     found = std::make_shared<FitResult>(FitResult{std::move(*job(campaign, terms).fit), self});
   });
   if (raised) raise_interrupted(raised, found);
-  told.rethrow();
+  reporter.rethrow();
   return found;
 }
 

@@ -43,10 +43,12 @@ ResultPtr job_result(const char* kind, std::string name, std::string call,
                      const JobProgress& progress,
                      const std::function<report::JobResult(const report::JobTerms&)>& job) {
   std::atomic<bool> cancel{false};
-  Progress told(progress, cancel);
+  Progress reporter(progress, cancel);
   report::JobTerms terms{std::move(call), report::recorded(choice), thread_count(threads), cancel};
   terms.hold = [](const report::PlannedFiles&) {};
-  terms.progress = [&](const char* pieces, int done, int all) { told.pieces(pieces, done, all); };
+  terms.progress = [&](const char* pieces, int done, int all) {
+    reporter.pieces(pieces, done, all);
+  };
   auto result = std::make_shared<Result>();
   const auto raised = run_interruptibly(cancel, [&] {
     report::JobResult found = job(terms);
@@ -59,7 +61,7 @@ ResultPtr job_result(const char* kind, std::string name, std::string call,
     result->inputs = std::move(found.inputs);
   });
   if (raised) std::rethrow_exception(raised);
-  told.rethrow();
+  reporter.rethrow();
   return result;
 }
 

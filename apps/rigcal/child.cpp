@@ -67,11 +67,11 @@ report::VerbEnd not_started(const char* what) {
 /// Reads until the child closes its end of the pipe.
 std::string read_all(int pipe, pid_t child, const std::atomic<bool>& cancel) {
   std::string text;
-  bool told = false;
+  bool signalled = false;
   for (;;) {
-    if (cancel && !told) {
+    if (cancel && !signalled) {
       ::kill(child, SIGTERM);
-      told = true;
+      signalled = true;
     }
     pollfd look{pipe, POLLIN, 0};
     if (::poll(&look, 1, kLookEvery_ms) <= 0) continue;

@@ -31,10 +31,10 @@ std::vector<double> drive_of(const Campaign& campaign, const Condition& conditio
 void find(Channel channel, const Repeat& repeat, const std::vector<double>& drive,
           std::vector<SensorFault>& faults) {
   const std::vector<double>& x = repeat.values.at(channel);
-  std::set<std::size_t> told;  // starts of the runs that are already reported
+  std::set<std::size_t> reported;  // starts of these runs
   const auto add = [&](Kind kind, const std::vector<EqualRun>& runs) {
     for (const EqualRun& run : runs) {
-      if (!told.insert(run.begin).second) continue;
+      if (!reported.insert(run.begin).second) continue;
       faults.push_back({channel,
                         kind,
                         repeat.source,

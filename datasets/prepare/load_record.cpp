@@ -230,13 +230,13 @@ Record without_outliers(const Condition& condition, std::vector<Repeat>& repeats
   for (std::size_t r = 0; r < repeats.size(); ++r)
     if (!all.repeat_reports[r].outlier) kept.push_back(std::move(repeats[r]));
   repeats = std::move(kept);
-  std::vector<std::string> told;
+  std::vector<std::string> reworded;
   for (const std::string& warning : all.warnings)
     if (warning.ends_with(kStaysInMean))
-      told.push_back(warning.substr(0, warning.size() - kStaysInMean.size()) +
-                     "it is left out, as [averaging] outliers asks");
+      reworded.push_back(warning.substr(0, warning.size() - kStaysInMean.size()) +
+                         "it is left out, as [averaging] outliers asks");
   Record record = average(condition.id, repeats, options);
-  record.warnings.insert(record.warnings.begin(), told.begin(), told.end());
+  record.warnings.insert(record.warnings.begin(), reworded.begin(), reworded.end());
   return record;
 }
 

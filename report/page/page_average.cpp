@@ -87,8 +87,8 @@ std::vector<Figure> average_figures(const std::string& condition, const Table& s
     line.x = thinned_times(*time_s, *mean, thin);
     line.y = thinned(*mean, thin);
     for (double& value : line.y) value /= si;
-    const bool scatter = sd != nullptr && largest(*sd) > 0.0;
-    if (scatter) {
+    const bool has_sd = sd != nullptr && largest(*sd) > 0.0;
+    if (has_sd) {
       Trace band = empty_trace(Trace::Kind::band, "measured", "sd of repeats");
       band.x = line.x;
       const std::vector<double> half = thinned_where(*sd, *mean, thin);
@@ -100,7 +100,7 @@ std::vector<Figure> average_figures(const std::string& condition, const Table& s
     }
     plot.traces.push_back(std::move(line));
     figures.push_back({fmt::format("{}_{}_mean", condition, about.key), std::move(plot)});
-    if (!scatter) continue;
+    if (!has_sd) continue;
     Plot spread = plot_of(
         fmt::format("{} of {}, standard deviation of its repeats over time", words, condition),
         "sd of " + words, largest(*sd), si);

@@ -292,15 +292,15 @@ doc::Table confusion_table(const diagnosis::Accuracy& method, const char* name) 
 
 /// Returns the general warnings, followed by those of the records, without duplicates.
 std::vector<std::string> diagnosis_warnings(const Diagnosis& diagnosis) {
-  std::vector<std::pair<std::string, std::string>> told;
+  std::vector<std::pair<std::string, std::string>> by_record;
   for (const RecordDiagnosis& record : diagnosis.records) {
     const std::string name = record.is_average()
                                  ? record.condition
                                  : fmt::format("{} repeat {}", record.condition, *record.repeat);
-    for (const std::string& warning : record.warnings) told.emplace_back(name, warning);
+    for (const std::string& warning : record.warnings) by_record.emplace_back(name, warning);
   }
   std::vector<std::string> list = diagnosis.warnings;
-  for (std::string& line : gathered_by_text(told)) list.push_back(std::move(line));
+  for (std::string& line : gathered_by_text(by_record)) list.push_back(std::move(line));
   return list;
 }
 

@@ -149,17 +149,19 @@ Response response_of(std::optional<double> frequency_hz, const Table& series,
     return {{},
             fmt::format("Gain and phase of {}: no frequency has a coherence of {:g} or more.",
                         curves.of, metrics::kLeastCoherence)};
-  const bool scatter = std::any_of(curves.record.begin(), curves.record.end(),
-                                   [](const auto& point) { return point.interval.has_value(); });
+  const bool has_intervals =
+      std::any_of(curves.record.begin(), curves.record.end(),
+                  [](const auto& point) { return point.interval.has_value(); });
   const std::string where =
       frequency_hz && estimated == 1 ? "at the fundamental of the drive"
       : frequency_hz
           ? fmt::format("at {} of {} harmonics of the drive", curves.record.size(), estimated)
           : fmt::format("at {} of {} frequencies", curves.record.size(), estimated);
-  std::string words = fmt::format(
-      "Gain and phase of {} {}, where the coherence is {:g} or more; {}.", curves.of, where,
-      metrics::kLeastCoherence,
-      scatter ? "bars: 95 % intervals, from the coherence" : "a single period, so no interval");
+  std::string words =
+      fmt::format("Gain and phase of {} {}, where the coherence is {:g} or more; {}.", curves.of,
+                  where, metrics::kLeastCoherence,
+                  has_intervals ? "bars: 95 % intervals, from the coherence"
+                                : "a single period, so no interval");
   return {std::move(curves), std::move(words)};
 }
 

@@ -102,11 +102,11 @@ doc::Section warnings_section(const StoredFit& fit) {
   doc::List warnings{{}, doc::State::warn};
   for (const std::string& warning : fit.warnings) {
     // The parameter table already shows this reason.
-    const bool told = std::any_of(
+    const bool is_shown = std::any_of(
         fit.parameters.begin(), fit.parameters.end(), [&](const calib::FittedParameter& p) {
           return p.fitted && !p.reason.empty() && warning.ends_with(": " + p.reason);
         });
-    if (!told) warnings.items.push_back({warning});
+    if (!is_shown) warnings.items.push_back({warning});
   }
   if (warnings.items.empty() && fit.failures.empty())
     section.blocks.emplace_back(doc::reading("None."));
