@@ -26,10 +26,10 @@ constexpr double kAtLimit = 0.999;
 /// Largest y (see the header) that the two changes can determine reliably. Close to 1, simulation
 /// noise can produce any quotient.
 constexpr double kSlowest = 0.8;
-/// After kTellingPeriods, a loop that oscillates by itself can be recognised: its transient has not
-/// decreased to the fraction kDecays since the run with half as many periods, as it would have to
-/// if it were to decay within the maximum number of periods. In addition, the remaining transient
-/// must exceed kNotNoise tolerances, to be distinguishable from simulation noise.
+/// After kTellingPeriods, a loop in self-sustained oscillation can be recognised: its transient has
+/// not decreased to the fraction kDecays since the run with half as many periods, as it would have
+/// to if it were to decay within the maximum number of periods. In addition, the remaining
+/// transient must exceed kNotNoise tolerances, to be distinguishable from simulation noise.
 constexpr int kTellingPeriods = 256;
 constexpr double kDecays = 0.7;
 constexpr double kNotNoise = 10.0;

@@ -230,8 +230,8 @@ void judge_unexplained(const FittedParameter& estimate, std::vector<Reason>& rea
 }
 
 /// Notes how far a model error that is tolerated, and too small for the residuals to show it, could
-/// move an estimate beyond its interval. It is no reservation, because a right model would have it
-/// as well (docs/decisions/0066-unseen-error.md).
+/// move an estimate beyond its interval. It is not a reservation, because a correct model would
+/// have it as well (docs/decisions/0066-unseen-error.md).
 void note_unseen(const Fit& fit, std::vector<Reason>& reasons) {
   const FittedParameter* worst = nullptr;
   double times = 1.0;

@@ -15,7 +15,7 @@ struct ReportField {
   std::string_view label;  ///< on the page
   std::string_view doc;    ///< for schema and documents
   bool is_date = false;
-  bool is_fact = true;  ///< listed with item and method, not at the top or beside a signature
+  bool is_fact = true;  ///< listed with item and method, not at the top or with a signature
 };
 
 /// What a test report must state in addition to results (ISO/IEC 17025:2017, 7.8.2), in the order

@@ -140,7 +140,7 @@ FileColumns file_columns(const fs::path& file) {
       found.unknown.push_back({name, guess.unit, std::string(guess.other)});
     }
   }
-  // A "ref" without a unit beside an angle is a reference of that angle.
+  // If there is an angle, a "ref" without a unit is its reference.
   if (column_of(found, Channel::angle) != nullptr) {
     for (ChannelColumns& column : found.channels)
       if (column.channel == Channel::reference && column.unit.empty())

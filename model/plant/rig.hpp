@@ -137,8 +137,8 @@ struct SimulationInputs {
   double drive_begins_s = 0.0;               ///< time of its first sample; see Rig::before
   /// Added to the spool signal [V, or Pa for a pilot]; represents the play of a valve.
   std::optional<Signal> spool_error{};
-  /// Acceleration of what the cylinder is fixed to, in the direction of positive travel. Position
-  /// and velocity are relative to it.
+  /// Acceleration of the base to which the cylinder is fixed, in the direction of positive travel.
+  /// Position and velocity are relative to it.
   std::optional<Signal> base_acceleration_m_per_s2{};
   std::optional<Signal> oil_temperature_k{};  ///< replaces the parameter `oil_temperature`
 };

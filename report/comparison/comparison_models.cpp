@@ -31,7 +31,8 @@ bool same_weights(const std::vector<StoredWeight>& a, const std::vector<StoredWe
 
 /// For channels whose noise the fit estimated, recomputes the cost and the log terms at the
 /// maximum-likelihood standard deviation, which is the rms residual. The estimate of the fit may
-/// still differ from it by a tenth. Priors are ignored because they are few among many residuals.
+/// still differ from it by up to 10 %. Priors are ignored because they are few among many
+/// residuals.
 void take_likeliest_noise(const std::vector<StoredWeight>& weights, Candidate& candidate) {
   constexpr double kLeastRms = 1e-12;  // in SI units; keeps the likelihood of an exact fit finite
   double cost = 0.0;

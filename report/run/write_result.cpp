@@ -105,7 +105,7 @@ std::vector<InputFile> add_residuals(const Result& result, int threads,
   return files;
 }
 
-/// Returns a reader that makes the table of a residual file when it is asked for.
+/// Returns a reader that makes the table of a residual file on demand.
 ReadFile tables_of(const Result& result) {
   return [&result](const fs::path& path) -> std::shared_ptr<const ResultFile> {
     for (const calib::ConditionScore& score : result.fit.conditions)

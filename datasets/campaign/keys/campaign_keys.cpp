@@ -71,7 +71,7 @@ class SchemaWriter {
 
  private:
   /// Returns the schema of a key, with the description, default and example that an editor shows.
-  /// Editors ignore members beside a `$ref`.
+  /// Editors ignore other members next to a `$ref`.
   OrderedJson entry(const CampaignKey& row) {
     OrderedJson schema = OrderedJson::object();
     std::string about = row.doc;

@@ -177,7 +177,7 @@ Line doubt_line(const StoredFit& fit, const calib::Reason& reason, const char* s
   return line;
 }
 
-/// Returns true for what the small print below the calibrated values says.
+/// Returns true for reasons that the small print below the calibrated values states.
 bool is_below_values(const calib::Reason& reason) {
   return reason.code == "exact_values" || reason.code == "unseen_error";
 }
