@@ -72,8 +72,7 @@ class Statements {
     if (other && std::abs(other->sd - stated.sd) > kSame * std::max(other->sd, stated.sd)) {
       stated.node.fail(
           fmt::format("is a standard uncertainty of {:.6g}, but '{}' at {} states {:.6g}: expected "
-                      "the same, or "
-                      "one of them",
+                      "the same value, or only one of them",
                       stated.sd, other->node.path(), other->node.where().text(), other->sd));
     }
     if (!other) other = stated;

@@ -225,7 +225,7 @@ std::string unreadable_text(const std::vector<FileGroup>& groups) {
     const std::string rows = unreadable_rows(file, columns);
     if (rows.empty()) continue;
     text += "# " +
-            in_comment(fmt::format("a campaign refuses {}: {}", file.filename().string(), rows)) +
+            in_comment(fmt::format("a campaign rejects {}: {}", file.filename().string(), rows)) +
             "\n";
   }
   return text.empty() ? text : text + "\n";

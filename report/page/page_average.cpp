@@ -211,7 +211,7 @@ std::vector<doc::Section> average_sections(const AverageFiles& stored) {
   const std::vector<std::string> notes = texts_of(stored.result, &StoredRecord::notes);
   if (!notes.empty())
     section.blocks.emplace_back(doc::Fold{
-        fmt::format("What was done to the recordings ({})", notes.size()), {list_of(notes)}});
+        fmt::format("Processing of the recordings ({})", notes.size()), {list_of(notes)}});
   return {std::move(section), std::move(means)};
 }
 

@@ -251,9 +251,9 @@ constexpr std::array kMethods{
     MethodName{&diagnosis::Methods::fitted_leak_single, "Fitted leak, single repeats"},
     MethodName{&diagnosis::Methods::fitted_leak_averaged, "Fitted leak, averages"},
     MethodName{&diagnosis::Methods::features_leave_one_repeat_out,
-               "Paper's features, learned without the repeat"},
+               "Paper's features, clusters without the repeat"},
     MethodName{&diagnosis::Methods::features_leave_one_signal_out,
-               "Paper's features, learned without the signal"}};
+               "Paper's features, clusters without the signal"}};
 
 /// Returns a row with the accuracy of a classification method.
 doc::Row accuracy_row(const diagnosis::Accuracy& method, const char* name) {

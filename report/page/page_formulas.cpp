@@ -78,8 +78,8 @@ constexpr std::array kFormulas{
             "sum e(t) u(t-lag) / (n std(e) std(u)), u the reference or command; band by the "
             "effective sample size, Bonferroni for the peak"},
     Formula{"periodogram",
-            "power of each line of the Fourier transform, averaged over 30 bins a decade; test of "
-            "the cumulative periodogram (Bartlett)"},
+            "power of each line of the Fourier transform, averaged over 30 bins per decade; test "
+            "of the cumulative periodogram (Bartlett)"},
     Formula{"quantiles",
             "quantiles of (e - mean) / std against those of the normal distribution; test of "
             "Jarque and Bera with the effective sample size"},

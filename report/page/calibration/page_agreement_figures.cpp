@@ -201,8 +201,8 @@ std::vector<ChannelAgreement> channel_agreements(const std::string& condition,
              name_of(rest), rest.si)});
     const auto* sd = series.find(fmt::format("prediction_sd_{}", about.name));
     found.residual = fmt::format(
-        "Residual of {} over {} samples: mean {}, standard deviation {}; dashed beside the line of "
-        "equality: 95 % limits of agreement.",
+        "Residual of {} over {} samples: mean {}, standard deviation {}; dashed on both sides of "
+        "the line of equality: 95 % limits of agreement.",
         words, moments.samples, readable(moments.mean, about.unit, 3),
         readable(moments.sd, about.unit, 3));
     if (sd != nullptr) found.residual += " " + coverage_words(e, counted(*sd, window));

@@ -157,10 +157,10 @@ doc::Blocks provenance_blocks(const StoredProvenance& provenance, const std::str
   for (const auto& [option, value] : provenance.options) add("Option " + option, value);
   facts.rows.insert(facts.rows.end(), making.rows.begin(), making.rows.end());
   return {doc::Heading{{name}}, doc::Command{provenance.command}, std::move(facts),
-          doc::Paragraph{{fmt::format("Drawn from {} and the files beside it; ", file),
-                          doc::Code{"rigcal report"},
-                          " with their folder draws the same page again, byte for byte."},
-                         doc::Paragraph::Tone::source}};
+          doc::Paragraph{
+              {fmt::format("Drawn from {} and the files in its folder; ", file),
+               doc::Code{"rigcal report"}, " reproduces the page from that folder, byte for byte."},
+              doc::Paragraph::Tone::source}};
 }
 
 namespace {

@@ -111,9 +111,8 @@ std::optional<doc::Fold> whiteness_fold(const metrics::ResidualCurves& curves) {
   if (gallery.figures.empty()) return std::nullopt;
   doc::Fold fold{"Partial autocorrelation and cumulative periodogram", {std::move(gallery)}};
   fold.style = "screen";
-  fold.blocks.emplace_back(
-      doc::reading("Dashed: 95 % bounds for white noise, at a single lag (left) and for the whole "
-                   "curve (right)."));
+  fold.blocks.emplace_back(doc::reading(
+      "Dashed: 95 % bounds for white noise, at a single lag and for the whole cumulative curve."));
   return fold;
 }
 

@@ -36,7 +36,7 @@ std::string end_words(const calib::ProfileEnd& end, const ReadableUnit& unit, co
 Plot profile_plot(const calib::FittedParameter& parameter, const calib::Profile& profile) {
   const ReadableUnit unit = unit_of(parameter);
   Plot plot;
-  plot.title = fmt::format("Profile of {}: the followed points, and a curve through them",
+  plot.title = fmt::format("Profile of {}: computed points, and a curve through them",
                            parameter_label(parameter));
   plot.x_label = unit.name.empty() ? parameter_label(parameter)
                                    : fmt::format("{} [{}]", parameter_label(parameter), unit.name);
