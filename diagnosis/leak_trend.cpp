@@ -139,7 +139,7 @@ std::string next_limit_of(const LeakTrend& trend) {
   const auto& limit = trend.next_limit;
   if (!limit || is_far(trend, limit->reached_day)) return {};
   const bool open = !limit->latest_day || is_far(trend, *limit->latest_day);
-  return fmt::format(" At this rate it reaches {} ({:g} %) on about {} ({} to {}).",
+  return fmt::format(" At this rate it reaches {} ({:g} %) about {} ({} to {}).",
                      to_string(limit->class_), limit->percent, limit->reached, limit->earliest,
                      open ? "never, as far as is known" : *limit->latest);
 }

@@ -709,7 +709,7 @@ TEST_CASE("export: bad input", "[apps]") {
       {"export", "fmu", "campaign.toml", "--set", "transport_delay=4 ms", "--out", "out"});
   CHECK(delay.exit_code == 2);
   CHECK_THAT(delay.err,
-             Contains("transport_delay is 0.004 s, but the inputs of an FMU act at once"));
+             Contains("transport_delay is 0.004 s, but the inputs of an FMU act without delay"));
   const Outcome without = folder.run({"export", "fmu", "campaign.toml", "--set",
                                       "transport_delay=4 ms", "--without-delay", "--out", "late"});
   CHECK(without.exit_code == 0);

@@ -110,7 +110,7 @@ TEST_CASE("fit: what a certificate states of a sensor counts, or is told", "[app
 
   const Outcome other = judged("uncertainty = \"class 0.1\"\n");
   CHECK(other.exit_code == 1);
-  CHECK_THAT(other.out, Catch::Contains("\"class 0.1\", does not count"));
+  CHECK_THAT(other.out, Catch::Contains("\"class 0.1\", is not used"));
   CHECK_THAT(folder.run({"check", "twin/judged.toml"}).out,
              Catch::Contains("warning: the uncertainty of the sensor of position"));
 

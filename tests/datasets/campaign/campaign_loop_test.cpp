@@ -53,7 +53,7 @@ TEST_CASE("load_campaign: a loop on force has its gains, its reference and ampli
 
 TEST_CASE("load_campaign: a loop has no gains but its own", "[datasets]") {
   CHECK_THAT(loop_refusal_of(force_loop(kLoopGain)),
-             Catch::Contains("kp is a gain of a loop on position, and this one is on force") &&
+             Catch::Contains("kp is a gain of a loop on position, but this one is on force") &&
                  Catch::Contains("expected force_kp"));
   CHECK_THAT(
       loop_refusal_of(replaced(kExample, kLoopGain, kLoopGain + "\nforce_ki = \"1 V/(N s)\"")),
@@ -93,7 +93,7 @@ TEST_CASE(
              Catch::Contains("has no reference_frequency: expected reference_frequency and "
                              "reference_damping_ratio in [rig.controller]"));
   CHECK_THAT(loop_refusal_of(with(control + gains + generator + "kd = \"1 V s/m\"")),
-             Catch::Contains("kd is a gain of a loop on position, and this one is on "
+             Catch::Contains("kd is a gain of a loop on position, but this one is on "
                              "three_variable: expected velocity_kp"));
   CHECK_THAT(loop_refusal_of(with(control + gains + generator + "acceleration_ki = \"1 V s/m\"")),
              Catch::Contains("acceleration_ki is a gain of a loop on acceleration"));
@@ -106,7 +106,7 @@ TEST_CASE(
                              "is on position"));
   CHECK_THAT(
       loop_refusal_of(with(kLoopGain + "\nvelocity_kp = \"2 V s/m\"")),
-      Catch::Contains("velocity_kp is a gain of a loop on three_variable, and this one is on "
+      Catch::Contains("velocity_kp is a gain of a loop on three_variable, but this one is on "
                       "position: expected kd"));
   CHECK_THAT(loop_refusal_of(with(kLoopGain + "\nacceleration_kp = \"2 V s2/m\"")),
              Catch::Contains("acceleration_kp is a gain of a loop on acceleration"));

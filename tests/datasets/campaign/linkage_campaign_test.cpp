@@ -204,7 +204,7 @@ TEST_CASE("load_campaign: the controller of a linkage may act on torque or press
         load_text(replaced(text, "type = \"pid\"",
                            "type = \"pid\"\nangular_velocity_feedforward = \"1 V s/rad\"\n"
                            "derivative_filter = \"200 rad/s\"")),
-        Catch::Contains("angular_velocity_feedforward feeds the rate of an angle forward, and this "
+        Catch::Contains("angular_velocity_feedforward feeds the rate of an angle forward, but this "
                         "loop is on " +
                         std::string(row.feedback) + ": expected feedback = \"angle\""));
   }
@@ -222,10 +222,10 @@ TEST_CASE("load_campaign: what does not go together in a loop on the angle", "[d
             "joint, its torque or the pressure difference: expected \"angle\", \"torque\" or "
             "\"load_pressure\""},
         Row{"type = \"pid\"", "type = \"pid\"\nfeedback = \"torque\"",
-            "angle_kp is a gain of a loop on angle, and this one is on torque: expected torque_kp, "
+            "angle_kp is a gain of a loop on angle, but this one is on torque: expected torque_kp, "
             "or feedback = \"angle\""},
         Row{"angle_kp", "torque_kp = \"1 mV/(N m)\"\nangle_kp",
-            "torque_kp is a gain of a loop on torque, and this one is on angle"},
+            "torque_kp is a gain of a loop on torque, but this one is on angle"},
         Row{"angle_kp = \"0.2 V/deg\"\n", "", "the pid controller has no angle_kp"},
         Row{"angle_kp", "kp", "unknown parameter 'kp'"},
         Row{"angle_kp", "angle_kd = \"1 V s/rad\"\nangle_kp", "angle_kd without derivative_filter"},

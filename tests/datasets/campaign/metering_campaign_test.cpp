@@ -180,7 +180,7 @@ TEST_CASE("load_campaign: feed-forward is of a position loop with a filter", "[d
   CHECK_THROWS_WITH(load_text(loop("feedback = \"force\"\nforce_kp = \"1 V/kN\"\n"
                                    "derivative_filter = \"300 rad/s\"\n"
                                    "acceleration_feedforward = \"0.1 V s2/m\"\n")),
-                    Catch::Contains("feeds the rate of a position forward, and this loop is on "
+                    Catch::Contains("feeds the rate of a position forward, but this loop is on "
                                     "force"));
   const Campaign campaign = load_text(loop(gains + "derivative_filter = \"300 rad/s\"\n"));
   CHECK(values_in(campaign, campaign.conditions.front())["velocity_feedforward"] == 2.0);

@@ -260,7 +260,7 @@ TEST_CASE("load_xlsx: sheets by their names", "[datasets]") {
   CHECK(columns[3].name == "'it''s!'!wow!x");
   CHECK(read_columns(path, {columns[3].name}) == Table{{10, 11}});
   CHECK_THAT(read_refusal(path, {"t", "Short!t"}),
-             Contains("'Short!t' has 1 rows, but 't' has 2; expected as many"));
+             Contains("'Short!t' has 1 rows, but 't' has 2; expected the same number"));
   CHECK_THAT(read_refusal(path, {"Shrt!t"}),
              Contains("unknown column 'Shrt!t'") && Contains("unknown sheet 'Shrt'; did you mean "
                                                              "'Short'?"));
