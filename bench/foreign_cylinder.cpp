@@ -18,7 +18,7 @@ using CylinderState = std::array<double, 4>;
 
 double leak_of(const ForeignCylinder& rig, double load) {
   return rig.leak_coefficient * rig.leak_area_m2 * std::sqrt(2.0 / rig.density_kg_per_m3) *
-             straightened_root(load, rig.straight_below_pa) +
+             smoothed_root(load, rig.straight_below_pa) +
          rig.laminar_m3_per_s_pa * load;
 }
 
@@ -27,7 +27,7 @@ CylinderState rate(const ForeignCylinder& rig, const CylinderState& s, double re
   const double opening = rig.discharge * rig.gradient_m * rig.valve_gain_m_per_v * std::abs(volts) *
                          std::sqrt(2.0 / rig.density_kg_per_m3);
   const auto through = [&](double from, double to) {
-    return opening * straightened_root(from - to, rig.straight_below_pa);
+    return opening * smoothed_root(from - to, rig.straight_below_pa);
   };
   const bool out = volts > 0.0;
   const double into_a = out ? through(rig.supply_pa, s[2]) : -through(s[2], rig.tank_pa);

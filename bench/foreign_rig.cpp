@@ -29,7 +29,7 @@ double without_band(double volts, double half_width) {
 double valve_flow(const ForeignRig& rig, double volts, double load, double supply) {
   const double head = volts < 0.0 ? supply + load : supply - load;
   return rig.valve_gain_m_per_v * volts * rig.discharge * rig.gradient_m /
-         std::sqrt(rig.density_kg_per_m3) * straightened_root(head, rig.straight_below_pa);
+         std::sqrt(rig.density_kg_per_m3) * smoothed_root(head, rig.straight_below_pa);
 }
 
 /// Returns a friction force that grows with speed and reaches its full size at a few millimetres
@@ -91,7 +91,7 @@ ForeignState slope(const ForeignRig& rig, const ForeignState& s, const Memory& m
   }
   const double leak = rig.leak_coefficient * rig.leak_area_m2 *
                           std::sqrt(2.0 / rig.density_kg_per_m3) *
-                          straightened_root(load, rig.straight_below_pa) +
+                          smoothed_root(load, rig.straight_below_pa) +
                       rig.laminar_m3_per_s_pa * load;
   const double fading = velocity / 0.01;
   const double friction = rubbing(rig.friction_n + rig.breakaway_n * std::exp(-fading * fading) +
@@ -162,7 +162,7 @@ void tick(const ForeignRig& rig, double reference, ForeignState& s, Memory& memo
 
 }  // namespace
 
-double straightened_root(double pressure, double below) {
+double smoothed_root(double pressure, double below) {
   return pressure / std::pow(pressure * pressure + below * below, 0.25);
 }
 

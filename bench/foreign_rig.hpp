@@ -47,7 +47,7 @@ struct ForeignRig {
 };
 
 /// Returns the signed root of a pressure, which is straight well below `below` [Pa].
-double straightened_root(double pressure, double below);
+double smoothed_root(double pressure, double below);
 
 /// Returns the reference at a time [m]; 0 before the record begins.
 double reference_at(const Reference& reference, double t);

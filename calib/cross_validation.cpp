@@ -121,7 +121,7 @@ std::vector<HeldOut> cross_validate(const Campaign& campaign,
   std::vector<HeldOut> result(ids.size());
   if (ids.size() == 1) {
     result[0].condition = ids[0];
-    result[0].problem = "it is the only condition of the fit: expected two at least";
+    result[0].problem = "it is the only condition of the fit: expected at least two";
     return result;
   }
   const std::optional<long> allowed = left.evaluations_left();
@@ -209,10 +209,10 @@ std::vector<std::string> cross_validation_words(const std::vector<HeldOut>& held
       }
     }
     if (held.shifted && std::abs(held.largest_shift.value_or(0.0)) > kFarShift) {
-      words.push_back(fmt::format(
-          "condition \"{}\" left out: {} moves by {:.2g} of its errors, so this condition decides "
-          "it or contradicts the others",
-          held.condition, *held.shifted, *held.largest_shift));
+      words.push_back(
+          fmt::format("condition \"{}\" left out: {} changes by {:.2g} standard errors, so this "
+                      "condition determines it or contradicts the others",
+                      held.condition, *held.shifted, *held.largest_shift));
     }
   }
   return words;

@@ -42,7 +42,7 @@ std::set<std::string> fitted_conditions(const Campaign& campaign) {
   return ids;
 }
 
-/// Adds what the campaign states about a condition.
+/// Adds the campaign's statements about a condition.
 void add_stated(const Campaign& campaign, ConditionScore& score) {
   const Condition* condition = campaign.find(score.id);
   if (condition == nullptr) return;

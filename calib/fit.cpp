@@ -62,10 +62,10 @@ bool asks_for_more(const FitOptions& options) {
 
 /// Runs the steps requested in addition to the fit: bootstrap, profiles, posterior,
 /// cross-validation. If the budget runs out, the finished steps are kept.
-void look_again(const Problem& problem, const Campaign& campaign,
-                const std::vector<Record>& records, const Solved& solved,
-                const std::optional<EffectLikelihood>& effects, const FitOptions& options,
-                Budget& budget, Fit& fit) {
+void run_requested_steps(const Problem& problem, const Campaign& campaign,
+                         const std::vector<Record>& records, const Solved& solved,
+                         const std::optional<EffectLikelihood>& effects, const FitOptions& options,
+                         Budget& budget, Fit& fit) {
   const auto note = [&](StoppedIn stage) {
     if (budget.spent() && !fit.stopped_in) fit.stopped_in = stage;
   };
@@ -298,10 +298,10 @@ Fit fit(const Campaign& campaign, const std::vector<Record>& records, const FitO
     if (result.status == FitStatus::converged && unscored)
       result.stopped_in = StoppedIn::validation;
     if (result.status == FitStatus::converged) {
-      look_again(problem, campaign, records, solved, effects, options, budget, result);
+      run_requested_steps(problem, campaign, records, solved, effects, options, budget, result);
     } else if (asks_for_more(options)) {
       result.message +=
-          "; bootstrap, profiles, posterior and cross-validation are made of what converged only";
+          "; bootstrap, profiles, posterior and cross-validation require a converged fit";
     }
     if (validation) add_validation(std::move(*validation), result);
     if (result.status == FitStatus::converged && result.stopped_in) {

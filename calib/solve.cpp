@@ -74,7 +74,7 @@ Solved solve_problem(Problem& problem, Evaluator& evaluator, const FitOptions& o
   fit.tolerance = problem.tolerance;
   if (!found.optimum.ok) {
     if (fit.starts.size() > 1)
-      fit.message = "no start could be simulated; of the first: " + fit.message;
+      fit.message = "no start could be simulated; the first one: " + fit.message;
     return {};
   }
   give_freed_memory_back();  // the next steps allocate blocks of other sizes
@@ -110,8 +110,8 @@ Solved solve_from_starts(Problem& problem, Evaluator& evaluator, const FitOption
   fit = {};
   fit.warnings = warnings;
   fit.warnings.push_back(
-      fmt::format("the start of the campaign led to no minimum ({}): {} further starts were made, "
-                  "as with --starts {}",
+      fmt::format("the start of the campaign did not reach a minimum ({}): {} further starts were "
+                  "made, as with --starts {}",
                   why, options.further_starts, more.starts));
   return solve_problem(problem, evaluator, more, fit);
 }

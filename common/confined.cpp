@@ -90,8 +90,7 @@ bool write_all(int descriptor, const char* bytes, std::size_t count) {
 
 std::string no_process(int error) {
   return fmt::format(
-      "no process can be made in which to read a file: {}; try again later, or with "
-      "fewer threads",
+      "cannot start a process to read a file in: {}; try again later, or with fewer threads",
       std::strerror(error));
 }
 
@@ -131,7 +130,7 @@ bool read_until(Clock::time_point deadline, int descriptor, std::string& text) {
 }
 
 constexpr const char* kShortMemory =
-    "out of memory in the process that reads a file: a limit of memory is in force (ulimit -v)";
+    "out of memory in the process that reads a file: memory is limited (ulimit -v)";
 
 }  // namespace
 
@@ -175,8 +174,7 @@ std::string run_confined(const std::function<std::string()>& work, const Confine
     throw ConfinedFailure(fmt::format("it took more than {} s", confinement.cpu_seconds));
   if (signal == SIGKILL)
     throw NoResources(
-        "the system ended the process that reads a file, as it does where memory "
-        "runs out");
+        "the system ended the process that reads a file, as it does when memory runs out");
   if (confinement.memory_is_short()) throw NoResources(kShortMemory);
   throw ConfinedFailure(
       fmt::format("it crashed, or needed more than {} MB of memory", confinement.bytes >> 20));

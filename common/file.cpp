@@ -49,7 +49,7 @@ class RegularFile {
     ::close(descriptor_);
     throw InputError(
         where_, fmt::format("is {}; expected {}",
-                            S_ISDIR(status.st_mode) ? "a folder" : "no regular file", expected));
+                            S_ISDIR(status.st_mode) ? "a folder" : "not a regular file", expected));
   }
   RegularFile(const RegularFile&) = delete;
   RegularFile& operator=(const RegularFile&) = delete;
@@ -368,8 +368,8 @@ std::string sha256_of_unchanged(const FileState& before) {
   std::string hash = sha256_of_file(before.path);
   if (state_of_file(before.path) == before) return hash;
   throw InputError({before.path},
-                   "was changed while it was read, so that no result can say what it rests on; "
-                   "expected a file that stays as it is");
+                   "was changed while it was read, so a result could not state its inputs; "
+                   "expected a file that does not change");
 }
 
 std::string sha256_of_file(const fs::path& path) {

@@ -56,7 +56,7 @@ class FilesInWriting {
 
 /// Returns the content of a regular file. Never blocks on a pipe.
 ///
-/// @param expected  what the file should be, in words: "a campaign file (TOML)"
+/// @param expected  description of the expected file: "a campaign file (TOML)"
 /// @throws InputError  if there is no such file, or if it is a folder, pipe or device, has more
 ///                     than `most_bytes`, or cannot be read
 std::string read_file(const std::filesystem::path& path, std::size_t most_bytes,

@@ -9,7 +9,7 @@
 namespace rigcal {
 
 /// Gives the same result as std::from_chars(first, last, value), to the last bit. It is three times
-/// as fast for plain decimal numbers with few digits, which make up most of what loggers write.
+/// as fast for plain decimal numbers with few digits, which make up most of the output of loggers.
 ///
 /// A whole number below 2^53 and a power of ten up to 22 are exact doubles, so their quotient is
 /// rounded only once, and correctly (Clinger, How to read floating point numbers accurately, 1990).

@@ -270,8 +270,8 @@ std::string mismatch(const Unit& from, std::string_view from_text, const Unit& t
   if (without_radian == to_without_radian) {
     const bool rates = without_radian == std::map<std::string, int>{{"second", -1}};
     return rates ? fmt::format(
-                       "Hz and rad/s count turns (1 Hz = 2 pi rad/s), 1/s does not; '{}' "
-                       "cannot be taken for the other",
+                       "Hz and rad/s count turns (1 Hz = 2 pi rad/s), 1/s does not; '{}' cannot be "
+                       "converted to the other",
                        from_text)
                  : fmt::format(
                        "'{}' differs by an angle (rad or Hz), which is a unit of its own "
@@ -317,8 +317,7 @@ Split split_number(std::string_view text) {
   if (error == std::errc::result_out_of_range)
     throw QuantityError("the number is too large or too small");
   if (!std::isfinite(result.number)) throw QuantityError("the number is not finite");
-  if (rest != end && *rest == ',')
-    throw QuantityError("a number has a decimal point, and no comma");
+  if (rest != end && *rest == ',') throw QuantityError("a number has a decimal point, not a comma");
   result.unit = trimmed(std::string_view(rest, static_cast<std::size_t>(end - rest)));
   return result;
 }

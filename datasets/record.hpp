@@ -33,7 +33,7 @@ enum class Channel {
   acceleration_reference,   ///< reference of an acceleration loop [m/s2]
   angle,                    ///< angle of a joint [rad]
   pilot_pressure,           ///< pilot pressure of the spool [Pa]
-  base_acceleration,        ///< acceleration of what the cylinder is fixed to [m/s2]
+  base_acceleration,        ///< acceleration of the cylinder's base [m/s2]
   angle_reference,          ///< reference of a loop on the angle of a joint [rad]
   torque,                   ///< moment that the actuator transmits to a joint [N m]
   torque_reference,         ///< reference of a loop on that moment [N m]

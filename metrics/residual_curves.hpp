@@ -24,7 +24,7 @@ struct Spectrum {
   RIGCAL_DESCRIBE(frequency_hz, density)
 };
 
-/// Quantiles of (e - mean) / std beside those of the standard normal distribution, shape (points).
+/// Quantiles of (e - mean) / std and those of the standard normal distribution, shape (points).
 struct Quantiles {
   std::vector<double> normal_quantile, residual_quantile;
   RIGCAL_DESCRIBE(normal_quantile, residual_quantile)

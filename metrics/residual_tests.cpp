@@ -242,7 +242,7 @@ Normality test_normality(const std::vector<double>& e, double effective, Quantil
       effective / 6.0 *
       (result.skewness * result.skewness + 0.25 * result.excess_kurtosis * result.excess_kurtosis);
   result.p_value = std::exp(-0.5 * result.jarque_bera);
-  // Excess kurtosis that by itself raises the statistic to the 5 % point of chi-square with two
+  // Excess kurtosis that alone raises the statistic to the 5 % point of chi-square with two
   // degrees of freedom.
   const double kurtosis = std::sqrt(-2.0 * std::log(kWarningLevel) * 24.0 / effective);
   conclude(result, judge(result.p_value < kWarningLevel,

@@ -78,12 +78,12 @@ Trend weighted_trend(std::span<const double> x, std::span<const double> y,
     throw std::domain_error(
         "weighted_trend: the errors are too far from each other, or from the "
         "residuals about the line");
-  const auto scatter_freedom = static_cast<double>(n - 2);
-  trend.reduced_chi_square = trend.chi_square / scatter_freedom;
-  if (chi_squared_exceedance(trend.chi_square, scatter_freedom) <
+  const auto degrees_of_freedom = static_cast<double>(n - 2);
+  trend.reduced_chi_square = trend.chi_square / degrees_of_freedom;
+  if (chi_squared_exceedance(trend.chi_square, degrees_of_freedom) <
       (days.counted ? kWithDaysCounted : kUpperQuartile)) {
     trend.widened = std::max(1.0, std::sqrt(trend.reduced_chi_square));
-    trend.freedom = scatter_freedom;
+    trend.freedom = degrees_of_freedom;
   } else {
     std::vector<ErrorPart> parts;
     double named = 0.0;

@@ -59,7 +59,7 @@ CampaignPtr load_campaign(
 
 void bind_parameter(py::module_& module) {
   using model::ParameterSpec;
-  py::class_<Parameter> parameter(module, "Parameter", "A parameter that the campaign gives; SI.");
+  py::class_<Parameter> parameter(module, "Parameter", "A parameter of the campaign; SI.");
   parameter
       .def_property_readonly("key", field(&Parameter::spec, &ParameterSpec::key),
                              "Name in the campaign file: \"bulk_modulus\".")
@@ -73,21 +73,21 @@ void bind_parameter(py::module_& module) {
                              "In one line.")
       .def_property_readonly("start",
                              field(&Parameter::setting, &datasets::ParameterSetting::value),
-                             "The known value, or where the fit starts, in `unit`.")
+                             "Known value, or start value of the fit, in `unit`.")
       .def_property_readonly(
           "lower", [](const Parameter& self) { return none_if_nan(self.setting.lower); },
-          "Bound of the fit, in `unit`; None of a known value.")
+          "Bound of the fit, in `unit`; None for a known value.")
       .def_property_readonly(
           "upper", [](const Parameter& self) { return none_if_nan(self.setting.upper); },
-          "Bound of the fit, in `unit`; None of a known value.")
+          "Bound of the fit, in `unit`; None for a known value.")
       .def_property_readonly("free", field(&Parameter::setting, &datasets::ParameterSetting::fit),
                              "Whether it is fitted.")
       .def_property_readonly("scope",
                              field(&Parameter::setting, &datasets::ParameterSetting::scope),
                              "Scope of one value: \"rig\", \"leak_level\" or \"condition\".")
-      .def_property_readonly("nuisance",
-                             field(&Parameter::setting, &datasets::ParameterSetting::nuisance),
-                             "Fitted, but of no interest itself: validation estimates it again.")
+      .def_property_readonly(
+          "nuisance", field(&Parameter::setting, &datasets::ParameterSetting::nuisance),
+          "Whether it is a nuisance parameter, which validation estimates again.")
       .def_property_readonly(
           "prior",
           [](const Parameter& self) -> std::optional<std::pair<double, double>> {
@@ -108,13 +108,14 @@ void bind_condition(py::module_& module) {
       .def_readonly("id", &Condition::id, "Its name in campaign and results.")
       .def_readonly("use", &Condition::use, "\"fit\", \"validate\", \"diagnose\" or \"ignore\".")
       .def_readonly("waveform", &Condition::waveform, "\"sine\", \"square\", \"recorded\"...")
-      .def_readonly("frequency_hz", &Condition::frequency_hz, "[Hz]; of a chirp, where it begins.")
+      .def_readonly("frequency_hz", &Condition::frequency_hz,
+                    "Frequency [Hz]; for a chirp the one at its start.")
       .def_readonly("amplitude", &Condition::amplitude,
-                    "[m], or [V] where no controller is in the loop.")
-      .def_readonly("leak_level", &Condition::leak_level, "Name of the setting of the leak.")
+                    "Amplitude [m], or [V] without a controller.")
+      .def_readonly("leak_level", &Condition::leak_level, "Name of the leak level.")
       .def_readonly("temperature_k", &Condition::temperature_k, "[K]")
       .def_property_readonly("has_record", &Condition::has_record,
-                             "Whether the campaign names recordings of it.")
+                             "Whether the campaign has recordings of it.")
       .def("__repr__", [](const Condition& self) {
         return fmt::format("<rigcal.Condition {}: {}>", self.id, to_string(self.use));
       });
@@ -132,12 +133,11 @@ datasets::Record Campaign::record(const datasets::Condition& condition) const {
 CampaignClass bind_campaign(py::module_& module) {
   bind_parameter(module);
   bind_condition(module);
-  CampaignClass campaign(
-      module, "Campaign",
-      "A campaign file, checked and in SI. load() makes it; it does not change.");
+  CampaignClass campaign(module, "Campaign",
+                         "A checked campaign in SI units, made by load(). Immutable.");
   campaign
       .def_property_readonly("name", field(&Campaign::campaign, &datasets::Campaign::name),
-                             "As the file says.")
+                             "Name stated in the file.")
       .def_property_readonly("file", field(&Campaign::campaign, &datasets::Campaign::file),
                              "Path of the campaign file.")
       .def_property_readonly(
@@ -149,9 +149,9 @@ CampaignClass bind_campaign(py::module_& module) {
       .def_property_readonly("conditions",
                              field(&Campaign::campaign, &datasets::Campaign::conditions),
                              "Conditions in the order of the file.")
-      .def_property_readonly("parameters", &campaign_parameters,
-                             "Parameters of the file, in its order, with the changes of `set` and "
-                             "`free`.")
+      .def_property_readonly(
+          "parameters", &campaign_parameters,
+          "Parameters in the order of the file, with the changes by `set` and `free`.")
       .def("__reduce__",
            [](const Campaign& self) {
              const report::CampaignChoice& choice = self.choice;

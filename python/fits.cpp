@@ -51,17 +51,17 @@ FitResultPtr made(const CampaignPtr& self, const std::string& call,
                   const std::function<report::JobResult(std::shared_ptr<const datasets::Campaign>,
                                                         const report::JobTerms&)>& job) {
   std::atomic<bool> cancel{false};
-  Progress told(progress, cancel);
+  Progress reporter(progress, cancel);
   report::JobTerms terms{call, report::recorded(self->choice), thread_count(threads), cancel};
   terms.hold = [](const report::PlannedFiles&) {};
-  terms.watch = [&](calib::FitOptions& settings, const std::string&) { told.attach(settings); };
+  terms.watch = [&](calib::FitOptions& settings, const std::string&) { reporter.attach(settings); };
   FitResultPtr found;
   const auto raised = run_interruptibly(cancel, [&] {
     const std::shared_ptr<const datasets::Campaign> campaign(self, &self->campaign);
     found = std::make_shared<FitResult>(FitResult{std::move(*job(campaign, terms).fit), self});
   });
   if (raised) raise_interrupted(raised, found);
-  told.rethrow();
+  reporter.rethrow();
   return found;
 }
 
@@ -223,8 +223,8 @@ void bind_result(py::module_& module) {
   using Self = FitResult;
   py::class_<Self, FitResultPtr>(
       module, "Fit",
-      "What a fit found, or a validation (kind \"validation\"); SI. Its arrays cannot be written "
-      "to.\nWhat is not here is in json(), in the terms of docs/command-line.md.")
+      "Result of a fit or of a validation (kind \"validation\"); SI. Its arrays are "
+      "read-only.\nFurther values are in json(), as described in docs/command-line.md.")
       .def_property_readonly(
           "kind",
           [](const Self& self) {
@@ -233,18 +233,18 @@ void bind_result(py::module_& module) {
           },
           "\"fit\" or \"validation\".")
       .def_property_readonly(
-          "campaign", [](const Self& self) { return self.source; }, "What it was made from.")
+          "campaign", [](const Self& self) { return self.source; }, "The campaign that was fitted.")
       .def_property_readonly(
           "status", [](const Self& self) { return report::status_of(self.fit); },
           "\"converged\", \"stopped\" (the best so far) or \"failed\".")
       .def_property_readonly("message", of_fit(&calib::Fit::message),
-                             "In words: why it stopped, what is not to be trusted.")
+                             "Why the fit stopped, and what cannot be trusted.")
       .def_property_readonly("verdict", of_fit(&calib::Fit::verdict),
                              "\"PASS\", \"WARN\" or \"FAIL\"; None where nothing was judged.")
       .def_property_readonly("assessment", of_fit(&calib::Fit::assessment),
-                             "The four aspects that the verdict follows from.")
+                             "The four aspects that determine the verdict.")
       .def_property_readonly("warnings", of_fit(&calib::Fit::warnings), "In words.")
-      .def_property_readonly("parameters", &result_parameters, "Fitted and known ones.")
+      .def_property_readonly("parameters", &result_parameters, "Fitted and known parameters.")
       .def("parameter", &parameter_of, py::arg("key"), py::arg("level") = py::none(),
            R"(One parameter.
 
@@ -254,23 +254,24 @@ Args:
 
 Raises:
     KeyError: there is none)")
-      .def_property_readonly("conditions", &scored_conditions,
-                             "Fit and validate conditions by id, in the order of the campaign.")
-      .def_property_readonly("cost", &cost_of,
-                             "Half the sum of squared weighted residuals, priors included; None\n"
-                             "where nothing was estimated.")
       .def_property_readonly(
-          "reduced_chi_square", of_fit(&calib::Fit::reduced_chi_square),
-          "Twice the cost over the degrees of freedom: about 1 if the noise is all that is left.")
+          "conditions", &scored_conditions,
+          "Conditions with use \"fit\" or \"validate\" by id, in the order of the campaign.")
+      .def_property_readonly("cost", &cost_of,
+                             "Half the sum of squared weighted residuals, priors included; "
+                             "None\nif nothing was estimated.")
+      .def_property_readonly("reduced_chi_square", of_fit(&calib::Fit::reduced_chi_square),
+                             "Twice the cost divided by the degrees of freedom: about 1 if the "
+                             "residual is only noise.")
       .def_property_readonly("residual_count", of_fit(&calib::Fit::residual_count),
                              "Number of residuals.")
       .def_property_readonly("evaluations", of_fit(&calib::Fit::evaluations),
-                             "How often all residuals were evaluated.")
+                             "Number of evaluations of all residuals.")
       .def_property_readonly("wall_seconds", of_fit(&calib::Fit::wall_seconds),
                              "Duration of the fit [s].")
       .def_property_readonly(
           "simulation_tolerance", of_fit(&calib::Fit::tolerance),
-          "Local error per step of the simulations, over the peak of each state.")
+          "Local error per step of the simulations, relative to the peak of each state.")
       .def_property_readonly(
           "correlation_names", [](const Self& self) { return self.fit.correlation.names; },
           "Names of the rows and columns of `correlation`.")
@@ -285,12 +286,12 @@ Raises:
           "Singular values of the scaled Jacobian at the optimum, shape (unknowns).")
       .def_property_readonly(
           "combinations", of_fit(&calib::Fit::combinations),
-          "What the records fix where they do not fix single parameters, in words.")
+          "Combinations of parameters that the records determine better than the parameters.")
       .def_property_readonly("interval_advice", of_fit(&calib::Fit::interval_advice),
-                             "Which interval to believe, and why, in words.")
+                             "Which interval to use, and why.")
       .def_property_readonly("starts", of_fit(&calib::Fit::starts), "One report per start.")
       .def_property_readonly("best_start", of_fit(&calib::Fit::best_start),
-                             "Number of the start that counts.")
+                             "Number of the best start, which gave the result.")
       .def_property_readonly(
           "bootstrap_replicates",
           [](const Self& self) { return self.fit.bootstrap ? self.fit.bootstrap->replicates : 0; },
@@ -334,7 +335,7 @@ Shown in a notebook; `write(path)` saves it.
 Raises:
     UsageError: this module was built without the WebAssembly tools)")
       .def("to_frame", of_notebook<Frame>("to_frame"),
-           "The parameters as a pandas DataFrame, a row each; ImportError without pandas.")
+           "The parameters as a pandas DataFrame, one row each; ImportError without pandas.")
       .def(
           "plot",
           [](const py::object& self, const std::optional<std::string>& condition,
@@ -361,7 +362,7 @@ Returns:
              }
              return reduced(result);
            })
-      .def("__str__", &text_of, "What the command prints.")
+      .def("__str__", &text_of, "The output of the command.")
       .def("__repr__", [](const Self& self) {
         return fmt::format("<rigcal.Fit of \"{}\": {}, {}>", self.campaign->name,
                            to_string(report::status_of(self.fit)),

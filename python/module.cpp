@@ -35,7 +35,7 @@ pybind11::dict enumerations() {
 
 PYBIND11_MODULE(_rigcal, module) {
   using namespace rigcal::python;
-  module.doc() = "What rigcal/__init__.py takes from the libraries of the command.";
+  module.doc() = "Bindings to the libraries of the command, used by rigcal/__init__.py.";
   module.attr("__version__") = std::string(rigcal::report::version());
   module.attr("__revision__") = std::string(rigcal::report::revision());
   module.attr("_enumerations") = enumerations();

@@ -102,30 +102,30 @@ void bind_channel(py::module_& module) {
                              "SI unit of mean and sd: \"m\".")
       .def_property_readonly(
           "repeats", [](const RecordedChannel& self) { return self.series->repeats; },
-          "How many carry this channel.")
+          "Number of repeats with this channel.")
       .def_property_readonly(
           "mean", [](const RecordedChannel& self) { return view(self.series, self.series->mean); },
           "Shape (samples), in `unit`.")
       .def_property_readonly(
           "sd",
           [](const RecordedChannel& self) { return view_or_none(self.series, self.series->sd); },
-          "Standard deviation over the repeats, shape (samples), in `unit`; NaN where only one\n"
-          "repeat has a sample, None of a single repeat.")
+          "Standard deviation over the repeats, shape (samples), in `unit`; NaN where only "
+          "one\nrepeat has a sample, None for a single repeat.")
       .def_property_readonly(
           "count",
           [](const RecordedChannel& self) { return view_or_none(self.series, self.series->count); },
-          "Repeats that carry each sample, shape (samples); None of a record that was averaged\n"
-          "already.")
+          "Number of repeats with each sample, shape (samples); None for a record that was "
+          "already\naveraged.")
       .def_property_readonly(
           "pooled_sd",
           [](const RecordedChannel& self) { return none_if_nan(self.series->pooled_sd); },
-          "Standard deviation of one repeat, over all samples, in `unit`; None where neither\n"
-          "repeats nor the campaign give it.")
+          "Standard deviation of one repeat, over all samples, in `unit`; None if it is unknown "
+          "(no\nrepeats, and not stated in the campaign).")
       .def_property_readonly(
           "sd_of_mean",
           [](const RecordedChannel& self) { return none_if_nan(self.series->sd_of_mean); },
-          "Standard deviation of the mean, in `unit`: what a residual is divided by; None where\n"
-          "it is not known.")
+          "Standard deviation of the mean, in `unit`, by which residuals are divided; None "
+          "if\nunknown.")
       .def("__repr__", [](const RecordedChannel& self) {
         return fmt::format("<rigcal.Channel {} [{}], {} samples>", self.about.key, self.about.unit,
                            self.series->mean.size());
@@ -146,16 +146,16 @@ void bind_repeat(py::module_& module) {
 }
 
 void bind_record(py::module_& module) {
-  py::class_<Record, RecordPtr>(module, "Record",
-                                "The averaged record of one condition; SI. Its arrays cannot be "
-                                "written to.")
+  py::class_<Record, RecordPtr>(
+      module, "Record", "The averaged record of one condition; SI. Its arrays are read-only.")
       .def_readonly("condition", &Record::condition, "Id of the condition.")
-      .def_readonly("repeats", &Record::repeats, "How many were averaged.")
+      .def_readonly("repeats", &Record::repeats, "Number of repeats that were averaged.")
       .def_property_readonly(
           "time_s", [](const RecordPtr& self) { return view(self, self->time_s); },
           "Shape (samples), increasing [s].")
-      .def_property_readonly("channels", &channels_of, "By their keys: \"position\".")
-      .def_readonly("repeat_reports", &Record::repeat_reports, "In the order of the files.")
+      .def_property_readonly("channels", &channels_of, "Channels by key: \"position\".")
+      .def_readonly("repeat_reports", &Record::repeat_reports,
+                    "Reports on the repeats, in the order of the files.")
       .def_property_readonly(
           "windows_s",
           [](const Record& self) {
@@ -164,8 +164,8 @@ void bind_record(py::module_& module) {
               windows.emplace_back(window.start_s, window.end_s);
             return windows;
           },
-          "Start and end of each part that counts [s]; empty: all of it.")
-      .def_readonly("notes", &Record::notes, "In words: what was done to it.")
+          "Start and end of each part that is used [s]; empty: the whole record.")
+      .def_readonly("notes", &Record::notes, "Notes on the processing of the recordings.")
       .def_readonly("warnings", &Record::warnings, "In words: outliers, gaps, spikes, sensors.")
       .def_property_readonly(
           "files",
@@ -174,7 +174,7 @@ void bind_record(py::module_& module) {
             for (const FileState& file : self.files) files.emplace_back(file.path);
             return files;
           },
-          "Every file that was read for it.")
+          "Every file that was read for this record.")
       .def("to_frame", of_notebook<Frame>("to_frame"),
            "Time, and mean, sd and count of each channel, as a pandas DataFrame; ImportError "
            "without\n"
@@ -195,8 +195,9 @@ void bind_records(py::module_& module, CampaignClass& campaign) {
   bind_repeat(module);
   bind_record(module);
   py::class_<Checked>(module, "Check", "What check() found.")
-      .def_readonly("records", &Checked::records, "In the order of the campaign.")
-      .def_readonly("without_record", &Checked::without_record, "Ids of conditions without one.")
+      .def_readonly("records", &Checked::records, "Records in the order of the campaign.")
+      .def_readonly("without_record", &Checked::without_record,
+                    "Ids of conditions without a record.")
       .def_property_readonly(
           "warnings",
           [](const Checked& self) {
@@ -206,7 +207,7 @@ void bind_records(py::module_& module, CampaignClass& campaign) {
             }
             return warnings;
           },
-          "Warnings by the id of the condition, for the records that have some.")
+          "Warnings by id of the condition; conditions without warnings are omitted.")
       .def("__str__", [](const Checked& self) { return self.text; })
       .def("__repr__", [](const Checked& self) {
         return fmt::format("<rigcal.Check: {} records>", self.records.size());

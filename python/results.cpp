@@ -43,10 +43,12 @@ ResultPtr job_result(const char* kind, std::string name, std::string call,
                      const JobProgress& progress,
                      const std::function<report::JobResult(const report::JobTerms&)>& job) {
   std::atomic<bool> cancel{false};
-  Progress told(progress, cancel);
+  Progress reporter(progress, cancel);
   report::JobTerms terms{std::move(call), report::recorded(choice), thread_count(threads), cancel};
   terms.hold = [](const report::PlannedFiles&) {};
-  terms.progress = [&](const char* pieces, int done, int all) { told.pieces(pieces, done, all); };
+  terms.progress = [&](const char* pieces, int done, int all) {
+    reporter.pieces(pieces, done, all);
+  };
   auto result = std::make_shared<Result>();
   const auto raised = run_interruptibly(cancel, [&] {
     report::JobResult found = job(terms);
@@ -59,7 +61,7 @@ ResultPtr job_result(const char* kind, std::string name, std::string call,
     result->inputs = std::move(found.inputs);
   });
   if (raised) std::rethrow_exception(raised);
-  told.rethrow();
+  reporter.rethrow();
   return result;
 }
 
@@ -318,15 +320,14 @@ std::string written_fit(const FitArgument& fit) {
 void bind_results(py::module_& module) {
   py::class_<Result, ResultPtr>(
       module, "Result",
-      "What a verb other than fit and validate found: its files, in memory. It can be pickled.")
+      "Result of a verb other than fit and validate: its files, in memory. It can be pickled.")
       .def_readonly("kind", &Result::kind,
                     "\"diagnosis\", \"parity\", \"leak_table\", \"plan\", \"comparison\" or "
                     "\"batch\"; \"fit\"\n"
                     "or \"validation\" of a Fit that was pickled.")
       .def("json", &content_of, "The contents of its JSON file, as a dict.")
-      .def_property_readonly(
-          "files", &files_of,
-          "The text of each file that write() writes, by its path; without the page.")
+      .def_property_readonly("files", &files_of,
+                             "Text of each file that write() writes, by path; without the page.")
       .def_property_readonly("page", &page_of, "The page that write() writes, as HTML.")
       .def(
           "to_frame",
@@ -342,7 +343,7 @@ Args:
 Raises:
     KeyError: there is no such table)")
       .def("plot", of_notebook<Figure>("plot"),
-           "The values of most interest with their intervals, by matplotlib. Returns the Figure.")
+           "Plots the main values with their intervals by matplotlib. Returns the Figure.")
       .def("write", &write_files_of, py::arg("out"), py::kw_only(), py::arg("threads") = py::none(),
            py::arg("force") = false,
            R"(Writes the files of the command, report.html among them.
@@ -371,7 +372,7 @@ Raises:
            })
       .def_static("_restored", &from_state)
       .def("__reduce__", &reduced);
-  py::class_<Page>(module, "Page", "A page that a notebook shows in a frame.")
+  py::class_<Page>(module, "Page", "An HTML page, which a notebook shows in a frame.")
       .def_readonly("html", &Page::html, "The whole page.")
       .def(
           "write",

@@ -88,7 +88,7 @@ void bind_scored_channel(py::module_& module) {
     return [member](const ScoredChannel& self) { return self.score.metrics.*member; };
   };
   py::class_<ScoredChannel>(module, "ScoredChannel",
-                            "How well the model agrees with one channel of a condition; SI.")
+                            "Agreement of the model with one channel of a condition; SI.")
       .def_property_readonly("key", field(&ScoredChannel::about, &datasets::ChannelInfo::key),
                              "\"position\"...")
       .def_property_readonly("unit", field(&ScoredChannel::about, &datasets::ChannelInfo::unit),
@@ -100,7 +100,7 @@ void bind_scored_channel(py::module_& module) {
       .def_property_readonly(
           "simulated",
           [](const ScoredChannel& self) { return view(self.condition, self.simulated()); },
-          "Shape (samples), in `unit`; empty where it could not be simulated.")
+          "Shape (samples), in `unit`; empty if it could not be simulated.")
       .def_property_readonly("residual", &residual,
                              "Measured minus simulated, shape (samples), in `unit`.")
       .def_property_readonly(
@@ -108,10 +108,10 @@ void bind_scored_channel(py::module_& module) {
           [](const ScoredChannel& self) {
             return by_name<std::optional<double>, metrics::Agreement>(self.score.metrics);
           },
-          "Metrics by name, \"ccc\", \"rho2\"...; None where one does not exist.")
-      .def_property_readonly("noise_floor", numbers_of(&calib::ChannelScore::noise_floor),
-                             "What a perfect model would reach, by name; None where the noise is\n"
-                             "unknown.")
+          "Metrics by name, \"ccc\", \"rho2\"...; None if undefined.")
+      .def_property_readonly(
+          "noise_floor", numbers_of(&calib::ChannelScore::noise_floor),
+          "Metrics that a perfect model would reach, by name; None if the noise is\nunknown.")
       .def_property_readonly("expanded_uncertainty",
                              numbers_of(&calib::ChannelScore::expanded_uncertainty),
                              "Expanded uncertainty (95 %) of each of `metrics`, from repeats and\n"
@@ -125,14 +125,14 @@ void bind_scored_channel(py::module_& module) {
           "name; empty with fewer than two repeats.")
       .def_property_readonly(
           "gain_ratio", of_metrics(&calib::ChannelMetrics::gain_ratio),
-          "Simulated over measured amplitude of the fundamental; None where there is none.")
+          "Simulated over measured amplitude of the fundamental; None without a fundamental.")
       .def_property_readonly(
           "phase_deg", of_metrics(&calib::ChannelMetrics::phase_deg),
           "Phase of the simulated fundamental minus that of the measured one [degrees]; or None.")
       .def_property_readonly("delay_s", of_metrics(&calib::ChannelMetrics::delay_s),
                              "Delay of the simulated fundamental [s]; or None.")
       .def_property_readonly("problem", of_metrics(&calib::ChannelMetrics::problem),
-                             "Why a metric does not exist, in words; or None.")
+                             "Why a metric is undefined; or None.")
       .def("__repr__", [](const ScoredChannel& self) {
         return fmt::format("<rigcal.ScoredChannel {} of {}>", self.about.key, self.condition->id);
       });
@@ -144,9 +144,9 @@ void bind_scores(py::module_& module) {
   using Self = ScoredCondition;
   bind_limit_check(module);
   bind_scored_channel(module);
-  py::class_<Self>(module, "ScoredCondition",
-                   "How well the model agrees with the record of a condition; SI. Its arrays\n"
-                   "cannot be written to.")
+  py::class_<Self>(
+      module, "ScoredCondition",
+      "Agreement of the model with the record of a condition; SI. Its arrays\nare read-only.")
       .def_property_readonly("id", field(&Self::score, &calib::ConditionScore::id),
                              "Id of the condition.")
       .def_property_readonly("use", field(&Self::score, &calib::ConditionScore::use),
@@ -154,20 +154,20 @@ void bind_scores(py::module_& module) {
       .def_property_readonly("verdict", field(&Self::score, &calib::ConditionScore::verdict),
                              "\"PASS\", \"WARN\" or \"FAIL\"; None without limits.")
       .def_property_readonly("reasons", field(&Self::score, &calib::ConditionScore::reasons),
-                             "Reasons for WARN or FAIL, in words.")
+                             "Reasons for WARN or FAIL.")
       .def_property_readonly("checks", field(&Self::score, &calib::ConditionScore::limit_checks),
                              "One check per limit.")
       .def_property_readonly("warnings", field(&Self::score, &calib::ConditionScore::warnings),
-                             "What is doubtful about the recording, in words.")
+                             "Doubts about the recording.")
       .def_property_readonly("failure", field(&Self::score, &calib::ConditionScore::failure),
-                             "Why it could not be simulated, in words; or None.")
+                             "Why it could not be simulated; or None.")
       .def_property_readonly("not_scored", field(&Self::score, &calib::ConditionScore::not_scored),
-                             "Why it was not scored, in words; or None.")
+                             "Why it was not scored; or None.")
       .def_property_readonly("samples", field(&Self::score, &calib::ConditionScore::samples),
                              "Number of samples inside the windows.")
       .def_property_readonly(
           "time_s", [](const Self& self) { return view(self.score, self.score->time_s); },
-          "Shape (samples of the whole record) [s].")
+          "Times [s], shape (samples of the whole record).")
       .def_property_readonly(
           "in_window",
           [](const Self& self) {
@@ -178,19 +178,19 @@ void bind_scores(py::module_& module) {
                   self.score->in_window.empty() || self.score->in_window[i];
             return array;
           },
-          "Whether each sample counts, shape (samples).")
+          "Whether each sample is scored, shape (samples).")
       .def_property_readonly(
           "drive", [](const Self& self) { return view(self.score, self.score->drive); },
           "Reference [m], or command [V] in open loop, shape (samples).")
       .def_property_readonly(
           "servo_flow_m3_per_s",
           [](const Self& self) { return view(self.score, self.score->servo_flow_m3_per_s); },
-          "Simulated, shape (samples) [m3/s]; empty where it could not be simulated.")
+          "Simulated, shape (samples) [m3/s]; empty if it could not be simulated.")
       .def_property_readonly(
           "leakage_flow_m3_per_s",
           [](const Self& self) { return view(self.score, self.score->leakage_flow_m3_per_s); },
-          "Simulated, shape (samples) [m3/s]; empty where it could not be simulated.")
-      .def_property_readonly("channels", &scored_channels_of, "By their keys: \"position\".")
+          "Simulated, shape (samples) [m3/s]; empty if it could not be simulated.")
+      .def_property_readonly("channels", &scored_channels_of, "Channels by key: \"position\".")
       .def("__repr__", [](const Self& self) {
         return fmt::format("<rigcal.ScoredCondition {}: {}>", self.score->id,
                            self.score->verdict ? to_string(*self.score->verdict) : "no limits");

@@ -188,19 +188,18 @@ Dict<std::string, SimulatedPtr> simulate_all(
 void bind_simulations(py::module_& module, CampaignClass& campaign) {
   py::class_<Simulated, SimulatedPtr> simulation(
       module, "Simulation",
-      "A simulated condition; SI. Its arrays cannot be written to; they are empty where it could\n"
-      "not be simulated.");
+      "A simulated condition; SI. Its arrays are read-only, and empty if the simulation failed.");
   simulation.def_readonly("condition", &Simulated::condition, "Id of the condition.")
       .def_property_readonly("status", field(&Simulated::simulation, &model::Simulation::status),
-                             "\"ok\", or why there is none.")
+                             "\"ok\", or the kind of failure.")
       .def_property_readonly("reason", field(&Simulated::simulation, &model::Simulation::reason),
-                             "Why it failed, in words; empty if it did not.")
+                             "Why it failed; empty if it did not.")
       .def_property_readonly(
           "failed_at_s",
           [](const Simulated& self) {
             return self.simulation.ok() ? std::nullopt : std::optional(self.simulation.failed_at_s);
           },
-          "Where it ended [s]; None if it did not fail.")
+          "Time of the failure [s]; None if it did not fail.")
       .def_property_readonly("steps", field(&Simulated::simulation, &model::Simulation::steps),
                              "Number of steps of the solver.")
       .def_property_readonly(
@@ -212,14 +211,14 @@ void bind_simulations(py::module_& module, CampaignClass& campaign) {
             static const std::vector<double> none;
             return view_or_none(self, self->of_position ? self->reference : none);
           },
-          "Position reference, shape (samples) [m]; None where no loop is on position.")
+          "Position reference, shape (samples) [m]; None without a position loop.")
       .def_property_readonly("signals", &signals_of,
                              "All signals and flows by their names with units,\n"
                              "\"position_m\", \"servo_flow_m3_per_s\"..., each of shape (samples).")
       .def_property_readonly(
           "sensitivities", &sensitivities_of,
-          "Derivatives of every signal by each parameter that simulate() was asked\n"
-          "for, by its key and then as in `signals`: SI over SI, shape (samples).")
+          "Derivatives of every signal with respect to each requested parameter, by its\nkey and "
+          "then as in `signals`: SI over SI, shape (samples).")
       .def("to_frame", of_notebook<Frame>("to_frame"),
            "Time and signals as a pandas DataFrame; ImportError without pandas.")
       .def(
@@ -238,24 +237,24 @@ Returns:
         return fmt::format("<rigcal.Simulation {}: {}, {} samples>", self.condition,
                            to_string(self.simulation.status), self.time_s.size());
       });
-  const char* const about[] = {"Reading of the position sensor [m].",
-                               "Velocity of the piston [m/s].",
-                               "Difference of the chamber pressures [Pa].",
-                               "[Pa]",
-                               "[Pa]",
-                               "What a load cell in the rod reads [N].",
-                               "Controller output after the limit, or the recorded command [V].",
-                               "Travel of the valve spool [m].",
-                               "Flow of the servo valve to the load [m3/s].",
-                               "Internal leakage across the piston [m3/s].",
-                               "Flow that moves the piston [m3/s].",
-                               "Acceleration of the piston and what is fixed to it [m/s2].",
-                               "Acceleration of the second mass [m/s2]; zero where there is none.",
-                               "Reading of a joint's angle sensor [rad]; zero where there is none.",
-                               "Angular velocity of the joint [rad/s]; zero where there is none.",
-                               "Pilot pressure of the spool [Pa]; zero where there is none.",
-                               "Reading of a joint's torque sensor [N m]; zero where there is "
-                               "none."};
+  const char* const about[] = {
+      "Reading of the position sensor [m].",
+      "Velocity of the piston [m/s].",
+      "Difference of the chamber pressures [Pa].",
+      "[Pa]",
+      "[Pa]",
+      "Reading of a load cell in the rod [N].",
+      "Controller output after the limit, or the recorded command [V].",
+      "Travel of the valve spool [m].",
+      "Flow of the servo valve to the load [m3/s].",
+      "Internal leakage across the piston [m3/s].",
+      "Flow that moves the piston [m3/s].",
+      "Acceleration of the piston and the mass fixed to it [m/s2].",
+      "Acceleration of the second mass [m/s2]; zero without one.",
+      "Reading of a joint's angle sensor [rad]; zero without a joint.",
+      "Angular velocity of the joint [rad/s]; zero without a joint.",
+      "Pilot pressure of the spool [Pa]; zero without a pilot-operated valve.",
+      "Reading of a joint's torque sensor [N m]; zero without a joint."};
   static_assert(std::size(about) == model::kAllOutputs.size());
   for (std::size_t i = 0; i < model::kAllOutputs.size(); ++i) {
     const std::string name(output_name(model::kAllOutputs[i]));

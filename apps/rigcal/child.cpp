@@ -67,11 +67,11 @@ report::VerbEnd not_started(const char* what) {
 /// Reads until the child closes its end of the pipe.
 std::string read_all(int pipe, pid_t child, const std::atomic<bool>& cancel) {
   std::string text;
-  bool told = false;
+  bool signalled = false;
   for (;;) {
-    if (cancel && !told) {
+    if (cancel && !signalled) {
       ::kill(child, SIGTERM);
-      told = true;
+      signalled = true;
     }
     pollfd look{pipe, POLLIN, 0};
     if (::poll(&look, 1, kLookEvery_ms) <= 0) continue;
@@ -109,14 +109,14 @@ report::VerbEnd run_child(const std::vector<std::string>& arguments,
   variables.push_back(nullptr);
 
   std::array<int, 2> ends{};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0) return not_started("a pipe to it cannot be made");
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) return not_started("cannot make a pipe to it");
   const Descriptor out(ends[0]);
   Descriptor in(ends[1]);
   const Descriptor null(::open("/dev/null", O_RDWR | O_CLOEXEC));
   if (null.get() < 0) return not_started("/dev/null cannot be opened");
   const pid_t parent = ::getpid();
   const pid_t child = ::fork();
-  if (child < 0) return not_started("a process for it cannot be made");
+  if (child < 0) return not_started("cannot start a process for it");
   if (child == 0) become(argv.data(), variables.data(), in.get(), null.get(), parent);
   in.close();
 
@@ -127,9 +127,9 @@ report::VerbEnd run_child(const std::vector<std::string>& arguments,
   report::VerbEnd end;
   end.error = message_of(said);
   if (WIFSIGNALED(status)) {
-    end.error = fmt::format(
-        "ended by signal {}{}", WTERMSIG(status),
-        WTERMSIG(status) == SIGKILL ? ", as the system does where memory runs out" : "");
+    end.error =
+        fmt::format("ended by signal {}{}", WTERMSIG(status),
+                    WTERMSIG(status) == SIGKILL ? ", as the system does when memory runs out" : "");
     if (WTERMSIG(status) == SIGTERM) end.code = ExitCode::stopped;
   } else if (WEXITSTATUS(status) <= static_cast<int>(ExitCode::internal)) {
     end.code = static_cast<ExitCode>(WEXITSTATUS(status));

@@ -73,18 +73,12 @@ std::vector<const CLI::App*> verbs_of(const CLI::App& app) {
 
 std::string man_page(const CLI::App& app) {
   std::string text = fmt::format(
-      ".TH RIGCAL 1 \"\" \"rigcal {0}\" \"User Commands\"\n"
-      ".SH NAME\nrigcal \\- {1}\n"
-      ".SH SYNOPSIS\n.B rigcal\n\\fIVERB\\fR [\\fIoptions\\fR] \\fICAMPAIGN\\fR\n.br\n"
-      ".B rigcal\n\\fIVERB\\fR \\fB\\-\\-help\\fR\n"
-      ".SH DESCRIPTION\n{1}.\nOne campaign file has all that a calibration depends on; "
-      "file; results go to a "
-      "folder.\n"
-      ".SH OPTIONS\n{2}"
-      ".TP\n.B \\-\\-man\\-page\nPrint this page in roff.\n"
-      ".TP\n.B \\-\\-completion \\fISHELL\\fR\nPrint what bash, zsh or fish completes the command "
-      "by.\n"
-      ".SH VERBS\n",
+      ".TH RIGCAL 1 \"\" \"rigcal {0}\" \"User Commands\"\n.SH NAME\nrigcal \\- {1}\n.SH "
+      "SYNOPSIS\n.B rigcal\n\\fIVERB\\fR [\\fIoptions\\fR] \\fICAMPAIGN\\fR\n.br\n.B "
+      "rigcal\n\\fIVERB\\fR \\fB\\-\\-help\\fR\n.SH DESCRIPTION\n{1}.\nOne campaign file contains "
+      "all that a calibration depends on; results go to a folder.\n.SH OPTIONS\n{2}.TP\n.B "
+      "\\-\\-man\\-page\nPrint this page in roff.\n.TP\n.B \\-\\-completion \\fISHELL\\fR\nPrint "
+      "the completion script for bash, zsh or fish.\n.SH VERBS\n",
       report::version(), roff(app.get_description()), options_text(app));
   for (const CLI::App* verb : verbs_of(app)) text += verb_text(*verb);
   return text + std::string(kExitStatus) + std::string(kEnvironment);

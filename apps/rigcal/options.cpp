@@ -55,7 +55,7 @@ void add_print_options(CLI::App& verb, PrintOptions& options) {
   verb.add_flag("--quiet", options.quiet, "Print nothing but errors");
   verb.add_flag("--json", options.json, "Print JSON instead of text");
   verb.add_flag("-v,--verbose", options.verbose,
-                "Print every section of the result, and every row on a terminal, too");
+                "Print every section of the result, and every row even on a terminal");
 }
 
 void add_force_option(CLI::App& verb, bool& force) {

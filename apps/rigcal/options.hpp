@@ -52,7 +52,7 @@ std::size_t terminal_columns(int stream);
 /// Returns the style for the terminal: in colour unless NO_COLOR is set, with tables as wide as the
 /// terminal.
 report::Style terminal_style();
-/// Returns the style for the terminal with a limited number of lines, unless the user asks for all
+/// Returns the style for the terminal with a limited number of lines, unless the user requests all
 /// of them.
 report::Style terminal_style(const PrintOptions& options);
 

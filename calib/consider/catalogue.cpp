@@ -56,7 +56,7 @@ struct CatalogueRow {
 /// Full scale of a typical laboratory converter. It is used if the controller has no limit of its
 /// own.
 constexpr double kUsualCommand_v = 10.0;
-/// Lags and delays are of the order of the sampling interval, within these limits.
+/// Limits of the plausible lags and delays, which follow from the sampling interval.
 constexpr double kLeastLag_s = 0.05e-3;
 constexpr double kMostLag_s = 0.5e-3;
 /// Typical range of controller periods.

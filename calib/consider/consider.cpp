@@ -49,7 +49,7 @@ constexpr int kMostSecants = 2;
 /// Maximum number of missing effects to name; more than this would be a guess.
 constexpr std::size_t kMostMissing = 3;
 /// Maximum number of effects that are refitted individually. A refit is worthwhile if the effect
-/// explains at least the fraction kWorthRefitting of what the best one explains.
+/// explains at least kWorthRefitting times as much as the best one.
 constexpr std::size_t kMostCandidates = 8;
 constexpr double kWorthRefitting = 0.2;
 /// Factor by which a score test may misjudge the size of an effect.
@@ -483,8 +483,8 @@ void test_alone(const Seen& seen, const ScoreCovariance& scores,
   for (std::size_t i = 0; i < tested.size(); ++i) about[tested[i]].p_of_all = together[i];
 }
 
-/// Returns the effect that explains most of what the selected effects leave unexplained, provided
-/// that it is significant in addition to them.
+/// Returns the effect that explains most of what remains after the selected effects, if it is
+/// significant in addition to them.
 std::optional<std::size_t> next_missing(const Seen& seen, const ScoreCovariance& scores,
                                         const std::vector<ConsideredEffect>& about,
                                         const std::vector<std::size_t>& taken) {

@@ -32,7 +32,7 @@ namespace rigcal::calib {
 ///
 /// @param found  uncertainty at the optimum, including the scores of the residuals
 /// @param fit         must already contain the parameters of the problem's unknowns
-/// @param likelihood  if not null, receives what the records say about the sizes; unchanged if no
+/// @param likelihood  if not null, receives the likelihood of the sizes; unchanged if no
 ///                    effect was considered
 void consider_effects(const Problem& problem, std::span<const double> z, const Uncertainty& found,
                       int threads, const std::atomic<bool>* cancel, Fit& fit,

@@ -17,7 +17,7 @@ using Eigen::VectorXd;
 
 constexpr int kMostRefitSteps = 12;
 constexpr int kMostStepHalvings = 5;
-/// With recorded drives a step is shortened at most so many times, each time to the minimum of the
+/// With recorded drives a step is shortened at most this often, each time to the minimum of the
 /// parabola through both ends, but not below this fraction.
 constexpr int kMostShortenings = 1;
 constexpr double kLeastPart = 0.03;

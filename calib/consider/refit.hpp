@@ -54,7 +54,7 @@ class Refitter {
     Eigen::VectorXd gradient;
     Eigen::MatrixXd normal;
     Eigen::VectorXd residual;  ///< kept until project() has computed gradient and J^T J
-    Eigen::MatrixXd jacobian;  ///< likewise; columns: acting unknowns, then effects
+    Eigen::MatrixXd jacobian;  ///< same rows; columns: acting unknowns, then effects
     Eigen::MatrixXf kept;      ///< for later steps, in seven digits; recorded drives only
 
     /// Returns the change of the sum of squares after a step, if the residuals are linear in it.

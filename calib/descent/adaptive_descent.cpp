@@ -142,7 +142,7 @@ Descent descend_adaptively(const DescentOptions& options, std::vector<double>& z
       ended = enough(here->cost, 0.0);
       radius = kMostShrink * kMostShrink * length;
       if (++invalid < kMostInvalid) continue;
-      result.failure = "the optimiser gave up: no point around can be evaluated";
+      result.failure = "the optimiser gave up: no neighbouring point can be evaluated";
       break;
     }
     invalid = 0;

@@ -204,7 +204,8 @@ void check_finely(const TrialRig& rig, const datasets::DriveUnit& unit, const Dr
     }
     scale *= std::isfinite(share) ? kFineAimedAt / share : 0.5;
   }
-  throw NoResultError("design: no drive that was tried keeps the limits in a fine simulation");
+  throw NoResultError(
+      "design: none of the drives tried stays within the limits in a fine simulation");
 }
 
 // Functions for the comparison with the campaign's own signals.
@@ -305,10 +306,9 @@ Design design(const Campaign& campaign, const std::vector<Record>& records,
   }
   result.stopped = is_set(options.cancel);
   if (best.point.size() == 0) {
-    if (result.stopped)
-      throw Error(ExitCode::stopped, "design: stopped before there was any drive");
+    if (result.stopped) throw Error(ExitCode::stopped, "design: stopped before a drive was found");
     throw NoResultError(
-        fmt::format("design: none of {} drives keeps the limits of [design]",
+        fmt::format("design: none of {} drives stays within the limits of [design]",
                     rig.settings().evaluations * static_cast<int>(result.trials.size())));
   }
   rig.finish();
@@ -329,8 +329,8 @@ Design design(const Campaign& campaign, const std::vector<Record>& records,
   leave_symmetric_open(rig, options.threads, result);
   add_own_signals(campaign, records, values, options.threads, result);
   for (const std::string& name : uncertain_names(rig.problem()))
-    result.messages.push_back(fmt::format(
-        "the uncertainty of {} is not in these figures: a fit adds what it does to them", name));
+    result.messages.push_back(
+        fmt::format("these figures do not include the uncertainty of {}; a fit does", name));
   return result;
 }
 

@@ -101,8 +101,8 @@ std::map<Channel, double> noise_of_one_repeat(const Campaign& campaign,
   }
   if (noise.empty())
     throw InputError(campaign.design->where,
-                     "key 'design': the records will carry nothing to compare the model with: "
-                     "expected an output channel such as position in [recording.channels]");
+                     "key 'design': the records will have no output channel to compare with the "
+                     "model: expected an output channel such as position in [recording.channels]");
   return noise;
 }
 
@@ -148,7 +148,7 @@ void TrialRig::rest(const std::map<Channel, double>& noise_sd) {
     inputs.drive = model::Signal::constant(drive);
     const auto run = model::simulate(rig, values, {}, inputs, time_s, outputs, options);
     if (run.status == model::SimulationStatus::cancelled)
-      throw Error(ExitCode::stopped, "design: stopped before there was any drive");
+      throw Error(ExitCode::stopped, "design: stopped before a drive was found");
     if (!run.ok())
       throw NoResultError(fmt::format("design: the rig cannot be simulated at rest: {}, at {:g} s",
                                       run.reason, run.failed_at_s));
@@ -176,10 +176,10 @@ void TrialRig::rest(const std::map<Channel, double>& noise_sd) {
 void TrialRig::require_limits_at_rest(const Eigen::MatrixXd& run) const {
   for (const LimitUse& use : limit_uses(settings(), run, {})) {
     if (!(use.share > 1.0)) continue;
-    throw InputError(use.where,
-                     fmt::format("key 'design.{}': no drive can keep this limit: with a drive at "
-                                 "still the {} reaches {:.4g} {}, the limit is {:.4g} {}",
-                                 use.key, use.words, use.reached, use.unit, use.limit, use.unit));
+    throw InputError(
+        use.where, fmt::format("key 'design.{}': no drive can stay within this limit: even with a "
+                               "constant drive the {} reaches {:.4g} {}, the limit is {:.4g} {}",
+                               use.key, use.words, use.reached, use.unit, use.limit, use.unit));
   }
 }
 
@@ -197,7 +197,7 @@ double TrialRig::find_reach() const {
   const auto& channel = datasets::info(datasets::drive_channel(campaign_));
   throw InputError(design.where,
                    fmt::format("key 'design': nothing limits the drive: expected {}amplitude = "
-                               "\"... {}\", its largest distance from where it begins",
+                               "\"... {}\", its largest distance from the initial value",
                                commanded ? "command = \"10 V\", or " : "", channel.unit));
 }
 

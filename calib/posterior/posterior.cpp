@@ -179,7 +179,7 @@ std::string complaints(const Posterior& found) {
   std::vector<std::string> words;
   if (!found.mixed()) {
     words.push_back(fmt::format(
-        "the chains disagree (R-hat {} of {}, at most 1.01 would do): more draws are needed",
+        "the chains disagree (R-hat {} of {}, expected at most 1.01): more draws are needed",
         significant(found.r_hat, 4), found.worst.value_or("")));
   }
   if (found.diverged > 0) {
@@ -190,16 +190,15 @@ std::string complaints(const Posterior& found) {
   }
   if (found.longest > 0)
     words.push_back(
-        fmt::format("{} trajectories were cut off at {} doublings, which costs time, "
-                    "not correctness",
+        fmt::format("{} trajectories were cut off at {} doublings, which costs time but does not "
+                    "bias the draws",
                     found.longest, NutsOptions{}.most_doublings));
   if (found.energy_fraction < kLeastEnergyFraction)
     words.push_back(fmt::format("the energy moves slowly (fraction {}): the tails may be too short",
                                 significant(found.energy_fraction, 2)));
   if (found.least_draws < kLeastEffective)
     words.push_back(
-        fmt::format("the draws are worth only {:.0f} independent ones, and ends of "
-                    "intervals are rough",
+        fmt::format("the effective sample size is only {:.0f}, so ends of intervals are rough",
                     found.least_draws));
   std::string text;
   for (const std::string& each : words) text += "; " + each;
@@ -207,10 +206,9 @@ std::string complaints(const Posterior& found) {
 }
 
 std::string how_drawn(const Posterior& found, const std::string& stopped) {
-  std::string text = fmt::format(
-      "{} chains of {} draws by the no-U-turn sampler, after {} each that "
-      "do not count",
-      found.chains, found.draws, found.warm_up);
+  std::string text =
+      fmt::format("{} chains of {} draws by the no-U-turn sampler, after {} warm-up draws each",
+                  found.chains, found.draws, found.warm_up);
   if (found.draws < found.asked)
     text += fmt::format(" ({} were asked for: {})", found.asked, stopped);
   if (found.effects)

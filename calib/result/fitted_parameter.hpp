@@ -115,10 +115,10 @@ struct FittedParameter {
   /// Largest possible change in the estimate due to a model error that adequacy tolerates and that
   /// is too small to be significant, SI. Not stored.
   double moved_by_unseen = 0.0;
-  Omittable<BootstrapSpread> bootstrap;  ///< absent unless the fit was asked for a bootstrap
-  Omittable<Profile> profile;            ///< absent unless the fit was asked for profiles
-  Omittable<PosteriorSpread> posterior;  ///< absent unless the fit was asked for draws
-  bool at_bound = false;                 ///< whether the estimate is at one of its bounds
+  Omittable<BootstrapSpread> bootstrap;            ///< absent unless requested
+  Omittable<Profile> profile;                      ///< absent unless requested
+  Omittable<PosteriorSpread> posterior;            ///< absent unless requested
+  bool at_bound = false;                           ///< whether the estimate is at one of its bounds
   std::optional<Identifiability> identifiability;  ///< absent for a known value
   std::string reason;  ///< why it has no error or is weak, or at which bound it is, in words
   RIGCAL_DESCRIBE(name, key, symbol, unit, scope, level, value, start, lower, upper, fitted,

@@ -28,7 +28,7 @@ RIGCAL_NAMES(StoppedIn, starts, validation, bootstrap, profiles, posterior, cros
 struct StartReport {
   int number = 1;                        ///< counted from 1
   std::vector<double> start_values;      ///< in the order of the unknowns, SI
-  std::vector<double> end_values;        ///< likewise; empty if the end point cannot be simulated
+  std::vector<double> end_values;        ///< same order; empty if the end point cannot be simulated
   double initial_cost = kNone;           ///< NaN if the start cannot be simulated
   double final_cost = kNone;             ///< NaN if the end point cannot be simulated
   int iterations = 0;                    ///< sum over all stages

@@ -100,8 +100,8 @@ LimitCheck check(const datasets::AcceptanceLimit& limit, datasets::DecisionRule 
           "{}: {} = {:.6g} keeps {:.6g}, but {}", key, limit.metric, value, *limit.limit,
           uncertainty
               ? fmt::format("not by more than its expanded uncertainty of {:.2g}", *uncertainty)
-              : std::string("its uncertainty is not known: that takes two "
-                            "repeats at least, which differ"));
+              : std::string(
+                    "its uncertainty is unknown: that needs at least two repeats that differ"));
     }
   }
   if (const auto bound = limit.limit ? limit.limit : limit.warn)

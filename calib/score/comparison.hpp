@@ -60,8 +60,8 @@ struct Dependence {
   double by_effects = 0.0;    ///< variance of the difference, from variance_by_effects()
 };
 
-/// Computes and tests the difference of one parameter. judge_together() then adjusts the p-value
-/// for all parameters.
+/// Computes and tests the difference between two estimates. judge_together() then adjusts the
+/// p-value for all parameters.
 EstimateDifference difference_of(const ComparedEstimate& first, const ComparedEstimate& other,
                                  const Dependence& dependence);
 

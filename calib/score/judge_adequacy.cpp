@@ -82,8 +82,8 @@ void judge_lack_of_fit(const Campaign& campaign, const Fit& fit, std::vector<Rea
     const LackOfFit& first = *overstated.front();
     reasons.push_back(
         reason(AspectState::reservation, "noise_overstated",
-               fmt::format("the residual of {} is {} times the noise that `sd` states: by an "
-                           "overstated noise a lack of fit is not seen",
+               fmt::format("the residual of {} is {} times the noise that `sd` states: if `sd` is "
+                           "too large, a lack of fit is not detected",
                            signal_of(first.condition, first.channel),
                            significant(std::sqrt(first.ratio), 2)),
                first.condition, {{"residual_to_noise", std::sqrt(first.ratio)}}));
@@ -148,9 +148,9 @@ void judge_driven(const std::vector<UnjudgedSignal>& signals, std::vector<Reason
       fmt::format("{:.0f} % of the residual variance of {} is linearly explained by the input{}: "
                   "unmodelled dynamics, or a wrong parameter",
                   100.0 * largest, signal,
-                  count > 1 ? fmt::format(", likewise in {} other signal{}", count - 1,
-                                          count == 2 ? "" : "s")
-                            : ""),
+                  count > 1
+                      ? fmt::format(", also in {} other signal{}", count - 1, count == 2 ? "" : "s")
+                      : ""),
       worst->condition->id, {{"share", largest}, {"signals", static_cast<double>(count)}}));
 }
 

@@ -48,12 +48,13 @@ Reason judge_bounded(const Campaign& campaign, const Fit& fit, const FittedParam
   const bool negligible = limit <= allowed;
   std::string words = name + ": " + parameter.reason;
   if (negligible) {
-    words += own != stated.end() ? ", negligible as [acceptance.negligible] states"
-                                 : ", negligible beside its values elsewhere in the campaign";
+    words += own != stated.end()
+                 ? ", negligible as [acceptance.negligible] states"
+                 : ", negligible compared with its values elsewhere in the campaign";
   } else if (own != stated.end()) {
     words += ", more than [acceptance.negligible] allows";
   } else {
-    words += "; [acceptance.negligible] may state what would not matter";
+    words += "; if this is negligible, say so in [acceptance.negligible]";
   }
   return reason(negligible ? AspectState::pass : AspectState::reservation, "bounded", words, name,
                 {{"upper_limit", limit}, {"allowed", allowed}});
@@ -100,10 +101,10 @@ void note_further_starts(const Fit& fit, std::vector<Reason>& reasons) {
   if (!fit.further_starts || fit.further_starts->looked_at == 0) return;
   const FurtherStarts& looks = *fit.further_starts;
   std::string words =
-      fmt::format("{} further start{} looked at with coarse simulations: ", looks.looked_at,
+      fmt::format("{} further start{} tried with coarse simulations: ", looks.looked_at,
                   looks.looked_at == 1 ? " was" : "s were");
   if (fit.best_start > 1) {
-    words += "one reached a lower cost than that of the campaign, and is the result";
+    words += "one reached a lower cost than the start of the campaign and gave the result";
   } else {
     words += "none reached a lower cost";
   }
@@ -161,13 +162,14 @@ void judge_missing(const Fit& fit, std::vector<Reason>& reasons) {
     reasons.push_back(reason(
         moved.empty() ? AspectState::note : AspectState::reservation, "missing_effect",
         fmt::format(
-            "the residuals ask for a term that the model lacks: {} ({}) of {} ({} to {}){}{}",
+            "the residuals indicate a term that the model lacks: {} ({}) of {} ({} to {}){}{}",
             effect.meaning, effect.key, readable_size(alone, effect.unit),
             readable_size(alone - half, effect.unit), readable_size(alone + half, effect.unit),
-            moved.empty() ? std::string()
-                          : fmt::format("; it would move {} by more than half of the "
-                                        "interval for an exact model",
-                                        fmt::join(moved, ", ")),
+            moved.empty()
+                ? std::string()
+                : fmt::format(
+                      "; it would change {} by more than half of the interval for an exact model",
+                      fmt::join(moved, ", ")),
             key == fit.considered->missing.front() ? alternatives_text(*fit.considered)
                                                    : std::string()),
         effect.key,
@@ -195,16 +197,17 @@ void judge_stability(const Campaign& campaign, const Fit& fit, std::vector<Reaso
       {"differ", static_cast<double>(words.size())},
       {"estimated", static_cast<double>(fit.stability->size())}};
   if (words.empty()) {
-    reasons.push_back(reason(AspectState::pass, "stable",
-                             "the validation records alone lead to the same estimates, within the "
-                             "uncertainty of both",
-                             {}, numbers));
+    reasons.push_back(
+        reason(AspectState::pass, "stable",
+               "estimates from the validation records alone agree within the uncertainty of both",
+               {}, numbers));
   } else {
-    reasons.push_back(reason(
-        AspectState::reservation, "unstable",
-        fmt::format("{} of {} estimates differ when made from the validation records alone: {}",
-                    words.size(), fit.stability->size(), fmt::join(words, ", ")),
-        {}, numbers));
+    reasons.push_back(
+        reason(AspectState::reservation, "unstable",
+               fmt::format("{} of {} estimates differ significantly from those of the validation "
+                           "records alone: {}",
+                           words.size(), fit.stability->size(), fmt::join(words, ", ")),
+               {}, numbers));
   }
 }
 
@@ -220,15 +223,15 @@ void judge_unexplained(const FittedParameter& estimate, std::vector<Reason>& rea
   const std::string name = parameter_label(estimate.name, estimate.scope, estimate.level);
   reasons.push_back(reason(
       AspectState::reservation, "unexplained_error",
-      fmt::format("{}: the model error that the residuals show, and no small effect explains, "
-                  "could move it by up to {} times the half width of its interval",
+      fmt::format("{}: the model error visible in the residuals, which no small effect explains, "
+                  "could shift it by up to {} times the half width of its interval",
                   name, significant(times, 2)),
       name, {{"times_half_width", times}}));
 }
 
 /// Notes how far a model error that is tolerated, and too small for the residuals to show it, could
-/// move an estimate beyond its interval. It is no reservation, because a right model would have it
-/// as well (docs/decisions/0066-unseen-error.md).
+/// move an estimate beyond its interval. It is not a reservation, because a correct model would
+/// have it as well (docs/decisions/0066-unseen-error.md).
 void note_unseen(const Fit& fit, std::vector<Reason>& reasons) {
   const FittedParameter* worst = nullptr;
   double times = 1.0;
@@ -242,8 +245,8 @@ void note_unseen(const Fit& fit, std::vector<Reason>& reasons) {
   const std::string name = parameter_label(worst->name, worst->scope, worst->level);
   reasons.push_back(reason(
       AspectState::note, "unseen_error",
-      fmt::format("a model error too small for the residuals to show could move {} by up to {} "
-                  "times the half width of its interval, if it acted just like that parameter",
+      fmt::format("a model error too small to be seen in the residuals could shift {} by up to {} "
+                  "times the half width of its interval, if it acted exactly like that parameter",
                   name, significant(times, 2)),
       name, {{"times_half_width", times}}));
 }
@@ -256,13 +259,14 @@ void judge_considered(const Campaign& campaign, const Fit& fit, std::vector<Reas
     if (each.fitted && !each.nuisance) judge_unexplained(each, reasons);
   }
   if (!fit.considered->left_out.empty()) {
-    reasons.push_back(reason(
-        AspectState::reservation, "effects_left_out",
-        campaign.considered.none ? std::string("the campaign counts the model as exact, so that "
-                                               "the intervals leave out what it lacks")
-                                 : fmt::format("the campaign leaves out of what is considered: {}",
-                                               fmt::join(fit.considered->left_out, ", ")),
-        {}, {{"effects", static_cast<double>(fit.considered->left_out.size())}}));
+    reasons.push_back(
+        reason(AspectState::reservation, "effects_left_out",
+               campaign.considered.none
+                   ? std::string("the campaign treats the model as exact, so the intervals do not "
+                                 "include effects that the model lacks")
+                   : fmt::format("small effects not considered, by choice of the campaign: {}",
+                                 fmt::join(fit.considered->left_out, ", ")),
+               {}, {{"effects", static_cast<double>(fit.considered->left_out.size())}}));
   }
 }
 
@@ -273,7 +277,7 @@ void judge_posterior(const Fit& fit, std::vector<Reason>& reasons) {
   if (!found.mixed()) {
     reasons.push_back(reason(
         AspectState::reservation, "posterior_not_mixed",
-        fmt::format("the chains of the posterior disagree: R-hat {} of {}, at most {} would do",
+        fmt::format("the chains of the posterior disagree: R-hat {} of {}, expected at most {}",
                     significant(found.r_hat, 4), found.worst.value_or(""), Posterior::kMostRHat),
         found.worst.value_or(""), {{"r_hat", found.r_hat}, {"allowed", Posterior::kMostRHat}}));
   }
@@ -317,8 +321,8 @@ Aspect judge_parameters(const Campaign& campaign, const Fit& fit) {
   }
   if (found_once(fit)) {
     reasons.push_back(reason(AspectState::reservation, "found_once",
-                             "only one of several starts ended at this point: " + fit.agreement, {},
-                             {{"starts", static_cast<double>(fit.starts.size())}}));
+                             "only one of several starts converged to this point: " + fit.agreement,
+                             {}, {{"starts", static_cast<double>(fit.starts.size())}}));
   }
   if (estimated == 0) {
     reasons.push_back(reason(AspectState::pass, "stated_values",

@@ -313,17 +313,16 @@ std::vector<std::string> overfitting_warnings(const std::vector<ConditionScore>&
       if (std::isnan(channel.metrics.rho2) || !channel.noise_floor || score.samples < 2) continue;
       // The variance estimated from n samples of noise has a relative standard deviation of sqrt(2
       // / n).
-      const double scatter = 5.0 * std::sqrt(2.0 / static_cast<double>(score.samples));
+      const double margin = 5.0 * std::sqrt(2.0 / static_cast<double>(score.samples));
       const double unexplained = 1.0 - channel.metrics.rho2;
       const double least = 1.0 - channel.noise_floor->rho2;
-      if (unexplained >= least * (1.0 - std::max(0.2, scatter))) continue;
-      warnings.push_back(fmt::format(
-          "condition \"{}\": {} has rho2 = {:.6g}, better than the {:.6g} that its noise allows "
-          "any "
-          "model: the fit follows the noise (overfitting), or the noise is smaller than its stated "
-          "standard deviation",
-          score.id, datasets::info(channel.channel).key, channel.metrics.rho2,
-          channel.noise_floor->rho2));
+      if (unexplained >= least * (1.0 - std::max(0.2, margin))) continue;
+      warnings.push_back(
+          fmt::format("condition \"{}\": {} has rho2 = {:.6g}, better than the {:.6g} that a "
+                      "perfect model could reach: the fit follows the noise (overfitting), or the "
+                      "noise is smaller than its stated standard deviation",
+                      score.id, datasets::info(channel.channel).key, channel.metrics.rho2,
+                      channel.noise_floor->rho2));
     }
   }
   return warnings;

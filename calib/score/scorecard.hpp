@@ -24,9 +24,9 @@ std::vector<ConditionScore> score_conditions(const Problem& problem, std::span<c
 /// estimates explains (ConditionScore::explained). Even if the model is correct, inexact estimates
 /// leave structure in the residual, which is not a model error.
 ///
-/// The test for lack of fit of a record from another day is repeated likewise. What differs between
-/// the days, by the sizes that are stated or usual, is no error of the model. The whole residual
-/// counts on a day of the fit, and if the component is larger than these sizes let expect.
+/// The test for lack of fit of a record from another day is repeated in the same way. What differs
+/// between the days, with stated or usual sizes, is not a model error. The whole residual counts on
+/// a day of the fit, and if the component is larger than these sizes let expect.
 ///
 /// @param dates   dates of the fitted records; empty if not all are known
 /// @param scores  one per condition of the problem, in order

@@ -76,27 +76,26 @@ std::string agreement_of(const std::vector<StartReport>& starts, const std::vect
   if (lowest->final_cost < basins.front().cost &&
       !same_cost(lowest->final_cost, basins.front().cost, variance)) {
     return fmt::format(
-        "start {} of {} has the lowest cost and did not converge; the best of those that did, "
-        "start "
-        "{}, is higher by {:.3g} (2 would be one parameter's 95 % interval)",
+        "start {} of {} has the lowest cost but did not converge; the best converged one, start "
+        "{}, has a cost higher by {:.3g} (2 corresponds to the 95 % interval of one parameter)",
         lowest->number, starts.size(), basins.front().starts.front(),
         (basins.front().cost - lowest->final_cost) / std::max(variance, 1e-300));
   }
   const auto unfinished = std::count_if(starts.begin(), starts.end(), [](const StartReport& start) {
     return start.status != FitStatus::converged;
   });
-  std::string text = fmt::format("{} of {} starts ended at the best point",
+  std::string text = fmt::format("{} of {} starts converged to the best point",
                                  basins.front().starts.size(), starts.size());
   if (basins.size() > 1) {
     const double rise = (basins[1].cost - basins.front().cost) / std::max(variance, 1e-300);
     text += fmt::format(
-        "; {} other {}, the next with a cost higher by {:.3g} (2 would be one "
-        "parameter's 95 % interval)",
+        "; {} other {}, the next with a cost higher by {:.3g} (2 corresponds to the 95 % interval "
+        "of one parameter)",
         basins.size() - 1, basins.size() == 2 ? "minimum" : "minima", rise);
   }
   if (unfinished > 0) text += fmt::format("; {} did not converge", unfinished);
   if (basins.front().starts.size() == 1)
-    text += "; no other start confirms the best point: make more starts";
+    text += "; no other start confirms the best point: use more starts";
   return text;
 }
 

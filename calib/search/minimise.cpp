@@ -62,7 +62,7 @@ std::string describe_failure(const Problem& problem, const Evaluation& evaluatio
 std::string stop_reason(const Evaluator& evaluator, int most_iterations) {
   const std::string reason = evaluator.budget().reason();
   if (!reason.empty()) return reason;
-  return fmt::format("stopped after {} iterations, the most allowed, before it converged",
+  return fmt::format("stopped after {} iterations, the maximum, before it converged",
                      most_iterations);
 }
 
@@ -111,7 +111,7 @@ SolveResult minimise(const Problem& problem, Evaluator& evaluator, std::vector<d
     return {FitStatus::stopped, stop_reason(evaluator, iterations.most()) + left,
             iterations.total(), check};
   return {FitStatus::failed,
-          (descent.failure.empty() ? "no step lowers the cost any more" : descent.failure) + left,
+          (descent.failure.empty() ? "no further step lowers the cost" : descent.failure) + left,
           iterations.total(), check};
 }
 

@@ -103,13 +103,13 @@ std::string far_from_minimum(const Problem& problem, const Evaluation& evaluatio
   const auto along = valley(problem, linearise(problem, evaluation), check);
   if (along.size() == 1) {
     words += fmt::format(
-        "; what is left of the way is along {}, which hardly moves the records: a prior or a known "
-        "value would end it",
+        "; the remaining step is along {}, which hardly affects the records: state a prior or a "
+        "known value",
         names(along));
   } else if (along.size() > 1) {
     words += fmt::format(
-        "; what is left of the way is a valley along {}, which the records hardly separate: a "
-        "prior or a known value of one of them would end it",
+        "; the remaining step is along a valley of {}, which the records hardly separate: state a "
+        "prior or a known value of one of them",
         names(along));
   }
   std::vector<std::size_t> bounded;
@@ -117,9 +117,8 @@ std::string far_from_minimum(const Problem& problem, const Evaluation& evaluatio
     if (check.active_bound[j]) bounded.push_back(j);
   }
   if (!bounded.empty()) {
-    words += fmt::format(
-        "; at a bound that the cost presses against: {}: a wider bound, a prior or a known value",
-        names(bounded));
+    words += fmt::format("; at an active bound: {}: set a wider bound, a prior or a known value",
+                         names(bounded));
   }
   return words;
 }

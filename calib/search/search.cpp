@@ -93,7 +93,8 @@ bool Search::enter(const Stage& stage) {
     evaluator_.set_fidelity(stage.fidelity);
     if (!after_horizons) return true;
     const Evaluation& whole = evaluator_.evaluate(z_);
-    if (!whole.ok || whole.cost > begin_cost_) {  // whole records contradict the horizons
+    if (!whole.ok ||
+        whole.cost > begin_cost_) {  // the fit to whole records is worse than at its start
       z_ = begin_;
       evaluator_.forget();
       evaluator_.evaluate(z_);

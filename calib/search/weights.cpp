@@ -95,15 +95,15 @@ void warn(Problem& problem, const Evaluation& optimum, bool settled,
   }
   warnings.push_back(fmt::format(
       "without repeats and without `sd` the noise of {} was estimated from the residuals of the "
-      "fit, one value a channel, over {}{}; errors of the model count as noise",
+      "fit, one value per channel, over {}{}; model errors count as noise",
       fmt::join(names, ", "),
       where.size() == problem.conditions.size() ? std::string("all conditions")
                                                 : fmt::format("{}", fmt::join(where, ", ")),
       settled ? "" : " (and had not settled when the fit ended)"));
   if (unresolved == 0) return;
   warnings.push_back(fmt::format(
-      "in {} of {} records the residual is smaller than simulations of tolerance {:.2g} resolve: "
-      "their standard deviation was taken as {:.2g} of the peak-to-peak",
+      "in {} of {} records the residual is smaller than a simulation with tolerance {:.2g} can "
+      "resolve: their standard deviation was set to {:.2g} of the peak-to-peak value",
       unresolved, estimated, problem.tolerance, share));
 }
 

@@ -180,14 +180,14 @@ std::string drawn_from(const std::vector<Source>& sources) {
   std::string text;
   if (with_repeats > 0) {
     text = fmt::format(
-        "; {} of {} conditions drawn from their repeats: what differs between repeats "
-        "counts, what the model lacks does not",
+        "; {} of {} conditions resampled from their repeats: this includes variation between "
+        "repeats, but no model error",
         with_repeats, sources.size());
   }
   if (longest > 0) {
     text += fmt::format(
-        "; {} of {} conditions drawn from their residuals in blocks of up to {} samples: what the "
-        "model lacks counts as noise",
+        "; {} of {} conditions resampled from their residuals in blocks of up to {} samples: model "
+        "error counts as noise",
         sources.size() - with_repeats, sources.size(), longest);
   }
   return text;
@@ -230,7 +230,7 @@ void bootstrap(const Problem& problem, const Evaluation& optimum, const Uncertai
                const std::vector<ConditionScore>& scores, const FitOptions& options, Fit& fit,
                Budget& left) {
   if (found.scatter.empty()) {
-    fit.bootstrap = BootstrapRun{0, "no bootstrap: there are no residuals to draw from"};
+    fit.bootstrap = BootstrapRun{0, "no bootstrap: there are no residuals to resample"};
     return;
   }
   std::vector<Source> sources;

@@ -59,9 +59,9 @@ std::string collinearity_words(const std::vector<std::string>& names,
   std::string text =
       fmt::format("Strongest: {:.3f} between {} and {}", strongest, name(first), name(second));
   if (std::abs(strongest) > kCombination) {
-    text += ": the records determine a combination of the two far better than each alone";
+    text += ": the records determine a combination of the two far better than either alone";
   } else if (std::abs(strongest) > kMadeUp) {
-    text += ": an error of one is mostly made up by the other";
+    text += ": an error of one is mostly compensated by the other";
   }
   const Eigen::VectorXd inflation = variance_inflation(correlation);
   std::vector<std::string> inflated;

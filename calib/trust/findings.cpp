@@ -40,17 +40,17 @@ void add_correlation(const Problem& problem, const Uncertainty& found, Fit& fit)
 void warn_of_noise(const Problem& problem, const Uncertainty& found, Fit& fit) {
   const double chi = found.reduced_chi_square;
   const double freedom = std::max(1.0, static_cast<double>(fit.residual_count - found.rank));
-  const double scatter = 5.0 * std::sqrt(2.0 / freedom);
+  const double margin = 5.0 * std::sqrt(2.0 / freedom);
   if (fit.residual_count <= found.rank) {
     fit.warnings.push_back(
         fmt::format("{} residuals for {} unknowns: nothing is left to estimate the noise from",
                     fit.residual_count, problem.map.unknowns().size()));
-  } else if (chi > 1.0 + std::max(0.1, scatter)) {
+  } else if (chi > 1.0 + std::max(0.1, margin)) {
     fit.warnings.push_back(fmt::format(
         "the residuals are {:.3g} times as large as the noise (reduced chi-square {:.4g}): the "
-        "model does not explain all of the records; standard errors are scaled up by that factor",
+        "model does not fully explain the records; standard errors are scaled up by that factor",
         std::sqrt(chi), chi));
-  } else if (!problem.has_estimated_sd() && chi < 1.0 - std::max(0.5, scatter)) {
+  } else if (!problem.has_estimated_sd() && chi < 1.0 - std::max(0.5, margin)) {
     fit.warnings.push_back(
         fmt::format("the residuals are only {:.3g} times as large as the noise (reduced chi-square "
                     "{:.4g}): the stated standard deviations are too large",
@@ -126,7 +126,7 @@ void judge_residuals(const Problem& problem, const OptimumCheck& check, const Un
     fit.warnings.push_back(between_repeats_warning(*fit.between_repeats));
   if (spread.noiseless > 0) fit.warnings.push_back(noiseless_warning(problem, spread));
   if (!spread.known.names.empty()) {
-    fit.interval_advice += fmt::format("; the errors hold those of known values: {}",
+    fit.interval_advice += fmt::format("; the errors include those of known values: {}",
                                        fmt::join(spread.known.names, ", "));
   }
   if (spread.rank > 0) rate_model(spread, fit);
@@ -148,8 +148,8 @@ void add_remedies(const Problem& problem, const Evaluation& optimum,
     if (std::find(symmetric.begin(), symmetric.end(), j) != symmetric.end()) continue;
     if (rests_on_known(problem, spread, optimum.z, j)) {
       each.reason += fmt::format(
-          "; most of that is what is uncertain of {}: as a free parameter with its prior (of a "
-          "sensor: its gain or offset) the records may determine more",
+          "; most of that is the uncertainty of {}: made a free parameter with a prior (for a "
+          "sensor: its gain or offset), the records may reduce it",
           fmt::join(spread.known.names, ", "));
       continue;
     }

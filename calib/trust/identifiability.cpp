@@ -130,7 +130,7 @@ void grade(const Problem& problem, const Uncertainty& found, std::size_t unknown
 std::string widened_words(const Budget95& budget) {
   const BudgetLine* largest = budget.largest_effect();
   if (largest == nullptr) return "with what the model leaves out";
-  return fmt::format("with what the model leaves out, most of it {}", largest->source);
+  return fmt::format("with effects that the model leaves out, mainly {}", largest->source);
 }
 
 /// Returns the length of the longer side of an interval.
@@ -157,12 +157,12 @@ double choose_interval(const Problem& problem, const Uncertainty& found, std::si
   parameter.ci95_from = std::optional(IntervalSource::robust_standard_error);
   parameter.degrees_of_freedom = std::optional(degrees(freedom));
   if (robust > kRobustMatters * plain) {
-    add_reason(parameter,
-               fmt::format("{}: the robust error, on which the "
-                           "interval rests, is {} times the plain one",
-                           found.from_repeats[unknown] ? "repeats differ from one another"
-                                                       : "residuals are autocorrelated",
-                           significant(robust / plain, 2)));
+    add_reason(
+        parameter,
+        fmt::format("{}: the robust error, which the interval uses, is {} times the plain one",
+                    found.from_repeats[unknown] ? "repeats differ from one another"
+                                                : "residuals are autocorrelated",
+                    significant(robust / plain, 2)));
   }
   return found.robust_quantile[unknown] * robust;
 }

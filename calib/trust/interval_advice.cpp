@@ -62,8 +62,8 @@ std::string other_interval(const FittedParameter& parameter, std::string_view un
   // for f degrees of freedom.
   const double chance = 2.0 / std::sqrt(2.0 * std::max(1.0, parameter.bootstrap->freedom));
   if (ratio * (kAgrees + chance) < 1.0) {
-    return fmt::format("the bootstrap is {:.2g} times as wide; use `ci95_if_exact`{}", ratio,
-                       misfit ? ", which counts what the model lacks too" : "");
+    return fmt::format("the bootstrap interval is {:.2g} times as wide; use `ci95_if_exact`{}",
+                       ratio, misfit ? ", which includes model error too" : "");
   }
   return {};
 }
@@ -74,8 +74,8 @@ std::string interval_advice(const Problem& problem, const OptimumCheck& check,
                             const Uncertainty& found, const std::vector<LackOfFit>& tests) {
   if (!check.is_minimum()) {
     return fmt::format(
-        "no interval is reliable: the fit did not end at a minimum; by the derivatives at its end "
-        "the nearest is {} standard errors away, and the intervals lie about that end",
+        "no interval is reliable: the fit did not end at a minimum; by the derivatives there, the "
+        "nearest minimum is {} standard errors away; the intervals are centred on the end point",
         significant(check.relative_offset, 2));
   }
   if (found.detail == Detail::plain)
@@ -111,8 +111,8 @@ std::string interval_advice(const Problem& problem, const OptimumCheck& check,
   if (*flagged) {
     return text + fmt::format(
                       "; significant lack of fit (condition \"{}\", {}: residual variance {:.3g} "
-                      "times that of {}, p = {:.2g}): intervals hold for the values that fit this "
-                      "model best to these signals, and other signals may ask for others",
+                      "times that of {}, p = {:.2g}): intervals apply to the values that fit this "
+                      "model best to these signals; other signals may lead to other values",
                       test.condition, datasets::info(test.channel).key, test.ratio, against,
                       test.p);
   }
@@ -152,9 +152,9 @@ std::string between_repeats_warning(const BetweenRepeats& repeats) {
   if (!repeats.cause) return text;
   if (repeats.cause == "start") {
     return text + fmt::format(
-                      "; they differ as if each had begun at another time (standard deviation "
-                      "{:.2g} ms), so how late their mean began is not known either: record what "
-                      "drives the rig, or use a common trigger",
+                      "; they differ as if each had started at a different time (standard "
+                      "deviation {:.2g} ms), so the start of their mean is uncertain too: record "
+                      "the drive, or use a common trigger",
                       1e3 * *repeats.cause_sd);
   }
   text += fmt::format("; they differ as if {} varied by {} % from repeat to repeat", *repeats.cause,
@@ -173,9 +173,8 @@ std::string noiseless_warning(const Problem& problem, const Uncertainty& found) 
   for (const ProblemCondition& condition : problem.conditions) all += condition.channels.size();
   return fmt::format(
       "in {} of {} records the residual is too small to be noise: it contains errors of the model "
-      "and "
-      "of its solver, which do not average out. Standard errors there count every condition as one "
-      "observation; they show how far such errors may move a value, not its variation",
+      "and of its solver, which do not average out. Standard errors there treat each condition as "
+      "one observation; they show how far such errors may shift a value, not its variation",
       found.noiseless, all);
 }
 
@@ -214,7 +213,7 @@ std::string compare_intervals(const Problem& problem,
                                 open.empty() ? "" : "elsewhere ", made, s));
   }
   if (!open.empty()) {
-    words.insert(words.begin(), fmt::format("not identifiable, so that no interval is reliable: {}",
+    words.insert(words.begin(), fmt::format("not identifiable, so no interval is reliable: {}",
                                             fmt::join(open, ", ")));
   }
   return fmt::format("{}", fmt::join(words, "; "));

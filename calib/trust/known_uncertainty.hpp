@@ -21,7 +21,7 @@ struct KnownUncertainty {
   Eigen::MatrixXd response;
 };
 
-/// Returns the name, for messages and budgets, of what the certificate of a sensor states.
+/// Returns the name, for messages and budgets, of the uncertainty stated in a sensor's certificate.
 ///
 /// @param what  "gain" or "offset"
 std::string certificate_name(std::string_view what, std::string_view channel);

@@ -69,7 +69,7 @@ LackOfFit make_test(const ProblemCondition& condition, const ProblemChannel& cha
 }  // namespace
 
 double detectable_error(const LackOfFit& test, double level) {
-  // A stated noise has so many degrees of freedom that F is a chi-square distribution.
+  // With the many degrees of freedom of a stated noise, F becomes a chi-square distribution.
   const double freedom = std::min(test.pure_error_freedom, metrics::kManyDegrees);
   const double ratio = metrics::fisher_f_upper_quantile(level, test.freedom, freedom);
   return std::sqrt(std::max(0.0, ratio - 1.0));

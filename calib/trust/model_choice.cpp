@@ -73,7 +73,7 @@ InformationDifference compare_information(const Candidate& first, const Candidat
       fmt::format("AIC {}, BIC {} of {} against {}", signed_text(result.aic),
                   signed_text(result.bic), other.name, first.name);
   if (by_aic == 0 && by_bic == 0) {
-    result.message = fmt::format("no difference to speak of ({})", numbers);
+    result.message = fmt::format("no relevant difference ({})", numbers);
   } else if (by_aic * by_bic < 0) {
     result.message = fmt::format("the criteria contradict each other ({})", numbers);
   } else {

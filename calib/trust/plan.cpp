@@ -33,7 +33,7 @@ std::string words_of(const Problem& problem, const Plan& plan, std::size_t unkno
   if (half && *half <= kWeak) return {};
   const std::string state =
       half ? fmt::format("known to {:.0f} % only", 100.0 * *half) : "not determined";
-  return fmt::format("{}: {} by these records; {} would make it identifiable",
+  return fmt::format("{}: {} from these records; {} would make it identifiable",
                      problem.name(unknown), state, parameter.remedy.value_or("nothing simple"));
 }
 
@@ -95,8 +95,8 @@ Plan plan(const Campaign& campaign, const std::vector<Record>& records,
   }
   if (values == nullptr) {
     result.messages.push_back(
-        "these are figures at the campaign's start values; with --fit at those of a fit, which "
-        "are better where the starts are far off");
+        "these figures apply to the campaign's start values; if these are far off, use --fit with "
+        "an earlier fit");
   }
   const auto symmetry = at.ok ? scaling_symmetry(problem, z, 1.0, threads) : std::nullopt;
   const std::string symmetric = symmetry ? describe(problem, *symmetry) : "";
@@ -109,8 +109,8 @@ Plan plan(const Campaign& campaign, const std::vector<Record>& records,
     }
   }
   for (const std::string& name : uncertain_names(problem)) {
-    result.messages.push_back(fmt::format(
-        "the uncertainty of {} is not in these figures: a fit adds what it does to them", name));
+    result.messages.push_back(
+        fmt::format("these figures do not include the uncertainty of {}; a fit does", name));
   }
   for (std::size_t j = 0; j < z.size(); ++j) {
     PlannedParameter& parameter = result.parameters[j];

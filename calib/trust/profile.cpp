@@ -307,13 +307,13 @@ void profiles(const Problem& problem, const std::vector<datasets::Record>& recor
       parameter.reason += (parameter.reason.empty() ? "" : "; ") + text;
     };
     if (profile.lower_cost_found)
-      say("its profile finds a lower cost: the fit is not at the minimum, make more starts");
+      say("its profile finds a lower cost: the fit is not at the minimum; use more starts");
     if (profile.low.is_lost() || profile.high.is_lost()) {
-      say(fmt::format("its profile was not made {}: {}",
+      say(fmt::format("its profile was not computed {}: {}",
                       profile.low.is_lost() && profile.high.is_lost() ? "on either side"
                       : profile.low.is_lost()                         ? "below"
                                                                       : "above",
-                      left.spent() ? left.reason() : "no fit there converged"));
+                      left.spent() ? left.reason() : "no fit converged there"));
     }
     if (profile.low.value && profile.high.value) continue;
     const model::ParameterSpec& spec = problem.spec(j);

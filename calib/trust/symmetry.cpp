@@ -179,7 +179,7 @@ std::string describe(const Problem& problem, const ScalingSymmetry& symmetry) {
   if (symmetry.holds()) {
     return fmt::format(
         "scaling symmetry, nearly: {} changes positions only through the fixed {}, which {} s to "
-        "no better than {} % (standard error); it takes {} to determine it",
+        "no better than {} % (standard error); determining it needs {}",
         scaling, known, symmetry.known.size() == 1 ? "determines" : "determine",
         significant(100.0 * symmetry.relative_sd, 2), symmetry_remedy(problem, symmetry));
   }

@@ -30,8 +30,8 @@ bool is_initial(const Campaign& campaign, int index) {
 void check_initial(const Campaign& campaign) {
   if (campaign.initial == InitialMode::fit) return;
   const std::string message =
-      "initial values count only with initial = \"fit\" in [recording]: "
-      "\"rest\" starts from zero, \"record\" from the record";
+      "initial values have an effect only with initial = \"fit\" in [recording]: \"rest\" starts "
+      "from zero, \"record\" from the record";
   for (const ParameterSetting& setting : campaign.parameters) {
     if (!is_initial(campaign, setting.index)) continue;
     throw InputError(setting.where,
@@ -85,7 +85,7 @@ void check_motion(const Campaign& campaign) {
           fmt::format("key 'recording.channels.{}': the plant {} {}: expected {}, or role = "
                       "\"ignore\"",
                       info(channel).key, to_string(campaign.rig.plant),
-                      turns ? "turns an arm, and its motion is the angle of the joint"
+                      turns ? "moves an arm, so its motion is the angle of the joint"
                             : "moves a load along a line, and has no joint",
                       channel == Channel::force    ? "the channel torque (unit \"N m\")"
                       : turns                      ? "the channel angle (unit \"deg\" or \"rad\")"
@@ -175,8 +175,8 @@ void check_record(const Campaign& campaign, const Condition& condition) {
   if (condition.has_record()) {
     if (campaign.time_column.empty()) {
       fail(condition,
-           "has records, but nothing names their time: expected "
-           "time = { column = \"...\", unit = \"s\" } in [recording.channels]");
+           "has records, but their time column is unknown: expected time = { column = \"...\", "
+           "unit = \"s\" } in [recording.channels]");
     }
     const auto outputs = output_channels(campaign);
     const bool any = std::any_of(outputs.begin(), outputs.end(), [&](Channel channel) {
@@ -184,7 +184,7 @@ void check_record(const Campaign& campaign, const Condition& condition) {
     });
     if (is_compared(condition) && !any) {
       fail(condition,
-           "its records carry nothing to compare the model with: expected an output "
+           "its records have no output channel to compare with the model: expected an output "
            "channel such as position or angle in [recording.channels]");
     }
     return;

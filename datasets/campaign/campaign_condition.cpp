@@ -56,7 +56,7 @@ std::vector<std::string> read_numbers(const TomlNode& node) {
       item.fail_type("every number once");
     }
   }
-  if (numbers.empty()) node.fail("is empty: expected at least one text to stand for {n}");
+  if (numbers.empty()) node.fail("is empty: expected at least one text to replace {n}");
   return numbers;
 }
 
@@ -67,7 +67,7 @@ const KeyTable<RepeatPattern>& repeat_keys() {
   for (CampaignKey& row : columns.keys) row.form = plain_form(KeyForm::Kind::text);
   static const KeyTable<RepeatPattern> keys({
       Row::text("file", &RepeatPattern::file, "a file or pattern",
-                {.doc = "File or pattern, may hold `{n}`",
+                {.doc = "File or pattern; may contain `{n}`",
                  .example = "\"steps_1V.csv\"",
                  .needed = "the file of the repeat"}),
       Row::custom(
@@ -78,7 +78,7 @@ const KeyTable<RepeatPattern>& repeat_keys() {
             pattern.numbers = read_numbers(node);
           },
           {.doc =
-               "Text in place of `{n}`: `\"01..10\"` (zeros in front are kept) or a list of texts",
+               "Text in place of `{n}`: `\"01..10\"` (leading zeros are kept) or a list of texts",
            .otherwise = "none",
            .example = "\"01..10\""}),
       Row::described("columns", columns,
@@ -114,8 +114,8 @@ RepeatPattern read_repeat(const TomlNode& node, const Campaign& campaign) {
   const auto numbers = node.find("n");
   if (numbers && !uses_number) {
     numbers->fail(
-        "neither file nor columns hold {n}, so all repeats would be the same one: "
-        "expected columns such as position = \"x_mm_{n}\"");
+        "neither file nor columns contain {n}, so all repeats would be the same: expected columns "
+        "such as position = \"x_mm_{n}\"");
   }
   if (!numbers && uses_number) {
     node.fail("contains {n} but does not say what replaces it: expected n = \"01..10\" beside it");
@@ -139,9 +139,9 @@ void read_records(const TomlNode& node, const Campaign& campaign, Condition& con
     if (condition.repeats.empty()) repeats->fail("is empty: expected at least one file");
   }
   if (const auto count = node.find("repeats_averaged"); count && !averaged)
-    count->fail("has a meaning only together with averaged = \"file\"");
+    count->fail("is meaningful only with averaged = \"file\"");
   if (const auto count = node.find("planned_repeats"); count && (repeats || averaged))
-    count->fail("is combined with a record: expected it where none exists yet, for plan");
+    count->fail("is combined with a record: expected only without one, for plan");
 }
 
 TimeWindow read_window(const TomlNode& node) {
@@ -167,8 +167,8 @@ std::vector<TimeWindow> read_windows(const TomlNode& node) {
     const TimeWindow window = read_window(item);
     if (!windows.empty() && window.start_s < windows.back().end_s) {
       item.fail(
-          fmt::format("starts at {} s, before the window in front of it ends ({} s): "
-                      "expected windows in order that do not overlap",
+          fmt::format("starts at {} s, before the previous window ends ({} s): expected windows in "
+                      "increasing order without overlap",
                       window.start_s, windows.back().end_s));
     }
     windows.push_back(window);
@@ -195,9 +195,8 @@ void check_waveform_keys(const TomlNode& node, Waveform waveform) {
     const auto entry = node.find(rule.key);
     if (rule.needed) node.require(rule.key, fmt::format("a {} needs it", to_string(waveform)));
     if (entry && !rule.allowed) {
-      entry->fail(
-          fmt::format("has no meaning for the waveform \"{}\": expected it only for a chirp",
-                      to_string(waveform)));
+      entry->fail(fmt::format("is not used with the waveform \"{}\": expected only for a chirp",
+                              to_string(waveform)));
     }
   }
 }
@@ -222,7 +221,7 @@ void read_time(const TomlNode& node, Condition& condition) {
   if (condition.duration_s && condition.sample_rate_hz &&
       *condition.duration_s * *condition.sample_rate_hz > kMostSamples) {
     node.require("duration", "a time")
-        .fail(fmt::format("{} s at {} Hz are more than {:.0f} samples", *condition.duration_s,
+        .fail(fmt::format("{} s at {} Hz is more than {:.0f} samples", *condition.duration_s,
                           *condition.sample_rate_hz, kMostSamples));
   }
   if (const auto windows = node.find("windows")) {
@@ -251,10 +250,11 @@ const KeyTable<Condition>& condition_keys() {
   KeyForm limits = table_form(limit_keys());
   const std::string_view drives = "Sine, square and chirp need it. ";
   static const KeyTable<Condition> keys({
-      Row::described("id", text,
-                     {.doc = "Names the condition and its files; no two differ by case only",
-                      .example = "\"sine\"",
-                      .needed = "the name of the condition"}),
+      Row::described(
+          "id", text,
+          {.doc = "Name of the condition and its files; unique even without regard to case",
+           .example = "\"sine\"",
+           .needed = "the name of the condition"}),
       Row::word<Waveform>("waveform", &Condition::waveform, waveforms(),
                           {.doc = "Signal of the drive",
                            .needed = "one of \"sine\" \"square\" \"chirp\" \"recorded\""}),
@@ -267,7 +267,7 @@ const KeyTable<Condition>& condition_keys() {
                     condition.frequency_hz =
                         node.quantity("Hz", from_zero ? kFrequenciesFromZero_hz : kFrequencies_hz);
                   },
-                  {.doc = fmt::format("{}Of a chirp: at its start", drives), .otherwise = "none"}),
+                  {.doc = fmt::format("{}For a chirp: at its start", drives), .otherwise = "none"}),
       Row::described(
           "amplitude",
           quantity_form(std::vector<std::string>{"m", "V", "Pa", "N", "m/s2", "rad", "N m"}),
@@ -288,7 +288,7 @@ const KeyTable<Condition>& condition_keys() {
       Row::word<Use>("use", &Condition::use,
                      {.doc = "What the condition is for",
                       .example = "\"fit\"",
-                      .hint = "or \"validate\": keep some back that the fit does not see"}),
+                      .hint = "or \"validate\": keep some back from the fit"}),
       Row::described("parameters", known_values_form(ParameterGroup::rig),
                      {.doc = "Known values of this condition alone", .otherwise = "none"}),
       Row::described(
@@ -299,24 +299,23 @@ const KeyTable<Condition>& condition_keys() {
                       .otherwise = "none",
                       .example = "[\"records/sine_*.csv\"]"}),
       Row::text("averaged", &Condition::averaged, "a file",
-                {.doc = "A file that is averaged already, in place of `repeats`",
+                {.doc = "A file that is already averaged, in place of `repeats`",
                  .otherwise = "none",
                  .example = "\"averaged/sine.csv\""}),
       Row::whole("repeats_averaged", &Condition::repeats_averaged, 1, 1'000'000,
                  {.doc = "Number of repeats behind `averaged`"}),
       Row::whole("planned_repeats", &Condition::planned_repeats, 1, 1'000'000,
-                 {.doc = "How many repeats `plan` plans of a condition without a record",
+                 {.doc = "Number of repeats that `plan` assumes for a condition without a record",
                   .otherwise = "as the campaign's noise is stated",
                   .example = "5"}),
-      Row::custom(
-          "window", either_form({window, list_form(window)}, "list"),
-          [](const TomlNode& node, Condition& condition) {
-            condition.windows = read_windows(node);
-          },
-          {.doc = "What counts: `[\"0.5 s\", \"12 s\"]`, or several: `[[\"1 s\", \"2 s\"], [\"4 "
-                  "s\", \"6 s\"]]`",
-           .otherwise = "the whole record",
-           .example = "[\"0.5 s\", \"12 s\"]"}),
+      Row::custom("window", either_form({window, list_form(window)}, "list"),
+                  [](const TomlNode& node, Condition& condition) {
+                    condition.windows = read_windows(node);
+                  },
+                  {.doc = "Part of the record that is used: `[\"0.5 s\", \"12 s\"]`, or several: "
+                          "`[[\"1 s\", \"2 s\"], [\"4 s\", \"6 s\"]]`",
+                   .otherwise = "the whole record",
+                   .example = "[\"0.5 s\", \"12 s\"]"}),
       Row::word<bool>(
           "windows", &Condition::moving_windows, {{"moving", true}},
           {.doc = "Found from the record (below), in place of `window`", .otherwise = "none"}),
@@ -325,20 +324,21 @@ const KeyTable<Condition>& condition_keys() {
                      .otherwise = "that of `[synthetic]`"}),
       Row::quantity(
           "sample_rate", &Condition::sample_rate_hz, "Hz", kSampleRates_hz,
-          {.doc = "How dense, where there is no record", .otherwise = "that of `[synthetic]`"}),
+          {.doc = "Sampling rate without a record", .otherwise = "that of `[synthetic]`"}),
       Row::quantity("temperature", &Condition::temperature_k, "K", kTemperatures_k,
-                    {.doc = "Kept in the results: `\"38 degC\"`. The oil has it where "
+                    {.doc = "Stated in the results: `\"38 degC\"`. It is the oil temperature if "
                             "`reference_temperature` is given",
                      .otherwise = "none",
                      .example = "\"38 degC\""}),
-      Row::date("date", &Condition::date,
-                {.doc = "Kept in the results: `2026-03-01`, without quotes", .otherwise = "none"}),
+      Row::date(
+          "date", &Condition::date,
+          {.doc = "Stated in the results: `2026-03-01`, without quotes", .otherwise = "none"}),
       Row::text("specimen", &Condition::specimen, "a text that names the machine",
                 {.doc = "Which machine, where a campaign has several",
                  .otherwise = "none",
                  .example = "\"machine 2\""}),
       Row::described("acceptance", limits,
-                     {.doc = "What this condition is judged by, in place of `[acceptance]`",
+                     {.doc = "Limits of this condition, in place of `[acceptance]`",
                       .otherwise = "that of the campaign"}),
   });
   return keys;

@@ -27,8 +27,8 @@ void read_class_limits(const TomlNode& node, DiagnosisSettings& settings) {
       }
     } else if (!(settings.limits[i] > lower)) {
       node.fail(
-          fmt::format("{} ends at {} % unless given, which is not above {} %, where it "
-                      "begins: expected its limit too",
+          fmt::format("{} ends at {} % by default, which is not above {} %, where it begins: "
+                      "expected a limit for it too",
                       bounded[i], 100.0 * settings.limits[i], 100.0 * lower));
     }
     lower = settings.limits[i];
@@ -66,23 +66,22 @@ const KeyTable<DiagnosisSettings>& diagnosis_keys() {
                    .otherwise = "`{ normal = 1, slight = 10, medium = 20, critical = 30 }`",
                    .example = "{ slight = 12.0 }"}),
       Row::number("least_probability", &DiagnosisSettings::least_probability, probability,
-                  {.doc = "A record none of whose classes is as probable is undecided"}),
+                  {.doc = "A record is undecided if no class is at least this probable"}),
       Row::number("false_alarms", &DiagnosisSettings::false_alarms, probability,
-                  {.doc = "How often a healthy record may be taken for a leaking one"}),
+                  {.doc = "Accepted probability that a healthy record is classed as leaking"}),
       Row::number("detection", &DiagnosisSettings::detection, probability,
                   {.doc = "Fraction of leaks of the smallest detectable size that are found"}),
       Row::text("duty", &DiagnosisSettings::duty, "the id of a condition",
-                {.doc = "Id of the condition at whose signal the share of a machine's state is "
-                        "stated",
-                 .otherwise = "the slowest generated sine, of these the largest",
+                {.doc = "Id of the condition whose signal defines the share stated for a machine",
+                 .otherwise = "the slowest generated sine; among these, the largest",
                  .example = "\"sine\""}),
       Row::custom("level_class", entries_form(word_form(words_of(enumerator_words<LeakClass>()))),
                   [](const TomlNode& node, DiagnosisSettings& settings) {
                     for (const auto& [level, entry] : node.entries())
                       settings.level_class[level] = entry.choice(enumerator_words<LeakClass>());
                   },
-                  {.doc = "Leak levels whose class is known, `{ \"0 %\" = \"normal\" }`: what the "
-                          "diagnosis is judged by, and which records are healthy",
+                  {.doc = "Leak levels whose class is known, `{ \"0 %\" = \"normal\" }`: the "
+                          "diagnosis is checked against them, and they define the healthy records",
                    .otherwise = "`{}`",
                    .example = "{ \"0 %\" = \"normal\" }"}),
   });

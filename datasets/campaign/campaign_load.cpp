@@ -87,8 +87,7 @@ const KeyTable<model::Rig>& rig_keys() {
       Row::word<model::PlantKind>(
           "model", &model::Rig::plant, plant_words(),
           {.doc = "`\"load_pressure\"`; `\"two_chamber\"`: a cylinder with both chamber pressures; "
-                  "`\"linkage\"`: such a cylinder turns an arm, and the quantities are angle and "
-                  "moment",
+                  "`\"linkage\"`: such a cylinder moves an arm; quantities are angle and moment",
            .needed = "the plant, such as \"load_pressure\""}),
       Row::described(
           "parameters", table_form(parameter_rows(ParameterGroup::rig, true)),
@@ -147,7 +146,7 @@ void read_conditions(const TomlNode& node, Campaign& campaign) {
     if (!is_new) {
       item.require("id", "a name")
           .fail(entry->second == condition.id
-                    ? fmt::format("there is a condition \"{}\" already: expected an id of its own",
+                    ? fmt::format("there is already a condition \"{}\": expected another id",
                                   condition.id)
                     : fmt::format("\"{}\" differs from \"{}\" by case only, and ids name files: "
                                   "expected another id",
@@ -186,16 +185,15 @@ void read_synthetic_entry(const TomlNode& node, Campaign& campaign) {
 const KeyTable<Campaign>& averaging_keys() {
   using Row = KeyRow<Campaign>;
   static const KeyTable<Campaign> keys({
-      Row::word<Alignment>(
-          "align", &Campaign::alignment,
-          {.doc = "`\"correlate\"` shifts each repeat to fit the others and reports by how much; "
-                  "`\"none\"` takes them as they are",
-           .example = "\"correlate\"",
-           .hint = "or \"none\" if all repeats share one trigger"}),
-      Row::word<bool>(
-          "outliers", &Campaign::leave_out_outliers, {{"keep", false}, {"leave_out", true}},
-          {.doc = "A repeat whose distance from the median of all is three times as large as is "
-                  "typical stays in the mean, with a warning, or is left out of it"}),
+      Row::word<Alignment>("align", &Campaign::alignment,
+                           {.doc = "`\"correlate\"` shifts each repeat to match the others, and "
+                                   "reports the shifts; `\"none\"` makes no shifts",
+                            .example = "\"correlate\"",
+                            .hint = "or \"none\" if all repeats share one trigger"}),
+      Row::word<bool>("outliers", &Campaign::leave_out_outliers,
+                      {{"keep", false}, {"leave_out", true}},
+                      {.doc = "Whether a repeat that is three times as far from the median of all "
+                              "as is typical stays in the mean, with a warning, or is left out"}),
   });
   return keys;
 }
@@ -223,7 +221,7 @@ const KeyTable<Campaign>& root_keys() {
       section("leak_level", entries_form(table_form(level_rows())), read_leak_levels,
               "Known values by leak level"),
       section("recording", table_form(recording_keys().keys()), read_recording,
-              "The columns of the recordings, and how they are taken"),
+              "The columns of the recordings, and how they were recorded"),
       section(
           "averaging", table_form(averaging_keys().keys()),
           [](const TomlNode& node, Campaign& campaign) { averaging_keys().read(node, campaign); },
@@ -244,11 +242,11 @@ const KeyTable<Campaign>& root_keys() {
           [](const TomlNode& node, Campaign& campaign) {
             campaign.between_days = read_between_days(node, campaign);
           },
-          "By how much the rig differs from one day to another, or `false`"),
+          "Day-to-day variation of the rig, or `false`"),
       section(
           "report", table_form(report_keys()),
           [](const TomlNode& node, Campaign& campaign) { campaign.report = read_report(node); },
-          "What a test report states beside its results"),
+          "Details of the test report"),
       section(
           "simulation", table_form(simulation_keys().keys()),
           [](const TomlNode& node, Campaign& campaign) {
@@ -263,7 +261,7 @@ const KeyTable<Campaign>& root_keys() {
           "How `rigcal diagnose` classifies"),
       Row::custom("synthetic", synthetic, read_synthetic_entry,
                   {.doc = "`true`: the records were made by `rigcal synthesize`. As a table "
-                          "`[synthetic]` it says how to make some",
+                          "`[synthetic]` it states how to make them",
                    .otherwise = "`false`"}),
       section("condition", list_form(table_form(condition_keys().keys()), "tables", 0),
               read_conditions,
@@ -278,7 +276,7 @@ const KeyTable<Campaign>& root_keys() {
       section(
           "leak_table", table_form(leak_table_keys()),
           [](const TomlNode& node, Campaign& campaign) { read_leak_table(node, campaign); },
-          "What `rigcal leak-table` and `rigcal fit-tables` compute and compare with"),
+          "Settings and published values for `rigcal leak-table` and `rigcal fit-tables`"),
   });
   return keys;
 }

@@ -41,9 +41,9 @@ int read_index(const TomlNode& table, std::string_view key, model::PlantKind pla
   if (index >= 0 && belongs_to(spec_of(plant, index), group)) return index;
   if (index >= 0) {
     table.require(key, "a parameter")
-        .fail(group == ParameterGroup::rig ? "is a value of the controller: it belongs in "
+        .fail(group == ParameterGroup::rig ? "is a controller parameter: expected in "
                                              "[rig.controller], or in `controller` of a condition"
-                                           : "is no value of the controller: it belongs in "
+                                           : "is not a controller parameter: expected in "
                                              "[rig.parameters], or in `parameters`");
   }
   std::vector<std::string> known = others;
@@ -79,9 +79,10 @@ KeyTable<ParameterSetting> setting_keys(const KeyForm& value) {
     difference.upper = kParameterDeviations.upper;
   }
   return KeyTable<ParameterSetting>({
-      Row::described("start", quantity,
-                     {.doc = "Where a fit starts; the value of everything that does not fit it",
-                      .needed = "the value from which a fit starts"}),
+      Row::described(
+          "start", quantity,
+          {.doc = "Start of the fit; used as the value wherever the parameter is not fitted",
+           .needed = "the value from which a fit starts"}),
       Row::described("lower", quantity,
                      {.doc = "Lower bound of the fit; `start` is not below it",
                       .otherwise = "a tenth of `start` (below)"}),
@@ -92,15 +93,14 @@ KeyTable<ParameterSetting> setting_keys(const KeyForm& value) {
                 {.doc = "Whether `rigcal fit` estimates it (`--free` names others)"}),
       Row::word<Scope>("scope", &ParameterSetting::scope,
                        {.doc = "One value for the rig, one per leak level, or one per condition"}),
-      Row::described(
-          "prior", quantity,
-          {.doc = "Mean of what is known beforehand. Needs `prior_sd`", .otherwise = "none"}),
+      Row::described("prior", quantity,
+                     {.doc = "Mean of the prior. Needs `prior_sd`", .otherwise = "none"}),
       Row::described("prior_sd", difference,
-                     {.doc = "Standard deviation of `prior`. Where the value is not fitted: how "
-                             "sure it is, which all errors carry",
+                     {.doc = "Standard deviation of `prior`. If the value is not fitted: its "
+                             "standard uncertainty, which all standard errors include",
                       .otherwise = "none"}),
       Row::flag("nuisance", &ParameterSetting::nuisance,
-                {.doc = "Estimated again in validation, and named there"}),
+                {.doc = "Estimated again in validation, and reported there"}),
       Row::described(
           "between_repeats", difference,
           {.doc = "Standard deviation with which the value varies at random from repeat to repeat "
@@ -138,14 +138,14 @@ void read_setting_table(const TomlNode& node, const model::ParameterSpec& spec,
     node.require("fit", "true or false").fail(*problem);
   if (setting.scope == Scope::leak_level && spec.kind == model::ParameterKind::controller)
     node.require("scope", "a scope")
-        .fail("a leak level has no controller of its own: expected \"rig\" or \"condition\"");
+        .fail("a leak level cannot have its own controller: expected \"rig\" or \"condition\"");
   setting.prior = read_prior(node, spec);
   if (const auto between = node.find("between_repeats")) {
     for (const char* key : {"fit", "scope", "prior", "prior_sd", "nuisance"}) {
       if (const auto other = node.find(key))
         other->fail(
-            "is combined with between_repeats, which says it already: the value differs at "
-            "random from repeat to repeat about `start`, and is estimated per condition");
+            "is combined with between_repeats, which implies it: the value varies at random from "
+            "repeat to repeat about `start` and is estimated per condition");
     }
     read_between_repeats(*between, spec, setting);
   }
@@ -215,7 +215,7 @@ std::optional<std::string> outside_limits(const model::ParameterSpec& spec, doub
   if (value >= spec.lower && value <= std::min(spec.upper, kSizes.upper)) return std::nullopt;
   // Infinity stands for a limit that is absent, such as the largest reading of a sensor.
   if (value == spec.upper) return std::nullopt;
-  return fmt::format("{} makes no sense for {} ({}): expected {} to {}", with_unit(spec, value),
+  return fmt::format("{} is not plausible for {} ({}): expected {} to {}", with_unit(spec, value),
                      spec.key, spec.meaning, with_unit(spec, spec.lower),
                      with_unit(spec, std::min(spec.upper, kSizes.upper)));
 }
@@ -289,11 +289,10 @@ namespace {
 std::optional<ParameterConflict> find_supply_conflict(const model::ParameterValues& values) {
   const bool resistance = values.is_given("supply_resistance");
   if (resistance == values.is_given("supply_capacity")) return std::nullopt;
-  return ParameterConflict{
-      resistance ? "supply_resistance" : "supply_capacity",
-      fmt::format("a supply that gives way needs both supply_resistance and supply_capacity: "
-                  "expected {} as well",
-                  resistance ? "supply_capacity" : "supply_resistance")};
+  return ParameterConflict{resistance ? "supply_resistance" : "supply_capacity",
+                           fmt::format("a supply whose pressure drops with flow needs both "
+                                       "supply_resistance and supply_capacity: expected {} as well",
+                                       resistance ? "supply_capacity" : "supply_resistance")};
 }
 
 /// Checks the keys of the valve drive: a spool follows either a voltage or a pilot pressure.
@@ -334,16 +333,15 @@ std::optional<ParameterConflict> find_pilot_conflict(const model::Rig& rig,
       std::pair{"valve_bypass_range", "bypass_range"}};
   for (const char* key : kOfPilot) {
     if (pilot || !values.is_given(key)) continue;
-    return ParameterConflict{key, fmt::format("{} is of a pilot-operated valve, and this one is "
-                                              "driven by a voltage: expected pilot_gain",
+    return ParameterConflict{key, fmt::format("{} applies to a pilot-operated valve, but this one "
+                                              "is driven by a voltage: expected pilot_gain",
                                               key)};
   }
   for (const auto& [key, instead] : kOfVolts) {
     if (!pilot || !values.is_given(key)) continue;
-    return ParameterConflict{
-        key, fmt::format("{} is in volts, and pilot_gain makes the pilot pressure the drive: "
-                         "expected {} out, or {}",
-                         key, key, instead)};
+    return ParameterConflict{key, fmt::format("{} is in volts, but pilot_gain makes the pilot "
+                                              "pressure the drive: expected {} instead",
+                                              key, instead)};
   }
   return std::nullopt;
 }
@@ -360,10 +358,10 @@ std::optional<ParameterConflict> find_opening_conflict(const model::ParameterVal
                                                   key, power)};
     }
     if (above != nullptr && values[key] < values[above])
-      return ParameterConflict{key, fmt::format("{} = {:g} is below {} = {:g}: expected openings "
-                                                "that do not fall (0.2, 0.4, 0.6 and 0.8 unless "
-                                                "given)",
-                                                key, values[key], above, values[above])};
+      return ParameterConflict{key,
+                               fmt::format("{} = {:g} is below {} = {:g}: expected openings that "
+                                           "do not decrease (0.2, 0.4, 0.6 and 0.8 by default)",
+                                           key, values[key], above, values[above])};
     above = key;
   }
   return std::nullopt;
@@ -379,14 +377,14 @@ struct Companion {
 std::optional<ParameterConflict> find_pump_conflict(const model::ParameterValues& values) {
   constexpr std::array kCompanions{
       Companion{"pump_flow", "supply_resistance",
-                "a pump of limited flow needs supply_resistance (how far its pressure falls before "
-                "it gives all of it) and supply_capacity: expected both"},
+                "a pump of limited flow needs supply_resistance (its pressure drop up to full "
+                "flow) and supply_capacity: expected both"},
       Companion{"bypass_opening", "supply_resistance",
-                "what passes the valve by shows in the pressure of a pump that gives way: expected "
+                "a bypass flow acts through the pressure drop of the supply: expected "
                 "supply_resistance and supply_capacity"},
       Companion{"load_sensing_margin", "supply_resistance",
-                "a pump that follows the load needs supply_resistance (how far its pressure falls "
-                "per flow) and supply_capacity: expected both"},
+                "a load-sensing pump needs supply_resistance (its pressure drop per flow) and "
+                "supply_capacity: expected both"},
       Companion{"accumulator_volume", "supply_resistance",
                 "an accumulator fills through supply_resistance, and the oil beside it has "
                 "supply_capacity: expected both"},
@@ -477,8 +475,8 @@ std::optional<ParameterConflict> find_actuator_conflict(const model::ParameterVa
     const char* const present = completeness(values, keys).present;
     if (present == nullptr) continue;
     return ParameterConflict{
-        present, fmt::format("{} is of a cylinder on a linkage, and displacement_per_radian makes "
-                             "the rig a rotary actuator: expected one of them",
+        present, fmt::format("{} applies to a cylinder on a linkage, but displacement_per_radian "
+                             "makes the rig a rotary actuator: expected only one of them",
                              present)};
   }
   return std::nullopt;
@@ -512,11 +510,10 @@ std::optional<ParameterConflict> find_travel_law_conflict(const model::Parameter
     chosen = &law;
   }
   if (chosen == nullptr)
-    return ParameterConflict{
-        "",
-        "how far the piston travels per angle is unknown: expected lever, or a triangle "
-        "(triangle_base, triangle_arm, triangle_angle), or a table (travel_table_from, "
-        "travel_table_to, travel_0 to travel_100)"};
+    return ParameterConflict{"",
+                             "the travel of the piston per angle is unknown: expected lever, or a "
+                             "triangle (triangle_base, triangle_arm, triangle_angle), or a table "
+                             "(travel_table_from, travel_table_to, travel_0 to travel_100)"};
   const bool whole =
       chosen == laws.data() ? values.is_given("lever") : chosen->keys.absent == nullptr;
   if (whole) return std::nullopt;
@@ -708,19 +705,17 @@ std::optional<ParameterConflict> find_generator_conflict(const model::Rig& rig,
                                                          const model::ParameterValues& values) {
   const model::FeedbackRow& loop = model::gain_keys(rig.feedback);
   if (model::is_three_variable(rig.feedback) && values.is_given("derivative_filter"))
-    return ParameterConflict{
-        "derivative_filter",
-        fmt::format("derivative_filter filters the derivative of an error, and "
-                    "a loop on {} has none: expected it left out",
-                    loop.name)};
+    return ParameterConflict{"derivative_filter",
+                             fmt::format("derivative_filter filters the derivative of an error, "
+                                         "which a loop on {} does not use: remove it",
+                                         loop.name)};
   for (const char* key : {"reference_frequency", "reference_damping_ratio"}) {
     if (model::is_three_variable(rig.feedback) == values.is_given(key)) continue;
     if (values.is_given(key))
-      return ParameterConflict{key, fmt::format("{} belongs to three-variable control, and this "
-                                                "loop is on {}: expected feedback = "
-                                                "\"three_variable\" or "
-                                                "\"three_variable_acceleration\"",
-                                                key, loop.name)};
+      return ParameterConflict{
+          key, fmt::format("{} belongs to three-variable control, but this loop is on {}: expected "
+                           "feedback = \"three_variable\" or \"three_variable_acceleration\"",
+                           key, loop.name)};
     return ParameterConflict{"", fmt::format("a loop on {} has no {}: expected reference_frequency "
                                              "and reference_damping_ratio in [rig.controller], "
                                              "the corner and the damping of the generator of its "
@@ -740,8 +735,8 @@ std::optional<ParameterConflict> find_feedforward_conflict(const model::Feedback
         return ParameterConflict{
             std::string(key),
             fmt::format(
-                "{} feeds the rate of {} forward, and this loop is on {}: expected "
-                "feedback = \"{}\"",
+                "{} feeds the rate of {} forward, but this loop is on {}: expected feedback = "
+                "\"{}\"",
                 key,
                 row.kp == model::gain_keys(model::Feedback::angle).kp ? "an angle" : "a position",
                 loop.name, row.name)};
@@ -765,11 +760,10 @@ std::optional<ParameterConflict> find_loop_conflict(const model::Rig& rig,
                                    std::pair{other.kd, loop.kd}}) {
       const bool shared = key == loop.kp || key == loop.ki || key == loop.kd;
       if (!values.is_given(key) || shared || key == loop.acceleration) continue;
-      return ParameterConflict{
-          std::string(key),
-          fmt::format("{0} is a gain of a loop on {1}, and this one is on {2}: expected {3}, or "
-                      "feedback = \"{1}\"",
-                      key, other.name, loop.name, own)};
+      return ParameterConflict{std::string(key),
+                               fmt::format("{0} is a gain of a loop on {1}, but this one is on "
+                                           "{2}: expected {3}, or feedback = \"{1}\"",
+                                           key, other.name, loop.name, own)};
     }
   }
   const bool of_motion = loop.kp == model::gain_keys(model::Feedback::position).kp ||

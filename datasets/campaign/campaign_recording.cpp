@@ -22,7 +22,9 @@ UnitConversion read_counts(const TomlNode& node) {
   for (const char* key :
        {"gain", "offset", "sd", "gain_sd", "offset_sd", "ignore_unit", "full_scale"}) {
     if (const auto entry = node.find(key))
-      entry->fail("has no meaning for counts: expected the unit that the gain leads to");
+      entry->fail(
+          "is not a unit of the physical value (counts): expected the unit that the gain converts "
+          "to");
   }
   return {};
 }
@@ -41,13 +43,13 @@ double read_full_scale(const TomlNode& node, Channel channel, const std::string&
   const auto entry = node.find("full_scale");
   const bool share = is_convertible(unit, "1");
   if (channel != Channel::command || !(share || is_convertible(unit, "A"))) {
-    if (entry) entry->fail("has a meaning only for a command in % or mA: expected it left out");
+    if (entry) entry->fail("is meaningful only for a command in % or mA: remove it");
     return 0.0;
   }
   if (share && !entry) return unit_conversion("1", unit).scale;  // 100 %
   return node
       .require("full_scale", fmt::format("the current at which the valve is fully open, such as "
-                                         "\"40 mA\": it counts as {:g} V",
+                                         "\"40 mA\" (equivalent to {:g} V)",
                                          kFullCommand_v))
       .difference(unit, kSizes);
 }
@@ -114,7 +116,7 @@ void check_role(const TomlNode& node, Channel channel, ChannelRole role, Channel
                              : drive == Channel::command ? " without a controller"
                              : drive == Channel::pilot_pressure
                                  ? " where pilot_gain makes the pilot pressure the drive"
-                                 : fmt::format(" of a rig that follows {}", info(drive).key);
+                                 : fmt::format(" of a rig controlled by {}", info(drive).key);
     node.fail(fmt::format("{} cannot be an input{}: expected \"output\" or \"ignore\"",
                           info(channel).key, loop));
   }
@@ -129,19 +131,18 @@ std::vector<KeyRow<ChannelSetting>> column_rows() {
   using Row = KeyRow<ChannelSetting>;
   const auto text = plain_form(KeyForm::Kind::text);
   return {
-      Row::described(
-          "column", text,
-          {.doc = "Name in the header, without its unit; in other files as "
-                  "described below. Channels without one are read only where `columns` of a "
-                  "repeat names it; `time` needs one",
-           .otherwise = "none",
-           .example = "\"x_mm\""}),
+      Row::described("column", text,
+                     {.doc = "Name in the header, without its unit; for other formats see below. A "
+                             "channel without one is read only if `columns` of a repeat names its "
+                             "column; `time` needs one",
+                      .otherwise = "none",
+                      .example = "\"x_mm\""}),
       Row::described("unit", text,
                      {.doc = "Unit of the column; compared with the one in the file (below)",
                       .example = "\"mm\"",
                       .needed = "the unit of the column"}),
       Row::described("ignore_unit", text,
-                     {.doc = "Unit that the file states for the column, but that is wrong",
+                     {.doc = "Unit that the file wrongly states for the column",
                       .otherwise = "none",
                       .example = "\"psi\""}),
       Row::described("gain", number_form({-kSizes.upper, kSizes.upper}),
@@ -160,48 +161,46 @@ KeyTable<ChannelSetting> channel_keys(std::string_view unit) {
   std::vector<Row> rows = column_rows();
   rows.back().info.form = quantity;
   rows.insert(rows.begin() + 1,
-              Row::described("minus", plain_form(KeyForm::Kind::text),
-                             {.doc = "Second column that is taken off `column`, number by number: "
-                                     "`load_pressure = { column = \"p_a\", minus = \"p_b\", unit = "
-                                     "\"bar\" }`",
-                              .otherwise = "none",
-                              .example = "\"x_2\""}));
+              Row::described(
+                  "minus", plain_form(KeyForm::Kind::text),
+                  {.doc = "Second column, which is subtracted from `column` sample by sample: "
+                          "`load_pressure = { column = \"p_a\", minus = \"p_b\", unit = \"bar\" }`",
+                   .otherwise = "none",
+                   .example = "\"x_2\""}));
   const std::vector more{
       Row::described("full_scale", plain_form(KeyForm::Kind::quantity),
-                     {.doc = "For a `command` in % or mA: the number at which it counts as 10 V",
+                     {.doc = "For a `command` in % or mA: the value that corresponds to 10 V",
                       .otherwise = "`\"100 %\"`; needed for a current",
                       .example = "\"40 mA\""}),
       Row::number(
           "gain_sd", &ChannelSetting::gain_sd,
           NumberLimits{
               {0.0, 1.0}, "a relative standard uncertainty, at least 0 and below 1", false, true},
-          {.doc = "Standard uncertainty of the sensor's gain, relative (0.002: 0.2 %), from "
-                  "its certificate; widens the uncertainty of scores, and the intervals of "
-                  "the estimates as a prior of `position_gain` would. With a "
-                  "`position_gain` that is estimated or has a prior: an error"}),
+          {.doc = "Standard uncertainty of the sensor's gain, relative (0.002: 0.2 %), from its "
+                  "certificate; widens the uncertainty of scores, and the intervals of the "
+                  "estimates as a prior of `position_gain` would. An error together with a "
+                  "`position_gain` that is estimated or has a prior"}),
       Row::custom("offset_sd", quantity,
                   [](const TomlNode& node, ChannelSetting& setting) {
                     setting.offset_sd = node.difference(info(setting.channel).unit, kDisturbances);
                   },
                   {.doc = "The same for its offset (`position_offset`)", .otherwise = "0"}),
-      Row::custom(
-          "sd", quantity,
-          [](const TomlNode& node, ChannelSetting& setting) {
-            setting.sd = node.difference(info(setting.channel).unit, kStandardDeviations);
-          },
-          {.doc = "Standard deviation of a sample in the file, as physical value after the gain "
-                  "(the offset does not matter); needed only without repeats. Without both, `fit` "
-                  "estimates the noise from the residual of the channel over all such conditions",
-           .otherwise = "from the repeats"}),
+      Row::custom("sd", quantity,
+                  [](const TomlNode& node, ChannelSetting& setting) {
+                    setting.sd = node.difference(info(setting.channel).unit, kStandardDeviations);
+                  },
+                  {.doc = "Standard deviation of the noise of a sample, as a physical value (after "
+                          "the gain); needed only without repeats. Without both, `fit` estimates "
+                          "the noise from the residual of the channel over all such conditions",
+                   .otherwise = "from the repeats"}),
       Row::word<ChannelRole>("role", &ChannelSetting::role,
                              {.doc = "Input of the model, or output (compared with the model)",
                               .otherwise = "by channel (below)"}),
-      Row::flag(
-          "recognise", &ChannelSetting::recognise,
-          {.doc = "For `reference` or `command`: a recorded drive that equals a generated one "
-                  "is simulated as generated (*Drives that are recognised*)"}),
+      Row::flag("recognise", &ChannelSetting::recognise,
+                {.doc = "For `reference` or `command`: a recorded drive that matches a generated "
+                        "one is simulated as generated (*Drives that are recognised*)"}),
       Row::word<Interpolation>("interpolation", &ChannelSetting::interpolation,
-                               {.doc = "Of an input between samples"}),
+                               {.doc = "Course of an input between samples"}),
   };
   rows.insert(rows.end(), more.begin(), more.end());
   for (Row& row : rows)
@@ -218,7 +217,7 @@ ChannelSetting read_channel(const TomlNode& node, Channel channel, Channel drive
   if (const auto minus = node.find("minus")) {
     setting.minus = minus->name("a column name");
     if (setting.column.empty())
-      minus->fail("nothing to take this column off: expected a column as well");
+      minus->fail("there is no column to subtract it from: expected a column as well");
   }
   setting.in_counts = is_in_counts(node);
   setting.to_si =
@@ -228,7 +227,7 @@ ChannelSetting read_channel(const TomlNode& node, Channel channel, Channel drive
   if (const auto sd = node.find("gain_sd")) setting.gain_sd_where = sd->where();
   if (const auto role = node.find("role")) check_role(*role, channel, setting.role, drive);
   if (const auto recognise = node.find("recognise"); recognise && !is_drive(channel))
-    recognise->fail("has a meaning only for a drive: expected it of reference or command");
+    recognise->fail("is meaningful only for a drive: expected with reference or command");
   return setting;
 }
 
@@ -257,8 +256,8 @@ void read_channels(const TomlNode& table, Campaign& campaign) {
     if (channel == Channel::base_acceleration && setting.role == ChannelRole::input &&
         campaign.rig.plant == model::PlantKind::linkage)
       node.fail(
-          "the plant linkage turns an arm, and how its base moves the arm depends on lengths that "
-          "the model lacks: expected role = \"ignore\"");
+          "the plant linkage moves an arm, and the effect of a moving base depends on lengths that "
+          "the model does not contain: expected role = \"ignore\"");
   }
 }
 
@@ -281,7 +280,7 @@ void check_before(const TomlNode& node, const Campaign& campaign) {
   if (campaign.rig.before == model::Before::steady && campaign.initial != InitialMode::rest &&
       campaign.rig.controller == model::ControllerKind::pid)
     node.fail(
-        "\"steady\" has a loop begin where it settles at the first reference: expected it without "
+        "\"steady\" starts a loop in its steady state at the first reference: expected without "
         "`initial`, or before = \"rest\" or \"hold\" with it");
 }
 
@@ -296,10 +295,11 @@ void read_holes(const TomlNode& node, Campaign& campaign) {
   const bool bridge = holes && holes->choice(hole_words());
   if (bridge) {
     campaign.longest_bridge_s =
-        node.require("longest_hole", "holes = \"bridge\" goes no further, such as \"50 ms\"")
+        node.require("longest_hole",
+                     "longest hole that holes = \"bridge\" accepts, such as \"50 ms\"")
             .quantity("s", kDurations_s);
   } else if (const auto longest = node.find("longest_hole")) {
-    longest->fail("has a meaning only together with holes = \"bridge\"");
+    longest->fail("is meaningful only with holes = \"bridge\"");
   }
 }
 
@@ -313,8 +313,8 @@ const KeyTable<Campaign>& recording_keys() {
           "initial", &Campaign::initial,
           {.doc = "State at the first sample. `\"rest\"`: all states zero (two chambers: the "
                   "pressures balance the load, at half the supply). `\"record\"`: mean over "
-                  "`initial_window`, within which the piston has to rest (a warning says where it "
-                  "moves). `\"fit\"`: estimated per condition"}),
+                  "`initial_window`, within which the piston must be at rest (a warning is given "
+                  "if it moves). `\"fit\"`: estimated per condition"}),
       Row::word<model::Before>(
           "before", before,
           {{"hold", model::Before::hold},
@@ -326,26 +326,25 @@ const KeyTable<Campaign>& recording_keys() {
                    "step"}),
       Row::quantity("initial_window", &Campaign::initial_window_s, "s", kDurations_s,
                     {.doc = "Only with `initial = \"record\"` or `\"fit\"`"}),
-      Row::word<char>("separator", &Campaign::separator,
-                      {{",", ','}, {";", ';'}, {"\t", '\t'}, {" ", ' '}},
-                      {.doc = "Between the columns of a CSV file; a blank means any number "
-                              "of them",
-                       .otherwise = "detected"}),
-      Row::quantity("decimate_to", &Campaign::decimate_to_hz, "Hz", kSampleRates_hz,
-                    {.doc = "Denser records are filtered and thinned out to this rate (below)",
-                     .otherwise = "none",
-                     .example = "\"1 kHz\"",
-                     .hint = "if the records are denser than the model needs"}),
-      Row::word<SpikeTreatment>(
-          "spikes", &Campaign::spikes,
-          {.doc = "With `\"exclude\"` a line between its neighbours takes the place of each spike "
-                  "(below)"}),
+      Row::word<char>(
+          "separator", &Campaign::separator, {{",", ','}, {";", ';'}, {"\t", '\t'}, {" ", ' '}},
+          {.doc = "Separator of columns in a CSV file; a blank means any number of blanks",
+           .otherwise = "detected"}),
+      Row::quantity(
+          "decimate_to", &Campaign::decimate_to_hz, "Hz", kSampleRates_hz,
+          {.doc = "Records with a higher rate are filtered and decimated to this rate (below)",
+           .otherwise = "none",
+           .example = "\"1 kHz\"",
+           .hint = "if the sampling rate is higher than the model needs"}),
+      Row::word<SpikeTreatment>("spikes", &Campaign::spikes,
+                                {.doc = "With `\"exclude\"` each spike is replaced by a line "
+                                        "between its neighbours (below)"}),
       Row::described("holes", word_form(words_of(hole_words())),
                      {.doc = "With `\"bridge\"` missing samples are ignored, and the samples on "
                              "either side are used (*Times*)",
                       .otherwise = "`\"refuse\"`"}),
       Row::described("longest_hole", quantity_form("s"),
-                     {.doc = "A longer hole is still refused",
+                     {.doc = "Longer holes are still an error",
                       .otherwise = "needed with `holes = \"bridge\"`",
                       .example = "\"50 ms\""}),
       Row::described("channels", recorded_channels_form(),
@@ -364,7 +363,7 @@ void read_recording(const TomlNode& node, Campaign& campaign) {
   }
   if (const auto window = node.find("initial_window");
       window && campaign.initial == InitialMode::rest)
-    window->fail("has no meaning where all states start at zero: expected initial = \"record\"");
+    window->fail("is meaningless if all states start at zero: expected initial = \"record\"");
   read_holes(node, campaign);
   if (const auto channels = node.find("channels")) read_channels(*channels, campaign);
 }

@@ -72,8 +72,7 @@ class Statements {
     if (other && std::abs(other->sd - stated.sd) > kSame * std::max(other->sd, stated.sd)) {
       stated.node.fail(
           fmt::format("is a standard uncertainty of {:.6g}, but '{}' at {} states {:.6g}: expected "
-                      "the same, or "
-                      "one of them",
+                      "the same value, or only one of them",
                       stated.sd, other->node.path(), other->node.where().text(), other->sd));
     }
     if (!other) other = stated;
@@ -145,7 +144,7 @@ ReportSettings read_report(const TomlNode& node) {
   if (!sensors->is_array()) sensors->fail_type("[[report.sensor]], in double brackets");
   for (const TomlNode& sensor : sensors->items()) {
     sensor.allow_only(names_of(sensor_keys()));
-    sensor.require("channel", "the channel that the sensor is of, such as \"position\"");
+    sensor.require("channel", "the channel that the sensor measures, such as \"position\"");
     settings.sensors.push_back(read_fields(sensor, kSensorFields));
   }
   return settings;

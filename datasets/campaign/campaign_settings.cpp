@@ -61,7 +61,7 @@ std::vector<CampaignKey> limit_keys(const std::vector<std::string>& units) {
                     "no limit"});
     warnings.push_back({std::string(kWarnPrefix) + name,
                         form,
-                        "Between this and its limit there is a reservation",
+                        "A value between this and the limit is a reservation (WARN)",
                         {},
                         "none"});
   }
@@ -99,10 +99,9 @@ void read_limit_into(Limits& limits, const TomlNode& node, std::string_view key,
   (warns ? entry.warn : entry.limit) = read_limit(node, metric, channel);
   if (!entry.limit || !entry.warn || *entry.limit == *entry.warn) return;
   if ((*entry.warn > *entry.limit) != metric.higher_is_better) {
-    node.fail(
-        fmt::format("warn_{0} is laxer than {0} ({1} is better): expected the warning to "
-                    "come before the failure",
-                    metric.name, metric.higher_is_better ? "higher" : "lower"));
+    node.fail(fmt::format(
+        "warn_{0} is less strict than {0} ({1} is better): expected the warning before the failure",
+        metric.name, metric.higher_is_better ? "higher" : "lower"));
   }
 }
 
@@ -166,7 +165,7 @@ Limits limits_but(const TomlNode& node, const Campaign& campaign,
     }
     const Channel channel = *channel_from_key(key);
     if (std::find(outputs.begin(), outputs.end(), channel) == outputs.end()) {
-      entry.fail("is no output channel: expected one of those in [recording.channels]");
+      entry.fail("is not an output channel: expected one of those in [recording.channels]");
     }
     // Limits in the table of a channel replace the general limits.
     for (const auto& limit : entry.entries()) {
@@ -191,19 +190,18 @@ const KeyTable<AcceptanceBounds>& bound_keys() {
   static const KeyTable<AcceptanceBounds> keys({
       Row::word<DecisionRule>(
           "decision", &AcceptanceBounds::decision,
-          {.doc =
-               "How the uncertainty of a score counts. With `guard_band` a limit is kept without "
-               "reservation only by more than the score is uncertain",
+          {.doc = "How the uncertainty of a score is used. With `guard_band` a score passes "
+                  "without reservation only if it meets its limit by more than its uncertainty",
            .example = "\"guard_band\"",
-           .hint = "PASS where a limit is kept by more than the score is uncertain"}),
+           .hint = "PASS if a limit is met by more than the uncertainty of the score"}),
       Row::number("model_error_to_noise", &AcceptanceBounds::model_error_to_noise, kSizes,
-                  {.doc = "Lack of fit that is accepted without reservation: standard deviation of "
-                          "the model's error over that of the noise of a record's mean"}),
-      Row::described(kNegligible, known_values_form(ParameterGroup::any),
-                     {.doc = "Size up to which a parameter does not matter if it is not "
-                             "significantly different from zero, `leakage_coefficient = 0.01`",
-                      .otherwise = "a fifth of what the same parameter is at another leak level or "
-                                   "condition"}),
+                  {.doc = "Lack of fit accepted without reservation: standard deviation of the "
+                          "model error relative to that of the noise of the record's mean"}),
+      Row::described(
+          kNegligible, known_values_form(ParameterGroup::any),
+          {.doc = "Size up to which a parameter is negligible if it is not significantly different "
+                  "from zero: `leakage_coefficient = 0.01`",
+           .otherwise = "a fifth of the same parameter at another leak level or condition"}),
       Row::described(
           kNotJudged, not_judged_form(),
           {.doc = "Channels that need no limit", .otherwise = "none", .example = "[\"position\"]"}),
@@ -228,7 +226,7 @@ double most_considered(const TomlNode& entry, const Campaign& campaign, int inde
   if (index < 0) return effect.unit == "1" ? 1.0 : effect.unit == "Pa" ? 1e9 : 1e3;
   const ParameterSetting* setting = campaign.setting(index);
   if (setting != nullptr && (setting->fit || setting->prior))
-    entry.fail("is in the model already, with an estimate or a prior: expected no size here");
+    entry.fail("is already in the model, with an estimate or a prior: remove its size here");
   return spec_of(campaign.rig.plant, index).upper;
 }
 
@@ -389,17 +387,17 @@ const KeyTable<FitSettings>& fit_keys() {
       Row::word<Loss>("loss", &FitSettings::loss,
                       {.doc = "How a residual counts: squared, or less where it is large"}),
       Row::number("loss_scale", &FitSettings::loss_scale, kSizes,
-                  {.doc = "Where the loss bends, in standard deviations of a residual"}),
+                  {.doc = "Transition of the loss, in standard deviations of a residual"}),
       Row::whole("max_iterations", &FitSettings::max_iterations, 1, 1'000'000,
-                 {.doc = "Most iterations of a descent"}),
+                 {.doc = "Maximum number of iterations of a descent"}),
       Row::whole("starts", &FitSettings::starts, 1, 100'000,
-                 {.doc = "Starts of the search; the first one is that of the campaign"}),
+                 {.doc = "Number of starts; the first one uses the start values of the campaign"}),
       Row::whole("posterior", &FitSettings::posterior, kLeastPosteriorDraws, kMostPosteriorDraws,
-                 {.doc = "Draws of each of four chains of the posterior; `--posterior N` over it",
+                 {.doc = "Posterior draws in each of four chains; `--posterior N` overrides it",
                   .otherwise = "none"}),
       Row::quantity("max_time", &FitSettings::max_seconds, "s", kDurations_s,
-                    {.doc = "Limit of the whole job, bootstrap, profiles, posterior and "
-                            "cross-validation with it",
+                    {.doc = "Time limit of the whole job, including bootstrap, profiles, posterior "
+                            "and cross-validation",
                      .otherwise = "none",
                      .example = "\"60 s\""}),
       Row::described("outputs", list_form(word_form(output_channel_names()), "list of channels"),
@@ -414,8 +412,8 @@ FitSettings read_fit(const TomlNode& node, const Campaign& campaign) {
   FitSettings fit;
   if (const auto removed = node.find("shooting_interval"))
     removed->fail(
-        "was removed with multiple shooting: expected `starts`, which searches from "
-        "further first values");
+        "was removed with multiple shooting: expected `starts`, which searches from further start "
+        "values");
   fit_keys().read(node, fit);
   const auto outputs = node.find("outputs");
   if (!outputs) return fit;
@@ -444,14 +442,12 @@ const KeyTable<SimulationSettings>& simulation_keys() {
           "method", &SimulationSettings::method,
           {{"rosenbrock", model::Method::rosenbrock}, {"dopri5", model::Method::dopri5}},
           {.doc = "Implicit, or explicit (`dopri5`), which may need a lower `tolerance`"}),
-      Row::number(
-          "tolerance", &SimulationSettings::tolerance,
-          NumberLimits{{1e-13, 0.1}, "a relative tolerance from 1e-13 to 0.1"},
-          {.doc = "Relative error of a step",
-           .otherwise =
-               "from the noise of each record (for a recorded drive measured, at most 1e-5); "
-               "results state the smallest",
-           .example = "1e-6"}),
+      Row::number("tolerance", &SimulationSettings::tolerance,
+                  NumberLimits{{1e-13, 0.1}, "a relative tolerance from 1e-13 to 0.1"},
+                  {.doc = "Relative error of a step",
+                   .otherwise = "from the noise of each record (measured for a recorded drive, at "
+                                "most 1e-5); results state the smallest",
+                   .example = "1e-6"}),
       Row::number("max_seconds", &SimulationSettings::max_seconds, kDurations_s,
                   {.doc = "Wall time of one simulation, in seconds"}),
   });
@@ -482,23 +478,24 @@ const KeyTable<SyntheticSettings>& synthetic_keys() {
     row.form.below_upper = true;
   }
   variation.name = "number by parameter";
-  const KeyForm levels =
-      entries_form(table_form({{"parameters", known_values_form(ParameterGroup::rig),
-                                "The truth of this leak level, over that of the rig"}}));
+  const KeyForm levels = entries_form(
+      table_form({{"parameters", known_values_form(ParameterGroup::rig),
+                   "True values at this leak level, which override those of the rig"}}));
   static const KeyTable<SyntheticSettings> keys({
-      Row::described("parameters", known_values_form(ParameterGroup::any),
-                     {.doc = "The truth, over the campaign's values; the controller's too",
-                      .otherwise = "`{}`"}),
+      Row::described(
+          "parameters", known_values_form(ParameterGroup::any),
+          {.doc = "True values, which override those of the campaign, controller included",
+           .otherwise = "`{}`"}),
       Row::described(
           "leak_level", levels,
-          {.doc = "`parameters` by leak level: the truth of that level", .otherwise = "none"}),
+          {.doc = "`parameters` by leak level: true values at that level", .otherwise = "none"}),
       Row::whole("repeats", &SyntheticSettings::repeats, 1, 10'000, {.doc = "Per condition"}),
       Row::quantity(
           "duration", &SyntheticSettings::duration_s, "s", kDurations_s,
-          {.doc = "Where a condition has none", .otherwise = "none", .example = "\"10 s\""}),
+          {.doc = "If a condition states none", .otherwise = "none", .example = "\"10 s\""}),
       Row::quantity(
           "sample_rate", &SyntheticSettings::sample_rate_hz, "Hz", kSampleRates_hz,
-          {.doc = "Where a condition has none", .otherwise = "none", .example = "\"1 kHz\""}),
+          {.doc = "If a condition states none", .otherwise = "none", .example = "\"1 kHz\""}),
       by_channel("noise", &SyntheticSettings::noise_sd,
                  {.doc = "Standard deviation of white noise: `{ position = \"0.05 mm\" }`",
                   .otherwise = "`{}`",

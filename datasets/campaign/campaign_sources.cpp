@@ -137,14 +137,14 @@ std::vector<RepeatSource> sources_of(const Campaign& campaign, const Condition& 
   const Expansion expansion = expand(campaign.data_dir, file, campaign.root, entries_left);
   if (entries_left <= 0) {
     throw InputError(condition.where,
-                     fmt::format("condition \"{}\": '{}' looks through more than {} files and "
+                     fmt::format("condition \"{}\": '{}' has to search more than {} files and "
                                  "folders; expected a pattern that names the folder of the records",
                                  condition.id, file, kMostEntries));
   }
   if (expansion.files.empty()) {
     throw InputError(condition.where,
-                     fmt::format("condition \"{}\": no file fits '{}' in {}; expected at least one "
-                                 "record (relative paths start at {})",
+                     fmt::format("condition \"{}\": no file matches '{}' in {}; expected at least "
+                                 "one record (relative paths start at {})",
                                  condition.id, file, folder_text(expansion.searched),
                                  folder_text(campaign.data_dir)));
   }
@@ -187,9 +187,10 @@ std::vector<RepeatSource> repeat_sources(const Campaign& campaign, const Conditi
     }
   }
   if (condition.averaged && sources.size() != 1) {
-    throw InputError(condition.where,
-                     fmt::format("condition \"{}\": {} files fit '{}'; expected one averaged file",
-                                 condition.id, sources.size(), *condition.averaged));
+    throw InputError(
+        condition.where,
+        fmt::format("condition \"{}\": {} files match '{}'; expected one averaged file",
+                    condition.id, sources.size(), *condition.averaged));
   }
   check_distinct(condition, sources);
   return sources;

@@ -167,8 +167,8 @@ void set_free(Campaign& campaign, const std::vector<std::string>& names) {
     ParameterSetting& setting = setting_or_new(changed, index, fallback);
     if (setting.between_repeats) {
       throw UsageError(
-          fmt::format("{}: the campaign says by how much it differs between repeats, "
-                      "so its mean has to be known",
+          fmt::format("{}: the campaign states its variation between repeats (between_repeats), so "
+                      "its mean must be known",
                       option));
     }
     if (outside_limits(spec, setting.value)) {

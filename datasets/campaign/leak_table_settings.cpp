@@ -96,8 +96,8 @@ const std::vector<CampaignKey>& signal_keys() {
     const KeyForm text = plain_form(KeyForm::Kind::text);
     rows.push_back({"printed",
                     list_form(text, "list of texts"),
-                    "A published coefficient per target, in quotes with the digits that were "
-                    "printed: `\"0.50\"` was rounded finer than `\"0.5\"`",
+                    "A published coefficient per target, in quotes and with the digits as printed: "
+                    "`\"0.50\"` is more precise than `\"0.5\"`",
                     {},
                     "none",
                     false,
@@ -134,7 +134,7 @@ const KeyTable<PrintedFeatures>& level_keys() {
                      .needed = "the leakage coefficient of the level"}),
         Row::flag("leaking", &PrintedFeatures::leaking,
                   {.doc = "`false`: the rig without a fault; the coefficient that gives its leak "
-                          "flow is sought too"}),
+                          "flow is computed too"}),
     };
     for (const Feature feature : enumerators_like(Feature{})) {
       const bool flow = is_flow(feature);
@@ -151,7 +151,7 @@ const KeyTable<PrintedFeatures>& level_keys() {
     rows.push_back(Row::described(
         "left_out",
         list_form(word_form(words_of(enumerator_words<Feature>())), "list of these names", 0),
-        {.doc = "What does not count in `fit-tables`; needs a `reason`", .otherwise = "none"}));
+        {.doc = "Values that `fit-tables` does not use; needs a `reason`", .otherwise = "none"}));
     rows.push_back(Row::described("reason", plain_form(KeyForm::Kind::text),
                                   {.doc = "Why it is left out", .otherwise = "none"}));
     return KeyTable<PrintedFeatures>(std::move(rows));
@@ -178,15 +178,15 @@ KeyTable<Assumption> assumption_keys(const KeyForm& value) {
   const std::string with_fit = "needed with `fit = true`";
   return KeyTable<Assumption>({
       Row::described("value", quantity, {.doc = "The assumed value", .needed = "a value"}),
-      Row::text(
-          "source", &Assumption::source, "a text in quotes",
-          {.doc = "Where it comes from, for the results", .needed = "where the value comes from"}),
+      Row::text("source", &Assumption::source, "a text in quotes",
+                {.doc = "Source of the value, as stated in the results",
+                 .needed = "where the value comes from"}),
       Row::flag("fit", &Assumption::fit, {.doc = "Whether `fit-tables` estimates it"}),
       Row::described("start", quantity,
                      {.doc = "Where `fit-tables` starts", .otherwise = with_fit}),
       Row::described("lower", quantity,
-                     {.doc = "Lower bound. Above zero, the logarithm of the value is estimated, "
-                             "else the value itself",
+                     {.doc = "Lower bound. If above zero, the logarithm of the value is estimated, "
+                             "otherwise the value itself",
                       .otherwise = with_fit}),
       Row::described("upper", quantity, {.doc = "Upper bound", .otherwise = with_fit}),
   });
@@ -245,7 +245,7 @@ PrintedFeatures read_level(const TomlNode& node) {
     for (const TomlNode& item : left_out->items()) row.left_out.push_back(item.choice(names));
     row.reason = node.require("reason", "why these are left out of a fit").name();
   } else if (const auto reason = node.find("reason")) {
-    reason->fail("is given, but nothing is left out: expected left_out = [\"std\"] beside it");
+    reason->fail("is given, but no value is left out: expected left_out = [\"std\"] beside it");
   }
   return row;
 }
@@ -303,7 +303,7 @@ void read_assumptions(const TomlNode& node, const Campaign& campaign, LeakTableS
     const int index = scale ? kResidualScale : model::parameter_index(campaign.rig.plant, key);
     if (index < 0 && !scale) node.fail_unknown(key, "parameter", known);
     if (key == kVariedKey) {
-      entry.fail("is what the table varies: expected any other parameter");
+      entry.fail("is the parameter that the table varies: expected any other parameter");
     }
     settings.assumptions.push_back(read_assumption(entry, campaign, index));
   }
@@ -369,10 +369,10 @@ const std::vector<CampaignKey>& leak_table_keys() {
       {"targets", list_form(number_form({0.0, kMostPercent}), "list of numbers"),
        "Shares of the servo flow in percent, increasing", "[10, 20, 30, 50]"},
       {"coefficients", list_form(number_form({0.0, 1000.0}), "two numbers", 2, 2),
-       "Between which roots are searched", "[0.001, 100]"},
+       "Range in which roots are searched", "[0.001, 100]"},
       {"assumptions",
        assumptions_form(),
-       "Values over those of the rig, each with its source (below)",
+       "Values that override those of the rig, each with its source (below)",
        {},
        "none"},
       {"signal",
@@ -392,10 +392,9 @@ const std::vector<CampaignKey>& leak_table_keys() {
 LeakTableSettings read_leak_table(const TomlNode& node, const Campaign& campaign) {
   node.allow_only(names_of(leak_table_keys()));
   if (campaign.rig.feedback != model::Feedback::position)
-    node.fail(
-        fmt::format("has no meaning for a loop on {}: expected feedback = \"position\" in "
-                    "[rig.controller]",
-                    model::gain_keys(campaign.rig.feedback).name));
+    node.fail(fmt::format(
+        "is not defined for a loop on {}: expected feedback = \"position\" in [rig.controller]",
+        model::gain_keys(campaign.rig.feedback).name));
   LeakTableSettings settings;
   if (const auto targets = node.find("targets")) settings.targets_percent = read_targets(*targets);
   if (const auto range = node.find("coefficients")) read_range(*range, settings);
@@ -455,7 +454,7 @@ LeakSignal signal_from_text(const Campaign& campaign, const LeakTableSettings& s
   const auto known = waveforms();
   const auto waveform = std::find_if(known.begin(), known.end(),
                                      [&](const auto& entry) { return entry.first == parts[0]; });
-  if (waveform == known.end()) fail(fmt::format("'{}' is no sine or square", parts[0]));
+  if (waveform == known.end()) fail(fmt::format("'{}' is not a sine or square", parts[0]));
   signal.waveform = waveform->second;
   try {
     signal.frequency_hz = parse_quantity(parts[1], "Hz");
@@ -575,7 +574,8 @@ void free_assumptions(LeakTableSettings& settings, const Campaign& campaign,
     const bool scale = name == kResidualScaleKey;
     const int index = scale ? kResidualScale : model::parameter_index(campaign.rig.plant, name);
     if (index < 0 && !scale) fail(unknown_name_message("parameter", name, known));
-    if (name == "leakage_coefficient") fail("is what the table varies: expected another parameter");
+    if (name == "leakage_coefficient")
+      fail("is the parameter that the table varies: expected another parameter");
     const model::ParameterSpec& spec = assumption_spec(campaign.rig.plant, index);
     if (const auto problem = cannot_be_fitted(spec)) fail(*problem);
     auto found = std::find_if(settings.assumptions.begin(), settings.assumptions.end(),

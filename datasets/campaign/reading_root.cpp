@@ -24,7 +24,7 @@ void require_within(const fs::path& root, const fs::path& path) {
   if (root.empty()) return;
   std::error_code error;
   if (!fs::is_directory(root, error))
-    throw InputError({root.string()}, "is no folder; expected that of --root");
+    throw InputError({root.string()}, "is not a folder; expected a folder for --root");
   if (!lies_within(root, path))
     throw InputError({path.string()},
                      fmt::format("leads out of '{}', the folder of --root; expected a file in it",

@@ -15,7 +15,7 @@ struct ReportField {
   std::string_view label;  ///< on the page
   std::string_view doc;    ///< for schema and documents
   bool is_date = false;
-  bool is_fact = true;  ///< listed with item and method, not at the top or beside a signature
+  bool is_fact = true;  ///< listed with item and method, not at the top or with a signature
 };
 
 /// What a test report must state in addition to results (ISO/IEC 17025:2017, 7.8.2), in the order
@@ -40,12 +40,12 @@ inline constexpr std::array kReportFields{
                 "Condition in which the specimen was tested"},
     ReportField{"method", "Method", "The procedure of the test"},
     ReportField{"deviations", "Deviations from the method",
-                "What was added to the procedure, left out or done otherwise"},
+                "Additions to the procedure, omissions and changes"},
     ReportField{"operator", "Operator", "Who made the measurements", false, false},
     ReportField{"approver", "Approved by", "Who approves the report", false, false},
     ReportField{"approver_function", "Function", "Function of the approver; needs `approver`",
                 false, false},
-    ReportField{"remarks", "Remarks", "Anything else that a reader has to know"},
+    ReportField{"remarks", "Remarks", "Further remarks"},
 };
 
 /// Keys of a [[report.sensor]].
@@ -59,7 +59,7 @@ inline constexpr std::array kSensorFields{
     ReportField{"certificate", "Certificate", "Number of its certificate"},
     ReportField{"uncertainty", "Uncertainty",
                 "`\"NUMBER UNIT (k = N)\"` of its offset, or `\"NUMBER % (k = N)\"` of its gain; "
-                "any other text has no effect, and is a reservation"},
+                "any other text is not used, and causes a reservation"},
 };
 
 /// [report]: texts as given in the campaign, dates in ISO 8601.

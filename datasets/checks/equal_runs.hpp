@@ -41,7 +41,7 @@ bool cuts_a_motion(std::span<const double> x, const EqualRun& run, double least)
 /// the values, and at least 30 of them, are larger or smaller than both neighbours, by four steps
 /// of the resolution and by 1e-6 of the range (more than simulations round). In white noise, even
 /// on top of slow motion, this applies to at least half of the values; in a smooth signal, only to
-/// a few. The rounding of a converter by itself causes differences of only two steps.
+/// a few. The rounding of a converter alone causes differences of only two steps.
 ///
 /// @param low, high  runs at or beyond these values are ignored
 bool shows_noise(const std::vector<EqualRun>& runs, double low, double high);

@@ -190,9 +190,9 @@ std::string drive_start_proposal(const Campaign& campaign, const Condition& cond
   for (std::size_t i = 1; i + kAStretch < held; ++i) fastest = std::max(fastest, moved(i));
   if (!(moved(0) < kGetsGoing * fastest)) return {};
   return fmt::format(
-      "the record begins at a step: the first {} is {:.3g} {}{}, and the piston has yet to move; "
-      "before = \"rest\" in [recording] says that it was {} until then, so that a delay and a lag "
-      "of the valve have something to act on",
+      "the record begins at a step: the first {} is {:.3g} {}{}, and the piston has not moved yet; "
+      "before = \"rest\" in [recording] states that it was {} until then, so that delay and lag of "
+      "the valve act on the step",
       info(channel).key, u.front(), info(channel).unit,
       is_loop ? fmt::format(", the {} {:.3g} {}", motion.key, neutral, motion.unit) : std::string(),
       is_loop ? "where the piston was" : fmt::format("0 {}", info(channel).unit));

@@ -65,7 +65,7 @@ void doubt_uncertainty(const Campaign& campaign, const ReportSettings::Fields& s
     const auto near = nearest_name(name, known);
     if (!near.empty()) {
       doubts.push_back({"sensor_uncertainty", true,
-                        fmt::format("the uncertainty of {}, \"{}\", does not count: there is no "
+                        fmt::format("the uncertainty of {}, \"{}\", is not used: there is no "
                                     "channel \"{}\" (did you mean \"{}\"?)",
                                     words_of(sensor), text, name, near)});
     }
@@ -76,8 +76,8 @@ void doubt_uncertainty(const Campaign& campaign, const ReportSettings::Fields& s
   const StatedUncertainty stated = stated_uncertainty(text, info(*channel).unit);
   if (stated.problem.empty()) return;
   doubts.push_back({"sensor_uncertainty", true,
-                    fmt::format("the uncertainty of {}, \"{}\", does not count: {}",
-                                words_of(sensor), text, stated.problem)});
+                    fmt::format("the uncertainty of {}, \"{}\", is not used: {}", words_of(sensor),
+                                text, stated.problem)});
 }
 
 }  // namespace
@@ -91,10 +91,10 @@ std::vector<SensorDoubt> sensor_doubts(const Campaign& campaign) {
   for (const auto& [channel, setting] : campaign.channels) {
     if (setting.role != ChannelRole::input) continue;
     if (!(setting.gain_sd > 0.0) && !(setting.offset_sd > 0.0)) continue;
-    doubts.push_back({"sensor_uncertainty", false,
-                      fmt::format("the stated uncertainty of {} counts nowhere: it is an input of "
-                                  "the model",
-                                  info(channel).key)});
+    doubts.push_back(
+        {"sensor_uncertainty", false,
+         fmt::format("the stated uncertainty of {} is not used: it is an input of the model",
+                     info(channel).key)});
   }
   return doubts;
 }

@@ -30,10 +30,10 @@ std::vector<double> drive_of(const Campaign& campaign, const Condition& conditio
 void find(Channel channel, const Repeat& repeat, const std::vector<double>& drive,
           std::vector<SensorFault>& faults) {
   const std::vector<double>& x = repeat.values.at(channel);
-  std::set<std::size_t> told;  // starts of the runs that are already reported
+  std::set<std::size_t> reported;  // starts of these runs
   const auto add = [&](Kind kind, const std::vector<EqualRun>& runs) {
     for (const EqualRun& run : runs) {
-      if (!told.insert(run.begin).second) continue;
+      if (!reported.insert(run.begin).second) continue;
       faults.push_back({channel,
                         kind,
                         repeat.source,
@@ -56,13 +56,13 @@ bool counts(const SensorFault& fault, const std::vector<TimeWindow>& windows) {
 std::string_view words(Kind kind) {
   switch (kind) {
     case Kind::clipped_at_highest:
-      return "stays at exactly its highest value, as a clipped sensor or amplifier does";
+      return "stays at exactly its highest value, as if the sensor or amplifier were saturated";
     case Kind::clipped_at_lowest:
-      return "stays at exactly its lowest value, as a clipped sensor or amplifier does";
+      return "stays at exactly its lowest value, as if the sensor or amplifier were saturated";
     case Kind::frozen:
       break;
   }
-  return "does not change while the drive moves on, as an interrupted sensor or line does";
+  return "does not change while the drive does, as if the sensor or its line were interrupted";
 }
 
 std::string text(const std::vector<const SensorFault*>& faults) {

@@ -64,7 +64,7 @@ bool noise_is_cut(const std::vector<EqualRun>& runs, double extreme, double smal
   return dips >= kFewestDips;
 }
 
-/// Returns how far a parabola falls beside its flat top, in steps of the resolution. If n samples
+/// Returns how far a parabola falls next to its flat top, in steps of the resolution. If n samples
 /// at the top look equal, the parabola falls by one step within n/2 samples of the top, and by
 /// another (12/n + 36/n^2) steps within the next three samples.
 double flat_top_fall(std::size_t length) {

@@ -99,22 +99,21 @@ std::string known_channels_text(const FileColumns& columns) {
   std::vector<Channel> done;
   for (const ChannelColumns& column : columns.channels) {
     if (column.channel == Channel::pilot_pressure && !has_pilot(columns)) {
-      text +=
-          fmt::format("# '{}' looks like a pilot pressure, which drives no rig with a controller\n",
-                      in_comment(column.stem));
+      text += fmt::format(
+          "# '{}' looks like a pilot pressure, but a rig with a controller has a reference\n",
+          in_comment(column.stem));
       continue;
     }
     const bool is_torque =
         column.channel == Channel::torque || column.channel == Channel::torque_reference;
     if (is_torque && !turns(columns)) {
-      text += fmt::format("# '{}' looks like a torque, which only a rig with an angle has\n",
+      text += fmt::format("# '{}' looks like a torque, but no column looks like an angle\n",
                           in_comment(column.stem));
       continue;
     }
     if (column.channel == Channel::command && has_pilot(columns)) {
       text += fmt::format(
-          "# '{}' also looks like a drive: the pilot pressure is nearer to the "
-          "spool\n",
+          "# '{}' also looks like a drive, but the pilot pressure is closer to the spool\n",
           in_comment(column.stem));
       continue;
     }
@@ -251,14 +250,14 @@ std::string unknown_columns_text(const FileColumns& columns,
                         toml_quoted(each.column.unit.empty() ? kBlank : each.column.unit),
                         comment(each.range() + (guess.empty() ? "" : ", " + guess)));
   }
-  if (!text.empty()) text.insert(0, "# Columns that no name identifies:\n");
+  if (!text.empty()) text.insert(0, "# Columns that could not be identified by name:\n");
   if (!texts.empty())
     text += in_comment(fmt::format("# not columns of numbers: {}", fmt::join(texts, ", "))) + "\n";
   if (columns.unknown.size() > candidates.size())
     text += fmt::format("# and {} more columns\n", columns.unknown.size() - candidates.size());
   for (const std::string& name : columns.ambiguous)
-    text += in_comment(fmt::format("# several columns are named '{}', so that none can be read: "
-                                   "give them names of their own",
+    text += in_comment(fmt::format("# several columns are named '{}', so none of them can be read: "
+                                   "give them different names",
                                    name)) +
             "\n";
   return text;
@@ -268,11 +267,10 @@ std::string unknown_columns_text(const FileColumns& columns,
 std::string rows_text(const fs::path& file, const FileColumns& columns) {
   if (columns.rows.empty()) return {};
   std::string text = columns.time.ends_with("(1,:)")
-                         ? "# An array of Simulink's \"To File\": time in its first row, and "
-                           "nothing names the others.\n"
-                           "# Give each channel its row"
-                         : "# A matrix with a time in its first column, and nothing names the "
-                           "others.\n# Give each channel its column";
+                         ? "# An array of Simulink's \"To File\": time in its first row, the other "
+                           "rows have no names.\n# Give each channel its row"
+                         : "# A matrix with a time in its first column; the other columns have no "
+                           "names.\n# Give each channel its column";
   text += " and unit, reference = { ... } too if one drives a controller:\n";
   for (const std::string& row : columns.rows) {
     const auto values = timed_columns(file, columns.time, row).at(1);

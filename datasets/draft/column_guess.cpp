@@ -113,7 +113,7 @@ std::vector<Token> joined_words(std::string_view text, bool is_pressure) {
   return is_pressure && place ? std::vector{Token{*place}} : std::vector<Token>{};
 }
 
-/// Returns what a part of a name says: words, or a symbol with words or a place joined to it
+/// Returns the meaning of a part of a name: words, or a symbol with words or a place joined to it
 /// ("xref", "pa").
 std::vector<Token> tokens_of(std::string_view part, std::span<const Token> before) {
   if (const auto place = symbol_in(pressure_places(), part);
@@ -335,7 +335,7 @@ ColumnGuess guess_column(const std::string& name, const std::string& unit) {
   std::vector<std::string> parts = parts_of(own);
   if (parts.size() > 1 && parts[0] == "x" && parts[1] == "value") parts = {"time"};  // LabVIEW
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    // "x_r" may be at the right, "r_mm" is a reference. The "X_Axis" of a logger is no position.
+    // "x_r" may be at the right, "r_mm" is a reference. The "X_Axis" of a logger is not a position.
     if (i > 0 && parts[i] == "r") continue;
     if (parts[i] == "x" && i + 1 < parts.size() && parts[i + 1] == "axis") continue;
     // "x_d" is what is desired.

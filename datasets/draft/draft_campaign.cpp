@@ -181,12 +181,12 @@ std::string waveform_text(const fs::path& file, const FileColumns& columns) {
   std::string text =
       fmt::format("# {}: {}; {} samples at {:.6g} Hz, {:.6g} s\n", info(drive->channel).key,
                   guess.description, time_s.size(), rate_hz, time_s.back() - time_s.front());
-  text += fmt::format("waveform = \"{}\"{}\n",
-                      to_string(generated ? guess.waveform : Waveform::recorded),
-                      periodic && has_unit && !generated
-                          ? comment("not generated: its samples show an offset, a phase, noise or "
-                                    "another shape")
-                          : "");
+  text += fmt::format(
+      "waveform = \"{}\"{}\n", to_string(generated ? guess.waveform : Waveform::recorded),
+      periodic && has_unit && !generated
+          ? comment("not simulated as generated: its samples show an offset, a phase, noise or "
+                    "another shape")
+          : "");
   if (guess.frequency_hz && guess.amplitude)
     text += fmt::format("frequency = \"{:.4g} Hz\"\n", *guess.frequency_hz);
   if (guess.frequency_hz && guess.amplitude && has_unit)
@@ -241,7 +241,7 @@ std::string unreadable_text(const std::vector<FileGroup>& groups) {
     const std::string rows = unreadable_rows(file, columns);
     if (rows.empty()) continue;
     text += "# " +
-            in_comment(fmt::format("a campaign refuses {}: {}", file.filename().string(), rows)) +
+            in_comment(fmt::format("a campaign rejects {}: {}", file.filename().string(), rows)) +
             "\n";
   }
   return text.empty() ? text : text + "\n";

@@ -140,7 +140,7 @@ FileColumns file_columns(const fs::path& file) {
       found.unknown.push_back({name, guess.unit, std::string(guess.other)});
     }
   }
-  // A "ref" without a unit beside an angle is a reference of that angle.
+  // If there is an angle, a "ref" without a unit is its reference.
   if (column_of(found, Channel::angle) != nullptr) {
     for (ChannelColumns& column : found.channels)
       if (column.channel == Channel::reference && column.unit.empty())
@@ -238,7 +238,8 @@ std::string unreadable_rows(const fs::path& file, const FileColumns& columns) {
   if (names.empty()) return {};
   try {
     const std::string left_out = draft_columns(file, names, columns.time).left_out;
-    return left_out.empty() ? left_out : left_out + "; remove what is no number";
+    return left_out.empty() ? left_out
+                            : left_out + "; remove text and other contents that are not numbers";
   } catch (const InputError& error) {
     const std::string message = std::string(error.what()).substr(error.where().file.size() + 1);
     return error.where().line > 0 ? "line " + message : message;

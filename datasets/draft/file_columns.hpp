@@ -26,7 +26,7 @@ struct ChannelColumns {
   std::string unit;
 };
 
-/// A column that is no channel by its name.
+/// A column whose name is not that of a channel.
 struct UnknownColumn {
   std::string name;
   std::string unit;   ///< if the file or the name gives it
@@ -62,8 +62,8 @@ std::vector<std::vector<ChannelColumns>> column_sets(const FileColumns& columns)
 /// Returns the first columns of a channel, or null.
 const ChannelColumns* column_of(const FileColumns& columns, Channel channel);
 
-/// Whether the rig turns an arm: its angle is recorded, or a torque beside the reference of a
-/// torque.
+/// Whether the rig turns an arm: its angle is recorded, or a torque together with the reference of
+/// a torque.
 bool turns(const FileColumns& columns);
 
 /// Returns the columns with the motion of the rig: the angle of a joint, or else the position of a

@@ -13,7 +13,7 @@ enum class Meaning {
   command,   ///< in the unit of a controlled quantity: its reference; else a valve signal
   valve,     ///< electrical signal of the valve
   measured,  ///< says only that the quantity was measured
-  error,     ///< difference of reference and measurement
+  error,     ///< difference between reference and measurement
   // The quantity.
   position,
   angle,

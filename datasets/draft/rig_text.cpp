@@ -157,9 +157,8 @@ std::string rig_text(model::PlantKind plant, std::optional<model::Feedback> loop
                      const RecordedSigns& signs) {
   std::string text = "[rig]\n" + model_text(plant);
   text +=
-      "# What no data sheet gives is fitted: { start = ..., lower = ..., upper = ..., fit = "
-      "true }\n"
-      "[rig.parameters]\n";
+      "# Fit what the data sheet does not give: { start = ..., lower = ..., upper = ..., fit = "
+      "true }\n[rig.parameters]\n";
   for (const model::ParameterSpec& spec : model::parameter_table(plant)) {
     // A valve with four metering edges has one of two gains, depending on what drives it.
     // A linkage may have a triangle or a table in place of its lever, or a rotary actuator in place
@@ -195,18 +194,19 @@ std::string rig_text(model::PlantKind plant, std::optional<model::Feedback> loop
                             plant == model::PlantKind::linkage ? "angle" : "position")));
   text += fmt::format("{} = \"{} {}\"{}\n", row.kp, kBlank, unit_of(row.kp),
                       comment("proportional gain; output_limit, sample_time if there are any"));
-  text += fmt::format("# {} = \"... {}\"{}\n", row.ki, unit_of(row.ki),
-                      comment(fmt::format("integral gain: without it a model lags where the "
-                                          "machine does not; {} likewise",
-                                          row.kd)));
+  text += fmt::format(
+      "# {} = \"... {}\"{}\n", row.ki, unit_of(row.ki),
+      comment(fmt::format(
+          "integral gain: without it the model lags where the machine does not; {} likewise",
+          row.kd)));
   const auto gain = [&](std::string_view key, const char* meaning) {
     text += fmt::format("# {} = \"... {}\"{}\n", key, unit_of(key), comment(meaning));
   };
   if (signs.pressures)
-    gain("pressure_feedback", "inner loop on the pressure difference, which damps");
+    gain("pressure_feedback", "inner loop on the pressure difference, for damping");
   if (!row.velocity_feedforward.empty()) {
-    gain(row.velocity_feedforward, "of the rate of the reference");
-    gain(row.acceleration_feedforward, "of the rate of that rate");
+    gain(row.velocity_feedforward, "feedforward gain on the rate of the reference");
+    gain(row.acceleration_feedforward, "feedforward gain on the rate of that rate");
   }
   const bool acceleration = *loop == model::Feedback::acceleration;
   if (!signs.payload || !(acceleration || *loop == model::Feedback::position)) return text;

@@ -228,8 +228,8 @@ AlignedRepeats align(const std::vector<Repeat>& repeats, bool correlate) {
   const auto offsets = correlate_offsets(repeats);
   if (!offsets) {
     result.warnings.emplace_back(
-        "no channel shows the offsets of all repeats (none common to all, constant, too noisy, too "
-        "far apart, or faster than 0.35 of the sample rate): repeats are not aligned");
+        "no channel determines the offsets of all repeats (none common to all, constant, too "
+        "noisy, too far apart, or faster than 0.35 of the sample rate): repeats are not aligned");
     return result;
   }
   result.offset_s = offsets->seconds;

@@ -168,8 +168,8 @@ void conclude_sd(Series& series, Channel channel, const AverageOptions& options,
     return;
   }
   if (series.pooled_sd == 0.0 && info(channel).is_output)
-    warnings.push_back(fmt::format(
-        "{}: the repeats are identical, so they say nothing about the noise", info(channel).key));
+    warnings.push_back(
+        fmt::format("{}: the repeats are identical, so the noise is unknown", info(channel).key));
   series.pooled_sd = known == options.known_sd.end() ? kNan : known->second;
   series.sd_of_mean = series.pooled_sd;
 }
@@ -235,9 +235,8 @@ void warn_of_pair(const Stack& stack, const Series& series, Channel channel, Spa
   const auto [low, high] = std::minmax_element(series.mean.begin(), series.mean.end());
   if (distance <= options.outlier_ratio * expected || distance <= 0.01 * (*high - *low)) return;
   warnings.push_back(fmt::format(
-      "{}: {} and {} differ by {:.3g} {} rms, {:.3g} % of the range; with two repeats it is "
-      "unknown "
-      "which one is wrong",
+      "{}: {} and {} differ by {:.3g} {} rms, {:.3g} % of the range; with only two repeats it is "
+      "unknown which one is wrong",
       info(channel).key, repeats[stack.carriers[0]].source, repeats[stack.carriers[1]].source,
       distance, info(channel).unit, 100.0 * distance / (*high - *low)));
 }
@@ -248,8 +247,8 @@ void warn_of_copies(const Stack& stack, const std::vector<std::size_t>& first, C
   for (std::size_t k = 0; k < first.size(); ++k) {
     if (first[k] == k) continue;
     warnings.push_back(
-        fmt::format("{}: {} and {} are identical, as one recording given twice is; both count, so "
-                    "that the noise is underestimated",
+        fmt::format("{}: {} and {} are identical, like one recording given twice; both are used, "
+                    "so the noise is underestimated",
                     info(channel).key, repeats[stack.carriers[first[k]]].source,
                     repeats[stack.carriers[k]].source));
   }
@@ -316,16 +315,17 @@ void warn_of_noise(const std::vector<std::vector<double>>& deviations, const Ser
   const std::vector<double>& time_s = repeats.front().time_s;
   const double rate_hz = static_cast<double>(time_s.size() - 1) / (time_s.back() - time_s.front());
   if (const auto hum = mains_hum(deviations, rate_hz, options.drive_hz)) {
-    warnings.push_back(fmt::format(
-        "{}: hum of the mains, {:.0f} Hz with an amplitude of {:.2g} {} in every repeat; what it "
-        "leaves in their mean counts as noise, which it is not",
-        about.key, hum->frequency_hz, hum->amplitude, about.unit));
+    warnings.push_back(
+        fmt::format("{}: hum of the mains, {:.0f} Hz with an amplitude of {:.2g} {} in every "
+                    "repeat; the part that remains in their mean is treated as noise",
+                    about.key, hum->frequency_hz, hum->amplitude, about.unit));
   }
   if (const auto step = coarse_step(repeats, channel, series.pooled_sd)) {
-    warnings.push_back(fmt::format(
-        "{}: readings come in steps of {:.3g} {}, and the repeats differ by {:.2g} {} only: each "
-        "is rounded alike, which their mean does not remove and their differences do not show",
-        about.key, *step, about.unit, series.pooled_sd, about.unit));
+    warnings.push_back(
+        fmt::format("{}: readings come in steps of {:.3g} {}, and the repeats differ by only "
+                    "{:.2g} {}: the same rounding error is in each repeat and in their mean, and "
+                    "their differences do not show it",
+                    about.key, *step, about.unit, series.pooled_sd, about.unit));
   }
 }
 
@@ -342,10 +342,9 @@ void warn_of_gaps(const std::vector<Repeat>& repeats, const std::vector<double>&
                                      100.0 * std::max(0.0, end - begin) / samples,
                                      repeats.front().source));
     if (own > 1.01 * samples)
-      warnings.push_back(
-          fmt::format("{} is longer than {}, which sets the length: {:.0f} of its "
-                      "samples are used",
-                      repeats[r].source, repeats.front().source, std::max(0.0, end - begin)));
+      warnings.push_back(fmt::format(
+          "{} is longer than {}, which determines the length: {:.0f} of its samples are used",
+          repeats[r].source, repeats.front().source, std::max(0.0, end - begin)));
   }
 }
 
@@ -391,7 +390,7 @@ Record average(const std::string& condition, const std::vector<Repeat>& repeats,
     record.channels.emplace(channel, std::move(series));
   }
   if (repeats.size() == 1 && options.repeats_averaged == 1)
-    record.warnings.emplace_back("a single repeat: its repeatability is not known");
+    record.warnings.emplace_back("a single repeat: its repeatability is unknown");
   return record;
 }
 

@@ -54,11 +54,10 @@ void bridge_holes(const Campaign& campaign, Repeat& repeat) {
   for (const std::size_t each : missing) lost += each;
   if (lost == 0) return;
   if (lost > repeat.time_s.size())
-    throw InputError(
-        {campaign.file.string()},
-        fmt::format("{}: more samples are missing than the {} that are there; expected "
-                    "a shorter recording.longest_hole, or that file in parts",
-                    repeat.source, repeat.time_s.size()));
+    throw InputError({campaign.file.string()},
+                     fmt::format("{}: more samples are missing than the {} recorded; expected a "
+                                 "shorter recording.longest_hole, or the file split into parts",
+                                 repeat.source, repeat.time_s.size()));
   repeat.bridged.clear();
   for (const std::size_t each : missing) {
     repeat.bridged.insert(repeat.bridged.end(), each, true);
@@ -127,8 +126,8 @@ std::string guessed_drive_warning(const Campaign& campaign, const Condition& con
       holes.begin(), holes.end(),
       [](const TimeHole& a, const TimeHole& b) { return a.to_s - a.from_s < b.to_s - b.from_s; });
   return fmt::format(
-      "nobody recorded the {} in {} hole{}, the longest between {:.6g} s and {:.6g} s: the model "
-      "takes {}, and what the drive did there instead is in none of the intervals",
+      "the {} was not recorded in {} hole{}, the longest between {:.6g} s and {:.6g} s: the model "
+      "uses {}; no interval includes the difference from the real drive",
       info(drive).key, holes.size(), holes.size() == 1 ? "" : "s", longest->from_s, longest->to_s,
       campaign.is_held_input(drive) ? "its last value" : "a line across");
 }

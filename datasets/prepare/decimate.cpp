@@ -90,8 +90,8 @@ std::size_t decimation_factor(const Repeat& repeat, double rate_hz) {
   if (exact < 1.01) return 1;  // rates that agree within 1 % count as equal
   if (factor >= static_cast<double>(t.size()))
     throw std::invalid_argument(
-        fmt::format("{} is sampled at {:.6g} Hz: decimate_to = {:.6g} Hz leaves one of its {} "
-                    "samples; expected a higher rate",
+        fmt::format("{} is sampled at {:.6g} Hz: with decimate_to = {:.6g} Hz only one of its {} "
+                    "samples remains; expected a higher rate",
                     repeat.source, 1.0 / dt, rate_hz, t.size()));
   if (factor < 2.0 || std::abs(exact - factor) > 0.01 * factor)
     throw std::invalid_argument(fmt::format(

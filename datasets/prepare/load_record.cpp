@@ -67,9 +67,9 @@ RecordTable read_columns(const Campaign& campaign, const std::filesystem::path& 
     if (may_be_shown(campaign, path)) throw;
     throw InputError(
         error.where(),
-        "is no recording that this campaign fits. The content of the file is not shown, "
-        "since it is neither in the campaign's folder nor in that of --data and is not "
-        "named like a recording; expected one (`rigcal init` and its name may help)");
+        "is not a recording that this campaign describes. The content of the file is not shown, "
+        "because it is neither in the campaign's folder nor in that of --data and is not named "
+        "like a recording; expected a recording (`rigcal init` and its name may help)");
   }
 }
 
@@ -83,9 +83,9 @@ void require_measurable(const RepeatSource& source, const std::string& column,
   if (bad != values.end())
     throw InputError(
         {source.path.string()},
-        fmt::format("number {} of '{}' is {:g} in SI units, which nothing can measure; "
-                    "expected at most {:g}",
-                    bad - values.begin() + 1, column, *bad, kLargest));
+        fmt::format(
+            "number {} of '{}' is {:g} in SI units, beyond any sensor; expected at most {:g}",
+            bad - values.begin() + 1, column, *bad, kLargest));
 }
 
 /// Whether a term of the campaign depends on the drive before the first sample.
@@ -104,7 +104,7 @@ void find_moving_windows(const Campaign& campaign, const Condition& condition, R
   if (position == record.channels.end())
     refuse(condition,
            fmt::format("windows = \"moving\" are found from the {0}, which its records do not "
-                       "carry: expected a channel {0}, or window = [\"0.5 s\", \"12 s\"]",
+                       "contain: expected a channel {0}, or window = [\"0.5 s\", \"12 s\"]",
                        info(moving).key));
   const Series& x = position->second;
   const auto motions =
@@ -219,13 +219,13 @@ Record without_outliers(const Condition& condition, std::vector<Repeat>& repeats
   for (std::size_t r = 0; r < repeats.size(); ++r)
     if (!all.repeat_reports[r].outlier) kept.push_back(std::move(repeats[r]));
   repeats = std::move(kept);
-  std::vector<std::string> told;
+  std::vector<std::string> reworded;
   for (const std::string& warning : all.warnings)
     if (warning.ends_with(kStaysInMean))
-      told.push_back(warning.substr(0, warning.size() - kStaysInMean.size()) +
-                     "it is left out, as [averaging] outliers asks");
+      reworded.push_back(warning.substr(0, warning.size() - kStaysInMean.size()) +
+                         "it is left out, as [averaging] outliers asks");
   Record record = average(condition.id, repeats, options);
-  record.warnings.insert(record.warnings.begin(), told.begin(), told.end());
+  record.warnings.insert(record.warnings.begin(), reworded.begin(), reworded.end());
   return record;
 }
 

@@ -277,9 +277,8 @@ void recognise_drive(const Campaign& campaign, const Condition& condition, Recor
   if (!found) return;
   record.generated_drive = found->signal;
   record.notes.push_back(fmt::format(
-      "the recorded {} is {}: no sample is farther from it than {:.2g} {} (it is rounded, or its "
-      "noise stated, to {:.2g}); it is simulated as such, which recognise = false of the channel "
-      "prevents",
+      "the recorded {} is {}: no sample deviates by more than {:.2g} {} (resolution or stated "
+      "noise: {:.2g}); it is simulated as such unless the channel has recognise = false",
       info(channel).key, found->name, found->farthest, info(channel).unit, found->tolerance));
 }
 

@@ -57,11 +57,10 @@ std::vector<std::string> holes_in_what_counts(const Campaign& campaign, const Co
         "{}",
         repeat.source, first.row, first.from_s, first.to_s, others,
         is_felt_later
-            ? "what the command did there moves the piston for good: end the window before "
-              "it, save what follows as a recording of its own, or bridge it (holes = "
-              "\"bridge\")"
-            : "leave the hole out with two windows, save both sides as recordings of their "
-              "own, or bridge it (holes = \"bridge\")"));
+            ? "the command during the hole moves the piston permanently: end the window before it, "
+              "save the rest as a separate recording, or bridge it (holes = \"bridge\")"
+            : "leave out the hole with two windows, save both sides as separate recordings, or "
+              "bridge it (holes = \"bridge\")"));
   }
   return texts;
 }

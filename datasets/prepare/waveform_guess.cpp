@@ -98,7 +98,7 @@ std::string steps_text(std::span<const double> signal, const Level& level) {
     steps += std::abs(signal[i] - signal[i - 1]) > kLeastStep * level.amplitude ? 1 : 0;
   const bool held = steps > 0 && steps <= signal.size() / kFewestPlateau;
   return held ? fmt::format("{} step{}", steps, steps == 1 ? "" : "s")
-              : std::string("no waveform that rigcal knows");
+              : std::string("not a waveform that rigcal can generate");
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ void FileBytes::skip(std::uint64_t bytes) {
 }
 
 void FileBytes::finish() {
-  if (left_ > 0) throw DamagedBytes("its data end before it does");
+  if (left_ > 0) throw DamagedBytes("its data end before the file does");
 }
 
 InflatedBytes::InflatedBytes(std::ifstream& file, std::uint64_t begin, std::uint64_t bytes)
@@ -80,7 +80,7 @@ std::size_t InflatedBytes::next(char* to, std::size_t bytes) {
 
 void InflatedBytes::finish() {
   char more = 0;
-  if (next(&more, 1) != 0) throw DamagedBytes("its data end before it does");
+  if (next(&more, 1) != 0) throw DamagedBytes("its data end before the file does");
   if (stream_.avail_in > 0) throw DamagedBytes("more follows its compressed data");
   file_.finish();
 }

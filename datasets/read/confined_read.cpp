@@ -47,9 +47,7 @@ std::string read_confined(const std::filesystem::path& path, const ConfinedReade
   if (text.empty()) throw InputError({name}, fmt::format("cannot be read by {}", reader.library));
   if (text.front() == kNoMemory && confinement.memory_is_short())
     throw NoResources(
-        fmt::format("{}: out of memory while it is read: a limit of memory is in force "
-                    "(ulimit -v)",
-                    name));
+        fmt::format("{}: out of memory while reading it: memory is limited (ulimit -v)", name));
   if (text.front() == kNoMemory)
     throw InputError({name}, fmt::format("needs more memory than {} may", reader.format));
   if (text.front() != kDone) throw InputError({name}, text.substr(1));

@@ -148,7 +148,7 @@ void refuse_other_format(const std::filesystem::path& path, const FileStart& sta
         return format.sniff(start.bytes) || has_extension(format.extensions, start.extension);
       });
   if (other == kOtherFormats.end() || start.bytes.empty()) return;
-  throw InputError({path.string()}, fmt::format("is {}, which rigcal does not read; expected {}",
+  throw InputError({path.string()}, fmt::format("is {}, which rigcal cannot read; expected {}",
                                                 other->name, other->instead));
 }
 

@@ -43,8 +43,9 @@ std::vector<std::filesystem::path> synthetic_file_names(const Campaign& campaign
 SynthesisReport synthesize(const Campaign& campaign, std::uint64_t seed,
                            const std::filesystem::path& out, int threads, const WriteText& write) {
   if (!campaign.synthetic_settings)
-    throw InputError({campaign.file.string()},
-                     "no table [synthetic]: expected one that says how records are disturbed");
+    throw InputError(
+        {campaign.file.string()},
+        "no table [synthetic]: expected one that states the disturbances of the records");
   if (campaign.time_column.empty())
     throw InputError({campaign.file.string()},
                      "recording.channels.time is missing: expected the column and unit of the time "

@@ -128,8 +128,8 @@ std::optional<std::string> in_words(const BetweenDays& between) {
                                       fmt::join(between.other_days, ", "));
   if (between.quantities.empty())
     return who +
-           ". The campaign says that no day differs (between_days), so whatever has changed "
-           "since counts as a leak";
+           ". The campaign states that there is no day-to-day variation (between_days), so any "
+           "change since then counts as a leak";
   std::vector<std::string> sizes;
   for (const calib::DayQuantity& each : between.quantities)
     sizes.push_back(quantity_in_words(each));

@@ -169,8 +169,8 @@ std::string trend_sentence(const LeakTrend& trend) {
   }
   if (trend.widened > 1.0)
     sentence +=
-        " The dates lie farther off a line than their errors allow; the interval is widened "
-        "for it.";
+        " The points scatter about the line by more than their errors; the interval is widened "
+        "accordingly.";
   return sentence + next_limit_of(trend);
 }
 
@@ -193,8 +193,8 @@ std::vector<std::string> too_few_dates(const std::vector<MachineState>& states) 
     if (machine.states.size() != 2) continue;
     const std::string name = machine.key.name();
     texts.push_back(fmt::format(
-        "{}{} and {} are two dates, which make no trend: their difference may be that of two days "
-        "(supply, oil); a third date shows the variation between dates",
+        "{}{} and {} are only two dates, not enough for a trend: they may differ because supply or "
+        "oil differed; a third date shows the variation between dates",
         name.empty() ? "" : name + ": ", *machine.states[0].state->key.date,
         *machine.states[1].state->key.date));
   }

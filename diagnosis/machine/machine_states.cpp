@@ -40,7 +40,8 @@ void add_average(const RecordDiagnosis& record, const SignalErrors& errors, Mach
   if (record.explained_by_leak == false) return leave_out("not explained by a leak");
   const CoefficientError error =
       coefficient_error(record.fit, errors, record.repeats_averaged, record.reference_repeats);
-  if (!(error.own_se > 0.0)) return leave_out("its residuals hold no noise, so its error is open");
+  if (!(error.own_se > 0.0))
+    return leave_out("its residuals contain no noise, so its standard error is unknown");
   state.members.push_back({record.condition, record.signal, record.fit.coefficient, error.own_se,
                            error.freedom, record.fit.rig_moves, record.fit.day_effects,
                            record.days.difference()});

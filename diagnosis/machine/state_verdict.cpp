@@ -57,15 +57,13 @@ std::string state_sentence(const MachineState& state) {
     return fmt::format("{}: the healthy reference, whose leak is zero by construction.", name);
   if (!state.ok()) {
     return fmt::format("{}: no verdict: {}.", name,
-                       state.failure.value_or("none of its conditions gives its leak"));
+                       state.failure.value_or("none of its conditions determines its leak"));
   }
   const LeakEstimate& e = state.estimate;
   if (e.incompatible) {
     return fmt::format(
-        "{}: incompatible with the model: the coefficient would be {:.3g} ({:.3g} to "
-        "{:.3g}), below zero by more than its error, so supply or valve are not as they were in "
-        "the "
-        "fit.{}",
+        "{}: incompatible with the model: the coefficient would be {:.3g} ({:.3g} to {:.3g}), "
+        "below zero by more than its error, so supply or valve have changed since the fit.{}",
         name, e.coefficient, e.ci95.low, e.ci95.high, agreement_of(state));
   }
   if (!e.has_share()) {
@@ -84,7 +82,8 @@ std::string state_sentence(const MachineState& state) {
     const std::string low = percent(e.share_ci95.low);
     const std::string high = percent(e.share_ci95.high);
     text = fmt::format("{}: {} % of the servo flow leaks ({}) at {}", name, percent(e.share),
-                       low == high ? "sure to 0.01 %" : fmt::format("{} to {} %", low, high), duty);
+                       low == high ? "uncertain by 0.01 %" : fmt::format("{} to {} %", low, high),
+                       duty);
   } else {
     text = fmt::format("{}: no leak is detected, less than {:.2g} % of the servo flow leaks at {}",
                        name, std::max(0.01, kInPercent * e.share_ci95.high), duty);

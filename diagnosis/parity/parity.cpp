@@ -281,8 +281,8 @@ class Work {
       signal.threshold_of_another_day_m = threshold(kPeak, days.norm_of_another_day());
     if (!signal.threshold_m)
       signal.reason =
-          "healthy records do not differ from one another, so the variation of "
-          "such records is unknown";
+          "healthy records do not differ from one another, so the variation of healthy records is "
+          "unknown";
   }
 
   using ValueOf = double (*)(const ResidualValues&);
@@ -389,8 +389,8 @@ void warn_of_undated(const Campaign& campaign, Parity& result) {
     if (!campaign.find(condition.condition)->date) undated.push_back(condition.condition);
   if (undated.empty() || result.between_days.quantities.empty()) return;
   result.warnings.push_back(fmt::format(
-      "no date: {}. Records without a date count as of the day of the healthy ones: what differs "
-      "between days (supply, oil, zero, trigger) is in none of their thresholds",
+      "no date: {}. Records without a date are treated as from the day of the healthy ones: their "
+      "thresholds do not include day-to-day variation (supply, oil, zero, trigger)",
       fmt::join(undated, ", ")));
 }
 

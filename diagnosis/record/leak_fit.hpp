@@ -34,7 +34,7 @@ struct RigFit {
   /// Adds the effects from a fit. An effect is correlated with the change in a value for which the
   /// fit has mistaken it.
   ///
-  /// @param law  law of the leak that is diagnosed. Its own parameter is no effect
+  /// @param law  law of the leak that is diagnosed. Its own parameter is not an effect
   void consider(const calib::EstimateSpread& spread,
                 datasets::LeakLaw law = datasets::LeakLaw::orifice);
   /// Returns the standard error of a result that changes by `moves`, shape: rows of `covariance`.

@@ -58,10 +58,10 @@ void add_confounded(const Campaign& campaign, std::string_view factor, ValueOf v
   const bool shared = std::any_of(values.leaking.begin(), values.leaking.end(),
                                   [&](const auto& each) { return values.healthy.contains(each); });
   if (shared) return;
-  result.push_back(fmt::format(
-      "leak level and {0} are confounded: healthy records come from {0} {1}, the others from {2}; "
-      "what differs between them may be the {0} and not a leak",
-      factor, fmt::join(values.healthy, ", "), fmt::join(values.leaking, ", ")));
+  result.push_back(
+      fmt::format("leak level and {0} are confounded: healthy records come from {0} {1}, the "
+                  "others from {2}; the differences may be due to the {0} and not to a leak",
+                  factor, fmt::join(values.healthy, ", "), fmt::join(values.leaking, ", ")));
 }
 
 }  // namespace

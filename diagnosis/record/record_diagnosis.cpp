@@ -22,51 +22,47 @@ void warn(RecordDiagnosis& record, const SignalErrors& errors, double healthy_m,
   const double left = unexplained_share(fit, healthy_m);
   const bool explained = record.explained_by_leak.value();
   if (explained && left > kNoticeable) {
-    record.warnings.push_back(
-        fmt::format("a leak explains all but {:.0f} % of the difference from the healthy model "
-                    "(rms {:.3g} mm); "
-                    "what is left, {:.3g} mm, is more than noise: another fault may be part of it",
-                    100.0 * left, 1e3 * fit.parity_rms_m, 1e3 * fit.misfit_rms_m));
+    record.warnings.push_back(fmt::format(
+        "a leak explains all but {:.0f} % of the difference from the healthy model (rms {:.3g} "
+        "mm); the remaining {:.3g} mm exceed the noise: there may be another fault",
+        100.0 * left, 1e3 * fit.parity_rms_m, 1e3 * fit.misfit_rms_m));
   }
   if (!explained) {
     record.warnings.push_back(fmt::format(
-        "not explained by a leak: it takes the difference from the healthy model from {:.3g} mm to "
-        "{:.3g} mm rms only, where healthy records leave {:.3g} mm; something else is wrong "
-        "(friction, valve, sensor), or the fit does not hold for this record",
+        "not explained by a leak, which reduces the difference from the healthy model only from "
+        "{:.3g} mm to {:.3g} mm rms; in healthy records it is {:.3g} mm. Something else is wrong "
+        "(friction, valve, sensor), or the fit does not apply to this record",
         1e3 * fit.parity_rms_m, 1e3 * fit.misfit_rms_m, 1e3 * healthy_m));
   }
   if (estimate.incompatible) {
-    record.warnings.push_back(fmt::format(
-        "incompatible with the model: the coefficient would be {:.3g} ({:.3g} to {:.3g}), below "
-        "zero "
-        "by more than its error: the machine is faster than its healthy model, so supply or valve "
-        "are not as they were in the fit",
-        fit.coefficient, estimate.ci95.low, estimate.ci95.high));
+    record.warnings.push_back(
+        fmt::format("incompatible with the model: the coefficient would be {:.3g} ({:.3g} to "
+                    "{:.3g}), below zero by more than its error: the machine is faster than its "
+                    "healthy model, so supply or valve have changed since the fit",
+                    fit.coefficient, estimate.ci95.low, estimate.ci95.high));
   }
   if (!estimate.has_share()) {
     record.warnings.push_back(
-        fmt::format("a coefficient of {:.3g} would leak more than the servo valve delivers, so it "
-                    "has no share and no "
-                    "class",
+        fmt::format("a coefficient of {:.3g} would leak more than the servo valve delivers, so "
+                    "share and class are undefined",
                     fit.coefficient));
   }
   const double log_slope =
       estimate.share > 0.0 ? estimate.share_slope * fit.coefficient / estimate.share : 1.0;
   if (std::abs(log_slope) < kFlat) {
-    record.warnings.push_back(fmt::format(
-        "the share hardly depends on the coefficient here (d ln share / d ln C = {:.2g}): a "
-        "share of this signal cannot give a coefficient",
-        log_slope));
+    record.warnings.push_back(
+        fmt::format("the share hardly depends on the coefficient here (d ln share / d ln C = "
+                    "{:.2g}): for this signal a coefficient cannot be inferred from a share",
+                    log_slope));
   }
   if (!errors.repeat_m)
     record.warnings.emplace_back(
-        "no repeats of this signal: how one run varies from the next is not in the interval");
+        "no repeats of this signal: the interval does not include the variation from run to run");
   if (!errors.healthy_m && record.reference_repeats == 0)
     record.warnings.push_back(fmt::format(
-        "no healthy record of this signal: what the model lacks is not in the interval. If a leak "
-        "level is healthy, say so: --healthy LEVEL, or level_class = {{ \"LEVEL\" = \"normal\" }} "
-        "in "
-        "[diagnosis], or parameters = {{ {} = 0 }} in [leak_level.\"LEVEL\"]",
+        "no healthy record of this signal: the interval does not include model error. If a leak "
+        "level is healthy, state it: --healthy LEVEL, or level_class = {{ \"LEVEL\" = \"normal\" "
+        "}} in [diagnosis], or parameters = {{ {} = 0 }} in [leak_level.\"LEVEL\"]",
         datasets::leak_parameter(law)));
 }
 

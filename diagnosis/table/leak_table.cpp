@@ -85,7 +85,7 @@ std::string note_of(const LeakEntry& entry, const datasets::LeakSignal& signal,
   std::string note;
   if (entry.coefficients.empty()) note = not_reached(curve, entry.target_percent / 100.0);
   if (entry.coefficients.size() > 1) {
-    note = fmt::format("{} coefficients leak this share", entry.coefficients.size());
+    note = fmt::format("{} coefficients give this share", entry.coefficients.size());
   }
   if (!entry.coefficients.empty() && !entry.determined) {
     note = join(note, "not determined: the share hardly depends on the coefficient here");
@@ -286,7 +286,8 @@ LeakTable leak_table(const datasets::Campaign& campaign,
   const model::ParameterValues values = datasets::leak_table_values(campaign, settings);
   if (!(values["leakage_area"] > 0.0)) {
     throw InputError({campaign.file.string()},
-                     "leakage_area is zero, so no coefficient leaks: expected an area above zero");
+                     "leakage_area is zero, so there is no leak for any coefficient: expected an "
+                     "area above zero");
   }
   LeakTable table;
   table.assumptions = used_values(campaign, settings, values);

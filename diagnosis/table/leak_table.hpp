@@ -63,7 +63,7 @@ struct NormalEntry {
   RIGCAL_DESCRIBE(drive, published_coefficient, share_at_published_percent)
 };
 
-/// Computed values beside one row of the published flows and features.
+/// Computed values for one row of the published flows and features.
 struct FeatureRow {
   std::string level;
   double coefficient = 0.0;

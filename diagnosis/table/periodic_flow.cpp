@@ -26,10 +26,10 @@ constexpr double kAtLimit = 0.999;
 /// Largest y (see the header) that the two changes can determine reliably. Close to 1, simulation
 /// noise can produce any quotient.
 constexpr double kSlowest = 0.8;
-/// After kTellingPeriods, a loop that oscillates by itself can be recognised: its transient has not
-/// decreased to the fraction kDecays since the run with half as many periods, as it would have to
-/// if it were to decay within the maximum number of periods. In addition, the remaining transient
-/// must exceed kNotNoise tolerances, to be distinguishable from simulation noise.
+/// After kTellingPeriods, a loop in self-sustained oscillation can be recognised: its transient has
+/// not decreased to the fraction kDecays since the run with half as many periods, as it would have
+/// to if it were to decay within the maximum number of periods. In addition, the remaining
+/// transient must exceed kNotNoise tolerances, to be distinguishable from simulation noise.
 constexpr int kTellingPeriods = 256;
 constexpr double kDecays = 0.7;
 constexpr double kNotNoise = 10.0;
@@ -197,12 +197,13 @@ PeriodicFlow periodic_flow(const PeriodicDrive& drive, const model::ParameterVal
       continue;
     }
     if (sampling > options.tolerance) {
-      flow.failure = fmt::format("{} samples per half period leave {:.2g} of the mean flow open",
-                                 flow.intervals, sampling);
+      flow.failure =
+          fmt::format("with {} samples per half period, {:.2g} of the mean flow is uncertain",
+                      flow.intervals, sampling);
     }
     if (left > options.tolerance) {
       flow.failure = fmt::format(
-          "not periodic after {} periods: the mean flows still change by {:.2g} of themselves",
+          "not periodic after {} periods: the mean flows still change by a fraction of {:.2g}",
           flow.periods, left);
     }
     flow.saturated = saturated_part(run, values);

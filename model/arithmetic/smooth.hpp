@@ -36,7 +36,7 @@ X clamp_symmetric(const X& x, const C& limit) {
   return x;
 }
 
-/// Removes the band [-width, width] from x, as the overlap of a spool does.
+/// Removes the band [-width, width] from x, like the overlap of a spool.
 template <typename X, typename C>
 X dead_band(const X& x, const C& width) {
   if (value_of(x) > value_of(width)) return x - width;

@@ -109,8 +109,8 @@ void plant_indicators(const LinkagePlant::Coefficients<double>& p, const Present
 }
 
 /// Appends the pressure across the piston, whose magnitude presses the seals, the velocity, because
-/// the bristle force has a kink where the velocity changes sign, and what the lubricant film lacks
-/// of its steady thickness: it grows at another rate than it decays.
+/// the bristle force has a kink where the velocity changes sign, and the deviation of the
+/// lubricant film from its steady thickness, because it grows at another rate than it decays.
 template <typename Plant, typename P, std::size_t N>
 void friction_indicators(const P& p, const PresentTerms& terms, const std::array<double, N>& x,
                          std::vector<double>& indicators) {

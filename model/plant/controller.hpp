@@ -63,7 +63,7 @@ struct LoopError {
   X pressure_pa{};   ///< load pressure, if it is fed back
   X reference{};     ///< reference, if its rate is fed forward or a generator filters it
   X velocity{};      ///< error of the velocity in three-variable control [m/s]
-  X acceleration{};  ///< likewise of the acceleration [m/s2]
+  X acceleration{};  ///< the same for the acceleration [m/s2]
 };
 
 /// Acceleration of the reference generator [m/s2]: a_r = d - 2 zeta_r omega_r v_r - omega_r^2 x_r,

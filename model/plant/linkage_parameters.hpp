@@ -70,8 +70,8 @@ constexpr auto joint_rows() {
       // clang-format off
       F{&P::inertia_kg_m2, {"inertia", "inertia_kg_m2", "J", "kg m2", "moment of inertia about the joint", "docs/model.md", K::plant, 1e-6, 1e9}},
       F{&P::joint_damping_n_m_s_per_rad, {"joint_damping", "joint_damping_n_m_s_per_rad", "c", "N m s/rad", "viscous friction of joint and cylinder", "docs/model.md", K::plant, 0, 1e12}},
-      F{&P::lever_m_per_rad, {"lever", "lever_m_per_rad", "D_0", "m/rad", "travel of the piston per angle, at the reference angle: the lever of its force", "docs/model.md", K::term, 1e-4, 100, 0.0}},
-      F{&P::displacement_m3_per_rad, {"displacement_per_radian", "displacement_per_radian_m3_per_rad", "V_r", "m3/rad", "oil that a rotary actuator displaces per angle: a vane or rack motor in place of cylinder and lever", "docs/model.md", K::term, 1e-9, 10, 0.0}},
+      F{&P::lever_m_per_rad, {"lever", "lever_m_per_rad", "D_0", "m/rad", "lever of the cylinder force at the reference angle: travel of the piston per unit of angle", "docs/model.md", K::term, 1e-4, 100, 0.0}},
+      F{&P::displacement_m3_per_rad, {"displacement_per_radian", "displacement_per_radian_m3_per_rad", "V_r", "m3/rad", "displacement of a rotary actuator per unit of angle: a vane or rack motor in place of cylinder and lever", "docs/model.md", K::term, 1e-9, 10, 0.0}},
       F{&P::lower_stop_rad, {"lower_stop", "lower_stop_rad", "theta_1", "rad", "angle of the stop or support at which the piston is retracted", "docs/model.md", K::plant, -1000, 1000}},
       F{&P::upper_stop_rad, {"upper_stop", "upper_stop_rad", "theta_2", "rad", "angle of the stop at which the piston is extended", "docs/model.md", K::plant, -1000, 1000}},
       // clang-format on
@@ -88,15 +88,15 @@ constexpr auto travel_rows() {
       // clang-format off
       F{&P::triangle_base_m, {"triangle_base", "triangle_base_m", "a", "m", "distance from the joint to the pivot of the cylinder's body: the lever by a triangle", "docs/model.md", K::term, 1e-3, 1000, 0.0}},
       F{&P::triangle_arm_m, {"triangle_arm", "triangle_arm_m", "b", "m", "distance from the joint to the pivot of the rod, on the arm", "docs/model.md", K::term, 1e-3, 1000, 0.0}},
-      F{&P::triangle_angle_rad, {"triangle_angle", "triangle_angle_rad", "psi_0", "rad", "angle between these two at the reference angle; negative where the cylinder shortens as the angle grows", "docs/model.md", K::term, -3.1416, 3.1416, 0.0}},
+      F{&P::triangle_angle_rad, {"triangle_angle", "triangle_angle_rad", "psi_0", "rad", "angle between these two distances at the reference angle; negative if the cylinder shortens as the angle grows", "docs/model.md", K::term, -3.1416, 3.1416, 0.0}},
       F{&P::travel_table_from_rad, {"travel_table_from", "travel_table_from_rad", "theta_T0", "rad", "angle at which the table of the travel begins", "docs/model.md", K::term, -1000, 1000, 0.0, false}},
-      F{&P::travel_table_to_rad, {"travel_table_to", "travel_table_to_rad", "theta_T1", "rad", "angle at which it ends; the travel of the piston by a table over the angle", "docs/model.md", K::term, -1000, 1000, 0.0, false}},
-      F{&P::travel_0_m, {"travel_0", "travel_0_m", "S_0", "m", "travel of the piston where the table begins", "docs/model.md", K::term, -100, 100, 0.0}},
-      F{&P::travel_20_m, {"travel_20", "travel_20_m", "S_20", "m", "the same at 20 % of the way to its end", "docs/model.md", K::term, -100, 100, 0.0}},
-      F{&P::travel_40_m, {"travel_40", "travel_40_m", "S_40", "m", "the same at 40 % of the way to its end", "docs/model.md", K::term, -100, 100, 0.0}},
-      F{&P::travel_60_m, {"travel_60", "travel_60_m", "S_60", "m", "the same at 60 % of the way to its end", "docs/model.md", K::term, -100, 100, 0.0}},
-      F{&P::travel_80_m, {"travel_80", "travel_80_m", "S_80", "m", "the same at 80 % of the way to its end", "docs/model.md", K::term, -100, 100, 0.0}},
-      F{&P::travel_100_m, {"travel_100", "travel_100_m", "S_100", "m", "the same where it ends", "docs/model.md", K::term, -100, 100, 0.0}},
+      F{&P::travel_table_to_rad, {"travel_table_to", "travel_table_to_rad", "theta_T1", "rad", "angle at which the table of the travel ends", "docs/model.md", K::term, -1000, 1000, 0.0, false}},
+      F{&P::travel_0_m, {"travel_0", "travel_0_m", "S_0", "m", "travel of the piston at the start of the table", "docs/model.md", K::term, -100, 100, 0.0}},
+      F{&P::travel_20_m, {"travel_20", "travel_20_m", "S_20", "m", "travel of the piston at 20 % of the range of the table", "docs/model.md", K::term, -100, 100, 0.0}},
+      F{&P::travel_40_m, {"travel_40", "travel_40_m", "S_40", "m", "travel of the piston at 40 % of the range of the table", "docs/model.md", K::term, -100, 100, 0.0}},
+      F{&P::travel_60_m, {"travel_60", "travel_60_m", "S_60", "m", "travel of the piston at 60 % of the range of the table", "docs/model.md", K::term, -100, 100, 0.0}},
+      F{&P::travel_80_m, {"travel_80", "travel_80_m", "S_80", "m", "travel of the piston at 80 % of the range of the table", "docs/model.md", K::term, -100, 100, 0.0}},
+      F{&P::travel_100_m, {"travel_100", "travel_100_m", "S_100", "m", "travel of the piston at the end of the table", "docs/model.md", K::term, -100, 100, 0.0}},
       // clang-format on
   };
 }
@@ -109,14 +109,14 @@ constexpr auto linkage_term_rows() {
   using F = ParameterField<P, T>;
   return std::array{
       // clang-format off
-      F{&P::reference_angle_rad, {"reference_angle", "reference_angle_rad", "theta_0", "rad", "angle from which lever and gravity moment count their change, and at which a triangle has triangle_angle", "docs/model.md", K::term, -1000, 1000, 0.0, false}},
-      F{&P::lever_gradient_m_per_rad2, {"lever_gradient", "lever_gradient_m_per_rad2", "D_1", "m/rad2", "what the lever grows by per angle", "docs/model.md", K::term, -100, 100, 0.0}},
-      F{&P::lever_curvature_m_per_rad3, {"lever_curvature", "lever_curvature_m_per_rad3", "D_2", "m/rad3", "what the lever grows by per square of the angle", "docs/model.md", K::term, -100, 100, 0.0}},
-      F{&P::gravity_moment_n_m, {"gravity_moment", "gravity_moment_n_m", "M_0", "N m", "moment of the load against positive angle, at the reference angle", "docs/model.md", K::term, -1e9, 1e9, 0.0}},
-      F{&P::gravity_moment_gradient_n_m_per_rad, {"gravity_moment_gradient", "gravity_moment_gradient_n_m_per_rad", "M_1", "N m/rad", "what this moment grows by per angle; negative where it falls", "docs/model.md", K::term, -1e9, 1e9, 0.0}},
-      F{&P::gravity_moment_curvature_n_m_per_rad2, {"gravity_moment_curvature", "gravity_moment_curvature_n_m_per_rad2", "M_2", "N m/rad2", "what this moment grows by per square of the angle", "docs/model.md", K::term, -1e9, 1e9, 0.0}},
+      F{&P::reference_angle_rad, {"reference_angle", "reference_angle_rad", "theta_0", "rad", "angle at which lever, load moment and triangle_angle have the given values", "docs/model.md", K::term, -1000, 1000, 0.0, false}},
+      F{&P::lever_gradient_m_per_rad2, {"lever_gradient", "lever_gradient_m_per_rad2", "D_1", "m/rad2", "increase of the lever per unit of angle", "docs/model.md", K::term, -100, 100, 0.0}},
+      F{&P::lever_curvature_m_per_rad3, {"lever_curvature", "lever_curvature_m_per_rad3", "D_2", "m/rad3", "increase of the lever per unit of angle squared", "docs/model.md", K::term, -100, 100, 0.0}},
+      F{&P::gravity_moment_n_m, {"gravity_moment", "gravity_moment_n_m", "M_0", "N m", "moment of the load at the reference angle, opposing positive angles", "docs/model.md", K::term, -1e9, 1e9, 0.0}},
+      F{&P::gravity_moment_gradient_n_m_per_rad, {"gravity_moment_gradient", "gravity_moment_gradient_n_m_per_rad", "M_1", "N m/rad", "increase of this moment per unit of angle; negative if it decreases", "docs/model.md", K::term, -1e9, 1e9, 0.0}},
+      F{&P::gravity_moment_curvature_n_m_per_rad2, {"gravity_moment_curvature", "gravity_moment_curvature_n_m_per_rad2", "M_2", "N m/rad2", "increase of this moment per unit of angle squared", "docs/model.md", K::term, -1e9, 1e9, 0.0}},
       F{&P::joint_friction_n_m, {"joint_friction", "joint_friction_n_m", "M_c", "N m", "dry friction of joint and cylinder", "docs/model.md", K::term, 0, 1e9, 0.0}},
-      F{&P::joint_friction_smoothing_rad_per_s, {"joint_friction_smoothing", "joint_friction_smoothing_rad_per_s", "omega_0", "rad/s", "angular velocity below which this friction is straightened", "docs/model.md", K::term, 1e-6, 10, 1e-3, false}},
+      F{&P::joint_friction_smoothing_rad_per_s, {"joint_friction_smoothing", "joint_friction_smoothing_rad_per_s", "omega_0", "rad/s", "angular velocity below which this friction is smoothed", "docs/model.md", K::term, 1e-6, 10, 1e-3, false}},
       F{&P::angle_stop_stiffness_n_m_per_rad, {"stop_stiffness", "stop_stiffness_n_m_per_rad", "k_s", "N m/rad", "stiffness of stops and support", "docs/model.md", K::term, 1e3, 1e13, 1e8}},
       F{&P::angle_stop_damping_s_per_rad, {"stop_damping", "stop_damping_s_per_rad", "lambda_s", "s/rad", "damping of the stops over their stiffness", "docs/model.md", K::term, 0, 1e6, 10.0}},
       // clang-format on
@@ -132,14 +132,14 @@ constexpr auto angle_rows() {
   using F = ParameterField<P, T>;
   return std::array{
       // clang-format off
-      F{&P::angle_gain, {"angle_gain", "angle_gain", "s_theta", "1", "recorded angle per angle", "docs/model.md", K::sensor, 0.1, 10, 1.0}},
+      F{&P::angle_gain, {"angle_gain", "angle_gain", "s_theta", "1", "gain of the sensor: recorded over true angle", "docs/model.md", K::sensor, 0.1, 10, 1.0}},
       F{&P::angle_lag_s, {"angle_lag", "angle_lag_s", "tau_theta", "s", "first-order lag of the angle sensor", "docs/model.md", K::sensor, 0, 10, 0.0}},
-      F{&P::angle_maximum_rad, {"angle_maximum", "angle_maximum_rad", "max_theta", "rad", "largest angle that its sensor and converter can show", "docs/model.md", K::sensor, -1000, kInf, kInf, false}},
-      F{&P::angle_offset_rad, {"angle_offset", "angle_offset_rad", "theta_off", "rad", "recorded angle minus angle", "docs/model.md", K::sensor, -1000, 1000, 0.0}},
-      F{&P::torque_gain, {"torque_gain", "torque_gain", "s_M", "1", "recorded torque per torque", "docs/model.md", K::sensor, 0.1, 10, 1.0}},
+      F{&P::angle_maximum_rad, {"angle_maximum", "angle_maximum_rad", "max_theta", "rad", "largest angle that the sensor and its converter can indicate", "docs/model.md", K::sensor, -1000, kInf, kInf, false}},
+      F{&P::angle_offset_rad, {"angle_offset", "angle_offset_rad", "theta_off", "rad", "offset of the sensor: recorded minus true angle", "docs/model.md", K::sensor, -1000, 1000, 0.0}},
+      F{&P::torque_gain, {"torque_gain", "torque_gain", "s_M", "1", "gain of the sensor: recorded over true torque", "docs/model.md", K::sensor, 0.1, 10, 1.0}},
       F{&P::torque_lag_s, {"torque_lag", "torque_lag_s", "tau_M", "s", "first-order lag of the torque sensor", "docs/model.md", K::sensor, 0, 10, 0.0}},
-      F{&P::torque_maximum_n_m, {"torque_maximum", "torque_maximum_n_m", "max_M", "N m", "largest torque that its sensor and converter can show", "docs/model.md", K::sensor, -1e9, kInf, kInf, false}},
-      F{&P::torque_offset_n_m, {"torque_offset", "torque_offset_n_m", "M_off", "N m", "recorded torque minus torque", "docs/model.md", K::sensor, -1e9, 1e9, 0.0}},
+      F{&P::torque_maximum_n_m, {"torque_maximum", "torque_maximum_n_m", "max_M", "N m", "largest torque that the sensor and its converter can indicate", "docs/model.md", K::sensor, -1e9, kInf, kInf, false}},
+      F{&P::torque_offset_n_m, {"torque_offset", "torque_offset_n_m", "M_off", "N m", "offset of the sensor: recorded minus true torque", "docs/model.md", K::sensor, -1e9, 1e9, 0.0}},
       F{&P::initial_angle_rad, {"initial_angle", "initial_angle_rad", "theta(0)", "rad", "recorded angle at the first sample", "docs/model.md", K::initial, -1000, 1000, 0.0}},
       F{&P::initial_angular_velocity_rad_per_s, {"initial_angular_velocity", "initial_angular_velocity_rad_per_s", "omega(0)", "rad/s", "angular velocity at the first sample", "docs/model.md", K::initial, -1000, 1000, 0.0}},
       // clang-format on
@@ -160,8 +160,8 @@ constexpr auto joint_loop_rows() {
       F{&P::torque_kp_v_per_n_m, {"torque_kp", "torque_kp_v_per_n_m", "K_pM", "V/(N m)", "proportional gain of a loop on the torque", "docs/model.md", K::controller, 0, 1e9, 0.0}},
       F{&P::torque_ki_v_per_n_m_s, {"torque_ki", "torque_ki_v_per_n_m_s", "K_iM", "V/(N m s)", "integral gain of a loop on the torque", "docs/model.md", K::controller, 0, 1e9, 0.0}},
       F{&P::torque_kd_v_s_per_n_m, {"torque_kd", "torque_kd_v_s_per_n_m", "K_dM", "V s/(N m)", "derivative gain of a loop on the torque", "docs/model.md", K::controller, 0, 1e9, 0.0}},
-      F{&P::angular_velocity_feedforward_v_s_per_rad, {"angular_velocity_feedforward", "angular_velocity_feedforward_v_s_per_rad", "K_vf", "V s/rad", "gain of the rate of the angle's reference, filtered as the derivative is", "docs/model.md", K::controller, -1e9, 1e9, 0.0}},
-      F{&P::angular_acceleration_feedforward_v_s2_per_rad, {"angular_acceleration_feedforward", "angular_acceleration_feedforward_v_s2_per_rad", "K_af", "V s2/rad", "gain of the rate of that rate, filtered once more", "docs/model.md", K::controller, -1e9, 1e9, 0.0}},
+      F{&P::angular_velocity_feedforward_v_s_per_rad, {"angular_velocity_feedforward", "angular_velocity_feedforward_v_s_per_rad", "K_vf", "V s/rad", "feedforward gain on the rate of the angle's reference, filtered like the derivative", "docs/model.md", K::controller, -1e9, 1e9, 0.0}},
+      F{&P::angular_acceleration_feedforward_v_s2_per_rad, {"angular_acceleration_feedforward", "angular_acceleration_feedforward_v_s2_per_rad", "K_af", "V s2/rad", "feedforward gain on the rate of that rate, filtered once more", "docs/model.md", K::controller, -1e9, 1e9, 0.0}},
       // clang-format on
   };
 }

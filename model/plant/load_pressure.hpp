@@ -45,7 +45,7 @@ struct LoadPressurePlant {
   }
   static constexpr std::array<StateRow, kStates> kStateRows{
       kPistonPosition, kPistonVelocity,
-      StateRow{"load_pressure", "Pa", "pressure of chamber A less that of B", 100.0, 0.1}};
+      StateRow{"load_pressure", "Pa", "pressure of chamber A minus that of B", 100.0, 0.1}};
 
   /// Index of the state that an output equals, apart from sensor errors; std::nullopt if the output
   /// depends on more than one state.

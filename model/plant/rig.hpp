@@ -84,23 +84,23 @@ struct FeedbackRow {
   std::string_view velocity_feedforward, acceleration_feedforward;
 };
 inline constexpr std::array kFeedbacks{
-    FeedbackRow{"position", "m", "where the piston is to be", "kp", "ki", "kd", "",
+    FeedbackRow{"position", "m", "desired position of the piston", "kp", "ki", "kd", "",
                 "velocity_feedforward", "acceleration_feedforward"},
-    FeedbackRow{"force", "N", "force that a load cell in the rod is to read", "force_kp",
-                "force_ki", "force_kd", "", "", ""},
-    FeedbackRow{"load_pressure", "Pa", "what the pressure of chamber A is to be less that of B",
+    FeedbackRow{"force", "N", "desired reading of a load cell in the rod", "force_kp", "force_ki",
+                "force_kd", "", "", ""},
+    FeedbackRow{"load_pressure", "Pa", "desired pressure of chamber A minus that of B",
                 "load_pressure_kp", "load_pressure_ki", "load_pressure_kd", "", "", ""},
-    FeedbackRow{"acceleration", "m/s2", "what the acceleration of the piston is to be",
-                "acceleration_kp", "acceleration_ki", "acceleration_kd", "", "", ""},
-    FeedbackRow{"angle", "rad", "where the joint is to be", "angle_kp", "angle_ki", "angle_kd", "",
-                "angular_velocity_feedforward", "angular_acceleration_feedforward"},
-    FeedbackRow{"torque", "N m", "moment that a transducer at the joint is to read", "torque_kp",
+    FeedbackRow{"acceleration", "m/s2", "desired acceleration of the piston", "acceleration_kp",
+                "acceleration_ki", "acceleration_kd", "", "", ""},
+    FeedbackRow{"angle", "rad", "desired angle of the joint", "angle_kp", "angle_ki", "angle_kd",
+                "", "angular_velocity_feedforward", "angular_acceleration_feedforward"},
+    FeedbackRow{"torque", "N m", "desired reading of a torque sensor at the joint", "torque_kp",
                 "torque_ki", "torque_kd", "", "", ""},
-    FeedbackRow{"three_variable", "m", "where the piston is to be", "kp", "ki", "velocity_kp",
+    FeedbackRow{"three_variable", "m", "desired position of the piston", "kp", "ki", "velocity_kp",
                 "acceleration_kp", "velocity_feedforward", "acceleration_feedforward"},
-    FeedbackRow{"three_variable_acceleration", "m/s2",
-                "what the acceleration of the piston is to be", "kp", "ki", "velocity_kp",
-                "acceleration_kp", "velocity_feedforward", "acceleration_feedforward"},
+    FeedbackRow{"three_variable_acceleration", "m/s2", "desired acceleration of the piston", "kp",
+                "ki", "velocity_kp", "acceleration_kp", "velocity_feedforward",
+                "acceleration_feedforward"},
 };
 inline constexpr std::size_t kFeedbackCount = kFeedbacks.size();
 constexpr const FeedbackRow& gain_keys(Feedback feedback) {
@@ -137,8 +137,8 @@ struct SimulationInputs {
   double drive_begins_s = 0.0;               ///< time of its first sample; see Rig::before
   /// Added to the spool signal [V, or Pa for a pilot]; represents the play of a valve.
   std::optional<Signal> spool_error{};
-  /// Acceleration of what the cylinder is fixed to, in the direction of positive travel. Position
-  /// and velocity are relative to it.
+  /// Acceleration of the base to which the cylinder is fixed, in the direction of positive travel.
+  /// Position and velocity are relative to it.
   std::optional<Signal> base_acceleration_m_per_s2{};
   std::optional<Signal> oil_temperature_k{};  ///< replaces the parameter `oil_temperature`
 };

@@ -683,8 +683,8 @@ class System {
                     x[first + 1] * (2.0 * p.valve_damping_ratio * omega);
   }
 
-  /// Command to the pilot stage [V]: what the main spool lacks of its own. The fully open pilot
-  /// moves the main spool at its rate limit.
+  /// Command to the pilot stage [V]: the command of the main spool minus its position. The fully
+  /// open pilot moves the main spool at its rate limit.
   template <typename K>
   Number<K> pilot_command(K by, const Numbers<K>& x, const Number<K>& command) const {
     const auto& p = parameters_of(by);

@@ -13,8 +13,8 @@ namespace {
 /// Minimum number of times per lag. Linear interpolation between them is then accurate to 1e-3 of
 /// any signal that the sensor can follow.
 constexpr double kTimesPerLag = 8.0;
-/// Maximum number of equal pieces of a sample interval. A lag that would need more remembers only
-/// the end of the interval, so the times then become denser towards each sample.
+/// Maximum number of equal pieces of a sample interval. For a lag that would need more, only the
+/// end of the interval matters, so the times then become denser towards each sample.
 constexpr double kMostBetweenSamples = 256.0;
 /// Ratio of the distances of two such times from the sample. Linear interpolation between them is
 /// off by 0.04 lag^2 x'', which is at most 4e-3 of the lag's effect on any sampled signal.

@@ -48,11 +48,12 @@ StoredComparedResult stored(const Compared& compared) {
 }
 
 std::string repeats_warning(const std::string& name, const calib::BetweenRepeats& repeats) {
-  const std::string cause =
-      repeats.cause ? fmt::format(", as {} would make them", *repeats.cause) : std::string();
+  const std::string cause = repeats.cause
+                                ? fmt::format(", as variation of {} would cause", *repeats.cause)
+                                : std::string();
   return fmt::format(
-      "{}: its repeats differ from one another by more than their noise{}: what differs from day "
-      "to day in the same way is in no error, and counts as a change of the rig",
+      "{}: its repeats differ from one another by more than their noise{}. If days differ in the "
+      "same way, no standard error includes it, and it counts as a change of the rig",
       name, cause);
 }
 
@@ -75,8 +76,8 @@ std::vector<std::string> comparison_warnings(const std::vector<Compared>& result
       list.push_back(repeats_warning(compared.name, *repeats));
     if (lacks_degrees(fit))
       list.push_back(
-          fmt::format("{}: written by a version that does not state the degrees of "
-                      "freedom of its errors; they are taken from its intervals",
+          fmt::format("{}: written by a version that does not state degrees of freedom; they are "
+                      "inferred from its intervals",
                       compared.name));
   }
   for (std::size_t i = 1; i < results.size(); ++i) {

@@ -31,7 +31,8 @@ bool same_weights(const std::vector<StoredWeight>& a, const std::vector<StoredWe
 
 /// For channels whose noise the fit estimated, recomputes the cost and the log terms at the
 /// maximum-likelihood standard deviation, which is the rms residual. The estimate of the fit may
-/// still differ from it by a tenth. Priors are ignored because they are few among many residuals.
+/// still differ from it by up to 10 %. Priors are ignored because they are few among many
+/// residuals.
 void take_likeliest_noise(const std::vector<StoredWeight>& weights, Candidate& candidate) {
   constexpr double kLeastRms = 1e-12;  // in SI units; keeps the likelihood of an exact fit finite
   double cost = 0.0;
@@ -68,7 +69,7 @@ std::string obstacle(const Compared& a, const Compared& b) {
   for (const Compared* each : {&a, &b}) {
     const StoredFit& fit = each->result;
     if (each->of_tables || !fit.weights || !fit.independent_residuals || !is_fit_schema(fit.schema))
-      return fmt::format("{} is no fit of records by this version", each->name);
+      return fmt::format("{} is not a fit of records by this version", each->name);
     if (fit.status != calib::FitStatus::converged || !fit.cost)
       return fmt::format("{} did not converge", each->name);
   }
@@ -82,7 +83,8 @@ std::string obstacle(const Compared& a, const Compared& b) {
   if (hashes.empty() || hashes != hashes_of(b.result)) return "not fitted to the same records";
   if (!same_weights(*a.result.weights, *b.result.weights) ||
       a.result.residual_count != b.result.residual_count)
-    return "the records count differently: other channels, samples, priors or standard deviations";
+    return "the records are weighted differently: other channels, samples, priors or standard "
+           "deviations";
   return {};
 }
 
@@ -114,7 +116,7 @@ std::string not_contained(const StoredFit& smaller_result, const StoredFit& larg
     const auto found = larger.free.find(key);
     if (found == larger.free.end() || found->second < scope)  // scopes are ordered from rig to
                                                               // condition
-      return fmt::format("{} is free in one alone, and something else in the other", key);
+      return fmt::format("{} is free in only one of them, another parameter in the other", key);
   }
   for (const auto& [id, value] : smaller.known) {
     const std::string& key = std::get<0>(id);
@@ -152,7 +154,7 @@ StoredModelChoice choice_of(const Compared& first, const Compared& other) {
   result.delta_bic = information.bic;
   result.verdict = information.message;
   if (a.parameters == b.parameters) {
-    result.reason = "as many parameters in both: neither contains the other";
+    result.reason = "both have the same number of parameters: neither contains the other";
     return result;
   }
   const bool first_smaller = a.parameters < b.parameters;
@@ -165,8 +167,8 @@ StoredModelChoice choice_of(const Compared& first, const Compared& other) {
   const double worse = first_smaller ? b.deviance() - a.deviance() : a.deviance() - b.deviance();
   if (worse > kWorse) {
     result.reason = fmt::format(
-        "{} has more free parameters and fits worse: its bounds leave {} out, or its fit is no "
-        "minimum",
+        "{} has more free parameters and fits worse: its bounds exclude {}, or its fit did not "
+        "reach the minimum",
         larger.name, smaller.name);
     return result;
   }

@@ -36,7 +36,8 @@ std::optional<calib::ComparedEstimate> estimate_of(const StoredFit& fit,
   return estimate;
 }
 
-/// Returns the variance of the difference of two estimates due to effects that both models omit.
+/// Returns the variance of the difference between two estimates due to effects that both models
+/// omit.
 double by_effects(const StoredFit& first, const StoredFit& other,
                   const StoredComparedParameter& wanted) {
   const auto spread_of = [&](const StoredFit& fit) -> std::optional<calib::EffectSpread> {

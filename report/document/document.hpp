@@ -267,7 +267,7 @@ struct Section {
   std::string title;
   Blocks blocks = {};
   std::string short_title = {};  ///< title in lists of sections
-  bool always = false;  ///< a terminal shows it below the first page, whatever the style asks for
+  bool always = false;           ///< a terminal shows it below the first page in any style
 };
 
 /// A result in the form in which the page and the terminal show it.

@@ -146,7 +146,7 @@ void add_row(const Table& table, const Row& row, std::string& page) {
     if (cell.shade) page += shade_of(*cell.shade);
     page += ">";
     add_content(cell, page);
-    // A card shows the unit beside the value.
+    // A card shows the unit after the value.
     if (table.shape == Table::Shape::cards && i + 1 < row.cells.size() &&
         table.columns[i + 1].kind == Column::Kind::unit)
       page += "<span class=\"beside-value\"> " + html(row.cells[i + 1].line) + "</span>";

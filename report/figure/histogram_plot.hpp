@@ -7,7 +7,7 @@
 
 namespace rigcal::report {
 
-/// Plots the density of the residuals beside the normal density with the same mean and standard
+/// Plots the density of the residuals and the normal density with the same mean and standard
 /// deviation. The bins are equal and cover the range. Their width follows Freedman and Diaconis (2
 /// IQR n^(-1/3); Probability Theory 57, 1981), limited to between 11 and 41 bins.
 ///

@@ -74,7 +74,7 @@ void make_searchable(std::string& document) {
   std::string map = "1 beginbfrange\r\n<0000> <FFFF> <0000>\r\nendbfrange";
   if (begin == std::string::npos || end == std::string::npos ||
       end + kEnd.size() - begin < map.size())
-    throw std::runtime_error("PDF: this version of libharu maps characters in another way");
+    throw std::runtime_error("PDF: this version of libharu maps characters differently");
   map.resize(end + kEnd.size() - begin, ' ');
   document.replace(begin, map.size(), map);
 }

@@ -35,7 +35,7 @@ struct Plot {
   bool log_x = false;
   bool log_y = false;
   bool bare = false;       ///< only the traces, from edge to edge, as one of many small pictures
-  bool whole_x = false;    ///< x counts items: whole-number ticks, room beside the first and last
+  bool whole_x = false;    ///< x counts items: whole-number ticks, margins at the first and last
   bool same_axes = false;  ///< both axes have the same range
   std::vector<Trace> traces{};
   std::vector<double> levels{};  ///< dashed horizontal lines, in units of y

@@ -24,10 +24,11 @@ struct OutputRow {
 constexpr std::array kOutputs{
     OutputRow{Output::position, "position", "m", "position of the piston"},
     OutputRow{Output::velocity, "velocity", "m/s", "velocity of the piston"},
-    OutputRow{Output::load_pressure, "load_pressure", "Pa", "pressure of chamber A less that of B"},
+    OutputRow{Output::load_pressure, "load_pressure", "Pa",
+              "pressure of chamber A minus that of B"},
     OutputRow{Output::pressure_a, "pressure_a", "Pa", "pressure of chamber A"},
     OutputRow{Output::pressure_b, "pressure_b", "Pa", "pressure of chamber B"},
-    OutputRow{Output::force, "force", "N", "what a load cell in the rod reads"},
+    OutputRow{Output::force, "force", "N", "reading of a load cell in the rod"},
     OutputRow{Output::command, "command", "V", "command to the valve"},
     OutputRow{Output::spool, "spool", "m", "travel of the valve's spool"},
     OutputRow{Output::servo_flow, "servo_flow", "m3/s", "flow of the servo valve to the load"},
@@ -73,7 +74,7 @@ void add_inputs(const ExportedRig& rig, std::vector<FmuVariable>& variables) {
     variables.push_back(input(0, "command", "V", "command to the valve", 0.0));
   }
   if (model::parameter_index(rig.rig.plant, "external_force") >= 0)
-    variables.push_back(input(1, "external_force", "N", "load against positive travel",
+    variables.push_back(input(1, "external_force", "N", "load, opposing positive travel",
                               rig.values["external_force"]));
   variables.push_back(
       input(2, "supply_pressure", "Pa", "supply above tank", rig.values["supply_pressure"]));

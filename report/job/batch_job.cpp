@@ -20,9 +20,10 @@ void require_other_folders(const BatchRequest& request, const fs::path& out) {
   for (const fs::path& earlier : request.earlier) {
     std::error_code unknown;  // the error is ignored: --out may not exist yet
     if (fs::equivalent(earlier, out, unknown))
-      throw UsageError(fmt::format(
-          "batch: --earlier {} is where the results go; expected the --out of another batch",
-          earlier.string()));
+      throw UsageError(
+          fmt::format("batch: --earlier {} is the folder of the new results; expected the --out of "
+                      "another batch",
+                      earlier.string()));
   }
 }
 

@@ -12,7 +12,7 @@ namespace rigcal::report {
 
 JobResult comparison_job(const std::vector<std::filesystem::path>& folders, const JobTerms& terms) {
   if (folders.size() < 2)
-    throw UsageError("compare: expected two result folders or more, the one to compare with first");
+    throw UsageError("compare: expected at least two result folders; the first is the reference");
   for (auto folder = folders.begin(); folder != folders.end(); ++folder) {
     const auto same = [&](const auto& other) {
       return std::filesystem::equivalent(*folder, other);

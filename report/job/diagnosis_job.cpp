@@ -98,7 +98,7 @@ void warn_of_absent(const std::vector<diagnosis::LeakEntry>& limits, const Campa
   }
   if (!absent.empty())
     found.warnings.push_back(
-        fmt::format("the leak table has no column for {}: its classes are by the share alone",
+        fmt::format("the leak table has no column for {}: its classes follow from the share alone",
                     fmt::join(absent, "; ")));
 }
 
@@ -111,7 +111,7 @@ void warn_of_fit(const EarlierFit& fit, diagnosis::Diagnosis& found) {
     if (aspect->state == calib::AspectState::pass) continue;
     for (const calib::Reason& reason : aspect->reasons)
       if (calib::is_against(reason.state))
-        found.warnings.push_back("the fit that this rests on: " + reason.words);
+        found.warnings.push_back("from the fit: " + reason.words);
   }
 }
 
@@ -125,10 +125,10 @@ std::optional<std::vector<datasets::FittedValue>> truth_beside(const Campaign& c
   } catch (const InputError&) {
     // A link may lead to any file.
     if (datasets::lies_within(campaign.file.parent_path(), file)) throw;
-    throw InputError({file.string()},
-                     "is no truth.json that synthesize wrote. The content of the file is not "
-                     "shown, since a link leads out of the campaign's folder; expected the "
-                     "truth.json of this campaign");
+    throw InputError(
+        {file.string()},
+        "is not a truth.json that synthesize wrote. The content of the file is not shown, because "
+        "a link leads out of the campaign's folder; expected the truth.json of this campaign");
   }
 }
 

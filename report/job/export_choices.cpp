@@ -126,11 +126,11 @@ void warn_of_start_values(const Campaign& campaign, const Condition& condition,
   }
   if (!starts.empty())
     warnings.push_back(
-        fmt::format("not calibrated: {} are where a fit starts; --fit fit.json gives its values",
+        fmt::format("not calibrated: {} have start values; use --fit fit.json for calibrated ones",
                     fmt::join(starts, ", ")));
   if (!of_records.empty())
     warnings.push_back(
-        fmt::format("{} belong to each record: the campaign's own values are exported",
+        fmt::format("{} differ from record to record: the campaign's own values are exported",
                     fmt::join(of_records, ", ")));
 }
 
@@ -175,13 +175,12 @@ void take_delay_off(const ExportRequest& request, const Campaign& campaign, Para
   if (delay_s != 0.0 && !request.without_delay)
     throw InputError(
         {campaign.file.string()},
-        fmt::format("transport_delay is {:g} s, but the inputs of an FMU act at once: expected "
-                    "--without-delay, and that delay of the {} in the model that imports it",
+        fmt::format("transport_delay is {:g} s, but the inputs of an FMU act without delay: "
+                    "expected --without-delay, and a delay of the {} in the importing model",
                     delay_s, drive));
   if (delay_s != 0.0)
     warnings.push_back(
-        fmt::format("transport_delay is left out: the {} has to be delayed by {} s "
-                    "in the model that imports it",
+        fmt::format("transport_delay is left out: delay the {} by {} s in the importing model",
                     drive, delay_s));
   const auto index =
       static_cast<std::size_t>(model::parameter_index(values.plant, "transport_delay"));
@@ -200,7 +199,7 @@ void require_base_at_rest(const Campaign& campaign) {
   throw InputError({campaign.file.string()},
                    "key 'recording.channels.base_acceleration': an FMU has no such input: expected "
                    "role = \"ignore\", and mass times this acceleration added to the input "
-                   "external_force in the model that imports it");
+                   "external_force in the importing model");
 }
 
 /// Throws if the oil follows a recorded temperature, for the same reason.
@@ -208,9 +207,8 @@ void require_constant_temperature(const Campaign& campaign) {
   if (!is_input(campaign, datasets::Channel::temperature)) return;
   throw InputError(
       {campaign.file.string()},
-      "key 'recording.channels.temperature': an FMU has no such input: expected role = "
-      "\"ignore\", and the parameter oil_temperature, which the model that imports it "
-      "may set");
+      "key 'recording.channels.temperature': an FMU has no such input: expected role = \"ignore\", "
+      "and the parameter oil_temperature, which the importing model may set");
 }
 
 /// Throws if the model rejects the values, with the model's own message.

@@ -75,9 +75,10 @@ void warn_of_fit(const LeakTableInput& input, const EarlierFit& earlier,
       unknown.push_back(spec_in(input, each.index).key);
   }
   if (!unknown.empty())
-    warnings.push_back(fmt::format(
-        "the fit has no standard error of {}: it is missing in the intervals of the coefficients",
-        fmt::join(unknown, ", ")));
+    warnings.push_back(
+        fmt::format("the fit has no standard error of {}, so the intervals of the coefficients do "
+                    "not include it",
+                    fmt::join(unknown, ", ")));
 }
 
 /// Replaces values of the campaign and its assumptions with the estimates of a fit, then applies
@@ -95,18 +96,16 @@ FittedRig take_fit(LeakTableInput& input, const EarlierFit& earlier,
   std::vector<std::string_view> assumed;
   for (const Assumption& each : input.settings.assumptions)
     (each.fitted ? fitted : assumed).push_back(spec_in(input, each.index).key);
-  rig.notes.push_back(
-      fitted.empty() ? "the table takes no value from the fit"
-                     : fmt::format("the table takes {} from the fit", fmt::join(fitted, ", ")));
+  rig.notes.push_back(fitted.empty()
+                          ? "the table uses no value of the fit"
+                          : fmt::format("the table uses {} from the fit", fmt::join(fitted, ", ")));
   if (!assumed.empty())
-    rig.notes.push_back(
-        fmt::format("the fit estimated none of these, so that what is assumed or "
-                    "set still applies: {}",
-                    fmt::join(assumed, ", ")));
+    rig.notes.push_back(fmt::format("not fitted, so the assumed or set values apply: {}",
+                                    fmt::join(assumed, ", ")));
   for (const FittedValue& value : earlier.values) {
     const Assumption* taken = input.settings.assumption(value.index);
     if (taken != nullptr && !taken->fitted)
-      rig.warnings.push_back(fmt::format("{}: the value of the fit is not taken ({})",
+      rig.warnings.push_back(fmt::format("{}: the value of the fit is not used ({})",
                                          spec_in(input, value.index).key, taken->source));
   }
   warn_of_changed(input, earlier, rig.warnings);

@@ -12,8 +12,9 @@ std::string text_of(const Json& json, const std::string& key) {
 }
 
 void refuse_json(const std::string& where, const Json::exception& error) {
-  throw InputError({where},
-                   fmt::format("the result is not as this version writes it: {}", error.what()));
+  throw InputError(
+      {where},
+      fmt::format("the result is not in the form that this version writes: {}", error.what()));
 }
 
 }  // namespace rigcal::report

@@ -31,7 +31,7 @@ Json parse_json(std::string_view text, const std::string& file, const JsonLimits
 
 /// Reads and parses a JSON file.
 ///
-/// @param expected  what the file should be, in words: "the fit.json of an earlier fit"
+/// @param expected  description of the expected file: "the fit.json of an earlier fit"
 /// @throws InputError  as for parse_json(), or if the file cannot be read, is not a regular file or
 ///                     is too large
 Json read_json(const std::filesystem::path& file, const std::string& expected,

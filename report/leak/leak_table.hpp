@@ -27,7 +27,7 @@ StoredLeakTable stored(const LeakTableResult& result);
 /// Writes leak_table.csv with one row per signal and target.
 std::string leak_table_csv(const LeakTableResult& result);
 
-/// Writes features.csv with one row per published level: the printed values beside the computed
+/// Writes features.csv with one row per published level: the printed and the computed
 /// ones.
 std::string features_csv(const LeakTableResult& result);
 

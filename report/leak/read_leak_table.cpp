@@ -16,7 +16,7 @@ namespace {
 void require_complete(const diagnosis::LeakEntry& entry, const JsonNode& node) {
   if (!entry.drive.amplitude()) node.fail("an entry with 'amplitude_m' or 'amplitude_v'");
   if (entry.coefficients_ci95.size() != entry.coefficients.size())
-    node["coefficients_ci95"].fail("an interval, or null, for each coefficient");
+    node["coefficients_ci95"].fail("one interval, or null, per coefficient");
 }
 
 /// Compares two values up to rounding, because writing and reading a file may change the last

@@ -82,8 +82,8 @@ std::string explore_page(const datasets::Campaign& campaign, const std::vector<L
                          const std::string& command, const std::vector<InputFile>& inputs) {
   if (live_module().empty())
     throw UsageError(
-        "this rigcal was built without the model for pages: expected one that was built where "
-        "clang, lld, wasi-libc and libc++ for WebAssembly are installed (scripts/setup)");
+        "this rigcal was built without the model for live pages: expected a build with clang, lld, "
+        "wasi-libc and libc++ for WebAssembly (scripts/setup)");
   const LiveCase& shown = cases.front();
   const calib::SimulationTask& task = shown.task;
   const model::Simulation run =

@@ -292,13 +292,11 @@ std::optional<LiveSection> live_section(const Json& rig) {
   LiveSection section;
   const char* const about =
       rig.contains("intervals")
-          ? "The calibrated rig, solved in this page as <code>rigcal</code> solves it. It begins "
-            "at "
-            "the estimates; a mark on each slider shows them, and a shade their 95 % interval. "
-            "Scores and limits are those of the curves shown."
-          : "The rig, solved in this page as <code>rigcal</code> solves it. It begins at the "
-            "values "
-            "of the result; a mark on each slider shows them.";
+          ? "The calibrated rig, simulated in this page by the equations and solver of "
+            "<code>rigcal</code>. Sliders start at the estimates, which a mark shows; the shaded "
+            "range is the 95 % interval. Scores and limits refer to the curves shown."
+          : "The rig, simulated in this page by the equations and solver of <code>rigcal</code>. "
+            "Sliders start at the values of the result, which a mark shows.";
   section.html = fmt::format(
       "<style>{}</style>\n<section id=\"try\" class=\"screen\" aria-labelledby=\"try-title\">\n"
       "<h2 id=\"try-title\">Try it</h2>\n<p class=\"reading\">{}</p>\n{}</section>\n\n",

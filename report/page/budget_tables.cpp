@@ -79,7 +79,7 @@ void add_lines(const BudgetOf& of, std::vector<doc::Row>& rows) {
 
 doc::Table budget_table(const std::string& what, const std::vector<BudgetOf>& budgets) {
   doc::Table table{"Uncertainty budget"};
-  table.caption = {"Uncertainty budget: standard uncertainties u, of which the squares add up"};
+  table.caption = {"Uncertainty budget: standard uncertainties u; their squares add up"};
   const FurtherColumns further = further_columns(budgets);
   table.columns = {{what},
                    {"Unit"},
@@ -92,7 +92,7 @@ doc::Table budget_table(const std::string& what, const std::vector<BudgetOf>& bu
   if (further.shift) table.columns.push_back({"Shift", Kind::number});
   if (further.beside) {
     table.columns.push_back({"Beside it: days", Kind::number});
-    table.columns.push_back({"Beside it: numerics, at most", Kind::number});
+    table.columns.push_back({"In addition: numerical error, at most", Kind::number});
   }
   table.columns.push_back({"Largest effect"});
   for (const BudgetOf& each : budgets) table.rows.push_back(budget_row(each, further));

@@ -240,7 +240,7 @@ std::string page_of(const Parts& parts, const ReadFile& read, PageExtent extent)
   doc::Section provenance{
       "provenance",
       "Provenance",
-      {doc::reading("The same inputs and these commands make the same numbers again.")}};
+      {doc::reading("The same inputs and these commands reproduce the same numbers.")}};
   for (const Part& part : parts.drawn) {
     for (const doc::Section& section : part.sections) doc::render_html(section, page);
     provenance.blocks.insert(provenance.blocks.end(), part.provenance.begin(),

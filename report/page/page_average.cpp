@@ -82,8 +82,8 @@ std::vector<Figure> average_figures(const std::string& condition, const Table& s
     line.x = thinned_times(*time_s, *mean, thin);
     line.y = thinned(*mean, thin);
     for (double& value : line.y) value /= si;
-    const bool scatter = sd != nullptr && largest(*sd) > 0.0;
-    if (scatter) {
+    const bool has_sd = sd != nullptr && largest(*sd) > 0.0;
+    if (has_sd) {
       Trace band = empty_trace(Trace::Kind::band, "measured", "sd of repeats");
       band.x = line.x;
       const std::vector<double> half = thinned_where(*sd, *mean, thin);
@@ -95,7 +95,7 @@ std::vector<Figure> average_figures(const std::string& condition, const Table& s
     }
     plot.traces.push_back(std::move(line));
     figures.push_back({fmt::format("{}_{}_mean", condition, about.key), std::move(plot)});
-    if (!scatter) continue;
+    if (!has_sd) continue;
     Plot spread = plot_of(
         fmt::format("{} of {}, standard deviation of its repeats over time", words, condition),
         "sd of " + words, largest(*sd), si);
@@ -152,7 +152,7 @@ doc::Verdict average_headline(const AverageFiles& stored) {
           1e3 * offset_s)}};
   if (outliers > 0)
     add_reason(verdict,
-               fmt::format("{} repeat{} named outlier", outliers, outliers == 1 ? "" : "s"),
+               fmt::format("{} repeat{} flagged as outlier", outliers, outliers == 1 ? "" : "s"),
                "repeatability");
   for (const std::string& text : warnings) add_reason(verdict, text, "repeatability");
   return verdict;
@@ -191,8 +191,8 @@ std::vector<doc::Section> average_sections(const AverageFiles& stored) {
       "repeatability",
       "Repeatability",
       {doc::reading(
-           "Agreement of the repeats of each condition. Noise floor: the best score that a "
-           "perfect model could reach. Offsets: how far apart the repeats started."),
+           "Agreement of the repeats of each condition. Noise floor: the best score that a perfect "
+           "model could reach. Offsets: time differences between the starts of the repeats."),
        std::move(table)}};
   const std::vector<std::string> warnings = texts_of(stored.result, &StoredRecord::warnings);
   if (!warnings.empty())
@@ -202,7 +202,7 @@ std::vector<doc::Section> average_sections(const AverageFiles& stored) {
   const std::vector<std::string> notes = texts_of(stored.result, &StoredRecord::notes);
   if (!notes.empty())
     section.blocks.emplace_back(doc::Fold{
-        fmt::format("What was done to the recordings ({})", notes.size()), {list_of(notes)}});
+        fmt::format("Processing of the recordings ({})", notes.size()), {list_of(notes)}});
   return {std::move(section), std::move(means)};
 }
 

@@ -155,9 +155,8 @@ doc::Section trends_section(const StoredBatch& batch) {
     }
   }
   doc::Paragraph first{
-      {"Estimates over the dates of their records, of earlier results and this "
-       "one. A line is drawn where a trend can be tested: three dated estimates "
-       "or more, of different records."}};
+      {"Estimates against the dates of their records, from earlier results and this one. A line is "
+       "drawn if a trend can be tested: at least three dated estimates from different records."}};
   if (!any)
     first.line = {"No rig has an earlier result with dated records: ", doc::Code{"--earlier"},
                   " names folders of earlier batches, and ", doc::Code{"date"},
@@ -210,9 +209,9 @@ std::vector<doc::Section> batch_sections(const StoredBatch& batch) {
   for (const StoredRig& rig : batch.rigs) table.rows.push_back(rig_row(rig));
   return {{"rigs",
            "Rigs",
-           {doc::reading("The three worst scores of each rig (rho2, mean absolute error in "
-                         "percent), its estimates with 95 % intervals, why it is no PASS, and its "
-                         "first warnings."),
+           {doc::reading(
+                "The three worst scores of each rig (rho2, mean absolute error in percent), its "
+                "estimates with 95 % intervals, why it did not pass, and its first warnings."),
             doc::about_picture("The name leads to its own report."), std::move(table)}},
           trends_section(batch)};
 }

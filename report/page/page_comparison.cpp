@@ -321,7 +321,7 @@ std::string significance_sentence(const StoredComparison& comparison) {
 
 /// Lists every file with the results that used it.
 doc::Section records_section(const StoredComparison& comparison) {
-  doc::Table table{"Files and the results that they were used for"};
+  doc::Table table{"Input files, and the results that used them"};
   table.style = "hashes";
   table.columns = {{"File"}};
   for (std::size_t i = 0; i < comparison.results.size(); ++i)
@@ -341,9 +341,9 @@ doc::Section records_section(const StoredComparison& comparison) {
   }
   return {"records",
           "Records",
-          {doc::reading(fmt::format(
-               "{} of {} files were used for every result; the same content, whatever the name.",
-               shared, comparison.records.size())),
+          {doc::reading(fmt::format("{} of {} files were used for every result. Files are "
+                                    "identified by content, not by name.",
+                                    shared, comparison.records.size())),
            doc::Fold{"Every file", {std::move(table)}}}};
 }
 
@@ -399,20 +399,19 @@ std::vector<doc::Section> comparison_sections(const StoredComparison& comparison
                       "Results side by side",
                       {result_table(comparison), list_of(comparison.warnings, doc::State::warn)},
                       "Results"});
-  doc::Section estimates{
-      "estimates",
-      "Parameters",
-      {doc::reading("95 % intervals. Change: from the first result, with its probability if "
-                    "nothing had changed, for all parameters together (Holm).")}};
+  doc::Section estimates{"estimates",
+                         "Parameters",
+                         {doc::reading("95 % intervals. Change: relative to the first result; p "
+                                       "value adjusted for all parameters together (Holm).")}};
   for (std::size_t i = 1; i < comparison.significance.size(); ++i) {
     const auto& each = comparison.significance[i];
     estimates.blocks.emplace_back(doc::reading(
         fmt::format("{}: {}.", comparison.results.at(i).name, each ? each->text : std::string())));
   }
   if (has_other_dates(comparison))
-    estimates.blocks.emplace_back(
-        doc::reading("Fits of different dates: the error of a difference includes what differs "
-                     "between days (supply, oil, zero, trigger; [between_days] of the campaign)."));
+    estimates.blocks.emplace_back(doc::reading(
+        "Fits of different dates: the standard error of a difference includes day-to-day variation "
+        "(supply, oil, zero, trigger; [between_days] in the campaign)."));
   estimates.blocks.emplace_back(parameter_table_of(comparison));
   doc::Gallery gallery;
   for (Figure& figure : parameter_figures(comparison))
@@ -423,8 +422,8 @@ std::vector<doc::Section> comparison_sections(const StoredComparison& comparison
       {"models",
        "Which model the records prefer",
        {doc::reading("Difference in AIC and BIC from the first result (negative favours this one), "
-                     "and the likelihood-ratio test of nested models. Autocorrelated residuals "
-                     "count with their effective sample size."),
+                     "and the likelihood-ratio test of nested models. Autocorrelation is taken "
+                     "into account by the effective sample size."),
         model_table(comparison)},
        "Models"});
   doc::Gallery trends;
@@ -434,7 +433,7 @@ std::vector<doc::Section> comparison_sections(const StoredComparison& comparison
       if (differ(series, axis))
         trends.figures.push_back(figure_of(trend_plot(series, axis),
                                            axis.by_day
-                                               ? "Does the leak change from date to date?"
+                                               ? "Does the leak change over time?"
                                                : "Does the leak change with the temperature?",
                                            trend_reading(series, axis)));
     }

@@ -84,7 +84,7 @@ doc::Table prediction_table(const StoredDesign& design) {
 
 doc::Table limit_table(const StoredDesign& design) {
   doc::Table table{"Limits"};
-  table.caption = {"Limits, and what the predicted response makes of them"};
+  table.caption = {"Limits, and the extremes of the predicted response"};
   table.columns = {{"Limit of"},
                    {"Limit", Kind::number},
                    {"Reached", Kind::number},
@@ -216,12 +216,11 @@ doc::Verdict design_headline(const StoredDesign& design) {
   }
   doc::Verdict verdict{
       {all_determined && !design.stopped() ? doc::State::good : doc::State::warn, "DESIGN"},
-      {fmt::format(
-          "A {} of {:g} s with {} repeat{} determines {}. Every limit that is stated is kept.",
-          words_of(design.family), design.duration_s, design.repeats,
-          design.repeats == 1 ? "" : "s", words)}};
+      {fmt::format("A {} of {:g} s with {} repeat{} determines {}. All stated limits are met.",
+                   words_of(design.family), design.duration_s, design.repeats,
+                   design.repeats == 1 ? "" : "s", words)}};
   if (design.stopped())
-    add_reason(verdict, "stopped by a signal: the best drive until then", "design");
+    add_reason(verdict, "stopped by a signal: the best drive found until then", "design");
   for (const calib::DesignedParameter& parameter : design.parameters) {
     if (parameter.named && !parameter.sd)
       add_reason(verdict, fmt::format("{} is not determined by this test", parameter.label()),
@@ -250,24 +249,22 @@ doc::Section design_section(const PlanFiles& files) {
                 "test, with the same noise.",
                 listed_names(design.own_signals), design.own_signals_duration_s);
   doc::Blocks blocks{
-      doc::reading(fmt::format(
-          "Designed for {}: {}, everything else being estimated too. Intervals at best, as of "
-          "all plans: white noise ({}, one repeat), the model right. {}",
-          listed_names(named), criterion, noise_words(design), compared)),
+      doc::reading(
+          fmt::format("Designed for {}: {}, with all other unknowns estimated too. The intervals "
+                      "are lower limits: white noise ({}, one repeat) and an exact model. {}",
+                      listed_names(named), criterion, noise_words(design), compared)),
       list_of(design.messages),
       prediction_table(design),
       limit_table(design),
-      doc::about_picture(
-          "The drive begins and ends where the rig rests. The spectrum shows the root mean square "
-          "in narrow bands, over that of the strongest."),
+      doc::about_picture("The drive begins and ends at the rest position. The spectrum shows the "
+                         "rms in narrow bands, relative to the strongest."),
       std::move(gallery),
       family_table(design),
       doc::Fold{fmt::format("Numbers of the drive ({})", design.drive.size()),
                 {drive_table(design)}},
-      doc::reading(fmt::format(
-          "{} is for the controller, {} has the predicted response, {} is the campaign for the "
-          "records to come.",
-          kDriveFile, kResponseFile, kDesignedCampaignFile))};
+      doc::reading(fmt::format("{} is the drive for the controller, {} the predicted response, {} "
+                               "the campaign for the records to be made.",
+                               kDriveFile, kResponseFile, kDesignedCampaignFile))};
   return {"design", "The designed test", std::move(blocks), "Design"};
 }
 

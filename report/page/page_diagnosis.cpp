@@ -244,9 +244,9 @@ constexpr std::array kMethods{
     MethodName{&diagnosis::Methods::fitted_leak_single, "Fitted leak, single repeats"},
     MethodName{&diagnosis::Methods::fitted_leak_averaged, "Fitted leak, averages"},
     MethodName{&diagnosis::Methods::features_leave_one_repeat_out,
-               "Paper's features, learned without the repeat"},
+               "Paper's features, clusters without the repeat"},
     MethodName{&diagnosis::Methods::features_leave_one_signal_out,
-               "Paper's features, learned without the signal"}};
+               "Paper's features, clusters without the signal"}};
 
 doc::Row accuracy_row(const diagnosis::Accuracy& method, const char* name) {
   const auto percent = [](double value) { return doc::in_unit(100.0 * value, 1.0, 4); };
@@ -284,15 +284,15 @@ doc::Table confusion_table(const diagnosis::Accuracy& method, const char* name) 
 
 /// Returns the general warnings, followed by those of the records, without duplicates.
 std::vector<std::string> diagnosis_warnings(const Diagnosis& diagnosis) {
-  std::vector<std::pair<std::string, std::string>> told;
+  std::vector<std::pair<std::string, std::string>> by_record;
   for (const RecordDiagnosis& record : diagnosis.records) {
     const std::string name = record.is_average()
                                  ? record.condition
                                  : fmt::format("{} repeat {}", record.condition, *record.repeat);
-    for (const std::string& warning : record.warnings) told.emplace_back(name, warning);
+    for (const std::string& warning : record.warnings) by_record.emplace_back(name, warning);
   }
   std::vector<std::string> list = diagnosis.warnings;
-  for (std::string& line : gathered_by_text(told)) list.push_back(std::move(line));
+  for (std::string& line : gathered_by_text(by_record)) list.push_back(std::move(line));
   return list;
 }
 
@@ -403,9 +403,9 @@ doc::Verdict headline_of_states(const Diagnosis& diagnosis, const std::string& s
 
 std::string diagnosis_sentence(const StoredDiagnosis& diagnosis) {
   if (diagnosis.status == LeakStatus::declined)
-    return "These records cannot be diagnosed: no leak below may be used.";
+    return "These records cannot be diagnosed: do not use any leak below.";
   if (diagnosis.status == LeakStatus::failed)
-    return "No record could be diagnosed: no number below may be used.";
+    return "No record could be diagnosed: do not use any number below.";
   const std::vector<const MachineState*> states = judged_states(diagnosis.found.states);
   if (states.size() == 1) return states.front()->sentence;
   if (!states.empty()) {
@@ -486,9 +486,9 @@ void add_methods(const diagnosis::Methods& methods, doc::Blocks& blocks) {
     confusions.blocks.emplace_back(confusion_table(method, each.name));
   }
   if (accuracies.rows.empty()) return;
-  blocks.emplace_back(doc::Heading{{"Against the known classes"}});
-  blocks.emplace_back(doc::reading(
-      "Undecided counts as an error. Intervals are those of as many trials as conditions."));
+  blocks.emplace_back(doc::Heading{{"Comparison with the known classes"}});
+  blocks.emplace_back(
+      doc::reading("Undecided counts as an error. Intervals treat each condition as one trial."));
   blocks.emplace_back(std::move(accuracies));
   confusions.blocks.insert(
       confusions.blocks.begin(),
@@ -528,8 +528,8 @@ void add_smallest_leaks(const Diagnosis& diagnosis, doc::Blocks& blocks) {
   }
   if (another_day)
     blocks.emplace_back(
-        doc::reading("The smallest leaks are those of a record of another day than its reference; "
-                     "on the day of the reference smaller ones are found."));
+        doc::reading("The smallest detectable leaks apply to a record made on another day than its "
+                     "reference; on the same day smaller ones are detected."));
   blocks.emplace_back(std::move(table));
 }
 
@@ -562,8 +562,8 @@ void add_share_budgets(const Diagnosis& diagnosis, doc::Blocks& blocks) {
   if (budgets.empty()) return;
   doc::Fold fold{"Uncertainty budgets of the shares", {}};
   fold.blocks.emplace_back(doc::reading(
-      "To first order about the share found. The interval of a share follows from its whole "
-      "distribution, which ends at zero. The lines of a state are its conditions."));
+      "First-order contributions at the estimated share. The interval of a share follows from its "
+      "full distribution, which is cut at zero. The rows of a state are its conditions."));
   fold.blocks.emplace_back(budget_table("Share of", budgets));
   doc::Fold one_by_one = contributions("Share of", budgets);
   one_by_one.style = "screen";  // a line for each effect of each record would fill sheets of paper
@@ -597,8 +597,8 @@ std::vector<doc::Section> diagnosis_sections(const StoredDiagnosis& diagnosis) {
       blocks.emplace_back(std::move(gallery));
       blocks.emplace_back(doc::about_picture(
           "Line and band: the rate of the trend and its 95 % interval, drawn through the last "
-          "share. Blue, if a limit is foreseen: the day on which it is reached, and the 95 % "
-          "interval of that day, as far as it can be foreseen."));
+          "share. Blue: the day on which the next limit is expected to be reached, with its 95 % "
+          "interval, if it can be predicted."));
     }
   }
   add_averages(found, blocks);

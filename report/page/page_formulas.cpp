@@ -26,17 +26,16 @@ constexpr std::array kFormulas{
             "distance of the metric from its ideal (1, 100 % or 0) over that of the limit"},
     Formula{"cost",
             "half the sum over all samples and channels of ((s - y) / sigma)^2, priors included"},
-    Formula{"reduced chi-square", "2 cost / (residuals - rank); 1 where the noise explains all"},
+    Formula{"reduced chi-square",
+            "2 cost / (residuals - rank); 1 if noise alone explains the residuals"},
     Formula{"standard error",
             "root of the diagonal of max(1, chi-square) (J'J)^-1, J the Jacobian of the weighted "
             "residuals"},
     Formula{"robust standard error",
-            "sandwich (J'J)^-1 S (J'J)^-1, S the covariance of J'r, with residuals r as correlated "
-            "in time as they are"},
-    Formula{
-        "intervals under the errors",
-        "value ± 1.96 times the error: what it alone says, the plain (naive) one and the robust "
-        "one"},
+            "sandwich (J'J)^-1 S (J'J)^-1, S the covariance of J'r, including the correlation of "
+            "the residuals r in time"},
+    Formula{"intervals under the errors",
+            "value ± 1.96 times each error, the plain (naive) one and the robust one"},
     Formula{
         "95 % interval",
         "value ± q times the robust standard error, cut at the limits of the parameter; q = t / "
@@ -46,13 +45,14 @@ constexpr std::array kFormulas{
         "noise, or too few to estimate their correlation, value ± t times the plain error; half "
         "width: over the value"},
     Formula{"identified, weak, not identifiable",
-            "half width of the interval up to 20 %, up to 100 %, above 100 % of the value; of the "
-            "width of the bounds where zero is arbitrary or the effect may be absent"},
+            "half width of the interval up to 20 %, up to 100 %, above 100 % of the value, or of "
+            "the width of the bounds if zero is arbitrary or the effect may be absent"},
     Formula{"correlation of estimates",
             "C(i,j) / root of C(i,i) C(j,j), C the covariance of the "
             "standard errors"},
     Formula{"singular values",
-            "of J with columns of length 1; a direction whose value is nil is not determined"},
+            "singular values of J with columns scaled to length 1; a direction with the value zero "
+            "is not determined"},
     Formula{
         "profile",
         "(lowest cost with the parameter fixed - cost) over the rise at which the 95 % interval "
@@ -78,32 +78,32 @@ constexpr std::array kFormulas{
             "sum e(t) u(t-lag) / (n std(e) std(u)), u the reference or command; band by the "
             "effective sample size, Bonferroni for the peak"},
     Formula{"periodogram",
-            "power of each line of the Fourier transform, averaged over 30 bins a decade; test of "
-            "the cumulative periodogram (Bartlett)"},
+            "power of each line of the Fourier transform, averaged over 30 bins per decade; test "
+            "of the cumulative periodogram (Bartlett)"},
     Formula{"quantiles",
-            "of (e - mean) / std over those of the normal distribution; test of Jarque and Bera "
-            "with the effective sample size"},
+            "quantiles of (e - mean) / std against those of the normal distribution; test of "
+            "Jarque and Bera with the effective sample size"},
     Formula{"drift",
             "mean and least-squares slope of e, each against its standard error by the effective "
             "sample size"},
     Formula{"share of the servo flow",
-            "mean |Q_leak| / mean |Q_servo| of the model, over whole periods; a leak table looks "
-            "for all coefficients at which it is the target"},
+            "mean |Q_leak| / mean |Q_servo| of the model over whole periods; a leak table finds "
+            "all coefficients that give the target"},
     Formula{"error of a leak coefficient",
-            "computed / published - 1, of the root nearest on a scale of ratios"},
+            "computed / published - 1, for the root with the ratio nearest to 1"},
     Formula{"weighted logarithms",
             "rms of weight ln(computed / published) over the published numbers"},
     Formula{"class of a leak",
-            "by the share's place between the limits; probabilities by the share's interval, given "
-            "that it is not negative (docs/diagnosis.md)"},
+            "from the position of the share between the limits; probabilities from the "
+            "distribution of the share, given that it is not negative (docs/diagnosis.md)"},
     Formula{"smallest leak",
             "detected with the stated false alarms, and found in the stated fraction of cases "
             "(Currie's detection limit)"},
     Formula{"accuracy", "right / all; interval of Wilson"},
     Formula{"difference, p",
-            "two-sided, of (b - a) / root of the sum of the squared errors that the intervals rest "
-            "on, by t with the degrees of freedom of Welch and Satterthwaite; for all parameters "
-            "together by Holm's steps"},
+            "two-sided t test of (b - a) / root of the sum of squared standard errors, with the "
+            "degrees of freedom of Welch and Satterthwaite; Holm's procedure for all parameters "
+            "together"},
     Formula{
         "trend",
         "weighted least squares, tested by the errors of the points; where chi-square about the "

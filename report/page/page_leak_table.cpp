@@ -272,7 +272,7 @@ std::string level_caption(const std::vector<diagnosis::FeatureRow>& features,
   for (const diagnosis::FeatureRow& f : features) {
     if (f.level != level) continue;
     if (!(f.servo_flow_l_per_min > 0.0) || std::isnan(f.leak_flow_l_per_min)) break;
-    return fmt::format("{}: {:.3g} % of the servo flow leak, at the coefficient {:g}", level,
+    return fmt::format("{}: {:.3g} % of the servo flow leaks at the coefficient {:g}", level,
                        100.0 * f.leak_flow_l_per_min / f.servo_flow_l_per_min, f.coefficient);
   }
   return level;
@@ -302,8 +302,8 @@ void add_published(const StoredLeakTable& table, const std::vector<double>& targ
   blocks.emplace_back(std::move(figure));
   doc::Table shares{"Shares at the published coefficients"};
   shares.caption = {
-      "Share in percent at the published coefficient, and what its rounding allows; "
-      "off by ",
+      "Share in percent at the published coefficient, with the range due to its rounding; "
+      "deviation from the target ",
       doc::in_unit(table.summary.share_rms_percent, 1.0, 3), " % rms"};
   shares.columns = {{"Signal"}};
   for (const double target : targets)
@@ -351,7 +351,7 @@ doc::Fold assumptions_fold(const StoredLeakTable& table) {
   doc::Fold fold{"What it rests on", {std::move(values)}};
   if (table.fixed_combinations.empty()) return fold;
   doc::Table combinations{"Fixed combinations"};
-  combinations.caption = {"Combinations that the shares depend on, and not on the values in them"};
+  combinations.caption = {"Combinations of values on which the shares depend"};
   combinations.columns = {{"Combination"}, {"Value", Kind::number}, {"Unit"}};
   for (const diagnosis::FixedCombination& each : table.fixed_combinations)
     combinations.rows.push_back(
@@ -397,7 +397,7 @@ std::vector<doc::Section> leak_table_sections(const LeakTableFiles& stored) {
       table.summary.published > 0
           ? " Below it the published one and how far the computed one is off."
           : "",
-      fit_notes.empty() ? "" : " Small: 95 % interval by the covariance of the fit.")));
+      fit_notes.empty() ? "" : " Small: 95 % interval from the covariance of the fit.")));
   blocks.emplace_back(
       list_of(table.warnings.value_or(std::vector<std::string>()), doc::State::warn));
   for (const std::string& note : fit_notes)

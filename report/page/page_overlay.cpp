@@ -106,8 +106,8 @@ std::vector<doc::Section> comparison_sections(const ComparisonFiles& files) {
   doc::Section curves{
       "curves",
       "Curves",
-      {doc::reading("What was measured, and what the model of each result makes of it, by the "
-                    "numbers of the results; over the last two periods, or the whole record.")}};
+      {doc::reading("Measured signals, and simulations with the model of each result (by number), "
+                    "over the last two periods or the whole record.")}};
   const std::vector<std::string> names = names_of_results(files.result);
   for (const auto& [condition, table] : files.curves) {
     doc::Gallery gallery;

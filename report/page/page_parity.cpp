@@ -111,7 +111,7 @@ Plot alarm_plot(const Summary& summary, const Table& series) {
 std::string sentence_of(const StoredParity& parity, const std::vector<Summary>& list) {
   if (parity.status == LeakStatus::declined) return "These records have no parity residual.";
   if (parity.status == LeakStatus::failed)
-    return "No parity residual could be made: nothing below may be used.";
+    return "No parity residual could be computed: do not use anything below.";
   int judged = 0;
   int alarmed = 0;
   for (const Summary& each : list) {
@@ -235,9 +235,9 @@ std::vector<doc::Section> parity_sections(const ParityFiles& stored) {
     blocks.emplace_back(list_of(parity.reasons, doc::State::warn));
   if (list.empty()) return {std::move(section)};
   blocks.emplace_back(doc::reading(fmt::format(
-      "Position minus that of the healthy model under the same reference, less the mean of that "
-      "over healthy records. An alarm: its moving root mean square exceeds the threshold, which a "
-      "healthy record does with a probability of {:g} %. {}",
+      "Measured position minus that of the healthy model with the same reference, minus the mean "
+      "of this difference over healthy records. Alarm: its moving rms exceeds the threshold, which "
+      "happens in a healthy record with a probability of {:g} %. {}",
       100.0 * parity.false_alarm_probability, check_sentence(parity.false_alarm_check))));
   blocks.emplace_back(alarm_table(list));
   blocks.emplace_back(threshold_table(parity.signals));

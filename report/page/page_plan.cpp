@@ -104,7 +104,7 @@ doc::Section records_section(const StoredPlan& plan) {
                     {"Unit", Kind::unit},
                     {"sd, recorded", Kind::number},
                     {"sd, planned ones too", Kind::number},
-                    {"What would determine it"}};
+                    {"Would determine it"}};
   for (const calib::PlannedParameter& parameter : plan.parameters) {
     const ReadableUnit unit = readable_unit(finite(parameter.value).value_or(0.0), parameter.unit);
     totals.rows.push_back(

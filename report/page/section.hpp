@@ -50,7 +50,7 @@ struct SectionTitle {
   const char* name;
 };
 
-/// Returns the contents of the result file, without the series stored beside it.
+/// Returns the contents of the result file, without the series stored in separate files.
 template <typename Files>
 const auto& result_of(const Files& files) {
   if constexpr (requires { files.result; }) {

@@ -55,16 +55,16 @@ std::string record_text(const datasets::Condition& condition, const datasets::Re
 }  // namespace
 
 Check check(const datasets::Campaign& campaign, const std::function<void(datasets::Record)>& keep) {
-  StoredCheck told;
-  told.campaign = campaign.name;
-  told.synthetic = campaign.synthetic;
+  StoredCheck result;
+  result.campaign = campaign.name;
+  result.synthetic = campaign.synthetic;
   std::vector<std::string> texts;               // one per condition
   std::vector<datasets::RecordLength> lengths;  // lengths of the conditions that have a record
   std::vector<std::size_t> places;              // indices of these conditions in `texts`
   for (const datasets::Condition& condition : campaign.conditions) {
     if (!condition.has_record()) {
       texts.push_back(fmt::format("{}: {}, no record\n", condition.id, to_string(condition.use)));
-      told.without_record.push_back(condition.id);
+      result.without_record.push_back(condition.id);
       continue;
     }
     // Only one record is in memory at a time.
@@ -72,22 +72,22 @@ Check check(const datasets::Campaign& campaign, const std::function<void(dataset
     lengths.push_back({&condition, datasets::seconds_of(record)});
     places.push_back(texts.size());
     texts.push_back(record_text(condition, record));
-    told.records.push_back(stored(condition, record));
+    result.records.push_back(stored(condition, record));
     if (keep) keep(std::move(record));
   }
   const std::vector<std::string> warnings = datasets::short_records(lengths);
   for (std::size_t i = 0; i < warnings.size(); ++i) {
     if (warnings[i].empty()) continue;
     texts[places[i]] += fmt::format("  warning: {}\n", warnings[i]);
-    told.records[i].warnings.push_back(warnings[i]);
+    result.records[i].warnings.push_back(warnings[i]);
   }
   std::string text = fmt::format("{}", fmt::join(texts, ""));
   for (const datasets::SensorDoubt& doubt : datasets::sensor_doubts(campaign)) {
     text += fmt::format("{}: {}\n", doubt.grave ? "warning" : "note", doubt.words);
-    if (doubt.grave) told.warnings.push_back(doubt.words);
+    if (doubt.grave) result.warnings.push_back(doubt.words);
   }
   if (campaign.synthetic) text += "note: the records of this campaign are synthetic\n";
-  return {std::move(text), json_of(told)};
+  return {std::move(text), json_of(result)};
 }
 
 }  // namespace rigcal::report

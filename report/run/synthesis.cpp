@@ -31,7 +31,7 @@ datasets::SynthesisReport write_synthesis(HeldFolder& held, const datasets::Camp
   const PlannedFiles planned{datasets::synthetic_file_names(campaign), {"records"}};
   const std::vector<InputFile> inputs = inputs_of(campaign);
   require_inputs_kept(held.path(), planned.files, inputs);
-  // Versions without a manifest left nothing that would show whether a campaign file was edited.
+  // Results of versions without a manifest do not show whether a campaign file was edited.
   if (campaign.synthetic_settings) {
     const std::string text = datasets::synthetic_campaign_text(campaign, seed);
     held.require_replaceable({{"campaign.toml", "", sha256_of_text(text)}});

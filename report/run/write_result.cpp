@@ -48,7 +48,7 @@ std::string terms_in_comments(const Result& result) {
                         each.line);
   }
   if (text.empty()) return {};
-  return "# The residuals ask for a term that this model lacks. The next campaign may estimate "
+  return "# The residuals indicate a term that this model lacks. The next campaign may estimate "
          "it:\n" +
          text;
 }
@@ -105,7 +105,7 @@ std::vector<InputFile> add_residuals(const Result& result, int threads,
   return files;
 }
 
-/// Returns a reader that makes the table of a residual file when it is asked for.
+/// Returns a reader that makes the table of a residual file on demand.
 ReadFile tables_of(const Result& result) {
   return [&result](const fs::path& path) -> std::shared_ptr<const ResultFile> {
     for (const calib::ConditionScore& score : result.fit.conditions)

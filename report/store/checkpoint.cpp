@@ -99,7 +99,7 @@ void require_own_hash(Json json) {
   json.erase("sha256");
   if (sha256_of_text(json_text(json)) != hash)
     throw NoCheckpoint(
-        "was changed since it was written; expected it as it was, or a fit without --resume");
+        "was changed since it was written; expected it unchanged, or a fit without --resume");
 }
 
 }  // namespace
@@ -141,7 +141,7 @@ calib::Checkpoint read_checkpoint(const std::filesystem::path& file, const Prove
     // Starts are kept in the order in which they ran.
     for (std::size_t i = 0; i < checkpoint.starts.size(); ++i) {
       if (checkpoint.starts[i].number != static_cast<int>(i) + 1)
-        throw NoCheckpoint("key 'starts': expected them numbered from 1");
+        throw NoCheckpoint("key 'starts': expected numbers from 1");
     }
     checkpoint.best = whole(json, "best", 0, static_cast<int>(checkpoint.starts.size()));
     checkpoint.best_z = json.at("best_z").get<std::vector<double>>();
@@ -151,10 +151,11 @@ calib::Checkpoint read_checkpoint(const std::filesystem::path& file, const Prove
   } catch (const NoCheckpoint& error) {
     throw InputError({file.string()}, error.what());
   } catch (const Json::exception& error) {
-    throw InputError({file.string()},
-                     fmt::format("is no checkpoint of rigcal fit: {}; expected one, or a fit "
-                                 "without --resume",
-                                 error.what()));
+    throw InputError(
+        {file.string()},
+        fmt::format(
+            "is not a checkpoint of rigcal fit: {}; expected one, or a fit without --resume",
+            error.what()));
   }
 }
 

@@ -135,7 +135,7 @@ HeldFolder::HeldFolder(const fs::path& out, Holding holding)
       listed_ = manifest_files(out_);
     } catch (const InputError& error) {
       if (!holding_.force)
-        throw UsageError(fmt::format("{}; {} makes a new one", error.what(), holding_.forced_by));
+        throw UsageError(fmt::format("{}; {} creates a new one", error.what(), holding_.forced_by));
     }
   } catch (...) {
     if (descriptor_ >= 0) ::close(descriptor_);
@@ -156,10 +156,9 @@ void HeldFolder::lock() {
                     out_.string()));
   }
   if (holding_.warn)
-    holding_.warn(
-        fmt::format("{}: cannot be locked ({}): see to it that no other run writes "
-                    "into it at the same time",
-                    out_.string(), std::generic_category().message(reason)));
+    holding_.warn(fmt::format(
+        "{}: cannot be locked ({}): make sure that no other run writes into it at the same time",
+        out_.string(), std::generic_category().message(reason)));
 }
 
 void HeldFolder::plan(PlannedFiles planned) {
@@ -223,7 +222,7 @@ void HeldFolder::require_replaceable(const std::vector<ResultFile>& files) {
                          listed(changed), changed.size() == 1 ? "it" : "them");
   }
   throw UsageError(
-      fmt::format("{}: found what {} would replace: {}; expected another folder, or {}",
+      fmt::format("{}: contains files that {} would replace: {}; expected another folder, or {}",
                   out_.string(), holding_.verb, found, holding_.forced_by));
 }
 
@@ -327,7 +326,7 @@ void remove_stale(const fs::path& file) {
   std::error_code error;
   fs::remove(file, error);
   if (error) {
-    throw WriteError(fmt::format("{}: of an earlier run, cannot be removed: {}", file.string(),
+    throw WriteError(fmt::format("{}: file of an earlier run cannot be removed: {}", file.string(),
                                  error.message()));
   }
 }

@@ -153,7 +153,7 @@ std::vector<ManifestFile> manifest_files(const fs::path& folder) {
   std::error_code unknown;
   if (!fs::exists(fs::symlink_status(file, unknown))) return rigcal_files(folder);
   if (!is_plain_file(file))
-    throw InputError({file.string()}, "is no regular file; expected a manifest of rigcal");
+    throw InputError({file.string()}, "is not a regular file; expected a manifest of rigcal");
   const Json json = read_json(file, "a manifest of rigcal");
   const JsonNode root(json, file.string(), "", kManifestFile);
   if (root["schema"].string() != kManifestSchema)

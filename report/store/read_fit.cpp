@@ -73,10 +73,9 @@ void require_correlations(const NamedFit& fit) {
   if (matrix.rows() != size || matrix.cols() != size)
     fit.refuse("correlation.matrix", matrix, "one row and one column per name");
   if (calib::are_correlations(matrix)) return;
-  fit.refuse(
-      "correlation.matrix", matrix,
-      "correlations: numbers from -1 to 1, the same on both sides of a diagonal of ones, by which "
-      "no combination of the parameters has a negative variance");
+  fit.refuse("correlation.matrix", matrix,
+             "correlations: numbers from -1 to 1, the same on both sides of a diagonal of ones, "
+             "without a negative variance for any combination of the parameters");
 }
 
 Estimates estimates_of(const NamedFit& fit, model::PlantKind plant) {
@@ -218,9 +217,11 @@ EarlierFit earlier_fit(const StoredFit& stored, const std::string& name, model::
   const NamedFit named{stored, name};
   require_fit(named);
   if (stored.status == calib::FitStatus::failed) {
-    throw InputError({name}, fmt::format("this fit failed ({}), its values mean nothing; expected "
-                                         "one that converged",
-                                         stored.message));
+    throw InputError(
+        {name},
+        fmt::format(
+            "this fit failed ({}), so its values are meaningless; expected one that converged",
+            stored.message));
   }
   EarlierFit result;
   result.status = stored.status;

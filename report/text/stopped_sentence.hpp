@@ -7,7 +7,7 @@
 namespace rigcal::report {
 
 inline constexpr const char* kNoUsableResult =
-    "There is no usable result: no number below may be used.";
+    "There is no usable result: do not use any number below.";
 
 /// Explains how far a stopped result can be used, which depends on the stage at which it stopped.
 inline std::string stopped_sentence(calib::StoppedIn stage) {

@@ -247,7 +247,7 @@ TEST_CASE("batch: what it refuses", "[apps]") {
   std::filesystem::create_directories(folder.work() / "out");
   outcome = folder.run({"batch", "lab_a", "--out", "out", "--earlier", "out"});
   CHECK(outcome.exit_code == 2);
-  CHECK_THAT(outcome.err, Contains("--earlier out is where the results go"));
+  CHECK_THAT(outcome.err, Contains("--earlier out is the folder of the new results"));
   outcome = folder.run({"batch", "lab_a", "--out", "out", "--jobs", "0"});
   CHECK(outcome.exit_code == 2);
 }

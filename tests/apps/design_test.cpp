@@ -190,7 +190,10 @@ TEST_CASE("plan --design: what is wrong is named with its place", "[apps]") {
        {{"like = \"sine\"", "noise = { force = \"1 N\" }"}},
        "damping",
        "key 'design.noise.force'"},
-      {"stroke away from the rig", {{"-6 mm", "1 mm"}}, "damping", "no drive can keep this limit"},
+      {"stroke away from the rig",
+       {{"-6 mm", "1 mm"}},
+       "damping",
+       "no drive can stay within this limit"},
   };
   for (const Case& each : cases) {
     CAPTURE(each.name);

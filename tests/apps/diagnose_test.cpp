@@ -107,7 +107,7 @@ TEST_CASE("diagnose: from synthetic records to classes", "[apps]") {
                     [](const json& file) { return file["path"] == "diagnosis_live.json"; }));
   const std::string page = folder.read("diagnosis/report.html");
   CHECK_THAT(page, Contains("<title>LEAK") && Contains("id=\"diagnosis\"") &&
-                       Contains("Against the known classes"));
+                       Contains("Comparison with the known classes"));
   REQUIRE(folder.run({"report", "diagnosis"}).exit_code == 0);
   CHECK(folder.read("diagnosis/report.html") == page);
 }
@@ -228,7 +228,7 @@ TEST_CASE("diagnose: --healthy names the level that the campaign does not know",
   const Outcome unknown = diagnosed({});
   REQUIRE(unknown.exit_code == 0);
   // Both conditions lack a class. One line reports this, with the remedy.
-  CHECK(count_of(unknown.out, "what the model lacks is not in the interval") == 1);
+  CHECK(count_of(unknown.out, "the interval does not include model error") == 1);
   CHECK_THAT(unknown.out, Contains("no healthy record of this signal") &&
                               Contains("--healthy LEVEL") && Contains("level_class"));
   const json without = json::parse(folder.read("out/diagnosis.json"));

@@ -709,12 +709,11 @@ TEST_CASE("export: bad input", "[apps]") {
       {"export", "fmu", "campaign.toml", "--set", "transport_delay=4 ms", "--out", "out"});
   CHECK(delay.exit_code == 2);
   CHECK_THAT(delay.err,
-             Contains("transport_delay is 0.004 s, but the inputs of an FMU act at once"));
+             Contains("transport_delay is 0.004 s, but the inputs of an FMU act without delay"));
   const Outcome without = folder.run({"export", "fmu", "campaign.toml", "--set",
                                       "transport_delay=4 ms", "--without-delay", "--out", "late"});
   CHECK(without.exit_code == 0);
-  CHECK_THAT(without.out, Contains("transport_delay is left out: the reference has to be delayed "
-                                   "by 0.004 s"));
+  CHECK_THAT(without.out, Contains("transport_delay is left out: delay the reference by 0.004 s"));
   folder.write("shaken.toml",
                edited(kCampaign, {{"[recording.channels]",
                                    "[recording.channels]\nbase_acceleration = { column = "
@@ -750,7 +749,7 @@ TEST_CASE("export: bad input", "[apps]") {
   CAPTURE(nuisance.err);
   CHECK(nuisance.exit_code == 0);
   CHECK_THAT(nuisance.out, Contains("not calibrated: valve_gain") && !Contains("damping, ") &&
-                               Contains("damping belong to each record"));
+                               Contains("damping differ from record to record"));
 }
 
 }  // namespace rigcal::test

@@ -76,7 +76,7 @@ TEST_CASE("fit: by the guard band a limit is kept by more than the score's uncer
   const Outcome one =
       folder.run({"validate", "twin/one.toml", "--fit", "plain/fit.json", "--out", "one"});
   CHECK(one.exit_code == 0);
-  CHECK_THAT(one.out, Catch::Contains("its uncertainty is not known"));
+  CHECK_THAT(one.out, Catch::Contains("its uncertainty is unknown"));
   CHECK(result_of(folder, "one/validation.json")["verdict"] == "WARN");
 }
 
@@ -110,7 +110,7 @@ TEST_CASE("fit: what a certificate states of a sensor counts, or is told", "[app
 
   const Outcome other = judged("uncertainty = \"class 0.1\"\n");
   CHECK(other.exit_code == 1);
-  CHECK_THAT(other.out, Catch::Contains("\"class 0.1\", does not count"));
+  CHECK_THAT(other.out, Catch::Contains("\"class 0.1\", is not used"));
   CHECK_THAT(folder.run({"check", "twin/judged.toml"}).out,
              Catch::Contains("warning: the uncertainty of the sensor of position"));
 

@@ -172,7 +172,7 @@ TEST_CASE("init: what it refuses", "[apps]") {
   folder.write("tdms/run.tdms", std::string("TDSm\x0e\0\0\0", 8));
   const Outcome tdms = folder.run({"init", "tdms"});
   CHECK(tdms.exit_code == 2);
-  CHECK_THAT(tdms.err, Contains("run.tdms: is TDMS, of LabVIEW, which rigcal does not read") &&
+  CHECK_THAT(tdms.err, Contains("run.tdms: is TDMS, of LabVIEW, which rigcal cannot read") &&
                            Contains("expected CSV"));
   CHECK_FALSE(folder.has("rigcal-out/campaign.toml"));
 

@@ -148,7 +148,7 @@ TEST_CASE("leak-table: of a fitted rig, whatever the campaign assumes", "[apps]"
                                  [](const json& a) { return a["key"] == "valve_gain"; });
   CHECK((*used)["value"] == (*gain)["value"]);
   CHECK_THAT((*used)["source"].get<std::string>(), Contains("in place of 5e-05 m/V (a guess)"));
-  CHECK_THAT(text, Contains("The table takes valve_gain, damping from the fit") && Contains("±"));
+  CHECK_THAT(text, Contains("The table uses valve_gain, damping from the fit") && Contains("±"));
   for (const json& entry : fitted["entries"]) {
     const double c = entry["coefficients"].at(0).get<double>();
     const json& range = entry["coefficients_ci95"].at(0);
@@ -173,7 +173,7 @@ TEST_CASE("leak-table: of a fitted rig, whatever the campaign assumes", "[apps]"
   const auto [changed, other] =
       table("made/campaign.toml", {"--fit", "fit/fit.json", "--set", "valve_gain=0.05 mm/V",
                                    "--set", "damping=1000 N s/m", "--set", "mass=70 kg"});
-  CHECK_THAT(changed, Contains("valve_gain: the value of the fit is not taken (--set)") &&
+  CHECK_THAT(changed, Contains("valve_gain: the value of the fit is not used (--set)") &&
                           Contains("mass is 70 kg here (assumption: --set), but the fit was made"));
   CHECK(other["entries"][0]["coefficients_ci95"][0].is_null());
 }

@@ -45,7 +45,7 @@ TEST_CASE("--root: what a campaign names outside of it is not read", "[apps]") {
   }
   CHECK_THAT(check("records/sine_*.csv", "lab/rig/records").err,
              Contains("campaign.toml: leads out"));
-  CHECK_THAT(check("records/sine_*.csv", "none").err, Contains("none: is no folder"));
+  CHECK_THAT(check("records/sine_*.csv", "none").err, Contains("none: is not a folder"));
 }
 
 TEST_CASE("--root: links are followed before it is decided", "[apps]") {

@@ -127,9 +127,8 @@ TEST_CASE("recordings: a sensor that stands still for a while", "[apps]") {
   const int position = column_of(twin, "x_mm");
   twin.change("sine", position,
               [](std::size_t i, double x) { return i > 100 && i < 150 ? 1.25 : x; });
-  CHECK_THAT(
-      twin.run("check").out,
-      Contains("position: does not change while the drive moves on") && Contains("0.00125 m"));
+  CHECK_THAT(twin.run("check").out,
+             Contains("position: does not change while the drive does") && Contains("0.00125 m"));
 }
 
 TEST_CASE("recordings: all repeats of a condition end half way", "[apps]") {

@@ -155,8 +155,9 @@ TEST_CASE("wrong sensor: a clipped one is named, even under limits that it keeps
   CHECK(result.verdict() == "WARN");
   CHECK(result.names("agreement", "recording_doubtful"));
   CHECK(result.names("adequacy", "lack_of_fit"));
-  CHECK_THAT(result.run.out,
-             Contains("stays at exactly its highest value, as a clipped sensor or amplifier does"));
+  CHECK_THAT(
+      result.run.out,
+      Contains("stays at exactly its highest value, as if the sensor or amplifier were saturated"));
 }
 
 TEST_CASE("wrong sensor: a limit that cannot be evaluated fails", "[apps]") {

@@ -24,7 +24,7 @@ TEST_CASE("cross-validation: what is predicted worse than fitted, and what moves
   const auto words = cross_validation_words({held, even});
   REQUIRE(words.size() == 2);
   CHECK_THAT(words[0], Contains("\"sine\"") && Contains("predicted 2 times worse"));
-  CHECK_THAT(words[1], Contains("\"sine\"") && Contains("mass_kg moves by -4 of its errors"));
+  CHECK_THAT(words[1], Contains("\"sine\"") && Contains("mass_kg changes by -4 standard errors"));
   CHECK_THAT(cross_validation_summary({even, held}),
              Contains("2 of 2 conditions") &&
                  Contains("at most 2 times that of the fit (position of \"sine\")"));

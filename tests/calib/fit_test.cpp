@@ -216,7 +216,8 @@ TEST_CASE("fit: where the only start finds no minimum others are tried", "[calib
   options.further_starts = 2;
   const Fit found = fit(twin.campaign, records, options);
   CHECK(found.status == FitStatus::failed);
-  CHECK(mentions(found.warnings, "led to no minimum (" + alone.message + "): 2 further starts"));
+  CHECK(mentions(found.warnings,
+                 "did not reach a minimum (" + alone.message + "): 2 further starts"));
   CHECK(found.evaluations > alone.evaluations);
   // Compares with the corresponding multi-start.
   options.starts = 3;

@@ -52,7 +52,7 @@ TEST_CASE("confined: a process that cannot be made is no fault of the work", "[c
     std::rethrow_exception(thrown);
   } catch (const NoResources& error) {
     CHECK(error.code() == rigcal::ExitCode::internal);
-    CHECK_THAT(error.what(), Contains("no process can be made") && Contains("try again"));
+    CHECK_THAT(error.what(), Contains("cannot start a process") && Contains("try again"));
   }
 }
 

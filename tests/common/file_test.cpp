@@ -190,7 +190,7 @@ TEST_CASE("read_file: never waits for a pipe, never reads a device", "[common]")
   REQUIRE(::mkfifo((folder / "pipe").c_str(), 0600) == 0);
   for (const fs::path& path : {folder / "pipe", fs::path("/dev/zero")}) {
     CHECK_THROWS_WITH(read_file(path, 100, "a test"),
-                      Contains("is no regular file; expected a test"));
+                      Contains("is not a regular file; expected a test"));
     CHECK_THROWS_AS(require_regular_file(path, "a test"), InputError);
     CHECK_THROWS_AS(sha256_of_file(path), InputError);
   }

@@ -40,7 +40,7 @@ TEST_CASE("campaign: a size in [considered] that makes no sense is named with it
   CHECK_THAT(complaint("considered", "supply_sag = 2"), Contains("at most"));
   CHECK_THAT(complaint("considered", "coulomb_friction = true"), Contains("false"));
   CHECK_THAT(complaint("considered", "position_offset = \"1 mm\""),
-             Contains("in the model already"));
+             Contains("already in the model"));
 }
 
 TEST_CASE("campaign: [between_days] states by how much days differ", "[datasets]") {

@@ -298,7 +298,7 @@ def shipped_rigs(rigcal, sources, folder):
         recordings = next((path for path in (sources.parent / "shared/data").glob("*") if path.name.startswith(file.parent.name.split("_")[0])), None)
         campaign = exact(file, copy, recordings)
         made = subprocess.run([rigcal, "explore", "campaign.toml", "--out", "page", "--quiet"], cwd=copy, capture_output=True, text=True, check=False)
-        if made.returncode == 2 and ("no file fits" in made.stderr or "of the rig is unknown" in made.stderr):
+        if made.returncode == 2 and ("no file matches" in made.stderr or "of the rig is unknown" in made.stderr):
             print(f"{rig}: skipped: {made.stderr.strip()[-120:]}")
             continue
         check(made.returncode == 0, f"{rig}: {made.stderr}")

@@ -322,7 +322,7 @@ def check_many(binary, work):
         page.open(path)
         check_sections(page)
         check(page.run("[document.querySelectorAll('article.condition').length, document.querySelectorAll('.sketch').length]") == [20, 71],
-              "twenty in full, the others in a line each")
+              "twenty are shown in full, the others in one line each")
         # The last condition is in the second compressed stream.
         last = page.run("[...document.querySelectorAll('.sketch')].pop().id")
         page.run(f"location.hash = '#{last}'")

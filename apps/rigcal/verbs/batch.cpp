@@ -79,7 +79,7 @@ Run add_batch(CLI::App& verb) {
   const auto options = std::make_shared<BatchOptions>();
   JobOptions& common = options->common;
   common.threads = hardware_threads();
-  verb.add_option("FOLDER", options->folder, "Every campaign.toml beneath it is a rig")
+  verb.add_option("FOLDER", options->folder, "Every campaign.toml in this folder tree is a rig")
       ->required()
       ->check(CLI::ExistingDirectory);
   verb.add_option("--out", common.out, "Folder of the results: one folder for each rig")
@@ -90,19 +90,20 @@ Run add_batch(CLI::App& verb) {
       ->check(not_empty());
   add_force_option(verb, common.force);
   verb.add_option("--earlier", options->earlier,
-                  "--out of an earlier batch, for the trends; repeatable")
+                  "results folder (--out) of an earlier batch, for trends; repeatable")
       ->allow_extra_args(false)
       ->check(CLI::ExistingDirectory);
-  verb.add_option("--jobs", options->jobs, "Rigs at a time")
+  verb.add_option("--jobs", options->jobs, "Number of rigs at a time")
       ->check(CLI::Range(1, kMostJobs))
       ->capture_default_str();
   verb.add_option("--threads", common.threads,
                   "Threads of all rigs together; results do not depend on it")
       ->check(CLI::Range(1, kMostJobs))
       ->default_str("all");
-  verb.add_flag("--resume", options->resume,
-                "Keep whole results of the same inputs and options; go on where a fit was stopped");
-  verb.add_flag("--diagnose", options->diagnose, "Diagnose the records of each rig by its fit");
+  verb.add_flag(
+      "--resume", options->resume,
+      "Keep complete results of the same inputs and options; continue fits that were stopped");
+  verb.add_flag("--diagnose", options->diagnose, "Diagnose the records of each rig with its fit");
   add_fit_choices(verb, options->choices);
   add_print_options(verb, common.print);
   return [options](const Invocation& invocation) { return run_batch(*options, invocation); };

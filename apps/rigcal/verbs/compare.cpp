@@ -16,7 +16,7 @@ struct CompareOptions : JobOptions {
 Run add_compare(CLI::App& verb) {
   const auto options = std::make_shared<CompareOptions>();
   verb.add_option("DIR", options->folders,
-                  "Folders of fits or validations; the first is what the others are compared with")
+                  "Folders of fits or validations; the others are compared with the first")
       ->required()
       ->check(CLI::ExistingDirectory);
   verb.add_option("--out", options->out, "Folder of the results")

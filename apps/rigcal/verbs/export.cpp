@@ -56,7 +56,7 @@ Run add_export(CLI::App& verb) {
   verb.add_option("--level", options->level,
                   "Leak level whose values are exported (default: the only one)");
   verb.add_flag("--without-delay", options->without_delay,
-                "Leave transport_delay out, which an FMU cannot have");
+                "Leave out transport_delay, which an FMU cannot contain");
   return [options](const Invocation&) { return run_export(*options); };
 }
 

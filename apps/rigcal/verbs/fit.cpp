@@ -22,9 +22,9 @@ Run add_fit(CLI::App& verb) {
   add_campaign_options(verb, options->common);
   add_fit_choices(verb, options->choices);
   verb.add_flag("--resume", options->resume,
-                "Go on where a fit of the same inputs and options was stopped or killed");
+                "Continue a fit of the same inputs and options that was stopped or killed");
   verb.add_flag("--if-changed", options->if_changed,
-                "Do nothing where --out has the whole result of the same inputs and options");
+                "Do nothing if --out has the complete result of the same inputs and options");
   return [options](const Invocation& invocation) {
     const FitChoices& choices = options->choices;
     const report::FitRequest request{choices, choices.strict, options->resume, options->if_changed};

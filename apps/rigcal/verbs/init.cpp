@@ -75,7 +75,7 @@ ExitCode run_init(const InitRequest& options) {
   for (const std::string& file : draft.left_out)
     text += fmt::format("warning: left out: {}\n", file);
   for (const report::MissingTerm& each : terms)
-    text += fmt::format("the earlier fit asks for: {}\n", each.line);
+    text += fmt::format("the residuals of the earlier fit indicate: {}\n", each.line);
   print(options.print,
         text + fmt::format("files: {}\n{} blanks marked \"{}\"; then: rigcal check {}\n",
                            path.string(), blanks, datasets::kBlank, path.string()),
@@ -93,9 +93,9 @@ Run add_init(CLI::App& verb) {
   verb.add_option("--out", options->out, "Folder of the draft")
       ->check(not_empty())
       ->capture_default_str();
-  verb.add_option(
-      "--fit", options->fit,
-      "fit.json of an earlier fit: the draft estimates the terms that its residuals ask for");
+  verb.add_option("--fit", options->fit,
+                  "fit.json of an earlier fit: the draft estimates the missing terms that its "
+                  "residuals indicate");
   add_force_option(verb, options->force);
   add_print_options(verb, options->print);
   return [options](const Invocation&) { return run_init(*options); };

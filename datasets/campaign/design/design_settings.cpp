@@ -31,7 +31,8 @@ std::pair<TomlNode, TomlNode> two_of(const TomlNode& node, const char* expected)
 }
 
 void read_stroke(const TomlNode& node, DesignSettings& settings) {
-  const auto [low, high] = two_of(node, "where the piston may be, such as [\"-50 mm\", \"50 mm\"]");
+  const auto [low, high] =
+      two_of(node, "permitted positions of the piston, such as [\"-50 mm\", \"50 mm\"]");
   settings.lowest_m = {low.quantity("m", kPositions_m), low.where()};
   settings.highest_m = {high.quantity("m", kPositions_m), high.where()};
   if (!(settings.highest_m.value > settings.lowest_m.value))
@@ -76,7 +77,7 @@ void read_noise(const TomlNode& table, const Campaign& campaign, DesignSettings&
     const Channel channel = read_channel_key(table, key);
     const auto outputs = output_channels(campaign);
     if (std::find(outputs.begin(), outputs.end(), channel) == outputs.end())
-      node.fail("is no output channel: expected one of those in [recording.channels]");
+      node.fail("is not an output channel: expected one of those in [recording.channels]");
     settings.noise_sd[channel] = node.difference(info(channel).unit, kStandardDeviations);
   }
 }
@@ -95,14 +96,14 @@ const KeyTable<DesignSettings>& design_keys() {
   KeyForm band = list_form(quantity_form("Hz"), "two frequencies", 2, 2);
   static const KeyTable<DesignSettings> keys({
       Row::custom("stroke", stroke, read_stroke,
-                  {.doc = "Where the piston may be: `[\"-50 mm\", \"50 mm\"]`; it contains the "
-                          "place of rest. A position reference stays within it, too",
+                  {.doc = "Permitted positions of the piston: `[\"-50 mm\", \"50 mm\"]`, including "
+                          "the rest position. They also limit a position reference",
                    .example = "[\"-50 mm\", \"50 mm\"]",
-                   .needed = "where the piston may be, such as [\"-50 mm\", \"50 mm\"]"}),
+                   .needed = "permitted positions of the piston, such as [\"-50 mm\", \"50 mm\"]"}),
       Row::quantity("duration", &DesignSettings::duration_s, "s", kDurations_s,
-                    {.doc = "Length of the test; `duration` and rate give 100 to 500 000 samples",
+                    {.doc = "Duration of the test; 100 to 500 000 samples",
                      .example = "\"20 s\"",
-                     .needed = "how long the test is, such as \"20 s\""}),
+                     .needed = "duration of the test, such as \"20 s\""}),
       Row::quantity("sample_rate", &DesignSettings::sample_rate_hz, "Hz", kSampleRates_hz,
                     {.doc = "Of the drive",
                      .example = "\"1 kHz\"",
@@ -120,35 +121,33 @@ const KeyTable<DesignSettings>& design_keys() {
       Row::described(
           "amplitude",
           quantity_form(std::vector<std::string>{"m", "V", "Pa", "N", "m/s2", "rad", "N m"}),
-          {.doc = "Largest distance of the drive from where it begins, in the unit of "
-                  "its channel; needed where the loop controls something other than "
-                  "position",
+          {.doc = "Largest distance of the drive from its initial value, in the unit of its "
+                  "channel; needed if the loop controls something other than position",
            .otherwise = "end of the stroke, or `command` without a controller",
            .example = "\"5 mm\""}),
       Row::custom("band", band, read_band,
-                  {.doc = "What the drive contains: `[\"0.2 Hz\", \"50 Hz\"]`",
+                  {.doc = "Frequency range of the drive: `[\"0.2 Hz\", \"50 Hz\"]`",
                    .otherwise = "two periods in the test to ten samples per period",
                    .example = "[\"0.2 Hz\", \"50 Hz\"]"}),
-      Row::word<DesignCriterion>(
-          "criterion", &DesignSettings::criterion,
-          {.doc = "What is made small: the volume of the confidence ellipsoid (D-optimal), or the "
-                  "widest relative interval"}),
+      Row::word<DesignCriterion>("criterion", &DesignSettings::criterion,
+                                 {.doc = "What is minimised: the volume of the confidence "
+                                         "ellipsoid (D-optimal), or the widest relative interval"}),
       Row::word<DriveFamily>("family", &DesignSettings::family,
                              {.doc = "Kind of the drive", .otherwise = "the best of all"}),
       Row::whole("repeats", &DesignSettings::repeats, 1, kMostDesignRepeats,
                  {.doc = "Planned ones"}),
       Row::described("noise", channels_form("table of channels"),
-                     {.doc = "Standard deviation of a sample of one repeat",
+                     {.doc = "Standard deviation of the noise in a sample of one repeat",
                       .otherwise = "the channel's `sd`, that of `[synthetic]`, or that of the "
                                    "records",
                       .example = "{ position = \"0.05 mm\" }"}),
       Row::described("like", plain_form(KeyForm::Kind::text),
-                     {.doc = "Id of a condition whose leak level, known values and machine the "
-                             "test has; needed where a fitted parameter has scope `leak_level`",
+                     {.doc = "Id of a condition with the leak level, known values and machine of "
+                             "the test; needed if a fitted parameter has scope `leak_level`",
                       .otherwise = "the values of the rig",
                       .example = "\"sine\""}),
       Row::whole("evaluations", &DesignSettings::evaluations, 1, kMostTrials,
-                 {.doc = "Drives that are tried in each family"}),
+                 {.doc = "Number of drives tried in each family"}),
       Row::whole("seed", &DesignSettings::seed, 0, std::numeric_limits<int>::max(),
                  {.doc = "Of the search"}),
   });

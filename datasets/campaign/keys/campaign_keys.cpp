@@ -71,7 +71,7 @@ class SchemaWriter {
 
  private:
   /// Returns the schema of a key, with the description, default and example that an editor shows.
-  /// Editors ignore members beside a `$ref`.
+  /// Editors ignore other members next to a `$ref`.
   OrderedJson entry(const CampaignKey& row) {
     OrderedJson schema = OrderedJson::object();
     std::string about = row.doc;
@@ -275,8 +275,8 @@ std::string campaign_schema() {
   OrderedJson schema{{"$schema", "https://json-schema.org/draft/2020-12/schema"},
                      {"title", "Campaign file of rigcal"},
                      {"description",
-                      "For editors. What this refuses rigcal refuses, too; `rigcal check` checks "
-                      "ranges, all units, and keys that depend on one another"}};
+                      "For editors. rigcal rejects whatever this schema rejects; `rigcal check` "
+                      "also checks ranges, all units, and keys that depend on one another"}};
   const OrderedJson root = writer.table(campaign_keys());
   SharedTables shared(root);
   schema.update(shared.without_copies(root));

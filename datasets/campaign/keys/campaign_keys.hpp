@@ -8,7 +8,7 @@
 
 namespace rigcal::datasets {
 
-/// Name of the schema file that `init` writes beside a drafted campaign.
+/// Name of the schema file that `init` writes next to a drafted campaign.
 inline constexpr const char* kSchemaFile = "campaign.schema.json";
 
 /// Returns the keys of a campaign file, starting at its root table. The reader uses the same rows.

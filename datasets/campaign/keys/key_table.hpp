@@ -41,7 +41,7 @@ struct KeyAbout {
   std::string otherwise{};
   std::string example{};
   std::string hint{};
-  std::string needed{};  ///< what the message about a missing key expects; empty: the key is
+  std::string needed{};  ///< expectation in the message about a missing key; empty: the key is
                          ///< optional
 };
 

@@ -66,7 +66,7 @@ class TomlNode {
   double quantity(std::string_view unit) const;
   /// Reads a quantity within a range.
   double quantity(std::string_view unit, QuantityRange range) const;
-  /// Reads a difference of two quantities: "2 degC" is 2 K.
+  /// Reads a difference between two quantities: "2 degC" is 2 K.
   double difference(std::string_view unit) const;
   /// Reads a difference within a range, such as a standard deviation or a step.
   double difference(std::string_view unit, QuantityRange range) const;

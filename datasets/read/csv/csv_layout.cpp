@@ -102,7 +102,7 @@ std::vector<CsvName> names_in(std::string_view line, char separator, std::size_t
   const bool numbers = std::any_of(names.begin(), names.end(), [separator](const CsvName& name) {
     return is_number(name.full, separator);
   });
-  // "Column 3: displacement" between blanks are no three names.
+  // "Column 3: displacement" between blanks are not three names.
   const bool sentence =
       separator == ' ' && std::any_of(names.begin(), names.end(),
                                       [](const CsvName& name) { return name.full.ends_with(':'); });
@@ -118,7 +118,7 @@ bool is_label_of_units(std::string_view text) {
   return std::find(kLabels.begin(), kLabels.end(), label) != kLabels.end();
 }
 
-/// Whether a row consists of units. Its first field may say so.
+/// Whether a row consists of units. Its first field may be a label such as "units".
 bool are_units(const std::vector<CsvName>& names) {
   const bool labelled = names.size() > 1 && is_label_of_units(names.front().full);
   return std::all_of(names.begin() + (labelled ? 1 : 0), names.end(),

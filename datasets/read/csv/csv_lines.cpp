@@ -116,7 +116,7 @@ char* CsvLines::next() {
     return implementation_->reader.next_line();
   } catch (const io::error::line_length_limit_exceeded&) {
     throw InputError({implementation_->file, number(), 0},
-                     "the line has 16 MiB or more; expected one row of numbers a line");
+                     "the line has 16 MiB or more; expected one row of numbers per line");
   }
 }
 

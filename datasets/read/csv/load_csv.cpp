@@ -174,9 +174,9 @@ std::optional<Header> unnamed_header(HeadedLines& lines, const std::string& file
 Header read_header(HeadedLines& lines, const std::string& file, char separator) {
   if (separator != 0 && separator != ',' && separator != ';' && separator != '\t' &&
       separator != ' ')
-    throw InputError({file}, fmt::format("'{}' is no separator of columns; expected ',', ';', tab "
-                                         "or a blank",
-                                         separator));
+    throw InputError(
+        {file},
+        fmt::format("'{}' cannot separate columns; expected ',', ';', tab or a blank", separator));
   if (auto header = unusual_header(lines, file, separator)) return *header;
   if (lacks_names(lines.look_ahead(10), separator))
     if (auto header = unnamed_header(lines, file, separator)) return *header;
@@ -241,8 +241,7 @@ std::size_t find_column(const Header& header, const std::string& wanted) {
   std::string message = unknown_name_message("column", wanted, short_names(header.names));
   if (header.names.size() == 1)
     message += fmt::format(
-        "; the separator was taken for {}, expected one of ',', ';' or tab "
-        "between the columns",
+        "; {} was assumed to be the separator, expected one of ',', ';' or tab between the columns",
         separator_name(header.separator));
   throw InputError(where, message);
 }
@@ -298,8 +297,8 @@ class RowReader {
   void judge_end() {
     if (last_line_ == 0 || !(last_length_ < shortest_length_) || rows_ < 2) return;
     table_.warning = fmt::format(
-        "{}:{}: the file ends without a newline in the shortest number of column '{}', of {} "
-        "character{}, where all others have {} or more: it may have been cut",
+        "{}:{}: the file ends without a newline, and its last number, in column '{}', has {} "
+        "character{} where all others have {} or more: it may have been cut off",
         header_.file, last_line_, shown(header_.names.back().full), last_length_,
         last_length_ == 1 ? "" : "s", shortest_length_);
   }
@@ -444,12 +443,11 @@ class RowReader {
                                    std::size_t index) const {
     const std::string& name = header_.names[index].full;
     if (line_number == first_line_ && is_text_only(line))
-      throw error(
-          line, line_number, field.begin,
-          fmt::format("no numbers in the first row ('{}' in column '{}'), as in a second header "
-                      "line; expected numbers. Units follow the names (\"x [mm]\") or "
-                      "in the campaign file: remove such a line",
-                      shown(field.text), shown(name)));
+      throw error(line, line_number, field.begin,
+                  fmt::format("the first row has no numbers ('{}' in column '{}') and looks like a "
+                              "second header line; expected numbers. Remove such a line; units "
+                              "follow the names (\"x [mm]\") or are in the campaign file",
+                              shown(field.text), shown(name)));
     if (field.text.empty())
       throw error(line, line_number, field.begin,
                   fmt::format("column '{}' is empty; expected a number", shown(name)));

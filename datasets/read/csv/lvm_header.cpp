@@ -54,7 +54,7 @@ std::optional<LvmHeader> lvm_header(std::span<const std::string> lines, char sep
   LvmHeader header;
   if (!has_times && !lacks_times) return header;
   if (const auto labels = lvm_line(lines, separator, "Y_Unit_Label")) {
-    // The label of the line is above the times, if there are any.
+    // If there is a column of times, the first label belongs to it.
     std::vector<std::string> units(names);
     for (std::size_t i = 1; i < labels->fields.size(); ++i) {
       const std::size_t column = lacks_times ? i - 1 : i;

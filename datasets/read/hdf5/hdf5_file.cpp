@@ -241,8 +241,9 @@ Hdf5File::Hdf5File(const std::filesystem::path& path) : name_(path.string()) {
   H5PLset_loading_state(0);                     // loads no plugins from a path in the environment
   file_ = Hdf5Id(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (!file_)
-    fail(fmt::format("is truncated or damaged, or no HDF5 file (HDF5: {}); copy or save it again",
-                     hdf5_reason()));
+    fail(fmt::format(
+        "is truncated or damaged, or not an HDF5 file (HDF5: {}); copy or save it again",
+        hdf5_reason()));
   const Hdf5Id root(H5Gopen2(file_.get(), "/", H5P_DEFAULT), H5Gclose);
   if (!root) fail(fmt::format("is damaged (HDF5: {}); copy or save it again", hdf5_reason()));
   std::vector<haddr_t> above;
@@ -442,8 +443,9 @@ std::vector<double> Hdf5File::numbers(const Hdf5Series& series, const Hdf5Line& 
   require_written(dataset.get(), series, line, column);
   const CellChoice choice = choice_of(series, line);
   if (choice.width > kMostValues / std::max<std::size_t>(choice.cells, 1))
-    fail(fmt::format("'{}' has arrays of {} numbers each, {} of them: more than {} in all", column,
-                     choice.width, choice.cells, kMostValues));
+    fail(
+        fmt::format("'{}' has arrays of {} numbers each, {} of them: more than {} numbers in total",
+                    column, choice.width, choice.cells, kMostValues));
   const Hdf5Id space(H5Dget_space(dataset.get()), H5Sclose);
   const Hdf5Id type = number_type(dataset.get(), series);
   if (!type || !select_cells(space.get(), series, line)) damaged();

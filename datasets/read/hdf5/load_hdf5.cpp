@@ -79,7 +79,7 @@ class Hdf5Columns {
         rows = table[i].size();
       }
       if (table[i].size() != rows)
-        fail(fmt::format("'{}' has {} rows, but '{}' has {}; expected as many", column,
+        fail(fmt::format("'{}' has {} rows, but '{}' has {}; expected the same number", column,
                          table[i].size(), first, rows));
     }
     for (std::size_t i = 0; i < table.size(); ++i) {
@@ -227,14 +227,14 @@ class Hdf5Columns {
     for (const Hdf5Series& series : file_.series())
       if (series.path == clock.series && !clock.series.empty()) count = series.element_count();
     if (!rows && clock.series.empty())
-      fail(
-          fmt::format("'{}' gives a sample interval, but of no dataset; expected another "
-                      "column beside it",
-                      clock.path));
-    if (rows && count != *rows)
       fail(fmt::format(
-          "'{}' counts the {} samples of its dataset, but '{}' has {}; expected as many",
-          clock.path, count, of, *rows));
+          "'{}' is a sample interval, but no dataset is read with it; expected another column",
+          clock.path));
+    if (rows && count != *rows)
+      fail(
+          fmt::format("'{}' applies to the {} samples of its dataset, but '{}' has {}; expected "
+                      "the same number",
+                      clock.path, count, of, *rows));
     if (count > kMostValues - std::min(kMostValues, so_far_))
       fail(fmt::format("'{}' counts {} samples, more than {} numbers in all, the limit of one file",
                        clock.path, count, kMostValues));

@@ -37,14 +37,14 @@ bool is_hdf5(const std::filesystem::path& path) {
   require_regular_file(path, "a MAT file");
   const std::string signature = signature_of(path);
   if (signature.size() < kSignatureBytes)
-    throw InputError({path.string()},
-                     "is shorter than the header of a MAT file: it is empty, truncated or no MAT "
-                     "file");
+    throw InputError(
+        {path.string()},
+        "is shorter than the header of a MAT file: it is empty, truncated or not a MAT file");
   if (signature == "MATLAB 7.3") return true;
   if (signature == "MATLAB 5.0") return false;
   throw InputError({path.string()},
-                   "is no MAT file of version 5 or 7.3; expected one (of an older version: load it "
-                   "and save it with -v7)");
+                   "is not a MAT file of version 5 or 7.3; expected one (load an older file in "
+                   "MATLAB and save it with -v7)");
 }
 
 constexpr ConfinedReader kHdf5{"HDF5", "a MAT file", "copy or save it again, or save it with -v7"};
@@ -58,7 +58,7 @@ Table read_columns(MatSource& source, const std::vector<std::string>& columns) {
     if (table.back().size() != table.front().size())
       throw InputError(
           {source.name()},
-          fmt::format("'{}' has {} elements, but '{}' has {}; expected as many", column,
+          fmt::format("'{}' has {} elements, but '{}' has {}; expected the same number", column,
                       table.back().size(), columns.front(), table.front().size()));
   }
   return table;

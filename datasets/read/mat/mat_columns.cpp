@@ -50,7 +50,7 @@ class Parser {
     }
     const auto& last = steps.back().subscripts;
     if (!last.empty() && std::count(last.begin(), last.end(), std::nullopt) != 1)
-      fail(text_, "does not name a whole row or column: one colon belongs into its last brackets");
+      fail(text_, "does not name a whole row or column: expected one colon in its last brackets");
     return steps;
   }
 
@@ -85,7 +85,8 @@ class Parser {
     if (take(':')) return std::nullopt;
     std::size_t value = 0;
     const auto [end, error] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), value);
-    if (error != std::errc{} || value == 0) fail(text_, "has a subscript that is no number from 1");
+    if (error != std::errc{} || value == 0)
+      fail(text_, "has a subscript that is not a number from 1");
     rest_.remove_prefix(static_cast<std::size_t>(end - rest_.data()));
     return value - 1;
   }
@@ -215,14 +216,14 @@ class ColumnOfMat {
                                : k < parent.dims.size()    ? parent.dims[k]
                                                            : 1;
       if (subscript >= size)
-        fail(fmt::format("'{}' is a struct of {}, and element {} is asked for", path,
-                         size_text(parent), subscript + 1));
+        fail(fmt::format("'{}' is a struct of {}, which has no element {}", path, size_text(parent),
+                         subscript + 1));
       index += subscript * stride;
       stride *= size;
     }
     if (index >= count)
-      fail(fmt::format("'{}' is a struct of {}, and element {} is asked for", path,
-                       size_text(parent), index + 1));
+      fail(fmt::format("'{}' is a struct of {}, which has no element {}", path, size_text(parent),
+                       index + 1));
     return index;
   }
 

@@ -11,8 +11,8 @@ namespace rigcal::datasets {
 
 /// Advice on how to save data in a form that programs other than MATLAB can read.
 inline constexpr std::string_view kHowToSaveMat =
-    "of a timeseries save its numbers: t = ts.Time; x = squeeze(ts.Data); save file.mat t x; or "
-    "log to a \"Structure With Time\"";
+    "to read a timeseries, save its numbers: t = ts.Time; x = squeeze(ts.Data); save file.mat t x; "
+    "or log to a \"Structure With Time\"";
 
 /// Reads one column of a MAT file, given its name in MATLAB: "x", "log.time",
 /// "log.signals(2).values(:,1)".

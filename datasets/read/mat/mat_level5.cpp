@@ -208,7 +208,7 @@ class Level5Parser {
   /// Reads a name, or a list of field names padded with NULs, without checking it.
   std::string text(const DataElement& element, std::uint64_t most_bytes) {
     if (element.type != kInt8 && element.type != kUint8 && element.type != kUtf8)
-      throw DamagedBytes("a name that is no text");
+      throw DamagedBytes("a name that is not text");
     return content(element, most_bytes);
   }
 
@@ -217,7 +217,7 @@ class Level5Parser {
       return static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
     };
     if (std::any_of(name.begin(), name.end(), is_control))
-      throw DamagedBytes("a name with a byte that is no character");
+      throw DamagedBytes("a name with a byte that is not a character");
     return std::string(name);
   }
 
@@ -273,7 +273,7 @@ class Level5Parser {
     for (std::size_t i = 0; i < elements * array.field_names.size(); ++i) {
       const DataElement field = element(end);
       if (field.type != kMatrix || field.is_held_in_tag)
-        throw DamagedBytes("a field that is no array");
+        throw DamagedBytes("a field that is not an array");
       array.fields.push_back(this->array(field.begin + field.bytes, depth + 1));
       skip_to(field.next);
     }
@@ -285,7 +285,7 @@ class Level5Parser {
       const std::size_t size = bytes_of(data.type);
       if (size == 0) throw DamagedBytes("an array of numbers without numbers");
       if (data.bytes % size != 0 || data.bytes / size != array.element_count())
-        throw DamagedBytes("an array that has not as many numbers as its dimensions say");
+        throw DamagedBytes("an array whose number of values does not match its dimensions");
       if (part == 0) {
         array.place = data.begin;
         array.storage = data.type;
@@ -350,7 +350,8 @@ Level5Source::Level5Source(const std::filesystem::path& path, std::uint64_t most
       std::size_t unused = 0;
       const DataElement tag = Level5Parser(stream, swapped_, 0, unused).element(file_bytes - at);
       if ((tag.type != kMatrix && tag.type != kCompressed) || tag.is_held_in_tag)
-        throw DamagedBytes(fmt::format("its data type is {}, which is no variable", tag.type));
+        throw DamagedBytes(
+            fmt::format("its data type is {}, which is not that of a variable", tag.type));
       const Range range{at + kTagBytes, tag.bytes, tag.type == kCompressed};
       read_variable(range);
       at = range.begin + range.bytes;
@@ -375,7 +376,7 @@ void Level5Source::read_variable(const Range& range) {
   if (range.compressed) {
     const DataElement tag = parser.element(std::numeric_limits<std::uint32_t>::max());
     if (tag.type != kMatrix || tag.is_held_in_tag)
-      throw DamagedBytes("compressed data that are no array");
+      throw DamagedBytes("compressed data that are not an array");
     end = tag.begin + tag.bytes;
     inflated_bytes_ += end;
     if (inflated_bytes_ > most_inflated_bytes_)

@@ -29,8 +29,8 @@ void require_workbook(const std::filesystem::path& path) {
         ".xlsx without a password, or as CSV");
   if (!start.starts_with(kZip))
     throw InputError({path.string()},
-                     "is no .xlsx file: its first bytes are not those of a ZIP archive; save it "
-                     "again as .xlsx, or as CSV");
+                     "is not an .xlsx file: its first bytes are not those of a ZIP archive; save "
+                     "it again as .xlsx, or as CSV");
 }
 
 }  // namespace

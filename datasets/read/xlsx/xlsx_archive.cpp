@@ -34,10 +34,11 @@ XlsxArchive::XlsxArchive(const std::filesystem::path& path)
     zip_error_init_with_code(&error, code);
     const std::string reason = zip_error_strerror(&error);
     zip_error_fini(&error);
-    throw InputError({name_},
-                     fmt::format("is truncated or damaged, or no .xlsx file (ZIP: {}); copy "
-                                 "or save it again",
-                                 reason));
+    throw InputError(
+        {name_},
+        fmt::format(
+            "is truncated or damaged, or not an .xlsx file (ZIP: {}); copy or save it again",
+            reason));
   }
   if (zip_get_num_entries(open_->archive.get(), 0) > kMostParts)
     throw InputError(

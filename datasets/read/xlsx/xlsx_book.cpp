@@ -313,8 +313,8 @@ std::string workbook_part(const XlsxArchive& archive) {
   constexpr const char* kRoot = "_rels/.rels";
   if (!archive.has(kRoot))
     throw InputError({archive.name()},
-                     "is a ZIP archive, but no .xlsx workbook; expected one (a table of another "
-                     "program: save it as .xlsx or CSV)");
+                     "is a ZIP archive, but not an .xlsx workbook; expected one (save a table of "
+                     "another program as .xlsx or CSV)");
   for (const auto& [id, relation] : relations(archive, kRoot)) {
     if (relation.kind != "officeDocument") continue;
     const std::string part = resolved("", relation.target);

@@ -57,12 +57,11 @@ std::string kind_text(const XlsxCell& cell) {
     case XlsxKind::error:
       return fmt::format("is the error {}; expected a number", shown(cell.text));
     case XlsxKind::no_result:
-      return "has a formula that was never computed, as programs write it; open the workbook in "
-             "Excel and save it again";
+      return "has a formula without a stored result; open the workbook in Excel and save it again";
     case XlsxKind::number:
       break;
   }
-  return fmt::format("is '{}', which is no finite number; expected one", shown(cell.text));
+  return fmt::format("is '{}', which is not a finite number; expected one", shown(cell.text));
 }
 
 /// The header of a sheet, and the units below it.
@@ -477,10 +476,10 @@ RecordTable read_xlsx_columns(const std::filesystem::path& path, const RecordReq
   }
   for (std::size_t i = 1; i < table.columns.size(); ++i)
     if (table.columns[i].size() != table.columns[0].size())
-      throw InputError(
-          {book.name()},
-          fmt::format("'{}' has {} rows, but '{}' has {}; expected as many", request.columns[i],
-                      table.columns[i].size(), request.columns[0], table.columns[0].size()));
+      throw InputError({book.name()},
+                       fmt::format("'{}' has {} rows, but '{}' has {}; expected the same number",
+                                   request.columns[i], table.columns[i].size(), request.columns[0],
+                                   table.columns[0].size()));
   return table;
 }
 

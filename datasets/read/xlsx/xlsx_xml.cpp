@@ -128,8 +128,8 @@ void read_xml(const XlsxArchive& archive, const std::string& part, std::uint64_t
     if (listener.error) std::rethrow_exception(listener.error);
     if (listener.has_document_type)
       throw InputError({archive.name()},
-                       fmt::format("its part '{}' has a document type, as no workbook has; save it "
-                                   "again as .xlsx",
+                       fmt::format("its part '{}' has a document type declaration, which workbooks "
+                                   "do not have; save it again as .xlsx",
                                    part));
     if (status == XML_STATUS_OK) return;
     if (XML_GetErrorCode(parser.get()) == XML_ERROR_NO_MEMORY) throw std::bad_alloc();

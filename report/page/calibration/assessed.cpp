@@ -44,9 +44,9 @@ std::string rule_words(datasets::DecisionRule rule) {
       return "Scores are compared with the campaign's limits as they are; their own uncertainty is "
              "not considered.";
     case datasets::DecisionRule::guard_band:
-      return "PASS where a score keeps its limit by more than its expanded uncertainty (95 %, from "
-             "the repeats and the stated uncertainty of the sensors); WARN where by less; FAIL "
-             "where it breaks the limit.";
+      return "PASS if a score meets its limit by more than its expanded uncertainty (95 %, from "
+             "the repeats and the stated uncertainty of the sensors); WARN if by less; FAIL if it "
+             "does not meet the limit.";
   }
   throw std::logic_error("rule_words: no words for a decision rule");
 }

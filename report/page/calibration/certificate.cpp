@@ -114,8 +114,8 @@ void add_numbers(const StoredFit& fit, Line& sentence) {
                                           [](const Judged& each) { return each.held_back(); });
       sentence.emplace_back(", ");
       sentence.emplace_back(doc::Strong{
-          unseen.size() > kNamed ? fmt::format("{} of them never seen by the fit", of_these)
-                                 : fmt::format("{} of them ({}) never seen by the fit", of_these,
+          unseen.size() > kNamed ? fmt::format("{} of them not used in the fit", of_these)
+                                 : fmt::format("{} of them ({}) not used in the fit", of_these,
                                                fmt::join(unseen, ", "))});
       sentence.emplace_back(",");
     }
@@ -178,7 +178,7 @@ Line doubt_line(const StoredFit& fit, const calib::Reason& reason, const char* s
   return line;
 }
 
-/// Returns true for what the small print below the calibrated values says.
+/// Returns true for reasons that the small print below the calibrated values states.
 bool is_below_values(const calib::Reason& reason) {
   return reason.code == "exact_values" || reason.code == "unseen_error";
 }
@@ -351,7 +351,7 @@ void add_values(const StoredFit& fit, bool judged, doc::Blocks& blocks) {
   }
   if (more > 0) {
     notes.emplace_back(doc::Link{"#parameters", plural(more, "more value")});
-    notes.emplace_back(", each more certain than these. ");
+    notes.emplace_back(", each with a smaller relative uncertainty. ");
   }
   if (fit.assessment) {
     for (const calib::Reason& reason : fit.assessment->parameters.reasons)
@@ -525,7 +525,7 @@ std::string not_judged_words(const StoredFit& fit) {
     }
   }
   if (found.empty()) return {};
-  return fmt::format("Recorded, but not judged, since no limit was agreed: {}.",
+  return fmt::format("Recorded but not judged, because no limit was agreed: {}.",
                      fmt::join(found, "; "));
 }
 
@@ -666,9 +666,8 @@ doc::Verdict fit_verdict(const StoredFit& fit) {
     return {{State::bad, "POOR"},
             {"No limits were given, but the model does not describe the records."}};
   return {{State::none, "NOT JUDGED"},
-          {fit.conditions.empty()
-               ? "No condition was scored."
-               : "The campaign gives no limits: whether this is good enough is for you to say."}};
+          {fit.conditions.empty() ? "No condition was scored."
+                                  : "The campaign sets no limits, so the result was not judged."}};
 }
 
 doc::Blocks certificate(const Calibration& stored) {

@@ -94,7 +94,7 @@ std::string coverage_words(const std::vector<double>& residual, const std::vecto
     if (std::abs(residual[i]) <= metrics::kNormal95 * sd[i]) ++within;
   }
   if (all == 0) return {};
-  return fmt::format("{:.1f} % of them lie within the 95 % band of prediction.",
+  return fmt::format("{:.1f} % of them are within the 95 % prediction band.",
                      100.0 * static_cast<double>(within) / static_cast<double>(all));
 }
 
@@ -149,8 +149,9 @@ Response response_of(std::optional<double> frequency_hz, const Table& series,
     return {{},
             fmt::format("Gain and phase of {}: no frequency has a coherence of {:g} or more.",
                         curves.of, metrics::kLeastCoherence)};
-  const bool scatter = std::any_of(curves.record.begin(), curves.record.end(),
-                                   [](const auto& point) { return point.interval.has_value(); });
+  const bool has_intervals =
+      std::any_of(curves.record.begin(), curves.record.end(),
+                  [](const auto& point) { return point.interval.has_value(); });
   const std::string where =
       frequency_hz && estimated == 1 ? "at the fundamental of the drive"
       : frequency_hz
@@ -159,8 +160,8 @@ Response response_of(std::optional<double> frequency_hz, const Table& series,
   std::string words =
       fmt::format("Gain and phase of {} {}, where the coherence is {:g} or more; {}.", curves.of,
                   where, metrics::kLeastCoherence,
-                  scatter ? "bars are 95 % intervals by coherence"
-                          : "a single period, without variation and so without an interval");
+                  has_intervals ? "bars: 95 % intervals, from the coherence"
+                                : "a single period, so no interval");
   return {std::move(curves), std::move(words)};
 }
 
@@ -200,8 +201,8 @@ std::vector<ChannelAgreement> channel_agreements(const std::string& condition,
              name_of(rest), rest.si)});
     const auto* sd = series.find(fmt::format("prediction_sd_{}", about.name));
     found.residual = fmt::format(
-        "Residual of {} over {} samples: mean {}, standard deviation {}; dashed beside the line of "
-        "equality: 95 % limits of agreement.",
+        "Residual of {} over {} samples: mean {}, standard deviation {}; dashed on both sides of "
+        "the line of equality: 95 % limits of agreement.",
         words, moments.samples, readable(moments.mean, about.unit, 3),
         readable(moments.sd, about.unit, 3));
     if (sd != nullptr) found.residual += " " + coverage_words(e, counted(*sd, window));

@@ -37,7 +37,7 @@ doc::Row effect_row(const calib::ConsideredEffect& effect, bool missing) {
                 unit.name,
                 effect.p_of_all ? p_value_text(*effect.p_of_all) : std::string("–"),
                 effect.size_from}};
-  if (missing) row.notes.emplace_back("the residuals ask for it");
+  if (missing) row.notes.emplace_back("shown by the residuals");
   if (effect.problem) row.notes.push_back(*effect.problem);
   return row;
 }
@@ -62,10 +62,10 @@ void add_refits(const StoredFit& fit, doc::Blocks& blocks) {
   const calib::Considered& considered = *fit.considered;
   if (considered.refitted.empty()) return;
   doc::Table models{"Refitted models"};
-  models.caption = {"The fit made again with the effects that explain most"};
+  models.caption = {"Fits repeated with the effects that explain most"};
   models.columns = {{"Model with"},
-                    {"Fall of the sum of squares", Kind::number},
-                    {"The same, each condition predicted from the others", Kind::number},
+                    {"Decrease of the sum of squares", Kind::number},
+                    {"Decrease in cross-validation", Kind::number},
                     {"Weight", Kind::number}};
   for (const calib::RefittedModel& each : considered.refitted) {
     models.rows.push_back(
@@ -149,17 +149,17 @@ void add_considered(const StoredFit& fit, doc::Blocks& blocks) {
   if (!considered.effects.empty()) {
     blocks.emplace_back(doc::reading(
         considered.missing.empty()
-            ? std::string("The residuals ask for none of them.")
-            : fmt::format("The residuals ask for {}.", fmt::join(considered.missing, ", then "))));
+            ? std::string("The residuals show none of them.")
+            : fmt::format("The residuals show {}.", fmt::join(considered.missing, ", then "))));
     doc::Table table{"Effects"};
     table.style = "dense";
     table.columns = {{"Effect"},
                      {"Plausible size", Kind::number},
-                     {"By prior and records, ± u", Kind::number},
-                     {"Alone, by the records, ± U", Kind::number},
+                     {"From prior and records, ± u", Kind::number},
+                     {"From the records, it alone, ± U", Kind::number},
                      {"Unit", Kind::unit},
-                     {"p of none, all together", Kind::number},
-                     {"The size follows from"}};
+                     {"p if absent, tested with all", Kind::number},
+                     {"Source of the size"}};
     for (const calib::ConsideredEffect& each : considered.effects)
       table.rows.push_back(effect_row(each, is_missing(each)));
     const std::string summary = fmt::format("Effects ({})", table.rows.size());
@@ -179,7 +179,7 @@ void add_stability(const StoredFit& fit, doc::Blocks& blocks) {
   table.columns = {{"Parameter"},
                    {"Value", Kind::number},
                    {"Difference from the fit", Kind::number},
-                   {"Of which both uncertainties allow"},
+                   {"Allowed by both uncertainties"},
                    {"Unit", Kind::unit},
                    {"Outcome, all together"}};
   for (const calib::StabilityCheck& each : *fit.stability)

@@ -129,11 +129,10 @@ std::size_t add_plots(const calib::ConditionResult& condition, const Table& seri
   data.json()["plots"] = std::move(plots);
   const auto each = data.json()["samples_per_point"].get<std::size_t>();
   blocks.emplace_back(doc::Paragraph{
-      {fmt::format("From residuals/{}.csv{}.", condition.id,
-                   each > 1 ? fmt::format("; every {} samples are drawn as their least and "
-                                          "largest value",
-                                          each)
-                            : std::string())},
+      {fmt::format(
+          "From residuals/{}.csv{}.", condition.id,
+          each > 1 ? fmt::format("; every {} samples are drawn as their minimum and maximum", each)
+                   : std::string())},
       doc::Paragraph::Tone::source});
   blocks.emplace_back(doc::LiveSeries{data.text()});
   return count;
@@ -283,7 +282,7 @@ doc::Section conditions_section(const Calibration& stored, int threads, bool cur
   const bool all = shown.size() == conditions.size();
   section.blocks.emplace_back(doc::Paragraph{
       {(all ? std::string()
-            : fmt::format("The worst {} in full, the others in a line each below. ",
+            : fmt::format("The worst {} are shown in full, the others in one line each below. ",
                           shown.size())) +
        "Drag across a plot to zoom in time; all plots of a condition move together. Double-click "
        "or 0 shows all. Focus a plot for the keyboard: plus, minus, arrows."},

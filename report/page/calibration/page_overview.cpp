@@ -187,7 +187,7 @@ std::optional<doc::Section> overview_section(const Calibration& stored) {
   section.blocks.emplace_back(three_numbers(stored.result));
   section.blocks.emplace_back(doc::reading(
       fmt::format("The {} over the last two periods (recorded drives: the whole record): measured "
-                  "dark and wide, simulated orange. Select one to see its curves.",
+                  "(dark, wide) and simulated (orange). Select one to see its curves.",
                   spaced(channel))));
   doc::Tiles tiles;
   for (const std::size_t i : shown) {
@@ -206,12 +206,12 @@ std::optional<doc::Section> overview_section(const Calibration& stored) {
     response.figures.push_back(figure_of(std::move(figure.plot)));
   if (response.figures.empty()) return section;
   response.figures.front().caption = "How strongly does the rig respond at each frequency?";
-  response.figures.back().caption = "How late does it respond?";
+  response.figures.back().caption = "How far does the response lag?";
   // Not on paper, where each condition has its own gain and phase.
   doc::Fold fold{"Gain and phase of the rig", {std::move(response)}, true, "screen"};
-  fold.blocks.emplace_back(doc::reading(
-      "The conditions above together, for the drive that most of them have; a line joins the "
-      "points of one condition. Gain and phase depend on the amplitude."));
+  fold.blocks.emplace_back(
+      doc::reading("All conditions above with the most frequent kind of drive; a line joins the "
+                   "points of one condition. Gain and phase depend on the amplitude."));
   section.blocks.emplace_back(std::move(fold));
   return section;
 }

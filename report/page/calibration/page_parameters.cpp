@@ -164,10 +164,10 @@ doc::Section parameters_section(const std::vector<calib::FittedParameter>& param
                                 const calib::Correlation& correlation, bool judged) {
   doc::Section section{"parameters", "Parameters"};
   if (!judged)
-    section.blocks.emplace_back(doc::Paragraph{
-        {"Stopped before it converged: the values are the best so far, and errors and intervals "
-         "are those of a minimum, which this is not."},
-        doc::Paragraph::Tone::problem});
+    section.blocks.emplace_back(
+        doc::Paragraph{{"Stopped before it converged: the values are the best so far. Standard "
+                        "errors and intervals assume a minimum and are not valid here."},
+                       doc::Paragraph::Tone::problem});
   std::vector<const calib::FittedParameter*> estimated;
   doc::Table known{"Known values"};
   known.columns = {{"Parameter"}, {"For"}, {"Value", Kind::number}, {"Unit"}, {"Note"}};
@@ -219,26 +219,25 @@ void add_singular_values(const StoredFit& fit, doc::Blocks& blocks) {
   std::vector<double> values = fit.singular_values;
   std::erase_if(values, [](double value) { return std::isnan(value); });
   if (values.empty()) {
-    blocks.emplace_back(doc::reading("Nothing was estimated, so there is nothing to identify."));
+    blocks.emplace_back(doc::reading("No parameter was estimated."));
     return;
   }
   const int rank = fit.rank;
   const auto all = static_cast<int>(values.size());
   if (rank < all) {
-    blocks.emplace_back(doc::reading(fmt::format(
-        "The Jacobian has rank {} of {}: {} combination{} of the parameters can be changed without "
-        "any effect on the records.",
-        rank, all, all - rank, all - rank == 1 ? "" : "s")));
+    blocks.emplace_back(
+        doc::reading(fmt::format("The Jacobian has rank {} of {}: {} combination{} of the "
+                                 "parameters can change without any effect on the records.",
+                                 rank, all, all - rank, all - rank == 1 ? "" : "s")));
   } else {
     const std::vector<std::string> open = not_identifiable(fit);
     blocks.emplace_back(doc::reading(fmt::format(
-        "The Jacobian has full rank ({} of {}): every combination of the parameters has an effect "
-        "on the records, the strongest {:.3g} times that of the weakest. {}",
+        "The Jacobian has full rank ({} of {}): every combination of the parameters affects the "
+        "records; the strongest effect is {:.3g} times the weakest. {}",
         rank, all, values.back() > 0.0 ? values.front() / values.back() : 0.0,
-        open.empty()
-            ? "No parameter is graded not identifiable."
-            : fmt::format("For these it is too small against the noise to identify them: {}.",
-                          fmt::join(open, ", ")))));
+        open.empty() ? "No parameter is graded not identifiable."
+                     : fmt::format("The effect is too small relative to the noise to identify {}.",
+                                   fmt::join(open, ", ")))));
   }
   blocks.emplace_back(doc::Figure{[values] {
                                     Plot plot =

@@ -67,7 +67,7 @@ doc::Table effects_table(const calib::Considered& considered) {
 }
 
 doc::Table limits_table(const calib::Posterior& found) {
-  doc::Table table{"How probable it is that limits are kept"};
+  doc::Table table{"Probability that each limit is met"};
   table.columns = {{"Condition"},
                    {"Channel"},
                    {"Score"},
@@ -83,7 +83,7 @@ doc::Table limits_table(const calib::Posterior& found) {
 }
 
 doc::Table shares_table(const calib::Posterior& found) {
-  doc::Table table{"How probable it is that a leak is in each class"};
+  doc::Table table{"Probability of each leak class"};
   table.columns = {{"Leak of"},
                    {"Motion of"},
                    {"Share, % of the servo flow", Kind::number},
@@ -148,10 +148,11 @@ void add_pairs(const StoredFit& fit, const calib::Pairs& pairs, doc::Blocks& blo
           doc::Figure{[fit, pairs, a, b] { return pair_plot(fit, pairs, a, b); }});
   }
   if (gallery.figures.empty()) return;
-  blocks.emplace_back(doc::reading(fmt::format(
-      "{} draws: {} as points of at most six parameters, and the estimate. posterior.csv has all.",
-      fit.posterior->chains * fit.posterior->draws,
-      pairs.every == 1 ? std::string("all") : fmt::format("one in {}", pairs.every))));
+  blocks.emplace_back(doc::reading(
+      fmt::format("{} draws ({} shown) of at most six parameters, and the estimate. posterior.csv "
+                  "contains all.",
+                  fit.posterior->chains * fit.posterior->draws,
+                  pairs.every == 1 ? std::string("all") : fmt::format("one in {}", pairs.every))));
   blocks.emplace_back(std::move(gallery));
 }
 
@@ -170,30 +171,27 @@ void add_posterior(const StoredFit& fit, doc::Blocks& blocks) {
                       ? "The sizes of the small effects that the model leaves out are drawn with "
                         "the unknowns. They act in proportion to their size, as in the 95 % "
                         "interval; compare the draws with that. "
-                      : "The draws hold if the model is exact: the small effects that it leaves "
-                        "out are not among them, so compare them with the interval of the exact "
+                      : "The draws assume that the model is exact. They do not include the small "
+                        "effects that it leaves out; compare them with the interval for an exact "
                         "model, not with the wider one. ") +
       "Correlated residuals, differences between repeats and stated uncertainties of known values "
-      "count as they do there. Prior: uniform between the bounds, in the logarithm where these "
-      "span "
-      "more than a decade; a stated prior where the campaign has one. Effective draws are those "
-      "that "
-      "count for the middle of a distribution, and for its ends."));
+      "are treated as in that interval. Prior: uniform between the bounds, in the logarithm if "
+      "these span more than a decade, unless the campaign states a prior. Effective draws: "
+      "effective sample size for the middle of a distribution, and for its tails."));
   blocks.emplace_back(draws_table(fit, found));
   if (found.effects && fit.considered)
     blocks.emplace_back(doc::Fold{"Sizes of the small effects", {effects_table(*fit.considered)}});
   if (!found.limits.empty()) {
     blocks.emplace_back(limits_table(found));
-    blocks.emplace_back(doc::reading(
-        fmt::format("Each limit was judged by simulations of {} draws, spread over all chains.",
-                    found.simulated)));
+    blocks.emplace_back(doc::reading(fmt::format(
+        "Each limit was checked by simulating {} draws from all chains.", found.simulated)));
   }
   if (!found.shares.empty()) {
     blocks.emplace_back(shares_table(found));
-    blocks.emplace_back(doc::reading(
-        fmt::format("Each share was simulated for {} draws, spread over all chains, for the same "
-                    "motion. A probability is the fraction of the draws in a class.",
-                    found.simulated)));
+    blocks.emplace_back(
+        doc::reading(fmt::format("Each share was simulated for {} draws from all chains, for the "
+                                 "same motion. A probability is the fraction of draws in a class.",
+                                 found.simulated)));
   }
   add_pairs(fit, found.pairs, blocks);
 }

@@ -39,14 +39,14 @@ std::string further_starts_of(const StoredFit& fit) {
       if (reason.code == "further_starts") return reason.words + ".";
     }
   }
-  return "One start alone: whether another minimum is lower was not looked for.";
+  return "Only one start: no search for a lower minimum was made.";
 }
 
 /// Summarises all starts.
 ///
 /// @param costs  final costs of the starts, sorted
 std::string start_reading(const StoredFit& fit, const std::vector<double>& costs) {
-  if (costs.empty()) return "No start ended with a cost: there is no answer.";
+  if (costs.empty()) return "No start could be evaluated: there is no result.";
   std::string text =
       fit.starts.size() == 1 ? further_starts_of(fit) : std::string(fit.agreement) + ".";
   if (fit.starts.size() == 1 && !fit.agreement.empty())
@@ -54,8 +54,8 @@ std::string start_reading(const StoredFit& fit, const std::vector<double>& costs
   constexpr double kSameCost = 1e-3;
   if (fit.cost && std::abs(*fit.cost - costs.front()) > kSameCost * costs.front()) {
     text += fmt::format(
-        " These costs are by the noise as it was taken before the last estimate of it; by that of "
-        "the result the cost is {:.6g}.",
+        " These costs use the noise estimate before the last update; with the final estimate the "
+        "cost is {:.6g}.",
         *fit.cost);
   }
   return text;
@@ -67,7 +67,7 @@ doc::Section starts_section(const StoredFit& fit) {
   doc::Section section{"starts", "Starts"};
   doc::Blocks& blocks = section.blocks;
   if (fit.starts.empty()) {
-    blocks.emplace_back(doc::reading("No start was made: nothing was estimated."));
+    blocks.emplace_back(doc::reading("No start was made, because nothing was estimated."));
     return section;
   }
   std::vector<double> costs;
@@ -103,11 +103,12 @@ doc::Section starts_section(const StoredFit& fit) {
 std::vector<std::string> warnings_to_show(const StoredFit& fit) {
   std::vector<std::string> warnings;
   for (const std::string& warning : fit.warnings) {
-    const bool told = std::any_of(
+    // The parameter table already shows this reason.
+    const bool is_shown = std::any_of(
         fit.parameters.begin(), fit.parameters.end(), [&](const calib::FittedParameter& p) {
           return p.fitted && !p.reason.empty() && warning.ends_with(": " + p.reason);
         });
-    if (!told) warnings.push_back(warning);
+    if (!is_shown) warnings.push_back(warning);
   }
   return warnings;
 }
@@ -128,8 +129,8 @@ doc::Section warnings_section(const StoredFit& fit) {
   }
   if (fit.failures.empty()) return section;
   doc::Table table{"Failed simulations"};
-  table.caption = {
-      fmt::format("{} simulations failed on the way; the first of each kind", fit.failure_count)};
+  table.caption = {fmt::format("{} simulations failed during the search; the first of each kind",
+                               fit.failure_count)};
   table.columns = {{"Condition"},
                    {"Start", Kind::number},
                    {"At", Kind::number},
@@ -165,10 +166,10 @@ doc::Blocks provenance_blocks(const StoredProvenance& provenance, const std::str
   for (const auto& [option, value] : provenance.options) add("Option " + option, value);
   facts.rows.insert(facts.rows.end(), making.rows.begin(), making.rows.end());
   return {doc::Heading{{name}}, doc::Command{provenance.command}, std::move(facts),
-          doc::Paragraph{{fmt::format("Drawn from {} and the files beside it; ", file),
-                          doc::Code{"rigcal report"},
-                          " with their folder draws the same page again, byte for byte."},
-                         doc::Paragraph::Tone::source}};
+          doc::Paragraph{
+              {fmt::format("Drawn from {} and the files in its folder; ", file),
+               doc::Code{"rigcal report"}, " reproduces the page from that folder, byte for byte."},
+              doc::Paragraph::Tone::source}};
 }
 
 namespace {

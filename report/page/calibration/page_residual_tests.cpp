@@ -93,7 +93,7 @@ std::optional<doc::Fold> whiteness_fold(const metrics::ResidualCurves& curves) {
     Plot plot = correlation_plot(*curves.partial_autocorrelation, "partial autocorrelation", true);
     plot.title += ", with the 95 % band of white noise";
     gallery.figures.push_back(
-        figure_of(std::move(plot), "Which lags add to what the shorter ones explain?"));
+        figure_of(std::move(plot), "Which lags matter beyond the shorter ones?"));
   }
   if (curves.cumulative_periodogram)
     gallery.figures.push_back(figure_of(cumulative_plot(*curves.cumulative_periodogram),
@@ -102,7 +102,7 @@ std::optional<doc::Fold> whiteness_fold(const metrics::ResidualCurves& curves) {
   doc::Fold fold{"Partial autocorrelation and cumulative periodogram", {std::move(gallery)}};
   fold.style = "screen";
   fold.blocks.emplace_back(doc::reading(
-      "Dashed: 95 % bounds of white noise, for a single lag and for the whole cumulative curve."));
+      "Dashed: 95 % bounds for white noise, at a single lag and for the whole cumulative curve."));
   return fold;
 }
 
@@ -142,7 +142,7 @@ void add_residual_tests(const calib::ConditionResult& condition, const calib::Ch
     const std::string channel(score.key());
     if (!score.residual_tests) {
       blocks.emplace_back(
-          doc::reading(channel + ": too few samples, or a constant residual: nothing to test."));
+          doc::reading(channel + ": not tested (too few samples, or a constant residual)."));
       continue;
     }
     blocks.emplace_back(test_facts(*score.residual_tests, channel));

@@ -24,23 +24,22 @@ std::string end_words(const calib::ProfileEnd& end, const ReadableUnit& unit, co
   };
   if (end.value) return fmt::format("{} end {}", which, text(*end.value));
   if (end.is_lost())
-    return fmt::format("not followed to its {} end: stopped, or no fit there", which);
-  return fmt::format(
-      "open at its {} end{}", which,
-      std::isfinite(end.reached)
-          ? fmt::format(": followed to {} without leaving the interval", text(end.reached))
-          : std::string());
+    return fmt::format("{} end not found: stopped, or no fit converged there", which);
+  return fmt::format("open at its {} end{}", which,
+                     std::isfinite(end.reached)
+                         ? fmt::format(": still within the interval at {}", text(end.reached))
+                         : std::string());
 }
 
 /// Plots the increase in cost when a parameter is fixed at each value. The 95 % interval ends where
 /// the increase is 1.
 Plot profile_plot(const calib::FittedParameter& parameter, const calib::Profile& profile) {
   const ReadableUnit unit = unit_of(parameter);
-  Plot plot{fmt::format("Profile of {}: the followed points, and a curve through them",
+  Plot plot{fmt::format("Profile of {}: computed points, and a curve through them",
                         parameter_label(parameter)),
             unit.name.empty() ? parameter_label(parameter)
                               : fmt::format("{} [{}]", parameter_label(parameter), unit.name),
-            "rise of the cost; 1: end of the interval", 300.0, 170.0};
+            "relative rise of the cost; 1: end of the interval", 300.0, 170.0};
   plot.levels = {1.0};
   Trace trace;
   trace.style = "reference";
@@ -112,7 +111,7 @@ doc::Badge lack_badge(const calib::LackOfFitTests& lack) {
   if (lack.misfit == true) return {doc::State::warn, "Significant lack of fit."};
   if (lack.misfit == false) return {doc::State::good, "No lack of fit detected."};
   return {doc::State::none, lack.tests.empty()
-                                ? "Lack of fit cannot be judged: the noise is not known."
+                                ? "Lack of fit cannot be judged: the noise is unknown."
                                 : "Lack of fit cannot be judged: the records have too few "
                                   "independent samples."};
 }
@@ -148,7 +147,7 @@ std::string prediction_words(const calib::HeldOut& held) {
 
 void add_cross_validation(const StoredFit& fit, doc::Blocks& blocks) {
   if (!fit.cross_validation || fit.cross_validation->empty()) return;
-  const char* const title = "Predictions of conditions that were left out";
+  const char* const title = "Cross-validation: conditions left out and predicted";
   blocks.emplace_back(doc::Heading{{title}});
   doc::Table table{title};
   table.columns = {{"Left out"},
@@ -169,15 +168,15 @@ void add_profiles(const StoredFit& fit, doc::Blocks& blocks) {
   for (const calib::FittedParameter& p : fit.parameters) {
     if (!p.profile) continue;
     doc::Figure figure{[p] { return profile_plot(p, *p.profile); }};
-    figure.caption = fmt::format("How far can {} move?", parameter_label(p));
+    figure.caption = fmt::format("How much can {} change?", parameter_label(p));
     figure.reading = profile_reading(p, *p.profile);
     gallery.figures.push_back(std::move(figure));
   }
   if (gallery.figures.empty()) return;
   blocks.emplace_back(doc::Heading{{"Profiles"}});
-  blocks.emplace_back(doc::reading(
-      "How much worse the fit becomes with one parameter fixed and all others fitted again; at 1 "
-      "the 95 % interval ends."));
+  blocks.emplace_back(
+      doc::reading("Rise of the cost with one parameter fixed and all others refitted; the 95 % "
+                   "interval ends at 1."));
   blocks.emplace_back(std::move(gallery));
 }
 

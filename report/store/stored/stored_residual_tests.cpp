@@ -25,7 +25,7 @@ std::string autocorrelation_words(const ResidualTests& tests) {
   if (!test.failed()) return not_judged(test);
   constexpr double kNoLoss = 0.99;
   if (tests.effective_samples > kNoLoss * static_cast<double>(tests.samples))
-    return fmt::format("weak but significant ({}): no loss of effective sample size", p);
+    return fmt::format("weak but significant ({}): effective sample size not reduced", p);
   return fmt::format(
       "significant ({}) up to a lag of {}: effective sample size {:.0f} of {}; unmodelled "
       "dynamics, "

@@ -94,7 +94,7 @@ TEST_CASE("hostile files: a pipe, device or folder is no input", "[apps]") {
                             "records/sine_bad." + kind));
       put_in_place(folder, "twin/records/sine_bad." + kind, damage);
       check_no_input(folder, {"check", "twin/" + kind + ".toml"}, "sine_bad." + kind,
-                     "no file fits");
+                     "no file matches");
     }
   }
 }

@@ -227,7 +227,7 @@ TEST_CASE("design: what it refuses", "[calib]") {
       {"stroke beside the rig",
        [](auto& c) { c.design->lowest_m.value = 0.01; },
        {"mass"},
-       "key 'design.stroke': no drive can keep this limit"},
+       "key 'design.stroke': no drive can stay within this limit"},
       {"moves by itself",
        [](auto& c) {
          datasets::ParameterSetting force;
@@ -237,7 +237,7 @@ TEST_CASE("design: what it refuses", "[calib]") {
          c.design->acceleration_m_per_s2 = datasets::StatedLimit{0.01, {"twin.toml", 7, 1}};
        },
        {"mass"},
-       "twin.toml:7:1: key 'design.acceleration': no drive can keep this limit"},
+       "twin.toml:7:1: key 'design.acceleration': no drive can stay within this limit"},
       {"without a loop",
        [](auto& c) {
          c.rig.controller = model::ControllerKind::none;

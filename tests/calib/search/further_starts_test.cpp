@@ -175,7 +175,7 @@ TEST_CASE("optimum: a bound that the cost presses against is named", "[calib]") 
   REQUIRE(check.active_bound[0]);
   REQUIRE_FALSE(check.is_minimum());
   CHECK_THAT(far_from_minimum(problem, there, check),
-             Contains("presses against: mass_kg") && Contains("a prior or a known value"));
+             Contains("active bound: mass_kg") && Contains("a prior or a known value"));
 }
 
 }  // namespace rigcal::calib

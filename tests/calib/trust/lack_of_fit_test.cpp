@@ -227,7 +227,7 @@ TEST_CASE("known values: their uncertainty is carried into the errors", "[calib]
   const Fit open = fit(twin.campaign, records, {});
   CHECK(parameter(open, "valve_gain").identifiability == Identifiability::not_identifiable);
   CHECK_THAT(parameter(open, "valve_gain").reason,
-             Contains("what is uncertain of supply_pressure_pa: as a free parameter"));
+             Contains("the uncertainty of supply_pressure_pa: made a free parameter"));
 }
 
 TEST_CASE("known values: a sensor's gain or offset widens as it would if it were free", "[calib]") {

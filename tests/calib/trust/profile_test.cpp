@@ -214,9 +214,8 @@ TEST_CASE("profile: the error of simulations is no lower minimum", "[calib]") {
   REQUIRE(p.profile.has_value());
   CHECK_FALSE(p.profile->lower_cost_found);
   CHECK_THAT(p.reason, Contains("profile is open above"));
-  CHECK_THAT(found.interval_advice,
-             Contains("not identifiable, so that no interval is reliable: ") &&
-                 Contains("discharge_coefficient") && !Contains("mass_kg"));
+  CHECK_THAT(found.interval_advice, Contains("not identifiable, so no interval is reliable: ") &&
+                                        Contains("discharge_coefficient") && !Contains("mass_kg"));
 }
 
 TEST_CASE("intervals: which of them to use", "[calib]") {
@@ -243,7 +242,7 @@ TEST_CASE("intervals: which of them to use", "[calib]") {
   CHECK_THAT(compare_intervals(problem, parameters),
              Contains("0.4 times as wide") && !Contains("lacks"));
   CHECK_THAT(compare_intervals(problem, parameters, {}, true),
-             Contains("which counts what the model lacks"));
+             Contains("which includes model error"));
   drawn.ci95 = {84.99995, 85.00015};
   parameters[0].bootstrap = drawn;
   CHECK_THAT(compare_intervals(problem, parameters),
@@ -258,7 +257,7 @@ TEST_CASE("intervals: which of them to use", "[calib]") {
              Contains("use the interval of the profile, 84.99999 to 85.0001 kg:"));
   parameters[0].identifiability = Identifiability::not_identifiable;
   CHECK(compare_intervals(problem, parameters) ==
-        "not identifiable, so that no interval is reliable: " + problem.name(0));
+        "not identifiable, so no interval is reliable: " + problem.name(0));
 }
 
 TEST_CASE("bootstrap: its spread is that of the noise, the same for any number of threads",

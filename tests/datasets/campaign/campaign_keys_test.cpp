@@ -511,6 +511,6 @@ TEST_CASE("campaign keys: tables as the documents have them", "[datasets]") {
   CHECK(find_campaign_table("fits") == nullptr);
   CHECK(find_campaign_table("rig.parameters.mass") != nullptr);
   CHECK(draft_line("recording", "decimate_to") ==
-        "decimate_to = \"1 kHz\"  # if the records are denser than the model needs\n");
+        "decimate_to = \"1 kHz\"  # if the sampling rate is higher than the model needs\n");
   CHECK_THROWS_AS(draft_line("recording", "nothing"), std::invalid_argument);
 }

@@ -47,7 +47,7 @@ TEST_CASE("load_campaign: a loop on force has its gains, its reference and ampli
 
 TEST_CASE("load_campaign: a loop has no gains but its own", "[datasets]") {
   CHECK_THAT(loop_refusal_of(force_loop(kLoopGain)),
-             Catch::Contains("kp is a gain of a loop on position, and this one is on force") &&
+             Catch::Contains("kp is a gain of a loop on position, but this one is on force") &&
                  Catch::Contains("expected force_kp"));
   CHECK_THAT(
       loop_refusal_of(replaced(kExample, kLoopGain, kLoopGain + "\nforce_ki = \"1 V/(N s)\"")),
@@ -87,7 +87,7 @@ TEST_CASE(
              Catch::Contains("has no reference_frequency: expected reference_frequency and "
                              "reference_damping_ratio in [rig.controller]"));
   CHECK_THAT(loop_refusal_of(with(control + gains + generator + "kd = \"1 V s/m\"")),
-             Catch::Contains("kd is a gain of a loop on position, and this one is on "
+             Catch::Contains("kd is a gain of a loop on position, but this one is on "
                              "three_variable: expected velocity_kp"));
   CHECK_THAT(loop_refusal_of(with(control + gains + generator + "acceleration_ki = \"1 V s/m\"")),
              Catch::Contains("acceleration_ki is a gain of a loop on acceleration"));
@@ -96,11 +96,11 @@ TEST_CASE(
       Catch::Contains("derivative_filter filters the derivative of an error"));
   CHECK_THAT(loop_refusal_of(with(control + generator)), Catch::Contains("has no kp"));
   CHECK_THAT(loop_refusal_of(with(kLoopGain + "\n" + generator)),
-             Catch::Contains("reference_frequency belongs to three-variable control, and this loop "
+             Catch::Contains("reference_frequency belongs to three-variable control, but this loop "
                              "is on position"));
   CHECK_THAT(
       loop_refusal_of(with(kLoopGain + "\nvelocity_kp = \"2 V s/m\"")),
-      Catch::Contains("velocity_kp is a gain of a loop on three_variable, and this one is on "
+      Catch::Contains("velocity_kp is a gain of a loop on three_variable, but this one is on "
                       "position: expected kd"));
   CHECK_THAT(loop_refusal_of(with(kLoopGain + "\nacceleration_kp = \"2 V s2/m\"")),
              Catch::Contains("acceleration_kp is a gain of a loop on acceleration"));
@@ -132,7 +132,7 @@ TEST_CASE("load_campaign: a load may fall along the travel, a spring may not", "
   CHECK(values_in(campaign, campaign.conditions.front())["load_gradient"] == Approx(-9000.0));
   CHECK_THAT(
       loop_refusal_of(replaced(kExample, "stiffness = \"0 N/m\"", "stiffness = \"-9 kN/m\"")),
-      Catch::Contains("makes no sense for stiffness"));
+      Catch::Contains("is not plausible for stiffness"));
 }
 
 TEST_CASE("load_campaign: all of a load table or nothing, and no polynomial beside it",

@@ -59,7 +59,7 @@ TEST_CASE("load_campaign: a wrong report names key and line", "[datasets]") {
     }
   }
   CHECK_THROWS_WITH(load_text(test::replaced(kExample + kReport, "channel = \"position\"\n", "")),
-                    Catch::Contains("the channel that the sensor is of"));
+                    Catch::Contains("the channel that the sensor measures"));
 }
 
 TEST_CASE("load_campaign: the uncertainty of a sensor is that of its channel", "[datasets]") {

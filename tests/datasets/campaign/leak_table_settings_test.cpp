@@ -106,7 +106,8 @@ TEST_CASE("leak_table_settings: errors name the key and what was expected", "[da
   CHECK_THAT(complaint("waveform = \"square\"", "waveform = \"chirp\""),
              Contains("leak_table.signal") && Contains("square"));
   CHECK_THAT(complaint("mass = {", "masse = {"), Contains("unknown parameter 'masse'"));
-  CHECK_THAT(complaint("mass = {", "leakage_coefficient = {"), Contains("what the table varies"));
+  CHECK_THAT(complaint("mass = {", "leakage_coefficient = {"),
+             Contains("the parameter that the table varies"));
   CHECK_THAT(complaint("\"85 kg\"", "\"85 m\""), Contains("leak_table.assumptions.mass.value"));
   CHECK_THAT(complaint("\"85 kg\", source = \"Table 2\"", "\"85 kg\""), Contains("source"));
   CHECK_THAT(complaint("start = \"40 V/m\"", "start = \"1 V/m\""), Contains("lower <= start"));
@@ -114,7 +115,7 @@ TEST_CASE("leak_table_settings: errors name the key and what was expected", "[da
              Contains("expected fit = true too"));
   CHECK_THAT(complaint("left_out = [\"std\"]", "left_out = [\"sdt\"]"), Contains("std"));
   CHECK_THAT(complaint("reason = \"unknown\"\n", ""), Contains("reason"));
-  CHECK_THAT(complaint("left_out = [\"std\"]\n", ""), Contains("nothing is left out"));
+  CHECK_THAT(complaint("left_out = [\"std\"]\n", ""), Contains("no value is left out"));
   CHECK_THAT(complaint("mean = 0.0508", "mean = 0"), Contains("above zero"));
 }
 
@@ -167,7 +168,7 @@ TEST_CASE("free_assumptions: exactly the named ones, with bounds", "[datasets]")
   CHECK_THROWS_WITH(free_assumptions(settings, campaign, {"kq"}),
                     Contains("unknown parameter 'kq'"));
   CHECK_THROWS_WITH(free_assumptions(settings, campaign, {"leakage_coefficient"}),
-                    Contains("what the table varies"));
+                    Contains("the parameter that the table varies"));
   CHECK_THROWS_WITH(free_assumptions(settings, campaign, {"leakage_smoothing"}),
                     Contains("cannot be fitted"));
   CHECK_THROWS_WITH(free_assumptions(settings, campaign, {"stiffness"}),

@@ -204,7 +204,7 @@ TEST_CASE("load_campaign: the controller of a linkage may act on torque or press
         load_text(replaced(text, "type = \"pid\"",
                            "type = \"pid\"\nangular_velocity_feedforward = \"1 V s/rad\"\n"
                            "derivative_filter = \"200 rad/s\"")),
-        Catch::Contains("angular_velocity_feedforward feeds the rate of an angle forward, and this "
+        Catch::Contains("angular_velocity_feedforward feeds the rate of an angle forward, but this "
                         "loop is on " +
                         std::string(row.feedback) + ": expected feedback = \"angle\""));
   }
@@ -222,10 +222,10 @@ TEST_CASE("load_campaign: what does not go together in a loop on the angle", "[d
             "joint, its torque or the pressure difference: expected \"angle\", \"torque\" or "
             "\"load_pressure\""},
         Row{"type = \"pid\"", "type = \"pid\"\nfeedback = \"torque\"",
-            "angle_kp is a gain of a loop on angle, and this one is on torque: expected torque_kp, "
+            "angle_kp is a gain of a loop on angle, but this one is on torque: expected torque_kp, "
             "or feedback = \"angle\""},
         Row{"angle_kp", "torque_kp = \"1 mV/(N m)\"\nangle_kp",
-            "torque_kp is a gain of a loop on torque, and this one is on angle"},
+            "torque_kp is a gain of a loop on torque, but this one is on angle"},
         Row{"angle_kp = \"0.2 V/deg\"\n", "", "the pid controller has no angle_kp"},
         Row{"angle_kp", "kp", "unknown parameter 'kp'"},
         Row{"angle_kp", "angle_kd = \"1 V s/rad\"\nangle_kp", "angle_kd without derivative_filter"},
@@ -276,7 +276,8 @@ TEST_CASE("load_campaign: what does not go together on a linkage", "[datasets]")
            Row{gain, "pilot_gain = \"0.3 mm/bar\"\nvalve_gain = \"0.1 mm/V\"",
                "pilot_gain and valve_gain are both given: expected valve_gain (an electric valve"},
            Row{gain, "", "the gain of the valve is unknown"},
-           Row{gain, "valve_gain = \"0.1 mm/V\"", "pilot_dead_band is of a pilot-operated valve"},
+           Row{gain, "valve_gain = \"0.1 mm/V\"",
+               "pilot_dead_band applies to a pilot-operated valve"},
            Row{gain, "pilot_gain = \"0.3 mm/bar\"\nvalve_offset = \"0.1 V\"",
                "valve_offset is in volts"},
            Row{gain, "pilot_gain = \"0.3 mm/bar\"\npump_flow = \"100 L/min\"",
@@ -299,13 +300,13 @@ TEST_CASE("load_campaign: what does not go together on a linkage", "[datasets]")
                "the controller's output is a voltage, and pilot_gain makes the pilot pressure"},
            Row{"angle = { column",
                "position = { column = \"x_m\", unit = \"m\" }\nangle = { column",
-               "the plant linkage turns an arm, and its motion is the angle of the joint"},
+               "the plant linkage moves an arm, so its motion is the angle of the joint"},
            Row{"angle = { column",
                "force = { column = \"F_N\", unit = \"N\", role = \"output\" }\nangle = { column",
                "expected the channel torque (unit \"N m\")"},
            Row{"angle = { column",
                "base_acceleration = { column = \"a\", unit = \"m/s2\" }\nangle = { column",
-               "how its base moves the arm depends on lengths"},
+               "the effect of a moving base depends on lengths"},
            Row{"unit = \"deg\", sd", "unit = \"mm\", sd", "angle"},
        }) {
     CAPTURE(row.with);
@@ -345,7 +346,7 @@ TEST_CASE("load_campaign: exactly one law gives the travel of a linkage", "[data
   };
   const std::string lever = kLever;
   for (const Row& row :
-       {Row{"", "how far the piston travels per angle is unknown: expected lever, or a triangle"},
+       {Row{"", "the travel of the piston per angle is unknown: expected lever, or a triangle"},
         Row{"lever_gradient = \"1 m/rad2\"", "by a polynomial needs lever: expected lever as well"},
         Row{lever + "\n" + kTriangle,
             "triangle_base (the travel of the piston by a triangle) is combined with lever"},
@@ -378,8 +379,9 @@ TEST_CASE("load_campaign: a rotary actuator has a displacement, and no linkage",
     CAPTURE(other);
     CHECK_THROWS_WITH(
         load_text(replaced(vane, displacement, displacement + "\n" + other)),
-        Catch::Contains("is of a cylinder on a linkage, and displacement_per_radian makes the rig "
-                        "a rotary actuator: expected one of them"));
+        Catch::Contains(
+            "applies to a cylinder on a linkage, but displacement_per_radian makes the rig "
+            "a rotary actuator: expected only one of them"));
   }
   CHECK_THROWS_WITH(load_text(replaced(vane, displacement, "")),
                     Catch::Contains("no value for area_a: expected a known value or a start in "

@@ -98,10 +98,10 @@ TEST_CASE("load_campaign: what does not go together behind a valve of two chambe
   for (const Row& row : {
            Row{"valve_gain = \"0.1 mm/V\"", "pilot_gain and valve_gain are both given"},
            Row{"overlap_a_to_tank = \"0.1 V\"",
-               "overlap_a_to_tank is in volts, and pilot_gain makes the pilot pressure the drive: "
-               "expected overlap_a_to_tank out, or return_dead_band"},
-           Row{"valve_exponent = 2", "or pilot_exponent for a power law"},
-           Row{"valve_null_opening = \"0.1 V\"", "or valve_null_leakage for a leak"},
+               "overlap_a_to_tank is in volts, but pilot_gain makes the pilot pressure the drive: "
+               "expected return_dead_band"},
+           Row{"valve_exponent = 2", "expected pilot_exponent for a power law"},
+           Row{"valve_null_opening = \"0.1 V\"", "expected valve_null_leakage for a leak"},
            Row{"pilot_exponent = 2\nopening_40 = 0.3",
                "opening_40 (an opening by a table) is combined with pilot_exponent"},
            Row{"opening_40 = 0.9", "opening_60 = 0.6 is below opening_40 = 0.9"},
@@ -133,14 +133,15 @@ TEST_CASE("load_campaign: what does not go together behind a valve of two chambe
   std::string stiff = replaced(kSlide, "supply_resistance = \"1e9 Pa s/m3\"\n", "");
   stiff = replaced(stiff, "supply_capacity = \"1e-11 m3/Pa\"\n", "");
   for (const auto& [lines, message] :
-       {std::pair{"load_sensing_margin = \"20 bar\"", "a pump that follows the load needs"},
+       {std::pair{"load_sensing_margin = \"20 bar\"", "a load-sensing pump needs"},
         std::pair{"accumulator_volume = \"1 L\"", "an accumulator fills through"},
         std::pair{"pump_flow = \"20 L/min\"", "a pump of limited flow needs"}})
     CHECK_THROWS_WITH(load_text(replaced(stiff, kGain, kGain + lines + "\n")),
                       Catch::Contains(message));
   for (const auto& [line, message] :
-       {std::pair{"return_dead_band = \"8 bar\"", "return_dead_band is of a pilot-operated valve"},
-        std::pair{"bypass_range = \"8 bar\"", "bypass_range is of a pilot-operated valve"},
+       {std::pair{"return_dead_band = \"8 bar\"",
+                  "return_dead_band applies to a pilot-operated valve"},
+        std::pair{"bypass_range = \"8 bar\"", "bypass_range applies to a pilot-operated valve"},
         std::pair{"valve_bypass_range = \"8 V\"", "valve_bypass_range without a bypass"}})
     CHECK_THROWS_WITH(load_text(replaced(electric(), "valve_gain = \"0.1 mm/V\"\n",
                                          std::string("valve_gain = \"0.1 mm/V\"\n") + line + "\n")),
@@ -179,7 +180,7 @@ TEST_CASE("load_campaign: feed-forward is of a position loop with a filter", "[d
   CHECK_THROWS_WITH(load_text(loop("feedback = \"force\"\nforce_kp = \"1 V/kN\"\n"
                                    "derivative_filter = \"300 rad/s\"\n"
                                    "acceleration_feedforward = \"0.1 V s2/m\"\n")),
-                    Catch::Contains("feeds the rate of a position forward, and this loop is on "
+                    Catch::Contains("feeds the rate of a position forward, but this loop is on "
                                     "force"));
   const Campaign campaign = load_text(loop(gains + "derivative_filter = \"300 rad/s\"\n"));
   CHECK(values_in(campaign, campaign.conditions.front())["velocity_feedforward"] == 2.0);
@@ -237,9 +238,9 @@ TEST_CASE("load_campaign: a full scale belongs to a command in % or mA", "[datas
         Row{command, "unit = \"mA\", full_scale = \"0 mA\" }", "full_scale"},
         Row{command, "unit = \"mA\", full_scale = \"10 V\" }", "full_scale"},
         Row{command, "unit = \"V\", full_scale = \"10 V\" }",
-            "has a meaning only for a command in % or mA"},
+            "is meaningful only for a command in % or mA"},
         Row{position, "position = { column = \"x_mm\", unit = \"mm\", full_scale = \"1 m\"",
-            "has a meaning only for a command in % or mA"},
+            "is meaningful only for a command in % or mA"},
         Row{position, "position = { column = \"x_mm\", unit = \"%\"",
             "'%' is the unit of a pure number"},
         Row{command, "unit = \"bar\" }", "is the unit of a pressure"}}) {

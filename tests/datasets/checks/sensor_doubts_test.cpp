@@ -45,7 +45,7 @@ TEST_CASE("sensor doubts: an uncertainty that counts nowhere is told", "[dataset
     return doubts.empty() ? std::string() : doubts[0].words;
   };
   CHECK(words("position", "0.02 mm (k = 2)").empty());
-  CHECK_THAT(words("position", "0.02 mm"), Contains("\"0.02 mm\", does not count"));
+  CHECK_THAT(words("position", "0.02 mm"), Contains("\"0.02 mm\", is not used"));
   CHECK_THAT(words("Position", "0.02 mm (k = 2)"), Contains("did you mean \"position\""));
   CHECK(words("oil temperature in the tank", "0.5 K").empty());  // it is not used in any result
   ChannelSetting supply;

@@ -57,7 +57,7 @@ TEST_CASE("sensor_warnings: one for each channel and kind, with the longest run"
   REQUIRE(texts.size() == 2);
   CHECK_THAT(texts[0], Contains("position: stays at exactly its highest value") &&
                            Contains("(0.8 m)") && Contains("in 2 repeats") && Contains("a1.csv"));
-  CHECK_THAT(texts[1], Contains("position: does not change while the drive moves on") &&
+  CHECK_THAT(texts[1], Contains("position: does not change while the drive does") &&
                            Contains("200 samples in 1 repeat, the longest run a3.csv from 1 s to "
                                     "1.199 s"));
 }

@@ -161,8 +161,8 @@ TEST_CASE("draft_campaign: a pilot pressure drives a cylinder of two chambers, u
   CHECK(drive_channel(campaign) == Channel::pilot_pressure);
 
   draft = draft_campaign({folder.write("loop.csv", loop)}, folder.path()).text;
-  CHECK_THAT(draft, Contains("# 'pilot_out_bar' looks like a pilot pressure, which drives no rig "
-                             "with a controller"));
+  CHECK_THAT(draft, Contains("# 'pilot_out_bar' looks like a pilot pressure, but a rig with a "
+                             "controller has a reference"));
   CHECK_THAT(draft, Contains("\nvalve_gain = ") && !Contains("pilot_gain"));
 }
 
@@ -238,8 +238,9 @@ TEST_CASE("draft_campaign: a joint may have a torque, and a slide has none", "[d
   CHECK_THAT(draft, Contains("\ntorque = { column = \"torque_Nm\", unit = \"N m\" }"));
   text.replace(text.find("angle_deg"), 9, "x_mm");
   draft = draft_campaign({folder.write("s.csv", text)}, folder.path()).text;
-  CHECK_THAT(draft, Contains("# 'torque_Nm' looks like a torque, which only a rig with an angle") &&
-                        !Contains("\ntorque = "));
+  CHECK_THAT(draft,
+             Contains("# 'torque_Nm' looks like a torque, but no column looks like an angle") &&
+                 !Contains("\ntorque = "));
 }
 
 TEST_CASE("draft_campaign: both pressures and a position suggest a load by a table", "[datasets]") {
@@ -367,7 +368,7 @@ TEST_CASE("draft_campaign: a MAT file, and a column in volts", "[datasets]") {
   CHECK_THAT(draft, Contains("command = { column = \"log.u_V\", unit = \"V\" }"));
   CHECK_THAT(draft, Contains("position = { column = \"log.position_V\", unit = \"FILL IN\" }") &&
                         Contains("the column is in V"));
-  CHECK_THAT(draft, Contains("not generated: its samples show an offset, a phase"));
+  CHECK_THAT(draft, Contains("not simulated as generated: its samples show an offset, a phase"));
 }
 
 TEST_CASE("draft_campaign: a summary beside the recordings is left out", "[datasets]") {

@@ -99,7 +99,7 @@ TEST_CASE("record_reader: formats that are not read are named, with what to expo
     CAPTURE(row.file);
     CHECK_THROWS_WITH(
         record_reader(folder.write(row.file, row.bytes)),
-        Catch::Contains("which rigcal does not read; expected ") && Catch::Contains(row.says));
+        Catch::Contains("which rigcal cannot read; expected ") && Catch::Contains(row.says));
   }
   CHECK(record_reader(folder.write("minus.csv", "-1\n5\n")).name == "CSV");
 }

@@ -205,7 +205,7 @@ TEST_CASE("trend_sentence: how fast, how surely, and how long it takes", "[diagn
   CHECK_THAT(
       diagnosis::trend_sentence(trend),
       Contains("falls by 6.00 percentage points of the servo flow in 30 days (4.50 to 7.50)") &&
-          Contains("farther off a line"));
+          Contains("scatter about the line"));
 }
 
 TEST_CASE("trend_sentence: none", "[diagnosis]") {

@@ -98,7 +98,7 @@ TEST_CASE("models: what is not nested is told by the criteria alone", "[report]"
   const Json json = models_json({offset, both});
   CHECK(json[1]["likelihood_ratio"].is_null());
   CHECK_THAT(json[1]["reason"].get<std::string>(),
-             Contains("friction does not contain offset: valve_offset is free in one alone"));
+             Contains("friction does not contain offset: valve_offset is free in only one"));
   CHECK_THAT(json[1]["verdict"].get<std::string>(), Contains("friction is preferred"));
   ComparedJson supply = with_friction("supply", 499.0);
   supply.result["parameters"][1]["value"] = 7e6;
@@ -133,7 +133,7 @@ TEST_CASE("models: what cannot be compared at all, and why", "[report]") {
   CHECK_THAT(reason(plain, other), Contains("same records"));
   other = with_friction("other", 499.0);
   other.result["weights"][0]["sd"] = 2e-5;
-  CHECK_THAT(reason(plain, other), Contains("count differently"));
+  CHECK_THAT(reason(plain, other), Contains("weighted differently"));
   other = with_friction("other", 499.0);
   other.result["status"] = "stopped";
   CHECK_THAT(reason(plain, other), Contains("other did not converge"));

@@ -75,7 +75,7 @@ TEST_CASE("read_leak_table: what is wrong is named", "[report]") {
   CHECK_THAT(table_complaint("mass_kg", "mass_g"), Contains("such as mass_kg"));
   CHECK_THAT(table_complaint("\"square\"", "\"saw\""), Contains("entries[2].waveform"));
   CHECK_THAT(table_complaint("[[0.34,0.36]]", "[]"),
-             Contains("entries[0].coefficients_ci95") && Contains("for each coefficient"));
+             Contains("entries[0].coefficients_ci95") && Contains("per coefficient"));
 }
 
 TEST_CASE("rig_differences: names what flows depend on, with both values", "[report]") {

@@ -26,7 +26,7 @@ TEST_CASE("budget_table: columns of days and shifts only where a budget has them
   const doc::Table plain = budget_table("Share of", {{"sine", {"%", 1.0}, &budget}});
   CHECK_FALSE(has(plain, "Days"));
   CHECK_FALSE(has(plain, "Shift"));
-  CHECK_FALSE(has(plain, "Beside it: numerics, at most"));
+  CHECK_FALSE(has(plain, "In addition: numerical error, at most"));
   calib::Budget95 of_another_day = budget;
   of_another_day.lines.push_back({"days", "days", 12.0});
   of_another_day.combined = 13.0;
@@ -36,7 +36,7 @@ TEST_CASE("budget_table: columns of days and shifts only where a budget has them
       "Share of", {{"sine", {"%", 1.0}, &budget}, {"square", {"%", 1.0}, &of_another_day}});
   CHECK(has(both, "Days"));
   CHECK(has(both, "Shift"));
-  CHECK(has(both, "Beside it: numerics, at most"));
+  CHECK(has(both, "In addition: numerical error, at most"));
   for (const doc::Table& table : {plain, both})
     for (const doc::Row& row : table.rows) CHECK(row.cells.size() == table.columns.size());
 }

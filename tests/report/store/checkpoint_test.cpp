@@ -66,7 +66,7 @@ TEST_CASE("checkpoint: forged numbers are refused", "[report]") {
     std::string from, to, word;
   };
   for (const Case& each : std::vector<Case>{
-           {"\"number\": 2", "\"number\": 1", "numbered from 1"},
+           {"\"number\": 2", "\"number\": 1", "numbers from 1"},
            {"\"number\": 2", "\"number\": -5", "key 'starts[1].number': found -5"},
            {"\"number\": 2", "\"number\": 2.5", "key 'starts[1].number': found 2.5"},
            {"\"iterations\": 7", "\"iterations\": 1e300",
@@ -75,7 +75,7 @@ TEST_CASE("checkpoint: forged numbers are refused", "[report]") {
            {"\"best\": 1", "\"best\": 3", "'best': found 3, expected a whole number from 0 to 2"},
            {"\"evaluations\": 20", "\"evaluations\": null", "'evaluations': found no number"},
            {"\"iterations\": 7", "\"iterations\": 8", "was changed since it was written"},
-           {"\"best_z\"", "\"best_y\"", "is no checkpoint of rigcal fit"},
+           {"\"best_z\"", "\"best_y\"", "is not a checkpoint of rigcal fit"},
        }) {
     const auto file = folder.write("c.json", replaced(text, each.from, each.to));
     CHECK_THROWS_WITH(read_checkpoint(file, {}), Contains("c.json: ") && Contains(each.word));

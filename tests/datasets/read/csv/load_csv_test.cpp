@@ -114,7 +114,7 @@ TEST_CASE("load_csv: a given separator counts", "[datasets]") {
   wanted.separator = ',';
   CHECK(load("t;s,x\n0,1.5\n", wanted).columns == NumberColumns{{0}, {1.5}});
   wanted.separator = '|';
-  CHECK_THAT(refusal("t|x\n0|1\n", wanted), Contains("'|' is no separator") && Contains("tab"));
+  CHECK_THAT(refusal("t|x\n0|1\n", wanted), Contains("'|' cannot separate") && Contains("tab"));
 }
 
 TEST_CASE("load_csv: decimal commas where the separator allows them", "[datasets]") {
@@ -242,7 +242,7 @@ TEST_CASE("load_csv: duplicate names matter where they are wanted", "[datasets]"
 
 TEST_CASE("load_csv: a second header line that is none of units", "[datasets]") {
   CHECK_THAT(refusal("t,x\ntime,travel\n0,a\n"),
-             StartsWith("a.csv:2:1: no numbers in the first row ('time' in column 't')") &&
+             StartsWith("a.csv:2:1: the first row has no numbers ('time' in column 't')") &&
                  Contains("x [mm]"));
   CHECK(load("t,x\n[s],\n0,1\n").columns == NumberColumns{{0}, {1}});
 }
@@ -263,7 +263,7 @@ TEST_CASE("load_csv: rows without a number are left out on request only", "[data
   // Only a number may be missing.
   CHECK_THROWS_WITH(load("t,x,y\n0,1,2\n0.1,2\n", tolerant), Contains("2 columns; expected 3"));
   CHECK_THROWS_WITH(load("t,x,y\ntime,travel,y\n0,a,2\n", tolerant),
-                    Contains("no numbers in the first row"));
+                    Contains("the first row has no numbers"));
   CHECK(load("t,x,y\n0,1,2\n", tolerant).left_out.empty());
   CHECK_THROWS_WITH(load("t,x,y\n0,a,2\n1,b,2\n", tolerant),
                     Contains("no row has a number in every column: line 2 has 'a' in column 'x'"));

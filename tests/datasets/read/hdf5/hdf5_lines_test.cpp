@@ -338,7 +338,7 @@ TEST_CASE("load_hdf5: 12 million numbers of one file, those of other columns cou
              Contains("'/x' has 100000 rows, which with the 12000000 numbers of other columns"));
   CHECK_THAT(read_refusal(path, {"/wide(:,1)"}),
              Contains("'/wide(:,1)' has arrays of 2000 numbers each, 7000 of them: more than "
-                      "12000000 in all"));
+                      "12000000 numbers in total"));
 }
 
 TEST_CASE("load_hdf5: units by any of their attributes, the first that holds a text",

@@ -183,7 +183,7 @@ TEST_CASE("load_hdf5: time by the distance of samples", "[datasets]") {
   CHECK(std::count_if(columns.begin(), columns.end(),
                       [](const RecordColumn& column) { return column.is_time; }) == 3);
   CHECK_THAT(read_refusal(path, {"/log/x@wf_increment", "/log/short"}),
-             Contains("'/log/x@wf_increment' counts the 3 samples of its dataset, but "
+             Contains("'/log/x@wf_increment' applies to the 3 samples of its dataset, but "
                       "'/log/short' has 2"));
   CHECK_THAT(read_refusal(path, {"/log/x@wf_increment", "/log/short@dt"}),
              Contains("'/log/short@dt' counts the 2 samples of its dataset, but "
@@ -227,7 +227,7 @@ TEST_CASE("load_hdf5: what is no column of numbers", "[datasets]") {
       {{"/run/hole"}, "row 3 of '/run/hole' is nan; expected a finite number"},
       {{"/run/edge"}, "row 1 of '/run/edge' is -inf; expected a finite number"},
       {{"/run/position", "/run/short"},
-       "'/run/short' has 2 rows, but '/run/position' has 3; expected as many"},
+       "'/run/short' has 2 rows, but '/run/position' has 3; expected the same number"},
       {{"/run/data"}, "'/run/data' has 3 x 2 elements; expected a vector, or one line of it"},
       {{"/run/data(:,3)"}, "'/run/data(:,3)' is outside of '/run/data', which has 3 x 2"},
       {{"/run/data(:)"}, "expected 2 entries between the brackets"},
@@ -282,7 +282,7 @@ TEST_CASE("load_hdf5: no other file is opened, and no foreign filter loaded", "[
 TEST_CASE("load_hdf5: what is no HDF5 file", "[datasets]") {
   const TemporaryFolder folder;
   CHECK_THAT(read_refusal(folder.write("a.h5", "t,x\n0,1\n"), {"/t"}),
-             Contains("a.h5: is truncated or damaged, or no HDF5 file"));
+             Contains("a.h5: is truncated or damaged, or not an HDF5 file"));
   CHECK_THAT(read_refusal(folder.write("b.h5", ""), {"/t"}), Contains("b.h5: "));
   CHECK_THAT(read_refusal(folder.path() / "none.h5", {"/t"}), Contains("cannot be opened"));
   CHECK_THAT(message_when([&] {

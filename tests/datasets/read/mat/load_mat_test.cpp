@@ -181,7 +181,7 @@ TEST_CASE("load_mat: what is no column of numbers", "[datasets]") {
       {"log.tim", {"'log'", "unknown field 'tim'", "did you mean 'time'?"}},
       {"log", {"'log' is a struct; expected real numbers"}},
       {"log.signals.values", {"'log.signals' is a struct of 1 x 2", "log.signals(1)"}},
-      {"log.signals(3).values", {"'log.signals' is a struct of 1 x 2, and element 3"}},
+      {"log.signals(3).values", {"'log.signals' is a struct of 1 x 2, which has no element 3"}},
       {"log.signals(2).values", {"has 3 x 2 elements", "log.signals(2).values(:,1)"}},
       {"log.signals(2).values(:,3)", {"is outside of 'values', which has 3 x 2"}},
       {"wide(:,1)", {"is outside of 'wide', which has 2 x 1 x 3"}},
@@ -192,7 +192,7 @@ TEST_CASE("load_mat: what is no column of numbers", "[datasets]") {
       {"position(:", {"'position(:' lacks a closing bracket"}},
       {"position(2)", {"does not name a whole row or column"}},
       {"log(:).time", {"takes all elements of 'log'"}},
-      {"position(0,:)", {"has a subscript that is no number from 1"}},
+      {"position(0,:)", {"has a subscript that is not a number from 1"}},
       {"position mm", {"goes on with 'mm'"}},
       {".position", {"lacks the name of a variable"}}};
   const TemporaryFolder folder;
@@ -237,7 +237,7 @@ TEST_CASE("load_mat: lengths that differ, and time that does not increase", "[da
             {mat_array("t", Numbers{0, 1, 2}), mat_array("x", Numbers{1, 2}),
              mat_array("back", Numbers{0, 1, 1})});
   CHECK_THAT(message_of(path, {{"t", "x"}, "t"}),
-             Contains("'x' has 2 elements, but 't' has 3; expected as many"));
+             Contains("'x' has 2 elements, but 't' has 3; expected the same number"));
   CHECK_THAT(message_of(path, {{"back", "t"}, "back"}),
              Contains("time 'back' does not increase: element 3 is 1 after 1"));
   CHECK_THROWS_AS(load_mat_record(path, {{"x"}, "t"}), std::invalid_argument);
@@ -322,7 +322,7 @@ TEST_CASE("load_mat: damaged compressed data do not pass", "[datasets]") {
 TEST_CASE("load_mat: what is no MAT file", "[datasets]") {
   const TemporaryFolder folder;
   CHECK_THAT(message_of(folder.write("a.mat", std::string(400, 'x')), {{"t"}, ""}),
-             Contains("is no MAT file of version 5 or 7.3"));
+             Contains("is not a MAT file of version 5 or 7.3"));
   CHECK_THAT(message_of(folder.write("b.mat", ""), {{"t"}, ""}), Contains("is shorter than"));
   CHECK_THAT(message_of(folder.path() / "none.mat", {{"t"}, ""}), Contains("cannot be opened"));
   CHECK_THAT(message_of(folder.path(), {{"t"}, ""}), Contains("is a folder"));

@@ -176,10 +176,10 @@ TEST_CASE("level 5: nothing that a file says of itself is believed", "[datasets]
   };
   const std::vector<Case> cases{
       {kLittle.tag(14, 0xFFFFFFF0U) + eight_zeros, "longer than its container"},
-      {kLittle.tag(9, 8) + eight_zeros, "which is no variable"},
-      {kLittle.raw(std::uint32_t{14} | 4U << 16U) + "abcd", "which is no variable"},
-      {kLittle.numbers("x", {1, 2}, three), "not as many numbers"},
-      {kLittle.numbers("x", {1, 4}, three), "not as many numbers"},
+      {kLittle.tag(9, 8) + eight_zeros, "which is not that of a variable"},
+      {kLittle.raw(std::uint32_t{14} | 4U << 16U) + "abcd", "which is not that of a variable"},
+      {kLittle.numbers("x", {1, 2}, three), "does not match its dimensions"},
+      {kLittle.numbers("x", {1, 4}, three), "does not match its dimensions"},
       {kLittle.numbers("x", {1, 5}, kLittle.raw(std::uint32_t{2} | 5U << 16U) + "abcd"),
        "more bytes than its tag says"},
       {kLittle.element(14,
@@ -191,7 +191,7 @@ TEST_CASE("level 5: nothing that a file says of itself is believed", "[datasets]
       {kLittle.numbers("x", {3}, three), "without its dimensions"},
       {kLittle.numbers("x", {1, 3}, three + eight_zeros), "shorter than it says"},
       {kLittle.numbers(std::string(5000, 'x'), {1, 3}, three), "description of 5000 bytes"},
-      {kLittle.numbers("x\n", {1, 3}, three), "no character"},
+      {kLittle.numbers("x\n", {1, 3}, three), "not a character"},
       {kLittle.element(14, kLittle.array_head(99, {1, 3}, "x") + three), "unknown class 99"},
       {kLittle.element(14, kLittle.array_head(6, {1, 3}, "x") + kLittle.element(16, "abc")),
        "without numbers"},
@@ -202,7 +202,7 @@ TEST_CASE("level 5: nothing that a file says of itself is believed", "[datasets]
       {structure({100, 1}, 8, "f" + std::string(7, '\0'), kLittle.tag(14, 0)),
        "than there is room for"},
       {structure({1, 1}, 8, "f" + std::string(7, '\0'), kLittle.element(9, eight_zeros)),
-       "a field that is no array"},
+       "a field that is not an array"},
       {nested(40), "structs within each other"},
       {kLittle.tag(15, bomb.size()) + bomb, "its data end early"},
       {kLittle.tag(15, 20) + std::string(20, 'x'), "incorrect header check"},
@@ -229,7 +229,7 @@ TEST_CASE("level 5: compressed data end where their array does", "[datasets]") {
     return kLittle.file(kLittle.tag(15, data.size()) + data);
   };
   CHECK(refusal(compressed(deflated(good))) == "no error");
-  CHECK_THAT(refusal(compressed(deflated(good + "more"))), Contains("end before it does"));
+  CHECK_THAT(refusal(compressed(deflated(good + "more"))), Contains("end before the file does"));
   CHECK_THAT(refusal(compressed(deflated(good) + "more")), Contains("more follows"));
   std::string wrong_sum = deflated(good);
   wrong_sum.back() = static_cast<char>(wrong_sum.back() ^ 1);

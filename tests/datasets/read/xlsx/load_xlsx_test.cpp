@@ -140,9 +140,9 @@ TEST_CASE("load_xlsx: what is no number is named with its cell", "[datasets]") {
       {"<c r=\"@\" t=\"e\"><f>1/0</f><v>#DIV/0!</v></c>", "Log!B3 is the error #DIV/0!"},
       {"<c r=\"@\" t=\"str\"><f>A1</f><v>open</v></c>", "Log!B3 is the text 'open'"},
       {"<c r=\"@\" t=\"b\"><v>1</v></c>", "Log!B3 is a truth value"},
-      {"<c r=\"@\"><f>A1+1</f></c>", "Log!B3 has a formula that was never computed"},
-      {"<c r=\"@\"><f>A1+1</f><v></v></c>", "Log!B3 has a formula that was never computed"},
-      {"<c r=\"@\" t=\"n\"><f>A1+1</f><v/></c>", "Log!B3 has a formula that was never computed"},
+      {"<c r=\"@\"><f>A1+1</f></c>", "Log!B3 has a formula without a stored result"},
+      {"<c r=\"@\"><f>A1+1</f><v></v></c>", "Log!B3 has a formula without a stored result"},
+      {"<c r=\"@\" t=\"n\"><f>A1+1</f><v/></c>", "Log!B3 has a formula without a stored result"},
       {"<c r=\"@\"><v>1</v><v>2</v></c>", "Log!B3 has two values"},
       {"<c r=\"@\"><v>1<y/>2</v></c>", "Log!B3 has an element within its value"},
       {"<c r=\"@\"><v>1</v><x:v xmlns:x=\"urn:x\">2</x:v></c>",
@@ -152,8 +152,8 @@ TEST_CASE("load_xlsx: what is no number is named with its cell", "[datasets]") {
        "Log!B3 shows a date or a time of day (stored as 45000.5); expected a number"},
       {"<c r=\"@\" s=\"3\"><v>0.001</v></c>", "Log!B3 shows a date or a time of day"},
       {"<c r=\"@\" t=\"d\"><v>2026-01-01T00:00:00</v></c>", "Log!B3 shows a date"},
-      {"<c r=\"@\"><v>1,5</v></c>", "Log!B3 is '1,5', which is no finite number"},
-      {"<c r=\"@\"><v>1e999</v></c>", "Log!B3 is '1e999', which is no finite number"},
+      {"<c r=\"@\"><v>1,5</v></c>", "Log!B3 is '1,5', which is not a finite number"},
+      {"<c r=\"@\"><v>1e999</v></c>", "Log!B3 is '1e999', which is not a finite number"},
       {"", "Log!B3 is empty, but rows follow or other columns go on; expected a number"},
       {"<c r=\"@\" s=\"1\"/>", "Log!B3 is empty"},
       {"<c r=\"@\" t=\"s\"><v>7</v></c>", "Log!B3 refers to a text that the workbook lacks"},
@@ -201,7 +201,7 @@ TEST_CASE("load_xlsx: formulas at the end do not end the record", "[datasets]") 
   for (const char* formula : {"<c r=\"@\"><f>A3+1</f><v></v></c>", "<c r=\"@\"><f>A3+1</f><v/></c>",
                               "<c r=\"@\"><f>A3+1</f></c>"}) {
     CAPTURE(formula);
-    CHECK_THAT(refusal_of_sheet(rows(formula)), Contains("Log!A4 has a formula that was never"));
+    CHECK_THAT(refusal_of_sheet(rows(formula)), Contains("Log!A4 has a formula without"));
   }
   const TemporaryFolder folder;
   const auto path = folder.path() / "a.xlsx";
@@ -217,7 +217,7 @@ TEST_CASE("load_xlsx: formulas at the end do not end the record", "[datasets]") 
   const std::string zero = "<c r=\"@\"><f>A2</f><v>0</v></c>";
   for (const std::string yes : {"1", "true"})
     CHECK_THAT(read_anew(zero, "<calcPr fullCalcOnLoad=\"" + yes + "\"/>"),
-               Contains("Log!B2 has a formula that was never computed"));
+               Contains("Log!B2 has a formula without a stored result"));
   CHECK(read_anew(zero, "<calcPr/>") == "no error");
   CHECK(read_anew("<c r=\"@\"><f>A2</f><v>3</v></c>", "<calcPr fullCalcOnLoad=\"1\"/>") ==
         "no error");
@@ -281,7 +281,7 @@ TEST_CASE("load_xlsx: sheets by their names", "[datasets]") {
   CHECK(columns[3].name == "'it''s!'!wow!x");
   CHECK(read_columns(path, {columns[3].name}) == Table{{10, 11}});
   CHECK_THAT(read_refusal(path, {"t", "Short!t"}),
-             Contains("'Short!t' has 1 rows, but 't' has 2; expected as many"));
+             Contains("'Short!t' has 1 rows, but 't' has 2; expected the same number"));
   CHECK_THAT(read_refusal(path, {"Shrt!t"}),
              Contains("unknown column 'Shrt!t'") && Contains("unknown sheet 'Shrt'; did you mean "
                                                              "'Short'?"));
@@ -293,8 +293,8 @@ TEST_CASE("load_xlsx: what is no workbook", "[datasets]") {
   const auto message = [&](const std::string& name, const std::string& content) {
     return read_refusal(folder.write(name, content), {"t"});
   };
-  CHECK_THAT(message("a.xlsx", "t,x\n0,1\n"), Contains("a.xlsx: is no .xlsx file"));
-  CHECK_THAT(message("b.xlsx", ""), Contains("is no .xlsx file"));
+  CHECK_THAT(message("a.xlsx", "t,x\n0,1\n"), Contains("a.xlsx: is not an .xlsx file"));
+  CHECK_THAT(message("b.xlsx", ""), Contains("is not an .xlsx file"));
   CHECK_THAT(message("c.xls", "\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1" + std::string(100, '\0')),
              Contains("the format before 2007 (.xls), or an encrypted one"));
   CHECK_THAT(message_when([&] {
@@ -307,7 +307,7 @@ TEST_CASE("load_xlsx: what is no workbook", "[datasets]") {
     return read_refusal(folder.path() / "z.xlsx", {"t"});
   };
   CHECK_THAT(archive({{"mimetype", "application/vnd.oasis.opendocument.spreadsheet"}}),
-             Contains("is a ZIP archive, but no .xlsx workbook"));
+             Contains("is a ZIP archive, but not an .xlsx workbook"));
   CHECK_THAT(archive({{"_rels/.rels",
                        "<Relationships><Relationship Id=\"r\" Type=\"x/"
                        "officeDocument\" Target=\"xl/workbook.bin\"/>"

@@ -264,7 +264,7 @@ TEST_CASE("load_xlsx: columns of unequal length are refused by the cell that is 
       sheet_of(kHeader + numbers(2, 0, 1) + numbers(3, 1, 2) + numbers(4, 2, 3));
   const Book book(xlsx_parts({{"A", two}, {"B", three}}));
   CHECK_THAT(book.refusal({"A!t", "A!x", "B!t"}),
-             Contains("'B!t' has 3 rows, but 'A!t' has 2; expected as many"));
+             Contains("'B!t' has 3 rows, but 'A!t' has 2; expected the same number"));
   CHECK_THAT(book.refusal({"B!t", "A!t"}), Contains("'A!t' has 2 rows, but 'B!t' has 3"));
 }
 
