@@ -330,7 +330,7 @@ TEST_CASE("equations: a cylinder with a load-sensing pump and friction with pre-
   e.set("relief_conductance", 1e-10).set("coulomb_friction", 2e3).set("bristle_stiffness", 1e7);
   e.set("stribeck_friction", 1e3).set("film_velocity", 0.1).set("film_growth_time", 0.05);
   e.set("film_decay_time", 0.2).set("film_dwell_time", 5.0).set("seal_friction", 1e-5);
-  e.set("external_force", 0.0).inputs.external_force_n = Signal::constant(1e4);
+  e.set("external_force", 0.0).inputs.external_load = Signal::constant(1e4);
   e.times_s = {0.0, 0.5};
   const Simulation run = e();
   INFO(run.reason);
@@ -345,7 +345,7 @@ TEST_CASE("equations: a cylinder with a load-sensing pump and friction with pre-
   CHECK(describe_states(rig, equations->layout())[5].unit == "N");
   RigInputs inputs;
   inputs.drive.value = 2e6;
-  inputs.external_force_n.value = 1e4;
+  inputs.external_load.value = 1e4;
   inputs.supply_pressure_pa.value = 2e7;
   inputs.tank_pressure_pa.value = 2e5;
   equations->set(rig.values, inputs, 1.0);
