@@ -232,7 +232,7 @@ std::optional<Channel> measured(Meaning quantity, const Reading& reading) {
     case Meaning::force:
       return Channel::force;
     case Meaning::torque:
-      if (reading.says(Meaning::supply)) return std::nullopt;  // of the pump's shaft
+      if (reading.says(Meaning::supply)) return std::nullopt;  // the shaft of a pump
       return Channel::torque;
     case Meaning::pressure:
       return pressure_at(reading);

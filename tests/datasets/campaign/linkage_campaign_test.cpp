@@ -431,6 +431,46 @@ TEST_CASE("load_campaign: a load that slides has no angle and no torque", "[data
       Catch::Contains("the plant load_pressure has no joint: expected another quantity"));
 }
 
+TEST_CASE("load_campaign: a rotary actuator is stated in the units of its data sheet",
+          "[datasets]") {
+  struct Row {
+    const char* key;
+    const char* text;
+    double si;
+  };
+  const std::string vane =
+      replaced(replaced(replaced(kArm, "lever = \"12 mm/deg\"\n", ""), "area_a = \"75 cm2\"\n", ""),
+               "area_b = \"150 cm2\"\n", "");
+  const double turn = 2.0 * 3.14159265358979;
+  for (const Row& row :
+       {Row{"displacement_per_radian", "50 cm3/rev", 50e-6 / turn},
+        Row{"displacement_per_radian", "50 cm^3/rev", 50e-6 / turn},
+        Row{"displacement_per_radian", "50 mL/turn", 50e-6 / turn},
+        Row{"displacement_per_radian", "3 in3/rev", 4.9161192e-5 / turn},
+        Row{"displacement_per_radian", "8e-6 m^3/rad", 8e-6},
+        Row{"displacement_per_radian", "0.14 cm3/deg", 0.14e-6 * 360.0 / turn},
+        Row{"joint_friction", "20 Nm", 20.0}, Row{"joint_friction", "0.02 kNm", 20.0},
+        Row{"joint_friction", "20 N.m", 20.0},
+        Row{"joint_friction", "15 ft lbf", 15.0 * 1.3558179483314},
+        Row{"joint_damping", "3 N m s/rad", 3.0}, Row{"joint_damping", "3 Nm/(rad/s)", 3.0},
+        Row{"joint_damping", "0.3 N m/rpm", 0.3 * 60.0 / turn},
+        Row{"laminar_leakage", "1 cm3/(min bar)", 1e-6 / 60.0 / 1e5}}) {
+    CAPTURE(row.key, row.text);
+    const std::string line = std::string(row.key) + " = \"" + row.text + "\"\n";
+    std::string text = replaced(vane, "tank_pressure =", line + "tank_pressure =");
+    const bool damping = std::string(row.key) == "joint_damping";
+    if (damping)
+      text = replaced(text, "joint_damping = { start = \"5 kN m s/rad\", fit = true }\n", "");
+    if (std::string(row.key) != "displacement_per_radian")
+      text = replaced(
+          text, "tank_pressure =", "displacement_per_radian = \"8 cm3/rad\"\ntank_pressure =");
+    CHECK(value(load_text(text), row.key) == Approx(row.si).epsilon(1e-9));
+  }
+  CHECK_THROWS_WITH(load_text(replaced(vane, "tank_pressure =",
+                                       "displacement_per_radian = \"50 cm3\"\ntank_pressure =")),
+                    Catch::Contains("'cm3' differs by an angle") && Catch::Contains("50 cm3/rev"));
+}
+
 TEST_CASE("load_campaign: the load of a joint is not the column that its loop follows",
           "[datasets]") {
   std::string text = replaced(arm_loop(), "type = \"pid\"\nangle_kp = \"0.2 V/deg\"",

@@ -71,7 +71,7 @@ TEST_CASE("linkage: under a recorded moment an arm on a spring swings as its equ
 }
 
 TEST_CASE("linkage: a recorded moment turns a free arm by its integral", "[model]") {
-  // Held samples: the moment jumps between them.
+  // The moment jumps from sample to sample.
   Experiment e = sprung_arm();
   e.set("gravity_moment_gradient", 0.0);
   e.inputs.external_load = Signal::held({0.0, 0.3, 0.6}, {400.0, -800.0, 0.0});
