@@ -211,13 +211,6 @@ std::size_t begin_of_last(std::string_view path) {
   return begin;
 }
 
-/// Returns the priority of a unit among several in one name. Units that may also be words or names
-/// have the lowest priority, as in "position in mm".
-int weight_of(std::string_view unit) {
-  if (is_among(kWords, unit)) return 0;
-  return unit.size() == 1 ? 1 : 2;
-}
-
 bool is_number(std::string_view name, const Part& part) {
   return std::all_of(name.begin() + static_cast<std::ptrdiff_t>(part.begin),
                      name.begin() + static_cast<std::ptrdiff_t>(part.end),
@@ -294,12 +287,13 @@ std::optional<UnitInName> behind_a_word(std::string_view name) {
     const std::string_view text = text_of(name, parts[i]);
     const bool ends = i + 1 == parts.size();
     const std::string unit = usual_unit(text, in_capitals);
-    const bool is_pascal = lower_case(text) == "pa";
-    if (unit.empty() || (is_pascal && text != "Pa" && !ends) ||
-        is_chamber(text, text_of(name, parts[i - 1])))
+    const bool is_pascal = unit == "Pa" && text != "Pa";
+    const bool is_word = is_among(kWords, unit);
+    if (unit.empty() || is_chamber(text, text_of(name, parts[i - 1])) || (is_pascal && !ends) ||
+        (is_word && !ends && !is_number(name, parts[i + 1])))
       continue;
-    if (is_among(kWords, unit) && !ends && !is_number(name, parts[i + 1])) continue;
-    const int weight = text != "Pa" && is_pascal ? 0 : weight_of(unit);
+    // A unit that may also be a word or a name has the lowest priority, as in "position in mm".
+    const int weight = is_pascal || is_word ? 0 : text.size() == 1 ? 1 : 2;
     if (weight < most) continue;
     most = weight;
     found = UnitInName{unit, parts[i].begin, parts[i].end, false};
