@@ -168,7 +168,7 @@ bool too_fast(const SimulationInputs& inputs, std::span<const double> times_s) {
     const double period_s = signal->period_s().value_or(0.0);
     return signal->max_step() < least_s || (period_s > 0.0 && period_s < kMostEdges * least_s);
   };
-  return fast(inputs.drive) || fast(inputs.external_force_n) || fast(inputs.supply_pressure_pa) ||
+  return fast(inputs.drive) || fast(inputs.external_load) || fast(inputs.supply_pressure_pa) ||
          fast(inputs.tank_pressure_pa) || fast(inputs.spool_error) ||
          fast(inputs.base_acceleration_m_per_s2) || fast(inputs.oil_temperature_k);
 }
@@ -199,9 +199,9 @@ Simulation simulate(const Rig& rig, const ParameterValues& parameters, std::span
   }
 
   Simulation result;
-  const Layout layout = layout_of(
-      rig, parameters, free, plant_states(rig.plant),
-      inputs.external_force_n.has_value() || inputs.base_acceleration_m_per_s2.has_value());
+  const Layout layout =
+      layout_of(rig, parameters, free, plant_states(rig.plant),
+                inputs.external_load.has_value() || inputs.base_acceleration_m_per_s2.has_value());
   result.reason = bad_parameter(parameters, layout, inputs);
   if (!result.reason.empty()) {
     result.status = SimulationStatus::bad_parameters;

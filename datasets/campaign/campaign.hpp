@@ -280,6 +280,12 @@ inline Channel drive_channel(const Campaign& campaign) { return drive_channel(ca
 Channel motion_channel(const model::Rig& rig);
 inline Channel motion_channel(const Campaign& campaign) { return motion_channel(campaign.rig); }
 
+/// Returns the channel that may be a recorded load on the rig: the force, or the torque of a joint.
+Channel external_load_channel(const model::Rig& rig);
+inline Channel external_load_channel(const Campaign& campaign) {
+  return external_load_channel(campaign.rig);
+}
+
 /// Reads and checks a campaign file.
 ///
 /// @param data_dir  base for relative record paths; the file's folder if empty

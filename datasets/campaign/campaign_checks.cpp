@@ -170,8 +170,37 @@ void check_recorded_drive(const Campaign& campaign, const Condition& condition) 
   }
 }
 
+/// Returns the column of a channel in the files of a pattern; empty if it has none.
+std::string column_in(const Campaign& campaign, const RepeatPattern& pattern, Channel channel) {
+  const auto own = pattern.columns.find(channel);
+  return own != pattern.columns.end() ? own->second : campaign.channels.at(channel).column;
+}
+
+/// Checks that a recorded load is not the column of the drive: a loop on force or torque follows
+/// its reference, and the load is what a transducer on the other side of the rig reads.
+void check_recorded_load(const Campaign& campaign, const Condition& condition) {
+  const Channel load = external_load_channel(campaign);
+  const Channel drive = drive_channel(campaign);
+  const auto setting = campaign.channels.find(load);
+  const auto driving = campaign.channels.find(drive);
+  if (setting == campaign.channels.end() || setting->second.role != ChannelRole::input ||
+      driving == campaign.channels.end() || setting->second.minus != driving->second.minus)
+    return;
+  std::vector<RepeatPattern> patterns = condition.repeats;
+  if (condition.averaged) patterns.push_back({*condition.averaged, {}, {}});
+  for (const RepeatPattern& pattern : patterns) {
+    const std::string column = column_in(campaign, pattern, load);
+    if (column.empty() || column != column_in(campaign, pattern, drive)) continue;
+    fail(condition,
+         fmt::format("the column '{}' is {} and, with role = \"input\", the load {}: expected two "
+                     "columns, or role = \"output\" for {} if the rig's own transducer reads it",
+                     column, info(drive).key, info(load).key, info(load).key));
+  }
+}
+
 void check_record(const Campaign& campaign, const Condition& condition) {
   check_recorded_drive(campaign, condition);
+  check_recorded_load(campaign, condition);
   if (condition.has_record()) {
     if (campaign.time_column.empty()) {
       fail(condition,

@@ -68,7 +68,7 @@ model::SimulationInputs inputs_of(const Campaign& campaign, const Condition& con
   model::SimulationInputs inputs;
   inputs.drive = drive(campaign, condition, record);
   if (record != nullptr) inputs.drive_begins_s = record->time_s.front();
-  inputs.external_force_n = side_input(campaign, record, Channel::force);
+  inputs.external_load = side_input(campaign, record, external_load_channel(campaign));
   inputs.supply_pressure_pa = side_input(campaign, record, Channel::supply_pressure);
   inputs.tank_pressure_pa = side_input(campaign, record, Channel::tank_pressure);
   inputs.base_acceleration_m_per_s2 = side_input(campaign, record, Channel::base_acceleration);

@@ -107,7 +107,7 @@ void check_role(const TomlNode& node, Channel channel, ChannelRole role, Channel
   const bool drives = channel == drive;
   const bool can_be_input = drives || channel == Channel::supply_pressure ||
                             channel == Channel::tank_pressure || channel == Channel::force ||
-                            channel == Channel::base_acceleration ||
+                            channel == Channel::torque || channel == Channel::base_acceleration ||
                             channel == Channel::temperature;
   const bool open_loop = drive == Channel::command || drive == Channel::pilot_pressure;
   const bool can_be_output = info(channel).is_output || (channel == Channel::command && !open_loop);
@@ -428,6 +428,10 @@ Channel drive_channel(const model::Rig& rig) {
 
 Channel motion_channel(const model::Rig& rig) {
   return rig.plant == model::PlantKind::linkage ? Channel::angle : Channel::position;
+}
+
+Channel external_load_channel(const model::Rig& rig) {
+  return rig.plant == model::PlantKind::linkage ? Channel::torque : Channel::force;
 }
 
 }  // namespace rigcal::datasets

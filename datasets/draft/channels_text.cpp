@@ -26,11 +26,12 @@ namespace fs = std::filesystem;
 /// Returns one line of [recording.channels]. If the dimension of the column differs from that of
 /// the channel, the line needs a gain.
 /// @param minus  column for the opposite direction; empty if there is none
+/// @param hint   comment on the channel, where its unit needs none
 std::string channel_line(Channel channel, const std::string& column, const std::string& unit,
-                         const std::string& minus = {}) {
+                         const std::string& minus = {}, const std::string& hint = {}) {
   const ChannelInfo& about = info(channel);
   std::string shown_unit = unit.empty() ? kBlank : unit;
-  std::string remark;
+  std::string remark = hint.empty() ? hint : comment(hint);
   std::string full_scale;
   // A command may be in parts of its range or a current.
   const bool is_share = channel == Channel::command && converts_to(unit, "1");
@@ -92,6 +93,13 @@ std::optional<OneEachWay> one_each_way(const FileColumns& columns, Channel drive
   return found;
 }
 
+/// Says that a torque may be the load instead; empty if the loop controls it, and for other
+/// channels.
+std::string load_hint(Channel channel, const FileColumns& columns) {
+  if (channel != Channel::torque || loop_of(columns) == model::Feedback::torque) return {};
+  return "what the actuator transmits; role = \"input\" if it is a load against positive angle";
+}
+
 /// Returns one line for each recognised channel. A channel occurs once; further columns that look
 /// like it are comments.
 std::string known_channels_text(const FileColumns& columns) {
@@ -124,8 +132,8 @@ std::string known_channels_text(const FileColumns& columns) {
       if (ways && (column.channel == Channel::command || column.channel == Channel::pilot_pressure))
         text += channel_line(column.channel, ways->out, column.unit, ways->in);
       else
-        text +=
-            channel_line(column.channel, column.numbers.empty() ? column.stem : "", column.unit);
+        text += channel_line(column.channel, column.numbers.empty() ? column.stem : "", column.unit,
+                             {}, load_hint(column.channel, columns));
     } else if (column.numbers.empty() && !one_each_way(columns, column.channel)) {
       text += fmt::format("# '{}' also looks like {}\n", in_comment(column.stem),
                           info(column.channel).key);

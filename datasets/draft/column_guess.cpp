@@ -232,6 +232,7 @@ std::optional<Channel> measured(Meaning quantity, const Reading& reading) {
     case Meaning::force:
       return Channel::force;
     case Meaning::torque:
+      if (reading.says(Meaning::supply)) return std::nullopt;  // the shaft of a pump
       return Channel::torque;
     case Meaning::pressure:
       return pressure_at(reading);
@@ -304,9 +305,21 @@ ColumnGuess meaning_of(const Reading& reading) {
   return guess;
 }
 
-/// Whether a text is the "g" of an acceleration, which UDUNITS takes for grams.
-bool is_gravity(std::string_view unit, const Reading& reading) {
-  return unit == "g" && reading.of_name() == Meaning::acceleration;
+/// Returns the unit that is meant by one that is often written for another (may_mean_another):
+/// gravity by the "g" of an acceleration, and newton metres by the "nm" of a torque.
+std::string meant_unit(const std::string& unit, const Reading& reading) {
+  const auto quantity = reading.of_name();
+  if (unit == "g" && quantity == Meaning::acceleration) return "gravity";
+  if (unit == "nm" && quantity == Meaning::torque) return "N m";
+  return unit;
+}
+
+/// Adds what the first part of a name says where its M is a moment: "Mext_Nm", "Msoll_kNm".
+void read_moment(const std::string& first, std::vector<Token>& tokens) {
+  if (!first.starts_with('m') || has(tokens, Meaning::torque)) return;
+  const auto rest = joined_words(std::string_view(first).substr(1), false);
+  tokens.insert(tokens.begin(), rest.begin(), rest.end());
+  tokens.insert(tokens.begin(), {Meaning::torque, true});
 }
 
 }  // namespace
@@ -348,9 +361,11 @@ ColumnGuess guess_column(const std::string& name, const std::string& unit) {
     reading.unit = spelled.empty() ? unit : spelled;
   }
   const bool ends_in_g = !in_name && parts.size() > 1 && parts.back() == "g";
-  if (is_gravity(unit.empty() && ends_in_g ? "g" : std::string_view(unit), reading))
-    reading.unit = "gravity";
+  if (unit.empty() && ends_in_g && reading.of_name() == Meaning::acceleration) reading.unit = "g";
+  reading.unit = meant_unit(reading.unit, reading);
   reading.of_unit = quantity_of_unit(reading.unit);
+  if (reading.of_unit == Meaning::torque && !parts.empty())
+    read_moment(parts.front(), reading.tokens);
   return meaning_of(reading);
 }
 

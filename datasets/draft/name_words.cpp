@@ -20,8 +20,9 @@ constexpr std::array<Word, 23> kValve{
     "stellgroesse", "stellgröße", "stellsignal", "ventil",   "spannung", "steuerspannung",
     "strom",        "current",    "joystick",    "solenoid", "pwm",      "servoventil",
     "servovalve",   "magnet",     "stellwert",   "sv",       "ventile"};
-constexpr std::array<Word, 11> kMeasured{"act",      "actual", "ist",      "istwert",  "fb",  "fbk",
-                                         "feedback", "meas",   "measured", "gemessen", "fdbk"};
+constexpr std::array<Word, 14> kMeasured{"encoder", "drehgeber", "resolver", "act", "actual",
+                                         "ist",     "istwert",   "fb",       "fbk", "feedback",
+                                         "meas",    "measured",  "gemessen", "fdbk"};
 constexpr std::array<Word, 7> kError{"err",        "error",           "fehler",        "deviation",
                                      "abweichung", "regelabweichung", "regeldifferenz"};
 
@@ -29,9 +30,10 @@ constexpr std::array<Word, 19> kPosition{
     "pos",   "position", "stroke",     "disp",         "displacement", "weg",        "hub",
     "xp",    "lvdt",     "displ",      "travel",       "extension",    "auslenkung", "lage",
     "länge", "length",   "elongation", "verschiebung", "wegsensor"};
-constexpr std::array<Word, 9> kAngle{"angle",         "theta",      "ang",
-                                     "phi",           "winkel",     "tilt",
-                                     "schwenkwinkel", "jointangle", "gelenkwinkel"};
+constexpr std::array<Word, 13> kAngle{"angle",        "theta",      "ang",           "phi",
+                                      "winkel",       "tilt",       "schwenkwinkel", "jointangle",
+                                      "gelenkwinkel", "drehwinkel", "rotation",      "inclinometer",
+                                      "neigung"};
 constexpr std::array<Word, 5> kForce{"force", "loadcell", "kraft", "kraftmessdose", "fl"};
 constexpr std::array<Word, 9> kPressure{"pressure", "druck", "press",  "chamber", "kammer",
                                         "prs",      "dp",    "deltap", "port"};
@@ -41,7 +43,8 @@ constexpr std::array<Word, 5> kTemperature{"temp", "temperature", "temperatur", 
 constexpr std::array<Word, 5> kVelocity{"vel", "velocity", "speed", "geschwindigkeit", "geschw"};
 constexpr std::array<Word, 4> kFlow{"flow", "flowrate", "durchfluss", "volumenstrom"};
 constexpr std::array<Word, 4> kTorque{"torque", "moment", "drehmoment", "trq"};
-constexpr std::array<Word, 3> kRotation{"rpm", "drehzahl", "revs"};
+constexpr std::array<Word, 6> kRotation{"rpm",   "drehzahl", "revs",
+                                        "omega", "gyro",     "winkelgeschwindigkeit"};
 
 constexpr std::array<Word, 8> kSideA{"cap",   "head",       "bore",        "blind",
                                      "boden", "bodenseite", "kolbenseite", "kolbenraum"};
@@ -61,9 +64,10 @@ constexpr std::array<Word, 4> kPiston{"piston", "kolben", "cylinder", "zylinder"
 // A valve has a signal, and a spool whose position is not that of the piston.
 constexpr std::array<Word, 7> kSpool{"spool",  "schieber",    "ventilschieber", "valve",
                                      "ventil", "servoventil", "servovalve"};
-constexpr std::array<Word, 17> kFiller{"oil",    "oel",  "öl",        "sensor", "signal",   "value",
-                                       "wert",   "side", "seite",     "axial",  "actuator", "joint",
-                                       "gelenk", "arm",  "anschluss", "cell",   "raum"};
+constexpr std::array<Word, 25> kFiller{
+    "shaft",    "welle", "rotor",  "vane",   "extern",    "external", "reaction", "rack",  "oil",
+    "oel",      "öl",    "sensor", "signal", "value",     "wert",     "side",     "seite", "axial",
+    "actuator", "joint", "gelenk", "arm",    "anschluss", "cell",     "raum"};
 
 constexpr std::array kRows{
     WordRow{Meaning::time, kTime},

@@ -170,9 +170,15 @@ std::string rig_text(model::PlantKind plant, std::optional<model::Feedback> loop
     const std::string blank = spec.unit == "1"
                                   ? toml_quoted(kBlank)
                                   : toml_quoted(fmt::format("{} {}", kBlank, spec.unit));
-    text += fmt::format("{} = {}{}\n", spec.key, blank,
-                        comment(fmt::format("{}: {}{}", spec.symbol, spec.meaning,
-                                            spec.unit == "1" ? " (a plain number)" : "")));
+    const bool of_cylinder = plant == model::PlantKind::linkage &&
+                             (spec.key == "lever" || spec.key == "area_a" || spec.key == "area_b");
+    text += fmt::format(
+        "{} = {}{}\n", spec.key, blank,
+        comment(fmt::format("{}: {}{}", spec.symbol, spec.meaning,
+                            spec.unit == "1" ? " (a plain number)"
+                            : of_cylinder    ? "; a rotary actuator has none, but "
+                                               "displacement_per_radian, such as \"50 cm3/rev\""
+                                             : "")));
   }
   text += terms_text(plant, signs);
   if (!loop)

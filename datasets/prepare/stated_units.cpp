@@ -25,8 +25,7 @@ struct NamedUnit {
 std::optional<NamedUnit> named_unit(const ColumnLabel& label) {
   if (!label.unit.empty()) {
     const std::string unit = unit_of_text(label.unit);
-    // A "g" may be grams, and the gravity of an acceleration.
-    return unit.empty() ? std::nullopt : std::optional(NamedUnit{unit, unit != "g"});
+    return unit.empty() ? std::nullopt : std::optional(NamedUnit{unit, !may_mean_another(unit)});
   }
   const auto found = unit_in_name(label.name);
   return found ? std::optional(NamedUnit{found->unit, found->is_certain}) : std::nullopt;

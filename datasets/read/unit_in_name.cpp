@@ -1,8 +1,11 @@
 #include "datasets/read/unit_in_name.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -11,17 +14,40 @@
 namespace rigcal::datasets {
 namespace {
 
-constexpr std::array<std::string_view, 34> kUnits{
-    "s",  "ms",  "us",   "min",  "V",   "mV",  "m",    "cm",  "mm",  "um",  "%",   "lpm",
-    "in", "bar", "mbar", "Pa",   "kPa", "MPa", "psi",  "N",   "kN",  "lbf", "gpm", "rpm",
-    "K",  "C",   "degC", "degF", "mA",  "A",   "inch", "hPa", "deg", "rad"};
+constexpr std::array<std::string_view, 39> kUnits{
+    "s",   "ms",   "us",   "min",  "V",   "mV",  "m",    "cm",  "mm",  "um",  "%",    "lpm", "in",
+    "bar", "mbar", "Pa",   "kPa",  "MPa", "psi", "N",    "kN",  "daN", "lbf", "kgf",  "gpm", "rpm",
+    "K",   "C",    "degC", "degF", "mA",  "A",   "inch", "hPa", "deg", "rad", "mrad", "mil", "kNm"};
 
-/// Numerators and denominators of units that names split: "v_mm_s", "a_m_s2", "Q_l/min".
-constexpr std::array<std::string_view, 7> kMoving{"m",    "mm",  "cm", "um",
-                                                  "inch", "deg", "rad"};  // "in" is a word
+/// Units that another case would change: "MN" is no millinewton.
+constexpr std::array<std::string_view, 7> kExactUnits{"MN", "mN", "mNm", "MNm", "Nm", "daNm", "nm"};
+
+/// Numerators and denominators of units that names split: "v_mm_s", "a_m_s2", "Q_l/min",
+/// "p_N/mm2".
+struct SplitUnit {
+  std::span<const std::string_view> above;
+  std::span<const std::string_view> below;
+  std::string_view between;  ///< "/", or " " between the factors of a moment
+};
+constexpr std::array<std::string_view, 10> kMoving{
+    "m", "mm", "cm", "um", "\u00b5m", "inch", "deg", "\u00b0", "rad", "mrad"};  // "in" is a word
+constexpr std::array<std::string_view, 5> kPerTime{"s", "sec", "s2", "s^2", "s\u00b2"};
 constexpr std::array<std::string_view, 2> kLitres{"l", "L"};
-constexpr std::array<std::string_view, 2> kPerSecond{"s", "sec"};
-constexpr std::array<std::string_view, 3> kPerSecondSquared{"s2", "s^2", "s\u00b2"};
+constexpr std::array<std::string_view, 1> kPerMinute{"min"};
+constexpr std::array<std::string_view, 6> kVolumes{"m3",      "dm3",      "cm3",
+                                                   "m\u00b3", "dm\u00b3", "cm\u00b3"};
+constexpr std::array<std::string_view, 4> kPerSpan{"s", "sec", "min", "h"};
+constexpr std::array<std::string_view, 5> kForces{"N", "kN", "daN", "MN", "kgf"};
+constexpr std::array<std::string_view, 4> kPerArea{"mm2", "cm2", "mm\u00b2", "cm\u00b2"};
+constexpr std::array<std::string_view, 1> kMetres{"m"};
+constexpr std::array<std::string_view, 3> kPounds{"lb", "lbf", "lbs"};
+constexpr std::array<std::string_view, 3> kFeet{"ft", "in", "inch"};
+constexpr std::array<std::string_view, 2> kLeadingFeet{"ft", "inch"};  // "force in lbs"
+constexpr std::array kSplitUnits{
+    SplitUnit{kMoving, kPerTime, "/"},    SplitUnit{kLitres, kPerMinute, "/"},
+    SplitUnit{kVolumes, kPerSpan, "/"},   SplitUnit{kForces, kPerArea, "/"},
+    SplitUnit{kForces, kMetres, " "},     SplitUnit{kPounds, kFeet, " "},
+    SplitUnit{kLeadingFeet, kPounds, " "}};
 
 /// Common spellings of units, in lower case, with the units that they mean.
 constexpr std::array kSpellings{std::pair<std::string_view, std::string_view>{"c", "degC"},
@@ -36,9 +62,29 @@ constexpr std::array kSpellings{std::pair<std::string_view, std::string_view>{"c
                                 std::pair<std::string_view, std::string_view>{"kg/cm2", "kgf/cm2"},
                                 std::pair<std::string_view, std::string_view>{"kg/cm^2", "kgf/cm2"},
                                 std::pair<std::string_view, std::string_view>{"lbs", "lbf"},
+                                std::pair<std::string_view, std::string_view>{"kp", "kgf"},
+                                std::pair<std::string_view, std::string_view>{"ncm", "N cm"},
+                                std::pair<std::string_view, std::string_view>{"nmm", "N mm"},
+                                std::pair<std::string_view, std::string_view>{"ft lb", "ft lbf"},
+                                std::pair<std::string_view, std::string_view>{"ft lbs", "ft lbf"},
+                                std::pair<std::string_view, std::string_view>{"lb ft", "ft lbf"},
+                                std::pair<std::string_view, std::string_view>{"lbs ft", "ft lbf"},
+                                std::pair<std::string_view, std::string_view>{"in lb", "inch lbf"},
+                                std::pair<std::string_view, std::string_view>{"in lbs", "inch lbf"},
+                                std::pair<std::string_view, std::string_view>{"in lbf", "inch lbf"},
+                                std::pair<std::string_view, std::string_view>{"lb in", "inch lbf"},
+                                std::pair<std::string_view, std::string_view>{"lbs in", "inch lbf"},
+                                std::pair<std::string_view, std::string_view>{"lbf in", "inch lbf"},
+                                std::pair<std::string_view, std::string_view>{"ips", "inch/s"},
+                                std::pair<std::string_view, std::string_view>{"u/min", "rpm"},
+                                std::pair<std::string_view, std::string_view>{"grad", "deg"},
                                 std::pair<std::string_view, std::string_view>{"pct", "%"},
                                 std::pair<std::string_view, std::string_view>{"percent", "%"},
                                 std::pair<std::string_view, std::string_view>{"prozent", "%"}};
+
+/// Those spellings, in lower case, that are units behind an underscore too.
+constexpr std::array<std::string_view, 9> kUsualSpellings{
+    "psig", "psia", "barg", "bara", "lbs", "grad", "pct", "percent", "prozent"};
 
 /// After one of these words, an isolated A means a chamber, not amperes.
 constexpr std::array<std::string_view, 8> kChamberWords{"p",      "pressure", "chamber", "druck",
@@ -62,6 +108,14 @@ std::string lower_case(std::string_view text) {
 std::string_view without_spaces(std::string_view text) {
   while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
   while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+  return text;
+}
+
+/// Returns a text with spaces for what joins the factors of a unit: "ft lb" for "ft-lb".
+std::string with_spaces(std::string text) {
+  for (const std::string_view sign : {"-", "*", "\u00b7"})
+    for (std::size_t at = text.find(sign); at != std::string::npos; at = text.find(sign, at))
+      text.replace(at, sign.size(), " ");
   return text;
 }
 
@@ -113,6 +167,10 @@ std::vector<Part> name_parts(std::string_view name) {
   return parts;
 }
 
+std::string_view text_of(std::string_view name, const Part& part) {
+  return name.substr(part.begin, part.end - part.begin);
+}
+
 bool is_chamber(std::string_view unit, std::string_view before) {
   return unit == "A" && is_among(kChamberWords, lower_case(before));
 }
@@ -135,7 +193,9 @@ std::optional<UnitInName> in_brackets(std::string_view name) {
         inside.size() == 1 && std::isalpha(static_cast<unsigned char>(inside[0])) != 0;
     const bool is_usual = !is_letter || is_among(kUnits, unit);
     if (!unit.empty() && is_usual && !is_one(unit) && !is_chamber(inside, word))
-      found = UnitInName{unit, open, close + 1, name[open] == '[' || !is_among(kWords, inside)};
+      found = UnitInName{
+          unit, open, close + 1,
+          may_mean_another(unit) ? false : name[open] == '[' || !is_among(kWords, inside)};
     open = close;
   }
   return found;
@@ -151,13 +211,6 @@ std::size_t begin_of_last(std::string_view path) {
   return begin;
 }
 
-/// Returns the priority of a unit among several in one name. Units that may also be words or names
-/// have the lowest priority, as in "position in mm".
-int weight_of(std::string_view unit) {
-  if (unit == "pa" || is_among(kWords, unit)) return 0;
-  return unit.size() == 1 ? 1 : 2;
-}
-
 bool is_number(std::string_view name, const Part& part) {
   return std::all_of(name.begin() + static_cast<std::ptrdiff_t>(part.begin),
                      name.begin() + static_cast<std::ptrdiff_t>(part.end),
@@ -169,53 +222,98 @@ bool is_number(std::string_view name, const Part& part) {
 std::string joined_unit(std::string_view name, const std::vector<Part>& parts, std::size_t i) {
   if (i + 1 >= parts.size()) return {};
   if (i + 2 < parts.size() && !is_number(name, parts[i + 2])) return {};
-  const auto text_of = [&](const Part& part) {
-    return name.substr(part.begin, part.end - part.begin);
-  };
-  const std::string_view above = text_of(parts[i]);
-  const std::string_view below = text_of(parts[i + 1]);
-  if (is_among(kLitres, above) && below == "min") return "L/min";
-  if (!is_among(kMoving, above)) return {};
-  if (is_among(kPerSecond, below)) return std::string(above) + "/s";
-  return is_among(kPerSecondSquared, below) ? std::string(above) + "/s2" : std::string();
+  const std::string_view above = text_of(name, parts[i]);
+  const std::string_view below = text_of(name, parts[i + 1]);
+  for (const SplitUnit& split : kSplitUnits) {
+    if (!is_among(split.above, above) || !is_among(split.below, below)) continue;
+    std::string unit = fmt::format("{}{}{}", above == "l" ? "L" : above, split.between, below);
+    std::erase(unit, '^');
+    return unit_of_text(unit);
+  }
+  return {};
+}
+
+/// Whether a name has capitals only, so that the case of its units says nothing.
+bool is_in_capitals(std::string_view name) {
+  return std::none_of(name.begin(), name.end(),
+                      [](unsigned char c) { return std::islower(c) != 0; });
+}
+
+/// Whether a part of a name has a sign that only units have: "\u00b5m", "\u00b0", "N\u00b7m".
+bool has_sign_of_units(std::string_view part) {
+  constexpr std::array<std::string_view, 7> kSigns{"\u00b5", "\u03bc", "\u00b0", "\u00b7",
+                                                   "\u00b2", "\u00b3", "*"};
+  return std::any_of(kSigns.begin(), kSigns.end(), [part](std::string_view sign) {
+    return part.find(sign) != std::string_view::npos;
+  });
+}
+
+/// Returns the unit that a part of a name is; empty if it is none, or may as well be a word.
+std::string usual_unit(std::string_view part, bool in_capitals) {
+  const bool known = is_among(kUnits, part) || is_among(kExactUnits, part) || part == "pa" ||
+                     is_among(kUsualSpellings, lower_case(part)) || has_sign_of_units(part);
+  if (known) return part == "pa" ? "Pa" : unit_of_text(part);
+  if (!in_capitals || part.size() < 2) return {};
+  const std::string unit = unit_of_text(part);
+  return is_among(kUnits, unit) ? unit : std::string();
+}
+
+/// Finds a moment whose factors a point joins, as in "M_kN.m". Elsewhere a point ends a path.
+std::optional<UnitInName> pointed_moment(std::string_view name) {
+  for (const std::string_view force : kForces) {
+    const std::string text = fmt::format("{}.m", force);
+    if (!name.ends_with(text) || name.size() <= text.size()) continue;
+    const std::size_t begin = name.size() - text.size();
+    if (name[begin - 1] == '_' || name[begin - 1] == ' ')
+      return UnitInName{fmt::format("{} m", force), begin, name.size(), false};
+  }
+  return std::nullopt;
 }
 
 /// Returns the last unit with the highest priority. A "pa" at the end of a name counts as a unit. A
 /// unit that is also a word counts only if nothing but a number follows, unlike the "in" of
 /// "duty_in_pct".
 std::optional<UnitInName> behind_a_word(std::string_view name) {
+  if (const auto moment = pointed_moment(name)) return moment;
   const std::size_t first = begin_of_last(name);
   std::vector<Part> parts = name_parts(name.substr(first));
   for (Part& part : parts) part = {part.begin + first, part.end + first};
+  const bool in_capitals = is_in_capitals(name.substr(first));
   std::optional<UnitInName> found;
   int most = 0;
   for (std::size_t i = 1; i < parts.size(); ++i) {
     if (const std::string joined = joined_unit(name, parts, i); !joined.empty())
       return UnitInName{joined, parts[i].begin, parts[i + 1].end, false};
-    const std::string_view text = name.substr(parts[i].begin, parts[i].end - parts[i].begin);
-    const std::string_view before =
-        name.substr(parts[i - 1].begin, parts[i - 1].end - parts[i - 1].begin);
-    const bool is_pascal = text == "pa" && i + 1 == parts.size();
-    const bool is_usual = is_among(kUnits, text) || text == "Nm" || unit_of_text(text) == "%";
-    if (!is_pascal && (!is_usual || is_chamber(text, before))) continue;
-    if (is_among(kWords, text) && i + 1 < parts.size() && !is_number(name, parts[i + 1])) continue;
-    const int weight = weight_of(text);
+    const std::string_view text = text_of(name, parts[i]);
+    const bool ends = i + 1 == parts.size();
+    const std::string unit = usual_unit(text, in_capitals);
+    const bool is_pascal = unit == "Pa" && text != "Pa";
+    const bool is_word = is_among(kWords, unit);
+    if (unit.empty() || is_chamber(text, text_of(name, parts[i - 1])) || (is_pascal && !ends) ||
+        (is_word && !ends && !is_number(name, parts[i + 1])))
+      continue;
+    // A unit that may also be a word or a name has the lowest priority, as in "position in mm".
+    const int weight = is_pascal || is_word ? 0 : text.size() == 1 ? 1 : 2;
     if (weight < most) continue;
     most = weight;
-    found = UnitInName{is_pascal ? "Pa" : unit_of_text(text), parts[i].begin, parts[i].end, false};
+    found = UnitInName{unit, parts[i].begin, parts[i].end, false};
   }
   return found;
 }
 
 }  // namespace
 
+bool may_mean_another(std::string_view unit) { return unit == "g" || unit == "nm"; }
+
 std::string unit_of_text(std::string_view text) {
   text = without_spaces(text.substr(0, text.find(" since ")));
   if (text.empty()) return {};
-  if (text == "Nm") return "N m";  // nanometres are "nm"
+  if (text == "Nm" || text == "NM") return "N m";  // nanometres are "nm"
+  if (is_among(kExactUnits, text)) return std::string(text);
   const std::string small = lower_case(text);
   for (const auto& [spelling, unit] : kSpellings)
-    if (small == spelling && (text.size() > 1 || text == "C")) return std::string(unit);
+    if ((small == spelling || with_spaces(small) == spelling) && (text.size() > 1 || text == "C"))
+      return std::string(unit);
   if (is_among(kUnits, text)) return std::string(text);
   for (const std::string_view unit : kUnits)
     if (lower_case(unit) == small && (text.size() > 1 || text == "S" || text == "M"))

@@ -16,9 +16,10 @@ constexpr double kRoomTemperatureK = 293.15;
 
 using Channels = std::map<Channel, std::vector<double>>;
 
-/// Whether a force channel is the load on the rig rather than the reading of a load cell.
-bool is_external_force(const Campaign& campaign, Channel channel) {
-  return channel == Channel::force && campaign.channels.at(channel).role == ChannelRole::input;
+/// Whether a force or torque is the load on the rig rather than the reading of a transducer.
+bool is_external_load(const Campaign& campaign, Channel channel) {
+  return channel == external_load_channel(campaign) &&
+         campaign.channels.at(channel).role == ChannelRole::input;
 }
 
 void set_override(Overrides& overrides, int index, double value) {
@@ -118,8 +119,8 @@ Channels clean_channels(const Campaign& truth, const Condition& condition, const
     const double t = time_s[i] - fate.late_s;
     const bool started = t >= time_s.front();
     const double run_s = times.run_s[times.sample[i]];
-    if (is_external_force(truth, channel))
-      return inputs.external_force_n ? inputs.external_force_n->value(run_s) : 0.0;
+    if (is_external_load(truth, channel))
+      return inputs.external_load ? inputs.external_load->value(run_s) : 0.0;
     if (const auto output = model_output(channel)) {
       const auto column = std::find(outputs.begin(), outputs.end(), *output) - outputs.begin();
       return run.outputs(static_cast<Eigen::Index>(times.sample[i]), column);

@@ -62,7 +62,7 @@ bool is_generated_wave(const datasets::Condition& condition) {
 bool has_periodic_state(const calib::ProblemCondition& condition) {
   const model::SimulationInputs& in = condition.inputs;
   return is_generated_wave(*condition.condition) && condition.condition->amplitude.has_value() &&
-         !in.external_force_n && !in.supply_pressure_pa && !in.tank_pressure_pa &&
+         !in.external_load && !in.supply_pressure_pa && !in.tank_pressure_pa &&
          !in.base_acceleration_m_per_s2 && !in.oil_temperature_k;
 }
 

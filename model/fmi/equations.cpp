@@ -43,11 +43,15 @@ class SizedEquations final : public Equations {
   }
 
   std::vector<double> initial() const override {
-    // The equilibrium depends on the load, which System reads from the parameters.
+    // The equilibrium depends on the load. A plant that slides reads it from the parameters, which
+    // a joint lacks.
     ParameterValues values = values_;
+    std::optional<InputTrack> load;
     if (parameter_index(values.plant, "external_force") >= 0)
-      values.set("external_force", inputs_.external_force_n.value);
-    Sys system(layout_, values, {}, track(inputs_.drive, 1.0), std::nullopt,
+      values.set("external_force", inputs_.external_load.value);
+    else
+      load = track(inputs_.external_load, 1.0);
+    Sys system(layout_, values, {}, track(inputs_.drive, 1.0), std::move(load),
                track(inputs_.supply_pressure_pa, 1.0), track(inputs_.tank_pressure_pa, 1.0));
     Values<N> state = system.initial(initial_, before_, 0.0);
     if (before_ == Before::steady &&
@@ -146,7 +150,7 @@ class SizedEquations final : public Equations {
             values,
             {},
             track(inputs.drive, length_s),
-            track(inputs.external_force_n, length_s),
+            track(inputs.external_load, length_s),
             track(inputs.supply_pressure_pa, length_s),
             track(inputs.tank_pressure_pa, length_s)};
   }

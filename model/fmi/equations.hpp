@@ -19,7 +19,7 @@ struct Ramp {
 /// External inputs of a rig. The tank pressure is used only if the plant has a tank.
 struct RigInputs {
   Ramp drive;  ///< reference [m] or valve command [V]
-  Ramp external_force_n;
+  Ramp external_load;
   Ramp supply_pressure_pa;
   Ramp tank_pressure_pa;
 };

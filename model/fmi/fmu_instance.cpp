@@ -55,7 +55,7 @@ InstanceState start_of(const ExportedRig& rig) {
   state.values = rig.values;
   state.tolerance = rig.tolerance;
   if (parameter_index(rig.rig.plant, "external_force") >= 0)
-    state.inputs.external_force_n.value = rig.values["external_force"];
+    state.inputs.external_load.value = rig.values["external_force"];
   state.inputs.supply_pressure_pa.value = rig.values["supply_pressure"];
   if (parameter_index(rig.rig.plant, "tank_pressure") >= 0)
     state.inputs.tank_pressure_pa.value = rig.values["tank_pressure"];
@@ -272,7 +272,7 @@ void FmuInstance::step(double time_s, double step_s) {
     equations_->advance(after.x, after.memory, t, until, after.tolerance);
     t = until;
   }
-  for (Ramp* ramp : {&after.inputs.drive, &after.inputs.external_force_n,
+  for (Ramp* ramp : {&after.inputs.drive, &after.inputs.external_load,
                      &after.inputs.supply_pressure_pa, &after.inputs.tank_pressure_pa})
     *ramp = {ramp->value + ramp->slope_per_s * step_s, 0.0};
   after.time_s = time_s + step_s;
@@ -308,9 +308,7 @@ Ramp& FmuInstance::input(unsigned reference) {
     case 0:
       return state_.inputs.drive;
     case 1:
-      if (parameter_index(rig_.rig.plant, "external_force") >= 0)
-        return state_.inputs.external_force_n;
-      break;
+      return state_.inputs.external_load;
     case 2:
       return state_.inputs.supply_pressure_pa;
     case 3:

@@ -19,29 +19,29 @@ struct PresentTerms {
   bool shaped_friction = false;  ///< friction depends on the pressure, or has pre-sliding
   int bristles = -1;  ///< index of the force of the bristles; -1: friction without pre-sliding
   int film = -1;      ///< index of the thickness of the lubricant film; -1: steady friction
-  bool orifice_leak = false;    ///< the leakage coefficient is not zero, or is free
-  bool leak_line = false;       ///< the leak is laminar at low pressure: its resistance was given
-  bool laminar_leak = false;    ///< the laminar leakage was given
-  bool null_leak = false;       ///< the laminar leakage of the valve's closed edges was given
-  bool valve_offset = false;    ///< the null shift is not zero, or is free
-  bool spool_shape = false;     ///< null shift or overlap is not zero, or is free
-  bool external_force = false;  ///< the external force is recorded, not zero, or free
-  bool varying_load = false;    ///< the load varies with the travel
-  bool curved_load = false;     ///< the curvature of the load is not zero, or is free
-  bool load_table = false;      ///< the load has a table over the travel
-  bool overlaps = false;        ///< the overlap of an edge is not zero, or is free
-  bool null_opening = false;    ///< covered edges leak through an orifice
-  bool line_loss = false;       ///< the lines also throttle the flow
-  bool air = false;             ///< the bulk modulus falls at low pressure
-  bool temperature = false;     ///< the oil follows its temperature
-  bool external_leak = false;   ///< the external leak of a chamber is not zero, or is free
-  int hoses = -1;               ///< index of the first state of yielding hoses; -1: rigid hoses
-  int payload = -1;             ///< index of the first state of the second mass; -1: no second mass
-  bool pilot = false;           ///< the drive of the spool is a pilot pressure
-  bool power_opening = false;   ///< the spool opens according to a power law
-  bool return_band = false;     ///< the edges to the tank have their own dead band
-  bool return_power = false;    ///< the edges to the tank have their own power law
-  bool return_line = false;     ///< the line to the tank also throttles the flow
+  bool orifice_leak = false;   ///< the leakage coefficient is not zero, or is free
+  bool leak_line = false;      ///< the leak is laminar at low pressure: its resistance was given
+  bool laminar_leak = false;   ///< the laminar leakage was given
+  bool null_leak = false;      ///< the laminar leakage of the valve's closed edges was given
+  bool valve_offset = false;   ///< the null shift is not zero, or is free
+  bool spool_shape = false;    ///< null shift or overlap is not zero, or is free
+  bool external_load = false;  ///< a load is recorded, or the external force is not zero or free
+  bool varying_load = false;   ///< the load varies with the travel
+  bool curved_load = false;    ///< the curvature of the load is not zero, or is free
+  bool load_table = false;     ///< the load has a table over the travel
+  bool overlaps = false;       ///< the overlap of an edge is not zero, or is free
+  bool null_opening = false;   ///< covered edges leak through an orifice
+  bool line_loss = false;      ///< the lines also throttle the flow
+  bool air = false;            ///< the bulk modulus falls at low pressure
+  bool temperature = false;    ///< the oil follows its temperature
+  bool external_leak = false;  ///< the external leak of a chamber is not zero, or is free
+  int hoses = -1;              ///< index of the first state of yielding hoses; -1: rigid hoses
+  int payload = -1;            ///< index of the first state of the second mass; -1: no second mass
+  bool pilot = false;          ///< the drive of the spool is a pilot pressure
+  bool power_opening = false;  ///< the spool opens according to a power law
+  bool return_band = false;    ///< the edges to the tank have their own dead band
+  bool return_power = false;   ///< the edges to the tank have their own power law
+  bool return_line = false;    ///< the line to the tank also throttles the flow
   bool return_loss = false;  ///< the line to the tank has a pressure loss proportional to its flow
   bool bypass = false;       ///< a closed valve passes the flow of the pump to the tank
   bool table_opening = false;  ///< the spool opens according to a table
@@ -193,7 +193,7 @@ std::array<double, N> state_floors(const Layout& layout) {
 
 /// @param free  table indices of the parameters whose sensitivities are requested
 inline Layout layout_of(const Rig& rig, const ParameterValues& values, std::span<const int> free,
-                        int plant_states, bool force_recorded = false) {
+                        int plant_states, bool load_recorded = false) {
   Layout layout;
   layout.plant_states = plant_states;
   layout.states = plant_states;
@@ -258,7 +258,7 @@ inline Layout layout_of(const Rig& rig, const ParameterValues& values, std::span
   layout.terms.leak_line = given("leakage_resistance");
   layout.terms.laminar_leak = acts("laminar_leakage");
   layout.terms.null_leak = acts("valve_null_leakage");
-  layout.terms.external_force = force_recorded || acts("external_force");
+  layout.terms.external_load = load_recorded || acts("external_force");
   layout.terms.curved_load = acts("load_curvature");
   layout.terms.load_table = given("load_table_to");
   layout.terms.varying_load =

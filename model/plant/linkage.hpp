@@ -15,7 +15,7 @@ namespace rigcal::model {
 /// A cylinder with two chambers that turns an arm, as on an excavator, driven by an electric or
 /// pilot-operated valve and a pump with limited flow.
 ///
-///   J omega' = D(theta) (A_A p_A - A_B p_B) - c omega - M_c(omega) + M_stops - M(theta)
+///   J omega' = D(theta) (A_A p_A - A_B p_B) - c omega - M_c(omega) + M_stops - M(theta) - M_ext
 ///   p_A'     = beta(p_A) / V_A (Q_A - Q_leak - G_A (p_A - P_t) + Q_mA - A_A D omega)
 ///   p_B'     = beta(p_B) / V_B (Q_leak - Q_B - G_B (p_B - P_t) + Q_mB + A_B D omega)
 ///
@@ -194,6 +194,7 @@ struct LinkagePlant : Chambers {
     X moment = D * piston_force(x, p) - omega * p.joint_damping_n_m_s_per_rad -
                gravity_moment(x[angle], p) + stops_moment(x[angle], omega, p);
     if (terms.friction) moment = moment - dry_friction(omega, p);
+    if (terms.external_load) moment = moment - in.external_load;
     const auto flow = chamber_flows(x, X(D * omega), valve_flows(x, in, p, terms), in, p, terms);
     const auto volume = volumes(x[angle], p);
     return {omega, moment * p.inverse_inertia,
@@ -255,8 +256,8 @@ struct LinkagePlant : Chambers {
   /// pressures balance the load, and their sum is that of supply and tank pressure.
   template <typename C>
   static std::array<C, kStates> rest(const PlantInput<C>& in, const Coefficients<C>& p,
-                                     const PresentTerms&) {
-    return settled({C(p.reference_angle_rad), C(0.0), C(0.0), C(0.0)}, in, p, false, false);
+                                     const PresentTerms& terms) {
+    return settled({C(p.reference_angle_rad), C(0.0), C(0.0), C(0.0)}, in, p, terms, false, false);
   }
 
   /// Initial state from those sensor readings that were given. Missing pressures balance the load.
@@ -267,7 +268,7 @@ struct LinkagePlant : Chambers {
                     p.initial_angular_velocity_rad_per_s,
                     C((p.initial_pressure_a_pa - p.pressure_a_offset_pa) / p.pressure_a_gain),
                     C((p.initial_pressure_b_pa - p.pressure_b_offset_pa) / p.pressure_b_gain)},
-                   in, p, terms.initial_pressure_a, terms.initial_pressure_b);
+                   in, p, terms, terms.initial_pressure_a, terms.initial_pressure_b);
   }
 
  private:
@@ -282,9 +283,12 @@ struct LinkagePlant : Chambers {
   /// onto the stop, pressed in as far as the unbalanced pressures push it.
   template <typename C>
   static std::array<C, kStates> settled(std::array<C, kStates> x, const PlantInput<C>& in,
-                                        const Coefficients<C>& p, bool given_a, bool given_b) {
+                                        const Coefficients<C>& p, const PresentTerms& terms,
+                                        bool given_a, bool given_b) {
     const C D = lever(x[angle], p);
-    const C load = gravity_moment(x[angle], p) / D;  // as a force on the piston
+    C moment = gravity_moment(x[angle], p);
+    if (terms.external_load) moment = moment + in.external_load;
+    const C load = moment / D;  // as a force on the piston
     const C &A = p.area_a_m2, &B = p.area_b_m2;
     if (!given_a && !given_b) {
       x[pressure_a] = (B * (in.supply_pressure_pa + in.tank_pressure_pa) + load) / (A + B);

@@ -66,9 +66,8 @@ struct LoadPressurePlant {
   /// except those that act in one direction only and the lubricant film, which has no direction.
   /// The chamber pressures swap instead of changing sign.
   static bool reversible(Output output, const PresentTerms& terms) {
-    return !terms.external_force && !terms.curved_load && !terms.load_table &&
-           !terms.valve_offset && terms.film < 0 && output != Output::pressure_a &&
-           output != Output::pressure_b;
+    return !terms.external_load && !terms.curved_load && !terms.load_table && !terms.valve_offset &&
+           terms.film < 0 && output != Output::pressure_a && output != Output::pressure_b;
   }
 
   /// Spool travel [m], eq. 6: x_v = k_sv u, with null shift and overlap.
@@ -114,7 +113,7 @@ struct LoadPressurePlant {
     const C& A = p.piston_area_m2;
     X force = P_L * A - v * p.damping_n_s_per_m - x[position] * p.stiffness_n_per_m;
     if (terms.friction) force = force - friction_of<LoadPressurePlant>(x, p, terms);
-    if (terms.external_force || terms.varying_load)
+    if (terms.external_load || terms.varying_load)
       force = force - external_load(x[position], in, p, terms);
     if constexpr (M > kStates + 1) {
       if (terms.payload >= 0)

@@ -12,8 +12,10 @@ namespace rigcal::model {
 /// Inputs of a plant at one instant. X includes time derivatives if they are needed.
 template <typename X>
 struct PlantInput {
-  X spool_command_v;     ///< valve signal after its dynamics [V]
-  X external_force_n;    ///< load against positive travel [N]; set only if the model has that term
+  X spool_command_v;  ///< valve signal after its dynamics [V]
+  /// Load against positive travel [N], or against positive angle of a joint [N m]; set only if the
+  /// model has that term.
+  X external_load;
   X supply_pressure_pa;  ///< P_s [Pa]
   X tank_pressure_pa;    ///< P_t [Pa]; set only if the plant has a tank
 };
@@ -123,7 +125,7 @@ template <typename X, typename C>
 template <typename X, typename C>
 X external_load(const X& x, const PlantInput<X>& in, const CommonParameters<C>& p,
                 const PresentTerms& terms) {
-  X load = terms.external_force ? in.external_force_n : X(0.0);
+  X load = terms.external_load ? in.external_load : X(0.0);
   if (terms.load_table) return load + tabled_load(x, p);
   if (terms.curved_load)
     return load + varying_load(x, p.load_gradient_n_per_m, p.load_curvature_n_per_m2);

@@ -130,8 +130,10 @@ enum class InitialState {
 
 /// Inputs of the rig. Only the drive is delayed by `transport_delay`.
 struct SimulationInputs {
-  Signal drive = Signal::constant(0.0);      ///< reference of the loop, or command [V]
-  std::optional<Signal> external_force_n;    ///< added to the parameter `external_force`
+  Signal drive = Signal::constant(0.0);  ///< reference of the loop, or command [V]
+  /// Load against positive travel [N], added to the parameter `external_force`; for a linkage,
+  /// moment against positive angle [N m], added to the gravity moment.
+  std::optional<Signal> external_load;
   std::optional<Signal> supply_pressure_pa;  ///< replaces the parameter `supply_pressure`
   std::optional<Signal> tank_pressure_pa{};  ///< replaces the parameter `tank_pressure`
   double drive_begins_s = 0.0;               ///< time of its first sample; see Rig::before

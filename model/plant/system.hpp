@@ -29,14 +29,14 @@ class System {
 
   /// @param free  table indices of the P or fewer parameters with a sensitivity column
   System(const Layout& layout, const ParameterValues& values, std::span<const int> free,
-         InputTrack drive, std::optional<InputTrack> external_force,
+         InputTrack drive, std::optional<InputTrack> external_load,
          std::optional<InputTrack> supply_pressure, std::optional<InputTrack> tank_pressure,
          std::optional<InputTrack> spool_error = std::nullopt,
          std::optional<InputTrack> base_acceleration = std::nullopt,
          std::optional<InputTrack> oil_temperature = std::nullopt)
       : layout_(layout),
         drive_(std::move(drive)),
-        external_force_(std::move(external_force)),
+        external_load_(std::move(external_load)),
         supply_pressure_(std::move(supply_pressure)),
         tank_pressure_(std::move(tank_pressure)),
         spool_error_(std::move(spool_error)),
@@ -61,7 +61,7 @@ class System {
   const Layout& layout() const { return layout_; }
   const Coefficients<double>& parameters() const { return passive_; }
   InputTrack& drive() { return drive_; }
-  std::optional<InputTrack>& external_force() { return external_force_; }
+  std::optional<InputTrack>& external_load() { return external_load_; }
   std::optional<InputTrack>& supply_pressure() { return supply_pressure_; }
   std::optional<InputTrack>& tank_pressure() { return tank_pressure_; }
   std::optional<InputTrack>& spool_error() { return spool_error_; }
@@ -580,13 +580,13 @@ class System {
     }
     if (spool_error_)
       in.spool_command_v = in.spool_command_v + input_value(by, *spool_error_, t, false);
-    if (layout_.terms.external_force) {
-      in.external_force_n = Number<K>(p.external_force_n);
-      if (external_force_)
-        in.external_force_n = in.external_force_n + input_value(by, *external_force_, t, false);
+    if (layout_.terms.external_load) {
+      in.external_load = Number<K>(p.external_force_n);
+      if (external_load_)
+        in.external_load = in.external_load + input_value(by, *external_load_, t, false);
       if (base_acceleration_)  // inertia, in the frame of the base
-        in.external_force_n =
-            in.external_force_n + input_value(by, *base_acceleration_, t, false) * p.mass_kg;
+        in.external_load =
+            in.external_load + input_value(by, *base_acceleration_, t, false) * p.mass_kg;
     }
     in.supply_pressure_pa =
         layout_.supply >= 0 ? x[static_cast<std::size_t>(layout_.supply)] : source_pressure(by, t);
@@ -748,7 +748,7 @@ class System {
   std::array<Coefficients<Dual<kBlock>>, kBlocks>
       active_blocks_{};  ///< the same coefficients, in blocks of free parameters
   InputTrack drive_;
-  std::optional<InputTrack> external_force_;
+  std::optional<InputTrack> external_load_;
   std::optional<InputTrack> supply_pressure_;
   std::optional<InputTrack> tank_pressure_;
   std::optional<InputTrack> spool_error_;

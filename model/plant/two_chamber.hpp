@@ -148,7 +148,7 @@ struct TwoChamberPlant : Chambers {
     X force = piston_force(x, p) - v * p.damping_n_s_per_m - x[position] * p.stiffness_n_per_m +
               stops_force(x[position], v, p, terms) - p.mass_kg * p.gravity_m_per_s2;
     if (terms.friction) force = force - friction_of<TwoChamberPlant>(x, p, terms);
-    if (terms.external_force || terms.varying_load)
+    if (terms.external_load || terms.varying_load)
       force = force - external_load(x[position], in, p, terms);
     if constexpr (M > kStates + 1) {
       if (terms.payload >= 0)

@@ -103,7 +103,7 @@ class Run {
   template <typename F>
   void for_each_track(F f) {
     f(system_.drive());
-    if (system_.external_force()) f(*system_.external_force());
+    if (system_.external_load()) f(*system_.external_load());
     if (system_.supply_pressure()) f(*system_.supply_pressure());
     if (system_.tank_pressure()) f(*system_.tank_pressure());
     if (system_.spool_error()) f(*system_.spool_error());

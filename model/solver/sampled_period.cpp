@@ -22,7 +22,7 @@ std::optional<SampledPeriod> sampled_period(const SimulationInputs& inputs,
                                             std::span<const double> times_s, bool reversible,
                                             std::optional<double> tick_s) {
   const std::optional<double> period_s = inputs.drive.period_s();
-  if (!period_s || *period_s == 0.0 || !constant(inputs.external_force_n) ||
+  if (!period_s || *period_s == 0.0 || !constant(inputs.external_load) ||
       !constant(inputs.supply_pressure_pa) || !constant(inputs.tank_pressure_pa) ||
       !constant(inputs.base_acceleration_m_per_s2) || !constant(inputs.oil_temperature_k) ||
       inputs.spool_error)

@@ -33,7 +33,7 @@ void pass(const SizedRequest& request, int first, int count, Simulation& result)
   std::optional<InputTrack> spool_error;
   std::optional<InputTrack> base;
   std::optional<InputTrack> temperature;
-  if (request.inputs.external_force_n) force = track(*request.inputs.external_force_n);
+  if (request.inputs.external_load) force = track(*request.inputs.external_load);
   if (request.inputs.supply_pressure_pa) supply = track(*request.inputs.supply_pressure_pa);
   if (request.inputs.tank_pressure_pa) tank = track(*request.inputs.tank_pressure_pa);
   if (request.inputs.spool_error) spool_error = track(*request.inputs.spool_error);

@@ -94,13 +94,13 @@ RIGCAL_EXPORT(output_count) int output_count() { return static_cast<int>(kAllOut
 ///                 limit [s]; enumerators of the controlled quantity and of Before; time of the
 ///                 drive's first sample [s]
 /// @param values   shape (2, parameters): SI values, and 1 for each that is given
-/// @param drive    an input in the format of kInputNumbers. `force`, `supply`, `tank`, `base`
+/// @param drive    an input in the format of kInputNumbers. `load`, `supply`, `tank`, `base`
 ///                 (its acceleration) and `temperature` (of the oil) have the same format; null if
 ///                 absent.
 /// @param outputs  shape (samples, outputs), column by column, SI; written only if the result is ok
 /// @return         SimulationStatus; 0 is ok
 RIGCAL_EXPORT(simulate)
-int simulate_rig(const double* rig, const double* values, const double* drive, const double* force,
+int simulate_rig(const double* rig, const double* values, const double* drive, const double* load,
                  const double* supply, const double* tank, const double* base,
                  const double* temperature, const double* times_s, int samples, double* outputs) {
   const Rig kind{static_cast<PlantKind>(rig[0]), static_cast<ControllerKind>(rig[1]),
@@ -116,7 +116,7 @@ int simulate_rig(const double* rig, const double* values, const double* drive, c
     if (values[count + i] != 0.0) parameters.set(static_cast<int>(i), values[i]);
   }
   const SimulationInputs inputs{signal_of(drive),
-                                optional_signal_of(force),
+                                optional_signal_of(load),
                                 optional_signal_of(supply),
                                 optional_signal_of(tank),
                                 rig[8],

@@ -76,6 +76,9 @@ void add_inputs(const ExportedRig& rig, std::vector<FmuVariable>& variables) {
   if (model::parameter_index(rig.rig.plant, "external_force") >= 0)
     variables.push_back(input(1, "external_force", "N", "load, opposing positive travel",
                               rig.values["external_force"]));
+  else
+    variables.push_back(input(1, "external_moment", "N m",
+                              "moment against positive angle, added to that of the load", 0.0));
   variables.push_back(
       input(2, "supply_pressure", "Pa", "supply above tank", rig.values["supply_pressure"]));
   if (model::parameter_index(rig.rig.plant, "tank_pressure") >= 0)

@@ -231,7 +231,12 @@ void start_from_record(const calib::SimulationTask& task, ParameterValues& value
     recorded.push_back(key);
   };
   if (model::parameter_index(values.plant, "external_force") >= 0)
-    take(task.inputs.external_force_n, "external_force", values["external_force"]);
+    take(task.inputs.external_load, "external_force", values["external_force"]);
+  else if (task.inputs.external_load)
+    warnings.push_back(fmt::format(
+        "recorded in this condition: torque; the input external_moment starts at 0, and not at the "
+        "first sample ({:.4g} N m)",
+        task.inputs.external_load->value(task.time_s.front())));
   take(task.inputs.supply_pressure_pa, "supply_pressure", 0.0);
   if (model::parameter_index(values.plant, "tank_pressure") >= 0)
     take(task.inputs.tank_pressure_pa, "tank_pressure", 0.0);

@@ -243,7 +243,7 @@
     if (chosen.inputs) return chosen.inputs;
     const times = numbersOf(chosen.recorded.times, Float64Array);
     const inputs = {times};
-    for (const name of ["drive", "force", "supply", "tank", "base", "temperature"]) {
+    for (const name of ["drive", "load", "supply", "tank", "base", "temperature"]) {
       const signal = chosen.recorded[name];
       if (signal) inputs[name] = {kind: signal.linear ? "linear" : "held", times, values: Float64Array.from(numbersOf(signal.values, Float32Array))};
     }

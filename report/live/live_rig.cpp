@@ -173,7 +173,7 @@ Json recorded_inputs(const Campaign& campaign, const SimulationTask& task) {
                        datasets::Channel of) {
     if (signal) json[name] = {{"linear", linear(of)}, {"values", at_samples(*signal)}};
   };
-  add("force", task.inputs.external_force_n, datasets::Channel::force);
+  add("load", task.inputs.external_load, datasets::external_load_channel(campaign));
   add("supply", task.inputs.supply_pressure_pa, datasets::Channel::supply_pressure);
   add("tank", task.inputs.tank_pressure_pa, datasets::Channel::tank_pressure);
   add("base", task.inputs.base_acceleration_m_per_s2, datasets::Channel::base_acceleration);

@@ -36,7 +36,7 @@ class Model {
   }
 
   /**
-   * @param request  {plant, controller, initial, method, tolerance, values: [[index, SI value]], times, drive, force, supply, tank, base, temperature};
+   * @param request  {plant, controller, initial, method, tolerance, values: [[index, SI value]], times, drive, load, supply, tank, base, temperature};
    *                 an input is {kind, amplitude, frequency, end, sweep, logarithmic, times, values}
    * @returns  {status: "ok", outputs: Float64Array per output, steps} or {status, reason, failed_at_s}
    */
@@ -74,7 +74,7 @@ class Model {
       const rig = put([request.plant, request.controller, request.initial, request.method, request.tolerance, request.seconds ?? 10,
                        request.feedback ?? 0, request.before ?? 0, request.drive_begins ?? 0]);
       const outputs = put(new Float64Array(samples * count));
-      const status = exports.simulate(rig, put(values), input(request.drive), input(request.force), input(request.supply),
+      const status = exports.simulate(rig, put(values), input(request.drive), input(request.load), input(request.supply),
                                       input(request.tank), input(request.base), input(request.temperature), put(request.times), samples, outputs);
       if (status !== 0) {
         return {status: STATUS[status], reason: this.text(exports.reason()), failed_at_s: exports.failed_at_s()};

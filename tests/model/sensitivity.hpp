@@ -39,7 +39,7 @@ inline Experiment experiment(const Scenario& s, const Experiment& rig = {}) {
   if (parameter_index(e.rig.plant, "kp") >= 0) e.set("kp", 900.0);
   for (const auto& [key, value] : s.values) e.set(key, value);
   if (s.recorded_loads) {
-    e.inputs.external_force_n = Signal::linear({0.0, 0.05, 0.1}, {0.0, 500.0, -200.0});
+    e.inputs.external_load = Signal::linear({0.0, 0.05, 0.1}, {0.0, 500.0, -200.0});
     e.inputs.supply_pressure_pa = Signal::ripple(6e6, 2e5, 20.0, 0.4);
   }
   e.times_s.clear();

@@ -318,7 +318,7 @@ TEST_CASE("simulate: a recorded force and supply act as the parameters do", "[mo
   Experiment by_parameter = paper(Signal::sine(0.02, 2.0));
   by_parameter.set("external_force", 700.0).set("supply_pressure", 5e6);
   Experiment by_signal = paper(Signal::sine(0.02, 2.0));
-  by_signal.inputs.external_force_n = Signal::constant(700.0);
+  by_signal.inputs.external_load = Signal::constant(700.0);
   by_signal.inputs.supply_pressure_pa = Signal::constant(5e6);
   CHECK(difference(ok(by_parameter).outputs, ok(by_signal).outputs) < 1e-12);
 }

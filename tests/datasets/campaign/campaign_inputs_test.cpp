@@ -19,7 +19,7 @@ TEST_CASE("inputs_of: a measured channel acts on the rig where its role says so"
     setting.role = role;
     setting.interpolation = interpolation;
     campaign.channels[Channel::force] = setting;
-    return inputs_of(campaign, condition, values_in(campaign, condition), &record).external_force_n;
+    return inputs_of(campaign, condition, values_in(campaign, condition), &record).external_load;
   };
   CHECK_FALSE(force_of(ChannelRole::output, Interpolation::hold));
   CHECK_FALSE(force_of(ChannelRole::ignore, Interpolation::hold));

@@ -93,7 +93,7 @@ TEST_CASE("inputs_of: generated waveforms", "[datasets]") {
   const auto inputs = inputs_of(campaign, sine, values_in(campaign, sine), nullptr);
   // 2.5 s is a quarter of the period at 0.1 Hz.
   CHECK_THAT(inputs.drive.value(2.5), WithinRel(0.0508, 1e-12));
-  CHECK_FALSE(inputs.external_force_n.has_value());
+  CHECK_FALSE(inputs.external_load.has_value());
   CHECK_FALSE(inputs.supply_pressure_pa.has_value());
 
   Condition square = sine;
@@ -135,9 +135,9 @@ TEST_CASE("inputs_of: measured force and supply act on the rig", "[datasets]") {
   record.channels[Channel::supply_pressure].mean = {1.0, 2.0, 3.0};
   const Condition& sine = campaign.conditions[0];
   const auto inputs = inputs_of(campaign, sine, values_in(campaign, sine), &record);
-  REQUIRE(inputs.external_force_n.has_value());
+  REQUIRE(inputs.external_load.has_value());
   REQUIRE(inputs.supply_pressure_pa.has_value());
-  CHECK(inputs.external_force_n->value(1.5) == 10.0);
+  CHECK(inputs.external_load->value(1.5) == 10.0);
   CHECK(inputs.supply_pressure_pa->value(2.5) == 3.0);
 }
 

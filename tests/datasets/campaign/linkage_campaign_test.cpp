@@ -97,11 +97,38 @@ TEST_CASE("load_campaign: the torque of a linkage is compared, and its sensor ha
   CHECK(*torque.sd == Approx(50.0));
   CHECK(value(campaign, "torque_lag") == Approx(2e-3));
   CHECK(info(Channel::torque).name == "torque_n_m");
-  CHECK_THROWS_WITH(
-      load_text(replaced(text, "sd = \"50 Nm\"", "role = \"input\"")),
-      Catch::Contains("torque cannot be an input: expected \"output\" or \"ignore\""));
   CHECK_THROWS_WITH(load_text(replaced(text, "unit = \"kN m\"", "unit = \"kN\"")),
                     Catch::Contains("'kN' is the unit of a force") && Catch::Contains("a torque"));
+}
+
+TEST_CASE("load_campaign: a recorded moment is the load of a linkage where its role says so",
+          "[datasets]") {
+  const auto with_torque = [](const std::string& more) {
+    return load_text(
+        replaced(kArm, "pressure_a = {",
+                 "torque = { column = \"M_kNm\", unit = \"kN m\"" + more + " }\npressure_a = {"));
+  };
+  Record record;
+  record.time_s = {0.0, 1.0};
+  record.channels[Channel::pilot_pressure].mean = {0.0, 0.0};
+  record.channels[Channel::torque].mean = {100.0, 300.0};
+  const auto load_of = [&record](const Campaign& campaign) {
+    const Condition& out = campaign.conditions.front();
+    return inputs_of(campaign, out, values_in(campaign, out), &record).external_load;
+  };
+  CHECK_FALSE(load_of(with_torque(", sd = \"50 Nm\"")));
+  CHECK_FALSE(load_of(with_torque(", role = \"ignore\"")));
+  const Campaign held = with_torque(", role = \"input\"");
+  REQUIRE(load_of(held));
+  CHECK(load_of(held)->value(0.5) == 100.0);
+  CHECK(held.channels.at(Channel::torque).role == ChannelRole::input);
+  CHECK(load_of(with_torque(", role = \"input\", interpolation = \"linear\""))->value(0.5) ==
+        200.0);
+  // The force on a piston is no load of a joint, and a torque none of a piston.
+  CHECK_THROWS_WITH(load_text(replaced(kArm, "pressure_a = {",
+                                       "force = { column = \"F\", unit = \"N\", role = \"input\" "
+                                       "}\npressure_a = {")),
+                    Catch::Contains("the channel torque"));
 }
 
 TEST_CASE("load_campaign: a linkage with an electric valve is driven by the command",
@@ -404,4 +431,70 @@ TEST_CASE("load_campaign: a load that slides has no angle and no torque", "[data
   CHECK_THROWS_WITH(
       load_text(replaced(test::kExample, "type = \"pid\"", "type = \"pid\"\nfeedback = \"angle\"")),
       Catch::Contains("the plant load_pressure has no joint: expected another quantity"));
+}
+
+TEST_CASE("load_campaign: a rotary actuator is stated in the units of its data sheet",
+          "[datasets]") {
+  struct Row {
+    const char* key;
+    const char* text;
+    double si;
+  };
+  const std::string vane =
+      replaced(replaced(replaced(kArm, "lever = \"12 mm/deg\"\n", ""), "area_a = \"75 cm2\"\n", ""),
+               "area_b = \"150 cm2\"\n", "");
+  const double turn = 2.0 * 3.14159265358979;
+  for (const Row& row :
+       {Row{"displacement_per_radian", "50 cm3/rev", 50e-6 / turn},
+        Row{"displacement_per_radian", "50 cm^3/rev", 50e-6 / turn},
+        Row{"displacement_per_radian", "50 mL/turn", 50e-6 / turn},
+        Row{"displacement_per_radian", "3 in3/rev", 4.9161192e-5 / turn},
+        Row{"displacement_per_radian", "8e-6 m^3/rad", 8e-6},
+        Row{"displacement_per_radian", "0.14 cm3/deg", 0.14e-6 * 360.0 / turn},
+        Row{"joint_friction", "20 Nm", 20.0}, Row{"joint_friction", "0.02 kNm", 20.0},
+        Row{"joint_friction", "20 N.m", 20.0},
+        Row{"joint_friction", "15 ft lbf", 15.0 * 1.3558179483314},
+        Row{"joint_damping", "3 N m s/rad", 3.0}, Row{"joint_damping", "3 Nm/(rad/s)", 3.0},
+        Row{"joint_damping", "0.3 N m/rpm", 0.3 * 60.0 / turn},
+        Row{"laminar_leakage", "1 cm3/(min bar)", 1e-6 / 60.0 / 1e5}}) {
+    CAPTURE(row.key, row.text);
+    const std::string line = std::string(row.key) + " = \"" + row.text + "\"\n";
+    std::string text = replaced(vane, "tank_pressure =", line + "tank_pressure =");
+    const bool damping = std::string(row.key) == "joint_damping";
+    if (damping)
+      text = replaced(text, "joint_damping = { start = \"5 kN m s/rad\", fit = true }\n", "");
+    if (std::string(row.key) != "displacement_per_radian")
+      text = replaced(
+          text, "tank_pressure =", "displacement_per_radian = \"8 cm3/rad\"\ntank_pressure =");
+    CHECK(value(load_text(text), row.key) == Approx(row.si).epsilon(1e-9));
+  }
+  CHECK_THROWS_WITH(load_text(replaced(vane, "tank_pressure =",
+                                       "displacement_per_radian = \"50 cm3\"\ntank_pressure =")),
+                    Catch::Contains("'cm3' differs by an angle") && Catch::Contains("50 cm3/rev"));
+}
+
+TEST_CASE("load_campaign: the load of a joint is not the column that its loop follows",
+          "[datasets]") {
+  std::string text = replaced(arm_loop(), "type = \"pid\"\nangle_kp = \"0.2 V/deg\"",
+                              "type = \"pid\"\nfeedback = \"torque\"\ntorque_kp = \"1 V/kNm\"");
+  text = replaced(text,
+                  "\nangle_ki = { start = \"5 V/(rad s)\", lower = \"1 V/(rad s)\", upper = "
+                  "\"20 V/(rad s)\", fit = true }",
+                  "");
+  text = replaced(text, "angle_reference = { column = \"ref_deg\", unit = \"deg\"",
+                  "torque = { column = \"M_kNm\", unit = \"kN m\", role = \"input\" }\n"
+                  "torque_reference = { column = \"ref_kNm\", unit = \"kN m\"");
+  const Campaign campaign = load_text(text);
+  CHECK(drive_channel(campaign) == Channel::torque_reference);
+  CHECK(external_load_channel(campaign) == Channel::torque);
+  const std::string same = replaced(text, "\"ref_kNm\"", "\"M_kNm\"");
+  CHECK_THROWS_WITH(load_text(same), Catch::Contains("the column 'M_kNm' is torque_reference") &&
+                                         Catch::Contains("the load torque") &&
+                                         Catch::Contains("role = \"output\""));
+  // Compared with the model it is no load, and a repeat may name columns of its own.
+  CHECK_NOTHROW(load_text(replaced(same, "role = \"input\"", "role = \"output\"")));
+  const std::string own = "repeats = [{ file = \"out.csv\", columns = { torque = \"ref_kNm\" } }]";
+  CHECK_THROWS_WITH(load_text(replaced(text, "repeats = [\"out.csv\"]", own)),
+                    Catch::Contains("the column 'ref_kNm' is torque_reference"));
+  CHECK_NOTHROW(load_text(replaced(same, "repeats = [\"out.csv\"]", own)));
 }

@@ -1,8 +1,11 @@
 #include "datasets/draft/column_guess.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <string>
 #include <vector>
+
+#include "common/quantity.hpp"
 
 using namespace rigcal::datasets;
 
@@ -200,4 +203,73 @@ TEST_CASE("guess_by_unit: where the name tells nothing", "[datasets]") {
   CHECK_FALSE(guess("mm", {Channel::position, Channel::reference}));
   CHECK_FALSE(guess("", {}));
   CHECK_FALSE(guess("rpm", {}));
+}
+
+TEST_CASE("guess_column: units in names, of every quantity and as many spellings", "[datasets]") {
+  struct Case {
+    std::string name;
+    std::optional<Channel> channel;
+    std::string_view si;
+    double per_unit = 1.0;  ///< SI value of one unit
+  };
+  const auto none = std::nullopt;
+  const double kDeg = std::acos(-1.0) / 180.0;
+  const std::vector<Case> cases{{"M_kNm", Channel::torque, "N m", 1e3},
+                                {"M [kNm]", Channel::torque, "N m", 1e3},
+                                {"M_kN_m", Channel::torque, "N m", 1e3},
+                                {"torque [kN m]", Channel::torque, "N m", 1e3},
+                                {"Drehmoment (N\u00b7m)", Channel::torque, "N m"},
+                                {"torque_N.m", Channel::torque, "N m"},
+                                {"torque_N-m", Channel::torque, "N m"},
+                                {"Mext_Nm", Channel::torque, "N m"},
+                                {"Lastmoment_Nm", Channel::torque, "N m"},
+                                {"External_Moment_kNm", Channel::torque, "N m", 1e3},
+                                {"moment_daNm", Channel::torque, "N m", 10.0},
+                                {"torque_mNm", Channel::torque, "N m", 1e-3},
+                                {"torque_nm", Channel::torque, "N m"},
+                                {"torque [nm]", Channel::torque, "N m"},
+                                {"torque [ft-lb]", Channel::torque, "N m", 1.3558179483314},
+                                {"torque [in-lbf]", Channel::torque, "N m", 0.1129848290276},
+                                {"Msoll_Nm", Channel::torque_reference, "N m"},
+                                {"M_soll_kNm", Channel::torque_reference, "N m", 1e3},
+                                {"torque_cmd_kNm", Channel::torque_reference, "N m", 1e3},
+                                {"pump torque [Nm]", none, "N m"},
+                                {"k_N_m", none, "N m"},  // a stiffness may be meant
+                                {"F_daN", Channel::force, "N", 10.0},
+                                {"F_kgf", Channel::force, "N", 9.80665},
+                                {"F_MN", Channel::force, "N", 1e6},
+                                {"F_mN", Channel::force, "N", 1e-3},
+                                {"pA_psi", Channel::pressure_a, "Pa", 6894.757293168},
+                                {"P_A_PSI", Channel::pressure_a, "Pa", 6894.757293168},
+                                {"pB_mbar", Channel::pressure_b, "Pa", 100.0},
+                                {"pA_N/mm2", Channel::pressure_a, "Pa", 1e6},
+                                {"p_A [kp/cm2]", Channel::pressure_a, "", 0.0},
+                                {"Q_gpm", none, "m3/s", 6.30901964e-5},
+                                {"Q_cm3_s", none, "m3/s", 1e-6},
+                                {"acc [m/s\u00b2]", Channel::acceleration, "m/s2"},
+                                {"acc_mm_s2", Channel::acceleration, "m/s2", 1e-3},
+                                {"v_mm/s", none, "m/s", 1e-3},
+                                {"omega_\u00b0/s", none, "rad/s", kDeg},
+                                {"angle_mrad", Channel::angle, "rad", 1e-3},
+                                {"theta_\u00b0", Channel::angle, "rad", kDeg},
+                                {"Drehwinkel_Grad", Channel::angle, "rad", kDeg},
+                                {"encoder_deg", Channel::angle, "rad", kDeg},
+                                {"encoder_mm", Channel::position, "m", 1e-3},
+                                {"angle_ref_mrad", Channel::angle_reference, "rad", 1e-3},
+                                {"x_\u00b5m", Channel::position, "m", 1e-6},
+                                {"x_um", Channel::position, "m", 1e-6},
+                                {"x_mil", Channel::position, "m", 2.54e-5},
+                                {"X_CMD_MM", Channel::reference, "m", 1e-3},
+                                {"T_\u00b0C", Channel::temperature, "K"}};
+  for (const Case& each : cases) {
+    CAPTURE(each.name);
+    const ColumnGuess guess = guess_column(each.name);
+    CAPTURE(guess.unit);
+    CHECK_FALSE(guess.is_time);
+    CHECK(guess.channel == each.channel);
+    if (each.si.empty()) continue;
+    REQUIRE(converts_to(guess.unit, each.si));
+    CHECK(rigcal::unit_conversion(guess.unit, each.si).scale ==
+          Approx(each.per_unit).epsilon(1e-6));
+  }
 }

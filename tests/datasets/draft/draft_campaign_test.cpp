@@ -235,7 +235,9 @@ TEST_CASE("draft_campaign: a joint may have a torque, and a slide has none", "[d
   for (int i = 0; i < 200; ++i)
     text += fmt::format("{},{},{},{}\n", 0.01 * i, i > 50 ? 4 : 0, 0.1 * i, 20.0 + 0.3 * i);
   std::string draft = draft_campaign({folder.write("j.csv", text)}, folder.path()).text;
-  CHECK_THAT(draft, Contains("\ntorque = { column = \"torque_Nm\", unit = \"N m\" }"));
+  CHECK_THAT(draft, Contains("\ntorque = { column = \"torque_Nm\", unit = \"N m\" }  # ") &&
+                        Contains("role = \"input\" if it is a load"));
+  CHECK_THAT(draft, Contains("displacement_per_radian, such as \"50 cm3/rev\""));
   text.replace(text.find("angle_deg"), 9, "x_mm");
   draft = draft_campaign({folder.write("s.csv", text)}, folder.path()).text;
   CHECK_THAT(draft,

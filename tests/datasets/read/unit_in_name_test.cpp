@@ -52,7 +52,43 @@ TEST_CASE("unit_in_name: in brackets, or behind a word", "[datasets]") {
                                 {"duty_pct", "%", false},
                                 {"y_%", "%", false},
                                 {"M_Nm", "N m", false},
-                                {"n_rpm", "rpm", false}};
+                                {"n_rpm", "rpm", false},
+                                {"M_kNm", "kNm", false},
+                                {"M_kN_m", "kN m", false},
+                                {"torque_N-m", "N m", false},
+                                {"torque_N.m", "N m", false},
+                                {"M_N\u00b7m", "N\u00b7m", false},
+                                {"torque [N\u00b7m]", "N\u00b7m"},
+                                {"torque [NM]", "N m"},
+                                {"torque [ft-lb]", "ft lbf"},
+                                {"torque_in_lb [in-lb]", "inch lbf"},
+                                {"torque_ft_lb", "ft lbf", false},
+                                {"torque [nm]", "nm", false},  // newton metres may be meant
+                                {"M_mNm", "mNm", false},
+                                {"M_MNm", "MNm", false},
+                                {"Force in lbs", "lbf", false},
+                                {"F_daN", "daN", false},
+                                {"F_mN", "mN", false},
+                                {"F_MN", "MN", false},
+                                {"F_kgf", "kgf", false},
+                                {"F [kp]", "kgf"},
+                                {"p_N/mm2", "N/mm2", false},
+                                {"p_kgf_cm2", "kgf/cm2", false},
+                                {"p_mbar", "mbar", false},
+                                {"P_A_PSI", "psi", false},  // capitals only
+                                {"X_ACT_MM", "mm", false},
+                                {"PRESS_PA", "Pa", false},
+                                {"q_cm3_s", "cm3/s", false},
+                                {"Q_gpm", "gpm", false},
+                                {"n [U/min]", "rpm"},
+                                {"v [ips]", "inch/s"},
+                                {"theta_mrad", "mrad", false},
+                                {"Winkel_Grad", "deg", false},
+                                {"omega_\u00b0/s", "\u00b0/s", false},
+                                {"a_m/s\u00b2", "m/s\u00b2", false},
+                                {"x_\u00b5m", "\u00b5m", false},
+                                {"x_\u03bcm", "\u03bcm", false},
+                                {"T_\u00b0C", "\u00b0C", false}};
   for (const Case& each : cases) {
     CAPTURE(each.name);
     const auto found = unit_in_name(each.name);
@@ -60,9 +96,9 @@ TEST_CASE("unit_in_name: in brackets, or behind a word", "[datasets]") {
     CHECK(found->unit == each.unit);
     CHECK(found->is_certain == each.is_certain);
   }
-  for (const char* name :
-       {"x", "x (ist)", "p (A)", "pressure (g)", "x [-]", "x [1]", "data(:,3)", "ans(2,:)", "p_A",
-        "/s/x", "run (2)", "Pressure Port A", "", "[mm]", "x [", "log.s.values"}) {
+  for (const char* name : {"x", "x (ist)", "p (A)", "pressure (g)", "x [-]", "x [1]", "data(:,3)",
+                           "ans(2,:)", "p_A", "/s/x", "run (2)", "Pressure Port A", "", "[mm]",
+                           "x [", "log.s.values", "log.N.m", "X_MEAN"}) {
     CAPTURE(name);
     CHECK_FALSE(unit_in_name(name));
   }

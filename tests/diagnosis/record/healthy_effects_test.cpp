@@ -70,7 +70,7 @@ TEST_CASE("HealthyEffects: a recorded input belongs to its record", "[diagnosis]
   calib::Problem problem = calib::make_problem(made.campaign, records,
                                                {&made.campaign.conditions.front()}, true, nullptr);
   calib::ProblemCondition& prepared = problem.conditions.front();
-  prepared.inputs.external_force_n =
+  prepared.inputs.external_load =
       model::Signal::held(made.record.time_s, std::vector<double>(made.record.time_s.size()));
   diagnosis::HealthyEffects effects;
   int simulated = 0;

@@ -18,7 +18,7 @@ TEST_CASE("steady_leak: of the periodic state where nothing but a wave drives th
   const auto periodic = diagnosis::steady_leak(problem, prepared, prepared.values, {});
   CHECK(periodic.is_periodic);
   // A recorded force of zero changes nothing, but it is an input that belongs to the record.
-  prepared.inputs.external_force_n = model::Signal::held(
+  prepared.inputs.external_load = model::Signal::held(
       records.front().time_s, std::vector<double>(records.front().time_s.size()));
   const auto recorded = diagnosis::steady_leak(problem, prepared, prepared.values, {});
   CHECK_FALSE(recorded.is_periodic);

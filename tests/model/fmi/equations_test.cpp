@@ -305,6 +305,41 @@ TEST_CASE("equations: an arm follows the reference of its loop as it is simulate
   }
 }
 
+TEST_CASE("equations: an external moment loads a joint, from its first pressures on", "[model]") {
+  Experiment e = arm_rig();
+  e.set("gravity_moment", 1e3).inputs.external_load = Signal::constant(4e3);
+  e.times_s = {0.0, 0.3};
+  e.outputs = {Output::angle, Output::pressure_a, Output::torque};
+  const Simulation run = e();
+  INFO(run.reason);
+  REQUIRE(run.ok());
+  ExportedRig rig;
+  rig.rig = e.rig;
+  rig.values = e.values;
+  const auto equations = make_equations(rig);
+  RigInputs inputs;
+  inputs.drive.value = 1.5e6;
+  inputs.external_load.value = 4e3;
+  inputs.supply_pressure_pa.value = 2e7;
+  inputs.tank_pressure_pa.value = 2e5;
+  equations->set(rig.values, inputs, 1.0);
+  std::vector<double> x = equations->initial();
+  CHECK(x[2] == Approx(run.outputs(0, 1)).epsilon(1e-9));
+  CHECK(equations->output(Output::torque, x) == Approx(5e3).epsilon(1e-6));
+  const double at_rest = equations->derivatives(x)[1];
+  CHECK(at_rest == Approx(0.0).margin(1e-6));
+  StepMemory memory;
+  equations->advance(x, memory, 0.0, 0.3, 1e-9);
+  REQUIRE(run.outputs(1, 0) > 1e-3);
+  CHECK(x[0] == Approx(run.outputs(1, 0)).epsilon(1e-6));
+  inputs.external_load.value = 4.4e3;
+  equations->set(rig.values, inputs, 1.0);
+  const double pushed = equations->derivatives(x)[1];
+  inputs.external_load.value = 4e3;
+  equations->set(rig.values, inputs, 1.0);
+  CHECK(pushed - equations->derivatives(x)[1] == Approx(-400.0 / 400.0).epsilon(1e-9));
+}
+
 TEST_CASE("equations: a cylinder with a load-sensing pump and friction with pre-sliding",
           "[model]") {
   Experiment e = pilot_rig();
@@ -314,7 +349,7 @@ TEST_CASE("equations: a cylinder with a load-sensing pump and friction with pre-
   e.set("relief_conductance", 1e-10).set("coulomb_friction", 2e3).set("bristle_stiffness", 1e7);
   e.set("stribeck_friction", 1e3).set("film_velocity", 0.1).set("film_growth_time", 0.05);
   e.set("film_decay_time", 0.2).set("film_dwell_time", 5.0).set("seal_friction", 1e-5);
-  e.set("external_force", 0.0).inputs.external_force_n = Signal::constant(1e4);
+  e.set("external_force", 0.0).inputs.external_load = Signal::constant(1e4);
   e.times_s = {0.0, 0.5};
   const Simulation run = e();
   INFO(run.reason);
@@ -326,7 +361,7 @@ TEST_CASE("equations: a cylinder with a load-sensing pump and friction with pre-
   const auto equations = make_equations(rig);
   CHECK(describe_states(rig, equations->layout())[5].unit == "N");
   RigInputs inputs = inputs_of(2e6, 2e7, 2e5);
-  inputs.external_force_n.value = 1e4;
+  inputs.external_load.value = 1e4;
   equations->set(rig.values, inputs, 1.0);
   std::vector<double> x = equations->initial();
   StepMemory memory;

@@ -92,7 +92,7 @@ TEST_CASE("fmu instance: it starts from the rig's own values", "[model]") {
   const InstanceState& state = importer.instance.state();
   CHECK(state.phase == Phase::instantiated);
   CHECK(state.tolerance == 1e-5);
-  CHECK(state.inputs.external_force_n.value == 30.0);
+  CHECK(state.inputs.external_load.value == 30.0);
   CHECK(state.inputs.supply_pressure_pa.value == exported().values["supply_pressure"]);
   CHECK(state.inputs.drive.value == 0.0);
   CHECK(importer.instance.real(kForce) == 30.0);

@@ -24,7 +24,7 @@ Experiment pushed_piston(const Signal& load, std::vector<double> times_s) {
   Experiment e;
   e.rig.controller = ControllerKind::none;
   e.inputs.drive = Signal::constant(0.0);
-  e.inputs.external_force_n = load;
+  e.inputs.external_load = load;
   e.set("leakage_coefficient", 0.0).set("laminar_leakage", 1e-5).set("stiffness", 2e4);
   e.set("damping", 2e3).set("coulomb_friction", 200.0).set("stribeck_friction", 80.0);
   e.set("stribeck_velocity", 0.02).set("bristle_stiffness", 1e6).set("bristle_damping", 500.0);
@@ -70,7 +70,7 @@ TEST_CASE("bristles: where they slide they are dry friction", "[model]") {
                WithinRel(2e6 * v, 1e-14));
   }
   Experiment e = pushed_piston(Signal::constant(0.0), {0.0, 8.0});
-  e.inputs.external_force_n.reset();
+  e.inputs.external_load.reset();
   e.inputs.drive = Signal::constant(0.5);
   e.set("laminar_leakage", 0.0).set("stiffness", 0.0);
   e.outputs = {Output::velocity, Output::load_pressure, Output::force};
@@ -131,7 +131,7 @@ TEST_CASE("bristles: sensitivities are exact against differences", "[model]") {
   const NamedValues values{{"leakage_coefficient", 0.3}, {"laminar_leakage", 2e-11},
                            {"stiffness", 2e4},           {"bristle_damping", 500.0},
                            {"bristle_stiffness", 1e6},   {"valve_time_constant", 3e-3}};
-  e.inputs.external_force_n.reset();
+  e.inputs.external_load.reset();
   Scenario scenario{"stick and slip", Signal::sine(1.0, 9.0), values, ControllerKind::none};
   check_sensitivities(experiment(scenario, e), seen, {{Output::force, 1e4}});
   for (const char* key : {"bristle_stiffness", "bristle_damping", "coulomb_friction",
@@ -143,7 +143,7 @@ TEST_CASE("friction: seals rub more where pressure presses them on", "[model]") 
   for (const double direction : {1.0, -1.0}) {
     for (const bool pre_sliding : {false, true}) {
       Experiment e = pushed_piston(Signal::constant(0.0), {0.0, 8.0});
-      e.inputs.external_force_n.reset();
+      e.inputs.external_load.reset();
       e.inputs.drive = Signal::constant(0.5 * direction);
       e.set("laminar_leakage", 0.0).set("stiffness", 0.0).set("seal_friction", 3e-4);
       e.set("external_force", 500.0 * direction);
@@ -260,7 +260,7 @@ TEST_CASE("film: stick and slip on a film follow an integrator of another kind",
 TEST_CASE("film: where it follows at once, friction falls to Coulomb's at its velocity",
           "[model]") {
   Experiment e = lubricated_piston(Signal::constant(0.0), {0.0, 8.0});
-  e.inputs.external_force_n.reset();
+  e.inputs.external_load.reset();
   e.set("film_growth_time", 1e-4).set("film_decay_time", 1e-4).set("stribeck_velocity", 10.0);
   e.set("laminar_leakage", 0.0).set("stiffness", 0.0);
   e.outputs = {Output::velocity, Output::load_pressure};
@@ -293,7 +293,7 @@ TEST_CASE("film: a record that begins in motion begins with its film", "[model]"
 
 TEST_CASE("film: sensitivities are exact against differences", "[model]") {
   Experiment e = lubricated_piston(Signal::constant(0.0), {0.0});
-  e.inputs.external_force_n.reset();
+  e.inputs.external_load.reset();
   std::set<int> seen;
   const NamedValues values{{"laminar_leakage", 2e-11},  {"stiffness", 2e4},
                            {"coulomb_friction", 100.0}, {"stribeck_friction", 400.0},

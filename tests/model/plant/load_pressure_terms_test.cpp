@@ -107,7 +107,7 @@ TEST_CASE("load_pressure: a constant force is held by the load pressure", "[mode
 TEST_CASE("load_pressure: a recorded force adds to the constant one", "[model]") {
   Experiment e = driven_by(1.0);
   e.set("external_force", 500.0);
-  e.inputs.external_force_n = Signal::constant(300.0);
+  e.inputs.external_load = Signal::constant(300.0);
   const SteadyLoad both = steady_load(e);
   CHECK_THAT(kArea_m2 * both.P_L, WithinRel(4000.0 * both.v + 800.0, 1e-6));
   e.set("external_force", 0.0);
@@ -220,9 +220,9 @@ TEST_CASE("load_pressure: what acts in one direction cannot be reversed", "[mode
   CHECK(LoadPressurePlant::reversible(Output::position, terms));
   CHECK_FALSE(LoadPressurePlant::reversible(Output::pressure_a, terms));
   CHECK_FALSE(LoadPressurePlant::reversible(Output::pressure_b, terms));
-  terms.external_force = true;
+  terms.external_load = true;
   CHECK_FALSE(LoadPressurePlant::reversible(Output::position, terms));
-  terms.external_force = false;
+  terms.external_load = false;
   terms.valve_offset = true;
   CHECK_FALSE(LoadPressurePlant::reversible(Output::position, terms));
 }

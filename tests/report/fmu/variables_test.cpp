@@ -126,13 +126,16 @@ TEST_CASE("fmu variables: an arm is told in radians, and its pilot pressure driv
   CHECK(named(variables, "torque").causality == Causality::output);
   CHECK(named(variables, "der(pump_demand)").unit == "1");
   CHECK(named(variables, "lever_curvature").unit == "m/rad3");
+  CHECK(named(variables, "external_moment").unit == "N m");
+  CHECK(named(variables, "external_moment").causality == Causality::input);
+  CHECK(named(variables, "external_moment").start == 0.0);
   for (const char* absent : {"external_force", "command", "payload_acceleration", "stroke"})
     CHECK_FALSE(has(variables, absent));
   for (const FmuVariable& each : variables) {
     CAPTURE(each.name, each.unit);
     CHECK_NOTHROW(report::base_units(each.unit));
   }
-  for (const char* of_joint : {"angle", "torque"})
+  for (const char* of_joint : {"angle", "torque", "external_moment"})
     CHECK_FALSE(has(variables_of(two_chamber_rig()), of_joint));
 }
 
