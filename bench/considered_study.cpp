@@ -75,6 +75,7 @@ struct ForeignEffect {
   double plausible;
   bool one_sided;
   void (*apply)(ForeignRig&, double size);
+  bool first_only = false;  ///< the effect acts in the first record only
 };
 
 const std::vector<ForeignEffect> kEffects{
@@ -120,7 +121,102 @@ const std::vector<ForeignEffect> kOthers{
      [](ForeignRig& r, double s) { r.volume_bow = s; }},
     {"a lag of the reference", 0.3e-3, true,
      [](ForeignRig& r, double s) { r.reference_lag_s = s; }},
-    {"steps of the converter", 0.1e-3, true, [](ForeignRig& r, double s) { r.quantum_m = s; }}};
+    {"steps of the converter", 0.1e-3, true, [](ForeignRig& r, double s) { r.quantum_m = s; }},
+    {"a piston area that is off", 0.005, false, [](ForeignRig& r, double s) { r.area_error = s; }},
+    {"pressure in the return line", 0.031e6, true,
+     [](ForeignRig& r, double s) { r.return_pa = s; }},
+    {"a return line that backs up", 0.01, true,
+     [](ForeignRig& r, double s) { r.back_pressure = s; }},
+    {"oil that stiffens with its pressure", 0.1, true,
+     [](ForeignRig& r, double s) { r.oil_stiffening = s; }},
+    {"a valve whose gain rises with its opening", 0.02, false,
+     [](ForeignRig& r, double s) { r.valve_curve = s; }},
+    {"a valve whose gain falls with its opening", 0.02, false,
+     [](ForeignRig& r, double s) { r.valve_curve = -s; }},
+    {"underlap of the spool", 0.005, true, [](ForeignRig& r, double s) { r.underlap_v = s; }},
+    {"a valve of limited rate, over full command", 0.003, true,
+     [](ForeignRig& r, double s) { r.slew_v_per_s = r.limit_v / s; }},
+    {"hum in the supply", 0.01, false, [](ForeignRig& r, double s) { r.supply_ripple = s; }},
+    {"an accumulator that empties", 0.02, true, [](ForeignRig& r, double s) { r.accumulator = s; }},
+    {"a supply that falls midway", 0.01, false, [](ForeignRig& r, double s) { r.supply_step = s; }},
+    {"a leak that grows within a record", 0.1, false,
+     [](ForeignRig& r, double s) { r.leak_drift = s; }},
+    {"a leak that varies with the travel", 0.1, false,
+     [](ForeignRig& r, double s) { r.leak_by_travel = s; }},
+    {"a leak between orifice and laminar, power more by", 0.1, true,
+     [](ForeignRig& r, double s) { r.leak_power = s; }},
+    {"friction one way", 5.0, true, [](ForeignRig& r, double s) { r.sided_friction_n = s; }},
+    {"friction at one end", 5.0, true, [](ForeignRig& r, double s) { r.travel_friction_n = s; }},
+    {"friction from midway on", 5.0, true, [](ForeignRig& r, double s) { r.late_friction_n = s; }},
+    {"friction that fades", 5.0, true, [](ForeignRig& r, double s) { r.fading_friction_n = s; }},
+    {"a constant force", 20.0, false, [](ForeignRig& r, double s) { r.constant_force_n = s; }},
+    {"a spring", 500.0, true, [](ForeignRig& r, double s) { r.spring_n_per_m = s; }},
+    {"a loose mass", 0.02, true, [](ForeignRig& r, double s) { r.loose_mass = s; }},
+    {"a sensor on a bracket that rings", 0.02, true,
+     [](ForeignRig& r, double s) { r.bracket = s; }},
+    {"a filter of second order behind the sensor", 0.0003, true,
+     [](ForeignRig& r, double s) { r.reader_lag_s = s; }},
+    {"hum of the sensor", 3e-05, false, [](ForeignRig& r, double s) { r.sensor_hum_m = s; }},
+    {"a sensor that drifts", 3e-05, false, [](ForeignRig& r, double s) { r.sensor_drift_m = s; }},
+    {"a sensor that jumps midway", 3e-05, false,
+     [](ForeignRig& r, double s) { r.sensor_jump_m = s; }},
+    {"a clock that is off", 0.0001, false, [](ForeignRig& r, double s) { r.clock_error = s; }},
+    {"a derivative filter that is off", 0.05, false,
+     [](ForeignRig& r, double s) { r.filter_error = s; }},
+    {"an output limit that is off", 0.01, false,
+     [](ForeignRig& r, double s) { r.limit_error = s; }},
+    {"a gain of the reference", 0.001, false,
+     [](ForeignRig& r, double s) { r.reference_gain = s; }},
+    {"steps of the reference", 0.0001, true,
+     [](ForeignRig& r, double s) { r.reference_step_m = s; }},
+    {"a start off the middle", 0.0001, false, [](ForeignRig& r, double s) { r.start_m = s; }},
+    {"a controller that sees the sensor's gain", 0.002, false,
+     [](ForeignRig& r, double s) {
+       r.sensor_in_loop = true;
+       r.sensor_gain = s;
+     }},
+    {"a controller that sees the sensor's bow", 0.000152, false,
+     [](ForeignRig& r, double s) {
+       r.sensor_in_loop = true;
+       r.sensor_bow_m = s;
+     }},
+    {"a controller that sees the sensor's wave", 0.000152, false,
+     [](ForeignRig& r, double s) {
+       r.sensor_in_loop = true;
+       r.sensor_wave_m = s;
+     }},
+    {"a controller that sees the sensor's play", 3e-05, true,
+     [](ForeignRig& r, double s) {
+       r.sensor_in_loop = true;
+       r.sensor_hysteresis_m = s;
+     }},
+    {"a delay of one record", 0.0003, true, [](ForeignRig& r, double s) { r.delay_s = s; }, true},
+    {"a supply lower in one record", 0.01, false,
+     [](ForeignRig& r, double s) { r.supply_pa *= 1.0 - s; }, true},
+    {"friction in one record", 5.0, true, [](ForeignRig& r, double s) { r.friction_n = s; }, true},
+    {"a sensor gain of one record", 0.002, false,
+     [](ForeignRig& r, double s) { r.sensor_gain = s; }, true},
+    {"a zero of one record", 3e-05, false, [](ForeignRig& r, double s) { r.sensor_offset_m = s; },
+     true},
+    {"friction and half of it as underlap", 5.0, true,
+     [](ForeignRig& r, double s) {
+       r.friction_n = s;
+       r.underlap_v = 1e-3 * s;
+     }},
+    {"a lag and a derivative gain that is high", 0.0002, true,
+     [](ForeignRig& r, double s) {
+       r.valve_lag_s = s;
+       r.kd_error_v_s_per_m = 100.0 * s * r.kd_v_s_per_m;
+     }},
+    {"dead band and play of the valve", 0.005, true,
+     [](ForeignRig& r, double s) {
+       r.dead_band_v = s;
+       r.valve_play_v = s;
+     }},
+    {"a wave of the sensor and a valve of falling gain", 6e-05, false, [](ForeignRig& r, double s) {
+       r.sensor_wave_m = s;
+       r.valve_curve = -200.0 * s;
+     }}};
 
 /// Days of a row whose validation record has another date than the other records. The campaign
 /// states the sizes.
@@ -137,6 +233,7 @@ struct Row {
   bool drawn = false;  ///< the effect is drawn anew for each campaign
   bool fresh = false;  ///< rig, amplitudes and seeds are drawn as well
   std::optional<RowDays> days = std::nullopt;
+  bool first_only = false;  ///< the effect acts in the first record only
 };
 
 /// A row in which the size of the effect is a multiple of the detectable size. The latter is
@@ -306,17 +403,19 @@ Motion motion_of(const ForeignRig& rig, const Reference& reference) {
 
 /// Returns the motion in each condition, in the order of the campaign.
 ///
-/// @param fitted, validated  the rig on the days of these records
-std::vector<Motion> motions_of_all(const Bench& bench, const ForeignRig& fitted,
-                                   const ForeignRig& validated) {
+/// @param first              the rig during the first record
+/// @param fitted, validated  the rig on the days of the other records
+std::vector<Motion> motions_of_all(const Bench& bench, const ForeignRig& first,
+                                   const ForeignRig& fitted, const ForeignRig& validated) {
   std::vector<Motion> all;
-  for (const Reference& reference : bench.fitted) all.push_back(motion_of(fitted, reference));
+  for (const Reference& reference : bench.fitted)
+    all.push_back(motion_of(all.empty() ? first : fitted, reference));
   all.push_back(motion_of(validated, bench.validated));
   return all;
 }
 
 std::vector<Motion> motions_of_all(const Bench& bench) {
-  return motions_of_all(bench, bench.rig, bench.rig);
+  return motions_of_all(bench, bench.rig, bench.rig, bench.rig);
 }
 
 std::vector<datasets::Record> records_of(const datasets::Campaign& campaign,
@@ -354,13 +453,15 @@ const std::map<std::string, double>& detectable_sizes(int repeats) {
 
 /// Returns half the sum of squared residuals of a fit whose model is considered exact. The noise is
 /// the same for every rig.
-double cost_of(const Bench& bench, int repeats) {
+///
+/// @param first  the rig during the first record
+double cost_of(const Bench& bench, const ForeignRig& first, int repeats) {
   boost::random::mt19937_64 stream(kFreshSeed);
   datasets::Campaign campaign = campaign_of(bench);
   campaign.considered.none = true;
   campaign.channels.at(Channel::position).sd = kNoise_m;
-  const auto records =
-      records_of(campaign, motions_of_all(bench), repeats, stream, bench.rig.quantum_m);
+  const auto records = records_of(campaign, motions_of_all(bench, first, bench.rig, bench.rig),
+                                  repeats, stream, bench.rig.quantum_m);
   return calib::fit(campaign, records, {}).cost;
 }
 
@@ -368,10 +469,12 @@ double cost_of(const Bench& bench, int repeats) {
 /// leaves as much in the residuals as a detectable one. It is scaled from the given size, because
 /// the sum of squares that an effect leaves grows with the square of its size.
 double detectable_size(const ForeignEffect& effect, int repeats) {
-  static const double none = cost_of({}, repeats);
+  static const double none = cost_of({}, {}, repeats);
   Bench bench;
-  effect.apply(bench.rig, effect.plausible);
-  const double left = 2.0 * (cost_of(bench, repeats) - none);
+  ForeignRig first;
+  effect.apply(first, effect.plausible);
+  if (!effect.first_only) bench.rig = first;
+  const double left = 2.0 * (cost_of(bench, first, repeats) - none);
   return effect.plausible * kFound / std::sqrt(std::max(left, 1.0));
 }
 
@@ -389,24 +492,29 @@ std::vector<SizedRow> sized_rows() {
   return all;
 }
 
-/// Returns std::nullopt if the effect can never be found because it acts like a change in an
-/// estimate, as a hose does.
-std::optional<Row> with_size(const SizedRow& row, int repeats) {
+/// Returns a row with the size of an effect. If the effect cannot be found at ten times its
+/// plausible size because it acts like a change in an estimate, as a hose does, the size is a
+/// multiple of the plausible one.
+Row with_size(const SizedRow& row, int repeats) {
   constexpr double kNeverFound = 10.0;
   const ForeignEffect& effect = *row.effect;
-  double size = 0.0;
+  double size = HUGE_VAL;
   if (row.known) {
     const auto found = detectable_sizes(repeats).find(effect.name);
-    if (found == detectable_sizes(repeats).end()) return std::nullopt;
-    size = found->second;
+    if (found != detectable_sizes(repeats).end()) size = found->second;
   } else {
     size = detectable_size(effect, repeats);
   }
-  if (size > kNeverFound * effect.plausible) return std::nullopt;
-  return Row{fmt::format("{} ({:.2g})", name_of(row), row.factor * size),
+  const bool found = size <= kNeverFound * effect.plausible;
+  if (!found) size = effect.plausible;
+  return Row{fmt::format("{} ({:.2g}{})", name_of(row), row.factor * size,
+                         found ? "" : ", by its plausible size"),
              row.known ? effect.name : "",
              [&effect, of = row.factor * size](ForeignRig& rig, auto&) { effect.apply(rig, of); },
-             true, true};
+             true,
+             true,
+             std::nullopt,
+             effect.first_only};
 }
 
 struct EstimateOutcome {
@@ -651,16 +759,21 @@ void study_row(const Row& row, const StudyExtent& extent, OutcomeFile& file) {
     }
     boost::random::mt19937_64 stream(row.fresh ? kFreshSeed + i : i + 1);
     Bench bench = row.fresh ? drawn_bench(stream) : same;
-    if (row.drawn) row.apply(bench.rig, stream);
+    ForeignRig first = bench.rig;
+    if (row.first_only)
+      row.apply(first, stream);
+    else if (row.drawn)
+      row.apply(bench.rig, stream);
     ForeignRig fitted = bench.rig;
     ForeignRig validated = bench.rig;
     if (row.days) {
       if (row.days->of_fit) fitted = rig_of_day(bench.rig, row.days->stated, stream);
       validated = rig_of_day(bench.rig, row.days->stated, stream);
     }
+    if (!row.first_only) first = fitted;
     const datasets::Campaign campaign = campaign_of(bench, row.days);
     const std::vector<Motion> motions =
-        row.drawn ? motions_of_all(bench, fitted, validated) : same_motions;
+        row.drawn ? motions_of_all(bench, first, fitted, validated) : same_motions;
     const auto records = records_of(campaign, motions, repeats, stream, bench.rig.quantum_m);
     outcomes[k] = outcome_of(row, bench.rig, motions, calib::fit(campaign, records, {}));
     file.add(key, outcomes[k]);
@@ -764,8 +877,7 @@ int main(int argc, char** argv) {
   }
   for (const auto& each : rigcal::bench::sized_rows()) {
     if (rigcal::bench::name_of(each).find(only) == std::string::npos) continue;
-    if (const auto row = rigcal::bench::with_size(each, extent.repeats))
-      rigcal::bench::study_row(*row, extent, file);
+    rigcal::bench::study_row(rigcal::bench::with_size(each, extent.repeats), extent, file);
   }
   return 0;
 }
