@@ -50,7 +50,7 @@ std::filesystem::path festo_records() {
   std::filesystem::path folder =
       std::filesystem::path(RIGCAL_RECORDINGS_DIR) / "festo_tp511_servo_cylinder";
   if (std::filesystem::exists(folder)) return folder;
-  WARN("no recordings here");
+  WARN("skipped: no recordings here");
   return {};
 }
 

@@ -76,6 +76,18 @@ def pair(tmp_path: pathlib.Path, data: pathlib.Path, monkeypatch: pytest.MonkeyP
     return Pair(tmp_path, data, monkeypatch)
 
 
+@pytest.fixture(scope="module")
+def everything(tmp_path_factory: pytest.TempPathFactory, data: pathlib.Path) -> tuple[Pair, rigcal.Fit]:
+    """The fit with all that can be asked for, by command and module, each with its files in `out`. It takes most of the time of
+    these tests, so that it is made once."""
+    with pytest.MonkeyPatch.context() as patch:
+        pair = Pair(tmp_path_factory.mktemp("everything"), data, patch)
+        pair.command("fit", "../data/campaign.toml", "--out", "out", *OPTIONS)
+        fit = rigcal.load("../data/campaign.toml", **CHANGED).fit(**ASKED)
+        fit.write("out")
+    return pair, fit
+
+
 def test_files_of_a_fit(pair: Pair) -> None:
     pair.command("fit", "../data/campaign.toml", "--out", "out")
     written = rigcal.load("../data/campaign.toml").fit().write("out")
@@ -84,10 +96,8 @@ def test_files_of_a_fit(pair: Pair) -> None:
     assert {str(path.relative_to("out")) for path in written} == results
 
 
-def test_files_of_a_fit_with_all_that_can_be_asked_for(pair: Pair) -> None:
-    pair.command("fit", "../data/campaign.toml", "--out", "out", *OPTIONS)
-    fit = rigcal.load("../data/campaign.toml", **CHANGED).fit(**ASKED)
-    fit.write("out")
+def test_files_of_a_fit_with_all_that_can_be_asked_for(everything: tuple[Pair, rigcal.Fit]) -> None:
+    pair, fit = everything
     pair.assert_same_files("out")
     assert fit.json()["provenance"]["command"] == (
         "rigcal.load('../data/campaign.toml', set={'mass': '90 kg'}, free=['mass', 'bulk_modulus', 'damping'])"
@@ -255,9 +265,8 @@ def assert_same_condition(ours: rigcal.ScoredCondition, theirs: dict[str, Any],
             assert np.array_equal(getattr(channel, what), columns[f"{what}_{column}"]), f"{what} of {key}"
 
 
-def test_every_number_of_a_fit(pair: Pair) -> None:
-    pair.command("fit", "../data/campaign.toml", "--out", "out", *OPTIONS)
-    fit = rigcal.load("../data/campaign.toml", **CHANGED).fit(**ASKED)
+def test_every_number_of_a_fit(everything: tuple[Pair, rigcal.Fit]) -> None:
+    pair, fit = everything
     assert any(parameter.profile for parameter in fit.parameters)
     assert any(parameter.bootstrap for parameter in fit.parameters)
     assert_same_numbers(fit, pair.theirs / "out", "fit.json")

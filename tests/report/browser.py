@@ -55,12 +55,12 @@ class Browser:
     session = None
 
     def _receive(self):
-        while b"\0" not in self.buffer:
-            part = os.read(self.back, 1 << 20)
-            if not part:
+        parts = [self.buffer]  # joined once: an answer can have many MB, of which a pipe passes 64 kB at a time
+        while b"\0" not in parts[-1]:
+            parts.append(os.read(self.back, 1 << 20))
+            if not parts[-1]:
                 raise RuntimeError("the browser ended")
-            self.buffer += part
-        message, self.buffer = self.buffer.split(b"\0", 1)
+        message, self.buffer = b"".join(parts).split(b"\0", 1)
         return json.loads(message)
 
     def _note(self, message):
