@@ -8,6 +8,7 @@
 #include <numbers>
 #include <optional>
 
+#include "calib/consider/sensor_error.hpp"
 #include "calib/consider/thinned_line.hpp"
 #include "datasets/synthetic/model_output.hpp"
 #include "model/plant/piston_travel.hpp"
@@ -724,10 +725,20 @@ std::vector<Eigen::MatrixXd> effect_changes(const Problem& problem, std::size_t 
       } else {
         changed.set(effect.index, values.value[static_cast<std::size_t>(effect.index)] + size);
         // A sensor changes no reading but its own, since the loop does not use it.
-        if (const auto channel = sensor_channel(effect.about.key))
-          std::erase_if(wanted, [own = datasets::model_output(*channel)](Output each) {
-            return each != own;
-          });
+        if (const auto channel = sensor_channel(effect.about.key)) {
+          const auto own =
+              std::find(outputs.begin(), outputs.end(), datasets::model_output(*channel));
+          wanted.assign(own, own == outputs.end() ? own : own + 1);
+          if (!wanted.empty()) {
+            const Eigen::Index k = own - outputs.begin();
+            const auto error =
+                sensor_error(*own, values, effect.index, size, times_s, base.outputs.col(k));
+            if (error) {
+              change.col(k) = *error;
+              wanted.clear();
+            }
+          }
+        }
       }
       if (!wanted.empty()) run = run_with(changed, inputs, wanted);
       if (!run.ok()) continue;
