@@ -464,16 +464,27 @@ std::vector<Effect> possible_effects(const Problem& problem, std::span<const dou
   return result;
 }
 
+/// Returns the periods with which a run may repeat, half a period first.
+std::vector<model::SampledPeriod> periods_of(const model::SimulationInputs& inputs,
+                                             std::span<const double> time_s) {
+  std::vector<model::SampledPeriod> periods;
+  for (const bool reversible : {true, false}) {
+    const auto period = model::sampled_period(inputs, time_s, reversible, std::nullopt);
+    if (period && (periods.empty() || periods.back().reversed)) periods.push_back(*period);
+  }
+  return periods;
+}
+
 /// Returns the supply pressure at the end of a line along which the fraction `sag` of it is lost
 /// when the flow equals the effect's range.
 model::Signal sagging_supply(const Effect& effect, const model::ParameterValues& values,
                              std::span<const double> time_s, const Eigen::VectorXd& flow,
-                             double sag) {
+                             double sag, std::span<const model::SampledPeriod> periods) {
   std::vector<double> supply;
   const double full = values["supply_pressure"];
   for (Eigen::Index i = 0; i < flow.size(); ++i)
     supply.push_back(full * (1.0 - std::min(0.5, sag * std::abs(flow(i)) / effect.range)));
-  return thinned_line(time_s, supply);
+  return repeating_line(time_s, supply, periods, Reverses::no);
 }
 
 /// Returns the output that drives the valve.
@@ -492,9 +503,10 @@ Eigen::VectorXd with_play(const Eigen::VectorXd& x, double half_width) {
 
 /// Returns the error in the spool position if the spool follows its signal with play.
 model::Signal spool_error(std::span<const double> time_s, const Eigen::VectorXd& signal,
-                          double half_width) {
+                          double half_width, std::span<const model::SampledPeriod> periods) {
   const Eigen::VectorXd error = with_play(signal, half_width) - signal;
-  return thinned_line(time_s, {error.data(), static_cast<std::size_t>(error.size())});
+  return repeating_line(time_s, {error.data(), static_cast<std::size_t>(error.size())}, periods,
+                        Reverses::yes);
 }
 
 /// @param least_tolerance  kSecantTolerance, or kTickingTolerance for a controller that ticks
@@ -602,16 +614,17 @@ OutputsWith outputs_with(const Problem& problem, std::size_t condition, std::spa
     if (line == nullptr && play == 0.0) return simulated(data.inputs, rows);
     outputs.insert(outputs.end(), {Output::servo_flow, valve_drive(at)});
     model::SimulationInputs inputs = data.inputs;
+    const auto periods = periods_of(inputs, data.fit_times());
     model::Simulation simulation = simulated(inputs, {});
     const int rounds = play != 0.0 ? kPlayRounds : 1;
     for (int round = 1; round <= rounds && simulation.ok(); ++round) {
       if (line != nullptr && round == 1) {
-        inputs.supply_pressure_pa =
-            sagging_supply(*line, at, data.fit_times(), simulation.outputs.col(channels), sag);
+        inputs.supply_pressure_pa = sagging_supply(*line, at, data.fit_times(),
+                                                   simulation.outputs.col(channels), sag, periods);
       }
       if (play != 0.0) {
         inputs.spool_error =
-            spool_error(data.fit_times(), simulation.outputs.col(channels + 1), play);
+            spool_error(data.fit_times(), simulation.outputs.col(channels + 1), play, periods);
       }
       simulation = simulated(inputs, round == rounds ? rows : std::vector<int>());
     }
@@ -700,6 +713,7 @@ std::vector<Eigen::MatrixXd> effect_changes(const Problem& problem, std::size_t 
   // longer to sample.
   Eigen::VectorXd flow;
   Eigen::VectorXd drive;
+  std::vector<model::SampledPeriod> periods;
   if (std::any_of(effects.begin(), effects.end(), [](const Effect& each) {
         return each.kind == EffectKind::supply_sag || each.kind == EffectKind::valve_play;
       })) {
@@ -708,6 +722,7 @@ std::vector<Eigen::MatrixXd> effect_changes(const Problem& problem, std::size_t 
     if (!run.ok()) return result;
     flow = run.outputs.col(0);
     drive = run.outputs.col(1);
+    periods = periods_of(data.inputs, times_s);
   }
   for (std::size_t e = 0; e < effects.size(); ++e) {
     const Effect& effect = effects[e];
@@ -726,14 +741,14 @@ std::vector<Eigen::MatrixXd> effect_changes(const Problem& problem, std::size_t 
       if (effect.kind == EffectKind::valve_play) {
         Eigen::VectorXd driven = drive;
         for (int round = 1; round < kPlayRounds && driven.size() > 0; ++round) {
-          inputs.spool_error = spool_error(times_s, driven, size);
+          inputs.spool_error = spool_error(times_s, driven, size, periods);
           run = run_with(changed, inputs, {valve_drive(values)});
           driven = run.ok() ? Eigen::VectorXd(run.outputs.col(0)) : Eigen::VectorXd();
         }
         if (driven.size() == 0) continue;
-        inputs.spool_error = spool_error(times_s, driven, size);
+        inputs.spool_error = spool_error(times_s, driven, size, periods);
       } else if (effect.kind == EffectKind::supply_sag) {
-        inputs.supply_pressure_pa = sagging_supply(effect, values, times_s, flow, size);
+        inputs.supply_pressure_pa = sagging_supply(effect, values, times_s, flow, size, periods);
       } else {
         changed.set(effect.index, values.value[static_cast<std::size_t>(effect.index)] + size);
         // A sensor changes no reading but its own, since the loop does not use it.
