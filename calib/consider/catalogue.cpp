@@ -8,6 +8,7 @@
 #include <numbers>
 #include <optional>
 
+#include "calib/consider/sensor_error.hpp"
 #include "calib/consider/thinned_line.hpp"
 #include "datasets/synthetic/model_output.hpp"
 #include "model/plant/piston_travel.hpp"
@@ -68,6 +69,9 @@ constexpr int kPlayRounds = 2;
 /// An effect that matters changes an output by at least a ten-thousandth of its peak. This
 /// tolerance resolves a hundredth of such a change.
 constexpr double kSecantTolerance = 1e-6;
+/// Tolerance for a controller that ticks, which ends a step at every tick. Its effect on a sine or
+/// square of 0.1 to 10 Hz is then accurate to 0.6 %, in half the steps that kSecantTolerance takes.
+constexpr double kTickingTolerance = 1e-5;
 /// Tolerance for secants with a recorded drive, as a multiple of the measured tolerance, and its
 /// upper limit. It may exceed the measured tolerance, because most of the error cancels in the
 /// difference between two similar runs.
@@ -460,16 +464,27 @@ std::vector<Effect> possible_effects(const Problem& problem, std::span<const dou
   return result;
 }
 
+/// Returns the periods with which a run may repeat, half a period first.
+std::vector<model::SampledPeriod> periods_of(const model::SimulationInputs& inputs,
+                                             std::span<const double> time_s) {
+  std::vector<model::SampledPeriod> periods;
+  for (const bool reversible : {true, false}) {
+    const auto period = model::sampled_period(inputs, time_s, reversible, std::nullopt);
+    if (period && (periods.empty() || periods.back().reversed)) periods.push_back(*period);
+  }
+  return periods;
+}
+
 /// Returns the supply pressure at the end of a line along which the fraction `sag` of it is lost
 /// when the flow equals the effect's range.
 model::Signal sagging_supply(const Effect& effect, const model::ParameterValues& values,
                              std::span<const double> time_s, const Eigen::VectorXd& flow,
-                             double sag) {
+                             double sag, std::span<const model::SampledPeriod> periods) {
   std::vector<double> supply;
   const double full = values["supply_pressure"];
   for (Eigen::Index i = 0; i < flow.size(); ++i)
     supply.push_back(full * (1.0 - std::min(0.5, sag * std::abs(flow(i)) / effect.range)));
-  return thinned_line(time_s, supply);
+  return repeating_line(time_s, supply, periods, Reverses::no);
 }
 
 /// Returns the output that drives the valve.
@@ -488,15 +503,17 @@ Eigen::VectorXd with_play(const Eigen::VectorXd& x, double half_width) {
 
 /// Returns the error in the spool position if the spool follows its signal with play.
 model::Signal spool_error(std::span<const double> time_s, const Eigen::VectorXd& signal,
-                          double half_width) {
+                          double half_width, std::span<const model::SampledPeriod> periods) {
   const Eigen::VectorXd error = with_play(signal, half_width) - signal;
-  return thinned_line(time_s, {error.data(), static_cast<std::size_t>(error.size())});
+  return repeating_line(time_s, {error.data(), static_cast<std::size_t>(error.size())}, periods,
+                        Reverses::yes);
 }
 
+/// @param least_tolerance  kSecantTolerance, or kTickingTolerance for a controller that ticks
 model::SimulationOptions effect_options(const Problem& problem, std::size_t condition,
-                                        const std::atomic<bool>* cancel) {
+                                        double least_tolerance, const std::atomic<bool>* cancel) {
   auto options = problem.simulation_options(cancel);
-  options.tolerance = std::max(problem.tolerance_of(condition), kSecantTolerance);
+  options.tolerance = std::max(problem.tolerance_of(condition), least_tolerance);
   const double measured = problem.conditions[condition].measured_tolerance;
   if (measured > 0.0)
     options.tolerance =
@@ -561,7 +578,8 @@ OutputsWith outputs_with(const Problem& problem, std::size_t condition, std::spa
   const ProblemCondition& data = problem.conditions[condition];
   const auto samples = static_cast<Eigen::Index>(data.rows.size());
   const auto channels = static_cast<Eigen::Index>(data.channels.size());
-  const auto options = effect_options(problem, condition, cancel);
+  const auto options = effect_options(problem, condition, kSecantTolerance, cancel);
+  const auto ticking_options = effect_options(problem, condition, kTickingTolerance, cancel);
   const std::vector<int> free =
       derivatives == Derivatives::of_unknowns ? data.free : std::vector<int>();
   model::ParameterValues values = problem.values_at(condition, z);
@@ -586,31 +604,33 @@ OutputsWith outputs_with(const Problem& problem, std::size_t condition, std::spa
       sampling = e;
     }
   }
-  const auto run = [&](const model::ParameterValues& at, const std::vector<int>& rows) {
+  const auto run = [&](const model::ParameterValues& at, const std::vector<int>& rows,
+                       const model::SimulationOptions& with) {
     std::vector<Output> outputs = data.outputs;
     const auto simulated = [&](const model::SimulationInputs& inputs,
                                const std::vector<int>& columns) {
-      return model::simulate(data.rig, at, columns, inputs, data.fit_times(), outputs, options);
+      return model::simulate(data.rig, at, columns, inputs, data.fit_times(), outputs, with);
     };
     if (line == nullptr && play == 0.0) return simulated(data.inputs, rows);
     outputs.insert(outputs.end(), {Output::servo_flow, valve_drive(at)});
     model::SimulationInputs inputs = data.inputs;
+    const auto periods = periods_of(inputs, data.fit_times());
     model::Simulation simulation = simulated(inputs, {});
     const int rounds = play != 0.0 ? kPlayRounds : 1;
     for (int round = 1; round <= rounds && simulation.ok(); ++round) {
       if (line != nullptr && round == 1) {
-        inputs.supply_pressure_pa =
-            sagging_supply(*line, at, data.fit_times(), simulation.outputs.col(channels), sag);
+        inputs.supply_pressure_pa = sagging_supply(*line, at, data.fit_times(),
+                                                   simulation.outputs.col(channels), sag, periods);
       }
       if (play != 0.0) {
         inputs.spool_error =
-            spool_error(data.fit_times(), simulation.outputs.col(channels + 1), play);
+            spool_error(data.fit_times(), simulation.outputs.col(channels + 1), play, periods);
       }
       simulation = simulated(inputs, round == rounds ? rows : std::vector<int>());
     }
     return simulation;
   };
-  model::Simulation simulation = run(values, free);
+  model::Simulation simulation = run(values, free, options);
   if (!simulation.ok()) return {};
   // A change in the sampling period shifts, by a fraction of the period, when the controller sees
   // an edge between two ticks. The output is therefore not a smooth function of the period, and the
@@ -618,7 +638,7 @@ OutputsWith outputs_with(const Problem& problem, std::size_t condition, std::spa
   if (sampling < effects.size()) {
     model::ParameterValues ticking = values;
     ticking.set(effects[sampling].index, effects[sampling].about.size);
-    const model::Simulation sampled = run(ticking, {});
+    const model::Simulation sampled = run(ticking, {}, ticking_options);
     if (!sampled.ok()) return {};
     simulation.outputs +=
         sizes(static_cast<Eigen::Index>(sampling)) * (sampled.outputs - simulation.outputs).eval();
@@ -676,10 +696,16 @@ std::vector<Eigen::MatrixXd> effect_changes(const Problem& problem, std::size_t 
   std::vector<Eigen::MatrixXd> result(
       static_cast<std::size_t>(kept),
       Eigen::MatrixXd::Constant(samples, static_cast<Eigen::Index>(effects.size()), std::nan("")));
-  const auto options = effect_options(problem, condition, cancel);
+  const auto options = effect_options(problem, condition, kSecantTolerance, cancel);
+  const auto ticking_options = effect_options(problem, condition, kTickingTolerance, cancel);
+  const auto simulated = [&](const model::ParameterValues& at, const model::SimulationInputs& in,
+                             const std::vector<Output>& wanted,
+                             const model::SimulationOptions& with) {
+    return model::simulate(data.rig, at, std::vector<int>(), in, times_s, wanted, with);
+  };
   const auto run_with = [&](const model::ParameterValues& at, const model::SimulationInputs& in,
                             const std::vector<Output>& wanted) {
-    return model::simulate(data.rig, at, std::vector<int>(), in, times_s, wanted, options);
+    return simulated(at, in, wanted, options);
   };
   const model::Simulation base = run_with(values, data.inputs, outputs);
   if (!base.ok()) return result;
@@ -687,6 +713,7 @@ std::vector<Eigen::MatrixXd> effect_changes(const Problem& problem, std::size_t 
   // longer to sample.
   Eigen::VectorXd flow;
   Eigen::VectorXd drive;
+  std::vector<model::SampledPeriod> periods;
   if (std::any_of(effects.begin(), effects.end(), [](const Effect& each) {
         return each.kind == EffectKind::supply_sag || each.kind == EffectKind::valve_play;
       })) {
@@ -695,6 +722,7 @@ std::vector<Eigen::MatrixXd> effect_changes(const Problem& problem, std::size_t 
     if (!run.ok()) return result;
     flow = run.outputs.col(0);
     drive = run.outputs.col(1);
+    periods = periods_of(data.inputs, times_s);
   }
   for (std::size_t e = 0; e < effects.size(); ++e) {
     const Effect& effect = effects[e];
@@ -713,23 +741,36 @@ std::vector<Eigen::MatrixXd> effect_changes(const Problem& problem, std::size_t 
       if (effect.kind == EffectKind::valve_play) {
         Eigen::VectorXd driven = drive;
         for (int round = 1; round < kPlayRounds && driven.size() > 0; ++round) {
-          inputs.spool_error = spool_error(times_s, driven, size);
+          inputs.spool_error = spool_error(times_s, driven, size, periods);
           run = run_with(changed, inputs, {valve_drive(values)});
           driven = run.ok() ? Eigen::VectorXd(run.outputs.col(0)) : Eigen::VectorXd();
         }
         if (driven.size() == 0) continue;
-        inputs.spool_error = spool_error(times_s, driven, size);
+        inputs.spool_error = spool_error(times_s, driven, size, periods);
       } else if (effect.kind == EffectKind::supply_sag) {
-        inputs.supply_pressure_pa = sagging_supply(effect, values, times_s, flow, size);
+        inputs.supply_pressure_pa = sagging_supply(effect, values, times_s, flow, size, periods);
       } else {
         changed.set(effect.index, values.value[static_cast<std::size_t>(effect.index)] + size);
         // A sensor changes no reading but its own, since the loop does not use it.
-        if (const auto channel = sensor_channel(effect.about.key))
-          std::erase_if(wanted, [own = datasets::model_output(*channel)](Output each) {
-            return each != own;
-          });
+        if (const auto channel = sensor_channel(effect.about.key)) {
+          const auto own =
+              std::find(outputs.begin(), outputs.end(), datasets::model_output(*channel));
+          wanted.assign(own, own == outputs.end() ? own : own + 1);
+          if (!wanted.empty()) {
+            const Eigen::Index k = own - outputs.begin();
+            const auto error =
+                sensor_error(*own, values, effect.index, size, times_s, base.outputs.col(k));
+            if (error) {
+              change.col(k) = *error;
+              wanted.clear();
+            }
+          }
+        }
       }
-      if (!wanted.empty()) run = run_with(changed, inputs, wanted);
+      if (!wanted.empty()) {
+        const bool ticks = effect.kind == EffectKind::sampling;
+        run = simulated(changed, inputs, wanted, ticks ? ticking_options : options);
+      }
       if (!run.ok()) continue;
       for (Eigen::Index k = 0; k < kept; ++k) {
         const auto found =

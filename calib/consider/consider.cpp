@@ -120,10 +120,11 @@ Seen look_at(std::vector<Effect> effects, std::vector<EffectColumns>& columns,
   for (std::size_t i = 0; i < scores.size(); ++i) {
     const MatrixXd left =
         columns[i].cast<double>() - scores[i].all_rows() * taken_in(i, found, seen);
-    seen.left += left.transpose() * left;
+    seen.left.selfadjointView<Eigen::Lower>().rankUpdate(left.transpose());
     seen.score -= left.transpose() * scores[i].residual;
     columns[i] = left.cast<float>();
   }
+  seen.left.triangularView<Eigen::StrictlyUpper>() = seen.left.transpose();
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(seen.left);
   const VectorXd& values = solver.eigenvalues();
   Index first = 0;

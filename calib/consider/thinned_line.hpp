@@ -3,6 +3,7 @@
 #include <span>
 
 #include "model/signal/signal.hpp"
+#include "model/solver/sampled_period.hpp"
 
 namespace rigcal::calib {
 
@@ -16,5 +17,15 @@ inline constexpr double kThinnedError = 1e-4;
 /// @param time_s  increasing, shape (samples), at least one
 /// @param value   shape (samples)
 model::Signal thinned_line(std::span<const double> time_s, std::span<const double> value);
+
+/// Whether a signal that follows from a run reverses with the inputs of the run.
+enum class Reverses { no, yes };
+
+/// Returns thinned_line() of samples that repeat after some time, by the same error, as a signal
+/// that is known to repeat from there. If they do not, it is known of no repetition.
+///
+/// @param periods  periods of the run that the samples come from; the first that fits is taken
+model::Signal repeating_line(std::span<const double> time_s, std::span<const double> value,
+                             std::span<const model::SampledPeriod> periods, Reverses reverses);
 
 }  // namespace rigcal::calib

@@ -86,7 +86,9 @@ std::vector<double> bias(const ChannelRows& rows, const Autoregression& noise,
 /// Returns the covariance of the score of one channel, where `noise` is the model of its residuals.
 MatrixXd expected(const ChannelRows& rows, const Autoregression& noise) {
   const RowMajor filtered = backwards(noise, rows.jacobian);
-  return noise.variance * filtered.transpose() * filtered;
+  MatrixXd lower = MatrixXd::Zero(filtered.cols(), filtered.cols());
+  lower.selfadjointView<Eigen::Lower>().rankUpdate(filtered.transpose(), noise.variance);
+  return lower.selfadjointView<Eigen::Lower>();
 }
 
 /// Noise of one channel, before the correction for the part that the fit removed.

@@ -109,6 +109,13 @@ Signal Signal::linear(std::vector<double> time_s, std::vector<double> value) {
   return s;
 }
 
+Signal Signal::linear(std::vector<double> time_s, std::vector<double> value,
+                      const Repetition& repetition) {
+  Signal s = linear(std::move(time_s), std::move(value));
+  s.repetition_ = repetition;
+  return s;
+}
+
 // Segments of each kind:
 //   square        segment k is half period k; segment 0 also covers t < 0
 //   shaped        as square, with pieces instead of half periods

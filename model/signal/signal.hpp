@@ -32,6 +32,13 @@ struct PeriodicShape {
   bool reverses = false;  ///< after half a period the signal repeats with the opposite sign
 };
 
+/// From `from_s` on, a signal has the same value `period_s` later, or the opposite one.
+struct Repetition {
+  double from_s = 0.0;
+  double period_s = 0.0;
+  bool reversed = false;
+};
+
 /// A scalar function of time that is smooth between breakpoints. A simulation ends a step at every
 /// breakpoint and evaluates the signal segment by segment, so that it neither smears nor skips an
 /// edge.
@@ -53,6 +60,9 @@ class Signal {
   static Signal held(std::vector<double> time_s, std::vector<double> value);
   /// Samples joined by straight lines; constant before the first and after the last.
   static Signal linear(std::vector<double> time_s, std::vector<double> value);
+  /// The same, where it is known that the samples repeat.
+  static Signal linear(std::vector<double> time_s, std::vector<double> value,
+                       const Repetition& repetition);
   /// offset + A sin(2 pi f t + phase).
   static Signal ripple(double offset, double amplitude, double frequency_hz, double phase_rad);
 
@@ -68,6 +78,8 @@ class Signal {
   double value(double t) const { return value(segment_at(t), t); }
   /// Time after which the signal repeats; 0 for a constant, std::nullopt if it does not repeat.
   std::optional<double> period_s() const;
+  /// How samples repeat, if that is known.
+  const std::optional<Repetition>& repetition() const { return repetition_; }
   /// Whether straight lines join samples, so that the value does not jump at a breakpoint.
   bool joined() const { return kind_ == Kind::linear; }
   /// Whether the signal changes its sign after half a period.
@@ -89,6 +101,7 @@ class Signal {
   const PeriodicShape* shape_ = nullptr;
   std::shared_ptr<const std::vector<double>> time_s_;
   std::shared_ptr<const std::vector<double>> value_;
+  std::optional<Repetition> repetition_;
 };
 
 }  // namespace rigcal::model

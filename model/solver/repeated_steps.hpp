@@ -16,7 +16,9 @@ namespace rigcal::model {
 class RepeatedSteps {
  public:
   explicit RepeatedSteps(const std::optional<SampledPeriod>& period) {
-    if (period) period_s_ = period->duration_s;
+    if (!period) return;
+    period_s_ = period->duration_s;
+    from_s_ = period->from_s;
   }
 
   struct Step {
@@ -30,7 +32,7 @@ class RepeatedSteps {
   /// Records an accepted step.
   /// @param forced  a longer step was rejected, now or one period earlier
   void note(double t_new, bool forced) {
-    if (std::isfinite(period_s_)) ends_.push_back({t_new, forced});
+    if (std::isfinite(period_s_) && t_new >= from_s_) ends_.push_back({t_new, forced});
   }
 
  private:
@@ -40,6 +42,7 @@ class RepeatedSteps {
   };
 
   double period_s_ = std::numeric_limits<double>::infinity();
+  double from_s_ = 0.0;  ///< from when the inputs repeat
   std::vector<End> ends_;
   std::size_t next_ = 0;  ///< first step end that is less than a period ago
 };

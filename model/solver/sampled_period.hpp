@@ -13,7 +13,8 @@ struct SampledPeriod {
   double duration_s = 0.0;
   std::size_t samples = 0;
   bool reversed =
-      false;  ///< an odd number of half periods: the inputs repeat with the opposite sign
+      false;            ///< an odd number of half periods: the inputs repeat with the opposite sign
+  double from_s = 0.0;  ///< time since the first sample from which the inputs repeat
 
   /// Factor by which a periodic quantity changes from one period to the next.
   double sign() const { return reversed ? -1.0 : 1.0; }
@@ -21,7 +22,8 @@ struct SampledPeriod {
 
 /// Finds the shortest whole number of drive periods after which every sample (and every tick of a
 /// controller with `tick_s`) has a counterpart, if that is shorter than the record. Half periods
-/// also qualify if the drive then has the opposite sign and the rig is `reversible`.
+/// also qualify if the drive then has the opposite sign and the rig is `reversible`. Supply
+/// pressure and spool error may begin to repeat later than the drive (Repetition).
 ///
 /// @param reversible  whether reversing the inputs reverses the response of the rig
 /// @param tick_s      sample time of the controller; std::nullopt if it has none

@@ -18,7 +18,8 @@ namespace rigcal::model {
 /// mode does (docs/decisions/0012). If a half period reverses the inputs, the states are compared
 /// with those of half a period earlier with the opposite sign.
 ///
-/// The detector checks a few times per period, at whole fractions of a period before the end.
+/// The detector checks a few times per period, at whole fractions of a period before the end, from
+/// when the inputs repeat.
 template <int N, int P>
 class SteadyState {
  public:
@@ -32,7 +33,8 @@ class SteadyState {
     looks_a_period_ = period->reversed ? kLooks / 2 : kLooks;
     interval_s_ = period->duration_s / static_cast<double>(looks_a_period_);
     end_s_ = end_s;
-    looks_left_ = static_cast<long>(std::ceil(end_s / interval_s_)) - 1;
+    looks_left_ = std::min(static_cast<long>(std::ceil(end_s / interval_s_)) - 1,
+                           static_cast<long>(std::floor((end_s - period->from_s) / interval_s_)));
   }
 
   /// Time of the next check; infinity if there is none.

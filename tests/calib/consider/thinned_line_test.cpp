@@ -5,6 +5,8 @@
 #include <numbers>
 #include <vector>
 
+#include "tests/model/rig.hpp"
+
 namespace rigcal::calib {
 namespace {
 
@@ -60,6 +62,52 @@ TEST_CASE("thinned line: noise and short records keep their samples", "[calib]")
   CHECK(largest_error(line, time_s, value) < 1e-12);
   CHECK(thinned_line(std::vector{0.0}, std::vector{2.0}).value(1.0) == 2.0);
   CHECK(thinned_line(std::vector{0.0, 1.0}, std::vector{2.0, 4.0}).value(0.5) == 3.0);
+}
+
+TEST_CASE("repeating line: a play repeats from its first reversal, and spares periods", "[calib]") {
+  model::Experiment experiment;
+  experiment.set("kd", 0.394).set("derivative_filter", 100.0);
+  experiment.times_s = model::grid(0.0, 5.0, 5001);
+  experiment.outputs = {model::Output::position};
+  const auto& time_s = experiment.times_s;
+  std::vector<double> value;
+  for (const double t : time_s)
+    value.push_back(std::exp(-5.0 * t) + std::sin(2.0 * std::numbers::pi * t));
+  const std::vector<model::SampledPeriod> periods{{0.5, 500, true}, {1.0, 1000, false}};
+  const model::Signal line = repeating_line(time_s, value, periods, Reverses::yes);
+  REQUIRE(line.repetition());
+  CHECK(line.repetition()->reversed);
+  // The decay is within kThinnedError of the range after 1.7 s.
+  CHECK(line.repetition()->from_s > 1.0);
+  CHECK(line.repetition()->from_s < 2.0);
+  CHECK(largest_error(line, time_s, value) < 3.0 * kThinnedError * 2.5);
+  const double from_s = line.repetition()->from_s;
+  for (const double t : {from_s + 0.01, from_s + 0.2, from_s + 0.4, from_s + 1.3})
+    CHECK(std::abs(line.value(t + 0.5) + line.value(t)) < 1e-9);
+  // A signal that does not reverse has only the whole period.
+  const model::Signal even = repeating_line(time_s, value, periods, Reverses::no);
+  REQUIRE(even.repetition());
+  CHECK(even.repetition()->period_s == 1.0);
+  // A sweep has none.
+  for (std::size_t i = 0; i < value.size(); ++i) value[i] = std::sin(2.0 * time_s[i] * time_s[i]);
+  CHECK_FALSE(repeating_line(time_s, value, periods, Reverses::yes).repetition());
+
+  experiment.inputs.drive = model::Signal::sine(0.02, 1.0);
+  const auto command = [&](const model::Signal& error, bool steady) {
+    model::Experiment with = experiment;
+    with.inputs.spool_error = error;
+    with.options.periodic_steady_state = steady;
+    return with();
+  };
+  for (std::size_t i = 0; i < value.size(); ++i)
+    value[i] = 0.05 * std::cos(2.0 * std::numbers::pi * time_s[i]);
+  const model::Signal error = repeating_line(time_s, value, periods, Reverses::yes);
+  const model::Simulation spared = command(error, true);
+  const model::Simulation whole = command(error, false);
+  REQUIRE(spared.ok());
+  REQUIRE(whole.ok());
+  CHECK(spared.steps < whole.steps);
+  CHECK(model::difference(spared.outputs, whole.outputs) < 1e-4);
 }
 
 }  // namespace rigcal::calib

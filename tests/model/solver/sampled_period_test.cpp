@@ -63,6 +63,27 @@ TEST_CASE("sampled_period: none where inputs or samples do not repeat themselves
   CHECK(sampled_period(inputs, times_s, false, {}));
 }
 
+TEST_CASE("sampled_period: inputs that begin to repeat later than the drive", "[model]") {
+  const auto times_s = grid(5.0, 8.0, 3001);
+  SimulationInputs inputs{Signal::sine(0.01, 10.0), {}, {}};
+  inputs.supply_pressure_pa = Signal::linear({5.0, 8.0}, {6e6, 6e6}, {5.2, 0.05, false});
+  inputs.spool_error = Signal::linear({5.0, 8.0}, {0.1, -0.1}, {5.3, 0.05, true});
+  const auto half = sampled_period(inputs, times_s, true, {});
+  REQUIRE(half);
+  CHECK(half->reversed);
+  CHECK(half->duration_s == Approx(0.05).epsilon(1e-15));
+  CHECK(half->from_s == Approx(0.3).epsilon(1e-9));
+  // An error of the spool that does not reverse leaves only whole periods.
+  inputs.spool_error = Signal::linear({5.0, 8.0}, {0.1, -0.1}, {5.1, 0.1, false});
+  const auto whole = sampled_period(inputs, times_s, true, {});
+  REQUIRE(whole);
+  CHECK_FALSE(whole->reversed);
+  CHECK(whole->duration_s == Approx(0.1).epsilon(1e-15));
+  CHECK(whole->from_s == Approx(0.2).epsilon(1e-9));
+  inputs.spool_error = Signal::linear({5.0, 8.0}, {0.1, -0.1});
+  CHECK_FALSE(sampled_period(inputs, times_s, true, {}));
+}
+
 TEST_CASE("sampled_period: half periods of a reversible rig", "[model]") {
   const auto times_s = grid(0.0, 3.0, 3001);
   for (const Signal& drive : {Signal::sine(0.01, 10.0), Signal::square(0.01, 10.0)}) {
