@@ -48,8 +48,8 @@ def fitted(program, campaign, data, out):
 
 def largest_change(old, new, error):
     """Returns the largest change of an estimate in units of a standard error, and the name of its parameter."""
-    now = {each["name"]: each["value"] for each in new["parameters"]}
-    changes = [(abs(now[each["name"]] - each["value"]) / each[error], each["name"])
+    now = {(each["name"], each["level"]): each["value"] for each in new["parameters"]}
+    changes = [(abs(now[each["name"], each["level"]] - each["value"]) / each[error], each["name"])
                for each in old["parameters"] if each["fitted"] and each.get(error)]
     return max(changes, default=(0.0, "-"))
 
