@@ -96,6 +96,25 @@ X reference_acceleration(const LoopError<X>& loop, const State& state, const P& 
          p.derivative_filter_rad_per_s;
 }
 
+/// Computes K_p e + I + K_d N (e - e_f), all that a loop on the motion alone has.
+///
+/// @param state  the whole state vector; `layout` has the indices of integral and filter
+template <typename X, typename State, typename P>
+X pid_output(const X& error, const State& state, const P& p, const Layout& layout) {
+  X wanted = error * p.kp_v_per_m;
+  if (layout.integral >= 0) wanted = wanted + state[static_cast<std::size_t>(layout.integral)];
+  if (layout.filter >= 0) {
+    wanted = wanted + (error - state[static_cast<std::size_t>(layout.filter)]) *
+                          (p.kd_v_s_per_m * p.derivative_filter_rad_per_s);
+  }
+  return wanted;
+}
+
+template <typename X, typename P>
+ControllerOutput<X> with_limit(const X& wanted, const P& p) {
+  return {wanted, clamp_symmetric(wanted, p.output_limit_v)};
+}
+
 /// Computes u = K_p e + I + K_d N (e - e_f) - K_dp P_L + K_vf v_f + K_af a_f, and limits it.
 /// Three-variable control has K_v e_v + K_pa e_a in place of the third term.
 ///
@@ -103,13 +122,7 @@ X reference_acceleration(const LoopError<X>& loop, const State& state, const P& 
 template <typename X, typename State, typename P>
 ControllerOutput<X> controller_output(const LoopError<X>& loop, const State& state, const P& p,
                                       const Layout& layout) {
-  const X& error = loop.error;
-  X wanted = error * p.kp_v_per_m;
-  if (layout.integral >= 0) wanted = wanted + state[static_cast<std::size_t>(layout.integral)];
-  if (layout.filter >= 0) {
-    wanted = wanted + (error - state[static_cast<std::size_t>(layout.filter)]) *
-                          (p.kd_v_s_per_m * p.derivative_filter_rad_per_s);
-  }
+  X wanted = pid_output(loop.error, state, p, layout);
   if (layout.generator)
     wanted = wanted + loop.velocity * p.velocity_kp_v_s_per_m +
              loop.acceleration * p.acceleration_kp_v_s2_per_m;
@@ -119,7 +132,7 @@ ControllerOutput<X> controller_output(const LoopError<X>& loop, const State& sta
   if (layout.rate >= 0)
     wanted = wanted +
              reference_acceleration(loop, state, p, layout) * p.acceleration_feedforward_v_s2_per_m;
-  return {wanted, clamp_symmetric(wanted, p.output_limit_v)};
+  return with_limit(wanted, p);
 }
 
 /// Rate at which back-calculation pulls a saturated integral back to the limit [1/s]: K_i / K_p.

@@ -121,16 +121,22 @@ template <typename X, typename C>
                                      p.load_100_n});
 }
 
+/// Load that varies with the travel [N]. Not inlined, to keep the code of rigs without it short.
+template <typename X, typename C>
+[[gnu::noinline]] X load_by_travel(const X& x, const CommonParameters<C>& p,
+                                   const PresentTerms& terms) {
+  if (terms.load_table) return tabled_load(x, p);
+  if (terms.curved_load) return varying_load(x, p.load_gradient_n_per_m, p.load_curvature_n_per_m2);
+  return x * p.load_gradient_n_per_m;
+}
+
 /// Load against positive travel [N]: the external force plus the load that varies with the travel.
 template <typename X, typename C>
 X external_load(const X& x, const PlantInput<X>& in, const CommonParameters<C>& p,
                 const PresentTerms& terms) {
-  X load = terms.external_load ? in.external_load : X(0.0);
-  if (terms.load_table) return load + tabled_load(x, p);
-  if (terms.curved_load)
-    return load + varying_load(x, p.load_gradient_n_per_m, p.load_curvature_n_per_m2);
-  if (terms.varying_load) load = load + x * p.load_gradient_n_per_m;
-  return load;
+  if (!terms.varying_load) return terms.external_load ? in.external_load : X(0.0);
+  const X load = terms.external_load ? in.external_load : X(0.0);
+  return load + load_by_travel(x, p, terms);
 }
 
 /// Acceleration of the second mass [m/s2].

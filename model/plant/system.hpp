@@ -358,7 +358,7 @@ class System {
 
   /// Adds the part of the time derivative that is due to the change of the recorded temperature. It
   /// is small and smooth, so a difference is as exact as the solver needs.
-  void add_warming(const Values<N>& x, double t, Linearisation<N, P>& lin) const {
+  [[gnu::noinline]] void add_warming(const Values<N>& x, double t, Linearisation<N, P>& lin) const {
     constexpr double kStep_k = 1e-3;
     const double slope = oil_temperature_->sample(t).slope;
     if (slope == 0.0) return;
@@ -409,9 +409,10 @@ class System {
     }
   }
 
-  /// Value of the drive before its first sample.
+  /// Value of the drive before its first sample. Not inlined, because few simulations begin before
+  /// it.
   template <typename K>
-  Number<K> drive_that_waits([[maybe_unused]] K by) const {
+  [[gnu::noinline]] Number<K> drive_that_waits([[maybe_unused]] K by) const {
     if constexpr (std::is_same_v<K, ByParameters>) {
       return while_it_waits_;
     } else {
@@ -486,14 +487,25 @@ class System {
   template <typename K>
   Number<K> valve_command(K by, const Numbers<K>& x, const Number<K>& drive, double t) const {
     if (!layout_.pid) return drive;
+    const auto& p = parameters_of(by);
     if constexpr (N == Plant::kStates) {
       constexpr Layout kNoStates;
-      return controller_output(loop_error(by, x, drive, t), x, parameters_of(by), kNoStates)
+      return with_limit(pid_output(Number<K>(drive - x[Plant::position]), x, p, kNoStates), p)
           .limited;
     } else {
       if (layout_.sampled()) return x[static_cast<std::size_t>(layout_.held)];
-      return controller_output(loop_error(by, x, drive, t), x, parameters_of(by), layout_).limited;
+      if (!motion_alone_) return other_output(by, x, loop_error(by, x, drive, t)).limited;
+      return with_limit(pid_output(Number<K>(drive - x[Plant::position]), x, p, layout_), p)
+          .limited;
     }
+  }
+
+  /// Output of a loop on more than the motion. Not inlined, to keep the code of position loops
+  /// short.
+  template <typename K>
+  [[gnu::noinline]] ControllerOutput<Number<K>> other_output(
+      K by, const Numbers<K>& x, const LoopError<Number<K>>& loop) const {
+    return controller_output(loop, x, parameters_of(by), layout_);
   }
 
   /// Signals on which the controller acts. The solver with only the plant's states supports only
@@ -502,7 +514,7 @@ class System {
   LoopError<Number<K>> loop_error(K by, const Numbers<K>& x, const Number<K>& drive,
                                   double t) const {
     if constexpr (N > Plant::kStates) {
-      if (!layout_.motion_alone()) return other_loop_error(by, x, drive, t);
+      if (!motion_alone_) return other_loop_error(by, x, drive, t);
     }
     const Number<K> none(0.0);
     return {drive - x[Plant::position], none, none, none, none};
@@ -578,15 +590,12 @@ class System {
     if constexpr (N > Plant::kStates) {
       if (layout_.valve_order > 0) in.spool_command_v = x[static_cast<std::size_t>(layout_.valve)];
     }
-    if (spool_error_)
-      in.spool_command_v = in.spool_command_v + input_value(by, *spool_error_, t, false);
+    if (spool_error_) in.spool_command_v = with_spool_error(by, in.spool_command_v, t);
     if (layout_.terms.external_load) {
       in.external_load = Number<K>(p.external_force_n);
       if (external_load_)
         in.external_load = in.external_load + input_value(by, *external_load_, t, false);
-      if (base_acceleration_)  // inertia, in the frame of the base
-        in.external_load =
-            in.external_load + input_value(by, *base_acceleration_, t, false) * p.mass_kg;
+      if (base_acceleration_) in.external_load = with_inertia_of_base(by, in.external_load, t);
     }
     in.supply_pressure_pa =
         layout_.supply >= 0 ? x[static_cast<std::size_t>(layout_.supply)] : source_pressure(by, t);
@@ -595,6 +604,19 @@ class System {
                                            : Number<K>(p.tank_pressure_pa);
     }
     return in;
+  }
+
+  // The next two are not inlined, to keep the code of rigs without these inputs short.
+
+  template <typename K>
+  [[gnu::noinline]] Number<K> with_spool_error(K by, Number<K> spool_command_v, double t) const {
+    return spool_command_v + input_value(by, *spool_error_, t, false);
+  }
+
+  /// Adds the inertia of the moved mass, in the frame of the base.
+  template <typename K>
+  [[gnu::noinline]] Number<K> with_inertia_of_base(K by, Number<K> force_n, double t) const {
+    return force_n + input_value(by, *base_acceleration_, t, false) * parameters_of(by).mass_kg;
   }
 
   /// Supply pressure upstream of the supply resistance.
@@ -637,20 +659,14 @@ class System {
       if (layout_.sampled()) {
         command = x[static_cast<std::size_t>(layout_.held)];
       } else {
-        const LoopError<Number<K>> loop = loop_error(by, x, drive, t);
-        const ControllerOutput<Number<K>> u = controller_output(loop, x, p, layout_);
-        command = u.limited;
-        if (layout_.integral >= 0) {
-          dx[static_cast<std::size_t>(layout_.integral)] = integral_rate(loop.error, u, p);
+        if (motion_alone_) {
+          const Number<K> error = drive - x[Plant::position];
+          const auto u = with_limit(pid_output(error, x, p, layout_), p);
+          pid_rates(by, x, error, u, dx);
+          command = u.limited;
+        } else {
+          command = other_loop_rates(by, x, drive, t, dx);
         }
-        if (layout_.filter >= 0) {
-          const auto filter = static_cast<std::size_t>(layout_.filter);
-          dx[filter] = (loop.error - x[filter]) * p.derivative_filter_rad_per_s;
-        }
-        if (layout_.reference >= 0)
-          dx[static_cast<std::size_t>(layout_.reference)] = reference_rate(loop, x, p, layout_);
-        if (layout_.rate >= 0)
-          dx[static_cast<std::size_t>(layout_.rate)] = reference_acceleration(loop, x, p, layout_);
       }
     }
     if (layout_.valve_order > 0) {
@@ -664,6 +680,37 @@ class System {
       }
     }
     return command;
+  }
+
+  /// Writes the derivatives of integral and filter.
+  template <typename K>
+  void pid_rates(K by, const Numbers<K>& x, const Number<K>& error,
+                 const ControllerOutput<Number<K>>& u, Numbers<K>& dx) const {
+    const auto& p = parameters_of(by);
+    if (layout_.integral >= 0)
+      dx[static_cast<std::size_t>(layout_.integral)] = integral_rate(error, u, p);
+    if (layout_.filter >= 0) {
+      const auto filter = static_cast<std::size_t>(layout_.filter);
+      dx[filter] = (error - x[filter]) * p.derivative_filter_rad_per_s;
+    }
+  }
+
+  /// Writes the derivatives of the controller of a loop on more than the motion. Not inlined, to
+  /// keep the code of position loops short.
+  ///
+  /// @return  command to the valve
+  template <typename K>
+  [[gnu::noinline]] Number<K> other_loop_rates(K by, const Numbers<K>& x, const Number<K>& drive,
+                                               double t, Numbers<K>& dx) const {
+    const auto& p = parameters_of(by);
+    const LoopError<Number<K>> loop = loop_error(by, x, drive, t);
+    const auto u = controller_output(loop, x, p, layout_);
+    pid_rates(by, x, loop.error, u, dx);
+    if (layout_.reference >= 0)
+      dx[static_cast<std::size_t>(layout_.reference)] = reference_rate(loop, x, p, layout_);
+    if (layout_.rate >= 0)
+      dx[static_cast<std::size_t>(layout_.rate)] = reference_acceleration(loop, x, p, layout_);
+    return u.limited;
   }
 
   /// Writes the derivatives of the valve's lag of first or second order.
@@ -743,6 +790,7 @@ class System {
   }
 
   Layout layout_;
+  bool motion_alone_ = layout_.motion_alone();  ///< read at every right-hand side
   Coefficients<double> passive_{};
   Coefficients<C> active_{};  ///< with derivatives with respect to the free parameters
   std::array<Coefficients<Dual<kBlock>>, kBlocks>
