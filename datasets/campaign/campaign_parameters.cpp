@@ -213,7 +213,7 @@ std::vector<CampaignKey> parameter_rows(ParameterGroup group, bool fitted) {
 
 std::optional<std::string> outside_limits(const model::ParameterSpec& spec, double value) {
   if (value >= spec.lower && value <= std::min(spec.upper, kSizes.upper)) return std::nullopt;
-  // Infinity stands for a limit that is absent, such as the largest reading of a sensor.
+  // Without a limit, such as the largest reading of a sensor, the value is infinity.
   if (value == spec.upper) return std::nullopt;
   return fmt::format("{} is not plausible for {} ({}): expected {} to {}", with_unit(spec, value),
                      spec.key, spec.meaning, with_unit(spec, spec.lower),
