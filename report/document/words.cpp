@@ -41,7 +41,7 @@ Badge badge(calib::Identifiability grade) {
     case calib::Identifiability::weak:
       return {State::warn, "weak"};
     case calib::Identifiability::bounded:
-      return {State::warn, "bounded: not significantly different from zero"};
+      return {State::warn, "bounded: consistent with zero"};
     case calib::Identifiability::not_identifiable:
       return {State::bad, "not identifiable"};
   }
