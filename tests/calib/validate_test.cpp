@@ -245,7 +245,7 @@ TEST_CASE("acceptance: by the guard band a limit is kept by more than the uncert
   CHECK(near.limit_checks.at(0).in_guard_band);
   CHECK(near.limit_checks.at(0).expanded_uncertainty == 0.006);
   CHECK_THAT(near.reasons.at(0), Contains("keeps 0.99, but not by more than") && Contains("0.006"));
-  CHECK_THAT(guarded(0.995, std::nullopt).reasons.at(0), Contains("not known"));
+  CHECK_THAT(guarded(0.995, std::nullopt).reasons.at(0), Contains("uncertainty is unknown"));
 }
 
 TEST_CASE("acceptance: the guard band of an error lies below its limit", "[calib]") {

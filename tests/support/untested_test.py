@@ -38,7 +38,7 @@ class Untested(unittest.TestCase):
         (self.folder / "CMakeLists.txt").write_text(PROJECT)
         self.build, self.other = self.folder / "build", self.folder / "other"
         for build, more in ((self.build, "ON"), (self.other, "OFF")):
-            made = run("cmake", "-S", self.folder, "-B", build, f"-DMORE={more}")
+            made = run("cmake", "-G", "Ninja", "-S", self.folder, "-B", build, f"-DMORE={more}")
             self.assertEqual(made.returncode, 0, made.stderr)
 
     def test_what_did_not_pass_in_full_is_left(self):

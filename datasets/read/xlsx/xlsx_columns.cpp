@@ -177,6 +177,11 @@ class HeaderFinder {
       if (!is_adjacent || !is_text(above) || !(has_names || are_units(above))) break;
       if (has_names) header = i;
     }
+    // An empty row between names and units does not turn the units into names.
+    if (header.value_or(0) > 0 && are_units(pending_[*header])) {
+      const SheetRow& above = pending_[*header - 1];
+      if (is_text(above) && names_all(above, pending_[row])) return *header - 1;
+    }
     return header;
   }
 

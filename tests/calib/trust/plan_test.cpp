@@ -79,7 +79,7 @@ TEST_CASE("plan: what would be known badly is told", "[calib]") {
     for (const std::string& each : plan(campaign, {}, nullptr, 1).messages) all += each + "\n";
     return all;
   };
-  CHECK_THAT(messages_at(0.5), Contains("mass_kg: known to 50 % only by these records"));
+  CHECK_THAT(messages_at(0.5), Contains("mass_kg: known to 50 % only from these records"));
   CHECK_THAT(messages_at(0.15), !Contains("mass_kg"));
 }
 

@@ -84,7 +84,7 @@ TEST_CASE("profile: one that was stopped, or cut off by a bound, says nothing of
   REQUIRE(mass.profile.has_value());
   CHECK(mass.profile->low.is_lost());
   CHECK(mass.identifiability == Identifiability::identified);
-  CHECK_THAT(mass.reason, Contains("not made on either side: stopped on request"));
+  CHECK_THAT(mass.reason, Contains("not computed on either side: stopped on request"));
 
   twin.setting("mass").upper = mass.value + 0.2 * (mass.ci95_if_exact->high - mass.value);
   options.profiles = true;

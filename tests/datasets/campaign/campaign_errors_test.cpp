@@ -315,7 +315,7 @@ TEST_CASE("load_campaign: conditions", "[datasets]") {
        "[[condition]]\nid = \"steps\"",
        {"role \"input\""}},
       {"time = { column = \"t_s\", unit = \"s\" }\n", "", "[[condition]]", {"time"}},
-      {"sd = \"0.05 mm\" }", "role = \"ignore\" }", "[[condition]]", {"no output channel"}},
+      {"sd = \"0.05 mm\" }", "role = \"ignore\" }", "[[condition]]", {"not an output channel"}},
   });
   std::string no_conditions = kExample.substr(0, kExample.find("[[condition]]"));
   CHECK_THAT(failure_of(no_conditions).message, Catch::Contains("at least one [[condition]]"));
@@ -402,7 +402,7 @@ TEST_CASE("load_campaign: recording, acceptance and settings", "[datasets]") {
        "initial_window",
        {"record"}},
       {"rho2 = 0.99\n", "rho2 = 1.5\n", "rho2 = 1.5", {"acceptance.rho2"}},
-      {"warn_rho2 = 0.995", "warn_rho2 = 0.9", "warn_rho2", {"laxer"}},
+      {"warn_rho2 = 0.995", "warn_rho2 = 0.9", "warn_rho2", {"less strict"}},
       {"rho2 = 0.99\n",
        "decision = \"lenient\"\n",
        "lenient",
@@ -415,7 +415,7 @@ TEST_CASE("load_campaign: recording, acceptance and settings", "[datasets]") {
       {"[averaging]",
        "[acceptance.force]\nrho2 = 0.9\n[averaging]",
        "[acceptance.force]",
-       {"no output channel"}},
+       {"not an output channel"}},
       {"[averaging]", "[fit]\nstarts = 0\n[averaging]", "starts", {"fit.starts", "whole number"}},
       {"[averaging]", "[fit]\nmax_time = 60\n[averaging]", "max_time", {"\"60 s\""}},
       {"[averaging]",

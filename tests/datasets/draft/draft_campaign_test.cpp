@@ -308,7 +308,7 @@ TEST_CASE("draft_campaign: a drive is generated only if its samples are", "[data
                                +[](double t) { return 5.0 * std::asin(std::sin(kTwoHz * t)); },
                                +[](double t) { return 5.0 * std::sin(1.0002 * kTwoHz * t); }})
     CHECK_THAT(waveform(mm, reference),
-               Contains("waveform = \"recorded\"  # not generated") && !Contains("FILL IN mm"));
+               Contains("waveform = \"recorded\"  # not simulated as generated") && !Contains("FILL IN mm"));
   // A reference in volts has an amplitude in metres only after its gain.
   CHECK_THAT(waveform("t_s,ref_V,x_mm\n", [](double t) { return 5.0 * std::sin(kTwoHz * t); }),
              Contains("waveform = \"recorded\"") && !Contains("amplitude = "));
@@ -616,7 +616,7 @@ TEST_CASE("draft_campaign: rows without a number are told, and the draft is made
                     : fmt::format("{},{},{}\n", 0.005 * i, i > 20 ? 1 : 0,
                                   i == 70 ? std::string() : std::to_string(0.01 * i));
   const std::string draft = draft_campaign({folder.write("a.csv", text)}, folder.path()).text;
-  CHECK_THAT(draft, Contains("# a campaign refuses a.csv: 2 rows without a number: line 52 has "
+  CHECK_THAT(draft, Contains("# a campaign rejects a.csv: 2 rows without a number: line 52 has "
                              "'NaN' in column 'x_mm'"));
   CHECK_THAT(draft, Contains("# holes = \"bridge\"") && Contains("position = { column = \"x_mm\""));
   const Campaign campaign = load_campaign(folder.write("campaign.toml", filled(draft)));

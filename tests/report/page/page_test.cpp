@@ -421,7 +421,7 @@ TEST_CASE("page: what a fit holds beyond is drawn, what it lacks is left out", "
   json["combinations"] = {"only valve_gain / <mass> is fixed"};
   json["lack_of_fit"] = {{"misfit", true}, {"tests", Json::array()}};
   const std::string html = page(json);
-  CHECK_THAT(html, Contains("mass: lower end 84.9 kg, open at its upper end: followed to 500 kg"));
+  CHECK_THAT(html, Contains("mass: lower end 84.9 kg, open at its upper end: still within the interval at 500 kg"));
   CHECK_THAT(html, Contains("How much can mass change?") && Contains("a curve through them"));
   CHECK_THAT(html, Contains("only valve_gain / &lt;mass&gt; is fixed"));
   CHECK_THAT(html, Contains("Significant lack of fit."));
@@ -635,8 +635,8 @@ TEST_CASE("page: page one is what is signed", "[report]") {
   const std::string html = page(json);
   const std::string first = html.substr(0, html.find("<section id=\"assessment\""));
   CHECK_THAT(first,
-             Contains("The model reproduces the test signal, <strong>1 of them (sine) never "
-                      "seen by the fit</strong>, with at most 1.2 % of the permitted error."));
+             Contains("The model reproduces the test signal, <strong>1 of them (sine) not "
+                      "used in the fit</strong>, with at most 1.2 % of the permitted error."));
   CHECK_THAT(first, Contains("expanded uncertainty U (k = 1.96, coverage 95 %)"));
   CHECK_THAT(first, Contains(">85.011<") && Contains("± <data value=\"0.05"));
   CHECK_THAT(first, Contains("<svg") && Contains("class=\"band allowed\""));

@@ -545,7 +545,7 @@ TEST_CASE("load_csv: a file that may have been cut within its last number", "[da
   };
   const std::string rows = "t,x\n0.0,3.4209\n0.1,-1.2345\n0.2,2.5";
   CHECK_THAT(cut(rows, {"t", "x"}), Contains(":4: the file ends without a newline") &&
-                                        Contains("column 'x', of 3 characters") &&
+                                        Contains("column 'x', has 3 characters") &&
                                         Contains("6 or more"));
   CHECK(cut(rows + "\n", {"t", "x"}).empty());            // complete
   CHECK(cut(rows + "432", {"t", "x"}).empty());           // as long as the others

@@ -186,7 +186,7 @@ TEST_CASE("load_hdf5: time by the distance of samples", "[datasets]") {
              Contains("'/log/x@wf_increment' applies to the 3 samples of its dataset, but "
                       "'/log/short' has 2"));
   CHECK_THAT(read_refusal(path, {"/log/x@wf_increment", "/log/short@dt"}),
-             Contains("'/log/short@dt' counts the 2 samples of its dataset, but "
+             Contains("'/log/short@dt' applies to the 2 samples of its dataset, but "
                       "'/log/x@wf_increment' has 3"));
   CHECK_THAT(read_refusal(path, {"/log@sample_rate"}), Contains("expected another column"));
 }
