@@ -315,7 +315,7 @@ TEST_CASE("load_campaign: conditions", "[datasets]") {
        "[[condition]]\nid = \"steps\"",
        {"role \"input\""}},
       {"time = { column = \"t_s\", unit = \"s\" }\n", "", "[[condition]]", {"time"}},
-      {"sd = \"0.05 mm\" }", "role = \"ignore\" }", "[[condition]]", {"not an output channel"}},
+      {"sd = \"0.05 mm\" }", "role = \"ignore\" }", "[[condition]]", {"no output channel"}},
   });
   std::string no_conditions = kExample.substr(0, kExample.find("[[condition]]"));
   CHECK_THAT(failure_of(no_conditions).message, Catch::Contains("at least one [[condition]]"));
