@@ -153,8 +153,8 @@ class HeaderFinder {
   /// Settles the header if the last two rows are the first ones of numbers, or if the search has
   /// been long.
   void look() {
-    constexpr std::size_t kMostRows = 200;
-    constexpr std::size_t kMostCells = 100'000;
+    constexpr std::size_t kRowsSearched = 200;
+    constexpr std::size_t kCellsSearched = 100'000;
     const std::size_t rows = pending_.size();
     if (rows > 2 && is_numbers(pending_[rows - 1]) && is_numbers(pending_[rows - 2])) {
       if (const auto at = header_above(rows - 2)) {
@@ -163,7 +163,7 @@ class HeaderFinder {
         return;
       }
     }
-    if (rows >= kMostRows || pending_cells_ >= kMostCells) settle(0);
+    if (rows >= kRowsSearched || pending_cells_ >= kCellsSearched) settle(0);
   }
 
   /// Returns the index of the header of a row of numbers; nullopt if there is none.
