@@ -35,6 +35,8 @@ constexpr double kMirroredCorrelation = -0.7;
 constexpr double kShortestBlock_s = 0.1;  // averages over what is beyond a valve and its oil spring
 constexpr std::size_t kMostBlocks = 200;
 constexpr std::size_t kFewestBlocks = 10;
+constexpr double kLongestLag_s = 0.3;  // a pilot-operated valve and its hoses
+constexpr double kLagStep_s = 0.05;    // half of the shortest block
 
 double range(const std::vector<double>& x) {
   const auto [low, high] = std::minmax_element(x.begin(), x.end());
@@ -106,24 +108,36 @@ Following of_finite(const std::vector<double>& x, const std::vector<double>& y) 
 }
 
 /// Relates the distance travelled in each of many equal blocks of samples to the mean drive there.
+/// @param lag_s  the blocks of the motion are later by this time
 Following travel_by_drive(const std::vector<double>& time_s, const std::vector<double>& drive,
-                          const std::vector<double>& position) {
+                          const std::vector<double>& position, double lag_s) {
   const std::size_t samples = time_s.size();
   if (samples < kFewestBlocks) return {};
   const double step_s = (time_s.back() - time_s.front()) / static_cast<double>(samples - 1);
   const auto shortest = static_cast<std::size_t>(std::ceil(kShortestBlock_s / step_s));
   const std::size_t length = std::max({shortest, samples / kMostBlocks, std::size_t{1}});
+  const auto lag = static_cast<std::size_t>(std::lround(lag_s / step_s));
   std::vector<double> means;
   std::vector<double> travels;
-  for (std::size_t begin = 0; begin + length < samples; begin += length) {
+  for (std::size_t begin = 0; begin + length + lag < samples; begin += length) {
     const auto first = drive.begin() + static_cast<std::ptrdiff_t>(begin);
-    const double travel = position[begin + length] - position[begin];
+    const double travel = position[begin + length + lag] - position[begin + lag];
     if (!std::isfinite(travel)) continue;  // a bridged hole
     means.push_back(std::accumulate(first, first + static_cast<std::ptrdiff_t>(length), 0.0) /
                     static_cast<double>(length));
     travels.push_back(travel);
   }
   return means.size() < kFewestBlocks ? Following{} : following(means, travels);
+}
+
+/// Whether the motion follows the drive if it lags by a time that a valve may take. A fast sine
+/// that lags by half a period looks mirrored.
+bool follows_with_lag(const std::vector<double>& time_s, const std::vector<double>& drive,
+                      const std::vector<double>& position) {
+  for (double lag_s = kLagStep_s; lag_s < kLongestLag_s + 0.5 * kLagStep_s; lag_s += kLagStep_s)
+    if (travel_by_drive(time_s, drive, position, lag_s).correlation > -kMirroredCorrelation)
+      return true;
+  return false;
 }
 
 }  // namespace
@@ -283,9 +297,10 @@ std::string mirrored_motion_warning(const Campaign& campaign, const Condition& c
       drive.channel == Channel::reference || drive.channel == Channel::angle_reference;
   const bool opens = drive.channel == Channel::command || drive.channel == Channel::pilot_pressure;
   if (!follows && !opens) return {};
-  const Following found = follows ? of_finite(u, x) : travel_by_drive(record.time_s, u, x);
+  const Following found = follows ? of_finite(u, x) : travel_by_drive(record.time_s, u, x, 0.0);
   if (!(found.correlation < kMirroredCorrelation)) return {};
   if (follows && !(found.slope < kMirroredSlope)) return {};
+  if (opens && follows_with_lag(record.time_s, u, x)) return {};
   return fmt::format(
       "the {} moves against the {} (correlation {:.2f}): is the sign of one of them wrong? gain = "
       "-1 of its channel reverses it",

@@ -48,7 +48,8 @@ std::string stated_drive_warning(const Campaign& campaign, const Condition& cond
 /// Returns a warning if the motion is against its drive, as with a sensor of the wrong sign. In a
 /// closed loop the motion follows its reference with a slope below -0.5 and a correlation below
 /// -0.7. In an open loop the distance travelled in each tenth of a second (or longer, at most 200
-/// in a record) has such a correlation with the mean drive. Empty otherwise.
+/// in a record) has such a correlation with the mean drive, and no lag up to 0.3 s gives one above
+/// 0.7. Empty otherwise.
 std::string mirrored_motion_warning(const Campaign& campaign, const Condition& condition,
                                     const Record& record);
 

@@ -269,6 +269,11 @@ TEST_CASE("mirrored_motion_warning: a sensor of the wrong sign in an open loop",
   CHECK_THAT(open.mirrored(), Contains("the position moves against the command"));
   open.fill(Channel::position, [](double t) { return -0.05 * std::cos(kTurn * t) + 0.01 * t; });
   CHECK(open.mirrored().empty());
+  // A fast sine that lags by half a period looks mirrored.
+  open.condition.frequency_hz = 4.0;
+  open.fill(Channel::position, [](double t) { return 0.01 * std::cos(4.0 * kTurn * t); });
+  CHECK(open.mirrored().empty());
+  open.condition.frequency_hz = 1.0;
   open.record.time_s.resize(50);  // too few blocks
   open.fill(Channel::position, [](double t) { return 0.05 * std::cos(kTurn * t); });
   CHECK(open.mirrored().empty());

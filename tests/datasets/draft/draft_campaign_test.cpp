@@ -320,7 +320,7 @@ TEST_CASE("draft_campaign: a column with few numbers is a comment", "[datasets]"
   for (int i = 0; i < 400; ++i)
     text += fmt::format("{},{},{},{}\n", 0.005 * i, i % 7, i % 5, i % 50 == 0 ? "41.5" : "");
   const std::string draft = draft_campaign({folder.write("a.csv", text)}, folder.path()).text;
-  CHECK_THAT(draft, !Contains("\ntemperature = ") && !Contains("a campaign refuses"));
+  CHECK_THAT(draft, !Contains("\ntemperature = ") && !Contains("a campaign rejects"));
   CHECK_THAT(draft, Contains("# FILL IN = { column = \"T_oil_C\"") &&
                         Contains("a number in 8 of 400 rows"));
 }
