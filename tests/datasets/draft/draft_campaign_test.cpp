@@ -308,7 +308,8 @@ TEST_CASE("draft_campaign: a drive is generated only if its samples are", "[data
                                +[](double t) { return 5.0 * std::asin(std::sin(kTwoHz * t)); },
                                +[](double t) { return 5.0 * std::sin(1.0002 * kTwoHz * t); }})
     CHECK_THAT(waveform(mm, reference),
-               Contains("waveform = \"recorded\"  # not simulated as generated") && !Contains("FILL IN mm"));
+               Contains("waveform = \"recorded\"  # not simulated as generated") &&
+                   !Contains("FILL IN mm"));
   // A reference in volts has an amplitude in metres only after its gain.
   CHECK_THAT(waveform("t_s,ref_V,x_mm\n", [](double t) { return 5.0 * std::sin(kTwoHz * t); }),
              Contains("waveform = \"recorded\"") && !Contains("amplitude = "));

@@ -132,8 +132,8 @@ TEST_CASE("average: what no repeat has is in no record, and its drive is a guess
   CHECK(record.time_s.size() == 101 - 6);
   CHECK(std::abs(record.time_s[47] - 5.3) < 1e-12);
   CHECK_THAT(guessed_drive_warning(bridging(2.0), Condition(), record),
-             Contains("command was not recorded in 1 hole") && Contains("between 4.6 s and 5.3 s") &&
-                 Contains("its last value"));
+             Contains("command was not recorded in 1 hole") &&
+                 Contains("between 4.6 s and 5.3 s") && Contains("its last value"));
   Record twice;
   twice.time_s = torn_twice().time_s;
   CHECK_THAT(guessed_drive_warning(bridging(2.0), Condition(), twice),
