@@ -421,7 +421,10 @@ TEST_CASE("page: what a fit holds beyond is drawn, what it lacks is left out", "
   json["combinations"] = {"only valve_gain / <mass> is fixed"};
   json["lack_of_fit"] = {{"misfit", true}, {"tests", Json::array()}};
   const std::string html = page(json);
-  CHECK_THAT(html, Contains("mass: lower end 84.9 kg, open at its upper end: still within the interval at 500 kg"));
+  CHECK_THAT(
+      html,
+      Contains(
+          "mass: lower end 84.9 kg, open at its upper end: still within the interval at 500 kg"));
   CHECK_THAT(html, Contains("How much can mass change?") && Contains("a curve through them"));
   CHECK_THAT(html, Contains("only valve_gain / &lt;mass&gt; is fixed"));
   CHECK_THAT(html, Contains("Significant lack of fit."));
