@@ -751,10 +751,12 @@ std::vector<Eigen::MatrixXd> effect_changes(const Problem& problem, std::size_t 
         inputs.supply_pressure_pa = sagging_supply(effect, values, times_s, flow, size, periods);
       } else {
         changed.set(effect.index, values.value[static_cast<std::size_t>(effect.index)] + size);
-        // A sensor changes no reading but its own, since the loop does not use it.
-        if (const auto channel = sensor_channel(effect.about.key)) {
-          const auto own =
-              std::find(outputs.begin(), outputs.end(), datasets::model_output(*channel));
+        // A sensor changes no reading but its own, since the loop does not use it, unless the run
+        // starts from its reading.
+        const auto channel = sensor_channel(effect.about.key);
+        const auto output = channel ? datasets::model_output(*channel) : std::nullopt;
+        if (output && !changes_start(data.rig, values, *output, effect.index)) {
+          const auto own = std::find(outputs.begin(), outputs.end(), *output);
           wanted.assign(own, own == outputs.end() ? own : own + 1);
           if (!wanted.empty()) {
             const Eigen::Index k = own - outputs.begin();

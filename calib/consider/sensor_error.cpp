@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <string_view>
 
 #include "model/solver/sensors.hpp"
 
@@ -71,6 +73,22 @@ std::optional<VectorXd> lag_effect(std::span<const double> t, const VectorXd& x,
 }
 
 }  // namespace
+
+bool changes_start(const model::Rig& rig, const model::ParameterValues& values,
+                   model::Output output, int index) {
+  if (rig.initial != model::InitialState::given) return false;
+  const model::Sensor sensor = model::sensor_of(output, values);
+  if (sensor.gain < 0 || (index != sensor.gain && index != sensor.offset)) return false;
+  constexpr std::string_view kGain = "_gain";
+  const std::string_view key =
+      model::parameter_table(values.plant)[static_cast<std::size_t>(sensor.gain)].key;
+  const int initial = model::parameter_index(
+      values.plant, "initial_" + std::string(key.substr(0, key.size() - kGain.size())));
+  if (initial < 0) return false;
+  // A pressure that is not given balances the load; a position always counts as a reading.
+  return output == model::Output::position || output == model::Output::angle ||
+         values.given[static_cast<std::size_t>(initial)];
+}
 
 std::optional<VectorXd> sensor_error(model::Output output, const model::ParameterValues& values,
                                      int index, double size, std::span<const double> times_s,

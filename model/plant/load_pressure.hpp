@@ -170,14 +170,15 @@ struct LoadPressurePlant {
   }
 
   /// Initial state: recorded position and load pressure, corrected for sensor errors. A load
-  /// pressure that was not given balances load and spring.
+  /// pressure that was not given balances spring and load, a recorded one too.
   template <typename C>
-  static std::array<C, kStates> initial(const PlantInput<C>& /*in*/, const Coefficients<C>& p,
+  static std::array<C, kStates> initial(const PlantInput<C>& in, const Coefficients<C>& p,
                                         const PresentTerms& terms) {
+    const C load = terms.external_load ? in.external_load : C(0.0);
     const C x = (p.initial_position_m - p.position_offset_m) / p.position_gain;
     C P_L = terms.initial_load_pressure
                 ? C((p.initial_load_pressure_pa - p.load_pressure_offset_pa) / p.load_pressure_gain)
-                : C((p.external_force_n + p.stiffness_n_per_m * x +
+                : C((load + p.stiffness_n_per_m * x +
                      varying_load(x, p.load_gradient_n_per_m, p.load_curvature_n_per_m2)) /
                     p.piston_area_m2);
     if (terms.load_table && !terms.initial_load_pressure)

@@ -315,12 +315,20 @@ TEST_CASE("simulate: a constant force deflects the spring", "[model]") {
 }
 
 TEST_CASE("simulate: a recorded force and supply act as the parameters do", "[model]") {
-  Experiment by_parameter = paper(Signal::sine(0.02, 2.0));
-  by_parameter.set("external_force", 700.0).set("supply_pressure", 5e6);
-  Experiment by_signal = paper(Signal::sine(0.02, 2.0));
-  by_signal.inputs.external_load = Signal::constant(700.0);
-  by_signal.inputs.supply_pressure_pa = Signal::constant(5e6);
-  CHECK(difference(ok(by_parameter).outputs, ok(by_signal).outputs) < 1e-12);
+  for (const InitialState initial : {InitialState::rest, InitialState::given}) {
+    Experiment by_parameter = paper(Signal::sine(0.02, 2.0));
+    by_parameter.rig.initial = initial;
+    by_parameter.set("external_force", 700.0).set("supply_pressure", 5e6);
+    Experiment by_signal = paper(Signal::sine(0.02, 2.0));
+    by_signal.rig.initial = initial;
+    by_signal.inputs.external_load = Signal::constant(700.0);
+    by_signal.inputs.supply_pressure_pa = Signal::constant(5e6);
+    const Simulation run = ok(by_signal);
+    CHECK(difference(ok(by_parameter).outputs, run.outputs) < 1e-12);
+    // A piston that starts from its reading starts in balance.
+    if (initial == InitialState::given)
+      CHECK_THAT(run.outputs(0, 1), WithinRel(700.0 / by_signal.values["piston_area"], 1e-12));
+  }
 }
 
 TEST_CASE("simulate: an error of the spool acts as a null shift, and as a command that varies",

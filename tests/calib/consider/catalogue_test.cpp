@@ -1,6 +1,7 @@
 #include "calib/consider/catalogue.hpp"
 
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
@@ -135,6 +136,34 @@ TEST_CASE("catalogue: effects that step at each sample have a budget of their ow
   const auto effects = effects_of(problem, z);
   problem.conditions.front().max_steps = 20;  // as of a search that began in a steady state
   CHECK(effect_rows(problem, 0, z, effects, nullptr).allFinite());
+}
+
+TEST_CASE("catalogue: an offset also moves a start that is taken from its reading", "[calib]") {
+  const ForeignProblem foreign({"sine", 5.0, 0.02, 0.4});
+  Problem problem = make_problem(foreign.campaign, foreign.records,
+                                 {&foreign.campaign.conditions.front()}, false, nullptr);
+  const std::vector<double> z = problem.start();
+  std::vector<Effect> effects = effects_of(problem, z);
+  std::erase_if(effects, [](const Effect& each) { return each.about.key != "position_offset"; });
+  REQUIRE(effects.size() == 1);
+  const auto change = [&] {
+    constexpr std::array kFurther{model::Output::load_pressure};
+    return effect_changes(problem, 0, problem.values_at(0, z), problem.conditions[0].fit_times(),
+                          effects, nullptr, kFurther);
+  };
+  const double size = effects.front().about.size;
+  const auto at_rest = change();
+  CHECK((at_rest[0].array() - size).matrix().norm() < 1e-9 * at_rest[0].norm());
+  CHECK(at_rest[1].isZero());
+  // A piston that starts from its reading starts lower by the offset, so that its first reading
+  // stays as it is. The loop then pulls it up.
+  problem.conditions.front().rig.initial = model::InitialState::given;
+  const auto given = change();
+  CHECK(std::abs(given[0](0)) < 1e-3 * size);
+  const double last = given[0](given[0].rows() - 1);
+  CHECK(last > 0.5 * size);
+  CHECK(last < size);
+  CHECK(given[1].norm() > 0.0);
 }
 
 TEST_CASE("catalogue: the leak of closed edges is an effect where it is no laminar leak",

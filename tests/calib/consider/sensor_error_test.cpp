@@ -82,4 +82,24 @@ TEST_CASE("sensor error: left to a simulation where the readings do not tell", "
   CHECK_FALSE(change_of_readings(position_run(), "mass", 1.0));
 }
 
+TEST_CASE("sensor error: gain and offset change a start that is a reading of the sensor",
+          "[calib]") {
+  Experiment experiment = position_run();
+  const auto changes = [&](Output output, std::string_view key) {
+    return changes_start(experiment.rig, experiment.values, output,
+                         model::parameter_index(experiment.values.plant, key));
+  };
+  CHECK_FALSE(changes(Output::position, "position_offset"));  // starts at rest
+  experiment.rig.initial = model::InitialState::given;
+  CHECK(changes(Output::position, "position_gain"));
+  CHECK(changes(Output::position, "position_offset"));
+  CHECK_FALSE(changes(Output::position, "position_lag"));
+  CHECK_FALSE(changes(Output::position, "mass"));
+  CHECK_FALSE(changes(Output::force, "force_offset"));
+  // Without a reading the load pressure balances the load.
+  CHECK_FALSE(changes(Output::load_pressure, "load_pressure_offset"));
+  experiment.set("initial_load_pressure", 1e5);
+  CHECK(changes(Output::load_pressure, "load_pressure_offset"));
+}
+
 }  // namespace rigcal::calib
