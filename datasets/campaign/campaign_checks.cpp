@@ -104,7 +104,7 @@ void check_temperature(const Campaign& campaign, const Condition& condition) {
   const bool follows = values.is_given("reference_temperature");
   if (recorded && !follows)
     throw InputError({campaign.file.string()},
-                     "key 'recording.channels.temperature': no property of the oil follows it: "
+                     "key 'recording.channels.temperature': no property of the oil depends on it: "
                      "expected reference_temperature in [rig.parameters], or role = \"ignore\"");
   if (follows && !recorded && !values.is_given("oil_temperature"))
     fail(condition,

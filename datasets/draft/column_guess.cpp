@@ -264,7 +264,7 @@ std::optional<Channel> without_quantity(const Reading& reading) {
 
 /// Describes what is known and no channel.
 std::string_view other_of(std::optional<Meaning> quantity, const Reading& reading) {
-  if (reading.says(Meaning::error)) return "an error of control";
+  if (reading.says(Meaning::error)) return "a control error";
   if (!quantity) return {};
   switch (*quantity) {
     case Meaning::velocity:

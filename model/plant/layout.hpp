@@ -102,8 +102,8 @@ inline constexpr StateRow kPilotOpeningRate{"pilot_opening_rate", "V/s", "its ra
 inline constexpr StateRow kPilotSignal{"valve_signal", "Pa",
                                        "pilot pressure that the spool has reached", 100.0, 0.01};
 inline constexpr StateRow kPilotSignalRate{"valve_signal_rate", "Pa/s", "its rate", 1e5, 1e7};
-inline constexpr StateRow kPumpDemand{"pump_demand", "s",
-                                      "time for which the pump has been asked for flow", 1e-3, 1.0};
+inline constexpr StateRow kPumpDemand{
+    "pump_demand", "s", "time for which flow has been demanded from the pump", 1e-3, 1.0};
 inline constexpr StateRow kBristleForce{
     "bristle_force", "N", "force of seals and contacts before they slide", 0.1, 100.0};
 inline constexpr StateRow kFilmThickness{

@@ -59,7 +59,7 @@ class JsonScan {
   void open(std::size_t byte) {
     count_value(byte);
     if (keys_.size() == limits_.depth)
-      fail(byte, fmt::format("more than {} brackets within each other", limits_.depth));
+      fail(byte, fmt::format("brackets nested more than {} deep", limits_.depth));
     keys_.push_back(0);
   }
 

@@ -159,7 +159,7 @@ TEST_CASE("parse_quantity: errors say what was wrong and what was expected", "[c
   const auto wrong = GENERATE(
       Case{"6,2 MPa", "Pa", "decimal point"}, Case{"1,000 N", "N", "decimal point"},
       Case{"6.2", "Pa", "unit is missing"}, Case{"0", "Pa", "unit is missing"},
-      Case{"MPa", "Pa", "number in front is missing"}, Case{"", "Pa", "text is empty"},
+      Case{"MPa", "Pa", "number before the unit is missing"}, Case{"", "Pa", "text is empty"},
       Case{"  ", "Pa", "text is empty"}, Case{"inf Pa", "Pa", "not finite"},
       Case{"-inf Pa", "Pa", "not finite"}, Case{"nan Pa", "Pa", "not finite"},
       Case{"infinity", "1", "not finite"}, Case{"1e999 Pa", "Pa", "too large"},

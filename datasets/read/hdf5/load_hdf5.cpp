@@ -208,7 +208,7 @@ class Hdf5Columns {
                       "and numbers from 1, such as {}(:,1)",
                       column, series.path));
     if (subscripts->size() != rank)
-      fail(fmt::format("'{}' is of {} elements; expected {} entries between the brackets", column,
+      fail(fmt::format("'{}' has {} elements; expected {} entries between the brackets", column,
                        size_text(series), rank));
     for (std::size_t k = 0; k < rank; ++k) {
       const auto& subscript = (*subscripts)[k];

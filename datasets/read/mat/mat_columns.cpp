@@ -122,7 +122,7 @@ std::string kind_text(const MatArray& array) {
     case MatKind::structure:
       return "a struct";
     case MatKind::text:
-      return "a text";
+      return "text";
     case MatKind::sparse:
       return "a sparse matrix";
     case MatKind::function:

@@ -61,14 +61,14 @@ struct Hdf5Source::Open {
     array.place = arrays.size();
     arrays.push_back(&variable);
     if (arrays.size() > kMostHdf5Arrays || depth > kDeepestHdf5Struct)
-      fail(fmt::format("contains more than {} arrays, or {} structs within each other",
+      fail(fmt::format("contains more than {} arrays, or structs nested more than {} deep",
                        kMostHdf5Arrays, kDeepestHdf5Struct));
     std::size_t count = 1;
     for (int i = 0; variable.dims != nullptr && i < variable.rank; ++i) {
       const std::size_t size = variable.dims[i];
       constexpr std::size_t kMostElements = std::numeric_limits<std::int64_t>::max();
       if (size > 0 && count > kMostElements / size)
-        fail("is damaged (dimensions beyond any file); copy or save it again");
+        fail("is damaged (dimensions too large for any file); copy or save it again");
       count *= size;
       array.dims.push_back(size);
     }

@@ -395,7 +395,7 @@ class SheetReader {
              fmt::format("belongs to the merged cells {}, of which only the first has content; "
                          "expected a number in each cell",
                          cells.range));
-    fail(row, column, "is empty, but rows follow or other columns go on; expected a number");
+    fail(row, column, "is empty, but rows follow or other columns continue; expected a number");
   }
 
   const XlsxBook& book_;

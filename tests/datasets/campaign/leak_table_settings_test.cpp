@@ -172,7 +172,7 @@ TEST_CASE("free_assumptions: exactly the named ones, with bounds", "[datasets]")
   CHECK_THROWS_WITH(free_assumptions(settings, campaign, {"leakage_smoothing"}),
                     Contains("cannot be fitted"));
   CHECK_THROWS_WITH(free_assumptions(settings, campaign, {"stiffness"}),
-                    Contains("no value from which bounds follow"));
+                    Contains("no value from which bounds can be derived"));
 }
 
 TEST_CASE("signal_from_text: waveform, frequency, amplitude", "[datasets]") {

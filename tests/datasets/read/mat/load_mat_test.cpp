@@ -185,7 +185,7 @@ TEST_CASE("load_mat: what is no column of numbers", "[datasets]") {
       {"log.signals(2).values", {"has 3 x 2 elements", "log.signals(2).values(:,1)"}},
       {"log.signals(2).values(:,3)", {"is outside of 'values', which has 3 x 2"}},
       {"wide(:,1)", {"is outside of 'wide', which has 2 x 1 x 3"}},
-      {"log.blockName", {"is a text; expected real numbers"}},
+      {"log.blockName", {"is text; expected real numbers"}},
       {"position.x", {"'position' is a number and has no field 'x'"}},
       {"hole", {"element 3 of 'hole' is nan; expected a finite number"}},
       {"edge", {"element 1 of 'edge' is -inf"}},
