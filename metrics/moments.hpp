@@ -41,7 +41,7 @@ constexpr Value square(Value value) {
 struct Range {
   double low = 0.0;
   double high = 0.0;
-  bool constant() const { return low == high; }  ///< an offset makes no difference
+  bool constant() const { return low == high; }  ///< whatever the offset
   Extended peak_to_peak() const { return wide(high) - wide(low); }
 };
 

@@ -398,7 +398,7 @@ Args:
         fit and is raised here
 
 Raises:
-    InputError: a recording is wrong, nothing is free...
+    InputError: a recording is wrong, no parameter is free...
     ValueError: an argument is out of its range
     Interrupted: Ctrl-C; it holds the best fit so far)");
   campaign.def("validate", &validate, py::arg("fit") = py::none(), py::kw_only(),

@@ -48,7 +48,7 @@ std::vector<double> listed(const MatrixXd& matrix) {
 /// it can be stored.
 struct ChainTask {
   std::vector<double> position, whitened, covariance;
-  std::vector<double> sizes;  ///< the effects' sizes
+  std::vector<double> sizes;  ///< sizes of the small effects
   double step = 0.0;
   long iteration = 0;
   long evaluations = 0;

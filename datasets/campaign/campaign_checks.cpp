@@ -95,7 +95,8 @@ void check_motion(const Campaign& campaign) {
   }
 }
 
-/// Checks that the oil has a temperature if its properties follow it: as a parameter, or recorded.
+/// Checks that the oil has a temperature if its properties depend on it: as a parameter, or
+/// recorded.
 void check_temperature(const Campaign& campaign, const Condition& condition) {
   const auto values = values_in(campaign, condition);
   const auto channel = campaign.channels.find(Channel::temperature);

@@ -194,8 +194,8 @@ const KeyTable<Campaign>& averaging_keys() {
                             .hint = "or \"none\" if all repeats share one trigger"}),
       Row::word<bool>("outliers", &Campaign::leave_out_outliers,
                       {{"keep", false}, {"leave_out", true}},
-                      {.doc = "Whether a repeat that is three times as far from the median of all "
-                              "as is typical stays in the mean, with a warning, or is left out"}),
+                      {.doc = "Treatment of a repeat that is three times as far from the median of "
+                              "all as is typical: kept in the mean, with a warning, or left out"}),
   });
   return keys;
 }
@@ -227,7 +227,7 @@ const KeyTable<Campaign>& root_keys() {
       section(
           "averaging", table_form(averaging_keys().keys()),
           [](const TomlNode& node, Campaign& campaign) { averaging_keys().read(node, campaign); },
-          "How repeats become one record"),
+          "How repeats are averaged"),
       section("acceptance", table_form(acceptance_keys()), read_acceptance, "What PASS means"),
       section(
           "fit", table_form(fit_keys().keys()),

@@ -212,8 +212,8 @@ const KeyTable<AcceptanceBounds>& bound_keys() {
 /// A section that states sizes: a table with a key per quantity, or `false`.
 struct SizesSection {
   std::vector<SizedQuantity> (*quantities)(model::PlantKind plant);
-  std::string_view noun;     ///< what a key names
-  std::string_view without;  ///< what it means if the section is `false`
+  std::string_view noun;     ///< what each key is the name of
+  std::string_view without;  ///< meaning of `false` for the section
   std::string_view size;     ///< what a value is
   std::string (*meaning)(const model::ParameterSpec* spec);
   /// Returns the largest size of a quantity. `index` is its parameter, or below 0.

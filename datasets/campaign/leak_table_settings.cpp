@@ -422,8 +422,8 @@ LeakTableSettings leak_table_settings(const Campaign& campaign) {
   if (const auto node = root.find("leak_table")) settings = read_leak_table(*node, campaign);
   if (campaign.rig.feedback != model::Feedback::position)
     throw InputError({campaign.file.string()},
-                     fmt::format("key 'rig.controller.feedback': a leak table is made of loops on "
-                                 "position, or of none: found \"{}\"",
+                     fmt::format("key 'rig.controller.feedback': a leak table needs a position "
+                                 "loop or no controller: found \"{}\"",
                                  model::gain_keys(campaign.rig.feedback).name));
   if (settings.signals.empty()) settings.signals = signals_of(campaign);
   if (settings.signals.empty()) {

@@ -200,7 +200,7 @@ class HeaderFinder {
     }
   }
 
-  /// Takes a row for that of units if it is one.
+  /// Stores a row as the row of units if it is one, and returns whether it is.
   bool take_units(const SheetRow& row) {
     if (row.front().row != header_.row + 1 || !are_units(row)) return false;
     header_.units.resize(header_.names.size());
