@@ -93,8 +93,7 @@ EffectSize dry_friction_size(const RigScale& rig) {
 }
 EffectSize acceleration_gain(const RigScale&) { return {0.01, "1 % of the reading"}; }
 EffectSize acceleration_offset(const RigScale& rig) {
-  return {1e-3 * rig.force_n / rig.mass_kg,
-          "0.1 % of area times supply over the mass"};
+  return {1e-3 * rig.force_n / rig.mass_kg, "0.1 % of area times supply over the mass"};
 }
 EffectSize pressure_gain(const RigScale&) { return {5e-3, "0.5 % of the reading"}; }
 EffectSize pressure_offset(const RigScale& rig) {

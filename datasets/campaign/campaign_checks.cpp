@@ -245,7 +245,7 @@ void add_missing_drive(const Campaign& campaign, const Condition& condition,
   const Channel drive = drive_channel(campaign);
   if (condition.waveform != Waveform::recorded || carries(campaign, condition, drive)) return;
   lacks.push_back(fmt::format(
-      "the waveform is recorded, but no channel {} has it: the command to the machine is "
+      "the waveform is recorded, but no channel {} contains it: the command to the machine is "
       "not known, so the healthy model cannot be run under the same {}",
       info(drive).key, info(drive).key));
 }

@@ -306,7 +306,7 @@ const KeyTable<Condition>& condition_keys() {
                  {.doc = "Number of repeats behind `averaged`"}),
       Row::whole("planned_repeats", &Condition::planned_repeats, 1, 1'000'000,
                  {.doc = "Number of repeats that `plan` assumes for a condition without a record",
-                  .otherwise = "as the campaign's noise is stated",
+                  .otherwise = "the number to which the campaign's noise refers",
                   .example = "5"}),
       Row::custom("window", either_form({window, list_form(window)}, "list"),
                   [](const TomlNode& node, Condition& condition) {

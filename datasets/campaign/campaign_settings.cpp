@@ -241,7 +241,7 @@ double most_between_days(const TomlNode& /*entry*/, const Campaign& campaign, in
 constexpr SizesSection kConsideredSection{
     effect_names,
     "effect",
-    "the model counts as exact",
+    "the model is treated as exact",
     "a plausible size",
     [](const model::ParameterSpec* spec) {
       return std::string(spec == nullptr ? "Plausible size of this effect" : spec->meaning);
@@ -384,8 +384,9 @@ void read_acceptance(const TomlNode& node, Campaign& campaign) {
 const KeyTable<FitSettings>& fit_keys() {
   using Row = KeyRow<FitSettings>;
   static const KeyTable<FitSettings> keys({
-      Row::word<Loss>("loss", &FitSettings::loss,
-                      {.doc = "How a residual counts: squared, or less where it is large"}),
+      Row::word<Loss>(
+          "loss", &FitSettings::loss,
+          {.doc = "Loss of a residual: quadratic, or smaller than that for large residuals"}),
       Row::number("loss_scale", &FitSettings::loss_scale, kSizes,
                   {.doc = "Transition of the loss, in standard deviations of a residual"}),
       Row::whole("max_iterations", &FitSettings::max_iterations, 1, 1'000'000,

@@ -68,7 +68,7 @@ class JsonScan {
     const std::size_t keys = ++keys_.back();
     // This cannot overflow: the size of the text is limited, and a key takes at least three bytes.
     if (comparisons_ + keys * keys > limits_.key_comparisons)
-      fail(byte, fmt::format("an object of {} keys, or too many large objects before it", keys));
+      fail(byte, fmt::format("an object with {} keys, or too many large objects before it", keys));
   }
 
   void close() {

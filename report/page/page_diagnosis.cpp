@@ -409,7 +409,7 @@ std::string diagnosis_sentence(const StoredDiagnosis& diagnosis) {
   const std::vector<const MachineState*> states = judged_states(diagnosis.found.states);
   if (states.size() == 1) return states.front()->sentence;
   if (!states.empty()) {
-    return fmt::format("Of {} states of the machine the worst: {}", states.size(),
+    return fmt::format("Worst of {} states of the machine: {}", states.size(),
                        states.front()->sentence);
   }
   return "Every condition is the healthy reference of its signal: there is nothing to judge.";

@@ -395,7 +395,7 @@ std::vector<doc::Section> leak_table_sections(const LeakTableFiles& stored) {
       "share hardly determines the coefficient.{}",
       table.share,
       table.summary.published > 0
-          ? " Below it the published one and how far the computed one is off."
+          ? " Below it the published one and how far the computed one deviates."
           : "",
       fit_notes.empty() ? "" : " Small: 95 % interval from the covariance of the fit.")));
   blocks.emplace_back(

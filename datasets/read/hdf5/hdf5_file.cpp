@@ -64,13 +64,13 @@ std::string kind_of(hid_t type) {
     case H5T_REFERENCE:
       return "a reference";
     case H5T_VLEN:
-      return "a list of lists of their own length";
+      return "a list of lists of different lengths";
     case H5T_TIME:
       return "a date";
     case H5T_BITFIELD:
       return "a field of bits";
     default:
-      return "of a type without numbers";
+      return "of a type that is not numeric";
   }
 }
 

@@ -236,7 +236,7 @@ class Hdf5Columns {
                       "the same number",
                       clock.path, count, of, *rows));
     if (count > kMostValues - std::min(kMostValues, so_far_))
-      fail(fmt::format("'{}' counts {} samples, more than {} numbers in all, the limit of one file",
+      fail(fmt::format("'{}' has {} samples, more than {} numbers in all, the limit of one file",
                        clock.path, count, kMostValues));
     std::vector<double> time_s(count);
     for (std::size_t k = 0; k < count; ++k) {

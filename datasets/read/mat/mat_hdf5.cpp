@@ -137,7 +137,8 @@ std::vector<double> Hdf5Source::numbers(const MatArray& array, const MatSelectio
                                         const std::string& column) {
   constexpr std::size_t kMostIndex = std::numeric_limits<int>::max();
   if (array.element_count() > kMostIndex)
-    open_->fail(fmt::format("'{}' is of an array of more than {} elements", column, kMostIndex));
+    open_->fail(
+        fmt::format("'{}' belongs to an array of more than {} elements", column, kMostIndex));
   matvar_t& variable = *open_->arrays.at(array.place);
   switch (variable.class_type) {
     case MAT_C_SINGLE:

@@ -274,7 +274,7 @@ TEST_CASE("load_hdf5: what is no number is named by its kind", "[datasets]") {
   const auto refusal = [&](const char* column) { return read_refusal(path, {column}); };
   CHECK_THAT(refusal("/lists"), Contains("'/lists' is a list of lists"));
   CHECK_THAT(refusal("/bits"), Contains("'/bits' is a field of bits"));
-  CHECK_THAT(refusal("/blob"), Contains("'/blob' is of a type without numbers"));
+  CHECK_THAT(refusal("/blob"), Contains("'/blob' is of a type that is not numeric"));
   CHECK_THAT(refusal("/tables.inner"), Contains("'/tables.inner' is a table within a table"));
   CHECK_THAT(refusal("/tables"), Contains("'/tables' is a table; expected one of its columns"));
   CHECK_THAT(refusal("/null"), Contains("'/null' is empty"));
