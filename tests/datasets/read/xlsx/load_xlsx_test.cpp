@@ -246,7 +246,7 @@ TEST_CASE("load_xlsx: rows and cells out of order are refused", "[datasets]") {
   CHECK_THAT(refusal(row(2, "<c r=\"A3\"><v>0</v></c><c r=\"B3\"><v>1</v></c>")),
              Contains("out of order"));
   CHECK_THAT(refusal(second + "<c><v>1</v></c>"), Contains("out of order"));
-  CHECK_THAT(refusal(second + "<x:row xmlns:x=\"urn:x\"/>"), Contains("of no known kind"));
+  CHECK_THAT(refusal(second + "<x:row xmlns:x=\"urn:x\"/>"), Contains("of an unknown type"));
 }
 
 TEST_CASE("load_xlsx: columns beyond Z", "[datasets]") {
