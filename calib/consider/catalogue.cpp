@@ -180,7 +180,7 @@ constexpr std::array kCatalogue{
                  [](const RigScale& rig) {
                    return EffectSize{0.01 * rig.travel_m, "1 % of the area times the stroke"};
                  }},
-    CatalogueRow{"supply_sag", EffectKind::supply_sag, true, "supply that falls with its flow",
+    CatalogueRow{"supply_sag", EffectKind::supply_sag, true, "supply pressure that drops with flow",
                  [](const RigScale&) {
                    return EffectSize{0.01, "1 % of the supply at the flow of full command"};
                  }},

@@ -28,7 +28,7 @@ struct PresentTerms {
   bool external_load = false;  ///< a load is recorded, or the external force is not zero or free
   bool varying_load = false;   ///< the load varies with the travel
   bool curved_load = false;    ///< the curvature of the load is not zero, or is free
-  bool load_table = false;     ///< the load has a table over the travel
+  bool load_table = false;     ///< the load is given by a table over the travel
   bool overlaps = false;       ///< the overlap of an edge is not zero, or is free
   bool null_opening = false;   ///< covered edges leak through an orifice
   bool line_loss = false;      ///< the lines also throttle the flow

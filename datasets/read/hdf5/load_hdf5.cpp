@@ -157,8 +157,8 @@ class Hdf5Columns {
     const std::size_t count = series.dims.empty() ? 1 : series.dims[line.along];
     if (count > kMostValues - std::min(kMostValues, so_far))
       fail(
-          fmt::format("'{}' has {} rows, which with the {} numbers of other columns are more "
-                      "than {}, the limit of one file; decimate the record, or split it",
+          fmt::format("'{}' has {} rows; with the {} numbers of other columns they exceed {}, the "
+                      "limit of one file; decimate the record, or split it",
                       column, count, so_far, kMostValues));
     std::vector<double> values = file_.numbers(series, line, column);
     const auto bad =

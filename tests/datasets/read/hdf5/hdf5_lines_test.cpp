@@ -335,7 +335,7 @@ TEST_CASE("load_hdf5: 12 million numbers of one file, those of other columns cou
              Contains("'/x@dt' counts 100000 samples, more than 12000000 numbers in all"));
   columns.assign(121, "/x");
   CHECK_THAT(read_refusal(path, columns),
-             Contains("'/x' has 100000 rows, which with the 12000000 numbers of other columns"));
+             Contains("'/x' has 100000 rows; with the 12000000 numbers of other columns"));
   CHECK_THAT(read_refusal(path, {"/wide(:,1)"}),
              Contains("'/wide(:,1)' has arrays of 2000 numbers each, 7000 of them: more than "
                       "12000000 numbers in total"));

@@ -147,7 +147,7 @@ TEST_CASE("load_mat: 12 million numbers of one file, those of other columns coun
   CHECK(load_mat_record(path, {columns, ""}).columns.size() == 120);
   columns.emplace_back("x");
   CHECK_THAT(message_of(path, {columns, ""}),
-             Contains("'x' has 100000 elements, which with the 12000000 of other columns"));
+             Contains("'x' has 100000 elements; with the 12000000 of other columns"));
 }
 
 TEST_CASE("load_mat: every real number class", "[datasets]") {
@@ -191,9 +191,9 @@ TEST_CASE("load_mat: what is no column of numbers", "[datasets]") {
       {"edge", {"element 1 of 'edge' is -inf"}},
       {"position(:", {"'position(:' lacks a closing bracket"}},
       {"position(2)", {"does not name a whole row or column"}},
-      {"log(:).time", {"takes all elements of 'log'"}},
+      {"log(:).time", {"selects all elements of 'log'"}},
       {"position(0,:)", {"has a subscript that is not a number from 1"}},
-      {"position mm", {"goes on with 'mm'"}},
+      {"position mm", {"continues with 'mm'"}},
       {".position", {"lacks the name of a variable"}}};
   const TemporaryFolder folder;
   const auto path = folder.path() / "run.mat";
