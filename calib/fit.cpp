@@ -239,9 +239,10 @@ Fit fit(const Campaign& campaign, const std::vector<Record>& records, const FitO
   Problem problem = make_problem(campaign, records, fitted, false, nullptr);
   problem.cancel = late.flag();
   if (problem.map.unknowns().empty()) {
-    throw InputError({campaign.file.string()},
-                     "nothing is free in the conditions of the fit: expected `fit = true` at a "
-                     "parameter, or --free");
+    throw InputError(
+        {campaign.file.string()},
+        "no parameter is free in the conditions of the fit: expected `fit = true` at a "
+        "parameter, or --free");
   }
   // If only the validation uses a leak level, it has no fitted value. This is reported before a fit
   // that may take hours.

@@ -110,8 +110,8 @@ Solved solve_from_starts(Problem& problem, Evaluator& evaluator, const FitOption
   fit = {};
   fit.warnings = warnings;
   fit.warnings.push_back(
-      fmt::format("the start of the campaign did not reach a minimum ({}): {} further starts were "
-                  "made, as with --starts {}",
+      fmt::format("the fit from the campaign's start values did not reach a minimum ({}): {} "
+                  "further starts were made, as with --starts {}",
                   why, options.further_starts, more.starts));
   return solve_problem(problem, evaluator, more, fit);
 }

@@ -26,7 +26,7 @@ class Error : public std::runtime_error {
   ExitCode code_;
 };
 
-/// Thrown if the command line is wrong.
+/// Thrown if the command line is invalid.
 class UsageError : public Error {
  public:
   explicit UsageError(const std::string& message) : Error(ExitCode::bad_input, message) {}
@@ -47,7 +47,7 @@ struct Location {
   }
 };
 
-/// Thrown if a campaign or record file is wrong. what() reads "file:line:column: message".
+/// Thrown if a campaign or record file is invalid. what() reads "file:line:column: message".
 class InputError : public Error {
  public:
   InputError(Location where, const std::string& message)

@@ -317,7 +317,8 @@ Split split_number(std::string_view text) {
   const char* end = text.data() + text.size();
   Split result{};
   const auto [rest, error] = std::from_chars(begin, end, result.number);
-  if (error == std::errc::invalid_argument) throw QuantityError("the number in front is missing");
+  if (error == std::errc::invalid_argument)
+    throw QuantityError("the number before the unit is missing");
   if (error == std::errc::result_out_of_range)
     throw QuantityError("the number is too large or too small");
   if (!std::isfinite(result.number)) throw QuantityError("the number is not finite");

@@ -71,7 +71,7 @@ void remove_left_behind(const fs::path& folder, const std::set<std::string>& nam
     if (found && names.contains(std::string(found->name)) && !lives(found->process))
       left.push_back(entry.path());
   }
-  for (const fs::path& path : left) ::unlink(path.c_str());  // a failure does no harm
+  for (const fs::path& path : left) ::unlink(path.c_str());  // a failure is harmless
 }
 
 }  // namespace rigcal

@@ -24,8 +24,8 @@ std::vector<SizedQuantity> effect_names(model::PlantKind plant);
 /// Key for the start time of a record relative to its drive. No parameter of the rig describes it.
 inline constexpr const char* kTriggerKey = "trigger";
 
-/// Returns the quantities that may differ between days: those that the plant has among supply, oil
-/// and zero of the position sensor, and the trigger.
+/// Returns the quantities that may differ from day to day: the trigger, and the supply pressure,
+/// the oil and the zero of the position sensor if the plant has them.
 std::vector<SizedQuantity> day_quantity_names(model::PlantKind plant);
 
 /// Section [considered], for small effects that the model leaves out, or [between_days].

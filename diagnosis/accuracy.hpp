@@ -35,7 +35,7 @@ struct Accuracy {
   int right = 0;
   int undecided = 0;               ///< undecided records, which count as wrong
   int off_by_two_or_more = 0;      ///< number of records whose class is wrong by at least two
-  std::optional<double> accuracy;  ///< right / records
+  std::optional<double> accuracy;  ///< right / number of records
   /// Wilson's 95 % interval. The number of conditions is used as the number of independent trials,
   /// because the repeats of one condition share errors.
   std::optional<Range> accuracy_ci95;

@@ -45,10 +45,11 @@ void take_limits(datasets::DiagnosisSettings& settings, const std::vector<double
   const std::size_t rows = targets_percent.size();
   const std::size_t most = datasets::kLeakClasses.size();
   if (rows < kFewest || rows > most) {
-    throw InputError({file}, fmt::format("the table has {} rows: expected the limits of slight, "
-                                         "medium and critical, such as --targets 10,20,30, or "
-                                         "five with that of normal and one beyond",
-                                         rows));
+    throw InputError({file},
+                     fmt::format("the table has {} rows: expected the limits of slight, "
+                                 "medium and critical, such as --targets 10,20,30, or five that "
+                                 "begin with the limit of normal and end beyond critical",
+                                 rows));
   }
   const std::size_t first = rows == most ? 0 : 1;
   for (std::size_t i = first; i < settings.limits.size(); ++i)

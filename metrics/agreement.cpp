@@ -19,7 +19,7 @@ static_assert(sizeof(Agreement) == kMetrics.size() * sizeof(double),
 /// Number of rows at the top of the table that agreement() computes together.
 constexpr std::size_t kOfMoments = 7;
 static_assert(kMetrics.size() >= kOfMoments && kMetrics[kOfMoments - 1].name == "maximum_error",
-              "a metric of its own has its row below those that agreement() computes together");
+              "a separate metric must have its row below those that agreement() computes together");
 
 using Signal = std::span<const double>;
 

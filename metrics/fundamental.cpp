@@ -91,7 +91,7 @@ Fundamental fit(std::span<const double> time_s, std::span<const double> signal,
   const std::size_t n = signal.size() - begin;
   if (n < 4)
     throw std::invalid_argument(
-        fmt::format("fundamental: {} samples of the {} signal lie in whole periods of {} s, "
+        fmt::format("fundamental: {} samples of the {} signal are in whole periods of {} s, "
                     "expected at least 4",
                     n, name, 1.0 / frequency_hz));
   if (range.constant()) return {};

@@ -13,7 +13,7 @@ namespace rigcal::metrics {
 using Extended = long double;
 static_assert(std::numeric_limits<Extended>::digits >= 64 &&
                   std::numeric_limits<Extended>::max_exponent >= 16384,
-              "the metrics need a long double that is wider than double");
+              "the metrics require a long double that is wider than double");
 
 constexpr Extended wide(double value) { return static_cast<Extended>(value); }
 
@@ -41,7 +41,7 @@ constexpr Value square(Value value) {
 struct Range {
   double low = 0.0;
   double high = 0.0;
-  bool constant() const { return low == high; }  ///< an offset makes no difference
+  bool constant() const { return low == high; }  ///< whatever the offset
   Extended peak_to_peak() const { return wide(high) - wide(low); }
 };
 

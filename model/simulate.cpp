@@ -211,7 +211,7 @@ Simulation simulate(const Rig& rig, const ParameterValues& parameters, std::span
   if (too_fast(inputs, times_s)) {
     result.status = SimulationStatus::step_too_small;
     result.failed_at_s = times_s.front();
-    result.reason = "an input changes faster than the times of its samples are resolved";
+    result.reason = "an input changes faster than its sample times resolve";
     return result;
   }
   const std::optional<SensorTimes> at = sensor_times(outputs, parameters, free, times_s);

@@ -328,7 +328,7 @@ Raises:
     UsageError: a file would replace one that the result was made from, or one that rigcal did not
         write; or another run writes there)")
       .def("explore", &explore,
-           R"(The page of `rigcal explore` with these estimates: the rig runs in it.
+           R"(The page of `rigcal explore`, which simulates the rig with these estimates.
 
 Shown in a notebook; `write(path)` saves it.
 
@@ -398,7 +398,7 @@ Args:
         fit and is raised here
 
 Raises:
-    InputError: a recording is wrong, nothing is free...
+    InputError: a recording is wrong, no parameter is free...
     ValueError: an argument is out of its range
     Interrupted: Ctrl-C; it holds the best fit so far)");
   campaign.def("validate", &validate, py::arg("fit") = py::none(), py::kw_only(),

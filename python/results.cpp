@@ -450,7 +450,7 @@ Raises:
         const py::gil_scoped_release released;
         return explore_page_of(self->campaign, {}, self->call + ".explore()");
       },
-      R"(The page of `rigcal explore`: the rig runs in it, with the campaign's values.
+      R"(The page of `rigcal explore`, which simulates the rig with the campaign's values.
 
 Raises:
     InputError: no condition can be simulated

@@ -63,7 +63,8 @@ struct Message {
 void send(const Message& message) {
   const std::string bytes = to_bytes(message.kind, message.job, message.index, message.slots);
   if (bytes.size() > static_cast<std::size_t>(INT_MAX))
-    throw std::runtime_error("results of more than 2 GB cannot go from one process to another");
+    throw std::runtime_error(
+        "results of more than 2 GB cannot be sent from one process to another");
   MPI_Send(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, message.other, kTag,
            MPI_COMM_WORLD);
 }

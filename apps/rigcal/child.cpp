@@ -109,7 +109,7 @@ report::VerbEnd run_child(const std::vector<std::string>& arguments,
   variables.push_back(nullptr);
 
   std::array<int, 2> ends{};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0) return not_started("cannot make a pipe to it");
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) return not_started("cannot create a pipe to it");
   const Descriptor out(ends[0]);
   Descriptor in(ends[1]);
   const Descriptor null(::open("/dev/null", O_RDWR | O_CLOEXEC));

@@ -21,7 +21,7 @@ static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler must not
 /// Ends the process. It must not lock or allocate, because the signal may have interrupted code
 /// that was doing so.
 [[noreturn]] void end_at_once() {
-  constexpr std::string_view kWords = "rigcal: stopped by a signal before it was done\n";
+  constexpr std::string_view kWords = "rigcal: stopped by a signal before it had finished\n";
   FilesInWriting::remove_all();
   report::HeldFolder::remove_if_empty();
   if (::write(STDERR_FILENO, kWords.data(), kWords.size()) < 0) {

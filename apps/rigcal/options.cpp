@@ -90,7 +90,7 @@ void add_campaign_options(CLI::App& verb, CampaignOptions& options) {
   verb.add_option("--free", options.free, "Fit exactly these parameters: a,b")
       ->delimiter(',')
       ->allow_extra_args(false);
-  verb.add_option("--threads", options.threads, "Threads; results do not depend on it")
+  verb.add_option("--threads", options.threads, "Number of threads; does not affect the results")
       ->check(CLI::Range(1, kMostThreads))
       ->default_str("all");
   add_print_options(verb, options.print);

@@ -69,7 +69,7 @@ constexpr int kPlayRounds = 2;
 /// An effect that matters changes an output by at least a ten-thousandth of its peak. This
 /// tolerance resolves a hundredth of such a change.
 constexpr double kSecantTolerance = 1e-6;
-/// Tolerance for a controller that ticks, which ends a step at every tick. Its effect on a sine or
+/// Tolerance for a sampled controller, which ends a step at every tick. Its effect on a sine or
 /// square of 0.1 to 10 Hz is then accurate to 0.6 %, in half the steps that kSecantTolerance takes.
 constexpr double kTickingTolerance = 1e-5;
 /// Tolerance for secants with a recorded drive, as a multiple of the measured tolerance, and its
@@ -93,8 +93,7 @@ EffectSize dry_friction_size(const RigScale& rig) {
 }
 EffectSize acceleration_gain(const RigScale&) { return {0.01, "1 % of the reading"}; }
 EffectSize acceleration_offset(const RigScale& rig) {
-  return {1e-3 * rig.force_n / rig.mass_kg,
-          "0.1 % of what area times supply accelerates the mass by"};
+  return {1e-3 * rig.force_n / rig.mass_kg, "0.1 % of area times supply over the mass"};
 }
 EffectSize pressure_gain(const RigScale&) { return {5e-3, "0.5 % of the reading"}; }
 EffectSize pressure_offset(const RigScale& rig) {
@@ -181,7 +180,7 @@ constexpr std::array kCatalogue{
                  [](const RigScale& rig) {
                    return EffectSize{0.01 * rig.travel_m, "1 % of the area times the stroke"};
                  }},
-    CatalogueRow{"supply_sag", EffectKind::supply_sag, true, "supply that falls with its flow",
+    CatalogueRow{"supply_sag", EffectKind::supply_sag, true, "supply pressure that drops with flow",
                  [](const RigScale&) {
                    return EffectSize{0.01, "1 % of the supply at the flow of full command"};
                  }},
@@ -509,7 +508,7 @@ model::Signal spool_error(std::span<const double> time_s, const Eigen::VectorXd&
                         Reverses::yes);
 }
 
-/// @param least_tolerance  kSecantTolerance, or kTickingTolerance for a controller that ticks
+/// @param least_tolerance  kSecantTolerance, or kTickingTolerance for a sampled controller
 model::SimulationOptions effect_options(const Problem& problem, std::size_t condition,
                                         double least_tolerance, const std::atomic<bool>* cancel) {
   auto options = problem.simulation_options(cancel);
@@ -518,8 +517,8 @@ model::SimulationOptions effect_options(const Problem& problem, std::size_t cond
   if (measured > 0.0)
     options.tolerance =
         std::max(options.tolerance, std::min(kRecordedShare * measured, kLargestSecantTolerance));
-  // The search's budget follows from the steps at its start, where a run may soon become periodic.
-  // A controller that ticks and an input that follows from a simulation end more steps than that.
+  // The search sets its budget by the steps at its start, where a run may soon become periodic. A
+  // sampled controller and an input taken from a simulation need more steps than that.
   const ProblemCondition& data = problem.conditions[condition];
   options.max_steps = std::max(data.max_steps, ample_steps(data.record->time_s.size()));
   return options;

@@ -32,9 +32,9 @@ constexpr double kLeastFall = 0.01;
 /// recorded drives, whose effects are simulated more coarsely, a step with a smaller predicted
 /// decrease is taken without a simulation.
 constexpr double kResolvedFall = 1.0;
-/// The sensitivities are used again in the next step if they are expected to miss less than this
-/// decrease, in the same unit. A Hessian with a relative error e misses e^2 of the predicted
-/// decrease.
+/// The sensitivities are used again in the next step if the decrease that they would miss is
+/// expected to be below this, in the same unit. A Hessian with a relative error e misses e^2 of the
+/// predicted decrease.
 constexpr double kLeftFall = 0.1;
 /// Minimum size as a multiple of the plausible size. A smaller one, such as a very short and
 /// therefore stiff lag, counts as zero.

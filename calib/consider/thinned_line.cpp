@@ -58,7 +58,7 @@ model::Signal repeating_line(std::span<const double> time_s, std::span<const dou
     if (value.size() < 2 * n) continue;
     std::size_t from = value.size() - n;
     while (from > 0 && std::abs(value[from - 1 + n] - sign * value[from - 1]) <= tolerance) --from;
-    if (from + 2 * n >= value.size()) continue;  // no period would be spared
+    if (from + 2 * n >= value.size()) continue;  // no period would be left out
     std::vector<double> times;
     std::vector<double> values;
     for (const std::size_t i : needed(time_s.first(from + 1), value.first(from + 1), tolerance)) {

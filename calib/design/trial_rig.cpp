@@ -126,7 +126,7 @@ TrialRig::TrialRig(const Campaign& campaign, const std::map<Channel, double>& no
   problem_->conditions.front().record = &record_;
   if (problem_->map.unknowns().empty())
     throw InputError({campaign.file.string()},
-                     "nothing is free: expected `fit = true` at a parameter, or --free");
+                     "no parameter is free: expected `fit = true` at a parameter, or --free");
   z_ = point_at(*problem_, values);
   reach_ = find_reach();
 }

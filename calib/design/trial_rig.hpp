@@ -25,7 +25,7 @@ class TrialRig {
   /// @param campaign  must contain [design]; borrowed
   /// @param noise_sd  noise in one sample of one repeat
   /// @param values    values from an earlier fit, or null
-  /// @throws InputError     if nothing is free, or the rig exceeds a limit at rest
+  /// @throws InputError     if no parameter is free, or the rig exceeds a limit at rest
   /// @throws NoResultError  if the rig cannot be simulated at rest
   TrialRig(const datasets::Campaign& campaign, const std::map<datasets::Channel, double>& noise_sd,
            const std::vector<datasets::FittedValue>* values, const std::atomic<bool>* cancel);

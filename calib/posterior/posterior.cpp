@@ -48,7 +48,7 @@ std::vector<double> listed(const MatrixXd& matrix) {
 /// it can be stored.
 struct ChainTask {
   std::vector<double> position, whitened, covariance;
-  std::vector<double> sizes;  ///< the effects' sizes
+  std::vector<double> sizes;  ///< sizes of the small effects
   double step = 0.0;
   long iteration = 0;
   long evaluations = 0;
@@ -194,12 +194,12 @@ std::string complaints(const Posterior& found) {
                     "bias the draws",
                     found.longest, NutsOptions{}.most_doublings));
   if (found.energy_fraction < kLeastEnergyFraction)
-    words.push_back(fmt::format("the energy moves slowly (fraction {}): the tails may be too short",
+    words.push_back(fmt::format("the energy mixes slowly (fraction {}): the tails may be too short",
                                 significant(found.energy_fraction, 2)));
   if (found.least_draws < kLeastEffective)
-    words.push_back(
-        fmt::format("the effective sample size is only {:.0f}, so ends of intervals are rough",
-                    found.least_draws));
+    words.push_back(fmt::format(
+        "the effective sample size is only {:.0f}, so the ends of intervals are inaccurate",
+        found.least_draws));
   std::string text;
   for (const std::string& each : words) text += "; " + each;
   return text;

@@ -40,7 +40,7 @@ struct Findings {
   std::optional<double> reduced_chi_square;
   /// Effective number according to the noise model; null if unknown.
   Omittable<std::optional<double>> independent_residuals = std::optional<double>();
-  Later<std::string> interval_advice;            ///< which interval to believe, and why
+  Later<std::string> interval_advice;            ///< which interval to use, and why
   Later<std::vector<std::string>> combinations;  ///< combinations that the records determine
   Later<std::optional<LackOfFitTests>> lack_of_fit = std::optional(LackOfFitTests());
   Later<std::optional<BetweenRepeats>> between_repeats;  ///< absent if there are no single repeats

@@ -147,10 +147,10 @@ EstimateTrend trend_of(const std::vector<PlacedEstimate>& estimates, bool shared
   const auto [low, high] = std::minmax_element(x.begin(), x.end());
   const bool few = x.size() < metrics::kLeastTrendPoints;
   if (few || *low == *high || shared) {
-    result.reason = x.empty() ? "no estimate has it"
+    result.reason = x.empty() ? "no estimate has a value of it"
                     : few     ? "fewer than three estimates with an error"
                     : *low == *high
-                        ? "all estimates are at the same place"
+                        ? "all estimates have the same date or temperature"
                         : "not tested: the results share records, so they are not independent";
     return result;
   }

@@ -127,9 +127,9 @@ struct PlacedEstimate {
 /// @param shared  whether results in the series share records
 EstimateTrend trend_of(const std::vector<PlacedEstimate>& estimates, bool shared);
 
-/// Returns the half-width of the 95 % band of a trend's line at a place, in the unit of the
-/// estimates. The level of the line at the weighted mean of the places has an error of its own,
-/// which is independent of that of the slope. Returns std::nullopt if there is no line.
+/// Returns the half-width of the 95 % band about the line of a trend, in the unit of the
+/// estimates. The level of the line at the weighted mean abscissa has its own error, which is
+/// independent of that of the slope. Returns std::nullopt if there is no line.
 ///
 /// @param estimates  those that trend_of() was given
 std::optional<double> half_width_of_band(const EstimateTrend& trend,

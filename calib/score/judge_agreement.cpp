@@ -97,14 +97,15 @@ void judge_without_limits(const Campaign& campaign, const Fit& fit, std::vector<
         "{} ({} in {})", conditions_text(each.conditions),
         scored ? fmt::format("lowest rho2 {:.4g}", each.rho2) : "no rho2 exists", each.worst->id);
     reasons.push_back(
-        stated ? reason(AspectState::note, "not_judged_as_stated",
-                        fmt::format("{} is not judged in {}: `not_judged` says so", name, where),
-                        each.worst->id, numbers)
-               : reason(AspectState::reservation, "not_judged",
-                        fmt::format("no limit judges {} in {}, which the fit uses: "
-                                    "expected limits in [acceptance.{}], or not_judged = [\"{}\"]",
-                                    name, where, name, name),
-                        each.worst->id, numbers));
+        stated
+            ? reason(AspectState::note, "not_judged_as_stated",
+                     fmt::format("{} is not judged in {}, as `not_judged` specifies", name, where),
+                     each.worst->id, numbers)
+            : reason(AspectState::reservation, "not_judged",
+                     fmt::format("no limit applies to {} in {}, which the fit uses: "
+                                 "expected limits in [acceptance.{}], or not_judged = [\"{}\"]",
+                                 name, where, name, name),
+                     each.worst->id, numbers));
   }
 }
 

@@ -78,9 +78,9 @@ void judge_limits(const std::vector<const ConditionScore*>& scores, std::vector<
   reasons.push_back(reason(
       AspectState::pass, "limits_kept",
       scores.size() == 1
-          ? fmt::format("{} keeps its limits: {} of the tolerance used", nearest->id,
+          ? fmt::format("{} meets its limits: {} of the tolerance used", nearest->id,
                         tolerance_used_text(used))
-          : fmt::format("{} of {} keep their limits; tightest: {}, {} of the tolerance used", kept,
+          : fmt::format("{} of {} meet their limits; tightest: {}, {} of the tolerance used", kept,
                         conditions_text(scores.size()), nearest->id, tolerance_used_text(used)),
       nearest->id,
       {{"conditions", static_cast<double>(scores.size())},

@@ -9,7 +9,7 @@ namespace rigcal::calib {
 
 /// A flag that becomes true some time after a stop flag. A search ends at the stop flag. The
 /// simulations that describe its result (scores, bands, errors) end at the late flag, so that a
-/// result so far has its scores if these take a moment only.
+/// stopped result gets its scores if these take only a moment.
 class LateFlag {
  public:
   /// Time that the description of a stopped result may take. Commands end within a second.

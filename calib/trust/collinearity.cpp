@@ -73,8 +73,8 @@ std::string collinearity_words(const std::vector<std::string>& names,
   }
   if (!inflated.empty()) {
     text += fmt::format(
-        "; not separated from the others together (variance above that with the "
-        "others known): {}",
+        "; not separable from all others together (variance relative to that with the others "
+        "known): {}",
         fmt::join(inflated, ", "));
   } else if (std::abs(strongest) <= kMadeUp) {
     text += "; all can be separated";

@@ -42,9 +42,9 @@ void warn_of_noise(const Problem& problem, const Uncertainty& found, Fit& fit) {
   const double freedom = std::max(1.0, static_cast<double>(fit.residual_count - found.rank));
   const double margin = 5.0 * std::sqrt(2.0 / freedom);
   if (fit.residual_count <= found.rank) {
-    fit.warnings.push_back(
-        fmt::format("{} residuals for {} unknowns: nothing is left to estimate the noise from",
-                    fit.residual_count, problem.map.unknowns().size()));
+    fit.warnings.push_back(fmt::format(
+        "{} residuals for {} unknowns: no degrees of freedom remain to estimate the noise",
+        fit.residual_count, problem.map.unknowns().size()));
   } else if (chi > 1.0 + std::max(0.1, margin)) {
     fit.warnings.push_back(fmt::format(
         "the residuals are {:.3g} times as large as the noise (reduced chi-square {:.4g}): the "

@@ -282,7 +282,7 @@ void grade_widened(const Problem& problem, const Uncertainty& found, std::size_t
 
 bool rests_on_known(const Problem& problem, const Uncertainty& uncertainty,
                     const std::vector<double>& z, std::size_t unknown) {
-  constexpr double kMost = 0.7;  // fraction of the error, equal to about half of the variance
+  constexpr double kMost = 0.7;  // fraction of the error; squared, about half of the variance
   const auto row = static_cast<Eigen::Index>(unknown);
   const auto& error = uncertainty.standard_error[unknown];
   if (!error || uncertainty.known.names.empty()) return false;

@@ -110,7 +110,7 @@ ModelChoice choose(const Candidate& smaller, const Candidate& larger) {
       signed_text(result.likelihood_ratio).substr(1), result.freedom,
       result.freedom == 1 ? "" : "s", p_text(result.p), signed_text(result.delta_aic),
       signed_text(result.delta_bic), larger.name, smaller.name,
-      bic_agrees ? "" : "; BIC says otherwise: the case is not clear");
+      bic_agrees ? "" : "; BIC disagrees: the choice is not clear");
   return result;
 }
 

@@ -48,10 +48,10 @@ InformationDifference compare_information(const Candidate& first, const Candidat
 /// factor of up to two, which is on the safe side.
 struct ModelChoice {
   double likelihood_ratio = 0.0;  ///< the statistic L
-  int freedom = 0;
+  int freedom = 0;                ///< degrees of freedom: additional parameters of the larger model
   double p = 1.0;
-  double delta_aic = 0.0;  ///< AIC of the larger minus AIC of the smaller model: 2 freedom - L
-  double delta_bic = 0.0;  ///< BIC difference: freedom ln(n_e) - L
+  double delta_aic = 0.0;  ///< AIC of the larger minus AIC of the smaller model: 2 `freedom` - L
+  double delta_bic = 0.0;  ///< BIC difference: `freedom` ln(n_e) - L
   bool larger = false;     ///< true if the larger model is significantly better (p below 5 %)
   std::string message;     ///< which model to prefer, in words
 };

@@ -61,7 +61,7 @@ Plan plan(const Campaign& campaign, const std::vector<Record>& records,
   const Problem problem = make_problem(campaign, all_records, conditions, false, nullptr);
   if (problem.map.unknowns().empty()) {
     throw InputError({campaign.file.string()},
-                     "nothing is free: expected `fit = true` at a parameter, or --free");
+                     "no parameter is free: expected `fit = true` at a parameter, or --free");
   }
   const std::vector<double> z = point_at(problem, values);
   const Evaluation at = evaluate_at(problem, z, threads);

@@ -184,8 +184,8 @@ std::string describe(const Problem& problem, const ScalingSymmetry& symmetry) {
         significant(100.0 * symmetry.relative_sd, 2), symmetry_remedy(problem, symmetry));
   }
   return fmt::format(
-      "scaling symmetry: {} changes positions only through the fixed {}: an error of 1 % there is "
-      "one of 1 % here",
+      "scaling symmetry: {} changes positions only through the fixed {}: an error of 1 % there "
+      "causes one of 1 % here",
       scaling, known);
 }
 

@@ -95,7 +95,8 @@ void check_motion(const Campaign& campaign) {
   }
 }
 
-/// Checks that the oil has a temperature if its properties follow it: as a parameter, or recorded.
+/// Checks that the oil has a temperature if its properties depend on it: as a parameter, or
+/// recorded.
 void check_temperature(const Campaign& campaign, const Condition& condition) {
   const auto values = values_in(campaign, condition);
   const auto channel = campaign.channels.find(Channel::temperature);
@@ -104,7 +105,7 @@ void check_temperature(const Campaign& campaign, const Condition& condition) {
   const bool follows = values.is_given("reference_temperature");
   if (recorded && !follows)
     throw InputError({campaign.file.string()},
-                     "key 'recording.channels.temperature': no property of the oil follows it: "
+                     "key 'recording.channels.temperature': no property of the oil depends on it: "
                      "expected reference_temperature in [rig.parameters], or role = \"ignore\"");
   if (follows && !recorded && !values.is_given("oil_temperature"))
     fail(condition,
@@ -244,7 +245,7 @@ void add_missing_drive(const Campaign& campaign, const Condition& condition,
   const Channel drive = drive_channel(campaign);
   if (condition.waveform != Waveform::recorded || carries(campaign, condition, drive)) return;
   lacks.push_back(fmt::format(
-      "the waveform is recorded, but no channel {} has it: the command to the machine is "
+      "the waveform is recorded, but no channel {} contains it: the command to the machine is "
       "not known, so the healthy model cannot be run under the same {}",
       info(drive).key, info(drive).key));
 }

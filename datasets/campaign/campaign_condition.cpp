@@ -51,7 +51,7 @@ std::vector<std::string> read_numbers(const TomlNode& node) {
   if (!node.is_array()) return read_range(node);
   std::vector<std::string> numbers;
   for (const TomlNode& item : node.items()) {
-    numbers.push_back(item.name("a text in place of {n}"));
+    numbers.push_back(item.name("text in place of {n}"));
     if (std::count(numbers.begin(), numbers.end(), numbers.back()) > 1) {
       item.fail_type("every number once");
     }
@@ -280,7 +280,7 @@ const KeyTable<Condition>& condition_keys() {
                     {.doc = "A chirp needs it", .otherwise = "none"}),
       Row::quantity("sweep_time", &Condition::sweep_s, "s", kDurations_s,
                     {.doc = "Of a chirp", .otherwise = "`duration`, or the record's length"}),
-      Row::text("leak_level", &Condition::leak_level, "a text that names a leak level",
+      Row::text("leak_level", &Condition::leak_level, "text that names a leak level",
                 {.doc = "Needed where a fitted parameter has the scope `\"leak_level\"`",
                  .otherwise = "none",
                  .example = "\"none\"",
@@ -306,7 +306,7 @@ const KeyTable<Condition>& condition_keys() {
                  {.doc = "Number of repeats behind `averaged`"}),
       Row::whole("planned_repeats", &Condition::planned_repeats, 1, 1'000'000,
                  {.doc = "Number of repeats that `plan` assumes for a condition without a record",
-                  .otherwise = "as the campaign's noise is stated",
+                  .otherwise = "the number to which the campaign's noise refers",
                   .example = "5"}),
       Row::custom("window", either_form({window, list_form(window)}, "list"),
                   [](const TomlNode& node, Condition& condition) {
@@ -333,7 +333,7 @@ const KeyTable<Condition>& condition_keys() {
       Row::date(
           "date", &Condition::date,
           {.doc = "Stated in the results: `2026-03-01`, without quotes", .otherwise = "none"}),
-      Row::text("specimen", &Condition::specimen, "a text that names the machine",
+      Row::text("specimen", &Condition::specimen, "text that names the machine",
                 {.doc = "Which machine, where a campaign has several",
                  .otherwise = "none",
                  .example = "\"machine 2\""}),

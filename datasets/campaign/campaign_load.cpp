@@ -69,12 +69,13 @@ void read_controller(const TomlNode& node, Campaign& campaign) {
   if (!feedback && campaign.rig.controller == Kind::pid && turns)
     campaign.rig.feedback = model::Feedback::angle;
   if (feedback && !model::has_loop(campaign.rig.plant, campaign.rig.feedback))
-    feedback->fail(turns ? "the controller of a linkage acts on the angle of the joint, its torque "
-                           "or the pressure difference: expected \"angle\", \"torque\" or "
-                           "\"load_pressure\""
-                         : fmt::format("the plant {} has no joint: expected another quantity, or "
-                                       "model = \"linkage\"",
-                                       to_string(campaign.rig.plant)));
+    feedback->fail(turns
+                       ? "the controller of a linkage controls the angle of the joint, its torque "
+                         "or the pressure difference: expected \"angle\", \"torque\" or "
+                         "\"load_pressure\""
+                       : fmt::format("the plant {} has no joint: expected another quantity, or "
+                                     "model = \"linkage\"",
+                                     to_string(campaign.rig.plant)));
   campaign.parameters.insert(campaign.parameters.end(), settings.begin(), settings.end());
 }
 
@@ -123,7 +124,7 @@ const std::vector<CampaignKey>& level_rows() {
 void read_leak_levels(const TomlNode& node, Campaign& campaign) {
   for (const auto& [level, entry] : node.entries()) {
     entry.allow_only(names_of(level_rows()));
-    if (level.empty()) entry.fail("a leak level needs a name: expected a text that is not empty");
+    if (level.empty()) entry.fail("a leak level needs a name: expected text that is not empty");
     const auto values = entry.find("parameters");
     campaign.leak_levels[level] =
         values ? read_overrides(*values, campaign.rig.plant, ParameterGroup::rig) : Overrides{};
@@ -148,9 +149,10 @@ void read_conditions(const TomlNode& node, Campaign& campaign) {
           .fail(entry->second == condition.id
                     ? fmt::format("there is already a condition \"{}\": expected another id",
                                   condition.id)
-                    : fmt::format("\"{}\" differs from \"{}\" by case only, and ids name files: "
-                                  "expected another id",
-                                  condition.id, entry->second));
+                    : fmt::format(
+                          "\"{}\" differs from \"{}\" only in case, and files are named after ids: "
+                          "expected another id",
+                          condition.id, entry->second));
     }
     campaign.conditions.push_back(condition);
   }
@@ -192,8 +194,8 @@ const KeyTable<Campaign>& averaging_keys() {
                             .hint = "or \"none\" if all repeats share one trigger"}),
       Row::word<bool>("outliers", &Campaign::leave_out_outliers,
                       {{"keep", false}, {"leave_out", true}},
-                      {.doc = "Whether a repeat that is three times as far from the median of all "
-                              "as is typical stays in the mean, with a warning, or is left out"}),
+                      {.doc = "Treatment of a repeat that is three times as far from the median of "
+                              "all as is typical: kept in the mean, with a warning, or left out"}),
   });
   return keys;
 }
@@ -213,7 +215,7 @@ const KeyTable<Campaign>& root_keys() {
       Row::described("schema", std::move(schema),
                      {.doc = "Version of the keys of this file",
                       .needed = fmt::format("schema = \"{}\"", kSchema)}),
-      Row::text("name", &Campaign::name, "a text in quotes",
+      Row::text("name", &Campaign::name, "text in quotes",
                 {.doc = "Title of reports", .otherwise = "name of the file"}),
       Row::custom("rig", table_form(rig_keys().keys()), read_rig,
                   {.doc = "The rig: its model, parameters and controller",
@@ -225,7 +227,7 @@ const KeyTable<Campaign>& root_keys() {
       section(
           "averaging", table_form(averaging_keys().keys()),
           [](const TomlNode& node, Campaign& campaign) { averaging_keys().read(node, campaign); },
-          "How repeats become one record"),
+          "How repeats are averaged"),
       section("acceptance", table_form(acceptance_keys()), read_acceptance, "What PASS means"),
       section(
           "fit", table_form(fit_keys().keys()),

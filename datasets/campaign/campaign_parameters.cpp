@@ -308,7 +308,7 @@ std::optional<ParameterConflict> find_pilot_conflict(const model::Rig& rig,
                           : "the gain of the valve is unknown")};
   if (pilot != rig.pilot)
     return ParameterConflict{"pilot_gain",
-                             "pilot_gain decides what drives the rig, and some conditions alone "
+                             "pilot_gain decides what drives the rig, but only some conditions "
                              "have it: expected it in [rig.parameters]"};
   if (pilot && rig.controller != model::ControllerKind::none)
     return ParameterConflict{

@@ -14,7 +14,7 @@
 namespace rigcal::datasets {
 namespace {
 
-/// Keys that say nothing without another one.
+/// Keys that are meaningful only together with another one.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kReportNeeds{
     {{"revision", "number"}, {"replaces", "number"}, {"approver_function", "approver"}}};
 

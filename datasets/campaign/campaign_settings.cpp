@@ -212,8 +212,8 @@ const KeyTable<AcceptanceBounds>& bound_keys() {
 /// A section that states sizes: a table with a key per quantity, or `false`.
 struct SizesSection {
   std::vector<SizedQuantity> (*quantities)(model::PlantKind plant);
-  std::string_view noun;     ///< what a key names
-  std::string_view without;  ///< what it means if the section is `false`
+  std::string_view noun;     ///< what each key is the name of
+  std::string_view without;  ///< meaning of `false` for the section
   std::string_view size;     ///< what a value is
   std::string (*meaning)(const model::ParameterSpec* spec);
   /// Returns the largest size of a quantity. `index` is its parameter, or below 0.
@@ -241,7 +241,7 @@ double most_between_days(const TomlNode& /*entry*/, const Campaign& campaign, in
 constexpr SizesSection kConsideredSection{
     effect_names,
     "effect",
-    "the model counts as exact",
+    "the model is treated as exact",
     "a plausible size",
     [](const model::ParameterSpec* spec) {
       return std::string(spec == nullptr ? "Plausible size of this effect" : spec->meaning);
@@ -384,8 +384,9 @@ void read_acceptance(const TomlNode& node, Campaign& campaign) {
 const KeyTable<FitSettings>& fit_keys() {
   using Row = KeyRow<FitSettings>;
   static const KeyTable<FitSettings> keys({
-      Row::word<Loss>("loss", &FitSettings::loss,
-                      {.doc = "How a residual counts: squared, or less where it is large"}),
+      Row::word<Loss>(
+          "loss", &FitSettings::loss,
+          {.doc = "Loss of a residual: quadratic, or smaller than that for large residuals"}),
       Row::number("loss_scale", &FitSettings::loss_scale, kSizes,
                   {.doc = "Transition of the loss, in standard deviations of a residual"}),
       Row::whole("max_iterations", &FitSettings::max_iterations, 1, 1'000'000,

@@ -127,7 +127,7 @@ const KeyTable<PrintedFeatures>& level_keys() {
   static const KeyTable<PrintedFeatures> keys = [] {
     std::vector<Row> rows{
         Row::text(
-            "level", &PrintedFeatures::level, "a text in quotes",
+            "level", &PrintedFeatures::level, "text in quotes",
             {.doc = "Name of the level", .example = "\"10 %\"", .needed = "the name of the level"}),
         Row::number("coefficient", &PrintedFeatures::coefficient, kSizes,
                     {.doc = "Leakage coefficient at which the row was published",
@@ -178,7 +178,7 @@ KeyTable<Assumption> assumption_keys(const KeyForm& value) {
   const std::string with_fit = "needed with `fit = true`";
   return KeyTable<Assumption>({
       Row::described("value", quantity, {.doc = "The assumed value", .needed = "a value"}),
-      Row::text("source", &Assumption::source, "a text in quotes",
+      Row::text("source", &Assumption::source, "text in quotes",
                 {.doc = "Source of the value, as stated in the results",
                  .needed = "where the value comes from"}),
       Row::flag("fit", &Assumption::fit, {.doc = "Whether `fit-tables` estimates it"}),
@@ -231,7 +231,7 @@ LeakSignal read_signal(const TomlNode& node, const Campaign& campaign,
             "names no target with a printed coefficient: expected its percentage, such as "
             "\"50\"");
       }
-      found->second.note = entry.name("a text about the entry");
+      found->second.note = entry.name("text about the entry");
     }
   }
   return signal;
@@ -278,7 +278,8 @@ Assumption read_assumption(const TomlNode& node, const Campaign& campaign, int i
   if (!assumption.fit) {
     for (const char* key : {"start", "lower", "upper"}) {
       if (const auto entry = node.find(key)) {
-        entry->fail("counts only where fit-tables estimates the value: expected fit = true too");
+        entry->fail(
+            "has an effect only if fit-tables estimates the value: expected fit = true as well");
       }
     }
     return assumption;
@@ -290,7 +291,7 @@ Assumption read_assumption(const TomlNode& node, const Campaign& campaign, int i
   assumption.upper = read_assumed(node.require("upper", "the upper bound of the fit"), spec);
   if (!(assumption.lower < assumption.upper && assumption.lower <= assumption.start &&
         assumption.start <= assumption.upper)) {
-    start.fail("does not lie within lower and upper: expected lower <= start <= upper");
+    start.fail("is not between lower and upper: expected lower <= start <= upper");
   }
   return assumption;
 }
@@ -421,8 +422,8 @@ LeakTableSettings leak_table_settings(const Campaign& campaign) {
   if (const auto node = root.find("leak_table")) settings = read_leak_table(*node, campaign);
   if (campaign.rig.feedback != model::Feedback::position)
     throw InputError({campaign.file.string()},
-                     fmt::format("key 'rig.controller.feedback': a leak table is made of loops on "
-                                 "position, or of none: found \"{}\"",
+                     fmt::format("key 'rig.controller.feedback': a leak table needs a position "
+                                 "loop or no controller: found \"{}\"",
                                  model::gain_keys(campaign.rig.feedback).name));
   if (settings.signals.empty()) settings.signals = signals_of(campaign);
   if (settings.signals.empty()) {
@@ -595,8 +596,8 @@ void free_assumptions(LeakTableSettings& settings, const Campaign& campaign,
     found->upper = std::min(spec.upper, std::max(0.1 * found->value, 10.0 * found->value));
     if (!(found->lower < found->upper && std::isfinite(found->upper))) {
       fail(
-          "has no value from which bounds follow: expected fit = true with start, lower and upper "
-          "in [leak_table.assumptions]");
+          "has no value from which bounds can be derived: expected fit = true with start, lower "
+          "and upper in [leak_table.assumptions]");
     }
   }
 }

@@ -54,8 +54,8 @@ std::optional<double> stroke_m(const Campaign& campaign, const Condition& condit
 
 struct Extent {
   double range = 0.0;
-  double farthest = 0.0;  ///< range or largest size, whichever is larger: the piston may start at
-                          ///< zero and be asked to go to a constant reference
+  double farthest = 0.0;  ///< range or largest magnitude, whichever is larger: the piston may start
+                          ///< at zero and move to a constant reference
 };
 
 /// Returns the extent of the reference in a closed loop.

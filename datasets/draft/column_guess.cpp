@@ -262,9 +262,9 @@ std::optional<Channel> without_quantity(const Reading& reading) {
   return std::nullopt;
 }
 
-/// Describes what is known and no channel.
+/// Describes a column whose quantity is recognised but that is not a channel.
 std::string_view other_of(std::optional<Meaning> quantity, const Reading& reading) {
-  if (reading.says(Meaning::error)) return "an error of control";
+  if (reading.says(Meaning::error)) return "a control error";
   if (!quantity) return {};
   switch (*quantity) {
     case Meaning::velocity:

@@ -258,8 +258,8 @@ void set_sparse_aside(const fs::path& file, FileColumns& columns) {
     if (numbers == 0 || 2 * numbers >= rows) return false;
     columns.unknown.push_back(
         {channel.stem, channel.unit,
-         fmt::format("a number in {} of {} rows: sampled more slowly, or with a time of its own; "
-                     "save it as a recording of its own, or leave it out",
+         fmt::format("a number in {} of {} rows: sampled more slowly, or on another time base; "
+                     "save it as a separate recording, or leave it out",
                      numbers, rows)});
     return true;
   };

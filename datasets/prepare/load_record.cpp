@@ -81,11 +81,10 @@ void require_measurable(const RepeatSource& source, const std::string& column,
   const auto bad = std::find_if(values.begin(), values.end(),
                                 [](double value) { return !(std::abs(value) <= kLargest); });
   if (bad != values.end())
-    throw InputError(
-        {source.path.string()},
-        fmt::format(
-            "number {} of '{}' is {:g} in SI units, beyond any sensor; expected at most {:g}",
-            bad - values.begin() + 1, column, *bad, kLargest));
+    throw InputError({source.path.string()},
+                     fmt::format("number {} of '{}' is {:g} in SI units, more than any sensor can "
+                                 "measure; expected at most {:g}",
+                                 bad - values.begin() + 1, column, *bad, kLargest));
 }
 
 /// Whether a term of the campaign depends on the drive before the first sample.
@@ -223,7 +222,7 @@ Record without_outliers(const Condition& condition, std::vector<Repeat>& repeats
   for (const std::string& warning : all.warnings)
     if (warning.ends_with(kStaysInMean))
       reworded.push_back(warning.substr(0, warning.size() - kStaysInMean.size()) +
-                         "it is left out, as [averaging] outliers asks");
+                         "it is left out, as outliers in [averaging] specifies");
   Record record = average(condition.id, repeats, options);
   record.warnings.insert(record.warnings.begin(), reworded.begin(), reworded.end());
   return record;

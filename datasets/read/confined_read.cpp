@@ -49,7 +49,7 @@ std::string read_confined(const std::filesystem::path& path, const ConfinedReade
     throw NoResources(
         fmt::format("{}: out of memory while reading it: memory is limited (ulimit -v)", name));
   if (text.front() == kNoMemory)
-    throw InputError({name}, fmt::format("needs more memory than {} may", reader.format));
+    throw InputError({name}, fmt::format("needs more memory than {} may use", reader.format));
   if (text.front() != kDone) throw InputError({name}, text.substr(1));
   return text.substr(1);
 }

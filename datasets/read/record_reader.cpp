@@ -70,13 +70,13 @@ constexpr std::array kOtherFormats{
                 "CSV by numpy.savetxt with a header, or HDF5"},
     OtherFormat{"Parquet", ".parquet", [](std::string_view b) { return b.starts_with("PAR1"); },
                 "CSV"},
-    OtherFormat{"a file packed by gzip", ".gz",
+    OtherFormat{"a file compressed by gzip", ".gz",
                 [](std::string_view b) { return b.starts_with("\x1f\x8b"); },
                 "the file in it (gunzip)"},
-    OtherFormat{"a file packed by bzip2", ".bz2",
+    OtherFormat{"a file compressed by bzip2", ".bz2",
                 [](std::string_view b) { return b.starts_with("BZh"); },
                 "the file in it (bunzip2)"},
-    OtherFormat{"a file packed by xz", ".xz",
+    OtherFormat{"a file compressed by xz", ".xz",
                 [](std::string_view b) {
                   return b.starts_with(
                       "\xfd"

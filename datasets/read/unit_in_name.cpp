@@ -233,7 +233,7 @@ std::string joined_unit(std::string_view name, const std::vector<Part>& parts, s
   return {};
 }
 
-/// Whether a name has capitals only, so that the case of its units says nothing.
+/// Whether a name has only capitals, so that the case of its units is not significant.
 bool is_in_capitals(std::string_view name) {
   return std::none_of(name.begin(), name.end(),
                       [](unsigned char c) { return std::islower(c) != 0; });

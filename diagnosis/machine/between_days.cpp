@@ -133,7 +133,7 @@ std::optional<std::string> in_words(const BetweenDays& between) {
   std::vector<std::string> sizes;
   for (const calib::DayQuantity& each : between.quantities)
     sizes.push_back(quantity_in_words(each));
-  std::string from = "usual sizes, which [between_days] changes";
+  std::string from = "usual sizes, which [between_days] can override";
   if (between.source == DaySource::stated) from = "[between_days]";
   if (between.source == DaySource::estimated)
     from = fmt::format("{} times the usual sizes, by healthy records of {} dates",

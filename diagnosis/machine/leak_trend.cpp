@@ -141,7 +141,7 @@ std::string next_limit_of(const LeakTrend& trend) {
   const bool open = !limit->latest_day || is_far(trend, *limit->latest_day);
   return fmt::format(" At this rate it reaches {} ({:g} %) about {} ({} to {}).",
                      to_string(limit->class_), limit->percent, limit->reached, limit->earliest,
-                     open ? "never, as far as is known" : *limit->latest);
+                     open ? "no upper limit" : *limit->latest);
 }
 
 }  // namespace

@@ -127,7 +127,7 @@ std::optional<ResidualValues> values_of(const std::vector<double>& residual_m,
 void describe(const std::vector<double>& time_s, double window_s, ParityResidual& record) {
   const auto values = values_of(record.residual_m, time_s, window_s);
   if (!values) {
-    record.failure = "fewer than two samples count";
+    record.failure = "fewer than two samples are used";
     return;
   }
   record.features = {values->features.mean, values->features.rms, values->features.std};

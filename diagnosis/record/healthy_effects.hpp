@@ -17,7 +17,8 @@ class HealthyEffects {
  public:
   using Changes = std::shared_ptr<const calib::EffectChanges>;
 
-  /// Returns what `simulate` returns, or returned for a condition that is simulated alike.
+  /// Returns the result of `simulate`, or the stored result of a condition with the same
+  /// simulation.
   ///
   /// @param values  parameter values without a leak
   /// @param acting  effects that act in the condition

@@ -258,7 +258,7 @@ void describe(const calib::Problem& problem, const RigFit& rig, const LeakProble
   const calib::Linearisation system = with_priors(linear);
   const calib::ScaledSvd svd(system.jacobian, std::numeric_limits<double>::epsilon());
   if (svd.rank() < system.jacobian.cols()) {
-    fit.failure = "nothing that was recorded responds to a leak";
+    fit.failure = "no recorded signal responds to a leak";
     return;
   }
   const Eigen::VectorXd step = svd.step(system.residual);
@@ -290,7 +290,7 @@ void describe(const calib::Problem& problem, const RigFit& rig, const LeakProble
   // The optimiser cannot go below zero, so only the part of the step above it is its own.
   const double own_step = step(leak) < 0.0 ? std::min(-step(leak), simulated_leak) : step(leak);
   if (simulated_leak > 0.0 && own_step > error + 1e-3 * simulated_leak) {
-    fit.failure = fmt::format("the leak did not converge: a step of {:.2g} standard errors is left",
+    fit.failure = fmt::format("the leak did not converge: a step of {:.2g} standard errors remains",
                               own_step / error);
     return;
   }

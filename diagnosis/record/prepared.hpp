@@ -27,7 +27,7 @@ struct Prepared {
   std::shared_ptr<LeakMemo> day_leaks;  ///< with slopes by the day quantities
 
   /// Makes a memo of its leaks. A condition with several records needs leaks that are close to each
-  /// other; that of a single record would need more nodes than leaks.
+  /// other, so interpolation pays. For a single record it would need more nodes than leaks.
   std::shared_ptr<LeakMemo> memo(const std::vector<int>& further) const {
     return std::make_shared<LeakMemo>(
         further, records->singles.empty() ? Between::simulated : Between::interpolated,

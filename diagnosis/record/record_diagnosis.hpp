@@ -47,7 +47,7 @@ struct RecordDiagnosis {
                   features, parity_rms_m, misfit_rms_m, noise_rms_m, log_slope, class_by_features,
                   class_by_features_of_other_signals, true_class, true_share_percent, warnings)
 
-  // From what the above follows; not stored.
+  // Sources of the values above; not stored.
 
   /// True for a repeat of a healthy condition, which is corrected by the other healthy repeats.
   bool corrects_others = false;

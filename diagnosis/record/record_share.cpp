@@ -35,10 +35,10 @@ SteadyPart last_periods(const std::vector<double>& time_s, double period_s, std:
 SteadyPart steady_part(const calib::ProblemCondition& condition) {
   const datasets::Condition& c = *condition.condition;
   if (condition.rows.size() < 2) {
-    throw NoResultError(
-        fmt::format("condition \"{}\": one sample counts, and a share is of flows over a time; "
-                    "expected at least 2",
-                    c.id));
+    throw NoResultError(fmt::format(
+        "condition \"{}\": only one sample is used, and a share is a ratio of mean flows; "
+        "expected at least 2",
+        c.id));
   }
   const std::size_t begin = condition.rows.front();
   const std::size_t end = condition.rows.back() + 1;

@@ -29,7 +29,7 @@ struct SteadyLeak {
   Eigen::VectorXd share_slope;      ///< d share / d parameter, SI, shape (free)
   Eigen::VectorXd flow_slope;       ///< d leakage flow / d parameter
   bool is_periodic = false;         ///< true for the periodic state, false for the record
-  PeriodicEffort effort;            ///< what the periodic state needed
+  PeriodicEffort effort;            ///< work needed to reach the periodic state
 };
 
 /// Computes the leak in one condition. The leak share is defined only here. For a generated sine or

@@ -19,7 +19,7 @@ enum class LeakGrade { within_10, within_16, outlier, not_published };
 RIGCAL_WORDS(LeakGrade, within_10, "within 10 %", within_16, "within 16 %", outlier, "outlier",
              not_published, "not published")
 
-/// Drive of an entry.
+/// Drive signal of one entry in a leak table.
 struct LeakDrive {
   datasets::Waveform waveform = datasets::Waveform::sine;
   double frequency_hz = 0.0;
@@ -39,7 +39,7 @@ struct LeakEntry {
   /// positive, because the interval is symmetric in the logarithm.
   Later<std::vector<std::optional<Range>>> coefficients_ci95;
   Later<std::vector<double>> log_slopes;  ///< d ln share / d ln coefficient at each coefficient
-  std::optional<double> log_slope;        ///< that at the first coefficient
+  std::optional<double> log_slope;        ///< slope at the first coefficient
   /// False without a root or on a plateau, where a change of 1 % in the share moves a coefficient
   /// by more than 5 %.
   bool determined = false;

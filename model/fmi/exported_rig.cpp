@@ -71,10 +71,10 @@ void read_plant(Line& line, ExportedRig& rig) {
 }
 
 void read_feedback(Line& line, ExportedRig& rig) {
-  const std::string name = line.word("what the controller acts on");
+  const std::string name = line.word("the controlled quantity");
   const auto row = std::find_if(kFeedbacks.begin(), kFeedbacks.end(),
                                 [&](const FeedbackRow& each) { return each.name == name; });
-  if (row == kFeedbacks.end()) line.fail(name, "what the controller acts on");
+  if (row == kFeedbacks.end()) line.fail(name, "the controlled quantity");
   rig.rig.feedback = static_cast<Feedback>(row - kFeedbacks.begin());
 }
 

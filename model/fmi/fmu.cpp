@@ -79,7 +79,7 @@ fmi2Status none(fmi2Component c, const char* function, std::size_t count) {
 
 fmi2Status unsupported(fmi2Component c, const char* function) {
   return call(c, function, [](FmuInstance&) {
-    throw std::runtime_error("not supported, as the model description says");
+    throw std::runtime_error("not supported, as the model description states");
   });
 }
 

@@ -128,7 +128,7 @@ double FmuInstance::real(unsigned reference) {
   if (const auto row = parameter_row(reference)) return state_.values.value[*row];
   if (reference < kParameterReference) {
     if (state_.phase == Phase::instantiated)
-      throw std::runtime_error("states and outputs are there from initialization mode on");
+      throw std::runtime_error("states and outputs are available from initialization mode on");
     refresh();
     const std::size_t states = state_.x.size();
     std::vector<double> x = state_.x;

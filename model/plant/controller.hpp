@@ -96,7 +96,7 @@ X reference_acceleration(const LoopError<X>& loop, const State& state, const P& 
          p.derivative_filter_rad_per_s;
 }
 
-/// Computes K_p e + I + K_d N (e - e_f), all that a loop on the motion alone has.
+/// Computes K_p e + I + K_d N (e - e_f), the complete control law of a motion loop.
 ///
 /// @param state  the whole state vector; `layout` has the indices of integral and filter
 template <typename X, typename State, typename P>

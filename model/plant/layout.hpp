@@ -28,7 +28,7 @@ struct PresentTerms {
   bool external_load = false;  ///< a load is recorded, or the external force is not zero or free
   bool varying_load = false;   ///< the load varies with the travel
   bool curved_load = false;    ///< the curvature of the load is not zero, or is free
-  bool load_table = false;     ///< the load has a table over the travel
+  bool load_table = false;     ///< the load is given by a table over the travel
   bool overlaps = false;       ///< the overlap of an edge is not zero, or is free
   bool null_opening = false;   ///< covered edges leak through an orifice
   bool line_loss = false;      ///< the lines also throttle the flow
@@ -102,8 +102,8 @@ inline constexpr StateRow kPilotOpeningRate{"pilot_opening_rate", "V/s", "its ra
 inline constexpr StateRow kPilotSignal{"valve_signal", "Pa",
                                        "pilot pressure that the spool has reached", 100.0, 0.01};
 inline constexpr StateRow kPilotSignalRate{"valve_signal_rate", "Pa/s", "its rate", 1e5, 1e7};
-inline constexpr StateRow kPumpDemand{"pump_demand", "s",
-                                      "time for which the pump has been asked for flow", 1e-3, 1.0};
+inline constexpr StateRow kPumpDemand{
+    "pump_demand", "s", "time for which flow has been demanded from the pump", 1e-3, 1.0};
 inline constexpr StateRow kBristleForce{
     "bristle_force", "N", "force of seals and contacts before they slide", 0.1, 100.0};
 inline constexpr StateRow kFilmThickness{

@@ -117,7 +117,7 @@ struct LinkagePlant : Chambers {
     return from * (2.0 * p.lever_curvature_m_per_rad3) + p.lever_gradient_m_per_rad2;
   }
 
-  /// Moment of the load, directed against positive angles [N m].
+  /// Moment of the load, opposing positive angles [N m].
   template <typename X, typename C>
   static X gravity_moment(const X& theta, const Coefficients<C>& p) {
     const X from = theta - p.reference_angle_rad;

@@ -297,7 +297,7 @@ class System {
   struct ByStates {
     using Number = Dual<N + 1>;  ///< directions: the states, then time
   };
-  /// Plain numbers, with the oil warmer than it was recorded.
+  /// Plain numbers, with an oil temperature above the recorded one.
   struct Warmer {
     using Number = double;
     double by_k;
@@ -500,8 +500,8 @@ class System {
     }
   }
 
-  /// Output of a loop on more than the motion. Not inlined, to keep the code of position loops
-  /// short.
+  /// Output of a loop that controls more than the motion. Not inlined, to keep the code of position
+  /// loops short.
   template <typename K>
   [[gnu::noinline]] ControllerOutput<Number<K>> other_output(
       K by, const Numbers<K>& x, const LoopError<Number<K>>& loop) const {
@@ -509,7 +509,7 @@ class System {
   }
 
   /// Signals on which the controller acts. The solver with only the plant's states supports only
-  /// loops on the motion.
+  /// motion control.
   template <typename K>
   LoopError<Number<K>> loop_error(K by, const Numbers<K>& x, const Number<K>& drive,
                                   double t) const {
@@ -695,8 +695,8 @@ class System {
     }
   }
 
-  /// Writes the derivatives of the controller of a loop on more than the motion. Not inlined, to
-  /// keep the code of position loops short.
+  /// Writes the derivatives of the controller of a loop that controls more than the motion. Not
+  /// inlined, to keep the code of position loops short.
   ///
   /// @return  command to the valve
   template <typename K>

@@ -173,7 +173,7 @@ class Run {
       if (h_ < 16.0 * kEpsilon * std::max(t_, 1e-3)) {
         if (std::isfinite(error)) {
           fail(SimulationStatus::step_too_small,
-               fmt::format("error control asks for steps below {:.1e} s", h_));
+               fmt::format("error control requires steps below {:.1e} s", h_));
         } else {
           fail(SimulationStatus::not_finite, "the state is no longer finite");
         }
@@ -346,7 +346,7 @@ class Run {
     const long taken = result_->steps + result_->rejected_steps;
     if (taken >= options_.max_steps) {
       fail(SimulationStatus::too_many_steps,
-           fmt::format("{} steps were not enough", options_.max_steps));
+           fmt::format("not finished after {} steps", options_.max_steps));
       return false;
     }
     if (taken % 256 == 0) {
@@ -357,7 +357,7 @@ class Run {
       const std::chrono::duration<double> used = std::chrono::steady_clock::now() - started_;
       if (used.count() > options_.max_seconds) {
         fail(SimulationStatus::out_of_time,
-             fmt::format("{:g} s of computing were not enough", options_.max_seconds));
+             fmt::format("not finished after {:g} s of computing time", options_.max_seconds));
         return false;
       }
     }

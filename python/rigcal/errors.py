@@ -37,7 +37,7 @@ class UsageError(RigcalError, ValueError):
 
 
 class NoResultError(RigcalError):
-    """Making records produced nothing usable. A failed fit or simulation does not raise this; its status says so."""
+    """No records could be generated. A failed fit or simulation does not raise this; its status says so."""
 
 
 class WriteError(RigcalError):

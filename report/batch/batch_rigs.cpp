@@ -84,7 +84,7 @@ RigEnd run_rig(const BatchRig& rig, const fs::path& out, const RigVerbs& verbs,
   RigEnd end;
   if (cancel) {
     end.code = ExitCode::stopped;
-    end.error = "not begun: stopped by a signal";
+    end.error = "not started: stopped by a signal";
     return end;
   }
   const fs::path result = out / rig.folder / "fit.json";

@@ -59,7 +59,7 @@ std::string font_in_memory() {
     at += count;
   }
   if (at != rigcal_figure_font_end)
-    throw std::runtime_error("the font of the figures cannot be kept in memory");
+    throw std::runtime_error("the font of the figures cannot be loaded into memory");
   return fmt::format("/proc/self/fd/{}", file);
 }
 

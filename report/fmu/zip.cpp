@@ -14,7 +14,7 @@ constexpr zip_uint16_t kDate = 0x0021;  ///< 1980-01-01, the earliest possible d
 constexpr zip_uint32_t kReadable = 0100644U << 16U;
 
 [[noreturn]] void fail(const std::string& what, const char* why) {
-  throw WriteError(fmt::format("the archive cannot be made: {}: {}", what, why));
+  throw WriteError(fmt::format("the archive cannot be created: {}: {}", what, why));
 }
 
 struct Discard {

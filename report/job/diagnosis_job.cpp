@@ -68,15 +68,16 @@ std::vector<diagnosis::LeakEntry> take_table(const std::filesystem::path& file,
     throw InputError(
         {campaign.file.string()},
         fmt::format("diagnosis.leak_law: \"{}\" with the leak table {}: its "
-                    "coefficients are of an orifice; expected \"orifice\" or no --table",
+                    "coefficients apply to an orifice; expected \"orifice\" or no --table",
                     to_string(campaign.diagnosis.leak_law), file.string()));
   const EarlierLeakTable table = read_leak_table(file, campaign.rig.plant);
   const auto differences = rig_differences(table, campaign, earlier.values);
   if (!differences.empty()) {
-    throw InputError({file.string()},
-                     fmt::format("the table is of another rig: {}; expected that of leak-table "
-                                 "--fit with the same campaign and fit.json",
-                                 fmt::join(differences, "; ")));
+    throw InputError(
+        {file.string()},
+        fmt::format("the table belongs to another rig: {}; expected that of leak-table "
+                    "--fit with the same campaign and fit.json",
+                    fmt::join(differences, "; ")));
   }
   diagnosis::take_limits(campaign.diagnosis, table.targets_percent, file.string());
   return table.limits;

@@ -152,8 +152,9 @@ void search(FitRun& run, Unfinished& kept, bool resume, const JobTerms& terms,
   if (earlier) settings.resume = &*earlier;
   // If --resume finds nothing to resume, the user must know that the fit starts from the beginning.
   if (resume && !earlier && kept.tasks.found() == 0 && terms.note)
-    terms.note(fmt::format("no checkpoint in {}{}: the fit begins anew", terms.out.string(),
-                           settings.starts > 1 ? "" : " (a fit of one start keeps none)"));
+    terms.note(fmt::format("no checkpoint in {}{}: the fit starts from the beginning",
+                           terms.out.string(),
+                           settings.starts > 1 ? "" : " (a fit with one start writes none)"));
   if (settings.starts > 1)
     settings.checkpoint = [&](const calib::Checkpoint& reached) { kept.checkpoint.keep(reached); };
   give_freed_memory_back();  // frees the memory of the single repeats

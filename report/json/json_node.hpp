@@ -81,7 +81,7 @@ class JsonNode {
   const Json& json() const { return json_; }
   bool is_null() const { return json_.is_null(); }
   std::string string() const {
-    if (!json_.is_string()) fail("a text");
+    if (!json_.is_string()) fail("text");
     return json_.get<std::string>();
   }
   bool boolean() const {

@@ -59,7 +59,7 @@ class JsonScan {
   void open(std::size_t byte) {
     count_value(byte);
     if (keys_.size() == limits_.depth)
-      fail(byte, fmt::format("more than {} brackets within each other", limits_.depth));
+      fail(byte, fmt::format("brackets nested more than {} deep", limits_.depth));
     keys_.push_back(0);
   }
 
@@ -68,7 +68,7 @@ class JsonScan {
     const std::size_t keys = ++keys_.back();
     // This cannot overflow: the size of the text is limited, and a key takes at least three bytes.
     if (comparisons_ + keys * keys > limits_.key_comparisons)
-      fail(byte, fmt::format("an object of {} keys, or too many large objects before it", keys));
+      fail(byte, fmt::format("an object with {} keys, or too many large objects before it", keys));
   }
 
   void close() {

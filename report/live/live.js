@@ -459,7 +459,7 @@
             nrmse_fit_percent: 100 * (1 - Math.sqrt(square / vy)), maximum_error: pairs.reduce((most, [y, s]) => Math.max(most, Math.abs(y - s)), 0)};
   };
   const short = {rho2: "rho2", r: "R", ccc: "CCC", absolute_error_percent: "error"};
-  /** Shows the scores of the live curves against the record, and whether they keep their limits. */
+  /** Shows the scores of the live curves against the record, and whether they meet their limits. */
   const showScores = (request, answer) => {
     const chosen = caseOf(state.case);
     const place = $("scores");

@@ -293,10 +293,10 @@ std::optional<LiveSection> live_section(const Json& rig) {
   const char* const about =
       rig.contains("intervals")
           ? "The calibrated rig, simulated in this page by the equations and solver of "
-            "<code>rigcal</code>. Sliders start at the estimates, which a mark shows; the shaded "
+            "<code>rigcal</code>. Sliders start at the estimates, shown by a mark; the shaded "
             "range is the 95 % interval. Scores and limits refer to the curves shown."
           : "The rig, simulated in this page by the equations and solver of <code>rigcal</code>. "
-            "Sliders start at the values of the result, which a mark shows.";
+            "Sliders start at the values of the result, shown by a mark.";
   section.html = fmt::format(
       "<style>{}</style>\n<section id=\"try\" class=\"screen\" aria-labelledby=\"try-title\">\n"
       "<h2 id=\"try-title\">Try it</h2>\n<p class=\"reading\">{}</p>\n{}</section>\n\n",

@@ -61,7 +61,7 @@ std::optional<datasets::LeakTableSettings> leak_table_of(const Campaign& campaig
   const bool periodic =
       std::any_of(campaign.conditions.begin(), campaign.conditions.end(),
                   [](const Condition& condition) { return is_periodic(condition.waveform); });
-  // A leak table is made of loops on position, or of none.
+  // Leak tables exist only for position loops and for rigs without a controller.
   if (!periodic || campaign.rig.feedback != model::Feedback::position) return std::nullopt;
   datasets::LeakTableSettings settings = leak_table_settings(campaign);
   if (settings.assumptions.empty()) return std::nullopt;

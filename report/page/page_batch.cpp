@@ -212,7 +212,7 @@ std::vector<doc::Section> batch_sections(const StoredBatch& batch) {
            {doc::reading(
                 "The three worst scores of each rig (rho2, mean absolute error in percent), its "
                 "estimates with 95 % intervals, why it did not pass, and its first warnings."),
-            doc::about_picture("The name leads to its own report."), std::move(table)}},
+            doc::about_picture("The name links to its own report."), std::move(table)}},
           trends_section(batch)};
 }
 

@@ -245,7 +245,8 @@ doc::Section design_section(const PlanFiles& files) {
       design.own_signals.empty()
           ? std::string("The campaign has no signals of its own to compare with.")
           : fmt::format(
-                "Own signals: {}, {:.4g} s, scaled to the time and the repeats of this "
+                "The campaign's own signals: {}, {:.4g} s, scaled to the time and the repeats of "
+                "this "
                 "test, with the same noise.",
                 listed_names(design.own_signals), design.own_signals_duration_s);
   doc::Blocks blocks{

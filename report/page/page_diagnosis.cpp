@@ -244,9 +244,9 @@ constexpr std::array kMethods{
     MethodName{&diagnosis::Methods::fitted_leak_single, "Fitted leak, single repeats"},
     MethodName{&diagnosis::Methods::fitted_leak_averaged, "Fitted leak, averages"},
     MethodName{&diagnosis::Methods::features_leave_one_repeat_out,
-               "Paper's features, clusters without the repeat"},
+               "Features of the paper, clusters without the repeat"},
     MethodName{&diagnosis::Methods::features_leave_one_signal_out,
-               "Paper's features, clusters without the signal"}};
+               "Features of the paper, clusters without the signal"}};
 
 doc::Row accuracy_row(const diagnosis::Accuracy& method, const char* name) {
   const auto percent = [](double value) { return doc::in_unit(100.0 * value, 1.0, 4); };
@@ -409,7 +409,7 @@ std::string diagnosis_sentence(const StoredDiagnosis& diagnosis) {
   const std::vector<const MachineState*> states = judged_states(diagnosis.found.states);
   if (states.size() == 1) return states.front()->sentence;
   if (!states.empty()) {
-    return fmt::format("Of {} states of the machine the worst: {}", states.size(),
+    return fmt::format("Worst of {} states of the machine: {}", states.size(),
                        states.front()->sentence);
   }
   return "Every condition is the healthy reference of its signal: there is nothing to judge.";
@@ -464,7 +464,8 @@ void add_averages(const Diagnosis& diagnosis, doc::Blocks& blocks) {
     if (record.is_average())
       table.rows.push_back(average_row(record, table.rows.size() + 1, classes));
   if (table.rows.empty()) return;
-  blocks.emplace_back(figure_of(share_plot(diagnosis), "How large is the leak by each signal?"));
+  blocks.emplace_back(
+      figure_of(share_plot(diagnosis), "How large is the leak according to each signal?"));
   blocks.emplace_back(doc::about_picture(
       "The records of a signal are in the order of the table. Dashed: limits of the classes. Class "
       "by share; shading: probability of each class."));
@@ -563,7 +564,7 @@ void add_share_budgets(const Diagnosis& diagnosis, doc::Blocks& blocks) {
   doc::Fold fold{"Uncertainty budgets of the shares", {}};
   fold.blocks.emplace_back(doc::reading(
       "First-order contributions at the estimated share. The interval of a share follows from its "
-      "full distribution, which is cut at zero. The rows of a state are its conditions."));
+      "full distribution, which is truncated at zero. The rows of a state are its conditions."));
   fold.blocks.emplace_back(budget_table("Share of", budgets));
   doc::Fold one_by_one = contributions("Share of", budgets);
   one_by_one.style = "screen";  // a line for each effect of each record would fill sheets of paper
@@ -605,7 +606,7 @@ std::vector<doc::Section> diagnosis_sections(const StoredDiagnosis& diagnosis) {
   add_share_budgets(found, blocks);
   add_methods(found.methods, blocks);
   if (!found.class_limits.empty())
-    blocks.emplace_back(doc::Fold{"Limits of the classes, by the leak table",
+    blocks.emplace_back(doc::Fold{"Limits of the classes, from the leak table",
                                   {limits_of_classes(found)},
                                   found.class_limits.size() <= kFew});
   add_smallest_leaks(found, blocks);

@@ -38,7 +38,8 @@ constexpr std::array kFormulas{
             "value ± 1.96 times each error, the plain (naive) one and the robust one"},
     Formula{
         "95 % interval",
-        "value ± q times the robust standard error, cut at the limits of the parameter; q = t / "
+        "value ± q times the robust standard error, truncated at the limits of the parameter; q = "
+        "t / "
         "root of (1 - b + b t^2), t Student's with the degrees of freedom of that error, b the "
         "fraction of it that the error of the value itself makes up; where residuals are below "
         "half of the "
@@ -107,7 +108,8 @@ constexpr std::array kFormulas{
     Formula{
         "trend",
         "weighted least squares, tested by the errors of the points; where chi-square about the "
-        "line is beyond its upper quartile (beyond 10 % if the errors count the days), the error "
+        "line exceeds its upper quartile (10 % if the errors include day-to-day variation), the "
+        "error "
         "is widened by the root of reduced chi-square and tested by t with n - 2 degrees of "
         "freedom"},
     Formula{"sign test", "exact binomial, two-sided, over the conditions that both results have"},
@@ -122,7 +124,7 @@ doc::Section formulas_section() {
   for (const Formula& each : kFormulas) facts.rows.push_back({each.name, {each.formula}});
   return {"formulas",
           "How each number is computed",
-          {doc::reading("y measured mean, s simulated, e = y - s, over the samples that count; "
+          {doc::reading("y measured mean, s simulated, e = y - s, over the samples used; "
                         "population moments."),
            std::move(facts)}};
 }

@@ -348,7 +348,7 @@ doc::Fold assumptions_fold(const StoredLeakTable& table) {
   values.columns = {{"Parameter"}, {"Value", Kind::number}, {"Source", Kind::words}};
   for (const diagnosis::UsedValue& each : table.assumptions)
     values.rows.push_back({{each.key, doc::readable(each.value, each.unit, 5), each.source}});
-  doc::Fold fold{"What it rests on", {std::move(values)}};
+  doc::Fold fold{"Basis of the table", {std::move(values)}};
   if (table.fixed_combinations.empty()) return fold;
   doc::Table combinations{"Fixed combinations"};
   combinations.caption = {"Combinations of values on which the shares depend"};
@@ -395,7 +395,7 @@ std::vector<doc::Section> leak_table_sections(const LeakTableFiles& stored) {
       "share hardly determines the coefficient.{}",
       table.share,
       table.summary.published > 0
-          ? " Below it the published one and how far the computed one is off."
+          ? " Below it the published one and how far the computed one deviates."
           : "",
       fit_notes.empty() ? "" : " Small: 95 % interval from the covariance of the fit.")));
   blocks.emplace_back(

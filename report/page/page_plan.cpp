@@ -56,7 +56,7 @@ std::vector<Figure> share_figures(const StoredPlan& plan) {
     const calib::PlannedParameter& parameter = plan.parameters[j];
     const std::optional<double>& all = parameter.sd_all;
     if (!all || !(*all > 0.0)) continue;
-    Plot plot{fmt::format("{}: fraction of the precision of all records that each has alone",
+    Plot plot{fmt::format("{}: fraction of the precision of all records that each provides alone",
                           parameter.label()),
               "record", fmt::format("{} [%]", parameter.label()), 300.0, 150.0};
     plot.whole_x = true;
@@ -103,7 +103,7 @@ doc::Section records_section(const StoredPlan& plan) {
                     {"Value", Kind::number},
                     {"Unit", Kind::unit},
                     {"sd, recorded", Kind::number},
-                    {"sd, planned ones too", Kind::number},
+                    {"sd, with planned records", Kind::number},
                     {"Would determine it"}};
   for (const calib::PlannedParameter& parameter : plan.parameters) {
     const ReadableUnit unit = readable_unit(finite(parameter.value).value_or(0.0), parameter.unit);

@@ -124,7 +124,7 @@ HeldFolder::HeldFolder(const fs::path& out, Holding holding)
     made_now = &made_.folders;
     const fs::path probe = folder / kProbeFile;
     write_file_atomically(probe, "");
-    std::error_code ignored;  // a leftover probe does no harm
+    std::error_code ignored;  // a leftover probe is harmless
     fs::remove(probe, ignored);
   }
   descriptor_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);

@@ -34,7 +34,7 @@ struct PlannedFiles {
   std::vector<std::filesystem::path> files;  ///< relative to the folder; the run may omit some
   /// Folders from which all files of an earlier run are removed: "residuals".
   std::vector<std::filesystem::path> folders;
-  /// Folders in which the run makes results of their own, each with its own manifest.
+  /// Folders of separate results that the run writes, each with its own manifest.
   std::vector<std::filesystem::path> result_folders = {};
 };
 

@@ -82,7 +82,8 @@ void KeptTasks::read() {
   std::error_code failed;
   std::filesystem::resize_file(file_, text.size() - rest.size(), failed);
   if (failed)
-    throw WriteError(fmt::format("{}: it cannot be cut: {}", file_.string(), failed.message()));
+    throw WriteError(
+        fmt::format("{}: it cannot be truncated: {}", file_.string(), failed.message()));
 }
 
 void KeptTasks::keep(const std::string& job, std::size_t index, const std::string& bytes) {

@@ -175,7 +175,7 @@ void read_values(const NamedFit& named, model::PlantKind plant, EarlierFit& fit)
     value.index = named.row(i, plant);
     value.scope = p.scope;
     if (p.scope != Scope::rig) {
-      if (!p.level) named.refuse(fmt::format("parameters[{}].level", i), p.level, "a text");
+      if (!p.level) named.refuse(fmt::format("parameters[{}].level", i), p.level, "text");
       value.level = *p.level;
     }
     // A nuisance parameter applies only to the records of its own fit.

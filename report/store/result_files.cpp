@@ -67,8 +67,8 @@ ReadFile files_of_run(const ReadFile& read, const StoredProvenance& provenance,
     });
     if (listed != named.end() && sha256_of(*found) != listed->sha256)
       throw InputError({(std::filesystem::path(where) / path).string()},
-                       fmt::format("is not the file that {} was written with: it is of another "
-                                   "run, or was changed; make the result again",
+                       fmt::format("is not the file that {} was written with: it belongs to "
+                                   "another run, or was changed; make the result again",
                                    file));
     return found;
   };

@@ -381,7 +381,7 @@ TEST_CASE("validate: a bad fit.json is refused with its place", "[apps]") {
 
 TEST_CASE("fit: what cannot be fitted is refused", "[apps]") {
   const CommandFolder folder;
-  SECTION("nothing is free") {
+  SECTION("no parameter is free") {
     write_campaign(folder, {{"upper = \"1e5 N s/m\", fit = true", "upper = \"1e5 N s/m\""},
                             {"upper = \"1e-3 m/V\", fit = true", "upper = \"1e-3 m/V\""}});
     check_bad_input(folder, {"fit", "campaign.toml"}, {"campaign.toml", "fit = true"});

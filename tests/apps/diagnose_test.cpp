@@ -131,7 +131,7 @@ TEST_CASE("diagnose: classes end where the rows of a leak table of the same rig 
   const Outcome outcome = diagnosed({"--table", "table/leak_table.json"});
   CAPTURE(outcome.out, outcome.err);
   REQUIRE(outcome.exit_code == 0);
-  CHECK_THAT(outcome.out, Contains("Limits of the classes, by the leak table") &&
+  CHECK_THAT(outcome.out, Contains("Limits of the classes, from the leak table") &&
                               Contains("       3  slight  ") && Contains("       9  critical  "));
   const json result = json::parse(folder.read("out/diagnosis.json"));
   CHECK(violations(result, "diagnosis") == "");
@@ -153,7 +153,8 @@ TEST_CASE("diagnose: classes end where the rows of a leak table of the same rig 
     CHECK(record["class"] == kByRows.at(static_cast<std::size_t>(rows_below)));
     CHECK(rows_below > 0);
   }
-  CHECK_THAT(folder.read("out/report.html"), Contains("Limits of the classes, by the leak table"));
+  CHECK_THAT(folder.read("out/report.html"),
+             Contains("Limits of the classes, from the leak table"));
 
   // The leak table with the campaign's own values belongs to a different rig.
   REQUIRE(folder.run({"leak-table", "made/campaign.toml", "--out", "other", "--targets", "3,6,9"})

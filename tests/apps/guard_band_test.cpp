@@ -150,7 +150,7 @@ TEST_CASE("fit: a channel that is compared and not judged is a reservation", "[a
   const Outcome silent = folder.run(fit);
   CHECK(silent.exit_code == 1);
   CHECK_THAT(silent.out, Catch::StartsWith("WARN: ") &&
-                             Catch::Contains("no limit judges load_pressure in 2 conditions"));
+                             Catch::Contains("no limit applies to load_pressure in 2 conditions"));
   CHECK_FALSE(result_of(folder, "out/fit.json").contains("not_judged"));
   // A comparison marks only judged scores as passed.
   REQUIRE(folder.run({"fit", "twin/campaign.toml", "--out", "two", "--quiet"}).exit_code == 0);

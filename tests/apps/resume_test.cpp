@@ -111,7 +111,7 @@ TEST_CASE("resume: a fit that was stopped in its bootstrap keeps what it had dra
   fit[6] = "--resume";  // instead of --quiet
   const Outcome resumed = folder.run(fit);
   REQUIRE(resumed.exit_code == 0);
-  CHECK_THAT(resumed.err, !Contains("begins anew"));
+  CHECK_THAT(resumed.err, !Contains("starts from the beginning"));
   fit[6] = "--quiet";
   fit[5] = "whole";
   REQUIRE(folder.run(fit).exit_code == 0);
@@ -186,8 +186,8 @@ TEST_CASE("resume: a fit with nothing to go on from says so", "[apps]") {
   CommandFolder::Arguments fit{"fit", "twin/campaign.toml", "--out", "one", "--resume"};
   const Outcome single = folder.run(fit);
   REQUIRE(single.exit_code == 0);
-  CHECK_THAT(single.err, Contains("no checkpoint in one") && Contains("one start keeps none") &&
-                             Contains("begins anew"));
+  CHECK_THAT(single.err, Contains("no checkpoint in one") && Contains("one start writes none") &&
+                             Contains("starts from the beginning"));
   fit.insert(fit.end(), {"--starts", "2"});
   const Outcome several = folder.run(fit);
   REQUIRE(several.exit_code == 0);

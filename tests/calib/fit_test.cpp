@@ -468,7 +468,7 @@ TEST_CASE("fit: what is missing is told before anything is computed", "[calib]")
   }
   SECTION("nothing free") {
     for (auto& each : twin.campaign.parameters) each.fit = false;
-    CHECK_THROWS_WITH(fit(twin.campaign, records, {}), Contains("nothing is free"));
+    CHECK_THROWS_WITH(fit(twin.campaign, records, {}), Contains("no parameter is free"));
   }
   SECTION("no record") {
     CHECK_THROWS_WITH(fit(twin.campaign, {}, {}), Contains("\"square\" has no record"));

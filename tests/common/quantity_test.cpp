@@ -159,7 +159,7 @@ TEST_CASE("parse_quantity: errors say what was wrong and what was expected", "[c
   const auto wrong = GENERATE(
       Case{"6,2 MPa", "Pa", "decimal point"}, Case{"1,000 N", "N", "decimal point"},
       Case{"6.2", "Pa", "unit is missing"}, Case{"0", "Pa", "unit is missing"},
-      Case{"MPa", "Pa", "number in front is missing"}, Case{"", "Pa", "text is empty"},
+      Case{"MPa", "Pa", "number before the unit is missing"}, Case{"", "Pa", "text is empty"},
       Case{"  ", "Pa", "text is empty"}, Case{"inf Pa", "Pa", "not finite"},
       Case{"-inf Pa", "Pa", "not finite"}, Case{"nan Pa", "Pa", "not finite"},
       Case{"infinity", "1", "not finite"}, Case{"1e999 Pa", "Pa", "too large"},
@@ -172,8 +172,8 @@ TEST_CASE("parse_quantity: errors say what was wrong and what was expected", "[c
       Case{"6.2 mm", "Pa", "'mm' is the unit of a length"},
       Case{"5 %", "V", "'%' is the unit of a pure number"}, Case{"5", "V", "a unit is missing"},
       Case{"5 V", "V/m", "'V' is the unit of a voltage"}, Case{"0.3 m", "1", "unit of a length"},
-      Case{"3 kg V", "Pa", "another dimension"}, Case{"+-5 mm", "m", "number in front"},
-      Case{"- 5 mm", "m", "number in front"}, Case{"5 m/", "m", "unknown unit"},
+      Case{"3 kg V", "Pa", "another dimension"}, Case{"+-5 mm", "m", "number before the unit"},
+      Case{"- 5 mm", "m", "number before the unit"}, Case{"5 m/", "m", "unknown unit"},
       Case{"5 m(", "m", "unknown unit"}, Case{"5 m@3", "m", "unknown unit"},
       Case{"5 lg(re mW)", "1", "unknown unit"}, Case{"5 s since now", "s", "unknown unit"});
   const std::string message = error_of(wrong.text, wrong.unit);

@@ -480,13 +480,13 @@ TEST_CASE("diagnose: a record of one sample is told to be too short", "[diagnosi
   REQUIRE(found.records.size() == 4);
   for (const auto& record : found.records) {
     CHECK_FALSE(record.fit.ok());
-    CHECK_THAT(record.fit.failure, Catch::Contains("one sample counts"));
+    CHECK_THAT(record.fit.failure, Catch::Contains("one sample is used"));
   }
   // Two samples are enough to define a mean flow.
   const Diagnosis two =
       diagnosis::diagnose(campaign, records_of(campaign, 1, 2), known_rig(campaign), {});
   for (const auto& record : two.records)
-    CHECK_THAT(record.fit.failure, !Catch::Contains("one sample counts"));
+    CHECK_THAT(record.fit.failure, !Catch::Contains("one sample is used"));
 }
 
 TEST_CASE("diagnose: a flag ends it between records, and says so of each", "[diagnosis]") {

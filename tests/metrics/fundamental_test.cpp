@@ -179,5 +179,5 @@ TEST_CASE("fundamental: records that cannot tell are refused", "[metrics]") {
   refuses(times(100, 0.5), sine(times(100, 0.5), 1.0, 1.0, 0.5), 1.0,
           "cannot separate this frequency from an offset");
   refuses({0.0, 0.1, 0.2, 9.0, 9.5, 10.0}, {0.0, 1.0, 0.0, 1.0, 2.0, 0.0}, 0.3,
-          "3 samples of the given signal lie in whole periods");
+          "3 samples of the given signal are in whole periods");
 }

@@ -623,7 +623,7 @@ TEST_CASE("simulate: a failed run has a status, a time, a reason and no numbers"
            Row{"steps", [](auto& e) { e.options.max_steps = 10; }, SimulationStatus::too_many_steps,
                "10 steps"},
            Row{"time", [](auto& e) { e.options.max_seconds = 1e-9; }, SimulationStatus::out_of_time,
-               "were not enough"},
+               "not finished after"},
            Row{"cancel", [&stop](auto& e) { e.options.cancel = &stop; },
                SimulationStatus::cancelled, "request"},
            Row{"a hole in the recording",

@@ -193,7 +193,7 @@ class Study:
             return [f'"{number} {rest}"' for number in NUMBERS for rest in ("mm (k = 2)", "% (k = 2)")] + [
                 f'"0.002 mm (k = {number})"' for number in NUMBERS]
         _, message = self.ended("check", text_of(table, key, "[[[]]]", self.base), f"ask_{table.strip('[]')}_{key}")
-        if quantity := re.search(r'a text "number unit" such as "1.5 ([^"]*)"', message):
+        if quantity := re.search(r'text "number unit" such as "1.5 ([^"]*)"', message):
             return [f'"{number} {quantity.group(1)}"' for number in NUMBERS]
         if "a plain number" in message or "number of seconds" in message:
             return [number if "e" in number else f"{number}.0" for number in NUMBERS]

@@ -455,7 +455,7 @@ def check_plan(binary, work):
     with Browser() as page:
         page.open(path)
         check_sections(page, ["verdict", "plan", "provenance", "formulas"])
-        shown = [float(v) for v in values(page, ".totals td[data-label='sd, planned ones too'] data")]
+        shown = [float(v) for v in values(page, ".totals td[data-label='sd, with planned records'] data")]
         check(shown == [p["sd_all"] for p in plan["parameters"]], f"standard deviations: {shown}")
         check_widths(page)
         check_quiet(page, path)

@@ -97,7 +97,7 @@ Run add_batch(CLI::App& verb) {
       ->check(CLI::Range(1, kMostJobs))
       ->capture_default_str();
   verb.add_option("--threads", common.threads,
-                  "Threads of all rigs together; results do not depend on it")
+                  "Total number of threads of all rigs; does not affect the results")
       ->check(CLI::Range(1, kMostJobs))
       ->default_str("all");
   verb.add_flag(

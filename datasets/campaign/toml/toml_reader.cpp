@@ -194,7 +194,7 @@ double TomlNode::quantity(std::string_view unit) const {
   if (unit == "1") return number();
   const auto* text = node_->as_string();
   if (text == nullptr) {
-    fail_type(fmt::format("a text \"number unit\" such as \"{} {}\"",
+    fail_type(fmt::format("text \"number unit\" such as \"{} {}\"",
                           node_->value<double>().value_or(1.5), unit));
   }
   try {

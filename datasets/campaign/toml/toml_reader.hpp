@@ -55,9 +55,9 @@ class TomlNode {
 
   // Conversions. Each throws InputError if the value has another type.
 
-  std::string string(const std::string& expected = "a text in quotes") const;
+  std::string string(const std::string& expected = "text in quotes") const;
   /// Returns a non-empty text.
-  std::string name(const std::string& expected = "a text in quotes") const;
+  std::string name(const std::string& expected = "text in quotes") const;
   bool boolean() const;
   /// Returns a finite number without a unit, integer or not.
   double number() const;

@@ -526,7 +526,7 @@ void insert_lvm_time(const RecordRequest& request, const Header& header, RecordT
     if (!std::isfinite(time_s[i]) || (i > 0 && !(time_s[i] > time_s[i - 1])))
       throw InputError({header.file, header.line},
                        fmt::format("Delta_X is {} s, with X0 = {} s: the times do not increase; "
-                                   "expected a larger distance between samples",
+                                   "expected a positive sample interval",
                                    header.time->step_s, header.time->start_s));
   }
   RecordTable with_times = std::move(table);
@@ -573,7 +573,7 @@ RecordTable load_csv_record(const std::filesystem::path& path, const RecordReque
     }
     if (empty_line != 0)
       throw InputError({header.file, empty_line, 1},
-                       fmt::format("an empty line inside the data, which goes on in line {}; "
+                       fmt::format("an empty line inside the data, which continue in line {}; "
                                    "expected a row of {} columns",
                                    lines.number(), header.names.size()));
     reader.read(line, lines.number());

@@ -56,7 +56,7 @@ std::string kind_of(hid_t type) {
     case H5T_FLOAT:
       return {};
     case H5T_STRING:
-      return "a text";
+      return "text";
     case H5T_ENUM:
       return "an enumeration, such as truth values";
     case H5T_COMPOUND:
@@ -64,13 +64,13 @@ std::string kind_of(hid_t type) {
     case H5T_REFERENCE:
       return "a reference";
     case H5T_VLEN:
-      return "a list of lists of their own length";
+      return "a list of lists of different lengths";
     case H5T_TIME:
       return "a date";
     case H5T_BITFIELD:
       return "a field of bits";
     default:
-      return "of a type without numbers";
+      return "of a type that is not numeric";
   }
 }
 
@@ -290,7 +290,7 @@ void Hdf5File::list_dataset(hid_t dataset, const std::string& path) {
   H5Sget_simple_extent_dims(space.get(), sizes.data(), nullptr);
   if (H5Sget_simple_extent_type(space.get()) == H5S_NULL) sizes = {0};
   if (!append_dims(sizes, series.dims))
-    fail(fmt::format("is damaged at '{}' (dimensions beyond any file)", path));
+    fail(fmt::format("is damaged at '{}' (dimensions too large for any file)", path));
   if (H5Tget_class(type.get()) != H5T_COMPOUND) {
     type = element_type(std::move(type), series);
     series.kind = type ? kind_of(type.get()) : "of a damaged type";

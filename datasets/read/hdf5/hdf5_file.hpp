@@ -56,7 +56,7 @@ struct Hdf5Series {
   /// those of its cells if they are arrays.
   std::vector<std::size_t> dims;
   std::size_t cell_dims = 0;       ///< number of `dims` that belong to the cells
-  std::string kind;                ///< kind of the elements if not numbers: "a text"; else empty
+  std::string kind;                ///< kind of the elements if not numbers: "text"; else empty
   std::vector<std::string> units;  ///< one for all, one per series, or none
 
   /// Cannot overflow: the dimensions were checked when they were read.

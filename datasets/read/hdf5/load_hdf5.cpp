@@ -157,8 +157,8 @@ class Hdf5Columns {
     const std::size_t count = series.dims.empty() ? 1 : series.dims[line.along];
     if (count > kMostValues - std::min(kMostValues, so_far))
       fail(
-          fmt::format("'{}' has {} rows, which with the {} numbers of other columns are more "
-                      "than {}, the limit of one file; decimate the record, or split it",
+          fmt::format("'{}' has {} rows; with the {} numbers of other columns they exceed {}, the "
+                      "limit of one file; decimate the record, or split it",
                       column, count, so_far, kMostValues));
     std::vector<double> values = file_.numbers(series, line, column);
     const auto bad =
@@ -208,7 +208,7 @@ class Hdf5Columns {
                       "and numbers from 1, such as {}(:,1)",
                       column, series.path));
     if (subscripts->size() != rank)
-      fail(fmt::format("'{}' is of {} elements; expected {} entries between the brackets", column,
+      fail(fmt::format("'{}' has {} elements; expected {} entries between the brackets", column,
                        size_text(series), rank));
     for (std::size_t k = 0; k < rank; ++k) {
       const auto& subscript = (*subscripts)[k];
@@ -236,7 +236,7 @@ class Hdf5Columns {
                       "the same number",
                       clock.path, count, of, *rows));
     if (count > kMostValues - std::min(kMostValues, so_far_))
-      fail(fmt::format("'{}' counts {} samples, more than {} numbers in all, the limit of one file",
+      fail(fmt::format("'{}' has {} samples, more than {} numbers in all, the limit of one file",
                        clock.path, count, kMostValues));
     std::vector<double> time_s(count);
     for (std::size_t k = 0; k < count; ++k) {

@@ -42,11 +42,11 @@ class Parser {
     std::vector<MatStep> steps{step()};
     while (take('.')) steps.push_back(step());
     skip_blanks();
-    if (!rest_.empty()) fail(text_, fmt::format("goes on with '{}'", rest_));
+    if (!rest_.empty()) fail(text_, fmt::format("continues with '{}'", rest_));
     for (std::size_t i = 0; i + 1 < steps.size(); ++i) {
       const auto& subscripts = steps[i].subscripts;
       if (std::count(subscripts.begin(), subscripts.end(), std::nullopt) > 0)
-        fail(text_, fmt::format("takes all elements of '{}', which has fields", steps[i].name));
+        fail(text_, fmt::format("selects all elements of '{}', which is a struct", steps[i].name));
     }
     const auto& last = steps.back().subscripts;
     if (!last.empty() && std::count(last.begin(), last.end(), std::nullopt) != 1)
@@ -122,7 +122,7 @@ std::string kind_text(const MatArray& array) {
     case MatKind::structure:
       return "a struct";
     case MatKind::text:
-      return "a text";
+      return "text";
     case MatKind::sparse:
       return "a sparse matrix";
     case MatKind::function:
@@ -265,8 +265,8 @@ class ColumnOfMat {
     const MatSelection chosen = selection(array, step);
     if (chosen.count > kMostValues - std::min(kMostValues, values_so_far))
       fail(
-          fmt::format("'{}' has {} elements, which with the {} of other columns are more "
-                      "than {}, the limit of one file; decimate the record, or split it",
+          fmt::format("'{}' has {} elements; with the {} of other columns they exceed {}, the "
+                      "limit of one file; decimate the record, or split it",
                       column_, chosen.count, values_so_far, kMostValues));
     std::vector<double> values = source_.numbers(array, chosen, column_);
     const auto bad =

@@ -61,14 +61,14 @@ struct Hdf5Source::Open {
     array.place = arrays.size();
     arrays.push_back(&variable);
     if (arrays.size() > kMostHdf5Arrays || depth > kDeepestHdf5Struct)
-      fail(fmt::format("contains more than {} arrays, or {} structs within each other",
+      fail(fmt::format("contains more than {} arrays, or structs nested more than {} deep",
                        kMostHdf5Arrays, kDeepestHdf5Struct));
     std::size_t count = 1;
     for (int i = 0; variable.dims != nullptr && i < variable.rank; ++i) {
       const std::size_t size = variable.dims[i];
       constexpr std::size_t kMostElements = std::numeric_limits<std::int64_t>::max();
       if (size > 0 && count > kMostElements / size)
-        fail("is damaged (dimensions beyond any file); copy or save it again");
+        fail("is damaged (dimensions too large for any file); copy or save it again");
       count *= size;
       array.dims.push_back(size);
     }
@@ -137,7 +137,8 @@ std::vector<double> Hdf5Source::numbers(const MatArray& array, const MatSelectio
                                         const std::string& column) {
   constexpr std::size_t kMostIndex = std::numeric_limits<int>::max();
   if (array.element_count() > kMostIndex)
-    open_->fail(fmt::format("'{}' is of an array of more than {} elements", column, kMostIndex));
+    open_->fail(
+        fmt::format("'{}' belongs to an array of more than {} elements", column, kMostIndex));
   matvar_t& variable = *open_->arrays.at(array.place);
   switch (variable.class_type) {
     case MAT_C_SINGLE:

@@ -124,9 +124,9 @@ class Level5Parser {
     } else if (array.kind == MatKind::number) {
       numbers(array, end);
     }
-    if (stream_.position() > end) throw DamagedBytes("an array that is longer than it says");
+    if (stream_.position() > end) throw DamagedBytes("an array that is longer than stated");
     if (array.kind == MatKind::structure || array.kind == MatKind::number) {
-      if (stream_.position() != end) throw DamagedBytes("an array that is shorter than it says");
+      if (stream_.position() != end) throw DamagedBytes("an array that is shorter than stated");
     }
     skip_to(end);
     return array;
@@ -147,7 +147,7 @@ class Level5Parser {
       element.next = begin + kTagBytes;
       element.is_held_in_tag = true;
       if (element.bytes > element.held_in_tag.size())
-        throw DamagedBytes("an element of more bytes than its tag says");
+        throw DamagedBytes("an element with more bytes than its tag allows");
       std::copy(raw.begin() + 4, raw.end(), element.held_in_tag.begin());
       return element;
     }
@@ -242,7 +242,7 @@ class Level5Parser {
       if (n < 0) throw DamagedBytes("a dimension below zero");
       const auto size = static_cast<std::size_t>(n);
       if (size > 0 && count > kMostElements / size)
-        throw DamagedBytes("dimensions beyond any file");
+        throw DamagedBytes("dimensions too large for any file");
       count *= size;
       result.push_back(size);
     }
@@ -251,7 +251,7 @@ class Level5Parser {
 
   void fields(MatArray& array, std::uint64_t end, int depth) {
     if (depth == kMostStructDepth)
-      throw DamagedBytes(fmt::format("more than {} structs within each other", kMostStructDepth));
+      throw DamagedBytes(fmt::format("structs nested more than {} deep", kMostStructDepth));
     const DataElement length_at = element(end);
     if (length_at.type != kInt32 || length_at.bytes != 4)
       throw DamagedBytes("a struct without the length of its field names");
@@ -269,7 +269,7 @@ class Level5Parser {
     // Each field takes at least one tag.
     const std::uint64_t most = (end - stream_.position()) / kTagBytes;
     if (elements > most / array.field_names.size())
-      throw DamagedBytes("a struct of more fields than there is room for");
+      throw DamagedBytes("a struct with more fields than its data can contain");
     for (std::size_t i = 0; i < elements * array.field_names.size(); ++i) {
       const DataElement field = element(end);
       if (field.type != kMatrix || field.is_held_in_tag)

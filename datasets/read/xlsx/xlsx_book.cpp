@@ -197,7 +197,7 @@ class SheetHandler : public XmlHandler {
 
   /// Refuses rows or cells from an unknown namespace, which would be missing from the record.
   void foreign() override {
-    if (in_table_ && !in_extension_) fail("or a cell behind it is of no known kind");
+    if (in_table_ && !in_extension_) fail("or a cell after it is of an unknown type");
   }
 
   void text(std::string_view text) override {
@@ -232,7 +232,7 @@ class SheetHandler : public XmlHandler {
     if (const auto given = attributes.find("r")) place = parsed_address(*given).value_or(Place{});
     if (!in_row_ || in_cell_ || place.row != row_ || place.column <= column_ ||
         place.column > kMostSheetColumns)
-      fail("or a cell behind it is out of order");
+      fail("or a cell after it is out of order");
     column_ = place.column;
     cell_.column = place.column;
     type_ = attributes.text("t");
@@ -255,7 +255,7 @@ class SheetHandler : public XmlHandler {
       cell_.kind = is_date ? XlsxKind::date : XlsxKind::number;
     } else if (type_ == "s") {
       const auto index = whole_number<std::size_t>(cell_.text);
-      if (!index || *index >= texts_.size()) fail("refers to a text that the workbook lacks");
+      if (!index || *index >= texts_.size()) fail("refers to text that the workbook lacks");
       cell_.text = texts_[*index];
       cell_.kind = XlsxKind::text;
     } else if (type_ == "b") {

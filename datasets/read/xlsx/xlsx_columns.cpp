@@ -205,7 +205,7 @@ class HeaderFinder {
     }
   }
 
-  /// Takes a row for that of units if it is one.
+  /// Stores a row as the row of units if it is one, and returns whether it is.
   bool take_units(const SheetRow& row) {
     if (row.front().row != header_.row + 1 || !are_units(row)) return false;
     header_.units.resize(header_.names.size());
@@ -400,7 +400,7 @@ class SheetReader {
              fmt::format("belongs to the merged cells {}, of which only the first has content; "
                          "expected a number in each cell",
                          cells.range));
-    fail(row, column, "is empty, but rows follow or other columns go on; expected a number");
+    fail(row, column, "is empty, but rows follow or other columns continue; expected a number");
   }
 
   const XlsxBook& book_;

@@ -429,7 +429,7 @@ std::string signal_words(const calib::ConditionResult& condition) {
   return text;
 }
 
-/// Returns the values on the same side of the limit, which a rounded score must not leave.
+/// Returns the range on the value's side of a limit. A rounded score must remain in it.
 Range side_of_limit(double value, const std::optional<double>& limit) {
   if (!limit) return kAnywhere;
   return value <= *limit ? Range{kAnywhere.low, *limit}

@@ -188,7 +188,7 @@ doc::Section scores_section(const StoredFit& fit, bool unfinished) {
   }
   section.blocks.emplace_back(doc::reading(
       "Agreement of model and measured mean: rho2 (1 is perfect) and, below it, the mean absolute "
-      "error in percent of the range. Each cell leads to its condition."));
+      "error in percent of the range. Each cell links to its condition."));
   for (doc::Table& table : tables) section.blocks.emplace_back(std::move(table));
   doc::Table groups = means_table(fit);
   const std::string summary = fmt::format(

@@ -22,7 +22,8 @@ struct StoredLeakTable : diagnosis::LeakTable {
   std::string share = "mean |Q_leak| / mean |Q_servo| over one period, periodic";
   std::string residual = "|position without leak - position with leak| times residual_scale";
   std::string interval =
-      "95 % of each coefficient by the covariance of the fit, to first order in the fit's values: "
+      "95 % interval of each coefficient from the covariance of the fit, to first order in the "
+      "fit's values: "
       "ln C moves by -(d ln s / dp) / (d ln s / d ln C); null without a fit";
   Omittable<std::vector<std::string>> notes;
   Omittable<std::vector<std::string>> warnings;

@@ -62,7 +62,7 @@ std::string normality_words(const metrics::Normality& test) {
   if (!test.failed()) return not_judged(test);
   std::string text = fmt::format("not normal ({})", p_value_text(test.p_value));
   if (test.excess_kurtosis > 0.5) text += ", heavy tails or rare bursts";
-  if (test.excess_kurtosis < -0.5) text += ", light tails, as those of a sine wave";
+  if (test.excess_kurtosis < -0.5) text += ", light tails, like those of a sine wave";
   if (std::abs(test.skewness) > 0.3)
     text += test.skewness > 0.0 ? ", skewed to the right" : ", skewed to the left";
   return text;

@@ -144,7 +144,7 @@ TEST_CASE("hostile files: a result of unheard-of numbers is no bug", "[apps]") {
                  "key 'conditions[0]': found 7, expected an object");
   folder.write("bad/fit.json", replaced(whole, "\"key\": \"damping\"", "\"key\": 0.5"));
   check_no_input(folder, {"compare", "fit", "bad", "--out", "c"}, "bad/fit.json",
-                 ".key': found 0.5, expected a text");
+                 ".key': found 0.5, expected text");
 }
 
 TEST_CASE("hostile files: a table of a result that is cut short", "[apps]") {

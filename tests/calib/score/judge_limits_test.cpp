@@ -60,7 +60,7 @@ double number(const Reason& reason, const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("judge_limits: of those that keep their limits the closest is named", "[calib]") {
+TEST_CASE("judge_limits: of those that meet their limits the closest is named", "[calib]") {
   const auto reasons = judged(
       {checked_score("low", {{Verdict::pass, 0.2}}),
        checked_score("high", {{Verdict::pass, 0.1}, {Verdict::pass, 0.6}, {Verdict::pass, 0.3}}),
@@ -70,7 +70,7 @@ TEST_CASE("judge_limits: of those that keep their limits the closest is named", 
   CHECK(number(reasons[0], "conditions") == 3.0);
   CHECK(number(reasons[0], "kept") == 3.0);
   CHECK(number(reasons[0], "tolerance_used") == 0.6);
-  CHECK_THAT(reasons[0].words, Contains("3 of 3 conditions keep their limits") &&
+  CHECK_THAT(reasons[0].words, Contains("3 of 3 conditions meet their limits") &&
                                    Contains("high") && Contains("60 %"));
 }
 
@@ -85,7 +85,7 @@ TEST_CASE("judge_limits: the tolerance used in percent, and where it is no use t
     CAPTURE(used);
     const auto reasons = judged({checked_score("one", {{Verdict::pass, used}})});
     REQUIRE(codes(reasons) == std::vector<std::string>{"limits_kept of one"});
-    CHECK_THAT(reasons[0].words, Contains("one keeps its limits:" + text));
+    CHECK_THAT(reasons[0].words, Contains("one meets its limits:" + text));
     CHECK(number(reasons[0], "tolerance_used") == used);
     CHECK(number(reasons[0], "conditions") == 1.0);
   }

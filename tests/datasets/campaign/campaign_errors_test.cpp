@@ -225,7 +225,7 @@ TEST_CASE("load_campaign: conditions", "[datasets]") {
       id("\"../x\"", {"letters, digits"}),
       id("\"\"", {"id"}),
       id("\"<script>\"", {"letters, digits"}),
-      id("\"sine_0.1HZ_open_33\"", {"by case only"}),
+      id("\"sine_0.1HZ_open_33\"", {"only in case"}),
       {"id = \"steps\"\n",
        "",
        "[[condition]]\nwaveform = \"recorded\"",

@@ -180,7 +180,7 @@ TEST_CASE("inputs_of: the oil follows a recorded temperature where its propertie
   REQUIRE(inputs.oil_temperature_k.has_value());
   CHECK(inputs.oil_temperature_k->value(1.5) == 10.0);
   CHECK_THROWS_WITH(load_text(with_channel(kExample, input)),
-                    Catch::Contains("no property of the oil follows it: expected "
+                    Catch::Contains("no property of the oil depends on it: expected "
                                     "reference_temperature"));
   CHECK_THROWS_WITH(
       load_text(replaced(kExample, parameters, parameters + "viscosity_decay = \"0.03 1/K\"\n")),

@@ -112,7 +112,7 @@ TEST_CASE("leak_table_settings: errors name the key and what was expected", "[da
   CHECK_THAT(complaint("\"85 kg\", source = \"Table 2\"", "\"85 kg\""), Contains("source"));
   CHECK_THAT(complaint("start = \"40 V/m\"", "start = \"1 V/m\""), Contains("lower <= start"));
   CHECK_THAT(complaint("source = \"Table 2\"", "source = \"Table 2\", upper = \"9 kg\""),
-             Contains("expected fit = true too"));
+             Contains("expected fit = true as well"));
   CHECK_THAT(complaint("left_out = [\"std\"]", "left_out = [\"sdt\"]"), Contains("std"));
   CHECK_THAT(complaint("reason = \"unknown\"\n", ""), Contains("reason"));
   CHECK_THAT(complaint("left_out = [\"std\"]\n", ""), Contains("no value is left out"));
@@ -172,7 +172,7 @@ TEST_CASE("free_assumptions: exactly the named ones, with bounds", "[datasets]")
   CHECK_THROWS_WITH(free_assumptions(settings, campaign, {"leakage_smoothing"}),
                     Contains("cannot be fitted"));
   CHECK_THROWS_WITH(free_assumptions(settings, campaign, {"stiffness"}),
-                    Contains("no value from which bounds follow"));
+                    Contains("no value from which bounds can be derived"));
 }
 
 TEST_CASE("signal_from_text: waveform, frequency, amplitude", "[datasets]") {

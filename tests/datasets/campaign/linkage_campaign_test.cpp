@@ -245,7 +245,7 @@ TEST_CASE("load_campaign: what does not go together in a loop on the angle", "[d
   };
   for (const Row& row :
        {Row{"type = \"pid\"", "type = \"pid\"\nfeedback = \"force\"",
-            "key 'rig.controller.feedback': the controller of a linkage acts on the angle of the "
+            "key 'rig.controller.feedback': the controller of a linkage controls the angle of the "
             "joint, its torque or the pressure difference: expected \"angle\", \"torque\" or "
             "\"load_pressure\""},
         Row{"type = \"pid\"", "type = \"pid\"\nfeedback = \"torque\"",

@@ -160,7 +160,7 @@ TEST_CASE("guess_column: what no channel records", "[datasets]") {
   for (const Case& each :
        {Case{"v_mm_s", "a velocity"}, Case{"v_mm/s", "a velocity"},
         Case{"Geschwindigkeit_mm/s", "a velocity"}, Case{"Durchfluss_l/min", "a flow"},
-        Case{"n_rpm", ""}, Case{"y_%", ""}, Case{"err_mm", "an error of control"},
+        Case{"n_rpm", ""}, Case{"y_%", ""}, Case{"err_mm", "a control error"},
         Case{"valve_position_mm", "the position of a spool"}, Case{"supply voltage [V]", ""},
         Case{"start", ""}, Case{"offset", ""}, Case{"Untitled 1", ""}}) {
     CAPTURE(each.name);

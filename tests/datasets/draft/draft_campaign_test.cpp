@@ -554,7 +554,7 @@ TEST_CASE("draft_campaign: a motion or drive that no name identifies is a blank"
   // Nothing is left that could be either.
   draft = drafted("t_s,x_mm,v_mm/s,err_mm");
   CHECK_THAT(draft, !Contains("\ncommand = ") && Contains("mm/s, a velocity") &&
-                        Contains("an error of control"));
+                        Contains("a control error"));
 }
 
 TEST_CASE("draft_campaign: a command in percent or milliamperes has a full scale", "[datasets]") {

@@ -195,8 +195,7 @@ TEST_CASE("trend_sentence: how fast, how surely, and how long it takes", "[diagn
         "(4.50 to 7.50) at sine 1 Hz (over 3 dates from 2026-01-01 to 2026-03-02, p = 0.003). At "
         "this rate it reaches medium (10 %) about 2026-03-22 (2026-03-18 to 2026-03-28).");
   trend.next_limit->latest_day.reset();
-  CHECK_THAT(diagnosis::trend_sentence(trend),
-             Contains("(2026-03-18 to never, as far as is known)"));
+  CHECK_THAT(diagnosis::trend_sentence(trend), Contains("(2026-03-18 to no upper limit)"));
   trend.next_limit->reached_day += 161.0;  // more than three times the 60 days observed
   CHECK_THAT(diagnosis::trend_sentence(trend), !Contains("At this rate"));
   trend.share_percent_per_day = -0.2;

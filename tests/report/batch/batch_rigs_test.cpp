@@ -89,7 +89,7 @@ TEST_CASE("run_rig: after a signal no rig begins", "[report][batch]") {
   scripted.cancel = true;
   const RigEnd end = scripted.end(ExitCode::done, "made");
   CHECK(end.code == ExitCode::stopped);
-  CHECK(end.error.find("not begun") == 0);
+  CHECK(end.error.find("not started") == 0);
   CHECK_FALSE(end.left_result);
   CHECK(test::text_of(scripted.folder / "bench/fit.json") == "earlier");
 }

@@ -314,7 +314,7 @@ TEST_CASE("comparison: the leak's trend along dates", "[report]") {
   CHECK(along["points"] == 4);
   const Json& warm = json["leak_trends"][0]["along_temperature"];
   CHECK(warm["slope_per_k"].is_null());
-  CHECK_THAT(warm["reason"].get<std::string>(), Contains("same place"));
+  CHECK_THAT(warm["reason"].get<std::string>(), Contains("same date or temperature"));
   // 2026-03-01 is day 20513 since 1970-01-01.
   CHECK(json["leak_trends"][0]["points"][0]["day"] == 20513.0);
 }

@@ -80,9 +80,9 @@ TEST_CASE("read_json: each limit, kept and broken by one", "[report]") {
   limits.key_comparisons = 8;  // two objects with two keys each
   CHECK_NOTHROW(parsed_as(R"([{"a": 1, "b": 2}, {"a": 1, "b": 2}])", limits));
   CHECK_THROWS_WITH(parsed_as(R"([{"a": 1, "b": 2}, {"a": 1, "b": 2, "c": 3}])", limits),
-                    Contains("an object of 3 keys"));
+                    Contains("an object with 3 keys"));
   CHECK_THROWS_WITH(parsed_as(R"([{"a": 1, "b": 2}, {"a": 1, "b": 2}, {"a": 1}])", limits),
-                    Contains("an object of 1 keys"));
+                    Contains("an object with 1 keys"));
 }
 
 TEST_CASE("read_json: from a file", "[report]") {

@@ -311,7 +311,7 @@ TEST_CASE("load_csv: a time column that is not wanted is a mistake of the caller
 
 TEST_CASE("load_csv: empty lines inside", "[datasets]") {
   CHECK_THAT(refusal("t,x\n0,1\n\n \n1,2\n"),
-             StartsWith("a.csv:3:1: an empty line inside the data, which goes on in line 5"));
+             StartsWith("a.csv:3:1: an empty line inside the data, which continue in line 5"));
   CHECK_THAT(refusal("\nt,x\n0,a\n"), StartsWith("a.csv:1:1: is an empty line"));
   CHECK_THAT(refusal("t,x\n\n0,1\n"), StartsWith("a.csv:2:1: an empty line inside the data"));
 }

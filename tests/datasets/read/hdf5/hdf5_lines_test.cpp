@@ -274,7 +274,7 @@ TEST_CASE("load_hdf5: what is no number is named by its kind", "[datasets]") {
   const auto refusal = [&](const char* column) { return read_refusal(path, {column}); };
   CHECK_THAT(refusal("/lists"), Contains("'/lists' is a list of lists"));
   CHECK_THAT(refusal("/bits"), Contains("'/bits' is a field of bits"));
-  CHECK_THAT(refusal("/blob"), Contains("'/blob' is of a type without numbers"));
+  CHECK_THAT(refusal("/blob"), Contains("'/blob' is of a type that is not numeric"));
   CHECK_THAT(refusal("/tables.inner"), Contains("'/tables.inner' is a table within a table"));
   CHECK_THAT(refusal("/tables"), Contains("'/tables' is a table; expected one of its columns"));
   CHECK_THAT(refusal("/null"), Contains("'/null' is empty"));
@@ -335,7 +335,7 @@ TEST_CASE("load_hdf5: 12 million numbers of one file, those of other columns cou
              Contains("'/x@dt' counts 100000 samples, more than 12000000 numbers in all"));
   columns.assign(121, "/x");
   CHECK_THAT(read_refusal(path, columns),
-             Contains("'/x' has 100000 rows, which with the 12000000 numbers of other columns"));
+             Contains("'/x' has 100000 rows; with the 12000000 numbers of other columns"));
   CHECK_THAT(read_refusal(path, {"/wide(:,1)"}),
              Contains("'/wide(:,1)' has arrays of 2000 numbers each, 7000 of them: more than "
                       "12000000 numbers in total"));

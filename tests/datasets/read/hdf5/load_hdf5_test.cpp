@@ -237,7 +237,7 @@ TEST_CASE("load_hdf5: what is no column of numbers", "[datasets]") {
       {{"/run/data(1,1)"}, "does not end in one row or column"},
       {{"/run/absent"}, "'/run/absent' was never written: it has a shape, but no numbers"},
       {{"/run/empty"}, "'/run/empty' is empty; expected numbers"},
-      {{"/run/text"}, "'/run/text' is a text; expected numbers"},
+      {{"/run/text"}, "'/run/text' is text; expected numbers"},
       {{"/run/flag"}, "'/run/flag' is an enumeration, such as truth values; expected numbers"},
       {{"/run/refs"}, "'/run/refs' is a reference; expected numbers"}};
   for (const Case& each : cases) {

@@ -147,7 +147,7 @@ TEST_CASE("load_mat: 12 million numbers of one file, those of other columns coun
   CHECK(load_mat_record(path, {columns, ""}).columns.size() == 120);
   columns.emplace_back("x");
   CHECK_THAT(message_of(path, {columns, ""}),
-             Contains("'x' has 100000 elements, which with the 12000000 of other columns"));
+             Contains("'x' has 100000 elements; with the 12000000 of other columns"));
 }
 
 TEST_CASE("load_mat: every real number class", "[datasets]") {
@@ -185,15 +185,15 @@ TEST_CASE("load_mat: what is no column of numbers", "[datasets]") {
       {"log.signals(2).values", {"has 3 x 2 elements", "log.signals(2).values(:,1)"}},
       {"log.signals(2).values(:,3)", {"is outside of 'values', which has 3 x 2"}},
       {"wide(:,1)", {"is outside of 'wide', which has 2 x 1 x 3"}},
-      {"log.blockName", {"is a text; expected real numbers"}},
+      {"log.blockName", {"is text; expected real numbers"}},
       {"position.x", {"'position' is a number and has no field 'x'"}},
       {"hole", {"element 3 of 'hole' is nan; expected a finite number"}},
       {"edge", {"element 1 of 'edge' is -inf"}},
       {"position(:", {"'position(:' lacks a closing bracket"}},
       {"position(2)", {"does not name a whole row or column"}},
-      {"log(:).time", {"takes all elements of 'log'"}},
+      {"log(:).time", {"selects all elements of 'log'"}},
       {"position(0,:)", {"has a subscript that is not a number from 1"}},
-      {"position mm", {"goes on with 'mm'"}},
+      {"position mm", {"continues with 'mm'"}},
       {".position", {"lacks the name of a variable"}}};
   const TemporaryFolder folder;
   const auto path = folder.path() / "run.mat";

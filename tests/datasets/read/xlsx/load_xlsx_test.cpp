@@ -146,17 +146,18 @@ TEST_CASE("load_xlsx: what is no number is named with its cell", "[datasets]") {
       {"<c r=\"@\"><v>1</v><v>2</v></c>", "Log!B3 has two values"},
       {"<c r=\"@\"><v>1<y/>2</v></c>", "Log!B3 has an element within its value"},
       {"<c r=\"@\"><v>1</v><x:v xmlns:x=\"urn:x\">2</x:v></c>",
-       "Log!B3 or a cell behind it is of no"},
-      {"<x:c xmlns:x=\"urn:x\" r=\"@\"><v>1</v></x:c>", "Log!A3 or a cell behind it is of no"},
+       "Log!B3 or a cell after it is of an unknown type"},
+      {"<x:c xmlns:x=\"urn:x\" r=\"@\"><v>1</v></x:c>",
+       "Log!A3 or a cell after it is of an unknown type"},
       {"<c r=\"@\" s=\"1\"><v>45000.5</v></c>",
        "Log!B3 shows a date or a time of day (stored as 45000.5); expected a number"},
       {"<c r=\"@\" s=\"3\"><v>0.001</v></c>", "Log!B3 shows a date or a time of day"},
       {"<c r=\"@\" t=\"d\"><v>2026-01-01T00:00:00</v></c>", "Log!B3 shows a date"},
       {"<c r=\"@\"><v>1,5</v></c>", "Log!B3 is '1,5', which is not a finite number"},
       {"<c r=\"@\"><v>1e999</v></c>", "Log!B3 is '1e999', which is not a finite number"},
-      {"", "Log!B3 is empty, but rows follow or other columns go on; expected a number"},
+      {"", "Log!B3 is empty, but rows follow or other columns continue; expected a number"},
       {"<c r=\"@\" s=\"1\"/>", "Log!B3 is empty"},
-      {"<c r=\"@\" t=\"s\"><v>7</v></c>", "Log!B3 refers to a text that the workbook lacks"},
+      {"<c r=\"@\" t=\"s\"><v>7</v></c>", "Log!B3 refers to text that the workbook lacks"},
       {"<c r=\"A3\"><v>1</v></c>", "Log!"},
       {"<c r=\"@\" t=\"inlineStr\"><is><t>1.5</t></is></c>", "Log!B3 is the text '1.5'"}};
   for (const Case& each : cases) {
@@ -245,7 +246,7 @@ TEST_CASE("load_xlsx: rows and cells out of order are refused", "[datasets]") {
   CHECK_THAT(refusal(row(2, "<c r=\"A3\"><v>0</v></c><c r=\"B3\"><v>1</v></c>")),
              Contains("out of order"));
   CHECK_THAT(refusal(second + "<c><v>1</v></c>"), Contains("out of order"));
-  CHECK_THAT(refusal(second + "<x:row xmlns:x=\"urn:x\"/>"), Contains("of no known kind"));
+  CHECK_THAT(refusal(second + "<x:row xmlns:x=\"urn:x\"/>"), Contains("of an unknown type"));
 }
 
 TEST_CASE("load_xlsx: columns beyond Z", "[datasets]") {
