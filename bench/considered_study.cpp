@@ -492,9 +492,9 @@ std::vector<SizedRow> sized_rows() {
   return all;
 }
 
-/// Returns a row with the size of an effect. If the effect cannot be found at ten times its
-/// plausible size because it acts like a change in an estimate, as a hose does, the size is a
-/// multiple of the plausible one.
+/// Returns a row with the size of an effect: a multiple of its detectable size. Some effects, such
+/// as the volume of a hose, are absorbed by an estimate and stay undetected at ten times their
+/// plausible size. Their size is a multiple of the plausible one.
 Row with_size(const SizedRow& row, int repeats) {
   constexpr double kNeverFound = 10.0;
   const ForeignEffect& effect = *row.effect;

@@ -45,10 +45,11 @@ struct ForeignRig {
   double reference_lag_s = 0.0;       ///< lag of a filter in front of the controller
   double quantum_m = 0.0;  ///< resolution of the converter; the noise includes its quantisation
 
-  double area_error = 0.0;         ///< relative error in the piston area that the user knows
-  double return_pa = 0.0;          ///< pressure in the return line
-  double back_pressure = 0.0;      ///< fraction of the supply lost at full flow, by its square
-  double oil_stiffening = 0.0;     ///< relative rise of the bulk modulus at a load of the supply
+  double area_error = 0.0;  ///< true over stated piston area, minus 1
+  double return_pa = 0.0;   ///< pressure in the return line
+  double back_pressure =
+      0.0;  ///< fraction of the supply lost at full flow; rises with the flow squared
+  double oil_stiffening = 0.0;     ///< relative rise of the bulk modulus at supply pressure
   double valve_curve = 0.0;        ///< relative rise of the valve's gain at full command
   double underlap_v = 0.0;         ///< half-width of the range in which the valve's gain is double
   double slew_v_per_s = 0.0;       ///< largest rate of the spool signal; 0: none
@@ -60,7 +61,7 @@ struct ForeignRig {
   double leak_power = 0.0;         ///< added to the leak's exponent of 0.5
   double sided_friction_n = 0.0;   ///< friction outwards only
   double travel_friction_n = 0.0;  ///< friction at one end; none at the other
-  double late_friction_n = 0.0;    ///< friction from midway through a record on
+  double late_friction_n = 0.0;    ///< friction in the second half of a record
   double fading_friction_n = 0.0;  ///< friction at the start of a record; decays in 0.3 s
   double constant_force_n = 0.0, spring_n_per_m = 0.0;
   double loose_mass = 0.0;        ///< fraction of the mass that hangs on a spring of 80 Hz
@@ -70,8 +71,8 @@ struct ForeignRig {
   double sensor_drift_m = 0.0;    ///< drift of the reading over a record
   double sensor_jump_m = 0.0;     ///< jump of the reading midway through a record
   double clock_error = 0.0;       ///< relative error of the time stamps
-  double filter_error = 0.0;      ///< relative error in the derivative filter that the user knows
-  double limit_error = 0.0;       ///< relative error in the output limit that the user knows
+  double filter_error = 0.0;      ///< true over stated derivative filter, minus 1
+  double limit_error = 0.0;       ///< true over stated output limit, minus 1
   double reference_gain = 0.0;    ///< relative error of the reference
   double reference_step_m = 0.0;  ///< resolution of the reference
   double start_m = 0.0;           ///< position at the start of a record
