@@ -112,8 +112,8 @@ TEST_CASE("hostile files: a result that exhausts stack, memory or time is refuse
     std::string content, place, word;
   };
   const std::vector<Case> cases{
-      {"{\"schema\": " + nested + "}", "bad/fit.json:1:75: ", "more than 64 brackets"},
-      {replaced(whole, "\"converged\"", nested), "bad/fit.json:2:", "more than 64 brackets"},
+      {"{\"schema\": " + nested + "}", "bad/fit.json:1:75: ", "more than 64 deep"},
+      {replaced(whole, "\"converged\"", nested), "bad/fit.json:2:", "more than 64 deep"},
       {keys, "bad/fit.json:", "keys"},
       {replaced(whole, "\"cost\": " + cost, "\"cost\": 1e999"), "bad/fit.json:", "1e999"},
       {replaced(whole, "\"cost\": " + cost, "\"cost\": nan"), "bad/fit.json:", "not JSON"},

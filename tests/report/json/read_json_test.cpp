@@ -67,7 +67,8 @@ TEST_CASE("read_json: each limit, kept and broken by one", "[report]") {
   JsonLimits limits;
   limits.depth = 3;
   CHECK_NOTHROW(parsed_as(brackets(3), limits));
-  CHECK_THROWS_WITH(parsed_as(brackets(4), limits), Contains("f.json:1:4: more than 3 brackets"));
+  CHECK_THROWS_WITH(parsed_as(brackets(4), limits),
+                    Contains("f.json:1:4: brackets nested more than 3 deep"));
   limits = {};
   limits.values = 4;
   CHECK_NOTHROW(parsed_as("[1, 2, 3]", limits));

@@ -332,7 +332,7 @@ TEST_CASE("load_hdf5: 12 million numbers of one file, those of other columns cou
   CHECK(most.back().back() == 0.5 * 99'999);
   columns.emplace_back("/x");
   CHECK_THAT(read_refusal(path, columns),
-             Contains("'/x@dt' counts 100000 samples, more than 12000000 numbers in all"));
+             Contains("'/x@dt' has 100000 samples, more than 12000000 numbers in all"));
   columns.assign(121, "/x");
   CHECK_THAT(read_refusal(path, columns),
              Contains("'/x' has 100000 rows; with the 12000000 numbers of other columns"));
