@@ -70,7 +70,7 @@ void run_requested_steps(const Problem& problem, const Campaign& campaign,
     if (budget.spent() && !fit.stopped_in) fit.stopped_in = stage;
   };
   if (options.bootstrap > 0) {
-    bootstrap(problem, solved.optimum, solved.spread, fit.conditions, options, fit, budget);
+    bootstrap(problem, solved.optimum, solved.uncertainty, fit.conditions, options, fit, budget);
     note(StoppedIn::bootstrap);
   }
   if (options.profiles) {
@@ -78,8 +78,8 @@ void run_requested_steps(const Problem& problem, const Campaign& campaign,
     note(StoppedIn::profiles);
   }
   if (options.posterior > 0) {
-    sample_posterior(problem, solved.optimum, solved.spread, effects ? &*effects : nullptr, options,
-                     fit, budget);
+    sample_posterior(problem, solved.optimum, solved.uncertainty, effects ? &*effects : nullptr,
+                     options, fit, budget);
     note(StoppedIn::posterior);
   }
   // The records do not bound these unknowns; only the smoothing of the square roots would.
@@ -87,8 +87,9 @@ void run_requested_steps(const Problem& problem, const Campaign& campaign,
     fit.parameters[j].bootstrap.reset();
     fit.parameters[j].profile.reset();
   }
-  const std::string compared = compare_intervals(problem, fit.parameters, solved.spread.known.names,
-                                                 fit.lack_of_fit->misfit.value_or(false));
+  const std::string compared =
+      compare_intervals(problem, fit.parameters, solved.uncertainty.known.names,
+                        fit.lack_of_fit->misfit.value_or(false));
   if (!compared.empty()) fit.interval_advice += "; " + compared;
   if (options.cross_validate) {
     fit.cross_validation = cross_validate(campaign, records, fit, options, budget);
@@ -117,10 +118,10 @@ std::vector<std::string> dates_of(const std::vector<const Condition*>& condition
 }
 
 /// Returns the effects that a fit considered in addition to its estimates.
-EffectSpread effects_beside(const Fit& fit, const EstimateSpread& spread) {
+EffectCovariance effects_beside(const Fit& fit, const EstimateCovariance& covariance) {
   if (!fit.considered) return {};
   std::vector<const Budget95*> budgets;
-  for (const EstimateSpread::Estimate& each : spread.estimates) {
+  for (const EstimateCovariance::Estimate& each : covariance.estimates) {
     const auto found =
         std::find_if(fit.parameters.begin(), fit.parameters.end(), [&](const auto& parameter) {
           return parameter.fitted && parameter.matches(each.index, each.scope, each.level);
@@ -128,17 +129,17 @@ EffectSpread effects_beside(const Fit& fit, const EstimateSpread& spread) {
     const bool known = found != fit.parameters.end() && found->budget.has_value();
     budgets.push_back(known ? &*found->budget : nullptr);
   }
-  return effect_spread(*fit.considered, budgets);
+  return effect_covariance(*fit.considered, budgets);
 }
 
 /// Scores conditions at known values. Nuisance parameters are estimated again.
 ///
 /// @param late    ends the simulations that give the scores
-/// @param spread  covariance of the values for prediction bands; if null, no bands are computed
+/// @param covariance  covariance of the values for prediction bands; if null, no bands are computed
 Fit score_at(const Campaign& campaign, const std::vector<Record>& records,
              const std::vector<const Condition*>& conditions,
              const std::vector<FittedValue>* values, const FitOptions& options, Budget& budget,
-             const LateFlag& late, const EstimateSpread* spread) {
+             const LateFlag& late, const EstimateCovariance* covariance) {
   Fit fit;
   warn_of_start(campaign, conditions, records, fit);
   Problem problem = make_problem(campaign, records, conditions, true, values);
@@ -169,12 +170,12 @@ Fit score_at(const Campaign& campaign, const std::vector<Record>& records,
     fit.conditions = unscored_conditions(problem, fit.message);
     return fit;
   }
-  const EffectSpread effects = spread != nullptr ? spread->effects : EffectSpread{};
+  const EffectCovariance effects = covariance != nullptr ? covariance->effects : EffectCovariance{};
   fit.conditions = score_conditions(problem, z, options.threads, effects);
-  if (spread != nullptr) {
+  if (covariance != nullptr) {
     const auto changes = predicted_changes(problem, z, effects, options.threads, options.cancel);
-    add_prediction_sd(problem, z, *spread, changes, options.threads, fit.conditions);
-    test_predictions(problem, spread->dates, fit.conditions);
+    add_prediction_sd(problem, z, *covariance, changes, options.threads, fit.conditions);
+    test_predictions(problem, covariance->dates, fit.conditions);
   }
   if (is_raised(late.flag())) {
     fit.status = FitStatus::stopped;
@@ -262,20 +263,21 @@ Fit fit(const Campaign& campaign, const std::vector<Record>& records, const FitO
   if (solved.optimum.ok) {
     std::optional<EffectLikelihood> effects;  // large, and only the posterior needs it
     if (result.status == FitStatus::converged && options.consider) {
-      consider_effects(problem, solved.optimum.z, solved.spread, options.threads, options.cancel,
-                       result, options.posterior > 0 ? &effects : nullptr);
+      consider_effects(problem, solved.optimum.z, solved.uncertainty, options.threads,
+                       options.cancel, result, options.posterior > 0 ? &effects : nullptr);
     }
-    solved.spread.scores = {};
-    std::optional<EstimateSpread> spread;
+    solved.uncertainty.scores = {};
+    std::optional<EstimateCovariance> covariance;
     if (result.status == FitStatus::converged) {
-      spread = estimate_spread(problem, solved.optimum.z, solved.spread);
-      spread->effects = effects_beside(result, *spread);
-      spread->dates = dates_of(fitted);
+      covariance = estimate_covariance(problem, solved.optimum.z, solved.uncertainty);
+      covariance->effects = effects_beside(result, *covariance);
+      covariance->dates = dates_of(fitted);
     }
     result.conditions = score_conditions(problem, solved.optimum.z, options.threads,
-                                         spread ? spread->effects : EffectSpread{});
-    if (spread) {
-      add_prediction_sd(problem, solved.optimum.z, *spread, {}, options.threads, result.conditions);
+                                         covariance ? covariance->effects : EffectCovariance{});
+    if (covariance) {
+      add_prediction_sd(problem, solved.optimum.z, *covariance, {}, options.threads,
+                        result.conditions);
     }
     const bool unscored = is_raised(late.flag());
     // Conditions are scored before the steps that may take hours, so that stopping those does not
@@ -286,7 +288,7 @@ Fit fit(const Campaign& campaign, const std::vector<Record>& records, const FitO
       FitOptions quiet = options;
       quiet.progress = nullptr;
       validation = score_at(campaign, records, validated, &values, quiet, budget, late,
-                            spread ? &*spread : nullptr);
+                            covariance ? &*covariance : nullptr);
     }
     if (result.considered && validation && validation->status == FitStatus::converged) {
       repeat_on_validation(make_problem(campaign, records, validated, false, nullptr),
@@ -329,7 +331,7 @@ Fit validate(const Campaign& campaign, const std::vector<Record>& records,
   Budget budget = budget_of(campaign, options, began);
   const LateFlag late(options.cancel);
   Fit result = score_at(campaign, records, conditions, values, options, budget, late,
-                        origin != nullptr && origin->spread ? &*origin->spread : nullptr);
+                        origin != nullptr && origin->covariance ? &*origin->covariance : nullptr);
   finish(campaign, records, began, origin, result);
   return result;
 }

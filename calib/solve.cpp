@@ -79,15 +79,15 @@ Solved solve_problem(Problem& problem, Evaluator& evaluator, const FitOptions& o
   }
   give_freed_memory_back();  // the next steps allocate blocks of other sizes
   const bool awaited = found.result.status == FitStatus::stopped && evaluator.budget().cancelled();
-  Uncertainty spread = uncertainty(problem, found.optimum, std::move(rows), options.threads,
+  Uncertainty errors = uncertainty(problem, found.optimum, std::move(rows), options.threads,
                                    awaited ? Detail::plain : Detail::full);
   note_interruption(problem, fit);
   auto open =
-      describe_findings(problem, found.optimum, found.result.check, spread, options.threads, fit);
+      describe_findings(problem, found.optimum, found.result.check, errors, options.threads, fit);
   const bool stopped = fit.status == FitStatus::stopped;
   note_interruption(problem, fit);
   if (fit.status == FitStatus::stopped && !stopped) withhold_grades(fit.parameters);
-  return {std::move(found.optimum), std::move(spread), std::move(open)};
+  return {std::move(found.optimum), std::move(errors), std::move(open)};
 }
 
 Solved solve_from_starts(Problem& problem, Evaluator& evaluator, const FitOptions& options,

@@ -12,7 +12,7 @@ namespace rigcal::calib {
 /// Results of a solved fit that later steps need. If the fit found no optimum, `optimum` is not ok.
 struct Solved {
   Evaluation optimum;
-  Uncertainty spread;
+  Uncertainty uncertainty;
   std::vector<std::size_t> open;  ///< unknowns that a scaling symmetry leaves undetermined
 };
 

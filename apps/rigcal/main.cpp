@@ -36,7 +36,7 @@ struct VerbRow {
   const char* name;
   const char* summary;
   Run (*add)(CLI::App&);
-  bool spreads = false;  ///< whether the verb uses all processes that were started together
+  bool uses_processes = false;  ///< whether the verb uses all processes that were started together
 };
 
 constexpr std::array kVerbs{
@@ -136,7 +136,7 @@ bool print_manual(const CLI::App& app, const std::vector<std::string>& arguments
 /// Runs the work of a process other than the first. The first process meets the same errors and
 /// reports them.
 ExitCode help(const VerbRow& row, const Run& action, const Invocation& invocation) {
-  if (!row.spreads) return ExitCode::done;
+  if (!row.uses_processes) return ExitCode::done;
   try {
     return action(invocation);
   } catch (const rigcal::FarmEnded&) {

@@ -165,25 +165,25 @@ ScoreCovariance covariance_of(const Problem& problem, std::span<const double> z,
   if (determined == 0) return {none, VectorXd::Zero(count), VectorXd::Ones(count)};
   MatrixXd combinations(determined + count, determined);
   combinations << MatrixXd::Identity(determined, determined), seen.left * seen.basis;
-  const auto scatter = score_scatter(seen.rows, none, combinations, threads);
+  const auto scatter = score_contributions(seen.rows, none, combinations, threads);
   const auto repeats = scores_of_repeats(problem, z, seen.rows, threads);
   ScoreCovariance result;
   result.directions = none;
-  for (const ScoreScatter& each : scatter) result.directions += each.covariance;
+  for (const ScoreContribution& each : scatter) result.directions += each.covariance;
   result.alone.resize(count);
   result.freedom.resize(count);
   VectorXd widened = VectorXd::Ones(determined);
   for (Index j = 0; j < determined + count; ++j) {
     const RobustVariance robust = robust_variance(scatter, none, combinations, j);
-    const RepeatVariance spread = repeat_variance(repeats, scatter, none, combinations, j);
-    const bool repeated = spread.freedom > 0.0 && robust.variance > 0.0 &&
-                          spread.variance > robust.variance && rests_on_repeats(spread, robust);
+    const RepeatVariance between = repeat_variance(repeats, scatter, none, combinations, j);
+    const bool repeated = between.freedom > 0.0 && robust.variance > 0.0 &&
+                          between.variance > robust.variance && rests_on_repeats(between, robust);
     if (j < determined) {
-      if (repeated) widened(j) = std::sqrt(spread.variance / robust.variance);
+      if (repeated) widened(j) = std::sqrt(between.variance / robust.variance);
     } else {
-      result.alone(j - determined) = repeated ? spread.variance : robust.variance;
+      result.alone(j - determined) = repeated ? between.variance : robust.variance;
       result.freedom(j - determined) =
-          std::clamp(repeated ? spread.freedom : robust.freedom, 1.0, metrics::kManyDegrees);
+          std::clamp(repeated ? between.freedom : robust.freedom, 1.0, metrics::kManyDegrees);
     }
   }
   result.directions = widened.asDiagonal() * result.directions * widened.asDiagonal();

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "calib/problem/problem.hpp"
-#include "calib/result/estimate_spread.hpp"
+#include "calib/result/estimate_covariance.hpp"
 #include "calib/result/fit_result.hpp"
 #include "calib/trust/uncertainty.hpp"
 

@@ -8,7 +8,7 @@
 namespace rigcal::calib {
 namespace {
 
-std::size_t place_of(const EffectSpread& effects, const std::string& key) {
+std::size_t place_of(const EffectCovariance& effects, const std::string& key) {
   return static_cast<std::size_t>(std::find(effects.keys.begin(), effects.keys.end(), key) -
                                   effects.keys.begin());
 }
@@ -27,7 +27,7 @@ std::vector<double> rate(std::span<const double> x, std::span<const double> time
 }  // namespace
 
 std::vector<Effect> considered_in(const Problem& problem, std::span<const double> z,
-                                  const EffectSpread& effects) {
+                                  const EffectCovariance& effects) {
   if (effects.empty()) return {};
   std::vector<Effect> acting = effects_of(problem, z);
   std::erase_if(acting, [&](const Effect& each) {
@@ -42,7 +42,7 @@ std::vector<Effect> considered_in(const Problem& problem, std::span<const double
 
 EffectChanges changes_by(const Problem& problem, std::size_t condition,
                          const model::ParameterValues& values, const std::vector<Effect>& acting,
-                         const EffectSpread& effects, const std::atomic<bool>* cancel,
+                         const EffectCovariance& effects, const std::atomic<bool>* cancel,
                          std::span<const model::Output> further) {
   const std::span<const double> times_s = problem.conditions[condition].record->time_s;
   const auto found = effect_changes(problem, condition, values, times_s, acting, cancel, further);
@@ -59,7 +59,7 @@ EffectChanges changes_by(const Problem& problem, std::size_t condition,
 }
 
 std::vector<EffectChanges> predicted_changes(const Problem& problem, std::span<const double> z,
-                                             const EffectSpread& effects, int threads,
+                                             const EffectCovariance& effects, int threads,
                                              const std::atomic<bool>* cancel) {
   if (effects.empty()) return {};
   const std::vector<Effect> acting = considered_in(problem, z, effects);
@@ -73,7 +73,7 @@ std::vector<EffectChanges> predicted_changes(const Problem& problem, std::span<c
 
 std::vector<SensorChange> sensor_changes(datasets::Channel channel,
                                          const std::vector<Effect>& acting,
-                                         const EffectSpread& effects,
+                                         const EffectCovariance& effects,
                                          std::span<const double> simulated,
                                          std::span<const double> time_s) {
   std::vector<SensorChange> result;

@@ -7,7 +7,7 @@
 
 #include "calib/consider/catalogue.hpp"
 #include "calib/problem/problem.hpp"
-#include "calib/result/estimate_spread.hpp"
+#include "calib/result/estimate_covariance.hpp"
 #include "calib/trust/prediction_band.hpp"
 
 namespace rigcal::calib {
@@ -15,7 +15,7 @@ namespace rigcal::calib {
 /// Selects, from the effects considered in a fit, those that may act in a problem. The secants of
 /// curved effects are computed at the sizes that follow from prior and records.
 std::vector<Effect> considered_in(const Problem& problem, std::span<const double> z,
-                                  const EffectSpread& effects);
+                                  const EffectCovariance& effects);
 
 /// Returns the changes in the outputs of one condition due to the effects considered in a fit, at
 /// any parameter values. An effect that does not act in the condition has a column of zeros.
@@ -24,12 +24,12 @@ std::vector<Effect> considered_in(const Problem& problem, std::span<const double
 /// @param further  outputs to append after the channels
 EffectChanges changes_by(const Problem& problem, std::size_t condition,
                          const model::ParameterValues& values, const std::vector<Effect>& acting,
-                         const EffectSpread& effects, const std::atomic<bool>* cancel,
+                         const EffectCovariance& effects, const std::atomic<bool>* cancel,
                          std::span<const model::Output> further = {});
 
 /// Returns changes_by() for each condition that is predicted; empty for conditions with use `fit`.
 std::vector<EffectChanges> predicted_changes(const Problem& problem, std::span<const double> z,
-                                             const EffectSpread& effects, int threads,
+                                             const EffectCovariance& effects, int threads,
                                              const std::atomic<bool>* cancel);
 
 /// Change in the readings of one channel due to an effect of its sensor.
@@ -46,7 +46,7 @@ struct SensorChange {
 /// @param simulated  simulated values of the channel at `time_s`
 std::vector<SensorChange> sensor_changes(datasets::Channel channel,
                                          const std::vector<Effect>& acting,
-                                         const EffectSpread& effects,
+                                         const EffectCovariance& effects,
                                          std::span<const double> simulated,
                                          std::span<const double> time_s);
 

@@ -47,9 +47,10 @@ MatrixXd dense_root(const ArrowRoot& root, std::size_t conditions) {
 /// Returns S in the directions of the root. It is the covariance of the score estimated from the
 /// residuals, or that for white noise, scaled so that each unknown has the error reported by the
 /// fit.
-MatrixXd score_covariance(const Problem& problem, const Evaluation& optimum,
-                          const Uncertainty& found, const std::vector<FittedParameter>& parameters,
-                          const MatrixXd& root, const VectorXd& prior_row) {
+MatrixXd score_contributions(const Problem& problem, const Evaluation& optimum,
+                             const Uncertainty& found,
+                             const std::vector<FittedParameter>& parameters, const MatrixXd& root,
+                             const VectorXd& prior_row) {
   const Index directions = root.cols();
   const bool robust =
       !found.scatter.empty() &&
@@ -115,7 +116,8 @@ PosteriorDensity::PosteriorDensity(const Problem& problem, const Evaluation& opt
     prior_row_(j) =
         problem.map.prior_slope(static_cast<int>(j), optimum.z[static_cast<std::size_t>(j)]);
 
-  const MatrixXd scores = score_covariance(problem, optimum, found, parameters, root_, prior_row_);
+  const MatrixXd scores =
+      score_contributions(problem, optimum, found, parameters, root_, prior_row_);
   const Index directions = root_.cols();
   kappa_ = std::max({1.0, found.reduced_chi_square,
                      directions > 0 ? scores.trace() / static_cast<double>(directions) : 1.0});

@@ -8,7 +8,7 @@
 
 #include "calib/posterior/nuts.hpp"
 #include "calib/problem/evaluation.hpp"
-#include "calib/result/estimate_spread.hpp"
+#include "calib/result/estimate_covariance.hpp"
 #include "calib/result/fitted_parameter.hpp"
 #include "calib/trust/uncertainty.hpp"
 

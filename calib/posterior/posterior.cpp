@@ -138,21 +138,21 @@ Chains chains_of(const Positions& positions, const Value& value) {
   return chains;
 }
 
-PosteriorSpread spread_of(const Chains& chains) {
+PosteriorSpread statistics_of(const Chains& chains) {
   std::vector<double> all;
   for (const auto& chain : chains) all.insert(all.end(), chain.begin(), chain.end());
   double mean = 0.0;
   for (const double value : all) mean += value / static_cast<double>(all.size());
   double squares = 0.0;
   for (const double value : all) squares += (value - mean) * (value - mean);
-  PosteriorSpread spread;
-  spread.median = quantile_of(all, 0.5);
-  spread.sd = std::sqrt(squares / static_cast<double>(all.size() - 1));
-  spread.ci95 = {quantile_of(all, 0.025), quantile_of(all, 0.975)};
-  spread.r_hat = split_r_hat(chains);
-  spread.bulk_draws = bulk_effective_draws(chains);
-  spread.tail_draws = tail_effective_draws(chains);
-  return spread;
+  PosteriorSpread statistics;
+  statistics.median = quantile_of(all, 0.5);
+  statistics.sd = std::sqrt(squares / static_cast<double>(all.size() - 1));
+  statistics.ci95 = {quantile_of(all, 0.025), quantile_of(all, 0.975)};
+  statistics.r_hat = split_r_hat(chains);
+  statistics.bulk_draws = bulk_effective_draws(chains);
+  statistics.tail_draws = tail_effective_draws(chains);
+  return statistics;
 }
 
 /// Returns the draws that are shown in pair plots: at most kMostPairDraws draws of at most
@@ -345,13 +345,14 @@ void sample_posterior(const Problem& problem, const Evaluation& optimum, const U
   result.least_draws = HUGE_VAL;
   const auto unknowns = static_cast<Index>(result.names.size());
   const auto judged = [&result](const Chains& draws, const std::string& name) {
-    const PosteriorSpread spread = spread_of(draws);
-    result.least_draws = std::min({result.least_draws, spread.bulk_draws, spread.tail_draws});
-    if (!(spread.r_hat <= result.r_hat)) {
-      result.r_hat = spread.r_hat;
+    const PosteriorSpread statistics = statistics_of(draws);
+    result.least_draws =
+        std::min({result.least_draws, statistics.bulk_draws, statistics.tail_draws});
+    if (!(statistics.r_hat <= result.r_hat)) {
+      result.r_hat = statistics.r_hat;
       result.worst = name;
     }
-    return spread;
+    return statistics;
   };
   for (std::size_t j = 0; j < result.names.size(); ++j) {
     const Chains of_unknown = chains_of(positions, [&](const VectorXd& y) {

@@ -133,7 +133,9 @@ ArrowRoot ArrowSvd::root_with(const std::optional<double>& floor, double factor)
 
 ArrowRoot ArrowSvd::root() const { return root_with(std::nullopt, 1.0); }
 
-ArrowRoot ArrowSvd::spread(double factor, double least) const { return root_with(least, factor); }
+ArrowRoot ArrowSvd::covariance_root(double factor, double least) const {
+  return root_with(least, factor);
+}
 
 ArrowSvd::Direction ArrowSvd::shared_direction(Index k) const {
   Direction result;

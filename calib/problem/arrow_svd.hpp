@@ -28,7 +28,7 @@ class ArrowSvd {
   ArrowRoot root() const;
   /// S such that S S^T = factor^2 (J^T J)^-1 in all directions. Singular values below `least` are
   /// raised to `least`. Undetermined directions come last among the own and among the shared ones.
-  ArrowRoot spread(double factor, double least) const;
+  ArrowRoot covariance_root(double factor, double least) const;
   /// 1 / length of the column of each unknown, or 0 for a column of zeros.
   const Eigen::VectorXd& inverse_lengths() const { return inverse_lengths_; }
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "calib/result/aspect.hpp"
-#include "calib/result/estimate_spread.hpp"
+#include "calib/result/estimate_covariance.hpp"
 
 namespace rigcal::calib {
 
@@ -14,7 +14,7 @@ struct Origin {
   std::set<std::string> estimated_from;  ///< conditions whose records the fit used
   Aspect parameters;                     ///< how that fit judged its parameters
   /// Covariance of the values; absent if that fit did not converge.
-  std::optional<EstimateSpread> spread;
+  std::optional<EstimateCovariance> covariance;
 };
 
 }  // namespace rigcal::calib

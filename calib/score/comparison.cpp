@@ -95,10 +95,10 @@ void judge_together(const std::vector<EstimateDifference*>& differences) {
   }
 }
 
-double variance_by_effects(const EffectSpread& first, const EffectSpread& other) {
+double variance_by_effects(const EffectCovariance& first, const EffectCovariance& other) {
   // Per unit of an effect, the difference changes by the move of one estimate minus that of the
   // other.
-  const auto variance_by = [](const EffectSpread& own, const EffectSpread& beside) {
+  const auto variance_by = [](const EffectCovariance& own, const EffectCovariance& beside) {
     Eigen::RowVectorXd moves = own.moves.row(0);
     for (std::size_t e = 0; e < own.keys.size(); ++e) {
       const auto place = std::find(beside.keys.begin(), beside.keys.end(), own.keys[e]);

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "calib/result/estimate_spread.hpp"
+#include "calib/result/estimate_covariance.hpp"
 #include "calib/result/fitted_parameter.hpp"
 #include "common/describe.hpp"
 #include "metrics/significance.hpp"
@@ -75,7 +75,7 @@ void judge_together(const std::vector<EstimateDifference*>& differences);
 /// the effect sizes in either result.
 ///
 /// @param first, other each must have exactly one estimate
-double variance_by_effects(const EffectSpread& first, const EffectSpread& other);
+double variance_by_effects(const EffectCovariance& first, const EffectCovariance& other);
 
 /// Adds the error due to day-to-day differences to the error of an estimate.
 metrics::EstimateError with_days(const metrics::EstimateError& own,

@@ -141,7 +141,7 @@ Keyed<Budget95> budgets_of(datasets::Channel channel, const metrics::MeasuredMea
 
 /// Effects that a fit considered, and those of them that act in a problem.
 struct ScoredEffects {
-  const EffectSpread& spread;
+  const EffectCovariance& covariance;
   std::vector<Effect> acting;
 };
 
@@ -156,7 +156,7 @@ ChannelScore score_channel(const datasets::Campaign& campaign, const ProblemCond
     std::vector<double> times_s;
     for (const std::size_t row : condition.rows) times_s.push_back(condition.record->time_s[row]);
     const std::vector<SensorChange> changes =
-        sensor_changes(channel.channel, effects.acting, effects.spread, simulated, times_s);
+        sensor_changes(channel.channel, effects.acting, effects.covariance, simulated, times_s);
     for (const SensorChange& each : changes) mean.changes.push_back(each.change);
     if (const auto found = metrics::agreement_uncertainty(mean, simulated)) {
       score.expanded_uncertainty = found->one_sided;
@@ -257,7 +257,7 @@ bool is_plausible(const ProblemCondition& condition, std::span<const double> exp
 }  // namespace
 
 std::vector<ConditionScore> score_conditions(const Problem& problem, std::span<const double> z,
-                                             int threads, const EffectSpread& effects) {
+                                             int threads, const EffectCovariance& effects) {
   const ScoredEffects scored{effects, considered_in(problem, z, effects)};
   std::vector<ConditionScore> scores(problem.conditions.size());
   parallel_for(scores.size(), threads,

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "calib/problem/problem.hpp"
-#include "calib/result/estimate_spread.hpp"
+#include "calib/result/estimate_covariance.hpp"
 #include "calib/result/fit_result.hpp"
 
 namespace rigcal::calib {
@@ -18,7 +18,7 @@ namespace rigcal::calib {
 /// @return         one score per condition, in order; it contains the reason if the condition
 ///                 cannot be simulated, or if the problem's flag ended the job before
 std::vector<ConditionScore> score_conditions(const Problem& problem, std::span<const double> z,
-                                             int threads, const EffectSpread& effects = {});
+                                             int threads, const EffectCovariance& effects = {});
 
 /// Repeats the residual tests of predictions without the component that the uncertainty of the
 /// estimates explains (ConditionScore::explained). Even if the model is correct, inexact estimates

@@ -50,15 +50,15 @@ double uniform(boost::random::mt19937_64& random) {
 std::vector<std::vector<double>> start_points(const Problem& problem, int count,
                                               std::uint64_t seed) {
   const auto& unknowns = problem.map.unknowns();
-  std::vector<std::size_t> spread;
+  std::vector<std::size_t> varied;
   for (std::size_t j = 0; j < unknowns.size(); ++j) {
-    if (!unknowns[j].nuisance) spread.push_back(j);
+    if (!unknowns[j].nuisance) varied.push_back(j);
   }
   std::vector<std::vector<double>> points{problem.start()};
   const auto others = static_cast<std::size_t>(count - 1);
-  for (const auto& sample : latin_hypercube(others, spread.size(), seed)) {
+  for (const auto& sample : latin_hypercube(others, varied.size(), seed)) {
     points.push_back(points.front());
-    for (std::size_t k = 0; k < spread.size(); ++k) points.back()[spread[k]] = sample[k];
+    for (std::size_t k = 0; k < varied.size(); ++k) points.back()[varied[k]] = sample[k];
   }
   return points;
 }
@@ -296,9 +296,9 @@ MultiStart multi_start(const Problem& problem, Evaluator& evaluator, const FitOp
   if (options.resume != nullptr) result = resumed(problem, evaluator, options);
   const auto points = start_points(problem, options.starts, options.seed);
   // With a limit on evaluations, the starts must run one after the other.
-  const bool spread = options.farm != nullptr && options.farm->processes() > 1 &&
-                      points.size() > 1 && !options.max_evaluations;
-  if (spread) {
+  const bool in_farm = options.farm != nullptr && options.farm->processes() > 1 &&
+                       points.size() > 1 && !options.max_evaluations;
+  if (in_farm) {
     make_in_farm(problem, evaluator, options, points, *options.farm, result);
   } else {
     make_in_turn(problem, evaluator, options, points, result);

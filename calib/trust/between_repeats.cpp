@@ -208,8 +208,9 @@ MatrixXd repeat_scores(const MatrixXd& jacobian, const MatrixXd& deviations) {
 }
 
 RepeatVariance repeat_variance(const std::vector<MatrixXd>& scores,
-                               const std::vector<ScoreScatter>& scatter, const ArrowMatrix& priors,
-                               const ArrowRoot& combinations, Index unknown) {
+                               const std::vector<ScoreContribution>& scatter,
+                               const ArrowMatrix& priors, const ArrowRoot& combinations,
+                               Index unknown) {
   double variance = combinations.quadratic(unknown, priors);
   double squares = 0.0;
   bool any = false;

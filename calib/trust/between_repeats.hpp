@@ -78,8 +78,9 @@ struct RepeatVariance {
 ///
 /// The degrees of freedom are zero if no condition has single repeats.
 RepeatVariance repeat_variance(const std::vector<Eigen::MatrixXd>& scores,
-                               const std::vector<ScoreScatter>& scatter, const ArrowMatrix& priors,
-                               const ArrowRoot& combinations, Eigen::Index unknown);
+                               const std::vector<ScoreContribution>& scatter,
+                               const ArrowMatrix& priors, const ArrowRoot& combinations,
+                               Eigen::Index unknown);
 
 /// Returns true if repeats differ so much more than the residuals predict that the interval must be
 /// based on the repeats, that is, if the F ratio of the two variances is in its upper quartile.
@@ -106,7 +107,7 @@ struct LikelyDifference {
 /// the repeats over all conditions. Returns std::nullopt if no cause explains four fifths of them.
 /// This does not prove the cause, because another one may have the same effect.
 ///
-/// @param rows    as for score_scatter(), for all conditions
+/// @param rows    as for score_contributions(), for all conditions
 /// @param scores  from repeat_scores(), for all conditions
 std::optional<LikelyDifference> likely_difference(CauseEffects& effects,
                                                   const std::vector<ScoreRows>& rows,

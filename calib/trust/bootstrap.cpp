@@ -65,7 +65,7 @@ Source repeats_of(const ProblemCondition& condition) {
 }
 
 Source residuals_of(const ProblemCondition& condition, const ConditionScore& score,
-                    const ScoreScatter& scatter) {
+                    const ScoreContribution& scatter) {
   Source source;
   const std::size_t samples = condition.rows.size();
   for (std::size_t k = 0; k < condition.channels.size(); ++k) {

@@ -67,20 +67,20 @@ std::string text_of(const Problem& problem, std::span<const double> z, const Pow
 /// Finds the partner with which the unknown forms the most precisely known product of powers.
 ///
 /// @param to_log  d ln value / d z for each unknown, or 0 if the unknown is excluded
-std::optional<PowerLaw> best_partner(const ArrowRoot& spread, const std::vector<double>& to_log,
+std::optional<PowerLaw> best_partner(const ArrowRoot& root, const std::vector<double>& to_log,
                                      std::size_t unknown) {
   const auto j = static_cast<Eigen::Index>(unknown);
   const double own = to_log[unknown];
-  const double length = std::abs(own) * std::sqrt(spread.product(j, j));
+  const double length = std::abs(own) * std::sqrt(root.product(j, j));
   std::optional<PowerLaw> best;
   for (std::size_t k = 0; k < to_log.size(); ++k) {
     const auto partner = static_cast<Eigen::Index>(k);
     const double other = to_log[k];
-    const double square = other * other * spread.product(partner, partner);
+    const double square = other * other * root.product(partner, partner);
     if (k == unknown || !(square > 0.0)) continue;
-    const double power = simple_power(own * other * spread.product(j, partner) / square);
+    const double power = simple_power(own * other * root.product(j, partner) / square);
     const double half_width =
-        metrics::kNormal95 * std::sqrt(spread.square(j, own, partner, -power * other));
+        metrics::kNormal95 * std::sqrt(root.square(j, own, partner, -power * other));
     const bool useful = half_width < kWeak &&
                         half_width < kMuchBetter * metrics::kNormal95 * length &&
                         std::abs(power) > kLeastPower && std::abs(power) < kMostPower;
@@ -110,7 +110,7 @@ std::vector<std::string> name_combinations(const Problem& problem, std::span<con
     const bool determined =
         grade == Identifiability::identified || grade == Identifiability::bounded;
     if (to_log[j] == 0.0 || determined) continue;
-    const auto best = best_partner(found.spread, to_log, j);
+    const auto best = best_partner(found.covariance_root, to_log, j);
     if (!best) continue;
     const std::string text = text_of(problem, z, *best);
     parameters[j].reason += (parameters[j].reason.empty() ? "" : "; ") + text;

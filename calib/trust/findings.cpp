@@ -105,38 +105,38 @@ void warn_of_parameters(const Problem& problem, const std::vector<FittedParamete
 /// Computes Akaike's and Schwarz's criteria. Because the noise is known or was estimated from the
 /// residual, 2 cost equals -2 ln(likelihood) up to a constant. If the residuals are correlated,
 /// only their independent fraction counts.
-void rate_model(const Uncertainty& spread, Fit& fit) {
+void rate_model(const Uncertainty& errors, Fit& fit) {
   const double residuals = std::max(1.0, static_cast<double>(fit.residual_count));
-  const double effective = spread.scatter.empty() ? residuals : spread.independent_residuals;
+  const double effective = errors.scatter.empty() ? residuals : errors.independent_residuals;
   const double weighed = 2.0 * fit.cost * std::min(1.0, effective / residuals);
-  fit.aic = std::optional(weighed + 2.0 * spread.rank);
-  fit.bic = std::optional(weighed + spread.rank * std::log(std::max(1.0, effective)));
+  fit.aic = std::optional(weighed + 2.0 * errors.rank);
+  fit.bic = std::optional(weighed + errors.rank * std::log(std::max(1.0, effective)));
 }
 
 /// Judges, from the residuals, the noise and the intervals that are based on it.
-void judge_residuals(const Problem& problem, const OptimumCheck& check, const Uncertainty& spread,
+void judge_residuals(const Problem& problem, const OptimumCheck& check, const Uncertainty& errors,
                      Fit& fit) {
-  if (spread.independent_residuals > 0.0)
-    fit.independent_residuals = std::optional(spread.independent_residuals);
-  fit.lack_of_fit->tests = lack_of_fit(problem, spread);
+  if (errors.independent_residuals > 0.0)
+    fit.independent_residuals = std::optional(errors.independent_residuals);
+  fit.lack_of_fit->tests = lack_of_fit(problem, errors);
   fit.lack_of_fit->misfit = misfit(fit.lack_of_fit->tests);
-  fit.interval_advice = interval_advice(problem, check, spread, fit.lack_of_fit->tests);
-  fit.between_repeats = between_repeats(problem, spread);
+  fit.interval_advice = interval_advice(problem, check, errors, fit.lack_of_fit->tests);
+  fit.between_repeats = between_repeats(problem, errors);
   if (fit.between_repeats && fit.between_repeats->differ)
     fit.warnings.push_back(between_repeats_warning(*fit.between_repeats));
-  if (spread.noiseless > 0) fit.warnings.push_back(noiseless_warning(problem, spread));
-  if (!spread.known.names.empty()) {
+  if (errors.noiseless > 0) fit.warnings.push_back(noiseless_warning(problem, errors));
+  if (!errors.known.names.empty()) {
     fit.interval_advice += fmt::format("; the errors include those of known values: {}",
-                                       fmt::join(spread.known.names, ", "));
+                                       fmt::join(errors.known.names, ", "));
   }
-  if (spread.rank > 0) rate_model(spread, fit);
+  if (errors.rank > 0) rate_model(errors, fit);
 }
 
 /// Adds measures that would determine the parameters which the records leave undetermined. Only the
 /// first few parameters are treated, because each measure must be tried out. Parameters that a
 /// symmetry leaves undetermined are described separately.
 void add_remedies(const Problem& problem, const Evaluation& optimum,
-                  const std::vector<std::size_t>& symmetric, const Uncertainty& spread,
+                  const std::vector<std::size_t>& symmetric, const Uncertainty& errors,
                   std::vector<FittedParameter>& parameters) {
   constexpr int kMostTried = 4;  // each requires several simulations
   int tried = 0;
@@ -146,11 +146,11 @@ void add_remedies(const Problem& problem, const Evaluation& optimum,
     FittedParameter& each = parameters[j];
     if (each.nuisance || each.identifiability != Identifiability::not_identifiable) continue;
     if (std::find(symmetric.begin(), symmetric.end(), j) != symmetric.end()) continue;
-    if (rests_on_known(problem, spread, optimum.z, j)) {
+    if (rests_on_known(problem, errors, optimum.z, j)) {
       each.reason += fmt::format(
           "; most of that is the uncertainty of {}: made a free parameter with a prior (for a "
           "sensor: its gain or offset), the records may reduce it",
-          fmt::join(spread.known.names, ", "));
+          fmt::join(errors.known.names, ", "));
       continue;
     }
     ++tried;
@@ -165,39 +165,39 @@ void add_remedies(const Problem& problem, const Evaluation& optimum,
 ///
 /// @return  the unknowns that a scaling symmetry leaves undetermined
 std::vector<std::size_t> judge_identifiability(const Problem& problem, const Evaluation& optimum,
-                                               const Uncertainty& spread, int threads, Fit& fit) {
-  const double sigma = std::sqrt(std::max(1.0, spread.reduced_chi_square));
+                                               const Uncertainty& errors, int threads, Fit& fit) {
+  const double sigma = std::sqrt(std::max(1.0, errors.reduced_chi_square));
   const auto symmetry = scaling_symmetry(problem, optimum.z, sigma, threads);
   const std::string symmetric = symmetry ? describe(problem, *symmetry) : "";
   if (symmetry) grade_symmetric(problem, *symmetry, fit.parameters);
-  fit.combinations = name_combinations(problem, optimum.z, spread, fit.parameters);
+  fit.combinations = name_combinations(problem, optimum.z, errors, fit.parameters);
   if (!symmetric.empty()) {
     // The reasons given for the parameters already contain the other combinations.
     fit.combinations.insert(fit.combinations.begin(), symmetric);
     fit.warnings.push_back(symmetric);
   }
   const auto open = symmetry && symmetry->holds() ? symmetry->unknowns : std::vector<std::size_t>();
-  if (spread.detail == Detail::full) add_remedies(problem, optimum, open, spread, fit.parameters);
+  if (errors.detail == Detail::full) add_remedies(problem, optimum, open, errors, fit.parameters);
   return open;
 }
 
 }  // namespace
 
 std::vector<std::size_t> describe_findings(const Problem& problem, const Evaluation& optimum,
-                                           const OptimumCheck& check, const Uncertainty& spread,
+                                           const OptimumCheck& check, const Uncertainty& errors,
                                            int threads, Fit& fit) {
   fit.cost = optimum.cost;
-  fit.rank = spread.rank;
-  fit.singular_values = spread.singular_values;
-  if (spread.rank > 0) fit.reduced_chi_square = spread.reduced_chi_square;
-  fit.parameters = describe_unknowns(problem, optimum, check, spread);
-  const double variance = std::max(1.0, spread.reduced_chi_square);
+  fit.rank = errors.rank;
+  fit.singular_values = errors.singular_values;
+  if (errors.rank > 0) fit.reduced_chi_square = errors.reduced_chi_square;
+  fit.parameters = describe_unknowns(problem, optimum, check, errors);
+  const double variance = std::max(1.0, errors.reduced_chi_square);
   fit.basins = basins(fit.starts, fit.parameters, variance);
   fit.agreement = agreement_of(fit.starts, fit.basins, variance);
-  auto open = judge_identifiability(problem, optimum, spread, threads, fit);
-  judge_residuals(problem, check, spread, fit);
-  add_correlation(problem, spread, fit);
-  warn_of_noise(problem, spread, fit);
+  auto open = judge_identifiability(problem, optimum, errors, threads, fit);
+  judge_residuals(problem, check, errors, fit);
+  add_correlation(problem, errors, fit);
+  warn_of_noise(problem, errors, fit);
   if (fit.status == FitStatus::stopped) {
     withhold_grades(fit.parameters);
   } else {

@@ -14,7 +14,7 @@ namespace rigcal::calib {
 ///
 /// @return  unknowns that a scaling symmetry leaves undetermined
 std::vector<std::size_t> describe_findings(const Problem& problem, const Evaluation& optimum,
-                                           const OptimumCheck& check, const Uncertainty& spread,
+                                           const OptimumCheck& check, const Uncertainty& errors,
                                            int threads, Fit& fit);
 
 }  // namespace rigcal::calib

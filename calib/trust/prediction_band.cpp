@@ -54,12 +54,14 @@ Joint joint_of(const Uncertainty& found, int condition,
           ? Eigen::MatrixXd(root * square_root(alone ? covariance->shared : covariance->of(i)))
           : Eigen::MatrixXd(std::sqrt(std::max(1.0, found.reduced_chi_square)) * root);
   // Undetermined directions come last among the own directions and among the shared ones.
-  const Eigen::MatrixXd spread = alone ? found.spread.shared() : found.spread.rows(i);
-  const Eigen::Index own = alone ? 0 : found.spread.own_directions(i);
+  const Eigen::MatrixXd all =
+      alone ? found.covariance_root.shared() : found.covariance_root.rows(i);
+  const Eigen::Index own = alone ? 0 : found.covariance_root.own_directions(i);
   const Eigen::Index open = own - (alone ? 0 : found.root.own_directions(i));
-  const Eigen::Index open_shared = found.spread.shared().cols() - found.root.shared().cols();
-  joint.open.resize(spread.rows(), open + open_shared);
-  joint.open << spread.middleCols(own - open, open), spread.rightCols(open_shared);
+  const Eigen::Index open_shared =
+      found.covariance_root.shared().cols() - found.root.shared().cols();
+  joint.open.resize(all.rows(), open + open_shared);
+  joint.open << all.middleCols(own - open, open), all.rightCols(open_shared);
   return joint;
 }
 
@@ -87,8 +89,8 @@ double widening(const Problem& problem, std::span<const double> z, const Uncerta
 }
 
 /// Returns the square root S of the full covariance of these unknowns, SI.
-Eigen::MatrixXd spread_of(const Problem& problem, std::span<const double> z,
-                          const Uncertainty& found, const Joint& joint, double widen) {
+Eigen::MatrixXd root_of(const Problem& problem, std::span<const double> z, const Uncertainty& found,
+                        const Joint& joint, double widen) {
   const auto n = static_cast<Eigen::Index>(joint.unknowns.size());
   const Eigen::Index determined = joint.determined.cols();
   const Eigen::Index carried = found.known.names.empty() ? 0 : found.known.response.cols();
@@ -108,7 +110,7 @@ Eigen::MatrixXd spread_of(const Problem& problem, std::span<const double> z,
 /// Returns true if an estimate of the fit acts in a condition. It does not if the condition has a
 /// known value of its own.
 bool acts(const Problem& problem, const ProblemCondition& condition,
-          const EstimateSpread::Estimate& estimate) {
+          const EstimateCovariance::Estimate& estimate) {
   return !known_in(*problem.campaign, *condition.condition, estimate.index) &&
          condition.condition->is_within(estimate.scope, estimate.level);
 }
@@ -158,28 +160,28 @@ double day_distance(const datasets::Condition& condition, const std::vector<std:
 }
 
 /// Appends columns to the gradients, and the square root of their covariance to `root`.
-void append(const std::vector<Eigen::MatrixXd>& columns, const Eigen::MatrixXd& spread,
+void append(const std::vector<Eigen::MatrixXd>& columns, const Eigen::MatrixXd& added,
             std::vector<Eigen::MatrixXd>& gradients, Eigen::MatrixXd& root) {
   Eigen::MatrixXd both =
-      Eigen::MatrixXd::Zero(root.rows() + spread.rows(), root.cols() + spread.cols());
+      Eigen::MatrixXd::Zero(root.rows() + added.rows(), root.cols() + added.cols());
   both.topLeftCorner(root.rows(), root.cols()) = root;
-  both.bottomRightCorner(spread.rows(), spread.cols()) = spread;
+  both.bottomRightCorner(added.rows(), added.cols()) = added;
   root = std::move(both);
   for (std::size_t k = 0; k < gradients.size(); ++k) {
     gradients[k].conservativeResize(Eigen::NoChange, root.rows());
-    gradients[k].rightCols(spread.rows()) = columns[k];
+    gradients[k].rightCols(added.rows()) = columns[k];
   }
 }
 
 void add_to(const Problem& problem, std::size_t i, std::span<const double> z,
-            const EstimateSpread& spread, const EffectChanges& changes, ConditionScore& score) {
+            const EstimateCovariance& of_fit, const EffectChanges& changes, ConditionScore& score) {
   const ProblemCondition& condition = problem.conditions[i];
-  const auto own = std::find_if(spread.own.begin(), spread.own.end(), [&](const auto& each) {
+  const auto own = std::find_if(of_fit.own.begin(), of_fit.own.end(), [&](const auto& each) {
     return each.estimates.front().level == condition.condition->id;
   });
-  std::vector<EstimateSpread::Estimate> estimates;
-  if (own != spread.own.end()) estimates = own->estimates;
-  estimates.insert(estimates.end(), spread.estimates.begin(), spread.estimates.end());
+  std::vector<EstimateCovariance::Estimate> estimates;
+  if (own != of_fit.own.end()) estimates = own->estimates;
+  estimates.insert(estimates.end(), of_fit.estimates.begin(), of_fit.estimates.end());
   std::vector<int> free;
   std::vector<Eigen::Index> rows;
   for (std::size_t j = 0; j < estimates.size(); ++j) {
@@ -195,7 +197,7 @@ void add_to(const Problem& problem, std::size_t i, std::span<const double> z,
       rows[static_cast<std::size_t>(same - free.begin())] = static_cast<Eigen::Index>(j);
     }
   }
-  const double distance = day_distance(*condition.condition, spread.dates);
+  const double distance = day_distance(*condition.condition, of_fit.dates);
   const model::ParameterValues values = problem.values_at(i, z);
   std::vector<DayQuantity> quantities;
   std::vector<int> simulated = free;
@@ -210,7 +212,7 @@ void add_to(const Problem& problem, std::size_t i, std::span<const double> z,
       model::simulate(condition.rig, values, simulated, condition.inputs, score.time_s,
                       condition.outputs, problem.derivative_options(i));
   if (!run.ok()) return;
-  Eigen::MatrixXd root = (own != spread.own.end() ? own->root : spread.root)(rows, Eigen::all);
+  Eigen::MatrixXd root = (own != of_fit.own.end() ? own->root : of_fit.root)(rows, Eigen::all);
   std::vector<Eigen::MatrixXd> gradients;
   for (std::size_t k = 0; k < condition.channels.size(); ++k) {
     gradients.push_back(
@@ -218,16 +220,16 @@ void add_to(const Problem& problem, std::size_t i, std::span<const double> z,
                      : run.sensitivities[k].leftCols(static_cast<Eigen::Index>(free.size())));
   }
   if (!changes.empty() && changes.front().allFinite()) {
-    const auto first = static_cast<Eigen::Index>(estimates.size() - spread.estimates.size());
-    Eigen::MatrixXd moves = Eigen::MatrixXd::Zero(root.rows(), spread.effects.moves.cols());
+    const auto first = static_cast<Eigen::Index>(estimates.size() - of_fit.estimates.size());
+    Eigen::MatrixXd moves = Eigen::MatrixXd::Zero(root.rows(), of_fit.effects.moves.cols());
     for (std::size_t j = 0; j < rows.size(); ++j) {
       if (rows[j] >= first)
-        moves.row(static_cast<Eigen::Index>(j)) = spread.effects.moves.row(rows[j] - first);
+        moves.row(static_cast<Eigen::Index>(j)) = of_fit.effects.moves.row(rows[j] - first);
     }
     std::vector<Eigen::MatrixXd> off;
     for (std::size_t k = 0; k < gradients.size(); ++k)
       off.push_back(changes[k] - gradients[k] * moves);
-    append(off, spread.effects.root, gradients, root);
+    append(off, of_fit.effects.root, gradients, root);
   }
   if (distance > 0.0) {
     std::vector<Eigen::MatrixXd> by_day;
@@ -247,8 +249,8 @@ void add_to(const Problem& problem, std::size_t i, std::span<const double> z,
 
 }  // namespace
 
-EstimateSpread estimate_spread(const Problem& problem, std::span<const double> z,
-                               const Uncertainty& found) {
+EstimateCovariance estimate_covariance(const Problem& problem, std::span<const double> z,
+                                       const Uncertainty& found) {
   std::optional<ArrowMatrix> covariance;
   if (!found.scatter.empty()) covariance = long_run_covariance(problem, z, found);
   std::vector<Joint> joints{joint_of(found, -1, covariance)};
@@ -260,14 +262,14 @@ EstimateSpread estimate_spread(const Problem& problem, std::span<const double> z
   for (const Joint& joint : joints) widen = std::max(widen, widening(problem, z, found, joint));
   const auto estimate = [&](std::size_t unknown) {
     const Unknown& u = problem.map.unknowns()[unknown];
-    return EstimateSpread::Estimate{u.index, u.scope, u.level};
+    return EstimateCovariance::Estimate{u.index, u.scope, u.level};
   };
-  EstimateSpread result;
-  result.root = spread_of(problem, z, found, joints.front(), widen);
+  EstimateCovariance result;
+  result.root = root_of(problem, z, found, joints.front(), widen);
   for (const std::size_t u : joints.front().unknowns) result.estimates.push_back(estimate(u));
   for (auto joint = joints.begin() + 1; joint != joints.end(); ++joint) {
-    EstimateSpread::Own& own = result.own.emplace_back();
-    own.root = spread_of(problem, z, found, *joint, widen);
+    EstimateCovariance::Own& own = result.own.emplace_back();
+    own.root = root_of(problem, z, found, *joint, widen);
     for (std::size_t k = 0; k < joint->own; ++k)
       own.estimates.push_back(estimate(joint->unknowns[k]));
   }
@@ -283,12 +285,12 @@ std::vector<double> prediction_sd(const Eigen::MatrixXd& gradient, const Eigen::
 }
 
 void add_prediction_sd(const Problem& problem, std::span<const double> z,
-                       const EstimateSpread& spread, const std::vector<EffectChanges>& changes,
+                       const EstimateCovariance& of_fit, const std::vector<EffectChanges>& changes,
                        int threads, std::vector<ConditionScore>& scores) {
   const EffectChanges none;
   parallel_for(scores.size(), threads, [&](std::size_t i) {
     if (!scores[i].failure && !scores[i].not_scored)
-      add_to(problem, i, z, spread, changes.empty() ? none : changes[i], scores[i]);
+      add_to(problem, i, z, of_fit, changes.empty() ? none : changes[i], scores[i]);
   });
 }
 

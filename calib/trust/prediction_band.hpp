@@ -7,7 +7,7 @@
 
 #include "calib/problem/problem.hpp"
 #include "calib/result/condition_score.hpp"
-#include "calib/result/estimate_spread.hpp"
+#include "calib/result/estimate_covariance.hpp"
 #include "calib/trust/uncertainty.hpp"
 
 namespace rigcal::calib {
@@ -19,8 +19,8 @@ namespace rigcal::calib {
 /// because intervals based on differences between repeats, or on few degrees of freedom, are wider.
 /// Directions that the data do not determine get the standard deviation that corresponds to the
 /// smallest singular value that still counts.
-EstimateSpread estimate_spread(const Problem& problem, std::span<const double> z,
-                               const Uncertainty& found);
+EstimateCovariance estimate_covariance(const Problem& problem, std::span<const double> z,
+                                       const Uncertainty& found);
 
 /// Returns the standard deviation of a prediction, sqrt(|g S|^2 + sd^2) for each row g of the
 /// gradient.
@@ -55,11 +55,11 @@ using EffectChanges = std::vector<Eigen::MatrixXd>;
 /// (day_quantities()). These are not added if a date is missing.
 ///
 /// @param z        unknowns of `problem`
-/// @param changes  for each condition, the changes due to the effects in `spread`; if empty,
+/// @param changes  for each condition, the changes due to the effects in `of_fit`; if empty,
 ///                 effects are ignored
 /// @param scores   scores of the problem's conditions, in their order
 void add_prediction_sd(const Problem& problem, std::span<const double> z,
-                       const EstimateSpread& spread, const std::vector<EffectChanges>& changes,
+                       const EstimateCovariance& of_fit, const std::vector<EffectChanges>& changes,
                        int threads, std::vector<ConditionScore>& scores);
 
 }  // namespace rigcal::calib

@@ -272,9 +272,9 @@ ChannelSums sum_channels(const ScoreRows& rows, const std::vector<Autoregression
   return sums;
 }
 
-ScoreScatter scatter_of(const ScoreRows& rows, std::vector<Autoregression> noise,
-                        const MatrixXd& total, const MatrixXd& combinations) {
-  ScoreScatter result;
+ScoreContribution scatter_of(const ScoreRows& rows, std::vector<Autoregression> noise,
+                             const MatrixXd& total, const MatrixXd& combinations) {
+  ScoreContribution result;
   const auto [scores, weights, own, independent_residuals] =
       sum_channels(rows, noise, total, combinations);
   result.independent_residuals = independent_residuals;
@@ -305,7 +305,7 @@ ScoreScatter scatter_of(const ScoreRows& rows, std::vector<Autoregression> noise
 
 /// Returns the element of `own` for an unknown, or zero if the unknown belongs to another
 /// condition.
-double own_in(const ScoreScatter& scatter, const ArrowRoot& combinations, Index unknown,
+double own_in(const ScoreContribution& scatter, const ArrowRoot& combinations, Index unknown,
               std::size_t condition) {
   const int whose = combinations.condition_of(unknown);
   if (scatter.own.size() == 0 || (whose >= 0 && whose != static_cast<int>(condition))) return 0.0;
@@ -325,21 +325,21 @@ MatrixXd ScoreRows::rows(Index first, Index count) const {
   return jacobian.middleRows(first, count);
 }
 
-std::vector<ScoreScatter> score_scatter(const std::vector<ScoreRows>& rows,
-                                        const ArrowMatrix& priors, const ArrowRoot& combinations,
-                                        int threads) {
+std::vector<ScoreContribution> score_contributions(const std::vector<ScoreRows>& rows,
+                                                   const ArrowMatrix& priors,
+                                                   const ArrowRoot& combinations, int threads) {
   std::vector<ChannelNoise> channels = noise_models(rows, priors, threads);
   const ArrowMatrix total = total_of(priors, channels);
   std::vector<std::vector<Autoregression>> noise(rows.size());
   for (ChannelNoise& each : channels) noise[each.condition].push_back(std::move(each.noise));
-  std::vector<ScoreScatter> result(rows.size());
+  std::vector<ScoreContribution> result(rows.size());
   parallel_for(rows.size(), threads, [&](std::size_t i) {
     result[i] = scatter_of(rows[i], std::move(noise[i]), total.of(i), combinations.rows(i));
   });
   return result;
 }
 
-double freedom_in(const ScoreScatter& scatter, const ArrowRoot& combinations, Index unknown,
+double freedom_in(const ScoreContribution& scatter, const ArrowRoot& combinations, Index unknown,
                   std::size_t condition) {
   const int whose = combinations.condition_of(unknown);
   const Index row = combinations.row_of(unknown);
@@ -354,8 +354,9 @@ double freedom_in(const ScoreScatter& scatter, const ArrowRoot& combinations, In
   return least;
 }
 
-RobustVariance robust_variance(const std::vector<ScoreScatter>& scatter, const ArrowMatrix& priors,
-                               const ArrowRoot& combinations, Index unknown) {
+RobustVariance robust_variance(const std::vector<ScoreContribution>& scatter,
+                               const ArrowMatrix& priors, const ArrowRoot& combinations,
+                               Index unknown) {
   RobustVariance result;
   result.variance = combinations.quadratic(unknown, priors);
   std::vector<double> parts;

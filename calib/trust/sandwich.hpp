@@ -31,7 +31,7 @@ struct ScoreRows {
 };
 
 /// Contribution of one condition to the long-run covariance of the score J^T r.
-struct ScoreScatter {
+struct ScoreContribution {
   Eigen::MatrixXd covariance;  ///< shape (directions, directions), positive semidefinite
   Eigen::VectorXd freedom;     ///< degrees of freedom of the variance of each combination
   /// Contribution to this variance from the error of each combination itself, for an error of one
@@ -68,15 +68,15 @@ struct ScoreScatter {
 /// @param rows          all conditions of the fit
 /// @param priors        J^T J of the priors; their errors have the stated variances
 /// @param combinations  combinations of the directions, one per unknown
-std::vector<ScoreScatter> score_scatter(const std::vector<ScoreRows>& rows,
-                                        const ArrowMatrix& priors, const ArrowRoot& combinations,
-                                        int threads = 1);
+std::vector<ScoreContribution> score_contributions(const std::vector<ScoreRows>& rows,
+                                                   const ArrowMatrix& priors,
+                                                   const ArrowRoot& combinations, int threads = 1);
 
 /// Returns the degrees of freedom of a condition's contribution to the variance of an unknown. If
 /// the unknown belongs to another condition, this condition contributes through the shared
 /// unknowns, and the result is the minimum over those.
-double freedom_in(const ScoreScatter& scatter, const ArrowRoot& combinations, Eigen::Index unknown,
-                  std::size_t condition);
+double freedom_in(const ScoreContribution& scatter, const ArrowRoot& combinations,
+                  Eigen::Index unknown, std::size_t condition);
 
 /// Variance c^T (sum of all covariances + priors) c of a combination c.
 struct RobustVariance {
@@ -96,7 +96,8 @@ struct RobustVariance {
 /// Returns the 97.5 % quantile of Student's t; degrees of freedom below 1 count as 1.
 double student_t(double freedom);
 
-RobustVariance robust_variance(const std::vector<ScoreScatter>& scatter, const ArrowMatrix& priors,
-                               const ArrowRoot& combinations, Eigen::Index unknown);
+RobustVariance robust_variance(const std::vector<ScoreContribution>& scatter,
+                               const ArrowMatrix& priors, const ArrowRoot& combinations,
+                               Eigen::Index unknown);
 
 }  // namespace rigcal::calib

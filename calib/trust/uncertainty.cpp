@@ -128,7 +128,7 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
   const ArrowRoot root = svd.root();
   const double sigma = std::sqrt(std::max(1.0, result.reduced_chi_square));
   const double least = std::max(s(0) * rank_threshold(problem.tolerance), 1e-150);
-  result.spread = svd.spread(sigma, least);
+  result.covariance_root = svd.covariance_root(sigma, least);
   result.root = root;
   result.known = known_uncertainty(problem, optimum.z, rows, root, threads);
   if (detail == Detail::full) {
@@ -144,13 +144,13 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
   Eigen::VectorXd coherent = Eigen::VectorXd::Zero(n);
   if (detail == Detail::full && rank > 0 && freedom > 0.0) {
     scores = score_rows(problem, std::move(rows), root);
-    result.scatter = score_scatter(scores, priors, root, threads);
+    result.scatter = score_contributions(scores, priors, root, threads);
     repeats = scores_of_repeats(problem, optimum.z, scores, threads);
     const auto noiseless = noiseless_channels(problem, optimum);
     for (const auto& channels : noiseless)
       result.noiseless += static_cast<int>(std::count(channels.begin(), channels.end(), true));
     if (result.noiseless > 0) coherent = coherent_errors(scores, noiseless, root);
-    for (const ScoreScatter& each : result.scatter)
+    for (const ScoreContribution& each : result.scatter)
       result.independent_residuals += each.independent_residuals;
   }
 
@@ -194,17 +194,17 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
     result.standard_error[u] = slope * std::hypot(plain, carried);
     if (!result.scatter.empty()) {
       const RobustVariance robust = robust_variance(result.scatter, priors, root, j);
-      const RepeatVariance spread = repeat_variance(repeats, result.scatter, priors, root, j);
-      if (spread.freedom > 0.0 && robust.variance > 0.0) {
-        result.repeats_ratio[u] = std::sqrt(spread.variance / robust.variance);
-        result.repeats_p[u] = exceedance(spread, robust);
-        result.from_repeats[u] = rests_on_repeats(spread, robust);
+      const RepeatVariance between = repeat_variance(repeats, result.scatter, priors, root, j);
+      if (between.freedom > 0.0 && robust.variance > 0.0) {
+        result.repeats_ratio[u] = std::sqrt(between.variance / robust.variance);
+        result.repeats_p[u] = exceedance(between, robust);
+        result.from_repeats[u] = rests_on_repeats(between, robust);
       }
       const bool repeated = result.from_repeats[u];
-      const double error = std::sqrt(std::max(0.0, repeated ? spread.variance : robust.variance));
+      const double error = std::sqrt(std::max(0.0, repeated ? between.variance : robust.variance));
       result.robust_standard_error[u] = slope * std::hypot(std::max(error, coherent(j)), carried);
-      result.robust_freedom[u] = repeated ? spread.freedom : robust.freedom;
-      result.robust_quantile[u] = repeated ? student_t(spread.freedom) : robust.quantile();
+      result.robust_freedom[u] = repeated ? between.freedom : robust.freedom;
+      result.robust_quantile[u] = repeated ? student_t(between.freedom) : robust.quantile();
     }
   }
   if (detail == Detail::plain) return result;

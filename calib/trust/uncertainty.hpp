@@ -46,7 +46,7 @@ struct Uncertainty {
   double freedom = 1.0;                 ///< degrees of freedom of standard_error, at least 1
   /// S, where S S^T is the covariance in the unit box. For directions that the data do not
   /// determine, the smallest singular value that still counts is used.
-  ArrowRoot spread;
+  ArrowRoot covariance_root;
   /// R, where R R^T = (J^T J)^-1 on the directions that the data determine. `scatter` is in its
   /// coordinates.
   ArrowRoot root;
@@ -54,8 +54,9 @@ struct Uncertainty {
   /// Standard errors due to day-to-day differences (day_errors()), SI; not included in any other
   /// error. Empty with Detail::plain.
   std::vector<double> between_days;
-  std::vector<ScoreRows> scores;       ///< rows from which `scatter` was computed
-  std::vector<ScoreScatter> scatter;   ///< one per condition; empty if there are no robust errors
+  std::vector<ScoreRows> scores;  ///< rows from which `scatter` was computed
+  std::vector<ScoreContribution>
+      scatter;                         ///< one per condition; empty if there are no robust errors
   double independent_residuals = 0.0;  ///< sum over all conditions and channels
 
   /// Returns true if the repeats differ by more than the residuals predict, at 5 % for all unknowns
@@ -79,7 +80,7 @@ std::vector<Eigen::MatrixXd> scores_of_repeats(const Problem& problem, std::span
 /// if that is larger, because the model must then be wrong somewhere.
 ///
 /// The robust errors are the sandwich (J^T J)^-1 (covariance of J^T r) (J^T J)^-1 from
-/// score_scatter(): residuals that are correlated in time, such as model errors, contain less
+/// score_contributions(): residuals that are correlated in time, such as model errors, contain less
 /// information than their number suggests. There are no robust errors without degrees of freedom.
 /// If repeats differ by more than the residuals of their mean predict, the covariance of their
 /// scores is used instead (between_repeats.hpp). If the residuals contain no noise, both errors are

@@ -392,21 +392,21 @@ RigFit rig_fit_of(const calib::Fit& fit, datasets::LeakLaw law) {
       Eigen::Map<const Eigen::VectorXd>(undetermined.data(), all - known).cwiseAbs2();
   rig.indices.insert(rig.indices.end(), without_error.begin(), without_error.end());
   if (!fit.considered) return rig;
-  calib::EstimateSpread spread;
+  calib::EstimateCovariance estimates;
   std::vector<const calib::Budget95*> budgets;
   for (const calib::FittedParameter& p : fit.parameters) {
     if (!p.fitted || p.nuisance) continue;
-    spread.estimates.push_back({p.index, p.scope, p.level.value_or("")});
+    estimates.estimates.push_back({p.index, p.scope, p.level.value_or("")});
     budgets.push_back(p.budget ? &*p.budget : nullptr);
   }
-  spread.effects = calib::effect_spread(*fit.considered, budgets);
-  rig.consider(spread, law);
+  estimates.effects = calib::effect_covariance(*fit.considered, budgets);
+  rig.consider(estimates, law);
   return rig;
 }
 
-void RigFit::consider(const calib::EstimateSpread& spread, datasets::LeakLaw law) {
+void RigFit::consider(const calib::EstimateCovariance& estimates, datasets::LeakLaw law) {
   // The leak itself is estimated, so it is not an effect that the model omits.
-  const calib::EffectSpread& all = spread.effects;
+  const calib::EffectCovariance& all = estimates.effects;
   std::vector<Eigen::Index> kept;
   effects = {};
   for (std::size_t e = 0; e < all.keys.size(); ++e) {
@@ -422,11 +422,11 @@ void RigFit::consider(const calib::EstimateSpread& spread, datasets::LeakLaw law
   for (Eigen::Index j = 0; j < of_rig; ++j) {
     const int index = indices[static_cast<std::size_t>(j)];
     const auto place =
-        std::find_if(spread.estimates.begin(), spread.estimates.end(), [&](const auto& each) {
+        std::find_if(estimates.estimates.begin(), estimates.estimates.end(), [&](const auto& each) {
           return each.index == index && each.scope == datasets::Scope::rig;
         });
-    if (place != spread.estimates.end())
-      effects.moves.row(j) = all.moves.row(place - spread.estimates.begin())(kept);
+    if (place != estimates.estimates.end())
+      effects.moves.row(j) = all.moves.row(place - estimates.estimates.begin())(kept);
   }
   const Eigen::MatrixXd moments = effects.root * effects.root.transpose();
   Eigen::MatrixXd both(of_rig + count, of_rig + count);

@@ -10,7 +10,7 @@
 
 #include "calib/fit.hpp"
 #include "calib/problem/day_effects.hpp"
-#include "calib/result/estimate_spread.hpp"
+#include "calib/result/estimate_covariance.hpp"
 #include "calib/trust/prediction_band.hpp"
 #include "datasets/campaign/campaign.hpp"
 #include "datasets/prepare/single_repeats.hpp"
@@ -29,13 +29,13 @@ struct RigFit {
   Eigen::MatrixXd covariance;
   /// Small effects that the fit considered, with the sizes that follow from priors and records.
   /// Their `moves` refer to the values above.
-  calib::EffectSpread effects = {};
+  calib::EffectCovariance effects = {};
 
   /// Adds the effects from a fit. An effect is correlated with the change in a value for which the
   /// fit has mistaken it.
   ///
   /// @param law  law of the leak that is diagnosed. Its own parameter is not an effect
-  void consider(const calib::EstimateSpread& spread,
+  void consider(const calib::EstimateCovariance& estimates,
                 datasets::LeakLaw law = datasets::LeakLaw::orifice);
   /// Returns the standard error of a result that changes by `moves`, shape: rows of `covariance`.
   double error(const Eigen::VectorXd& moves) const;

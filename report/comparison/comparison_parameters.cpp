@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 
-#include "calib/result/estimate_spread.hpp"
+#include "calib/result/estimate_covariance.hpp"
 #include "report/comparison/comparison_parts.hpp"
 
 namespace rigcal::report {
@@ -40,14 +40,14 @@ std::optional<calib::ComparedEstimate> estimate_of(const StoredFit& fit,
 /// omit.
 double by_effects(const StoredFit& first, const StoredFit& other,
                   const StoredComparedParameter& wanted) {
-  const auto spread_of = [&](const StoredFit& fit) -> std::optional<calib::EffectSpread> {
+  const auto effects_of = [&](const StoredFit& fit) -> std::optional<calib::EffectCovariance> {
     const auto found = std::find_if(fit.parameters.begin(), fit.parameters.end(),
                                     [&](const auto& each) { return same_parameter(each, wanted); });
     if (!fit.considered || found == fit.parameters.end() || !found->budget) return std::nullopt;
-    return calib::effect_spread(*fit.considered, {&*found->budget});
+    return calib::effect_covariance(*fit.considered, {&*found->budget});
   };
-  const auto a = spread_of(first);
-  const auto b = spread_of(other);
+  const auto a = effects_of(first);
+  const auto b = effects_of(other);
   return a && b ? calib::variance_by_effects(*a, *b) : 0.0;
 }
 

@@ -179,7 +179,7 @@ JobResult diagnosis_job(Campaign campaign, const DiagnosisRequest& request, cons
   const LeakRecords records = load_leak_records(campaign, settings.threads);
   provenance.inputs = hash_inputs(campaign, records.averages(), more_inputs);
   diagnosis::RigFit rig{earlier.values, earlier.indices, earlier.covariance};
-  if (earlier.spread) rig.consider(*earlier.spread, campaign.diagnosis.leak_law);
+  if (earlier.joint) rig.consider(*earlier.joint, campaign.diagnosis.leak_law);
   found = diagnosis::diagnose(campaign, records.conditions, rig, settings);
   found.warnings.insert(found.warnings.end(), records.left_out.begin(), records.left_out.end());
   warn_of_validity(campaign, earlier.validity, found);

@@ -26,7 +26,7 @@ calib::Origin origin_of(const EarlierFit& earlier, const std::vector<datasets::R
   };
   calib::Origin origin;
   origin.parameters = earlier.parameters;
-  origin.spread = earlier.spread;
+  origin.covariance = earlier.joint;
   for (const datasets::Record& record : records) {
     if (std::none_of(record.files.begin(), record.files.end(), seen)) continue;
     const auto then =

@@ -40,9 +40,10 @@ struct EarlierFit {
   calib::Aspect adequacy;
   calib::Aspect parameters;
   calib::Validity validity;
-  std::optional<calib::Validity> validated;     ///< ranges of the validation
-  std::optional<calib::EstimateSpread> spread;  ///< for `values`; absent without convergence
-  std::vector<int> indices;                     ///< table rows of the fitted values with scope rig
+  std::optional<calib::Validity> validated;  ///< ranges of the validation
+  std::optional<calib::EstimateCovariance>
+      joint;                 ///< covariance of `values`; absent without convergence
+  std::vector<int> indices;  ///< table rows of the fitted values with scope rig
   /// Covariance of the values in `indices`, SI, shape (indices)^2; from the larger of standard and
   /// robust error, and the correlations.
   Eigen::MatrixXd covariance;

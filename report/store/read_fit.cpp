@@ -50,10 +50,10 @@ double undetermined_error(const NamedFit& fit, std::size_t i) {
 
 /// The estimates of a fit, except nuisance parameters, with their covariance.
 struct Estimates {
-  std::vector<calib::EstimateSpread::Estimate> list;
+  std::vector<calib::EstimateCovariance::Estimate> list;
   Eigen::MatrixXd covariance;  ///< SI, from the larger of standard and robust error
   /// Estimates for single conditions whose correlations are not stored, with their errors.
-  std::map<std::string, std::vector<std::pair<calib::EstimateSpread::Estimate, double>>> own;
+  std::map<std::string, std::vector<std::pair<calib::EstimateCovariance::Estimate, double>>> own;
   std::vector<const calib::Budget95*> budgets;  ///< parallel to `list`; null without a budget
   double widened = 1.0;  ///< largest ratio of an interval to the normal one with its error
 };
@@ -91,8 +91,8 @@ Estimates estimates_of(const NamedFit& fit, model::PlantKind plant) {
     const auto place =
         std::find(names.begin(), names.end(), parameter_label(p.name, p.scope, p.level));
     const auto error = error_of(p);
-    const calib::EstimateSpread::Estimate estimate{fit.row(i, plant), p.scope,
-                                                   p.level.value_or("")};
+    const calib::EstimateCovariance::Estimate estimate{fit.row(i, plant), p.scope,
+                                                       p.level.value_or("")};
     if (p.scope == Scope::condition && error && *error > 0.0 && place == names.end()) {
       result.own[estimate.level].emplace_back(estimate, *error);
       result.widened = std::max(result.widened, half_in_errors(p, *error) / metrics::kNormal95);
@@ -140,19 +140,19 @@ void read_covariance(const NamedFit& named, model::PlantKind plant, EarlierFit& 
   }
   fit.covariance = estimates.covariance(of_rig, of_rig);
   if (stored.status != calib::FitStatus::converged) return;
-  fit.spread = calib::EstimateSpread{estimates.list,
-                                     estimates.widened * calib::square_root(estimates.covariance)};
-  fit.spread->dates = dates_of_fit(stored);
+  fit.joint = calib::EstimateCovariance{
+      estimates.list, estimates.widened * calib::square_root(estimates.covariance)};
+  fit.joint->dates = dates_of_fit(stored);
   if (stored.considered)
-    fit.spread->effects = calib::effect_spread(*stored.considered, estimates.budgets);
+    fit.joint->effects = calib::effect_covariance(*stored.considered, estimates.budgets);
   for (const auto& [condition, values] : estimates.own) {
-    std::vector<calib::EstimateSpread::Estimate> own;
+    std::vector<calib::EstimateCovariance::Estimate> own;
     std::vector<double> errors;
     for (const auto& [estimate, error] : values) {
       own.push_back(estimate);
       errors.push_back(estimates.widened * error);
     }
-    calib::add_own(std::move(own), errors, *fit.spread);
+    calib::add_own(std::move(own), errors, *fit.joint);
   }
 }
 

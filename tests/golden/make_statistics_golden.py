@@ -201,7 +201,7 @@ def parzen(x):
     return numpy.where(x <= 0.5, 1 - 6 * x**2 + 6 * x**3, 2 * numpy.clip(1 - x, 0, None) ** 3)
 
 
-def score_scatter(generator):
+def score_contributions(generator):
     """Computes the covariance in calib/trust/sandwich.hpp for one channel, using dense matrices."""
     n = 150
     phase = numpy.linspace(0, 9, n)
@@ -319,7 +319,7 @@ def cases():
     yield from fundamental(generator)
     yield from mean_absolute_value(generator)
     yield from residual_features(generator)
-    yield from score_scatter(generator)
+    yield from score_contributions(generator)
     yield from several_chains(numpy.random.default_rng(20270101))
 
 

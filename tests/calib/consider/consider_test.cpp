@@ -474,7 +474,7 @@ TEST_CASE("considered: a band of prediction includes an effect less what the fit
   CHECK_THAT(fitted, WithinRel(beyond_noise(datasets::Use::fit), 1e-9));
 }
 
-TEST_CASE("effect_spread: second moments of the sizes, and moves by the lines of budgets",
+TEST_CASE("effect_covariance: second moments of the sizes, and moves by the lines of budgets",
           "[calib]") {
   Considered considered;
   considered.effects.resize(2);
@@ -491,7 +491,7 @@ TEST_CASE("effect_spread: second moments of the sizes, and moves by the lines of
   budget.lines = {{"noise", "records", 1.0},
                   {"laminar_leakage", "effect", 2.0, 7e12},
                   {"ki", "known_value", 1.0, 9.0}};
-  const EffectSpread spread = effect_spread(considered, {&budget, nullptr});
+  const EffectCovariance spread = effect_covariance(considered, {&budget, nullptr});
   CHECK_THAT(spread.size("ki"), WithinRel(5.0, 1e-12));
   CHECK_THAT(spread.size("laminar_leakage"), WithinRel(1e-12, 1e-12));
   CHECK(spread.size("kp") == 0.0);
@@ -508,7 +508,7 @@ TEST_CASE("sensor_changes: gain, offset and lag of a sensor, each by its size", 
   std::vector<const datasets::Condition*> conditions;
   for (const auto& each : rig.campaign.conditions) conditions.push_back(&each);
   const Problem problem = make_problem(rig.campaign, records, conditions, false, nullptr);
-  EffectSpread spread;
+  EffectCovariance spread;
   spread.keys = {"position_gain", "position_offset", "position_lag", "ki"};
   spread.root = Eigen::Vector4d(2e-3, 1e-5, 1e-3, 1.0).asDiagonal();
   spread.moves = Eigen::MatrixXd::Zero(0, 4);

@@ -124,7 +124,7 @@ TEST_CASE("arrow: step, rank and covariance are those of the dense system", "[ca
     CHECK(distance(arrow.inverse_lengths(), dense.inverse_lengths()) < kSame);
     const MatrixXd inverse = dense.root() * dense.root().transpose();
     CHECK(distance(all_products(arrow.root()), inverse) < 1e-11);
-    CHECK(distance(all_products(arrow.spread(2.0, 1e-9)), 4.0 * inverse) < 1e-11);
+    CHECK(distance(all_products(arrow.covariance_root(2.0, 1e-9)), 4.0 * inverse) < 1e-11);
     // Compares the volume of the covariance, computed from the singular values.
     CHECK(arrow.singular_values().array().log().sum() ==
           Approx(dense.singular_values().array().log().sum()));
@@ -271,8 +271,8 @@ TEST_CASE("sandwich: own directions tell the same as dense ones", "[calib]") {
   const int own = system.arrow.own[1].unknowns[0];
   priors.add(1, 0.3 * root.row(own, 1) * root.row(own, 1).transpose());
   flat_priors += 0.3 * flat.row(own).transpose() * flat.row(own);
-  const auto arrow = score_scatter(by_arrow, priors, root);
-  const auto expected = score_scatter(by_flat, flat_priors, flat);
+  const auto arrow = score_contributions(by_arrow, priors, root);
+  const auto expected = score_contributions(by_flat, flat_priors, flat);
   for (Index j = 0; j < n; ++j) {
     const RobustVariance a = robust_variance(arrow, priors, root, j);
     const RobustVariance b = robust_variance(expected, flat_priors, flat, j);

@@ -43,7 +43,7 @@ TEST_CASE("scorecard: the budget of a score adds up by hand to the uncertainty t
     for (const double y : records[0].channels[datasets::Channel::position].mean)
       own.push_back(gain * y);
   }
-  EffectSpread spread;
+  EffectCovariance spread;
   spread.keys = {"position_gain", "position_lag", "ki"};
   spread.root = Eigen::Vector3d(2e-3, 1e-4, 1.0).asDiagonal();
   spread.moves = Eigen::MatrixXd::Zero(0, 3);

@@ -30,8 +30,8 @@ using Eigen::VectorXd;
 const MatrixXd kNoPriors = MatrixXd::Zero(1, 1);
 const MatrixXd kOne = MatrixXd::Identity(1, 1);
 
-ScoreScatter scatter(double variance, double freedom) {
-  ScoreScatter result;
+ScoreContribution scatter(double variance, double freedom) {
+  ScoreContribution result;
   result.covariance = MatrixXd::Constant(1, 1, variance);
   result.freedom = VectorXd::Constant(1, freedom);
   return result;
@@ -127,7 +127,7 @@ double coverage(double effect_sd, int draws) {
       rows.push_back({j, mean - j * found, 1});
       scores.push_back(repeat_scores(j, repeats.colwise() - mean));
     }
-    const auto by_residuals = score_scatter(rows, kNoPriors, kOne);
+    const auto by_residuals = score_contributions(rows, kNoPriors, kOne);
     const auto robust = robust_variance(by_residuals, kNoPriors, kOne, 0);
     const auto spread = repeat_variance(scores, by_residuals, kNoPriors, kOne, 0);
     const double half = rests_on_repeats(spread, robust)

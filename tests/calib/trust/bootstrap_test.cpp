@@ -26,7 +26,7 @@ struct OffsetAlone {
     twin.add("sine", datasets::Waveform::sine, 5.0, 0.01);
     records = twin.records(50, 500.0, 1);
     found.root = Eigen::MatrixXd::Identity(1, 1);
-    ScoreScatter& scatter = found.scatter.emplace_back();
+    ScoreContribution& scatter = found.scatter.emplace_back();
     scatter.covariance = Eigen::MatrixXd::Identity(1, 1);
     scatter.freedom = Eigen::VectorXd::Constant(1, 40.0);
     scatter.noise.emplace_back();

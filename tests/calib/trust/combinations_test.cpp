@@ -92,9 +92,9 @@ TEST_CASE("combinations: the power that is fixed, and how well", "[calib]") {
   const auto words_of = [&](const Eigen::RowVector2d& of_mass,
                             const Eigen::RowVector2d& of_damping) {
     Uncertainty found;
-    Eigen::MatrixXd spread(2, 2);
-    spread << of_mass / std::log(500.0 / 10.0), of_damping / std::log(5000.0 / 100.0);
-    found.spread = spread;
+    Eigen::MatrixXd root(2, 2);
+    root << of_mass / std::log(500.0 / 10.0), of_damping / std::log(5000.0 / 100.0);
+    found.covariance_root = root;
     std::vector<FittedParameter> parameters(2);
     for (FittedParameter& each : parameters)
       each.identifiability = Identifiability::not_identifiable;

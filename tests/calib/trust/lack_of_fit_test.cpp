@@ -70,7 +70,7 @@ TEST_CASE("lack of fit: closed forms of a first-order process", "[calib]") {
   const auto tests_of = [&](double first_ratio, double second_ratio) {
     Uncertainty found;
     for (const double ratio : {first_ratio, second_ratio}) {
-      ScoreScatter& each = found.scatter.emplace_back();
+      ScoreContribution& each = found.scatter.emplace_back();
       each.noise.push_back({{kPhi}, ratio * (1.0 - kPhi * kPhi)});
     }
     return lack_of_fit(problem, found);

@@ -118,12 +118,12 @@ TEST_CASE("own unknowns: system, errors and spread are those of the dense matrix
             Approx(inverse(j, k) / std::sqrt(inverse(j, j) * inverse(k, k))).margin(1e-9));
     }
   }
-  const EstimateSpread spread = estimate_spread(problem, at.z, found);
+  const EstimateCovariance spread = estimate_covariance(problem, at.z, found);
   REQUIRE(spread.own.size() == 36);
   REQUIRE(spread.estimates.size() == 2);
   const auto& shared = problem.map.layout().shared;
   for (std::size_t i = 0; i < spread.own.size(); ++i) {
-    const EstimateSpread::Own& own = spread.own[i];
+    const EstimateCovariance::Own& own = spread.own[i];
     REQUIRE(own.estimates.size() == 1);
     std::vector<int> unknowns = problem.map.layout().own[i];
     CHECK(own.estimates[0].level ==

@@ -89,7 +89,7 @@ TEST_CASE("test_predictions: an estimate off by its error is no error of the mod
   const Problem problem = problem_of(twin, records);
   const auto fails = [&](double error) {
     std::vector<ConditionScore> scores = score_conditions(problem, {}, 1);
-    EstimateSpread spread;
+    EstimateCovariance spread;
     spread.estimates = {{Twin::index("valve_gain"), datasets::Scope::rig, ""}};
     spread.root = Eigen::MatrixXd::Constant(1, 1, error * twin.setting("valve_gain").value / off);
     add_prediction_sd(problem, {}, spread, {}, 1, scores);
@@ -156,7 +156,7 @@ TEST_CASE("prediction band: an estimate of another leak level does not count", "
   const auto records = twin.records(250, 500.0, 2);
   const Problem problem = problem_of(twin, records);
   const std::vector<double> z(2, 0.2);
-  EstimateSpread spread;
+  EstimateCovariance spread;
   spread.estimates = {{Twin::index("leakage_coefficient"), datasets::Scope::leak_level, "small"},
                       {Twin::index("leakage_coefficient"), datasets::Scope::leak_level, "large"}};
   spread.root = Eigen::MatrixXd::Zero(2, 2);
@@ -191,7 +191,7 @@ TEST_CASE("prediction band: what the fit took for a change of the estimates is n
   const Problem problem = problem_of(twin, records);
   const auto variance_with = [&](double taken) {
     std::vector<ConditionScore> scores = score_conditions(problem, {}, 1);
-    EstimateSpread spread;
+    EstimateCovariance spread;
     spread.estimates = {{Twin::index("valve_gain"), datasets::Scope::rig, ""}};
     spread.root = Eigen::MatrixXd::Zero(1, 1);
     spread.effects.root = Eigen::MatrixXd::Ones(1, 1);
@@ -213,7 +213,7 @@ TEST_CASE("prediction band: on another day its own deviation counts, and those o
   const auto records = twin.records(250, 500.0, 2);
   const Problem problem = problem_of(twin, records);
   const auto by_days = [&](const std::vector<std::string>& dates) {
-    EstimateSpread spread;
+    EstimateCovariance spread;
     spread.dates = dates;
     std::vector<ConditionScore> scores = score_conditions(problem, problem.start(), 1);
     add_prediction_sd(problem, problem.start(), spread, {}, 1, scores);
@@ -242,7 +242,7 @@ TEST_CASE("test_predictions: what differs from day to day is no error of the mod
     twin.offsets["predicted"] = {Twin::index(key), value};
     const auto records = twin.records(1000, 500.0, 2);
     const Problem problem = problem_of(twin, records);
-    EstimateSpread spread;
+    EstimateCovariance spread;
     spread.dates = dates;
     std::vector<ConditionScore> scores = score_conditions(problem, problem.start(), 1);
     add_prediction_sd(problem, problem.start(), spread, {}, 1, scores);

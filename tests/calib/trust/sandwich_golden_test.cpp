@@ -19,8 +19,8 @@ TEST_CASE("golden: covariance of the score, its freedom and what the error adds"
   ScoreRows rows;
   rows.residual = Eigen::Map<const Eigen::VectorXd>(residual.data(), samples);
   rows.jacobian = Eigen::Map<const Eigen::MatrixXd>(jacobian.data(), samples, 2);
-  const auto scatter = score_scatter({rows}, Eigen::MatrixXd::Zero(2, 2),  // no priors
-                                     Eigen::MatrixXd::Identity(2, 2));
+  const auto scatter = score_contributions({rows}, Eigen::MatrixXd::Zero(2, 2),  // no priors
+                                           Eigen::MatrixXd::Identity(2, 2));
   REQUIRE(scatter.size() == 1);
   const auto& noise = scatter[0].noise.at(0);
   const std::vector<double> model = golden("sandwich.noise");

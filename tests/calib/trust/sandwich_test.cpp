@@ -70,7 +70,7 @@ std::vector<Coverage> coverage_of_each(const MatrixXd& model, double rho, int dr
     const VectorXd measured = noise.draw(model.rows(), rho, jump_at);
     const VectorXd found = model.transpose() * measured;
     const MatrixXd each = MatrixXd::Identity(model.cols(), model.cols());
-    const auto scatter = score_scatter({{model, measured - model * found, 1}}, none, each);
+    const auto scatter = score_contributions({{model, measured - model * found, 1}}, none, each);
     for (Index j = 0; j < model.cols(); ++j) {
       const auto robust = robust_variance(scatter, none, each, j);
       const double error = std::abs(found(j)) / std::sqrt(robust.variance);
@@ -108,7 +108,7 @@ TEST_CASE("sandwich: white noise gives the plain covariance", "[calib]") {
   const VectorXd noise = Noise(2).draw(4000, 0.0);
   const VectorXd residual = noise - model * (model.transpose() * noise);
   const MatrixXd none = MatrixXd::Zero(3, 3);
-  const auto scatter = score_scatter({{model, residual, 1}}, none, MatrixXd::Identity(3, 3));
+  const auto scatter = score_contributions({{model, residual, 1}}, none, MatrixXd::Identity(3, 3));
   REQUIRE(scatter.size() == 1);
   // The standard deviation of a sum of 4000 squares is 2 %, and the kernel doubles it; the limit is
   // four times that.
@@ -131,8 +131,8 @@ TEST_CASE("sandwich: rows of seven digits give the same covariance", "[calib]") 
   CHECK((narrow.all_rows() - wide.jacobian).norm() < 1e-6 * wide.jacobian.norm());
   CHECK((narrow.rows(200, 50) - wide.jacobian.middleRows(200, 50)).norm() < 1e-6);
   const MatrixXd unit = MatrixXd::Identity(3, 3);
-  const auto exact = score_scatter({wide}, MatrixXd::Zero(3, 3), unit);
-  const auto found = score_scatter({narrow}, MatrixXd::Zero(3, 3), unit);
+  const auto exact = score_contributions({wide}, MatrixXd::Zero(3, 3), unit);
+  const auto found = score_contributions({narrow}, MatrixXd::Zero(3, 3), unit);
   CHECK((found[0].covariance - exact[0].covariance).norm() < 1e-5 * exact[0].covariance.norm());
 }
 
@@ -162,7 +162,7 @@ TEST_CASE("sandwich: what a few correlated samples tell is covered no more than 
   const VectorXd residual = noise - model * (model.transpose() * noise);
   const MatrixXd none = MatrixXd::Zero(2, 2);
   const MatrixXd each = MatrixXd::Identity(2, 2);
-  const auto scatter = score_scatter({{model, residual, 1}}, none, each);
+  const auto scatter = score_contributions({{model, residual, 1}}, none, each);
   CHECK(scatter[0].own.cwiseAbs().maxCoeff() < 1e-6);
 }
 
@@ -187,8 +187,8 @@ TEST_CASE("sandwich: two channels with the same noise count once", "[calib]") {
   const VectorXd residual = both - model * (model.transpose() * both);
   const MatrixXd none = MatrixXd::Zero(3, 3);
   const MatrixXd each = MatrixXd::Identity(3, 3);
-  const auto shared = score_scatter({{model, residual, 2}}, none, each);
-  const auto single = score_scatter({{slow_model(2000), residual.head(2000), 1}}, none, each);
+  const auto shared = score_contributions({{model, residual, 2}}, none, each);
+  const auto single = score_contributions({{slow_model(2000), residual.head(2000), 1}}, none, each);
   // The result is twice the variance of one channel in these coordinates. The limit is 5 % because
   // the small-sample corrections differ.
   CHECK_THAT(robust_variance(shared, none, each, 0).variance,
@@ -196,7 +196,7 @@ TEST_CASE("sandwich: two channels with the same noise count once", "[calib]") {
 }
 
 TEST_CASE("sandwich: the freedom of conditions adds up, that of priors has no end", "[calib]") {
-  ScoreScatter one;
+  ScoreContribution one;
   one.covariance = MatrixXd::Identity(1, 1);
   one.freedom = VectorXd::Constant(1, 10.0);
   const MatrixXd none = MatrixXd::Zero(1, 1);
@@ -211,14 +211,15 @@ TEST_CASE("sandwich: the freedom of conditions adds up, that of priors has no en
 TEST_CASE("sandwich: residuals of zero and records of few samples stay finite", "[calib]") {
   const MatrixXd none = MatrixXd::Zero(3, 3);
   const MatrixXd each = MatrixXd::Identity(3, 3);
-  const auto silent = score_scatter({{slow_model(50), VectorXd::Zero(50), 1}}, none, each);
+  const auto silent = score_contributions({{slow_model(50), VectorXd::Zero(50), 1}}, none, each);
   CHECK(silent[0].covariance.isZero());
-  const auto few = score_scatter({{slow_model(4), VectorXd::Constant(4, 0.1), 1}}, none, each);
+  const auto few =
+      score_contributions({{slow_model(4), VectorXd::Constant(4, 0.1), 1}}, none, each);
   CHECK(few[0].covariance.allFinite());
   CHECK(std::isfinite(robust_variance(few, none, each, 1).freedom));
   // A residual that is pure drift has no correlation time, but must still give finite values.
   const auto drift =
-      score_scatter({{slow_model(200), VectorXd::LinSpaced(200, -1.0, 1.0), 1}}, none, each);
+      score_contributions({{slow_model(200), VectorXd::LinSpaced(200, -1.0, 1.0), 1}}, none, each);
   CHECK(drift[0].covariance.allFinite());
   CHECK(drift[0].independent_residuals >= 1.0);
 }
@@ -243,7 +244,7 @@ TEST_CASE("sandwich: far from an optimum, one record much further than the other
   fast /= std::sqrt(static_cast<double>(kSamples));
   const MatrixXd none = MatrixXd::Zero(3, 3);
   const MatrixXd each = MatrixXd::Identity(3, 3);
-  const auto scatter = score_scatter({{slow, far, 1}, {fast, near, 1}}, none, each);
+  const auto scatter = score_contributions({{slow, far, 1}, {fast, near, 1}}, none, each);
   for (Index j = 0; j < 3; ++j) {
     const RobustVariance robust = robust_variance(scatter, none, each, j);
     // Upper limit: the square of a normalised combination of all residuals cannot exceed their sum

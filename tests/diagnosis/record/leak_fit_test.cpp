@@ -233,7 +233,7 @@ TEST_CASE("RigFit: an effect and what the fit has mistaken for it go together", 
   diagnosis::RigFit rig;
   rig.indices = {4, 1};
   rig.covariance = Eigen::Vector2d(9.0, 4.0).asDiagonal();
-  calib::EstimateSpread spread;
+  calib::EstimateCovariance spread;
   spread.estimates = {{1, datasets::Scope::rig, ""},
                       {1, datasets::Scope::condition, "sine"},
                       {4, datasets::Scope::rig, ""}};
@@ -281,7 +281,7 @@ TEST_CASE("fit_leak: an effect that the model lacks moves a coefficient as far a
   const int laminar = model::parameter_index(made.campaign.rig.plant, "laminar_leakage");
   const HealthySine with = healthy_sine(0.3, {{laminar, kSize}});
   diagnosis::RigFit rig = rig_of(made.campaign);
-  calib::EstimateSpread spread;
+  calib::EstimateCovariance spread;
   spread.effects.keys = {"laminar_leakage"};
   spread.effects.root = Eigen::MatrixXd::Constant(1, 1, kSize);
   spread.effects.moves = Eigen::MatrixXd::Zero(0, 1);
@@ -317,7 +317,7 @@ TEST_CASE("share_rig_moves: an effect that leaks itself changes the true share, 
   const HealthySine made = healthy_sine(0.3);
   const int laminar = model::parameter_index(made.campaign.rig.plant, "laminar_leakage");
   diagnosis::RigFit rig = rig_of(made.campaign);
-  calib::EstimateSpread spread;
+  calib::EstimateCovariance spread;
   spread.effects.keys = {"laminar_leakage"};
   spread.effects.root = Eigen::MatrixXd::Constant(1, 1, kSize);
   spread.effects.moves = Eigen::MatrixXd::Zero(0, 1);

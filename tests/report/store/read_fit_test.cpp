@@ -64,7 +64,7 @@ TEST_CASE("read_fit: own values of conditions without correlations have their er
   }
   const auto spread = earlier_fit(as<StoredFit>(fit, "", "fit.json"), "fit.json",
                                   rigcal::model::PlantKind::load_pressure)
-                          .spread.value();
+                          .joint.value();
   CHECK(spread.estimates.size() == 2);
   const Eigen::MatrixXd shared = spread.root * spread.root.transpose();
   REQUIRE(spread.own.size() == 2);

@@ -35,7 +35,7 @@ struct Scene {
         records(twin.records(40, 500.0, 1)),
         problem(problem_of(twin, records)) {
     uncertainty.root = MatrixXd::Identity(2, 2);
-    uncertainty.spread = MatrixXd::Identity(2, 2);
+    uncertainty.covariance_root = MatrixXd::Identity(2, 2);
     uncertainty.reduced_chi_square = 1.0;
     uncertainty.standard_error.resize(2);
     uncertainty.robust_standard_error.resize(2);
@@ -57,14 +57,14 @@ struct Scene {
   /// Returns the standard deviations of the estimates in the unit box, that is, in SI divided by
   /// the slopes.
   std::pair<double, double> in_box() const {
-    const MatrixXd& root = estimate_spread(problem, z, uncertainty).root;
+    const MatrixXd& root = estimate_covariance(problem, z, uncertainty).root;
     return {root.row(0).norm() / slope(0), root.row(1).norm() / slope(1)};
   }
   /// Converts a standard error from the unit box to SI.
   std::optional<double> error(int j, double boxed) const { return boxed * slope(j); }
 
   void add_scatter(double first, double second, double both = 0.0) {
-    ScoreScatter each;
+    ScoreContribution each;
     each.covariance.resize(2, 2);
     each.covariance << first, both, both, second;
     uncertainty.scatter.push_back(each);
@@ -79,7 +79,7 @@ void require_box(const Scene& scene, double first, double second) {
 
 }  // namespace
 
-TEST_CASE("estimate_spread: without scatter, sigma^2 (J^T J)^-1 of the misfit", "[calib]") {
+TEST_CASE("estimate_covariance: without scatter, sigma^2 (J^T J)^-1 of the misfit", "[calib]") {
   Scene scene;
   require_box(scene, 1.0, 1.0);
   scene.uncertainty.root = (Eigen::Matrix2d() << 2.0, 0.0, 0.0, 3.0).finished();
@@ -94,10 +94,10 @@ TEST_CASE("estimate_spread: without scatter, sigma^2 (J^T J)^-1 of the misfit", 
   require_box(scene, 2.0, 3.0);
 }
 
-TEST_CASE("estimate_spread: estimates with whose they are, and their correlation", "[calib]") {
+TEST_CASE("estimate_covariance: estimates with whose they are, and their correlation", "[calib]") {
   Scene scene;
   scene.uncertainty.root = (Eigen::Matrix2d() << 1.0, 0.0, -2.0, 1.0).finished();
-  const EstimateSpread spread = estimate_spread(scene.problem, scene.z, scene.uncertainty);
+  const EstimateCovariance spread = estimate_covariance(scene.problem, scene.z, scene.uncertainty);
   REQUIRE(spread.estimates.size() == 2);
   CHECK(spread.estimates[0].index == Twin::index("bulk_modulus"));
   CHECK(spread.estimates[1].index == Twin::index("valve_gain"));
@@ -108,7 +108,7 @@ TEST_CASE("estimate_spread: estimates with whose they are, and their correlation
   CHECK_THAT(covariance(1, 1), WithinRel(5.0 * scene.slope(1) * scene.slope(1), 1e-9));
 }
 
-TEST_CASE("estimate_spread: with scatter, the sum of that of all conditions", "[calib]") {
+TEST_CASE("estimate_covariance: with scatter, the sum of that of all conditions", "[calib]") {
   Scene scene;
   scene.uncertainty.reduced_chi_square = 100.0;  // no effect in this case
   scene.add_scatter(4.0, 1.0);
@@ -118,12 +118,12 @@ TEST_CASE("estimate_spread: with scatter, the sum of that of all conditions", "[
   scene.uncertainty.root = (Eigen::Matrix2d() << 2.0, 0.0, 0.0, 3.0).finished();
   require_box(scene, 6.0, 15.0);
   scene.add_scatter(0.0, 0.0, 9.0);
-  const EstimateSpread spread = estimate_spread(scene.problem, scene.z, scene.uncertainty);
+  const EstimateCovariance spread = estimate_covariance(scene.problem, scene.z, scene.uncertainty);
   const MatrixXd covariance = spread.root * spread.root.transpose();
   CHECK_THAT(covariance(0, 1), WithinRel(2.0 * 9.0 * 3.0 * scene.slope(0) * scene.slope(1), 1e-9));
 }
 
-TEST_CASE("estimate_spread: a prior is one more source of scatter", "[calib]") {
+TEST_CASE("estimate_covariance: a prior is one more source of scatter", "[calib]") {
   Scene scene(true);
   const double weight = scene.problem.map.prior_slope(0, scene.z[0]);
   REQUIRE(weight > 0.0);
@@ -133,7 +133,7 @@ TEST_CASE("estimate_spread: a prior is one more source of scatter", "[calib]") {
   require_box(scene, 1.0, 1.0);  // J^T J already includes it
 }
 
-TEST_CASE("estimate_spread: as wide as the widest interval by its own error", "[calib]") {
+TEST_CASE("estimate_covariance: as wide as the widest interval by its own error", "[calib]") {
   Scene scene;
   scene.uncertainty.root = (Eigen::Matrix2d() << 2.0, 0.0, 0.0, 3.0).finished();
   scene.uncertainty.standard_error[0] = scene.error(0, 1.5);  // less than 2
@@ -150,7 +150,8 @@ TEST_CASE("estimate_spread: as wide as the widest interval by its own error", "[
   require_box(scene, 6.0, 9.0);
 }
 
-TEST_CASE("estimate_spread: by few degrees of freedom as wide as the quantile asks", "[calib]") {
+TEST_CASE("estimate_covariance: by few degrees of freedom as wide as the quantile asks",
+          "[calib]") {
   Scene scene;
   scene.add_scatter(4.0, 9.0);
   scene.uncertainty.standard_error = {scene.error(0, 100.0), scene.error(1, 100.0)};
@@ -169,13 +170,13 @@ TEST_CASE("estimate_spread: by few degrees of freedom as wide as the quantile as
   require_box(scene, 3.0, 4.5);
 }
 
-TEST_CASE("estimate_spread: known values add theirs, unwidened", "[calib]") {
+TEST_CASE("estimate_covariance: known values add theirs, unwidened", "[calib]") {
   Scene scene;
   scene.uncertainty.known.names = {"supply_pressure"};
   scene.uncertainty.known.response.resize(2, 1);
   scene.uncertainty.known.response << 3.0, -4.0;
   require_box(scene, std::hypot(1.0, 3.0), std::hypot(1.0, 4.0));
-  const EstimateSpread spread = estimate_spread(scene.problem, scene.z, scene.uncertainty);
+  const EstimateCovariance spread = estimate_covariance(scene.problem, scene.z, scene.uncertainty);
   const MatrixXd covariance = spread.root * spread.root.transpose();
   CHECK_THAT(covariance(0, 1), WithinRel(-12.0 * scene.slope(0) * scene.slope(1), 1e-9));
   // The known value contributes 3 to the error of 5, so the records contribute 4: four times 1.
@@ -186,11 +187,11 @@ TEST_CASE("estimate_spread: known values add theirs, unwidened", "[calib]") {
   require_box(scene, std::hypot(1.0, 3.0), std::hypot(1.0, 4.0));
 }
 
-TEST_CASE("estimate_spread: directions that are not determined have the spread of the least",
+TEST_CASE("estimate_covariance: directions that are not determined have the spread of the least",
           "[calib]") {
   Scene scene;
   scene.uncertainty.root = Eigen::Vector2d(1.0, 0.0);
-  scene.uncertainty.spread = (Eigen::Matrix2d() << 1.0, 0.0, 0.0, 7.0).finished();
+  scene.uncertainty.covariance_root = (Eigen::Matrix2d() << 1.0, 0.0, 0.0, 7.0).finished();
   require_box(scene, 1.0, 7.0);
   // This widens only the determined direction.
   scene.uncertainty.standard_error[0] = scene.error(0, 3.0);
@@ -241,9 +242,9 @@ struct Band {
 
   /// Returns the largest standard deviation of the band without noise, divided by the largest
   /// sensitivity to the valve gain.
-  double part(std::size_t condition, const std::vector<EstimateSpread::Estimate>& estimates,
+  double part(std::size_t condition, const std::vector<EstimateCovariance::Estimate>& estimates,
               const std::vector<double>& sds) const {
-    EstimateSpread spread;
+    EstimateCovariance spread;
     spread.estimates = estimates;
     spread.root = MatrixXd::Zero(static_cast<Index>(sds.size()), static_cast<Index>(sds.size()));
     for (std::size_t j = 0; j < sds.size(); ++j)
@@ -269,7 +270,7 @@ struct Band {
   }
 };
 
-EstimateSpread::Estimate gain(Scope scope = Scope::rig, const std::string& level = {}) {
+EstimateCovariance::Estimate gain(Scope scope = Scope::rig, const std::string& level = {}) {
   return {Twin::index("valve_gain"), scope, level};
 }
 

@@ -1,4 +1,4 @@
-#include "calib/result/estimate_spread.hpp"
+#include "calib/result/estimate_covariance.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -47,10 +47,10 @@ Eigen::MatrixXd covariance_of(const std::vector<double>& errors,
   return covariance;
 }
 
-void add_own(std::vector<EstimateSpread::Estimate> estimates, const std::vector<double>& errors,
-             EstimateSpread& spread) {
-  const Eigen::MatrixXd& shared = spread.root;
-  EstimateSpread::Own& own = spread.own.emplace_back();
+void add_own(std::vector<EstimateCovariance::Estimate> estimates, const std::vector<double>& errors,
+             EstimateCovariance& joint) {
+  const Eigen::MatrixXd& shared = joint.root;
+  EstimateCovariance::Own& own = joint.own.emplace_back();
   own.estimates = std::move(estimates);
   const auto count = static_cast<Eigen::Index>(errors.size());
   own.root = Eigen::MatrixXd::Zero(count + shared.rows(), count + shared.cols());
@@ -67,14 +67,14 @@ Eigen::VectorXd variances_by_effect(const Eigen::VectorXd& moves,
   return sum > 0.0 ? Eigen::VectorXd(parts * (all / sum)) : Eigen::VectorXd::Zero(moves.size());
 }
 
-double EffectSpread::size(std::string_view key) const {
+double EffectCovariance::size(std::string_view key) const {
   const auto found = std::find(keys.begin(), keys.end(), key);
   return found == keys.end() ? 0.0 : root.row(found - keys.begin()).norm();
 }
 
-EffectSpread effect_spread(const Considered& considered,
-                           const std::vector<const Budget95*>& budgets) {
-  EffectSpread result;
+EffectCovariance effect_covariance(const Considered& considered,
+                                   const std::vector<const Budget95*>& budgets) {
+  EffectCovariance result;
   const Eigen::MatrixXd& correlation = considered.correlation;
   const Eigen::Index count = std::min({correlation.rows(), correlation.cols(),
                                        static_cast<Eigen::Index>(considered.effects.size())});

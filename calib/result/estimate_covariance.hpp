@@ -13,7 +13,7 @@ namespace rigcal::calib {
 
 /// The small effects that the model of a fit omits: their possible sizes, and how they bias the
 /// estimates. Prediction bands, scores, leak estimates and comparisons all use this.
-struct EffectSpread {
+struct EffectCovariance {
   std::vector<std::string> keys;
   /// S, where S S^T contains the second moments of the effects' sizes about zero, SI. These are not
   /// central moments, because no estimate is corrected for the effects. Shape (effects, columns).
@@ -29,8 +29,8 @@ struct EffectSpread {
 /// Returns the effects that a fit considered, with their sizes given prior and records.
 ///
 /// @param budgets  one per estimate, in order; null for an estimate without a budget
-EffectSpread effect_spread(const Considered& considered,
-                           const std::vector<const Budget95*>& budgets);
+EffectCovariance effect_covariance(const Considered& considered,
+                                   const std::vector<const Budget95*>& budgets);
 
 /// Returns the variance that each effect contributes to a result; they add up to moves^T C moves.
 /// If the records cannot separate some effects, their joint contribution is divided in proportion
@@ -42,7 +42,7 @@ Eigen::VectorXd variances_by_effect(const Eigen::VectorXd& moves,
                                     const Eigen::MatrixXd& covariance);
 
 /// Joint covariance of the estimates of a fit, for predictions.
-struct EstimateSpread {
+struct EstimateCovariance {
   /// Identifies one estimate, so that a condition can find those that apply to it.
   struct Estimate {
     int index = 0;  ///< row of the plant's parameter table
@@ -63,7 +63,7 @@ struct EstimateSpread {
   /// One entry per condition with estimates of its own. They are stored separately because there
   /// may be many, and no simulation needs those of more than one condition.
   std::vector<Own> own = {};
-  EffectSpread effects = {};  ///< whose `moves` refer to `estimates`
+  EffectCovariance effects = {};  ///< whose `moves` refer to `estimates`
   /// Dates of the fitted records; empty if any record has no date.
   std::vector<std::string> dates = {};
 };
@@ -84,8 +84,8 @@ Eigen::MatrixXd covariance_of(const std::vector<double>& errors,
 /// Adds estimates that apply to one condition only and are uncorrelated with all others.
 ///
 /// @param errors  standard errors, shape (estimates)
-void add_own(std::vector<EstimateSpread::Estimate> estimates, const std::vector<double>& errors,
-             EstimateSpread& spread);
+void add_own(std::vector<EstimateCovariance::Estimate> estimates, const std::vector<double>& errors,
+             EstimateCovariance& joint);
 
 /// Returns R with R R^T = M for a positive semidefinite M. Eigenvalues that are negative due to
 /// rounding count as zero.
