@@ -3,7 +3,6 @@
 #include "calib/score/judge_adequacy.hpp"
 #include "calib/score/judge_agreement.hpp"
 #include "calib/score/judge_parameters.hpp"
-#include "calib/score/judge_validation.hpp"
 
 namespace rigcal::calib {
 
