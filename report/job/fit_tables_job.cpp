@@ -23,9 +23,10 @@ JobResult fit_tables_job(const CampaignChoice& choice, const JobTerms& terms) {
   const Provenance provenance{terms.command, 1, terms.options, hash_inputs(input.campaign, {})};
   JobResult job;
   if (fit.status == FitStatus::converged) {
-    const diagnosis::LeakTable table =
-        diagnosis::leak_table(input.campaign, fit.settings, settings);
-    job.files = leak_table_files({input.campaign, fit.settings, table, provenance});
+    job.files =
+        leak_table_files(input.campaign, fit.settings,
+                         stored(diagnosis::leak_table(input.campaign, fit.settings, settings),
+                                input.campaign, provenance));
     job.files.push_back(
         {"fitted.toml", fitted_leak_table_text(input.campaign, fit.settings, terms.out)});
   }
