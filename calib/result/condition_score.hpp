@@ -102,10 +102,10 @@ using ChannelCurves = Keyed<std::optional<metrics::ResidualCurves>, datasets::Ch
 struct ConditionResult {
   std::string id;                                                   ///< id of the condition
   Later<std::optional<datasets::Waveform>> waveform;                ///< signal of the drive
-  Later<std::optional<double>> frequency_hz, amplitude_m;           ///< of the drive
-  Omittable<std::optional<double>> amplitude_v;                     ///< of a command
-  Omittable<double> amplitude_n, amplitude_pa, amplitude_m_per_s2;  ///< of other references
-  Omittable<double> amplitude_rad, amplitude_n_m;                   ///< of other references
+  Later<std::optional<double>> frequency_hz, amplitude_m;           ///< frequency and amplitude
+  Omittable<std::optional<double>> amplitude_v;                     ///< amplitude of a command
+  Omittable<double> amplitude_n, amplitude_pa, amplitude_m_per_s2;  ///< amplitude in other loops
+  Omittable<double> amplitude_rad, amplitude_n_m;                   ///< amplitude in other loops
   Later<std::optional<std::string>> leak_level;                     ///< name of the leak level
   datasets::Use use = datasets::Use::fit;                           ///< "fit" or "validate"
   Omittable<double> temperature_k;                ///< stated temperature of the oil
