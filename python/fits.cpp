@@ -12,7 +12,6 @@
 #include "python/arrays.hpp"
 #include "python/described_members.hpp"
 #include "python/fit_result.hpp"
-#include "python/holding.hpp"
 #include "python/interruptible.hpp"
 #include "python/progress.hpp"
 #include "python/result.hpp"

@@ -13,7 +13,6 @@
 #include "python/arrays.hpp"
 #include "python/campaign.hpp"
 #include "python/described_members.hpp"
-#include "python/holding.hpp"
 #include "python/result.hpp"
 #include "report/job/job.hpp"
 #include "report/run/check.hpp"

@@ -1,7 +1,7 @@
 #include "diagnosis/table/fit_tables.hpp"
 #include "report/job/job.hpp"
 #include "report/job/leak_table_files.hpp"
-#include "report/store/parameters_csv.hpp"
+#include "report/store/csv.hpp"
 #include "report/store/result_files.hpp"
 #include "report/store/stored/stored_tables_fit.hpp"
 
