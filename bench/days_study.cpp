@@ -23,6 +23,7 @@
 
 #include "bench/foreign_campaign.hpp"
 #include "bench/foreign_day.hpp"
+#include "bench/healthy_rig.hpp"
 #include "bench/kept_counts.hpp"
 #include "calib/fit.hpp"
 #include "common/parallel.hpp"
@@ -235,7 +236,7 @@ DaysCounts counts_of(const DaysRow& row, std::uint64_t seed) {
   for (const auto& each : made.records) fitted.push_back(each.average);
   const calib::Fit fit = calib::fit(made.campaign, fitted, {});
   if (!fit.usable()) throw std::runtime_error("the fit failed: " + fit.message);
-  const diagnosis::RigFit rig = diagnosis::rig_fit_of(fit);
+  const diagnosis::RigFit rig = bench::rig_of(made.campaign, fit);
   for (int day = 1; day < row.healthy_dates; ++day)
     made.add(healthy_rig_of_day(row.drawn, stream), "healthy", day, datasets::Use::validate, 0,
              stream);

@@ -93,7 +93,7 @@ double half_width_percent(double sd, double value) {
 
 void print_design(const calib::Design& design) {
   std::cout << fmt::format("family: {}\n", datasets::to_string(design.family));
-  for (const calib::DrivePart& part : design.parts)
+  for (const calib::DrivePart& part : design.drive)
     std::cout << fmt::format("  {} {:.5g} {}\n", part.name, part.value, part.unit);
   for (const calib::LimitUse& use : design.limits)
     std::cout << fmt::format("  {}: {:.4g} of {:.4g} {}\n", use.words, use.reached, use.limit,
@@ -106,7 +106,7 @@ void print_design(const calib::Design& design) {
                              each.named ? " (designed for)" : "", now, own, own / now);
   }
   std::cout << "| family | bulk modulus, % |\n| --- | --- |\n";
-  for (const calib::FamilyTrial& trial : design.trials) {
+  for (const calib::FamilyTrial& trial : design.families) {
     for (std::size_t j = 0; j < trial.sd.size(); ++j)
       if (design.parameters[j].named && trial.sd[j])
         std::cout << fmt::format("| {} | {:.3g} |\n", datasets::to_string(trial.family),
@@ -143,7 +143,7 @@ void print_spread(const calib::Design& design, datasets::Campaign campaign, int 
       position.mean[k] += design.response(static_cast<Eigen::Index>(k), 0);
     position.sd_of_mean = sd;
     record.channels[Channel::position] = std::move(position);
-    record.channels[Channel::reference].mean = design.drive;
+    record.channels[Channel::reference].mean = design.samples;
     calib::FitOptions options;
     options.consider = false;
     options.further_starts = 3;  // as in a plain `rigcal fit`

@@ -26,6 +26,7 @@
 #include <string>
 #include <thread>
 
+#include "bench/healthy_rig.hpp"
 #include "bench/leak_law_study.hpp"
 #include "calib/fit.hpp"
 #include "common/parallel.hpp"
@@ -166,13 +167,13 @@ diagnosis::RigFit healthy_fit(Campaign& campaign, const std::vector<RepeatRecord
   const calib::Fit fit = usable_fit(campaign, records);
   const auto& repeats = fit.between_repeats;
   if (!repeats || !repeats->differ || repeats->cause != "supply_pressure")
-    return diagnosis::rig_fit_of(fit);
+    return bench::rig_of(campaign, fit);
   datasets::ParameterSetting& supply = setting_of(campaign, "supply_pressure");
   supply.lower = supply.upper = std::numeric_limits<double>::quiet_NaN();
   datasets::differ_between_repeats(datasets::spec_of(campaign.rig.plant, supply.index),
                                    *repeats->cause_sd * supply.value, supply);
   const calib::Fit again = usable_fit(campaign, records);
-  return diagnosis::rig_fit_of(again);
+  return bench::rig_of(campaign, again);
 }
 
 /// Frees terms that a real rig may have but its model lacks, so that they are estimated from

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "bench/foreign_cylinder.hpp"
+#include "bench/healthy_rig.hpp"
 #include "bench/kept_counts.hpp"
 #include "calib/fit.hpp"
 #include "common/parallel.hpp"
@@ -96,7 +97,7 @@ struct LawCampaign {
     for (const auto& each : records) averages.push_back(each.average);
     const calib::Fit fit = calib::fit(campaign, averages, {});
     if (!fit.usable()) throw std::runtime_error("the healthy fit failed: " + fit.message);
-    return diagnosis::rig_fit_of(fit, campaign.diagnosis.leak_law);
+    return bench::rig_of(campaign, fit);
   }
 };
 

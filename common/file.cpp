@@ -8,11 +8,8 @@
 
 #include <array>
 #include <cerrno>
-#include <memory>
 #include <mutex>
 #include <system_error>
-#include <utility>
-#include <vector>
 
 #include "common/error.hpp"
 #include "common/temporary_name.hpp"

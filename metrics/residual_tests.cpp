@@ -6,7 +6,6 @@
 #include <complex>
 #include <limits>
 #include <stdexcept>
-#include <utility>
 
 #include "metrics/autoregression.hpp"
 #include "metrics/distributions.hpp"

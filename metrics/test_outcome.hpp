@@ -13,9 +13,10 @@ namespace rigcal::metrics {
 enum class TestOutcome { passed, failed, not_judged };
 RIGCAL_NAMES(TestOutcome, passed, failed, not_judged)
 
+/// What every test has.
 struct Judged {
-  TestOutcome outcome = TestOutcome::not_judged;
-  std::optional<std::string> reason;  ///< why the test cannot be judged
+  TestOutcome outcome = TestOutcome::not_judged;  ///< "passed", "failed" or "not_judged"
+  std::optional<std::string> reason;              ///< why the test cannot be judged
 
   bool passed() const { return outcome == TestOutcome::passed; }
   bool failed() const { return outcome == TestOutcome::failed; }

@@ -19,12 +19,12 @@ void bind_assessment(py::module_& module) {
           "Condition or parameter; empty for the whole result.")
       .def("__repr__",
            [](const Reason& self) { return fmt::format("<rigcal.Reason {}>", self.code); });
-  bind_members(reason);
+  bind_members(module, reason);
   py::class_<Aspect> aspect(module, "Aspect", struct_doc<Aspect>());
   aspect.def("__repr__", [](const Aspect& self) {
     return fmt::format("<rigcal.Aspect {}>", to_string(self.state));
   });
-  bind_members(aspect);
+  bind_members(module, aspect);
   py::class_<Assessment> assessment(module, "Assessment", struct_doc<Assessment>());
   assessment.def("__repr__", [](const Assessment& self) {
     return fmt::format(
@@ -32,7 +32,7 @@ void bind_assessment(py::module_& module) {
         to_string(self.agreement.state), to_string(self.validation.state),
         to_string(self.adequacy.state), to_string(self.parameters.state));
   });
-  bind_members(assessment);
+  bind_members(module, assessment);
 }
 
 }  // namespace rigcal::python

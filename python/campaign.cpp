@@ -5,7 +5,6 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <filesystem>
-#include <optional>
 #include <vector>
 
 #include "datasets/prepare/load_record.hpp"

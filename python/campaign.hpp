@@ -38,6 +38,9 @@ inline std::optional<double> none_if_nan(double value) {
   return std::isnan(value) ? std::nullopt : std::optional(value);
 }
 
+/// Translates the errors of rigcal to the exceptions in rigcal/errors.py.
+void translate_errors();
+
 // Each function adds the classes for one kind of result, and the methods of Campaign that return
 // them.
 CampaignClass bind_campaign(pybind11::module_& module);

@@ -1,10 +1,15 @@
 #pragma once
 
+#include <algorithm>
+#include <concepts>
+#include <initializer_list>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 
+#include "python/arrays.hpp"
 #include "python/types.hpp"
-#include "report/store/described_campaign.hpp"
 
 // Properties of a Python class that follow from the description of the C++ struct.
 
@@ -23,32 +28,80 @@ const char* struct_doc() {
   return doc_of(pybind11::type_id<Self>());
 }
 
+template <typename Self, typename... Options>
+void bind_members(pybind11::module_& module, pybind11::class_<Self, Options...>& target);
+
 /// Returns the documentation of a member.
 template <typename Self>
 const char* member_doc(std::string_view member) {
   return doc_of(pybind11::type_id<Self>() + "::" + std::string(member));
 }
 
-/// Adds a read-only property for every described member that the class does not have yet. Members
-/// that Python sees in another form must therefore be added before.
-template <typename Self, typename... Options>
-void bind_members(pybind11::class_<Self, Options...>& target) {
-  const Self sample{};
-  Self::describe(sample, [&]<typename Member>(const char* name, const Member& /*member*/) {
+/// The described struct inside the type of a member, such as Reason inside std::vector<Reason>;
+/// void if there is none.
+template <typename T>
+struct StructIn : std::type_identity<void> {};
+template <report::described::Struct T>
+struct StructIn<T> : std::type_identity<T> {};
+template <typename T>
+requires(!report::described::Struct<T> && requires { typename T::value_type; }) struct StructIn<T>
+    : StructIn<typename T::value_type> {
+};
+template <typename Key, typename Value>
+struct StructIn<std::pair<Key, Value>> : StructIn<Value> {};
+
+template <typename T>
+const T& now_or_later(const T& member) {
+  return member;
+}
+template <typename T>
+const T& now_or_later(const Later<T>& member) {
+  return member;
+}
+
+/// Adds a read-only property for every described member of a part of the class that the class does
+/// not have yet. Members that Python sees in another form must therefore be added before. Structs
+/// in the members become classes too.
+///
+/// @param part    returns the part of a Self, by reference
+/// @param hidden  members that the class has under another name
+template <typename Part, typename Self, typename... Options, typename PartOf>
+void bind_members_of(pybind11::module_& module, pybind11::class_<Self, Options...>& target,
+                     PartOf part, std::initializer_list<std::string_view> hidden = {}) {
+  const Part sample{};
+  Part::describe(sample, [&]<typename Member>(const char* name, const Member& /*member*/) {
     const std::string key = report::described::key_of(name);
-    if (pybind11::hasattr(target, key.c_str())) return;
-    const auto get = [name](const Self& self) -> decltype(auto) {
-      const Member& member = report::described::described_member<const Member>(self, name);
-      if constexpr (report::HasKeys<Member>) {
-        return report::KeysOf<Member>::text(member);
-      } else if constexpr (report::described::is_keyed<Member>) {
+    if (pybind11::hasattr(target, key.c_str()) ||
+        std::find(hidden.begin(), hidden.end(), key) != hidden.end())
+      return;
+    using Inner = typename StructIn<Member>::type;
+    if constexpr (!std::is_void_v<Inner>) {
+      if (pybind11::detail::get_type_info(typeid(Inner)) == nullptr) {
+        const std::string type = pybind11::type_id<Inner>();
+        pybind11::class_<Inner> inner(module, type.substr(type.rfind(':') + 1).c_str(),
+                                      struct_doc<Inner>());
+        bind_members(module, inner);
+      }
+    }
+    const auto get = [name, part](const Self& self) -> decltype(auto) {
+      const auto& member =
+          now_or_later(report::described::described_member<const Member>(part(self), name));
+      using Value = std::remove_cvref_t<decltype(member)>;
+      if constexpr (std::same_as<Value, Eigen::MatrixXd>) {
+        return array_of(member);
+      } else if constexpr (report::described::is_keyed<Value>) {
         return dict_of(member);
       } else {
         return (member);
       }
     };
-    target.def_property_readonly(key.c_str(), get, member_doc<Self>(name));
+    target.def_property_readonly(key.c_str(), get, member_doc<Part>(name));
   });
+}
+
+template <typename Self, typename... Options>
+void bind_members(pybind11::module_& module, pybind11::class_<Self, Options...>& target) {
+  bind_members_of<Self>(module, target, [](const Self& self) -> const Self& { return self; });
 }
 
 }  // namespace rigcal::python

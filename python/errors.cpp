@@ -1,5 +1,3 @@
-#include "python/errors.hpp"
-
 #include <pybind11/pybind11.h>
 
 #include <exception>
@@ -8,6 +6,7 @@
 
 #include "common/error.hpp"
 #include "python/arguments.hpp"
+#include "python/campaign.hpp"
 
 namespace rigcal::python {
 namespace {

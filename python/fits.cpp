@@ -12,7 +12,6 @@
 #include "python/arrays.hpp"
 #include "python/described_members.hpp"
 #include "python/fit_result.hpp"
-#include "python/holding.hpp"
 #include "python/interruptible.hpp"
 #include "python/progress.hpp"
 #include "python/result.hpp"
@@ -138,10 +137,6 @@ ResultPtr result_of(const FitResult& self, int threads) {
 
 // ---- members
 
-std::vector<calib::FittedParameter> result_parameters(const FitResult& self) {
-  return self.fit.parameters;
-}
-
 calib::FittedParameter parameter_of(const FitResult& self, const std::string& key,
                                     const std::optional<std::string>& level) {
   std::vector<std::string> known;
@@ -210,21 +205,28 @@ Page explore(const FitResult& self) {
 void bind_start(py::module_& module) {
   using calib::StartReport;
   py::class_<StartReport> start(module, "Start", struct_doc<StartReport>());
-  bind_members(start);
-}
-
-/// Returns a getter for a property that is a member of the fit.
-template <typename Base, typename Value>
-auto of_fit(Value Base::*value) {
-  return [=](const FitResult& self) { return self.fit.*value; };
+  bind_members(module, start);
 }
 
 void bind_result(py::module_& module) {
+  using calib::Fit;
   using Self = FitResult;
-  py::class_<Self, FitResultPtr>(
+  py::class_<Self, FitResultPtr> target(
       module, "Fit",
       "Result of a fit or of a validation (kind \"validation\"); SI. Its arrays are "
-      "read-only.\nFurther values are in json(), as described in docs/command-line.md.")
+      "read-only.\nFurther values are in json(), as described in docs/command-line.md.");
+  const auto add = [&](const char* name, auto member) {
+    target.def_property_readonly(
+        name, [member](const Self& self) { return self.fit.*member; }, member_doc<Fit>(name));
+  };
+  add("message", &Fit::message);
+  add("verdict", &Fit::verdict);
+  add("assessment", &Fit::assessment);
+  add("warnings", &Fit::warnings);
+  add("residual_count", &Fit::residual_count);
+  add("evaluations", &Fit::evaluations);
+  add("wall_seconds", &Fit::wall_seconds);
+  target
       .def_property_readonly(
           "kind",
           [](const Self& self) {
@@ -237,14 +239,6 @@ void bind_result(py::module_& module) {
       .def_property_readonly(
           "status", [](const Self& self) { return report::status_of(self.fit); },
           "\"converged\", \"stopped\" (the best so far) or \"failed\".")
-      .def_property_readonly("message", of_fit(&calib::Fit::message),
-                             "Why the fit stopped, and what cannot be trusted.")
-      .def_property_readonly("verdict", of_fit(&calib::Fit::verdict),
-                             "\"PASS\", \"WARN\" or \"FAIL\"; None where nothing was judged.")
-      .def_property_readonly("assessment", of_fit(&calib::Fit::assessment),
-                             "The four aspects that determine the verdict.")
-      .def_property_readonly("warnings", of_fit(&calib::Fit::warnings), "In words.")
-      .def_property_readonly("parameters", &result_parameters, "Fitted and known parameters.")
       .def("parameter", &parameter_of, py::arg("key"), py::arg("level") = py::none(),
            R"(One parameter.
 
@@ -260,17 +254,8 @@ Raises:
       .def_property_readonly("cost", &cost_of,
                              "Half the sum of squared weighted residuals, priors included; "
                              "None\nif nothing was estimated.")
-      .def_property_readonly("reduced_chi_square", of_fit(&calib::Fit::reduced_chi_square),
-                             "Twice the cost divided by the degrees of freedom: about 1 if the "
-                             "residual is only noise.")
-      .def_property_readonly("residual_count", of_fit(&calib::Fit::residual_count),
-                             "Number of residuals.")
-      .def_property_readonly("evaluations", of_fit(&calib::Fit::evaluations),
-                             "Number of evaluations of all residuals.")
-      .def_property_readonly("wall_seconds", of_fit(&calib::Fit::wall_seconds),
-                             "Duration of the fit [s].")
       .def_property_readonly(
-          "simulation_tolerance", of_fit(&calib::Fit::tolerance),
+          "simulation_tolerance", [](const Self& self) { return self.fit.tolerance; },
           "Local error per step of the simulations, relative to the peak of each state.")
       .def_property_readonly(
           "correlation_names", [](const Self& self) { return self.fit.correlation.names; },
@@ -278,20 +263,10 @@ Raises:
       .def_property_readonly(
           "correlation", [](const Self& self) { return array_of(self.fit.correlation.matrix); },
           "Correlations of the estimates that have a standard error, shape (names, names).")
-      .def_property_readonly("rank", of_fit(&calib::Fit::rank),
-                             "Rank of the scaled Jacobian at the optimum.")
       .def_property_readonly(
           "singular_values",
           [](const FitResultPtr& self) { return view(self, self->fit.singular_values); },
           "Singular values of the scaled Jacobian at the optimum, shape (unknowns).")
-      .def_property_readonly(
-          "combinations", of_fit(&calib::Fit::combinations),
-          "Combinations of parameters that the records determine better than the parameters.")
-      .def_property_readonly("interval_advice", of_fit(&calib::Fit::interval_advice),
-                             "Which interval to use, and why.")
-      .def_property_readonly("starts", of_fit(&calib::Fit::starts), "One report per start.")
-      .def_property_readonly("best_start", of_fit(&calib::Fit::best_start),
-                             "Number of the best start, which gave the result.")
       .def_property_readonly(
           "bootstrap_replicates",
           [](const Self& self) { return self.fit.bootstrap ? self.fit.bootstrap->replicates : 0; },
@@ -368,6 +343,10 @@ Returns:
                            to_string(report::status_of(self.fit)),
                            self.fit.verdict ? to_string(*self.fit.verdict) : "no verdict");
       });
+  bind_members_of<calib::Findings>(
+      module, target, [](const Self& self) -> const calib::Findings& { return self.fit; });
+  bind_members_of<calib::SearchOutcome>(
+      module, target, [](const Self& self) -> const calib::SearchOutcome& { return self.fit; });
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ void bind_spread(py::module_& module, const char* name) {
   py::class_<Spread> spread(module, name, struct_doc<Spread>());
   spread.def_property_readonly(
       "ci95", [](const Spread& self) { return self.ci95.value(); }, member_doc<Spread>("ci95"));
-  bind_members(spread);
+  bind_members(module, spread);
 }
 
 void bind_budget(py::module_& module) {
@@ -32,13 +32,13 @@ void bind_budget(py::module_& module) {
       .def("__repr__", [](const BudgetLine& self) {
         return fmt::format("<rigcal.BudgetLine {}: {:g}>", self.source, self.uncertainty);
       });
-  bind_members(line);
+  bind_members(module, line);
   py::class_<Budget95> budget(module, "UncertaintyBudget", struct_doc<Budget95>());
   budget.def_property_readonly(
       "beside",
       [](const Budget95& self) { return self.beside.value_or(std::vector<BudgetLine>()); },
       member_doc<Budget95>("beside"));
-  bind_members(budget);
+  bind_members(module, budget);
 }
 
 void bind_profile(py::module_& module) {
@@ -46,7 +46,7 @@ void bind_profile(py::module_& module) {
   using calib::ProfileEnd;
   py::class_<ProfileEnd> end(module, "ProfileEnd", struct_doc<ProfileEnd>());
   end.def_property_readonly("lost", &ProfileEnd::is_lost, member_doc<ProfileEnd>("lost"));
-  bind_members(end);
+  bind_members(module, end);
   py::class_<Profile, std::shared_ptr<Profile>> profile(module, "Profile", struct_doc<Profile>());
   profile
       .def_property_readonly(
@@ -57,20 +57,17 @@ void bind_profile(py::module_& module) {
           member_doc<Profile>("rises"))
       .def_readonly("lower_cost_found", &Profile::lower_cost_found,
                     member_doc<Profile>("lower_cost_found"));
-  bind_members(profile);
+  bind_members(module, profile);
 }
 
 }  // namespace
 
 void bind_fitted_parameters(py::module_& module) {
-  using calib::AveragedEstimate;
   using Self = calib::FittedParameter;
   bind_spread<calib::BootstrapSpread>(module, "BootstrapSpread");
   bind_spread<calib::PosteriorSpread>(module, "PosteriorSpread");
   bind_budget(module);
   bind_profile(module);
-  py::class_<AveragedEstimate> averaged(module, "AveragedEstimate", struct_doc<AveragedEstimate>());
-  bind_members(averaged);
   py::class_<Self> parameter(module, "FittedParameter", struct_doc<Self>());
   parameter
       .def_property_readonly(
@@ -84,7 +81,7 @@ void bind_fitted_parameters(py::module_& module) {
         return fmt::format("<rigcal.FittedParameter {}{}: {:g} {}>", self.key,
                            self.level ? " of " + *self.level : "", self.value, self.unit);
       });
-  bind_members(parameter);
+  bind_members(module, parameter);
 }
 
 }  // namespace rigcal::python

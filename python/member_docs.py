@@ -77,11 +77,26 @@ def comments(header: str) -> dict[str, str]:
     return {name: sentence(text) for name, text in words.items() if text}
 
 
+def inherited(header: str, docs: dict[str, str]) -> dict[str, str]:
+    """Returns the comments on the members that structs in a header have from a base."""
+    found: dict[str, str] = {}
+    for space, body in re.findall(r"^namespace ([\w:]+) \{(.*?)^\}  // namespace", header, re.MULTILINE | re.DOTALL):
+        for struct, base in re.findall(r"^struct (\w+) : ([\w:]+) \{", body, re.MULTILINE):
+            for name, doc in docs.items():
+                owner, _, member = name.rpartition("::")
+                if owner in (f"{space}::{base}", f"rigcal::{base}"):
+                    found[f"{space}::{struct}::{member}"] = doc
+    return found
+
+
 def main() -> None:
     out, *headers = sys.argv[1:]
+    texts = [pathlib.Path(header).read_text(encoding="utf-8") for header in headers]
     docs: dict[str, str] = {}
-    for header in headers:
-        docs.update(comments(pathlib.Path(header).read_text(encoding="utf-8")))
+    for text in texts:
+        docs.update(comments(text))
+    for text in texts:
+        docs = inherited(text, docs) | docs
     rows = "".join(f'    {{"{name}", R"doc({doc})doc"}},\n' for name, doc in docs.items())
     pathlib.Path(out).write_text(HEAD + rows + TAIL, encoding="utf-8")
 

@@ -4,7 +4,6 @@
 #include <type_traits>
 
 #include "python/campaign.hpp"
-#include "python/errors.hpp"
 #include "report/store/provenance.hpp"
 #include "report/store/stored/stored_fit.hpp"
 
@@ -27,7 +26,8 @@ pybind11::dict texts_of() {
 pybind11::dict enumerations() {
   return texts_of<calib::AspectState, calib::FitStatus, calib::Identifiability,
                   calib::IntervalSource, calib::Verdict, datasets::Scope, datasets::Use,
-                  datasets::Waveform, model::PlantKind, model::SimulationStatus>();
+                  datasets::Waveform, metrics::TestOutcome, model::PlantKind,
+                  model::SimulationStatus>();
 }
 
 }  // namespace

@@ -45,12 +45,12 @@ void bind_progress(py::module_& module) {
     return fmt::format("<rigcal.Iteration {} of start {}: cost {:.6g}>", self.iteration, self.start,
                        self.cost);
   });
-  bind_members(iteration);
+  bind_members(module, iteration);
   py::class_<Pieces> pieces(module, "Pieces", struct_doc<Pieces>());
   pieces.def("__repr__", [](const Pieces& self) {
     return fmt::format("<rigcal.Pieces: {} of {} {}>", self.done, self.all, self.work);
   });
-  bind_members(pieces);
+  bind_members(module, pieces);
 }
 
 }  // namespace rigcal::python

@@ -13,7 +13,6 @@
 #include "python/arrays.hpp"
 #include "python/campaign.hpp"
 #include "python/described_members.hpp"
-#include "python/holding.hpp"
 #include "python/result.hpp"
 #include "report/job/job.hpp"
 #include "report/run/check.hpp"
@@ -142,7 +141,7 @@ void bind_repeat(py::module_& module) {
       .def_readonly("shifted_s", &RepeatReport::shifted_s, member_doc<RepeatReport>("shifted_s"))
       .def("__repr__",
            [](const RepeatReport& self) { return fmt::format("<rigcal.Repeat {}>", self.source); });
-  bind_members(repeat);
+  bind_members(module, repeat);
 }
 
 void bind_record(py::module_& module) {

@@ -23,6 +23,15 @@ struct Result {
 };
 using ResultPtr = std::shared_ptr<Result>;
 
+/// Describes how a call may use its output folder. Messages become a UserWarning.
+inline report::Holding holding(std::string verb, bool force) {
+  return {std::move(verb), force, "force=True", [](const std::string& text) {
+            const pybind11::gil_scoped_acquire acquired;
+            if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0)
+              throw pybind11::error_already_set();
+          }};
+}
+
 /// A page for display in a notebook.
 struct Page {
   std::string html;

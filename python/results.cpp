@@ -16,7 +16,6 @@
 #include "datasets/draft/recordings_in.hpp"
 #include "python/campaign.hpp"
 #include "python/fit_result.hpp"
-#include "python/holding.hpp"
 #include "python/interruptible.hpp"
 #include "python/progress.hpp"
 #include "python/result.hpp"

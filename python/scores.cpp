@@ -80,15 +80,30 @@ void bind_limit_check(py::module_& module) {
   using calib::LimitCheck;
   py::class_<LimitCheck> check(module, "LimitCheck", struct_doc<LimitCheck>());
   check.def_readonly("words", &LimitCheck::words, member_doc<LimitCheck>("words"));
-  bind_members(check);
+  bind_members(module, check);
 }
 
 void bind_scored_channel(py::module_& module) {
-  const auto of_metrics = [](auto member) {
-    return [member](const ScoredChannel& self) { return self.score.metrics.*member; };
+  using calib::ChannelMetrics;
+  using calib::ChannelScore;
+  py::class_<ScoredChannel> channel(module, "ScoredChannel",
+                                    "Agreement of the model with one channel of a condition; SI.");
+  const auto add_numbers = [&](const char* name, auto member) {
+    channel.def_property_readonly(name, numbers_of(member), member_doc<ChannelScore>(name));
   };
-  py::class_<ScoredChannel>(module, "ScoredChannel",
-                            "Agreement of the model with one channel of a condition; SI.")
+  const auto add_metric = [&](const char* name, auto member) {
+    channel.def_property_readonly(
+        name, [member](const ScoredChannel& self) { return self.score.metrics.*member; },
+        member_doc<ChannelMetrics>(name));
+  };
+  add_numbers("noise_floor", &ChannelScore::noise_floor);
+  add_numbers("expanded_uncertainty", &ChannelScore::expanded_uncertainty);
+  add_numbers("two_sided_uncertainty", &ChannelScore::two_sided_uncertainty);
+  add_metric("gain_ratio", &ChannelMetrics::gain_ratio);
+  add_metric("phase_deg", &ChannelMetrics::phase_deg);
+  add_metric("delay_s", &ChannelMetrics::delay_s);
+  add_metric("problem", &ChannelMetrics::problem);
+  channel
       .def_property_readonly("key", field(&ScoredChannel::about, &datasets::ChannelInfo::key),
                              "\"position\"...")
       .def_property_readonly("unit", field(&ScoredChannel::about, &datasets::ChannelInfo::unit),
@@ -110,29 +125,11 @@ void bind_scored_channel(py::module_& module) {
           },
           "Metrics by name, \"ccc\", \"rho2\"...; None if undefined.")
       .def_property_readonly(
-          "noise_floor", numbers_of(&calib::ChannelScore::noise_floor),
-          "Metrics that a perfect model would reach, by name; None if the noise is\nunknown.")
-      .def_property_readonly("expanded_uncertainty",
-                             numbers_of(&calib::ChannelScore::expanded_uncertainty),
-                             "Expanded uncertainty (95 %) of each of `metrics`, from repeats and\n"
-                             "sensor; None with fewer than two repeats.")
-      .def_property_readonly(
           "budgets",
           [](const ScoredChannel& self) {
             return dict_of(self.score.score_budgets.value_or(Keyed<calib::Budget95>()));
           },
-          "Contributions to the two-sided uncertainty of each of `metrics`, by\n"
-          "name; empty with fewer than two repeats.")
-      .def_property_readonly(
-          "gain_ratio", of_metrics(&calib::ChannelMetrics::gain_ratio),
-          "Simulated over measured amplitude of the fundamental; None without a fundamental.")
-      .def_property_readonly(
-          "phase_deg", of_metrics(&calib::ChannelMetrics::phase_deg),
-          "Phase of the simulated fundamental minus that of the measured one [degrees]; or None.")
-      .def_property_readonly("delay_s", of_metrics(&calib::ChannelMetrics::delay_s),
-                             "Delay of the simulated fundamental [s]; or None.")
-      .def_property_readonly("problem", of_metrics(&calib::ChannelMetrics::problem),
-                             "Why a metric is undefined; or None.")
+          member_doc<ChannelScore>("score_budgets"))
       .def("__repr__", [](const ScoredChannel& self) {
         return fmt::format("<rigcal.ScoredChannel {} of {}>", self.about.key, self.condition->id);
       });
@@ -144,27 +141,12 @@ void bind_scores(py::module_& module) {
   using Self = ScoredCondition;
   bind_limit_check(module);
   bind_scored_channel(module);
-  py::class_<Self>(
+  py::class_<Self> condition(
       module, "ScoredCondition",
-      "Agreement of the model with the record of a condition; SI. Its arrays\nare read-only.")
-      .def_property_readonly("id", field(&Self::score, &calib::ConditionScore::id),
-                             "Id of the condition.")
-      .def_property_readonly("use", field(&Self::score, &calib::ConditionScore::use),
-                             "\"fit\" or \"validate\".")
-      .def_property_readonly("verdict", field(&Self::score, &calib::ConditionScore::verdict),
-                             "\"PASS\", \"WARN\" or \"FAIL\"; None without limits.")
-      .def_property_readonly("reasons", field(&Self::score, &calib::ConditionScore::reasons),
-                             "Reasons for WARN or FAIL.")
+      "Agreement of the model with the record of a condition; SI. Its arrays\nare read-only.");
+  condition
       .def_property_readonly("checks", field(&Self::score, &calib::ConditionScore::limit_checks),
-                             "One check per limit.")
-      .def_property_readonly("warnings", field(&Self::score, &calib::ConditionScore::warnings),
-                             "Doubts about the recording.")
-      .def_property_readonly("failure", field(&Self::score, &calib::ConditionScore::failure),
-                             "Why it could not be simulated; or None.")
-      .def_property_readonly("not_scored", field(&Self::score, &calib::ConditionScore::not_scored),
-                             "Why it was not scored; or None.")
-      .def_property_readonly("samples", field(&Self::score, &calib::ConditionScore::samples),
-                             "Number of samples inside the windows.")
+                             member_doc<calib::ConditionResult>("limit_checks"))
       .def_property_readonly(
           "time_s", [](const Self& self) { return view(self.score, self.score->time_s); },
           "Times [s], shape (samples of the whole record).")
@@ -195,6 +177,10 @@ void bind_scores(py::module_& module) {
         return fmt::format("<rigcal.ScoredCondition {}: {}>", self.score->id,
                            self.score->verdict ? to_string(*self.score->verdict) : "no limits");
       });
+  bind_members_of<calib::ConditionResult>(
+      module, condition,
+      [](const Self& self) -> const calib::ConditionResult& { return *self.score; },
+      {"limit_checks"});
 }
 
 }  // namespace rigcal::python

@@ -17,7 +17,6 @@
 #include "common/suggest.hpp"
 #include "python/arrays.hpp"
 #include "python/campaign.hpp"
-#include "python/holding.hpp"
 #include "python/interruptible.hpp"
 #include "python/result.hpp"
 #include "report/job/job.hpp"

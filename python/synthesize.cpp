@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "python/campaign.hpp"
-#include "python/holding.hpp"
+#include "python/result.hpp"
 #include "report/run/synthesis.hpp"
 #include "report/store/folder.hpp"
 

@@ -11,6 +11,7 @@
 
 #include "common/describe.hpp"
 #include "common/range.hpp"
+#include "report/store/described_campaign.hpp"
 
 // C++ types whose signatures name the exact type in Python. python/write_stub.py writes the stub
 // from these signatures.
@@ -57,10 +58,11 @@ using Figure = Typed<"matplotlib.figure.Figure">;
 using JsonDict = Typed<"Dict[str, Any]">;
 
 /// Converts pairs of key and value to a dict in the same order.
-template <typename Value>
-Dict<std::string, Value> dict_of(const Keyed<Value>& pairs) {
+template <typename Value, typename Key>
+Dict<std::string, Value> dict_of(const Keyed<Value, Key>& pairs) {
   Dict<std::string, Value> dict;
-  for (const auto& [key, value] : pairs) dict[pybind11::str(key)] = value;
+  for (const auto& [key, value] : pairs)
+    dict[pybind11::str(report::described::key_text(key))] = value;
   return dict;
 }
 
@@ -89,6 +91,16 @@ class type_caster<Enum> {
   static constexpr auto name = const_name<Enum>();
   static handle cast(Enum value, return_value_policy /*policy*/, handle /*parent*/) {
     const std::string_view text = to_string(value);
+    return str(text.data(), text.size()).release();
+  }
+};
+
+template <rigcal::report::HasKeys Key>
+class type_caster<Key> {
+ public:
+  static constexpr auto name = const_name("str");
+  static handle cast(Key value, return_value_policy /*policy*/, handle /*parent*/) {
+    const std::string_view text = rigcal::report::KeysOf<Key>::text(value);
     return str(text.data(), text.size()).release();
   }
 };

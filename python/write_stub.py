@@ -49,7 +49,7 @@ def annotation(node: ast.expr, *, is_argument: bool) -> str:
             return f"Callable[[{events}], object]"
         inner = [annotation(part, is_argument=is_argument) for part in parts]
         if outer == "Optional":
-            return f"{inner[0]} | None"
+            return f"{inner[0].removesuffix(' | None')} | None"
         if outer == "Union":
             return " | ".join(inner)
         if outer in ("List", "list"):

@@ -12,7 +12,6 @@
 #include "calib/design/trial_rig.hpp"
 #include "calib/problem/evaluation.hpp"
 #include "calib/problem/r_factor.hpp"
-#include "calib/trust/information.hpp"
 #include "calib/trust/known_uncertainty.hpp"
 #include "calib/trust/planned_record.hpp"
 #include "calib/trust/symmetry.hpp"
@@ -193,9 +192,9 @@ void check_finely(const TrialRig& rig, const datasets::DriveUnit& unit, const Dr
                   Design& design) {
   double scale = allowed_scale(rig, shape).value_or(0.0);
   for (int trial = 0; trial < kMostFineScalings && scale > 0.0; ++trial) {
-    design.drive = drive_of(rig, shape, scale);
-    for (double& value : design.drive) value = datasets::written_drive(unit, value);
-    const auto uses = rig.uses_under(design.drive, kFineTolerance, kFiner, &design.response);
+    design.samples = drive_of(rig, shape, scale);
+    for (double& value : design.samples) value = datasets::written_drive(unit, value);
+    const auto uses = rig.uses_under(design.samples, kFineTolerance, kFiner, &design.response);
     const double share = uses ? largest_share(*uses) : std::numeric_limits<double>::infinity();
     if (share <= 1.0) {
       design.limits = *uses;
@@ -252,13 +251,14 @@ void add_own_signals(const Campaign& campaign, const std::vector<Record>& record
   for (std::size_t i = 0; i < conditions.size(); ++i) {
     if (!at.conditions[i].ok()) continue;
     weights[i] = own[i].time_s.back() - own[i].time_s.front();
-    design.own_duration_s += weights[i];
-    design.own_conditions.push_back(conditions[i]->id);
+    design.own_signals_duration_s += weights[i];
+    design.own_signals.push_back(conditions[i]->id);
   }
-  if (!(design.own_duration_s > 0.0)) return;
+  if (!(design.own_signals_duration_s > 0.0)) return;
   for (std::size_t i = 0; i < weights.size(); ++i)
-    weights[i] *= static_cast<double>(settings.samples()) /
-                  (design.own_duration_s * static_cast<double>(problem.conditions[i].rows.size()));
+    weights[i] *=
+        static_cast<double>(settings.samples()) /
+        (design.own_signals_duration_s * static_cast<double>(problem.conditions[i].rows.size()));
   const auto sd = cramer_rao(problem, z, weighted_jacobian(problem, at, weights));
   for (DesignedParameter& designed : design.parameters) {
     for (std::size_t j = 0; j < sd.size(); ++j) {
@@ -302,22 +302,22 @@ Design design(const Campaign& campaign, const std::vector<Record>& records,
   Chosen best;
   for (const DriveFamily family : tried_families(rig.settings())) {
     if (is_set(options.cancel)) break;
-    result.trials.push_back(searcher.search(family, best));
+    result.families.push_back(searcher.search(family, best));
   }
   result.stopped = is_set(options.cancel);
   if (best.point.size() == 0) {
     if (result.stopped) throw Error(ExitCode::stopped, "design: stopped before a drive was found");
     throw NoResultError(
         fmt::format("design: none of {} drives stays within the limits of [design]",
-                    rig.settings().evaluations * static_cast<int>(result.trials.size())));
+                    rig.settings().evaluations * static_cast<int>(result.families.size())));
   }
   rig.finish();
   const DriveShape shape = drive_shape(best.family, best.point, searcher.grid());
   result.family = best.family;
-  result.parts = shape.parts;
+  result.drive = shape.parts;
   result.time_s = rig.time_s();
   check_finely(rig, datasets::drive_unit(campaign), shape, result);
-  const Eigen::MatrixXd rows = rig.sensitivities(result.drive, kFineTolerance);
+  const Eigen::MatrixXd rows = rig.sensitivities(result.samples, kFineTolerance);
   if (rows.size() == 0) throw NoResultError("design: the drive has no sensitivities");
   const auto sd = searcher.standard_deviations(rows);
   for (std::size_t j = 0; j < sd.size(); ++j) {
@@ -325,7 +325,7 @@ Design design(const Campaign& campaign, const std::vector<Record>& records,
     result.parameters.push_back(
         {parameter_at(rig.problem(), rig.z(), j), is_named, sd[j], std::nullopt});
   }
-  rig.play(result.drive);
+  rig.play(result.samples);
   leave_symmetric_open(rig, options.threads, result);
   add_own_signals(campaign, records, values, options.threads, result);
   for (const std::string& name : uncertain_names(rig.problem()))

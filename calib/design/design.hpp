@@ -36,22 +36,26 @@ struct FamilyTrial {
   RIGCAL_DESCRIBE(family, evaluations, found, sd)
 };
 
-/// A test that keeps the limits in [design], checked with a fine simulation.
-struct Design {
+/// A designed test as result files describe it, SI.
+struct DesignedTest {
   datasets::DriveFamily family = datasets::DriveFamily::multisine;
-  std::vector<double> time_s;
-  std::vector<double> drive;  ///< samples of the drive as written to the CSV file, SI
-  Eigen::MatrixXd response;   ///< values of limited_outputs() at time_s
-  double amplitude = 0.0;     ///< largest distance of the drive from its first value, SI
-  std::vector<DrivePart> parts;
-  std::vector<LimitUse> limits;
+  double amplitude = 0.0;  ///< largest distance of the drive from its first value
   std::vector<DesignedParameter> parameters;
-  std::vector<FamilyTrial> trials;
-  std::map<datasets::Channel, double> noise_sd;  ///< noise in one sample of one repeat, SI
-  std::vector<std::string> own_conditions;       ///< conditions with the campaign's own signals
-  double own_duration_s = 0.0;                   ///< total duration of the campaign's own signals
-  bool stopped = false;  ///< true if the search was cancelled; the drive is the best so far
+  std::vector<DrivePart> drive;  ///< what the drive is made of
+  std::vector<FamilyTrial> families;
+  std::vector<std::string> own_signals;  ///< conditions with the campaign's own signals
+  double own_signals_duration_s = 0.0;   ///< total duration of these conditions
   std::vector<std::string> messages;
+};
+
+/// A test that keeps the limits in [design], checked with a fine simulation.
+struct Design : DesignedTest {
+  std::vector<double> time_s;
+  std::vector<double> samples;  ///< the drive as written to the CSV file, SI
+  Eigen::MatrixXd response;     ///< values of limited_outputs() at time_s
+  std::vector<LimitUse> limits;
+  std::map<datasets::Channel, double> noise_sd;  ///< noise in one sample of one repeat, SI
+  bool stopped = false;  ///< true if the search was cancelled; the drive is the best so far
 };
 
 struct DesignOptions {

@@ -1,7 +1,6 @@
 #include "calib/problem/arrow.hpp"
 
 #include <algorithm>
-#include <utility>
 
 namespace rigcal::calib {
 

@@ -25,8 +25,12 @@ namespace rigcal::calib {
 /// Metrics of one channel in one condition, and its response at the fundamental frequency. A metric
 /// that does not exist is NaN; `problem` says why.
 struct ChannelMetrics : metrics::Agreement {
-  std::optional<double> gain_ratio, phase_deg, delay_s;  ///< simulated to measured; sine and square
-  std::optional<std::string> problem;                    ///< why a value is missing, in words
+  /// Simulated over measured amplitude of the fundamental; absent without a fundamental.
+  std::optional<double> gain_ratio;
+  /// Phase of the simulated fundamental minus that of the measured one [degrees]; absent likewise.
+  std::optional<double> phase_deg;
+  std::optional<double> delay_s;       ///< delay of the simulated fundamental [s]; absent likewise
+  std::optional<std::string> problem;  ///< why a value is missing, in words
 
   ChannelMetrics() {
     for (const metrics::MetricSpec& metric : metrics::kMetrics) this->*metric.value = std::nan("");
@@ -47,11 +51,12 @@ struct ChannelMetrics : metrics::Agreement {
 struct ChannelScore {
   datasets::Channel channel = datasets::Channel::position;
   ChannelMetrics metrics;
-  std::optional<metrics::NoiseFloor> noise_floor;  ///< absent if the noise is unknown
-  /// One-sided uncertainty due to repeats and sensor, used as the guard band of a limit; absent
-  /// with fewer than two repeats.
+  /// Metrics that a perfect model would reach, by name; absent if the noise is unknown.
+  std::optional<metrics::NoiseFloor> noise_floor;
+  /// One-sided expanded uncertainty (95 %) of each metric, due to repeats and sensor, used as the
+  /// guard band of a limit; absent with fewer than two repeats.
   Later<std::optional<metrics::Agreement>> expanded_uncertainty;
-  /// Two-sided uncertainty, as printed after +-.
+  /// Two-sided expanded uncertainty of each metric, as printed after +-.
   Later<std::optional<metrics::Agreement>> two_sided_uncertainty;
   /// Contributions to the two-sided uncertainty of each metric, in the order of the metrics; absent
   /// if the uncertainty is unknown.
@@ -95,20 +100,20 @@ using ChannelCurves = Keyed<std::optional<metrics::ResidualCurves>, datasets::Ch
 
 /// Score of one condition, with what campaign and record state about it.
 struct ConditionResult {
-  std::string id;
-  Later<std::optional<datasets::Waveform>> waveform;
-  Later<std::optional<double>> frequency_hz, amplitude_m;
-  Omittable<std::optional<double>> amplitude_v;  ///< open loop only
-  Omittable<double> amplitude_n, amplitude_pa, amplitude_m_per_s2, amplitude_rad,
-      amplitude_n_m;  ///< in other loops
-  Later<std::optional<std::string>> leak_level;
-  datasets::Use use = datasets::Use::fit;
-  Omittable<double> temperature_k;
-  Omittable<std::string> date;
+  std::string id;                                                   ///< id of the condition
+  Later<std::optional<datasets::Waveform>> waveform;                ///< signal of the drive
+  Later<std::optional<double>> frequency_hz, amplitude_m;           ///< frequency and amplitude
+  Omittable<std::optional<double>> amplitude_v;                     ///< amplitude of a command
+  Omittable<double> amplitude_n, amplitude_pa, amplitude_m_per_s2;  ///< amplitude in other loops
+  Omittable<double> amplitude_rad, amplitude_n_m;                   ///< amplitude in other loops
+  Later<std::optional<std::string>> leak_level;                     ///< name of the leak level
+  datasets::Use use = datasets::Use::fit;                           ///< "fit" or "validate"
+  Omittable<double> temperature_k;                ///< stated temperature of the oil
+  Omittable<std::string> date;                    ///< stated date of the record
   long samples = 0;                               ///< number of samples inside the windows
   Later<std::vector<std::string>> record_sha256;  ///< files that the record is made from
   Omittable<std::vector<Range>> windows_s;        ///< empty: the whole record
-  Omittable<std::vector<std::string>> notes;
+  Omittable<std::vector<std::string>> notes;      ///< changes to the record, in words
   Omittable<std::vector<datasets::AcceptanceLimit>>
       acceptance;                                        ///< limits that replace the campaign's
   Omittable<std::vector<datasets::Channel>> not_judged;  ///< in addition to those of the campaign
@@ -117,7 +122,7 @@ struct ConditionResult {
   Later<std::optional<std::string>> not_scored;
   std::optional<std::string> failure;  ///< why the simulation failed; absent if it did not
   Columns<ChannelScore> channels;
-  Later<std::vector<LimitCheck>> limit_checks;  ///< one for each limit on its channels
+  Later<std::vector<LimitCheck>> limit_checks;  ///< one check per limit
   /// Worst of the checks of each channel that has a limit, in the order of the channels.
   Later<Keyed<Verdict, datasets::Channel>> channel_verdicts;
   std::optional<Verdict> verdict;    ///< worst of the checks; absent without limits

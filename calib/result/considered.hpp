@@ -54,8 +54,8 @@ struct RefittedModel {
 
 /// The small effects that a fit considered.
 struct Considered {
-  std::vector<ConsideredEffect> effects;
-  std::vector<std::string> left_out;  ///< keys of effects that the campaign excludes
+  std::vector<ConsideredEffect> effects;  ///< all that were considered, or could not be
+  std::vector<std::string> left_out;      ///< keys of effects that the campaign excludes
   /// Keys of the effects that the residuals call for; the one that explains them best comes first.
   std::vector<std::string> missing;
   Later<std::vector<RefittedModel>> refitted;  ///< empty if the residuals call for no effect
@@ -70,14 +70,14 @@ struct Considered {
 
 /// An estimate recomputed from the validation records only. SI.
 struct StabilityCheck {
-  std::string key;  ///< key of the parameter
-  std::string unit;
-  datasets::Scope scope = datasets::Scope::rig;
-  std::optional<std::string> level;  ///< leak level or condition; absent for the rig
-  double value = 0.0;                ///< estimate from the validation records
-  double difference = 0.0;           ///< `value` minus the estimate of the fit
-  double expanded = 0.0;             ///< half-width of the 95 % interval of the difference
-  bool differs = false;  ///< true if the difference is significant, adjusted for all parameters
+  std::string key;                               ///< key of the parameter
+  std::string unit;                              ///< SI unit of value, difference and expanded
+  datasets::Scope scope = datasets::Scope::rig;  ///< "rig", "leak_level" or "condition"
+  std::optional<std::string> level;              ///< leak level or condition; absent for the rig
+  double value = 0.0;                            ///< estimate from the validation records
+  double difference = 0.0;                       ///< `value` minus the estimate of the fit
+  double expanded = 0.0;  ///< half-width of the 95 % interval of the difference
+  bool differs = false;   ///< true if the difference is significant, adjusted for all parameters
   RIGCAL_DESCRIBE(key, unit, scope, level, value, difference, expanded, differs)
 };
 

@@ -17,8 +17,8 @@ namespace rigcal::calib {
 /// Test of the model error against the pure error for one channel of one condition
 /// (lack_of_fit.hpp).
 struct LackOfFit : metrics::Judged {
-  std::string condition;
-  datasets::Channel channel = datasets::Channel::position;
+  std::string condition;                                    ///< id of the condition
+  datasets::Channel channel = datasets::Channel::position;  ///< key of the channel
   std::string against = "sd";       ///< source of the pure error: "repeats" or "sd"
   double ratio = 0.0;               ///< variance of the residual divided by that of the pure error
   double freedom = 0.0;             ///< effective degrees of freedom of the residual
@@ -63,7 +63,7 @@ struct BetweenRepeats {
 
 /// Prediction of a condition by a fit that did not use its record.
 struct HeldOut {
-  std::string condition;
+  std::string condition;                         ///< id of the condition
   std::optional<std::string> problem;            ///< why there is no prediction, in words
   Keyed<double, datasets::Channel> rmse;         ///< RMS error of the prediction, SI
   Keyed<double, datasets::Channel> fitted_rmse;  ///< RMS error in the full fit, SI

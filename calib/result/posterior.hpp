@@ -25,10 +25,10 @@ struct PosteriorSpread {
 
 /// Probability that a limit is kept.
 struct KeptLimit {
-  std::string condition;
-  datasets::Channel channel = datasets::Channel::position;
-  std::string metric;
-  double limit = 0.0;
+  std::string condition;                                    ///< id of the condition
+  datasets::Channel channel = datasets::Channel::position;  ///< key of the channel
+  std::string metric;                                       ///< name of the metric
+  double limit = 0.0;                                       ///< limit of the metric
   double probability = 0.0;  ///< fraction of simulated draws that keep the limit
   double median = 0.0;       ///< median of the metric over these draws
   RIGCAL_DESCRIBE(condition, channel, metric, limit, probability, median)
@@ -48,19 +48,19 @@ struct DrawnShare {
 
 /// Thinned draws for plots of parameter pairs: one in `every` draws, SI.
 struct Pairs {
-  std::vector<std::string> names;
-  int every = 1;
+  std::vector<std::string> names;           ///< names of the unknowns
+  int every = 1;                            ///< number of draws for each one that is kept
   std::vector<std::vector<double>> values;  ///< shape (names, kept draws)
   RIGCAL_DESCRIBE(names, every, values)
 };
 
 /// Chains of the no-U-turn sampler with their diagnostics.
 struct Posterior {
-  int chains = 0;
-  int warm_up = 0;  ///< number of draws per chain that are discarded
-  int draws = 0;    ///< number of draws per chain that are used; if 0, only `message` is valid
-  int asked = 0;    ///< number of draws per chain that were requested
-  long evaluations = 0;
+  int chains = 0;        ///< number of chains
+  int warm_up = 0;       ///< number of draws per chain that are discarded
+  int draws = 0;         ///< number of draws per chain that are used; if 0, only `message` is valid
+  int asked = 0;         ///< number of draws per chain that were requested
+  long evaluations = 0;  ///< number of evaluations of all residuals
   /// Number of trajectories whose energy error shows that the steps are too long.
   int diverged = 0;
   int longest = 0;  ///< number of trajectories cut off at the maximum number of doublings
@@ -72,9 +72,9 @@ struct Posterior {
   double noise_variance = 1.0;
   bool effects = false;  ///< whether the small effects that the model omits were sampled as well
   int simulated = 0;     ///< number of draws simulated for the limits and the shares
-  std::vector<KeptLimit> limits;
+  std::vector<KeptLimit> limits;          ///< one for each limit of the campaign
   Later<std::vector<DrawnShare>> shares;  ///< one for each free leakage coefficient
-  Pairs pairs;
+  Pairs pairs;                            ///< draws for plots of parameter pairs
   std::string message;  ///< how the chains were drawn, and any problem with them, in words
   RIGCAL_DESCRIBE(chains, warm_up, draws, asked, evaluations, diverged, longest, energy_fraction,
                   r_hat, least_draws, worst, noise_variance, effects, simulated, limits, shares,

@@ -60,12 +60,12 @@ struct Basin {
 /// A simulation that failed during the fit. All failures are counted, but only the first few of
 /// each kind are kept.
 struct SimulationFailure {
-  std::string condition;
+  std::string condition;     ///< id of the condition
   Keyed<double> parameters;  ///< names and SI values of the unknowns
-  double time_s = 0.0;
-  std::string reason;
+  double time_s = 0.0;       ///< time of the failure in the record
+  std::string reason;        ///< why it failed, in words
   model::SimulationStatus status = model::SimulationStatus::ok;
-  int start = 1;
+  int start = 1;  ///< number of the start
   RIGCAL_DESCRIBE(condition, start, time_s, reason, parameters)
 };
 

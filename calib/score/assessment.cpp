@@ -1,9 +1,6 @@
 #include "calib/score/assessment.hpp"
 
-#include "calib/score/judge_adequacy.hpp"
-#include "calib/score/judge_agreement.hpp"
-#include "calib/score/judge_parameters.hpp"
-#include "calib/score/judge_validation.hpp"
+#include "calib/score/judges.hpp"
 
 namespace rigcal::calib {
 

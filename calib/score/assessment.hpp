@@ -11,8 +11,7 @@
 namespace rigcal::calib {
 
 /// Judges a finished fit or validation. No other function judges: reports only repeat its words.
-/// The four aspects are judged separately, see judge_agreement.hpp, judge_validation.hpp,
-/// judge_adequacy.hpp and judge_parameters.hpp.
+/// The four aspects are judged separately, see judges.hpp.
 ///
 /// @param estimated_from  ids of the conditions whose records the values were fitted to
 /// @param parameters      how the validated fit judged its parameters; if null, they are judged

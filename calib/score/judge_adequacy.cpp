@@ -1,4 +1,4 @@
-#include "calib/score/judge_adequacy.hpp"
+#include "calib/score/judges.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "calib/score/judge_parameters.hpp"
+#include "calib/score/judges.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -3,10 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-
 #include "calib/descent/adaptive_descent.hpp"
-#include "calib/search/optimum.hpp"
 
 namespace rigcal::calib {
 namespace {

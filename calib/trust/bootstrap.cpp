@@ -6,7 +6,6 @@
 #include <atomic>
 #include <cmath>
 #include <mutex>
-#include <vector>
 
 #include "calib/search/search.hpp"
 #include "common/bytes.hpp"

@@ -7,7 +7,6 @@
 
 #include "calib/problem/r_factor.hpp"
 #include "calib/problem/scaled_svd.hpp"
-#include "calib/result/fitted_parameter.hpp"
 #include "calib/search/optimum.hpp"
 #include "metrics/distributions.hpp"
 

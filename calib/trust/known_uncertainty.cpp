@@ -7,7 +7,6 @@
 #include <set>
 
 #include "calib/problem/day_effects.hpp"
-#include "calib/problem/evaluation.hpp"
 #include "common/parallel.hpp"
 
 namespace rigcal::calib {

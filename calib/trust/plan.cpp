@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include "calib/search/evaluator.hpp"
-#include "calib/trust/information.hpp"
 #include "calib/trust/known_uncertainty.hpp"
 #include "calib/trust/planned_record.hpp"
 #include "calib/trust/symmetry.hpp"

@@ -3,7 +3,6 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "calib/problem/day_effects.hpp"
 #include "common/parallel.hpp"

@@ -1,6 +1,5 @@
 #include "calib/trust/sandwich.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 

@@ -114,10 +114,10 @@ struct RepeatPattern {
 
 /// Limit of one metric: FAIL beyond `limit`, WARN between `limit` and `warn`.
 struct AcceptanceLimit {
-  Channel channel = Channel::position;
-  std::string metric;  ///< name in result files
-  std::optional<double> limit;
-  std::optional<double> warn;
+  Channel channel = Channel::position;  ///< key of the channel
+  std::string metric;                   ///< name in result files
+  std::optional<double> limit;          ///< beyond it FAIL
+  std::optional<double> warn;           ///< between it and `limit` WARN
   RIGCAL_DESCRIBE(channel, metric, limit, warn)
 };
 

@@ -5,7 +5,6 @@
 #include <atomic>
 #include <optional>
 
-#include "common/file.hpp"
 #include "common/parallel.hpp"
 #include "datasets/prepare/load_record.hpp"
 #include "datasets/prepare/time_holes.hpp"

@@ -8,7 +8,6 @@
 #include "diagnosis/machine/state_verdict.hpp"
 #include "diagnosis/record/duty.hpp"
 #include "diagnosis/record/leak_budget.hpp"
-#include "diagnosis/record/record_diagnosis.hpp"
 #include "diagnosis/record/signal_name.hpp"
 
 namespace rigcal::diagnosis {

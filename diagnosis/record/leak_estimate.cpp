@@ -1,10 +1,8 @@
 #include "diagnosis/record/leak_estimate.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <numeric>
-#include <vector>
 
 #include "metrics/distributions.hpp"
 #include "metrics/significance.hpp"

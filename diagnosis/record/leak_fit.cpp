@@ -357,53 +357,6 @@ const Condition& own_condition(const LeakProblem& leak_problem, const Condition&
 
 }  // namespace
 
-RigFit rig_fit_of(const calib::Fit& fit, datasets::LeakLaw law) {
-  RigFit rig;
-  std::vector<Eigen::Index> rows;
-  std::vector<double> errors;
-  std::vector<double> undetermined;
-  std::vector<int> without_error;
-  Eigen::Index row = 0;
-  for (const calib::FittedParameter& p : fit.parameters) {
-    if (!p.fitted) continue;
-    if (!p.nuisance) rig.values.push_back({p.index, p.scope, p.level.value_or(""), p.value});
-    const bool of_rig = !p.nuisance && p.scope == datasets::Scope::rig;
-    if (p.standard_error && !p.correlated) continue;  // belongs to one condition and has no row
-    if (!p.standard_error || row >= fit.correlation.matrix.rows()) {
-      if (!of_rig) continue;
-      without_error.push_back(p.index);
-      undetermined.push_back(calib::undetermined_sd(p.ci95, *p.lower, *p.upper));
-      continue;
-    }
-    if (of_rig) {
-      rig.indices.push_back(p.index);
-      rows.push_back(row);
-      errors.push_back(std::max(*p.standard_error, p.robust_standard_error.value_or(0.0)));
-    }
-    ++row;
-  }
-  const auto known = static_cast<Eigen::Index>(errors.size());
-  const auto all = known + static_cast<Eigen::Index>(undetermined.size());
-  const auto scale = Eigen::Map<const Eigen::VectorXd>(errors.data(), known);
-  rig.covariance = Eigen::MatrixXd::Zero(all, all);
-  rig.covariance.topLeftCorner(known, known) =
-      scale.asDiagonal() * Eigen::MatrixXd(fit.correlation.matrix(rows, rows)) * scale.asDiagonal();
-  rig.covariance.diagonal().tail(all - known) =
-      Eigen::Map<const Eigen::VectorXd>(undetermined.data(), all - known).cwiseAbs2();
-  rig.indices.insert(rig.indices.end(), without_error.begin(), without_error.end());
-  if (!fit.considered) return rig;
-  calib::EstimateCovariance estimates;
-  std::vector<const calib::Budget95*> budgets;
-  for (const calib::FittedParameter& p : fit.parameters) {
-    if (!p.fitted || p.nuisance) continue;
-    estimates.estimates.push_back({p.index, p.scope, p.level.value_or("")});
-    budgets.push_back(p.budget ? &*p.budget : nullptr);
-  }
-  estimates.effects = calib::effect_covariance(*fit.considered, budgets);
-  rig.consider(estimates, law);
-  return rig;
-}
-
 void RigFit::consider(const calib::EstimateCovariance& estimates, datasets::LeakLaw law) {
   // The leak itself is estimated, so it is not an effect that the model omits.
   const calib::EffectCovariance& all = estimates.effects;

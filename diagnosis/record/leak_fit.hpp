@@ -52,9 +52,6 @@ struct LeakEffects {
   Eigen::VectorXd share;         ///< changes in the share per unit of the coefficient
 };
 
-/// Returns the rig parameters from a fit in this process.
-RigFit rig_fit_of(const calib::Fit& fit, datasets::LeakLaw law = datasets::LeakLaw::orifice);
-
 /// The campaign in the form that a diagnosis needs. The leakage coefficient is unknown in every
 /// condition, with a lower bound of 0, and anything that the campaign or a fit states about it is
 /// ignored. Other nuisance parameters (offsets) remain unknown.

@@ -3,11 +3,24 @@
 #include <algorithm>
 #include <cmath>
 
-#include "diagnosis/record/exceeds_noise.hpp"
 #include "diagnosis/record/residual_rms.hpp"
+#include "metrics/distributions.hpp"
 
 namespace rigcal::diagnosis {
 namespace {
+
+/// Returns true if a variance with `freedom` degrees of freedom exceeds the variance of white noise
+/// by so much that the ratio is in the upper quartile of chi-square. Callers then use this
+/// variance, and otherwise the variance of the noise. At this level, choosing between two variances
+/// keeps the coverage of an interval close to 95 % for any true ratio (Bancroft and Han,
+/// International Statistical Review 45, 1977).
+bool exceeds_noise(double variance, double noise_variance, double freedom) {
+  constexpr double kUpperQuartile = 0.25;  // as in calib/trust/between_repeats.cpp
+  if (!(variance > noise_variance)) return false;
+  if (!(noise_variance > 0.0)) return true;
+  return metrics::chi_squared_exceedance(freedom * variance / noise_variance, freedom) <
+         kUpperQuartile;
+}
 
 double power(double x) { return x * x; }
 

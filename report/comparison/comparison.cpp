@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "report/comparison/comparison_models.hpp"
 #include "report/comparison/comparison_parts.hpp"
 
 namespace rigcal::report {

@@ -1,4 +1,3 @@
-#include "report/comparison/comparison_models.hpp"
 
 #include <fmt/format.h>
 

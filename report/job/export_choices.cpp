@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 
 #include "calib/problem/known_values.hpp"
 #include "calib/problem/parameter_map.hpp"

@@ -1,7 +1,7 @@
 #include "diagnosis/table/fit_tables.hpp"
 #include "report/job/job.hpp"
 #include "report/job/leak_table_files.hpp"
-#include "report/store/parameters_csv.hpp"
+#include "report/store/csv.hpp"
 #include "report/store/result_files.hpp"
 #include "report/store/stored/stored_tables_fit.hpp"
 
@@ -23,9 +23,10 @@ JobResult fit_tables_job(const CampaignChoice& choice, const JobTerms& terms) {
   const Provenance provenance{terms.command, 1, terms.options, hash_inputs(input.campaign, {})};
   JobResult job;
   if (fit.status == FitStatus::converged) {
-    const diagnosis::LeakTable table =
-        diagnosis::leak_table(input.campaign, fit.settings, settings);
-    job.files = leak_table_files({input.campaign, fit.settings, table, provenance});
+    job.files =
+        leak_table_files(input.campaign, fit.settings,
+                         stored(diagnosis::leak_table(input.campaign, fit.settings, settings),
+                                input.campaign, provenance));
     job.files.push_back(
         {"fitted.toml", fitted_leak_table_text(input.campaign, fit.settings, terms.out)});
   }

@@ -54,25 +54,26 @@ PlannedFiles planned_leak_table(const datasets::LeakTableSettings& settings) {
   return planned;
 }
 
-std::vector<ResultFile> leak_table_files(const LeakTableResult& result) {
-  const diagnosis::LeakTable& table = result.table;
+std::vector<ResultFile> leak_table_files(const datasets::Campaign& campaign,
+                                         const datasets::LeakTableSettings& settings,
+                                         StoredLeakTable table) {
+  const bool closed_loop = campaign.rig.controller == model::ControllerKind::pid;
   std::vector<ResultFile> files;
-  files.push_back({"leak_table.csv", leak_table_csv(result)});
+  files.push_back({"leak_table.csv", leak_table_csv(table, closed_loop)});
   if (table.healthy) {
-    const datasets::LeakSignal& signal = *result.settings.feature_signal;
-    files.push_back({"features.csv", features_csv(result)});
+    const datasets::LeakSignal& signal = *settings.feature_signal;
+    files.push_back({"features.csv", features_csv(table)});
     files.push_back(table_file(kHealthySeries, level_table(signal, *table.healthy, nullptr)));
     for (const diagnosis::FeatureRow& row : table.features) {
       files.push_back(table_file(kLevels / level_file(row.level),
                                  level_table(signal, row.series, &*table.healthy)));
     }
   }
-  Json rig = live_rig(result.campaign, leak_table_cases(result.campaign, result.settings));
+  Json rig = live_rig(campaign, leak_table_cases(campaign, settings));
   rig["embedded"] = true;
   files.push_back(json_file(kLiveLeakTableFile, std::move(rig), json_line));
-  StoredLeakTable stored = report::stored(result);
-  name_files(files, stored.provenance);
-  files.push_back(json_file("leak_table.json", std::move(stored)));
+  name_files(files, table.provenance);
+  files.push_back(json_file("leak_table.json", std::move(table)));
   return files;
 }
 

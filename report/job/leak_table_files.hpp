@@ -30,6 +30,8 @@ diagnosis::LeakTableOptions leak_table_options(const datasets::Campaign& campaig
 PlannedFiles planned_leak_table(const datasets::LeakTableSettings& settings);
 
 /// Writes leak_table.csv and the other files of a leak table. leak_table.json comes last.
-std::vector<ResultFile> leak_table_files(const LeakTableResult& result);
+std::vector<ResultFile> leak_table_files(const datasets::Campaign& campaign,
+                                         const datasets::LeakTableSettings& settings,
+                                         StoredLeakTable table);
 
 }  // namespace rigcal::report

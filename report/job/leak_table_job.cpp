@@ -168,8 +168,7 @@ JobResult leak_table_job(const CampaignChoice& choice, const LeakTableRequest& r
   diagnosis::LeakTableOptions settings =
       leak_table_options(input.campaign, terms.threads, terms.cancel);
   settings.rig = rig.uncertainty;
-  const diagnosis::LeakTable table =
-      diagnosis::leak_table(input.campaign, input.settings, settings);
+  diagnosis::LeakTable table = diagnosis::leak_table(input.campaign, input.settings, settings);
   Provenance provenance;
   provenance.command = terms.command;
   provenance.options = terms.options;
@@ -177,10 +176,11 @@ JobResult leak_table_job(const CampaignChoice& choice, const LeakTableRequest& r
                                   fmt::format("{}", fmt::join(request.targets_percent, ",")));
   provenance.options.emplace_back("signals", fmt::format("{}", fmt::join(request.signals, ",")));
   provenance.inputs = hash_inputs(input.campaign, {}, request.fit.inputs());
-  const LeakTableResult result{input.campaign, input.settings, table,
-                               provenance,     rig.notes,      rig.warnings};
+  StoredLeakTable result = stored(std::move(table), input.campaign, provenance);
+  result.notes = rig.notes;
+  result.warnings = rig.warnings;
   JobResult job;
-  job.files = leak_table_files(result);
+  job.files = leak_table_files(input.campaign, input.settings, std::move(result));
   job.first = {"leak_table.csv", "leak_table.json"};
   job.inputs = provenance.inputs;
   return job;

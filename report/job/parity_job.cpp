@@ -11,16 +11,16 @@
 namespace rigcal::report {
 namespace {
 
-JobResult finished(const ParityResult& result) {
-  StoredParity parity = stored(result);
+JobResult finished(StoredParity parity, std::vector<ResultFile> series,
+                   const Provenance& provenance) {
   JobResult job;
   job.code = parity.status == LeakStatus::done ? ExitCode::done : ExitCode::no_result;
-  job.files = parity_series(result);
+  job.files = std::move(series);
   job.files.push_back({"parity.csv", parity_csv(parity)});
   name_files(job.files, parity.provenance);
   job.files.push_back(json_file("parity.json", std::move(parity)));
   job.first = {"parity.json", "parity.csv", "parity/"};
-  job.inputs = result.provenance.inputs;
+  job.inputs = provenance.inputs;
   return job;
 }
 
@@ -46,7 +46,7 @@ JobResult parity_job(datasets::Campaign campaign, const ParityRequest& request,
   diagnosis::Parity found;
   if (!reasons.empty()) {
     provenance.inputs = hash_inputs(campaign, {}, request.fit.inputs());
-    return finished({campaign, found, reasons, false_alarm, provenance});
+    return finished(stored(campaign, found, reasons, false_alarm, provenance), {}, provenance);
   }
   const EarlierFit earlier = request.fit.read(campaign.rig.plant);
   const LeakRecords records = load_leak_records(campaign, terms.threads);
@@ -63,7 +63,8 @@ JobResult parity_job(datasets::Campaign campaign, const ParityRequest& request,
     found.warnings.push_back(warning.with_conditions());
   if (earlier.status == calib::FitStatus::stopped)
     found.warnings.push_back("the fit was stopped before it converged: " + earlier.message);
-  return finished({campaign, found, reasons, false_alarm, provenance});
+  return finished(stored(campaign, found, reasons, false_alarm, provenance), parity_series(found),
+                  provenance);
 }
 
 }  // namespace rigcal::report

@@ -33,12 +33,11 @@ StoredDesign design_file(const datasets::Campaign& campaign, const calib::Design
   const datasets::DesignSettings& settings = *campaign.design;
   const datasets::ChannelInfo& channel = datasets::info(datasets::drive_channel(campaign));
   StoredDesign file;
+  static_cast<calib::DesignedTest&>(file) = design;
   file.status = design.stopped ? "stopped" : "done";
-  file.family = design.family;
   file.criterion = settings.criterion;
   file.channel = channel.key;
   file.unit = channel.unit;
-  file.amplitude = design.amplitude;
   file.duration_s = settings.duration_s;
   file.sample_rate_hz = settings.sample_rate_hz;
   file.repeats = settings.repeats;
@@ -46,15 +45,9 @@ StoredDesign design_file(const datasets::Campaign& campaign, const calib::Design
   if (settings.like) file.leak_level = campaign.find(*settings.like)->leak_level;
   for (const auto& [measured, sd] : design.noise_sd)
     file.noise_sd.emplace_back(datasets::info(measured).name, sd);
-  file.parameters = design.parameters;
   for (const calib::LimitUse& use : design.limits)
     file.limits.push_back(
         {use.key, use.words, use.unit, use.limit, use.reached, 100.0 * use.share});
-  file.drive = design.parts;
-  file.families = design.trials;
-  file.own_signals = design.own_conditions;
-  file.own_signals_duration_s = design.own_duration_s;
-  file.messages = design.messages;
   return file;
 }
 
@@ -63,7 +56,7 @@ StoredDesign design_file(const datasets::Campaign& campaign, const calib::Design
 Table response_of(const datasets::Campaign& campaign, const calib::Design& design) {
   Table table;
   table.add("time_s", design.time_s);
-  table.add(std::string(datasets::info(datasets::drive_channel(campaign)).name), design.drive);
+  table.add(std::string(datasets::info(datasets::drive_channel(campaign)).name), design.samples);
   const auto outputs = calib::limited_outputs();
   const bool commanded = datasets::drive_channel(campaign) == datasets::Channel::command;
   for (std::size_t k = 0; k < outputs.size(); ++k) {
@@ -108,7 +101,7 @@ void add_design(const datasets::Campaign& campaign, const std::vector<datasets::
   const calib::Design design =
       calib::design(campaign, records, names, values, {terms.threads, &terms.cancel, progress});
   designed.emplace(design_file(campaign, design));
-  files.push_back({kDriveFile, datasets::drive_csv(campaign, design.time_s, design.drive)});
+  files.push_back({kDriveFile, datasets::drive_csv(campaign, design.time_s, design.samples)});
   files.push_back(table_file(kResponseFile, response_of(campaign, design)));
   files.push_back(
       {kDesignedCampaignFile, datasets::designed_campaign_text(campaign, *campaign.design,

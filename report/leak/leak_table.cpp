@@ -20,19 +20,19 @@ auto ends(double Range::*end) {
 
 }  // namespace
 
-StoredLeakTable stored(const LeakTableResult& result) {
+StoredLeakTable stored(diagnosis::LeakTable table, const datasets::Campaign& campaign,
+                       const Provenance& provenance) {
   StoredLeakTable file;
-  static_cast<diagnosis::LeakTable&>(file) = result.table;
-  file.campaign = result.campaign.name;
-  file.notes = result.notes;
-  file.warnings = result.warnings;
-  file.provenance = stored(result.provenance);
+  static_cast<diagnosis::LeakTable&>(file) = std::move(table);
+  file.campaign = campaign.name;
+  file.notes.emplace();
+  file.warnings.emplace();
+  file.provenance = stored(provenance);
   return file;
 }
 
-std::string leak_table_csv(const LeakTableResult& result) {
+std::string leak_table_csv(const diagnosis::LeakTable& table, bool closed_loop) {
   using R = LeakEntry;
-  const bool closed_loop = result.campaign.rig.controller == model::ControllerKind::pid;
   return CsvColumns<R>()
       .add("waveform", &R::drive, &LeakDrive::waveform)
       .add("frequency_hz", &R::drive, &LeakDrive::frequency_hz)
@@ -45,17 +45,17 @@ std::string leak_table_csv(const LeakTableResult& result) {
       .add("share_by_rounding_low_percent", &R::share_by_rounding_percent, &Range::low)
       .add("share_by_rounding_high_percent", &R::share_by_rounding_percent, &Range::high)
       .members(&R::grade, &R::note)
-      .table(result.table.entries);
+      .table(table.entries);
 }
 
-std::string features_csv(const LeakTableResult& result) {
+std::string features_csv(const diagnosis::LeakTable& table) {
   using R = diagnosis::FeatureRow;
   return CsvColumns<R>()
       .members(&R::level, &R::coefficient, &R::servo_flow_l_per_min,
                &R::published_servo_flow_l_per_min, &R::leak_flow_l_per_min,
                &R::published_leak_flow_l_per_min, &R::mean, &R::published_mean, &R::rms,
                &R::published_rms, &R::std, &R::published_std)
-      .table(result.table.features);
+      .table(table.features);
 }
 
 Table level_table(const datasets::LeakSignal& signal, const diagnosis::PeriodicSeries& series,

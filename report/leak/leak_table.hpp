@@ -11,25 +11,18 @@
 
 namespace rigcal::report {
 
-/// A leak table with everything needed to write its files. Borrows all of it.
-struct LeakTableResult {
-  const datasets::Campaign& campaign;
-  const datasets::LeakTableSettings& settings;
-  const diagnosis::LeakTable& table;
-  const Provenance& provenance;
-  std::vector<std::string> notes = {};     ///< which values come from a fit, in words
-  std::vector<std::string> warnings = {};  ///< doubts about the values
-};
-
-/// Builds the contents of leak_table.json.
-StoredLeakTable stored(const LeakTableResult& result);
+/// Builds the contents of leak_table.json, without notes and warnings.
+StoredLeakTable stored(diagnosis::LeakTable table, const datasets::Campaign& campaign,
+                       const Provenance& provenance);
 
 /// Writes leak_table.csv with one row per signal and target.
-std::string leak_table_csv(const LeakTableResult& result);
+///
+/// @param closed_loop  true if the amplitudes are positions, false if they are commands
+std::string leak_table_csv(const diagnosis::LeakTable& table, bool closed_loop);
 
 /// Writes features.csv with one row per published level: the printed and the computed
 /// ones.
-std::string features_csv(const LeakTableResult& result);
+std::string features_csv(const diagnosis::LeakTable& table);
 
 /// Returns the table of levels/<level>.csv for one period of the feature signal, with time,
 /// reference, position, flows, and the residual relative to the rig without a leak.

@@ -39,20 +39,22 @@ Table series_of(const ParityCondition& condition) {
 
 }  // namespace
 
-StoredParity stored(const ParityResult& result) {
+StoredParity stored(const datasets::Campaign& campaign, const diagnosis::Parity& parity,
+                    const std::vector<std::string>& reasons, double false_alarm,
+                    const Provenance& provenance) {
   StoredParity file;
-  file.status = leak_status(result.reasons, result.parity.usable());
-  file.reasons = result.reasons;
-  file.campaign = result.campaign.name;
-  file.synthetic = result.campaign.synthetic;
-  file.report = identity_json(result.campaign);
-  file.false_alarm_probability = result.false_alarm;
-  file.signals = result.parity.signals;
-  for (const ParityCondition& condition : result.parity.conditions)
+  file.status = leak_status(reasons, parity.usable());
+  file.reasons = reasons;
+  file.campaign = campaign.name;
+  file.synthetic = campaign.synthetic;
+  file.report = identity_json(campaign);
+  file.false_alarm_probability = false_alarm;
+  file.signals = parity.signals;
+  for (const ParityCondition& condition : parity.conditions)
     file.records.insert(file.records.end(), condition.records.begin(), condition.records.end());
-  file.false_alarm_check = result.parity.check;
-  file.warnings = result.parity.warnings;
-  file.provenance = stored(result.provenance);
+  file.false_alarm_check = parity.check;
+  file.warnings = parity.warnings;
+  file.provenance = stored(provenance);
   return file;
 }
 
@@ -90,9 +92,9 @@ PlannedFiles planned_parity(const datasets::Campaign& campaign) {
   return planned;
 }
 
-std::vector<ResultFile> parity_series(const ParityResult& result) {
+std::vector<ResultFile> parity_series(const diagnosis::Parity& parity) {
   std::vector<ResultFile> files;
-  for (const ParityCondition& condition : result.parity.conditions) {
+  for (const ParityCondition& condition : parity.conditions) {
     if (condition.model_m.empty()) continue;
     files.push_back(table_file(series_file(condition.condition), series_of(condition)));
   }

@@ -9,17 +9,13 @@
 
 namespace rigcal::report {
 
-/// Parity residuals with everything needed to write their files. Borrows all of it.
-struct ParityResult {
-  const datasets::Campaign& campaign;
-  const diagnosis::Parity& parity;
-  const std::vector<std::string>& reasons;  ///< why the check was declined; empty if it was not
-  double false_alarm = 0.0;                 ///< specified false-alarm probability
-  const Provenance& provenance;
-};
-
 /// Builds the contents of parity.json.
-StoredParity stored(const ParityResult& result);
+///
+/// @param reasons      why the check was declined; empty if it was not
+/// @param false_alarm  specified false-alarm probability
+StoredParity stored(const datasets::Campaign& campaign, const diagnosis::Parity& parity,
+                    const std::vector<std::string>& reasons, double false_alarm,
+                    const Provenance& provenance);
 
 /// Writes parity.csv with one row per record.
 std::string parity_csv(const StoredParity& parity);
@@ -27,7 +23,7 @@ std::string parity_csv(const StoredParity& parity);
 /// Writes parity/<condition>.csv with time_s, the position of the healthy model and, for each
 /// repeat, the parity residual, the residual minus that of healthy records, and its moving root
 /// mean square. Samples outside the windows have empty fields.
-std::vector<ResultFile> parity_series(const ParityResult& result);
+std::vector<ResultFile> parity_series(const diagnosis::Parity& parity);
 
 /// Lists the files that a parity check and its page may write.
 PlannedFiles planned_parity(const datasets::Campaign& campaign);

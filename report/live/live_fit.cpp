@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
-#include <vector>
 
 #include "common/error.hpp"
 #include "datasets/synthetic/model_output.hpp"

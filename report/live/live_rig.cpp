@@ -6,12 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
 #include <utility>
 
 #include "calib/problem/known_values.hpp"
 #include "common/error.hpp"
-#include "datasets/campaign/leak_table_settings.hpp"
 #include "report/figure/decimate.hpp"
 #include "report/text/readable.hpp"
 

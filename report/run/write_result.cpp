@@ -14,7 +14,6 @@
 #include "report/store/csv.hpp"
 #include "report/store/csv_fields.hpp"
 #include "report/store/json.hpp"
-#include "report/store/parameters_csv.hpp"
 #include "report/store/result_files.hpp"
 #include "report/store/table.hpp"
 

@@ -20,6 +20,11 @@ namespace rigcal::report {
 /// maximum_error.
 std::string scorecard_csv(const Result& result);
 
+/// Writes parameters.csv, which belongs to a fit.json or validation.json: one row per parameter, in
+/// `unit`.
+std::string parameters_csv(calib::FitStatus status, const std::string& message,
+                           const std::vector<calib::FittedParameter>& parameters);
+
 /// Writes residuals/<condition>.csv. Its columns are time_s; for each output channel measured,
 /// simulated, residual (measured minus simulated) and, with repeats, sd (standard deviation of one
 /// repeat about the mean); whether the sample counts; the drive (reference_m or command_v); and the

@@ -5,7 +5,6 @@
 
 #include <charconv>
 #include <cmath>
-#include <string_view>
 #include <system_error>
 
 namespace rigcal::report {

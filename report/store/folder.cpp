@@ -14,7 +14,6 @@
 #include <utility>
 
 #include "common/error.hpp"
-#include "common/file.hpp"
 #include "common/temporary_name.hpp"
 #include "common/uninterrupted.hpp"
 #include "report/store/checkpoint.hpp"

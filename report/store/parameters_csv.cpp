@@ -1,5 +1,4 @@
-#include "report/store/parameters_csv.hpp"
-
+#include "report/store/csv.hpp"
 #include "report/store/csv_columns.hpp"
 
 namespace rigcal::report {

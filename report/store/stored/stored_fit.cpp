@@ -5,7 +5,6 @@
 
 #include "calib/problem/problem.hpp"
 #include "report/store/identity.hpp"
-#include "report/store/stored/stored_residual_tests.hpp"
 #include "report/store/stored/stored_tables_fit.hpp"
 
 namespace rigcal::report {

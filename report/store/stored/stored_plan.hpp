@@ -29,26 +29,18 @@ struct StoredDesignLimit {
   RIGCAL_DESCRIBE(key, words, unit, limit, reached, share_percent)
 };
 
-struct StoredDesign {
+struct StoredDesign : calib::DesignedTest {
   std::string status;  ///< "done", or "stopped" by a signal with the best drive so far
-  datasets::DriveFamily family = datasets::DriveFamily::multisine;
   datasets::DesignCriterion criterion = datasets::DesignCriterion::determinant;
   std::string channel;  ///< channel of the drive, as in the campaign file
   std::string unit;     ///< SI unit of the drive
-  double amplitude = 0.0;
   double duration_s = 0.0;
   double sample_rate_hz = 0.0;
   int repeats = 0;
   std::uint64_t seed = 0;
   std::optional<std::string> leak_level;
   Keyed<double> noise_sd;  ///< per sample of one repeat, by channel with its SI unit
-  std::vector<calib::DesignedParameter> parameters;
   std::vector<StoredDesignLimit> limits;
-  std::vector<calib::DrivePart> drive;
-  std::vector<calib::FamilyTrial> families;
-  std::vector<std::string> own_signals;  ///< conditions to compare with
-  double own_signals_duration_s = 0.0;   ///< total duration of these conditions
-  std::vector<std::string> messages;
   RIGCAL_DESCRIBE(status, family, criterion, channel, unit, amplitude, duration_s, sample_rate_hz,
                   repeats, seed, leak_level, noise_sd, parameters, limits, drive, families,
                   own_signals, own_signals_duration_s, messages)

@@ -23,7 +23,7 @@ Eigen::MatrixXd replayed(const datasets::Campaign& campaign, const Design& made)
   for (std::size_t i = 0; i + 1 < made.time_s.size(); ++i)
     for (int k = 0; k < kParts; ++k) times.push_back(made.time_s[i] + k / (kParts * rate_hz));
   model::SimulationInputs inputs;
-  inputs.drive = model::Signal::held(made.time_s, made.drive);
+  inputs.drive = model::Signal::held(made.time_s, made.samples);
   model::SimulationOptions options;
   options.tolerance = 1e-9;
   const auto run = model::simulate(
@@ -44,8 +44,8 @@ TEST_CASE("design: every family keeps every limit, and uses one of them", "[cali
     twin.campaign.design->family = family;
     const Design made = designed(twin.campaign, {"mass"});
     CHECK(made.family == family);
-    REQUIRE(made.trials.size() == 1);
-    CHECK(made.trials[0].evaluations == 24);
+    REQUIRE(made.families.size() == 1);
+    CHECK(made.families[0].evaluations == 24);
     const Eigen::MatrixXd run = replayed(twin.campaign, made);
     constexpr double kBetweenSamples = 1.01;  // the replay also evaluates times between the samples
     CHECK(run.col(0).minCoeff() > -0.012 * kBetweenSamples);
@@ -59,8 +59,8 @@ TEST_CASE("design: every family keeps every limit, and uses one of them", "[cali
       CAPTURE(use.words);
       CHECK(use.share <= 1.0);
     }
-    CHECK(made.drive.front() == 0.0);
-    CHECK(std::abs(made.drive.back()) < 1e-9);
+    CHECK(made.samples.front() == 0.0);
+    CHECK(std::abs(made.samples.back()) < 1e-9);
     CHECK(made.amplitude > 1e-3);
   }
 }
@@ -94,22 +94,22 @@ TEST_CASE("design: the same bits for any number of threads, others for another s
   const Design one = designed(twin.campaign, {"mass", "valve_gain"}, 1);
   const Design three = designed(twin.campaign, {"valve_gain", "mass"}, 3);
   CHECK(one.family == three.family);
-  CHECK(one.drive == three.drive);
+  CHECK(one.samples == three.samples);
   CHECK(one.response == three.response);
   for (std::size_t j = 0; j < one.parameters.size(); ++j) {
     CHECK(one.parameters[j].sd == three.parameters[j].sd);
     CHECK(one.parameters[j].sd_own_signals == three.parameters[j].sd_own_signals);
   }
-  CHECK(one.trials.size() == 4);
+  CHECK(one.families.size() == 4);
   twin.campaign.design->seed = 2;
-  CHECK(designed(twin.campaign, {"mass", "valve_gain"}, 1).drive != one.drive);
+  CHECK(designed(twin.campaign, {"mass", "valve_gain"}, 1).samples != one.samples);
 }
 
 TEST_CASE("design: it tells more than the campaign's own signals", "[calib]") {
   const Twin twin = designed_twin();
   const Design made = designed(twin.campaign, {"mass"});
-  REQUIRE(made.own_conditions == std::vector<std::string>{"square"});
-  CHECK(made.own_duration_s == Approx(2.0));
+  REQUIRE(made.own_signals == std::vector<std::string>{"square"});
+  CHECK(made.own_signals_duration_s == Approx(2.0));
   CHECK(made.parameters[0].named);
   CHECK_FALSE(made.parameters[1].named);
   CHECK(made.parameters[0].sd.value() < 0.8 * made.parameters[0].sd_own_signals.value());
@@ -190,7 +190,7 @@ TEST_CASE("design: real fits scatter as predicted", "[calib][long]") {
       position.mean[k] += made.response(static_cast<Eigen::Index>(k), 0);
     position.sd_of_mean = 5e-5;
     record.channels[datasets::Channel::position] = position;
-    record.channels[datasets::Channel::reference].mean = made.drive;
+    record.channels[datasets::Channel::reference].mean = made.samples;
     FitOptions options;
     options.consider = false;
     const Fit result = fit(campaign, {record}, options);

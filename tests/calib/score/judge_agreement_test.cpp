@@ -1,4 +1,4 @@
-#include "calib/score/judge_agreement.hpp"
+#include "calib/score/judges.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -146,6 +146,16 @@ TEST_CASE("agreement: without limits there is no verdict, but poor agreement is 
   CHECK(find(scene.assessed().agreement, "least_agreement") != nullptr);
   scene.rejudge(1, 0.5);
   CHECK(find(scene.assessed().agreement, "poor_agreement")->subject == "other");
+}
+
+TEST_CASE("validation: what was fitted does not validate", "[calib]") {
+  AssessmentScene scene;
+  scene.fitted = {"fitted", "other"};
+  CHECK(scene.assessed().validation.state == AspectState::not_assessed);
+  CHECK(find(scene.assessed().validation, "no_validation") != nullptr);
+  CHECK(scene.verdict() == Verdict::warn);
+  scene.fitted = {};
+  CHECK(find(scene.assessed().validation, "limits_kept")->numbers.front().second == 2.0);
 }
 
 }  // namespace rigcal::calib

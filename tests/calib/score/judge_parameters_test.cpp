@@ -1,4 +1,4 @@
-#include "calib/score/judge_parameters.hpp"
+#include "calib/score/judges.hpp"
 
 #include <catch2/catch.hpp>
 

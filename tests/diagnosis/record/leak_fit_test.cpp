@@ -18,22 +18,6 @@ using test::healthy_sine;
 using test::HealthySine;
 using test::rig_of;
 
-namespace {
-
-calib::FittedParameter fitted(int index, double error, std::optional<double> robust) {
-  calib::FittedParameter p;
-  p.index = index;
-  p.fitted = true;
-  p.value = 1.0;
-  p.lower = 0.0;
-  p.upper = 0.0;
-  p.standard_error = error;
-  p.robust_standard_error = robust;
-  return p;
-}
-
-}  // namespace
-
 TEST_CASE("fit_leak: a healthy reference takes the rig's error off a healthy record",
           "[diagnosis]") {
   const HealthySine made = healthy_sine();
@@ -178,55 +162,6 @@ TEST_CASE("fit_leak: the simulation without a leak serves all records that have 
   changed = runs;
   changed->values.set(model::parameter_index(campaign.rig.plant, "mass"), 90.0);
   CHECK(fit(single, &changed).parity_rms_m == alone);
-}
-
-TEST_CASE("rig_fit_of: the larger error of each value, and their correlation", "[diagnosis]") {
-  calib::Fit fit;
-  fit.parameters = {fitted(1, 2.0, 3.0), fitted(4, 5.0, 4.0), fitted(2, 7.0, std::nullopt)};
-  fit.parameters.push_back(fitted(3, 1.0, 9.0));
-  fit.parameters.back().nuisance = true;  // belongs to the condition, not to the rig
-  fit.correlation.matrix = Eigen::MatrixXd::Identity(4, 4);
-  fit.correlation.matrix(0, 1) = fit.correlation.matrix(1, 0) = 0.5;
-  const diagnosis::RigFit rig = diagnosis::rig_fit_of(fit);
-  CHECK(rig.values.size() == 3);
-  CHECK(rig.indices == std::vector<int>{1, 4, 2});
-  REQUIRE(rig.covariance.rows() == 3);
-  CHECK_THAT(rig.covariance(0, 0), WithinRel(9.0, 1e-12));
-  CHECK_THAT(rig.covariance(1, 1), WithinRel(25.0, 1e-12));
-  CHECK_THAT(rig.covariance(2, 2), WithinRel(49.0, 1e-12));
-  CHECK_THAT(rig.covariance(0, 1), WithinRel(0.5 * 3.0 * 5.0, 1e-12));
-}
-
-TEST_CASE("rig_fit_of: values of conditions may have no row of correlations", "[diagnosis]") {
-  calib::Fit fit;
-  fit.parameters = {fitted(2, 7.0, 4.0), fitted(1, 2.0, 3.0), fitted(4, 5.0, 4.0)};
-  fit.parameters[0].scope = datasets::Scope::condition;
-  fit.parameters[0].correlated = false;
-  fit.correlation.matrix = Eigen::MatrixXd::Identity(2, 2);
-  fit.correlation.matrix(0, 1) = fit.correlation.matrix(1, 0) = 0.5;
-  const diagnosis::RigFit rig = diagnosis::rig_fit_of(fit);
-  CHECK(rig.values.size() == 3);
-  CHECK(rig.indices == std::vector<int>{1, 4});
-  REQUIRE(rig.covariance.rows() == 2);
-  CHECK_THAT(rig.covariance(1, 1), WithinRel(25.0, 1e-12));
-  CHECK_THAT(rig.covariance(0, 1), WithinRel(0.5 * 3.0 * 5.0, 1e-12));
-}
-
-TEST_CASE("rig_fit_of: what has no error counts with its whole range", "[diagnosis]") {
-  calib::Fit fit;
-  fit.parameters = {fitted(4, 1.0, {}), fitted(1, 1.0, {}), fitted(2, 1.0, {})};
-  for (std::size_t i : {0, 2}) {
-    fit.parameters[i].standard_error.reset();
-    fit.parameters[i].lower = 10.0;
-    fit.parameters[i].upper = 16.0;
-  }
-  fit.parameters[2].ci95 = {0.0, 3.0};
-  fit.correlation.matrix = Eigen::MatrixXd::Identity(1, 1);
-  const diagnosis::RigFit rig = diagnosis::rig_fit_of(fit);
-  CHECK(rig.indices == std::vector<int>{1, 4, 2});
-  // A uniform distribution of width w has a variance of w^2 / 12.
-  const Eigen::Vector3d variances(1.0, 3.0, 0.75);
-  CHECK((rig.covariance - Eigen::MatrixXd(variances.asDiagonal())).norm() < 1e-12);
 }
 
 TEST_CASE("RigFit: an effect and what the fit has mistaken for it go together", "[diagnosis]") {

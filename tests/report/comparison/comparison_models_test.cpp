@@ -1,4 +1,4 @@
-#include "report/comparison/comparison_models.hpp"
+#include "report/comparison/comparison_parts.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

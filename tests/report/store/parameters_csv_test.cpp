@@ -1,4 +1,4 @@
-#include "report/store/parameters_csv.hpp"
+#include "report/store/csv.hpp"
 
 #include <catch2/catch.hpp>
 
