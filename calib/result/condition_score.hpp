@@ -141,6 +141,14 @@ struct ConditionResult {
   const ChannelScore* find(std::string_view key) const;
 };
 
+/// How far the uncertainty of the estimates alone leaves a prediction open.
+struct OpenPrediction {
+  /// Expected variance of its error, without that of a constant, divided by the measured variance.
+  double variance_fraction = 0.0;
+  /// Keys of the parameters that move it most in the direction that is least determined.
+  std::vector<std::string> through;
+};
+
 /// Score of one condition, and the series it was computed from, which no file of scores has.
 struct ConditionScore : ConditionResult {
   std::vector<double> time_s;
@@ -153,6 +161,8 @@ struct ConditionScore : ConditionResult {
   /// The component of a prediction's residual that the uncertainty of the estimates explains, at
   /// the samples that count. The tests exclude it. Absent if that uncertainty is unknown.
   std::map<datasets::Channel, std::vector<double>> explained;
+  /// Absent under the same condition, and for signals that are constant.
+  std::map<datasets::Channel, OpenPrediction> open;
   ChannelCurves residual_curves;
   std::vector<double> drive;  ///< reference [m] or command [V] at time_s
   /// Simulated flows at time_s [m3/s]; empty if the simulation failed.

@@ -1,5 +1,3 @@
-#include "calib/score/judges.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <map>
 
 #include "calib/score/judge_limits.hpp"
+#include "calib/score/judges.hpp"
 #include "datasets/checks/sensor_doubts.hpp"
 
 namespace rigcal::calib {
@@ -138,6 +137,27 @@ void name_poor_agreement(const Fit& fit, std::vector<Reason>& reasons) {
                            where->id, {{"rho2", rho2}}));
 }
 
+/// Notes the predictions that the uncertainty of the estimates alone may take beyond their limit of
+/// rho2, although the model is right.
+void note_open_predictions(const ConditionScore& score, std::vector<Reason>& reasons) {
+  for (const LimitCheck& check : score.limit_checks) {
+    const auto open = score.open.find(check.channel);
+    if (check.metric != "rho2" || !check.limit || open == score.open.end()) continue;
+    const double expected = 1.0 - open->second.variance_fraction;
+    if (expected >= *check.limit) continue;
+    const std::vector<std::string>& through = open->second.through;
+    reasons.push_back(reason(
+        AspectState::note, "prediction_open",
+        fmt::format(
+            "{}: the fitted records do not determine the prediction of {}: if the model is "
+            "right, an rho2 {} is expected (limit {}){}",
+            score.id, datasets::info(check.channel).key,
+            expected < 0.0 ? "below 0" : fmt::format("of {:.2g}", expected), *check.limit,
+            through.empty() ? "" : fmt::format(", mainly due to {}", fmt::join(through, ", "))),
+        score.id, {{"rho2", expected}, {"limit", *check.limit}}));
+  }
+}
+
 }  // namespace
 
 Aspect judge_agreement(const Campaign& campaign, const Fit& fit) {
@@ -184,6 +204,7 @@ Aspect judge_validation(const datasets::Campaign& campaign, const Fit& fit,
       reasons.push_back(reason(AspectState::not_assessed, "not_scored",
                                "no condition of the validation has a limit"));
     }
+    for (const ConditionScore* score : independent) note_open_predictions(*score, reasons);
   }
   return aspect_of(std::move(reasons));
 }

@@ -1,12 +1,14 @@
 #include "calib/trust/prediction_band.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "calib/problem/day_effects.hpp"
 #include "common/parallel.hpp"
 #include "metrics/distributions.hpp"
+#include "model/plant/parameter.hpp"
 #include "model/simulate.hpp"
 
 namespace rigcal::calib {
@@ -150,6 +152,23 @@ void explain(const ProblemCondition& condition, const std::vector<Eigen::MatrixX
   }
 }
 
+/// Computes how far the prediction of each channel is open.
+///
+/// @param keys  of the first quantities of `gradients`
+void find_open(const ProblemCondition& condition, const std::vector<Eigen::MatrixXd>& gradients,
+               const Eigen::MatrixXd& root, const std::vector<std::string>& keys,
+               ConditionScore& score) {
+  const std::vector<Eigen::Index> counted(condition.rows.begin(), condition.rows.end());
+  for (std::size_t k = 0; k < condition.channels.size(); ++k) {
+    const ProblemChannel& data = condition.channels[k];
+    const Eigen::Map<const Eigen::VectorXd> measured(data.measured.data(),
+                                                     static_cast<Eigen::Index>(counted.size()));
+    if (counted.empty() || !(measured.maxCoeff() > measured.minCoeff())) continue;
+    score.open[data.channel] =
+        open_prediction(gradients[k](counted, Eigen::all), root, keys, measured);
+  }
+}
+
 /// Returns the number of day-to-day standard deviations by which a record may differ from those of
 /// the fit. It combines the deviation on the day of the record with those on the days of the fit.
 /// Returns 0 unless the dates show that the record was made on a different day.
@@ -238,8 +257,13 @@ void add_to(const Problem& problem, std::size_t i, std::span<const double> z,
     const auto count = static_cast<Eigen::Index>(quantities.size());
     append(by_day, distance * Eigen::MatrixXd::Identity(count, count), gradients, root);
   }
-  if (condition.condition->use != datasets::Use::fit && root.rows() > 0)
+  if (condition.condition->use != datasets::Use::fit && root.rows() > 0) {
     explain(condition, gradients, root, score);
+    std::vector<std::string> keys;
+    for (const int index : free)
+      keys.emplace_back(model::parameter_table(values.plant)[static_cast<std::size_t>(index)].key);
+    find_open(condition, gradients, root, keys, score);
+  }
   for (std::size_t k = 0; k < condition.channels.size(); ++k) {
     score.prediction_sd[condition.channels[k].channel] =
         prediction_sd(gradients[k], root, condition.channels[k].sd);
@@ -281,6 +305,33 @@ std::vector<double> prediction_sd(const Eigen::MatrixXd& gradient, const Eigen::
   if (gradient.cols() > 0) variance += (gradient * root).rowwise().squaredNorm();
   const Eigen::VectorXd sd = variance.cwiseSqrt();
   return {sd.begin(), sd.end()};
+}
+
+OpenPrediction open_prediction(const Eigen::MatrixXd& gradient, const Eigen::MatrixXd& root,
+                               const std::vector<std::string>& keys,
+                               const Eigen::VectorXd& measured) {
+  constexpr std::size_t kMostKeys = 3;
+  constexpr double kMatters = 0.5;  // compared with the quantity that moves the prediction most
+  const Eigen::MatrixXd varying = gradient.rowwise() - gradient.colwise().mean();
+  const Eigen::MatrixXd moves = varying * root;
+  OpenPrediction open;
+  open.variance_fraction =
+      moves.squaredNorm() / (measured.array() - measured.mean()).square().sum();
+  if (!std::isfinite(open.variance_fraction)) return {};
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> directions(moves.transpose() * moves);
+  const Eigen::VectorXd change = root * directions.eigenvectors().rightCols(1);
+  std::vector<std::pair<double, std::string>> by_size;
+  for (std::size_t j = 0; j < keys.size(); ++j) {
+    const auto column = static_cast<Eigen::Index>(j);
+    by_size.emplace_back(varying.col(column).norm() * std::abs(change(column)), keys[j]);
+  }
+  std::stable_sort(by_size.begin(), by_size.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  for (const auto& [size, key] : by_size) {
+    if (open.through.size() < kMostKeys && size > 0.0 && size >= kMatters * by_size.front().first)
+      open.through.push_back(key);
+  }
+  return open;
 }
 
 void add_prediction_sd(const Problem& problem, std::span<const double> z,

@@ -32,6 +32,17 @@ EstimateCovariance estimate_covariance(const Problem& problem, std::span<const d
 std::vector<double> prediction_sd(const Eigen::MatrixXd& gradient, const Eigen::MatrixXd& root,
                                   double noise_sd);
 
+/// Returns how far a prediction is open, with at most three keys.
+///
+/// @param gradient  d output / d quantity at the samples that count, SI; shape (samples,
+/// quantities)
+/// @param root      S, shape (quantities, columns)
+/// @param keys      of the first quantities; the others have no name
+/// @param measured  shape (samples), SI; not constant
+OpenPrediction open_prediction(const Eigen::MatrixXd& gradient, const Eigen::MatrixXd& root,
+                               const std::vector<std::string>& keys,
+                               const Eigen::VectorXd& measured);
+
 /// How each effect changes the channels of a condition at the times of its record. There is one
 /// matrix per channel, of shape (times, effects), in SI units per unit of the effect's size. Empty
 /// if unknown or not requested.
@@ -46,7 +57,7 @@ using EffectChanges = std::vector<Eigen::MatrixXd>;
 ///
 /// In conditions that no estimate is based on, each channel also gets the component of its residual
 /// that adjusting the estimates would remove, with the covariance of the estimates as the prior
-/// (ConditionScore::explained).
+/// (ConditionScore::explained), and how far its prediction is open (ConditionScore::open).
 ///
 /// Small effects that the model omits act directly on a prediction, and the part of them that the
 /// fit has absorbed into the estimates is subtracted. The result shows how far the prediction may

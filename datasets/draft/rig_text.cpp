@@ -28,12 +28,22 @@ constexpr std::array<std::string_view, 8> kLoadPressureTerms{
     "valve_null_leakage", "laminar_leakage", "external_force",      "coulomb_friction"};
 
 /// Optional terms for a joint.
-constexpr std::array<std::string_view, 15> kLinkageTerms{
-    "reference_angle", "lever_gradient",      "lever_curvature",
-    "gravity_moment",  "joint_friction",      "gravity_moment_gradient",
-    "stop_stiffness",  "valve_time_constant", "gain_a_to_tank",
-    "gain_b_to_tank",  "make_up_conductance", "supply_resistance",
-    "supply_capacity", "pump_flow",           "air_fraction"};
+constexpr std::array<std::string_view, 16> kLinkageTerms{"reference_angle",
+                                                         "lever_gradient",
+                                                         "lever_curvature",
+                                                         "gravity_moment",
+                                                         "joint_friction",
+                                                         "gravity_moment_gradient",
+                                                         "gravity_moment_curvature",
+                                                         "stop_stiffness",
+                                                         "valve_time_constant",
+                                                         "gain_a_to_tank",
+                                                         "gain_b_to_tank",
+                                                         "make_up_conductance",
+                                                         "supply_resistance",
+                                                         "supply_capacity",
+                                                         "pump_flow",
+                                                         "air_fraction"};
 
 /// A rotary actuator in place of cylinder and lever, or the travel of the piston by a triangle or a
 /// table in place of the lever.
@@ -50,10 +60,10 @@ constexpr std::array<std::string_view, 12> kTravelTerms{"displacement_per_radian
                                                         "travel_80",
                                                         "travel_100"};
 
-/// Terms for the pump and check valves of a two-chamber cylinder behind a pilot-operated valve.
-constexpr std::array<std::string_view, 6> kPumpTerms{"relief_pressure",     "supply_resistance",
-                                                     "supply_capacity",     "pump_flow",
-                                                     "load_sensing_margin", "compensator_pressure"};
+/// Terms for the pump and check valves behind a pilot-operated valve.
+constexpr std::array<std::string_view, 8> kPumpTerms{
+    "relief_pressure",  "supply_resistance", "supply_capacity",     "pump_flow",
+    "pump_second_flow", "pump_delay",        "load_sensing_margin", "compensator_pressure"};
 
 /// Terms for a valve that is driven by a pilot pressure.
 constexpr std::array<std::string_view, 6> kPilotTerms{
@@ -78,9 +88,10 @@ constexpr std::array<std::string_view, 7> kOpeningTerms{
 constexpr std::array<std::string_view, 1> kTwoStageTerms{"main_spool_gain"};
 
 /// A supply whose pressure varies, proposed if it was recorded. Four edges only.
-constexpr std::array<std::string_view, 7> kSupplyTerms{
-    "supply_resistance",  "supply_capacity",      "pump_flow", "pump_second_flow", "pump_delay",
-    "accumulator_volume", "accumulator_precharge"};
+constexpr std::array<std::string_view, 8> kSupplyTerms{
+    "supply_resistance",     "supply_capacity",    "pump_flow",
+    "pump_second_flow",      "pump_delay",         "accumulator_volume",
+    "accumulator_precharge", "load_sensing_margin"};
 
 /// A load by a table, proposed if position and both chamber pressures were recorded: they show how
 /// the load varies with the travel.
@@ -113,9 +124,11 @@ std::string terms_text(model::PlantKind plant, const RecordedSigns& signs) {
   if (signs.pilot && plant == model::PlantKind::two_chamber) {
     // A dead band in volts does not apply to this valve.
     terms.erase(std::remove(terms.begin(), terms.end(), "valve_dead_band"), terms.end());
-    terms.insert(terms.end(), kPumpTerms.begin(), kPumpTerms.end());
   }
-  if (signs.pilot) add(kPilotTerms);
+  if (signs.pilot) {
+    add(kPumpTerms);
+    add(kPilotTerms);
+  }
   const bool slides = plant != model::PlantKind::linkage;
   const bool four_edges = plant != model::PlantKind::load_pressure;
   if (signs.spool) add(kTwoStageTerms);

@@ -70,19 +70,10 @@ class Rosenbrock {
   template <typename System>
   void do_step(const System& system, const Linearisation<N, P>& lin, const X& x, double t, X& x_out,
                double dt, X& x_err) {
-    x_old_ = values_of(x);
-    factorise(lin, dt);
-    stage<0>(system, lin, t, dt);
-    stage<1>(system, lin, t, dt);
-    stage<2>(system, lin, t, dt);
-    stage<3>(system, lin, t, dt);
-    stage<4>(system, lin, t, dt);
-    stage<5>(system, lin, t, dt);
-    x_new_ = point_;
-    add_scaled(x_new_, 1.0, g_[K::kStages - 1]);
-    for (std::size_t i = 0; i < N; ++i) {
-      set_value(x_out[i], x_new_[i]);
-      set_value(x_err[i], g_[K::kStages - 1][i]);
+    if constexpr (P == 0 && N <= kMostInlinedStates) {
+      do_step_inlined(system, lin, x, t, x_out, dt, x_err);
+    } else {
+      do_step_by_calls(system, lin, x, t, x_out, dt, x_err);
     }
   }
 
@@ -135,6 +126,35 @@ class Rosenbrock {
   }
 
  private:
+  /// A step calls the right-hand side five times. With three states and no sensitivities, the calls
+  /// cost 6 to 7 % of the time. With more states, the inlined step would take too long to compile.
+  static constexpr int kMostInlinedStates = 3;
+
+  template <typename System>
+  void do_step_by_calls(const System& system, const Linearisation<N, P>& lin, const X& x, double t,
+                        X& x_out, double dt, X& x_err) {
+    x_old_ = values_of(x);
+    factorise(lin, dt);
+    stage<0>(system, lin, t, dt);
+    stage<1>(system, lin, t, dt);
+    stage<2>(system, lin, t, dt);
+    stage<3>(system, lin, t, dt);
+    stage<4>(system, lin, t, dt);
+    stage<5>(system, lin, t, dt);
+    x_new_ = point_;
+    add_scaled(x_new_, 1.0, g_[K::kStages - 1]);
+    for (std::size_t i = 0; i < N; ++i) {
+      set_value(x_out[i], x_new_[i]);
+      set_value(x_err[i], g_[K::kStages - 1][i]);
+    }
+  }
+
+  template <typename System>
+  [[gnu::flatten]] void do_step_inlined(const System& system, const Linearisation<N, P>& lin,
+                                        const X& x, double t, X& x_out, double dt, X& x_err) {
+    do_step_by_calls(system, lin, x, t, x_out, dt, x_err);
+  }
+
   static void set_value(double& x, double value) { x = value; }
   static void set_value(Dual<P>& x, double value) { x.value = value; }
 

@@ -87,6 +87,95 @@ type = "pid"
   return text;
 }
 
+/// An arm with a pilot-operated valve, all of its metering terms, and a pump of two stages.
+const std::string kArm = R"toml(schema = "rigcal.campaign/1"
+[rig]
+model = "linkage"
+[rig.parameters]
+inertia = "3000 kg m2"
+joint_damping = "20 kN m s/rad"
+joint_friction = "200 N m"
+joint_friction_smoothing = "0.02 rad/s"
+reference_angle = "20 deg"
+lever = "0.6 m/rad"
+lever_gradient = "-0.1 m/rad2"
+lever_curvature = "-0.1 m/rad3"
+gravity_moment = "20 kN m"
+gravity_moment_gradient = "5 kN m/rad"
+gravity_moment_curvature = "-5 kN m/rad2"
+lower_stop = "-60 deg"
+upper_stop = "100 deg"
+area_a = "100 cm2"
+area_b = "60 cm2"
+dead_volume_a = "4 L"
+dead_volume_b = "6 L"
+external_leakage_b = "1e-12 m3/(s Pa)"
+tank_pressure = "2 bar"
+supply_pressure = "200 bar"
+supply_resistance = "1e9 Pa s/m3"
+supply_capacity = "2e-11 m3/Pa"
+accumulator_volume = "0.2 L"
+accumulator_precharge = "60 bar"
+accumulator_exponent = 1.3
+pump_flow = "40 L/min"
+pump_first_rate = "10 (L/min)/s"
+pump_second_flow = "80 L/min"
+pump_delay = "0.15 s"
+pump_rise = "50 ms"
+load_sensing_margin = "30 bar"
+density = "870 kg/m3"
+bulk_modulus = "600 MPa"
+discharge_coefficient = 0.65
+area_gradient = "20 mm"
+pilot_gain = "0.05 mm/bar"
+pilot_dead_band = "3 bar"
+pilot_range = "10 bar"
+pilot_exponent = 1.4
+valve_time_constant = "10 ms"
+gain_supply_to_a = 0.9
+gain_a_to_tank = 1.2
+gain_supply_to_b = 1.1
+gain_b_to_tank = 1.5
+compensator_pressure = "12 bar"
+return_dead_band = "4 bar"
+return_exponent = 1.2
+return_line_opening = "2 mm"
+return_line_resistance = "1e9 Pa s/m3"
+bypass_opening = "1 mm"
+bypass_range = "15 bar"
+relief_pressure = "60 bar"
+relief_conductance = "1e-10 m3/(s Pa)"
+make_up_conductance = "1e-8 m3/(s Pa)"
+leakage_coefficient = 0.1
+leakage_area = "1 mm2"
+leakage_resistance = "1e11 Pa s/m3"
+[rig.controller]
+type = "none"
+[recording]
+initial = "rest"
+[recording.channels]
+time = { column = "t_s", unit = "s" }
+angle = { column = "angle_deg", unit = "deg", sd = "0.5 mrad" }
+[simulation]
+tolerance = 1e-9
+[[condition]]
+id = "sine"
+waveform = "sine"
+frequency = "2 Hz"
+amplitude = "20 bar"
+use = "fit"
+duration = "0.6 s"
+sample_rate = "200 Hz"
+[[condition]]
+id = "square"
+waveform = "square"
+frequency = "1 Hz"
+amplitude = "20 bar"
+use = "fit"
+duration = "0.6 s"
+sample_rate = "200 Hz"
+)toml";
+
 /// The condition "square" of every campaign. At 1 Hz its edges are at half seconds.
 Drive square(double amplitude) {
   return [amplitude](double t) { return std::fmod(t + 1e-9, 1.0) < 0.5 ? amplitude : -amplitude; };
@@ -318,6 +407,39 @@ TEST_CASE("export: every term that an FMU can have is in it", "[apps]") {
                                "output_limit = \"8 V\"\n",
                                "0.1 rad"));
     require_both(folder, "reference", {{"sine", sine(0.1)}, {"square", square(0.1)}});
+  }
+  SECTION("an arm with its pilot-operated valve and its pump") {
+    folder.write("campaign.toml", kArm);
+    require_both(folder, "pilot_pressure", {{"sine", sine(2e6)}, {"square", square(2e6)}});
+  }
+  SECTION("a loop on force, against a load that varies with the travel") {
+    Edits edits = kGeneratedRuns;
+    edits.push_back({"mass = \"60 kg\"",
+                     "mass = \"60 kg\"\nload_gradient = \"80 kN/m\"\nload_curvature = "
+                     "\"500 kN/m2\"\nstribeck_friction = \"20 N\"\nstribeck_velocity = "
+                     "\"20 mm/s\"\nfriction_smoothing = \"10 mm/s\""});
+    edits.push_back({"type = \"pid\"", "type = \"pid\"\nfeedback = \"force\""});
+    edits.push_back({"kp = \"1000 V/m\"",
+                     "force_kp = \"2 V/kN\"\nforce_ki = \"5 V/(kN s)\"\noutput_limit = "
+                     "\"5 V\""});
+    edits.push_back({"amplitude = \"5 mm\"", "amplitude = \"300 N\""});
+    edits.push_back({"amplitude = \"4 mm\"", "amplitude = \"200 N\""});
+    folder.write("campaign.toml", edited(kCampaign, edits));
+    require_both(folder, "reference", {{"sine", sine(300.0)}, {"square", square(200.0)}});
+  }
+  SECTION("overlaps and gains of edges, hoses that yield, air") {
+    Edits edits = kTwoChamberGeneratedRuns;
+    edits.push_back(
+        {"stroke = \"200 mm\"",
+         "stroke = \"200 mm\"\nair_fraction = 0.005\nair_exponent = 1.2\nhose_capacity_a = "
+         "\"1e-13 m3/Pa\"\nhose_capacity_b = \"2e-13 m3/Pa\"\nhose_yield = "
+         "\"5 bar\"\nhose_yield_ratio = 20\nexternal_leakage_b = \"1e-13 m3/(s "
+         "Pa)\"\nvalve_time_constant = \"3 ms\"\noverlap_supply_to_a = \"20 "
+         "mV\"\noverlap_a_to_tank = \"-10 mV\"\noverlap_supply_to_b = \"30 "
+         "mV\"\noverlap_b_to_tank = \"15 mV\"\ngain_supply_to_a = 0.9\ngain_a_to_tank = "
+         "1.1\ngain_supply_to_b = 1.2\ngain_b_to_tank = 0.8"});
+    folder.write("campaign.toml", edited(kTwoChamber, edits));
+    require_both(folder, "command", {{"sine", sine(1.0)}, {"square", square(1.0)}});
   }
   SECTION("edges by a power, with seals") {
     Edits edits = kTwoChamberGeneratedRuns;

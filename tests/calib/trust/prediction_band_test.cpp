@@ -259,6 +259,22 @@ TEST_CASE("test_predictions: what differs from day to day is no error of the mod
   CHECK(model_error("position_offset", 1e-3, {"2026-03-01"}) > 1.0);
 }
 
+TEST_CASE("open prediction: the variance by the estimates, and which of them", "[calib]") {
+  // y = a + b t + c t, with b and c known only as b + c, and t = -1, 0, 1.
+  Eigen::MatrixXd gradient(3, 3);
+  gradient << 1, -1, -1, 1, 0, 0, 1, 1, 1;
+  Eigen::MatrixXd root = Eigen::MatrixXd::Zero(3, 2);
+  root(0, 0) = 5.0;                     // a constant moves no rho2
+  root(1, 1) = 0.7, root(2, 1) = -0.3;  // together 0.4 t
+  const Eigen::Vector3d measured(0.0, 3.0, 3.0);
+  const OpenPrediction open = open_prediction(gradient, root, {"a", "b", "c"}, measured);
+  CHECK_THAT(open.variance_fraction, WithinRel(0.16 * 2.0 / 6.0, 1e-12));
+  CHECK(open.through == std::vector<std::string>{"b"});
+  root(2, 1) = -0.6;
+  CHECK(open_prediction(gradient, root, {"a", "b", "c"}, measured).through ==
+        std::vector<std::string>{"b", "c"});
+}
+
 TEST_CASE("prediction band: none of what was not scored or could not be simulated", "[calib]") {
   const Twin twin = predicting_twin();
   const auto records = twin.records(250, 500.0, 2);

@@ -125,6 +125,8 @@ TEST_CASE("draft_campaign: an angle makes a linkage, and its pilot pressures one
                              "\"pilot_arm_in_bar\", unit = \"bar\" }"));
   CHECK_THAT(draft, Contains("# 'duty_arm_in_pct' also looks like a drive"));
   CHECK_THAT(draft, Contains("# pilot_dead_band = ") && Contains("# bypass_opening = "));
+  CHECK_THAT(draft, Contains("# pump_second_flow = ") && Contains("# relief_pressure = ") &&
+                        Contains("# gravity_moment_curvature = "));
   CHECK_THAT(draft, Contains("initial = \"record\""));
   draft = filled(draft, model::PlantKind::linkage);
   for (const auto& [key, value] :
@@ -678,13 +680,14 @@ TEST_CASE("draft_campaign: the channels suggest terms of valve, supply, load and
   const std::string open = drafted("t,u_V,x_mm,pA_bar,pB_bar,ps_bar,spool_mm");
   for (const char* key : {"valve_exponent", "opening_20", "compensator_pressure", "main_spool_gain",
                           "accumulator_volume", "pump_second_flow", "supply_resistance",
-                          "seal_friction", "load_curvature"}) {
+                          "load_sensing_margin", "seal_friction", "load_curvature"}) {
     CAPTURE(key);
     CHECK(offers(open, key));
   }
   CHECK(open.find("# load_gradient") == open.rfind("# load_gradient"));
   const std::string less = drafted("t,u_V,x_mm,pA_bar");
-  for (const char* key : {"accumulator_volume", "main_spool_gain", "seal_friction"}) {
+  for (const char* key :
+       {"accumulator_volume", "load_sensing_margin", "main_spool_gain", "seal_friction"}) {
     CAPTURE(key);
     CHECK_FALSE(offers(less, key));
   }
