@@ -148,11 +148,11 @@ struct SquareFrequencies {
   long edges = 0;
 };
 
-constexpr double kEdgeRounding = 1e-12;  // of a frequency that two samples state alike
+constexpr double kEdgeRounding = 1e-12;  // fraction of a frequency that two samples give alike
 
 /// Edge k of a square wave is at k / (2 f): after the last sample before it, and no later than the
-/// first sample after it. Samples between the two levels, and zeros at the beginning, do not tell
-/// on which side they are.
+/// first sample after it. Samples between the two levels are not used, like a zero at the
+/// beginning.
 /// @return  std::nullopt if an edge is not after t = 0
 std::optional<SquareFrequencies> square_frequencies(const Recorded& record, double amplitude) {
   SquareFrequencies found;
