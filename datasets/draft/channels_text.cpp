@@ -27,8 +27,10 @@ namespace fs = std::filesystem;
 /// the channel, the line needs a gain.
 /// @param minus  column for the opposite direction; empty if there is none
 /// @param hint   comment on the channel, where its unit needs none
+/// @param is_input  whether the draft states that the channel is an input
 std::string channel_line(Channel channel, const std::string& column, const std::string& unit,
-                         const std::string& minus = {}, const std::string& hint = {}) {
+                         const std::string& minus = {}, const std::string& hint = {},
+                         bool is_input = false) {
   const ChannelInfo& about = info(channel);
   std::string shown_unit = unit.empty() ? kBlank : unit;
   std::string remark = hint.empty() ? hint : comment(hint);
@@ -52,8 +54,8 @@ std::string channel_line(Channel channel, const std::string& column, const std::
   }
   std::string name = column.empty() ? "" : fmt::format("column = {}, ", toml_quoted(column));
   if (!minus.empty()) name += fmt::format("minus = {}, ", toml_quoted(minus));
-  return fmt::format("{} = {{ {}unit = {}{} }}{}\n", about.key, name, toml_quoted(shown_unit),
-                     full_scale, remark);
+  return fmt::format("{} = {{ {}unit = {}{}{} }}{}\n", about.key, name, toml_quoted(shown_unit),
+                     full_scale, is_input ? ", role = \"input\"" : "", remark);
 }
 
 /// Returns the direction in which a drive column moves the machine, according to a word in its
@@ -93,11 +95,40 @@ std::optional<OneEachWay> one_each_way(const FileColumns& columns, Channel drive
   return found;
 }
 
-/// Says that a torque may be the load instead; empty if the loop controls it, and for other
-/// channels.
-std::string load_hint(Channel channel, const FileColumns& columns) {
-  if (channel != Channel::torque || loop_of(columns) == model::Feedback::torque) return {};
-  return "what the actuator transmits; role = \"input\" if it is a load against positive angle";
+/// Whether a force or torque is the load of the rig. A loop that controls it has it as its own.
+bool is_load_input(const ChannelColumns& column, const FileColumns& columns) {
+  const auto controlled =
+      column.channel == Channel::force ? model::Feedback::force : model::Feedback::torque;
+  return column.is_external_load && loop_of(columns) != controlled;
+}
+
+/// Says which of both a force or torque may be: what the actuator transmits, or the load. Empty if
+/// the loop controls it, and for other channels.
+std::string load_hint(const ChannelColumns& column, const FileColumns& columns) {
+  const bool is_force = column.channel == Channel::force;
+  if (!is_force && column.channel != Channel::torque) return {};
+  if (loop_of(columns) == (is_force ? model::Feedback::force : model::Feedback::torque)) return {};
+  const std::string_view positive = is_force ? "position" : "angle";
+  if (is_load_input(column, columns))
+    return fmt::format(
+        "the load, against positive {}; role = \"output\" if it is what the actuator transmits",
+        positive);
+  return fmt::format(
+      "what the actuator transmits; role = \"input\" if it is a load against positive {}",
+      positive);
+}
+
+/// Says why a channel of a slide or of a joint does not suit the rig; empty if it does.
+std::string other_motion_text(const ChannelColumns& column, const FileColumns& columns) {
+  const Channel channel = column.channel;
+  const bool of_joint = channel == Channel::torque || channel == Channel::torque_reference;
+  const bool of_slide = channel == Channel::force || channel == Channel::force_reference ||
+                        channel == Channel::position || channel == Channel::reference ||
+                        channel == Channel::acceleration;
+  if (!(turns(columns) ? of_slide : of_joint)) return {};
+  return fmt::format("# '{}' looks like {}, but {}\n", in_comment(column.stem), info(channel).key,
+                     of_slide ? "the rig turns an arm, so that its motion is an angle"
+                              : "no column looks like an angle");
 }
 
 /// Returns one line for each recognised channel. A channel occurs once; further columns that look
@@ -112,11 +143,8 @@ std::string known_channels_text(const FileColumns& columns) {
           in_comment(column.stem));
       continue;
     }
-    const bool is_torque =
-        column.channel == Channel::torque || column.channel == Channel::torque_reference;
-    if (is_torque && !turns(columns)) {
-      text += fmt::format("# '{}' looks like a torque, but no column looks like an angle\n",
-                          in_comment(column.stem));
+    if (const std::string other = other_motion_text(column, columns); !other.empty()) {
+      text += other;
       continue;
     }
     if (column.channel == Channel::command && has_pilot(columns)) {
@@ -133,10 +161,11 @@ std::string known_channels_text(const FileColumns& columns) {
         text += channel_line(column.channel, ways->out, column.unit, ways->in);
       else
         text += channel_line(column.channel, column.numbers.empty() ? column.stem : "", column.unit,
-                             {}, load_hint(column.channel, columns));
+                             {}, load_hint(column, columns), is_load_input(column, columns));
     } else if (column.numbers.empty() && !one_each_way(columns, column.channel)) {
-      text += fmt::format("# '{}' also looks like {}\n", in_comment(column.stem),
-                          info(column.channel).key);
+      text += fmt::format("# '{}' also looks like {}{}\n", in_comment(column.stem),
+                          info(column.channel).key,
+                          is_load_input(column, columns) ? ", as the load: role = \"input\"" : "");
     }
   }
   return text;

@@ -42,27 +42,41 @@ bool is_quantity(Meaning meaning) {
                      [meaning](const auto& quantity) { return quantity.first == meaning; });
 }
 
-/// Lowers the letters of ASCII and, in UTF-8, those of Latin-1: "Ö" too.
+/// Letters of Latin-1 with accents, without them, as the second byte in UTF-8 has them from 0xA0
+/// on. Umlauts of German remain: '.'.
+constexpr std::string_view kWithoutAccents = "aaaa...ceeeeiiii.noooo...uuu.y";
+
+/// Lowers the letters of ASCII and, in UTF-8, those of Latin-1 ("\u00d6" too), and takes accents
+/// off.
 std::string lower(std::string_view text) {
-  std::string result(text);
-  for (std::size_t i = 0; i < result.size(); ++i) {
-    const auto byte = static_cast<unsigned char>(result[i]);
-    const bool follows_c3 = i > 0 && static_cast<unsigned char>(result[i - 1]) == 0xC3;
-    if (byte < 0x80)
-      result[i] = static_cast<char>(std::tolower(byte));
-    else if (follows_c3 && byte <= 0x9E && byte != 0x97)
-      result[i] = static_cast<char>(byte + 0x20);
+  std::string result;
+  for (const char c : text) {
+    auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x80) {
+      result += static_cast<char>(std::tolower(byte));
+      continue;
+    }
+    const bool follows_c3 = !result.empty() && static_cast<unsigned char>(result.back()) == 0xC3;
+    if (follows_c3 && byte <= 0x9E && byte != 0x97) byte = static_cast<unsigned char>(byte + 0x20);
+    const std::size_t letter = byte - std::size_t{0xA0};
+    if (follows_c3 && byte >= 0xA0 && letter < kWithoutAccents.size() &&
+        kWithoutAccents[letter] != '.')
+      result.back() = kWithoutAccents[letter];
+    else
+      result += static_cast<char>(byte);
   }
   return result;
 }
 
 bool is_decimal_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// Splits a name at separators, and letters from digits: "pA_bar_03" into "pa", "bar", "03".
+bool is_capital(char c) { return c >= 'A' && c <= 'Z'; }
+
+/// Splits a name at separators, and letters from digits: "pA_bar_03" into "pA", "bar", "03".
 std::vector<std::string> parts_of(std::string_view name) {
-  constexpr std::string_view kBetween = "_ []()-/:,;#";
+  constexpr std::string_view kBetween = "_ []()-/:,;#\"";
   std::vector<std::string> parts(1);
-  for (const char c : lower(name)) {
+  for (const char c : name) {
     const bool between = kBetween.find(c) != std::string_view::npos;
     const bool changes =
         !parts.back().empty() && is_decimal_digit(c) != is_decimal_digit(parts.back().back());
@@ -71,6 +85,20 @@ std::vector<std::string> parts_of(std::string_view name) {
   }
   std::erase(parts, std::string());
   return parts;
+}
+
+/// Splits joined words at their capitals: "rActPos" into "r", "Act", "Pos", and "FIst" into "F",
+/// "Ist".
+std::vector<std::string> at_capitals(std::string_view part) {
+  std::vector<std::string> pieces(1);
+  for (std::size_t i = 0; i < part.size(); ++i) {
+    const bool begins =
+        is_capital(part[i]) && i > 0 &&
+        (!is_capital(part[i - 1]) || (i + 1 < part.size() && !is_capital(part[i + 1])));
+    if (begins) pieces.emplace_back();
+    pieces.back() += part[i];
+  }
+  return pieces;
 }
 
 std::vector<Token> meanings_of(std::string_view word) {
@@ -113,9 +141,9 @@ std::vector<Token> joined_words(std::string_view text, bool is_pressure) {
   return is_pressure && place ? std::vector{Token{*place}} : std::vector<Token>{};
 }
 
-/// Returns the meaning of a part of a name: words, or a symbol with words or a place joined to it
-/// ("xref", "pa").
-std::vector<Token> tokens_of(std::string_view part, std::span<const Token> before) {
+/// Returns the meaning of a text without capitals: words, or a symbol with words or a place joined
+/// to it ("xref", "pa").
+std::vector<Token> tokens_of_lower(std::string_view part, std::span<const Token> before) {
   if (const auto place = symbol_in(pressure_places(), part);
       place && has(before, Meaning::pressure))
     return {{*place}};
@@ -129,6 +157,36 @@ std::vector<Token> tokens_of(std::string_view part, std::span<const Token> befor
   std::vector<Token> tokens{{*symbol, true}};
   tokens.insert(tokens.end(), rest.begin(), rest.end());
   return tokens;
+}
+
+/// Whether a piece before a capital is the type of a variable. "fSoll" may be a force, so the name
+/// must state its quantity.
+bool is_type_prefix(std::string_view piece, std::span<const Token> behind) {
+  const auto types = type_prefixes();
+  if (std::find(types.begin(), types.end(), piece) == types.end()) return false;
+  return std::any_of(behind.begin(), behind.end(), [](const Token& token) {
+    return !token.is_symbol && (is_quantity(token.meaning) || token.meaning == Meaning::valve ||
+                                token.meaning == Meaning::supply || token.meaning == Meaning::tank);
+  });
+}
+
+/// Returns the meaning of a part of a name, whose words may be joined with or without capitals.
+std::vector<Token> tokens_of(const std::string& part, std::span<const Token> before) {
+  const std::string small = lower(part);
+  const auto pieces = at_capitals(part);
+  if (pieces.size() < 2 || !meanings_of(small).empty()) return tokens_of_lower(small, before);
+  std::vector<Token> all(before.begin(), before.end());
+  std::vector<Token> behind_first;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const auto tokens = tokens_of_lower(lower(pieces[i]), all);
+    all.insert(all.end(), tokens.begin(), tokens.end());
+    if (i > 0) behind_first.insert(behind_first.end(), tokens.begin(), tokens.end());
+  }
+  if (is_type_prefix(pieces.front(), behind_first)) return behind_first;
+  const std::vector<Token> split(all.begin() + static_cast<std::ptrdiff_t>(before.size()),
+                                 all.end());
+  const auto whole = tokens_of_lower(small, before);
+  return whole.size() > split.size() ? whole : split;
 }
 
 // ---- Meaning -------------------------------------------------------------------------------
@@ -170,6 +228,13 @@ struct Reading {
 
 /// Whether a unit is that of a pure number, such as a percentage.
 bool is_share(const std::string& unit) { return converts_to(unit, "1"); }
+
+/// Whether the column tells where the spool of the valve is. Its signal has a voltage or a current.
+bool is_of_spool(const Reading& reading, std::optional<Meaning> quantity) {
+  if (!reading.says(Meaning::spool)) return false;
+  return quantity == Meaning::position ||
+         (!quantity && reading.says(Meaning::measured) && !reading.says(Meaning::electric));
+}
 
 std::optional<Meaning> quantity_in(const Reading& reading) {
   if (reading.of_unit && *reading.of_unit != Meaning::time) return reading.of_unit;
@@ -254,7 +319,8 @@ std::optional<Channel> without_quantity(const Reading& reading) {
   if (reading.says(Meaning::supply) || reading.says(Meaning::tank))
     return reading.says(Meaning::valve) ? std::nullopt : pressure_at(reading);
   if (reading.says(Meaning::valve)) return Channel::command;
-  if (reading.says(Meaning::reference)) return Channel::reference;
+  if (reading.says(Meaning::reference))
+    return reading.says(Meaning::spool) ? Channel::command : Channel::reference;
   if (reading.says(Meaning::command)) return Channel::command;
   if (is_share(reading.unit)) return std::nullopt;
   if (reading.says(Meaning::load)) return Channel::force;
@@ -262,9 +328,24 @@ std::optional<Channel> without_quantity(const Reading& reading) {
   return std::nullopt;
 }
 
+/// Whether a column has the difference between a reference and what was measured.
+bool is_difference(const Reading& reading, std::optional<Meaning> quantity) {
+  const bool moves = quantity == Meaning::position || quantity == Meaning::angle;
+  return reading.says(Meaning::error) || (moves && reading.says(Meaning::difference));
+}
+
+/// Whether a force or torque acts from outside. A load cell, which says "load" alone, is part of
+/// the rig.
+bool is_external_load(std::optional<Channel> channel, const Reading& reading) {
+  if (channel != Channel::force && channel != Channel::torque) return false;
+  if (reading.says(Meaning::external)) return true;
+  const bool by_name = reading.says(Meaning::force) || reading.says(Meaning::torque);
+  return by_name && reading.says(Meaning::load) && !reading.says(Meaning::measured);
+}
+
 /// Describes a column whose quantity is recognised but that is not a channel.
 std::string_view other_of(std::optional<Meaning> quantity, const Reading& reading) {
-  if (reading.says(Meaning::error)) return "a control error";
+  if (is_difference(reading, quantity)) return "a control error";
   if (!quantity) return {};
   switch (*quantity) {
     case Meaning::velocity:
@@ -287,13 +368,13 @@ ColumnGuess meaning_of(const Reading& reading) {
   const bool known = std::any_of(reading.tokens.begin(), reading.tokens.end(),
                                  [](const Token& t) { return t.meaning != Meaning::filler; });
   if (guess.is_time || (!known && reading.of_unit != Meaning::temperature)) return guess;
-  if (reading.tokens.empty()) return guess;
+  if (reading.tokens.empty() || reading.of_unit == Meaning::time) return guess;
   const auto quantity = quantity_in(reading);
   // "u_mm" drives a loop on position.
   const bool drives = reading.says(Meaning::reference) || reading.says(Meaning::command) ||
                       (reading.says(Meaning::valve) && reading.of_unit && !reading.is_named());
-  const bool of_spool = reading.says(Meaning::spool) && quantity == Meaning::position;
-  if (!of_spool && !reading.says(Meaning::error)) {
+  const bool of_spool = is_of_spool(reading, quantity);
+  if (!of_spool && !is_difference(reading, quantity)) {
     if (!quantity)
       guess.channel = without_quantity(reading);
     else if (*quantity == Meaning::pressure && reading.says(Meaning::pilot))
@@ -301,17 +382,34 @@ ColumnGuess meaning_of(const Reading& reading) {
     else
       guess.channel = drives ? reference_of(*quantity, reading) : measured(*quantity, reading);
   }
-  if (!guess.channel) guess.other = other_of(quantity, reading);
+  if (!guess.channel) guess.other = of_spool ? kSpoolPosition : other_of(quantity, reading);
+  guess.is_external_load = is_external_load(guess.channel, reading);
   return guess;
 }
 
 /// Returns the unit that is meant by one that is often written for another (may_mean_another):
-/// gravity by the "g" of an acceleration, and newton metres by the "nm" of a torque.
+/// gravity by the "g" of an acceleration, newton metres by the "nm" of a torque, and degrees
+/// Celsius by the "grad" of a temperature.
 std::string meant_unit(const std::string& unit, const Reading& reading) {
   const auto quantity = reading.of_name();
   if (unit == "g" && quantity == Meaning::acceleration) return "gravity";
   if (unit == "nm" && quantity == Meaning::torque) return "N m";
+  if (unit == "deg" && quantity == Meaning::temperature) return "degC";
   return unit;
+}
+
+/// Whether a name states a force whose "N" stands before an "m" with another meaning: "F_N_m",
+/// where m may be a place or "measured".
+bool is_force_with_suffix(const UnitInName& unit, const std::string& name) {
+  const std::string_view text = std::string_view(name).substr(unit.begin, unit.end - unit.begin);
+  if (unit.unit != "N m" || text != "N_m") return false;
+  const auto parts = parts_of(std::string_view(name).substr(0, unit.begin));
+  std::vector<Token> tokens;
+  for (const std::string& part : parts) {
+    const auto more = tokens_of(part, tokens);
+    tokens.insert(tokens.end(), more.begin(), more.end());
+  }
+  return has(tokens, Meaning::force) && !has(tokens, Meaning::torque);
 }
 
 /// Adds what the first part of a name says where its M is a moment: "Mext_Nm", "Msoll_kNm".
@@ -320,6 +418,45 @@ void read_moment(const std::string& first, std::vector<Token>& tokens) {
   const auto rest = joined_words(std::string_view(first).substr(1), false);
   tokens.insert(tokens.begin(), rest.begin(), rest.end());
   tokens.insert(tokens.begin(), {Meaning::torque, true});
+}
+
+/// Returns the last part of a path, which alone names the quantity: "x" of "/run1/x", "Sheet1!x"
+/// and "log.x". A point with nothing but a blank behind it ends an abbreviation: "Pos. Soll".
+std::string last_of_path(std::string path) {
+  if (path.starts_with('/')) path = path.substr(path.rfind('/') + 1);
+  path = path.substr(path.rfind('!') + 1);
+  for (std::size_t point = path.size(); (point = path.find_last_of('.', point)) != path.npos;) {
+    if (point + 1 < path.size() && path[point + 1] != ' ') return path.substr(point + 1);
+    path[point] = ' ';
+  }
+  return path;
+}
+
+/// Adds what the parts of a name say.
+void read_parts(const std::vector<std::string>& parts, std::vector<Token>& tokens) {
+  const auto is = [&](std::size_t i, std::string_view text) {
+    return i < parts.size() && lower(parts[i]) == text;
+  };
+  if (is(0, "x") && is(1, "value")) {  // LabVIEW
+    tokens.push_back({Meaning::time});
+    return;
+  }
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    // "x_r" may be at the right, "r_mm" is a reference. The "X_Axis" of a logger is not a position.
+    if (i > 0 && is(i, "r")) continue;
+    if (is(i, "x") && is(i + 1, "axis")) continue;
+    // "x_d" is what is desired.
+    const bool desired = is(i, "x") && is(i + 1, "d");
+    // The "A" in "A-Druck" is a place.
+    const auto place = symbol_in(pressure_places(), lower(parts[i]));
+    if (place && !is(i, "p") && i + 1 < parts.size() &&
+        has(tokens_of(parts[i + 1], {}), Meaning::pressure)) {
+      tokens.push_back({*place});
+      continue;
+    }
+    const auto more = tokens_of(desired ? "xd" : parts[i], tokens);
+    tokens.insert(tokens.end(), more.begin(), more.end());
+  }
 }
 
 }  // namespace
@@ -337,35 +474,29 @@ bool converts_to(const std::string& unit, std::string_view to) {
 ColumnGuess guess_column(const std::string& name, const std::string& unit) {
   std::string own = name;
   Reading reading;
-  const auto in_name = unit_in_name(name);
+  auto in_name = unit_in_name(name);
+  if (in_name && is_force_with_suffix(*in_name, name)) {
+    in_name->unit = "N";
+    in_name->end -= std::string_view("_m").size();
+  }
   if (in_name) {
     reading.unit = in_name->unit;
     own.replace(in_name->begin, in_name->end - in_name->begin, " ");
   }
-  // Only the last part of a path names the quantity.
-  if (own.starts_with('/')) own = own.substr(own.rfind('/') + 1);
-  for (const char before : {'!', '.'}) own = own.substr(own.rfind(before) + 1);
-  std::vector<std::string> parts = parts_of(own);
-  if (parts.size() > 1 && parts[0] == "x" && parts[1] == "value") parts = {"time"};  // LabVIEW
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    // "x_r" may be at the right, "r_mm" is a reference. The "X_Axis" of a logger is not a position.
-    if (i > 0 && parts[i] == "r") continue;
-    if (parts[i] == "x" && i + 1 < parts.size() && parts[i + 1] == "axis") continue;
-    // "x_d" is what is desired.
-    const bool desired = i + 1 < parts.size() && parts[i] == "x" && parts[i + 1] == "d";
-    const auto tokens = tokens_of(desired ? "xd" : parts[i], reading.tokens);
-    reading.tokens.insert(reading.tokens.end(), tokens.begin(), tokens.end());
-  }
+  const std::vector<std::string> parts = parts_of(last_of_path(own));
+  read_parts(parts, reading.tokens);
   if (!unit.empty()) {
     const std::string spelled = unit_of_text(unit);
     reading.unit = spelled.empty() ? unit : spelled;
   }
-  const bool ends_in_g = !in_name && parts.size() > 1 && parts.back() == "g";
+  const bool ends_in_g = !in_name && parts.size() > 1 && lower(parts.back()) == "g";
   if (unit.empty() && ends_in_g && reading.of_name() == Meaning::acceleration) reading.unit = "g";
   reading.unit = meant_unit(reading.unit, reading);
   reading.of_unit = quantity_of_unit(reading.unit);
-  if (reading.of_unit == Meaning::torque && !parts.empty())
-    read_moment(parts.front(), reading.tokens);
+  const bool is_moment = reading.of_unit == Meaning::torque ||
+                         (reading.unit.empty() && reading.says(Meaning::external) &&
+                          !parts.empty() && parts.front() == "M");
+  if (is_moment && !parts.empty()) read_moment(lower(parts.front()), reading.tokens);
   return meaning_of(reading);
 }
 

@@ -21,6 +21,8 @@ struct ColumnGuess {
   std::optional<Channel> channel;
   /// Unit that the file gives, or else that in the name: "mm" in "x_mm" and "x [mm]"; else empty.
   std::string unit;
+  /// Whether a force or torque acts on the rig from outside, rather than between its parts.
+  bool is_external_load = false;
   /// What the column contains if that is known but no channel: "a velocity". Else empty.
   std::string_view other{};
 };

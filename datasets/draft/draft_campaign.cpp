@@ -135,24 +135,30 @@ std::string initial_text(const std::vector<FileGroup>& groups) {
       window_s);
 }
 
-/// Whether a recorded drive equals the generated one that a draft would state, which has neither
-/// offset nor phase. Any other drive is used as recorded: a loop follows its reference, so an error
-/// of the reference would pass into the estimates.
-bool is_generated(const std::pair<std::vector<double>, std::vector<double>>& recorded,
-                  const WaveformGuess& guess, double frequency_hz, double amplitude) {
+/// Rounds a number to the digits that a draft shows.
+double as_shown(double value) { return std::strtod(fmt::format("{:.4g}", value).c_str(), nullptr); }
+
+/// Returns the frequency of the generated drive that a draft states, if a recorded drive equals
+/// that drive, which has neither offset nor phase. Any other drive is used as recorded: a loop
+/// follows its reference, so an error of the reference would pass into the estimates.
+std::optional<double> generated_frequency_hz(
+    const std::pair<std::vector<double>, std::vector<double>>& recorded,
+    const WaveformGuess& guess) {
   const auto& [time_s, values] = recorded;
+  if (!is_periodic(guess.waveform) || !guess.amplitude || !guess.can_be_generated)
+    return std::nullopt;
   const auto found = recognised_drive(time_s, values, {}, 0.0);
-  if (!found || !guess.can_be_generated) return false;
+  const auto period_s = found ? found->signal.period_s() : std::nullopt;
+  if (!period_s || !(*period_s > 0.0)) return std::nullopt;
+  const double frequency_hz = as_shown(1.0 / *period_s);
+  const double amplitude = as_shown(*guess.amplitude);
   const model::Signal signal = periodic_signal(guess.waveform, amplitude, frequency_hz);
   constexpr double kRounding = 1e-6;  // fraction of the amplitude
   const double most = found->tolerance + kRounding * amplitude;
-  for (std::size_t i = 0; i < values.size(); ++i)
-    if (!(std::abs(values[i] - signal.value(time_s[i])) <= most)) return false;
-  return true;
+  for (const double t : time_s)
+    if (!(std::abs(found->signal.value(t) - signal.value(t)) <= most)) return std::nullopt;
+  return frequency_hz;
 }
-
-/// Rounds a number to the digits that a draft shows.
-double as_shown(double value) { return std::strtod(fmt::format("{:.4g}", value).c_str(), nullptr); }
 
 std::string waveform_text(const fs::path& file, const FileColumns& columns) {
   const ChannelColumns* drive = drive_of(columns);
@@ -175,20 +181,18 @@ std::string waveform_text(const fs::path& file, const FileColumns& columns) {
       is_periodic(guess.waveform) && guess.frequency_hz.has_value() && guess.amplitude.has_value();
   // A drive in another unit is recognised when its channel has a gain.
   const bool has_unit = converts_to(drive->unit, info(drive->channel).unit);
-  const bool generated =
-      periodic && has_unit &&
-      is_generated(*signal, guess, as_shown(*guess.frequency_hz), as_shown(*guess.amplitude));
+  const auto generated_hz = has_unit ? generated_frequency_hz(*signal, guess) : std::nullopt;
   std::string text =
       fmt::format("# {}: {}; {} samples at {:.6g} Hz, {:.6g} s\n", info(drive->channel).key,
                   guess.description, time_s.size(), rate_hz, time_s.back() - time_s.front());
   text += fmt::format(
-      "waveform = \"{}\"{}\n", to_string(generated ? guess.waveform : Waveform::recorded),
-      periodic && has_unit && !generated
+      "waveform = \"{}\"{}\n", to_string(generated_hz ? guess.waveform : Waveform::recorded),
+      periodic && has_unit && !generated_hz
           ? comment("not simulated as generated: its samples show an offset, a phase, noise or "
                     "another shape")
           : "");
   if (guess.frequency_hz && guess.amplitude)
-    text += fmt::format("frequency = \"{:.4g} Hz\"\n", *guess.frequency_hz);
+    text += fmt::format("frequency = \"{:.4g} Hz\"\n", generated_hz.value_or(*guess.frequency_hz));
   if (guess.frequency_hz && guess.amplitude && has_unit)
     text += fmt::format("amplitude = \"{:.4g} {}\"\n", *guess.amplitude, drive->unit);
   return text;

@@ -135,7 +135,7 @@ FileColumns file_columns(const fs::path& file) {
       if (!known)
         found.channels.push_back({*guess.channel, shown,
                                   repeated ? numbers[numbered.stem] : std::vector<std::string>{},
-                                  guess.unit});
+                                  guess.unit, guess.is_external_load});
     } else {
       found.unknown.push_back({name, guess.unit, std::string(guess.other)});
     }

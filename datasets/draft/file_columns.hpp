@@ -24,6 +24,7 @@ struct ChannelColumns {
   std::string stem;                  ///< name, without its number if there are several columns
   std::vector<std::string> numbers;  ///< empty for a single column
   std::string unit;
+  bool is_external_load = false;  ///< a force or torque that acts on the rig from outside
 };
 
 /// A column whose name is not that of a channel.

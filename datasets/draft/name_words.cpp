@@ -7,42 +7,62 @@ namespace {
 
 using Word = std::string_view;
 
-constexpr std::array<Word, 13> kTime{"time",        "tout",    "timestamp", "zeit",     "messzeit",
-                                     "temps",       "elapsed", "seconds",   "sekunden", "clock",
-                                     "zeitstempel", "uhrzeit", "datetime"};
+constexpr std::array<Word, 16> kTime{
+    "time",     "tout",  "timestamp",   "zeit",    "messzeit", "temps",      "elapsed", "seconds",
+    "sekunden", "clock", "zeitstempel", "uhrzeit", "datetime", "timestamps", "tiempo",  "tempo"};
 
-constexpr std::array<Word, 16> kReference{
-    "ref",    "reference", "setpoint", "sp",  "set",      "target",      "desired", "des",
-    "demand", "dem",       "soll",     "dmd", "sollwert", "sollgroesse", "vorgabe", "xd"};
-constexpr std::array<Word, 4> kCommand{"cmd", "command", "drive", "commanded"};
-constexpr std::array<Word, 23> kValve{
-    "valve",        "control",    "uv",          "voltage",  "servo",    "duty",
-    "stellgroesse", "stellgröße", "stellsignal", "ventil",   "spannung", "steuerspannung",
-    "strom",        "current",    "joystick",    "solenoid", "pwm",      "servoventil",
-    "servovalve",   "magnet",     "stellwert",   "sv",       "ventile"};
-constexpr std::array<Word, 14> kMeasured{"encoder", "drehgeber", "resolver", "act", "actual",
-                                         "ist",     "istwert",   "fb",       "fbk", "feedback",
-                                         "meas",    "measured",  "gemessen", "fdbk"};
-constexpr std::array<Word, 7> kError{"err",        "error",           "fehler",        "deviation",
-                                     "abweichung", "regelabweichung", "regeldifferenz"};
+constexpr std::array<Word, 19> kReference{
+    "ref",     "reference", "setpoint", "sp",       "set",        "target",   "desired",
+    "des",     "demand",    "dem",      "soll",     "dmd",        "sollwert", "sollgroesse",
+    "vorgabe", "xd",        "consigne", "consigna", "riferimento"};
+constexpr std::array<Word, 7> kCommand{"cmd",      "command", "drive",      "commanded",
+                                       "commande", "comando", "ansteuerung"};
+constexpr std::array<Word, 38> kValve{
+    "valve",        "control",      "uv",          "voltage",      "servo",    "duty",
+    "stellgroesse", "stellgröße",   "stellsignal", "ventil",       "spannung", "steuerspannung",
+    "strom",        "current",      "joystick",    "solenoid",     "pwm",      "servoventil",
+    "servovalve",   "magnet",       "stellwert",   "sv",           "ventile",  "ventilansteuerung",
+    "spule",        "vanne",        "servovanne",  "distributeur", "valvula",  "servovalvula",
+    "valvola",      "servovalvola", "corriente",   "corrente",     "courant",  "tensione",
+    "bobine",       "bobina"};
+constexpr std::array<Word, 24> kMeasured{
+    "encoder", "drehgeber", "resolver", "act",      "actual",   "ist",      "istwert", "fb",
+    "fbk",     "feedback",  "meas",     "measured", "gemessen", "fdbk",     "mesure",  "mesuree",
+    "reel",    "real",      "medido",   "medida",   "misurato", "misurata", "attuale", "actuelle"};
+constexpr std::array<Word, 11> kElectric{
+    "voltage",  "spannung", "steuerspannung", "strom", "current", "corriente",
+    "corrente", "courant",  "tensione",       "pwm",   "duty"};
+constexpr std::array<Word, 12> kError{
+    "err",        "error",           "fehler",         "deviation",
+    "abweichung", "regelabweichung", "regeldifferenz", "erreur",
+    "ecart",      "errore",          "schleppfehler",  "schleppabstand"};
 
-constexpr std::array<Word, 19> kPosition{
-    "pos",   "position", "stroke",     "disp",         "displacement", "weg",        "hub",
-    "xp",    "lvdt",     "displ",      "travel",       "extension",    "auslenkung", "lage",
-    "länge", "length",   "elongation", "verschiebung", "wegsensor"};
-constexpr std::array<Word, 13> kAngle{"angle",        "theta",      "ang",           "phi",
+constexpr std::array<Word, 27> kPosition{
+    "pos",        "position",    "stroke",     "disp",     "displacement",   "weg",
+    "hub",        "xp",          "lvdt",       "displ",    "travel",         "extension",
+    "auslenkung", "lage",        "länge",      "length",   "elongation",     "verschiebung",
+    "wegsensor",  "deplacement", "course",     "posicion", "desplazamiento", "carrera",
+    "posizione",  "corsa",       "spostamento"};
+constexpr std::array<Word, 15> kAngle{"angle",        "theta",      "ang",           "phi",
                                       "winkel",       "tilt",       "schwenkwinkel", "jointangle",
                                       "gelenkwinkel", "drehwinkel", "rotation",      "inclinometer",
-                                      "neigung"};
-constexpr std::array<Word, 5> kForce{"force", "loadcell", "kraft", "kraftmessdose", "fl"};
-constexpr std::array<Word, 9> kPressure{"pressure", "druck", "press",  "chamber", "kammer",
-                                        "prs",      "dp",    "deltap", "port"};
-constexpr std::array<Word, 6> kAcceleration{"acc",           "accel",          "acceleration",
-                                            "accelerometer", "beschleunigung", "beschl"};
-constexpr std::array<Word, 5> kTemperature{"temp", "temperature", "temperatur", "tmp", "toil"};
-constexpr std::array<Word, 5> kVelocity{"vel", "velocity", "speed", "geschwindigkeit", "geschw"};
-constexpr std::array<Word, 4> kFlow{"flow", "flowrate", "durchfluss", "volumenstrom"};
-constexpr std::array<Word, 4> kTorque{"torque", "moment", "drehmoment", "trq"};
+                                      "neigung",      "angulo",     "angolo"};
+constexpr std::array<Word, 8> kForce{"force", "loadcell", "kraft",  "kraftmessdose",
+                                     "fl",    "effort",   "fuerza", "forza"};
+constexpr std::array<Word, 15> kPressure{"pressure", "druck",     "press",   "chamber", "kammer",
+                                         "prs",      "dp",        "deltap",  "port",    "pression",
+                                         "presion",  "pressione", "chambre", "camara",  "camera"};
+constexpr std::array<Word, 11> kAcceleration{
+    "acc", "accel", "acceleration", "accelerometer", "beschleunigung", "beschl",
+    "ax",  "ay",    "az",           "aceleracion",   "accelerazione"};
+constexpr std::array<Word, 6> kTemperature{"temp", "temperature", "temperatur",
+                                           "tmp",  "toil",        "temperatura"};
+constexpr std::array<Word, 9> kVelocity{"vel",     "velocity", "speed",   "geschwindigkeit",
+                                        "geschw",  "velo",     "vitesse", "velocidad",
+                                        "velocita"};
+constexpr std::array<Word, 8> kFlow{"flow",        "flowrate", "durchfluss", "volumenstrom",
+                                    "volumestrom", "debit",    "caudal",     "portata"};
+constexpr std::array<Word, 5> kTorque{"torque", "moment", "drehmoment", "trq", "couple"};
 constexpr std::array<Word, 6> kRotation{"rpm",   "drehzahl", "revs",
                                         "omega", "gyro",     "winkelgeschwindigkeit"};
 
@@ -51,29 +71,41 @@ constexpr std::array<Word, 8> kSideA{"cap",   "head",       "bore",        "blin
 constexpr std::array<Word, 9> kSideB{"rod",       "annulus",      "ring",
                                      "stangen",   "stange",       "stangenseite",
                                      "ringseite", "kolbenstange", "ringraum"};
-constexpr std::array<Word, 9> kSupply{"supply", "versorgungs", "system", "pump",    "pumpe",
-                                      "pumpen", "versorgung",  "speise", "vordruck"};
-constexpr std::array<Word, 5> kTank{"tank", "return", "rücklauf", "ruecklauf", "reservoir"};
-constexpr std::array<Word, 9> kLoad{"load",       "last",      "delta",  "diff", "differential",
-                                    "difference", "differenz", "deltap", "dp"};
+constexpr std::array<Word, 17> kSupply{
+    "supply",        "versorgungs", "system",   "pump",  "pumpe",        "pumpen",
+    "versorgung",    "speise",      "vordruck", "sys",   "alimentation", "alimentacion",
+    "alimentazione", "mandata",     "bomba",    "pompe", "pompa"};
+constexpr std::array<Word, 9> kTank{"tank",   "return",  "rücklauf", "ruecklauf", "reservoir",
+                                    "retour", "retorno", "ritorno",  "scarico"};
+constexpr std::array<Word, 12> kLoad{"load",         "last",       "delta",     "diff",
+                                     "differential", "difference", "differenz", "deltap",
+                                     "dp",           "charge",     "carga",     "carico"};
+constexpr std::array<Word, 5> kDifference{"delta", "diff", "difference", "differenz",
+                                          "differential"};
+constexpr std::array<Word, 9> kExternal{"ext",  "extern", "external",    "externe", "externa",
+                                        "stör", "stoer",  "disturbance", "gegen"};
 constexpr std::array<Word, 4> kPilot{"pilot", "ppilot", "vorsteuer", "steuerdruck"};
 constexpr std::array<Word, 8> kBase{"base",  "ground", "foundation", "frame",
                                     "floor", "boden",  "fundament",  "rahmen"};
 constexpr std::array<Word, 4> kPayload{"payload", "specimen", "nutzlast", "prüfling"};
-constexpr std::array<Word, 4> kPiston{"piston", "kolben", "cylinder", "zylinder"};
+constexpr std::array<Word, 8> kPiston{"piston", "kolben",   "cylinder", "zylinder",
+                                      "verin",  "cilindro", "pistone",  "cyl"};
 // A valve has a signal, and a spool whose position is not that of the piston.
-constexpr std::array<Word, 7> kSpool{"spool",  "schieber",    "ventilschieber", "valve",
-                                     "ventil", "servoventil", "servovalve"};
-constexpr std::array<Word, 25> kFiller{
-    "shaft",    "welle", "rotor",  "vane",   "extern",    "external", "reaction", "rack",  "oil",
-    "oel",      "öl",    "sensor", "signal", "value",     "wert",     "side",     "seite", "axial",
-    "actuator", "joint", "gelenk", "arm",    "anschluss", "cell",     "raum"};
+constexpr std::array<Word, 13> kSpool{
+    "spool", "schieber",   "ventilschieber", "valve",        "ventil",  "servoventil", "servovalve",
+    "vanne", "servovanne", "valvula",        "servovalvula", "valvola", "servovalvola"};
+constexpr std::array<Word, 34> kFiller{
+    "shaft",  "welle",  "rotor",     "vane",   "reaction", "rack",    "oil",   "oel",      "öl",
+    "sensor", "signal", "value",     "wert",   "side",     "seite",   "axial", "actuator", "joint",
+    "gelenk", "arm",    "anschluss", "cell",   "raum",     "end",     "ende",  "boom",     "bucket",
+    "stick",  "huile",  "olio",      "aceite", "kanal",    "channel", "rec"};
 
 constexpr std::array kRows{
     WordRow{Meaning::time, kTime},
     WordRow{Meaning::reference, kReference},
     WordRow{Meaning::command, kCommand},
     WordRow{Meaning::valve, kValve},
+    WordRow{Meaning::electric, kElectric},
     WordRow{Meaning::measured, kMeasured},
     WordRow{Meaning::error, kError},
     WordRow{Meaning::position, kPosition},
@@ -91,6 +123,8 @@ constexpr std::array kRows{
     WordRow{Meaning::supply, kSupply},
     WordRow{Meaning::tank, kTank},
     WordRow{Meaning::load, kLoad},
+    WordRow{Meaning::difference, kDifference},
+    WordRow{Meaning::external, kExternal},
     WordRow{Meaning::pilot, kPilot},
     WordRow{Meaning::base, kBase},
     WordRow{Meaning::payload, kPayload},
@@ -112,10 +146,13 @@ constexpr std::array kPressurePlaces{
     Symbol{'2', Meaning::side_b}, Symbol{'s', Meaning::supply}, Symbol{'0', Meaning::supply},
     Symbol{'p', Meaning::supply}, Symbol{'t', Meaning::tank},   Symbol{'l', Meaning::load}};
 
+constexpr std::array<Word, 2> kTypePrefixes{"r", "f"};  // real, float
+
 }  // namespace
 
 std::span<const WordRow> name_words() { return kRows; }
 std::span<const Symbol> quantity_symbols() { return kQuantitySymbols; }
 std::span<const Symbol> pressure_places() { return kPressurePlaces; }
+std::span<const std::string_view> type_prefixes() { return kTypePrefixes; }
 
 }  // namespace rigcal::datasets

@@ -12,6 +12,7 @@ enum class Meaning {
   reference,
   command,   ///< in the unit of a controlled quantity: its reference; else a valve signal
   valve,     ///< electrical signal of the valve
+  electric,  ///< voltage or current, which distinguishes a signal from the position of a spool
   measured,  ///< says only that the quantity was measured
   error,     ///< difference between reference and measurement
   // The quantity.
@@ -31,6 +32,8 @@ enum class Meaning {
   supply,
   tank,
   load,
+  difference,  ///< between two quantities of one kind
+  external,    ///< acts on the rig from outside
   pilot,
   base,
   payload,
@@ -39,7 +42,7 @@ enum class Meaning {
   filler,  ///< nothing, but other words may be joined to it
 };
 
-/// Words of one meaning, in lower case.
+/// Words of one meaning, in lower case and without the accents of Romance languages.
 struct WordRow {
   Meaning meaning;
   std::span<const std::string_view> words;
@@ -60,5 +63,9 @@ std::span<const Symbol> quantity_symbols();
 
 /// Returns the symbols behind a pressure: "a" in "pA" and "p_A", "0" in "p0".
 std::span<const Symbol> pressure_places();
+
+/// Returns the prefixes that programs of controllers put before a name for its type: "r" in
+/// "rPressureA". Other prefixes have no meaning that could mislead.
+std::span<const std::string_view> type_prefixes();
 
 }  // namespace rigcal::datasets

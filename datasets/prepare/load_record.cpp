@@ -14,6 +14,7 @@
 #include "datasets/checks/record_checks.hpp"
 #include "datasets/checks/sensor_warnings.hpp"
 #include "datasets/checks/short_records.hpp"
+#include "datasets/checks/swapped_chambers.hpp"
 #include "datasets/prepare/average.hpp"
 #include "datasets/prepare/bridged_holes.hpp"
 #include "datasets/prepare/condition_repeats.hpp"
@@ -252,10 +253,11 @@ Record average_of(const Campaign& campaign, const Condition& condition,
     if (condition.moving_windows) find_moving_windows(campaign, condition, record);
     record.holes = holes_in_what_counts(campaign, condition, repeats, record.windows);
     record.warnings.insert(record.warnings.end(), record.holes.begin(), record.holes.end());
+    const std::string mirrored = mirrored_motion_warning(campaign, condition, record);
     for (const std::string& warning :
          {drive_sampling_warning(condition, record), travel_warning(campaign, condition, record),
-          stated_drive_warning(campaign, condition, record),
-          mirrored_motion_warning(campaign, condition, record),
+          stated_drive_warning(campaign, condition, record), mirrored,
+          mirrored.empty() ? swapped_chambers_warning(campaign, record) : std::string(),
           guessed_drive_warning(campaign, condition, record)})
       if (!warning.empty()) record.warnings.push_back(warning);
     if (auto proposal = drive_start_proposal(campaign, condition, record); !proposal.empty())

@@ -10,6 +10,7 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "datasets/checks/equal_runs.hpp"
@@ -140,28 +141,74 @@ double roundest_between(double low, double high) {
   return 0.5 * (low + high);
 }
 
-std::optional<RecognisedDrive> as_square(const Recorded& record, double amplitude,
-                                         const std::string& unit) {
-  // Edge k of a square wave is at k / (2 f): after the last sample before it, and no later than the
-  // first sample after it.
-  constexpr double kEdgeRounding = 1e-12;
+/// Frequencies at which every edge of a square wave is where a record shows it.
+struct SquareFrequencies {
   double low_hz = 0.0;
   double high_hz = std::numeric_limits<double>::infinity();
-  long edge = 0;
-  for (std::size_t i = 1; i < record.size(); ++i) {
-    if (std::signbit(record.drive[i]) == std::signbit(record.drive[i - 1])) continue;
-    ++edge;
+  long edges = 0;
+};
+
+constexpr double kEdgeRounding = 1e-12;  // fraction of a frequency that two samples give alike
+
+/// Edge k of a square wave is at k / (2 f): after the last sample before it, and no later than the
+/// first sample after it. Samples between the two levels are not used, like a zero at the
+/// beginning.
+/// @return  std::nullopt if an edge is not after t = 0
+std::optional<SquareFrequencies> square_frequencies(const Recorded& record, double amplitude) {
+  SquareFrequencies found;
+  std::optional<std::size_t> last;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    if (!(std::abs(record.drive[i]) >= amplitude - record.tolerance())) continue;
+    const auto before = std::exchange(last, i);
+    if (!before || std::signbit(record.drive[i]) == std::signbit(record.drive[*before])) continue;
     if (!(record.time_s[i] > 0.0)) return std::nullopt;
-    low_hz = std::max(low_hz, 0.5 * static_cast<double>(edge) / record.time_s[i]);
-    if (record.time_s[i - 1] > 0.0)
-      high_hz = std::min(high_hz, 0.5 * static_cast<double>(edge) / record.time_s[i - 1]);
+    const double edge = static_cast<double>(++found.edges);
+    found.low_hz = std::max(found.low_hz, 0.5 * edge / record.time_s[i]);
+    if (record.time_s[*before] > 0.0)
+      found.high_hz = std::min(found.high_hz, 0.5 * edge / record.time_s[*before]);
   }
-  if (edge < 2 || !(low_hz * (1.0 - kEdgeRounding) <= high_hz) || !std::isfinite(high_hz))
-    return std::nullopt;
-  const double f = roundest_between(low_hz * (1.0 - kEdgeRounding), std::max(high_hz, low_hz));
+  return found;
+}
+
+std::optional<RecognisedDrive> as_square(const Recorded& record, double amplitude,
+                                         const std::string& unit) {
+  const auto bounds = square_frequencies(record, amplitude);
+  if (!bounds || bounds->edges < 2 || !std::isfinite(bounds->high_hz)) return std::nullopt;
+  const double low_hz = bounds->low_hz * (1.0 - kEdgeRounding);
+  if (!(low_hz <= bounds->high_hz)) return std::nullopt;
+  const double f = roundest_between(low_hz, std::max(bounds->high_hz, bounds->low_hz));
+  const model::Signal signal = model::Signal::square(amplitude, f);
+  // A sample at the instant of an edge may have either level, or one between them: a program that
+  // simulates writes what its solver has there. It is known to be at that instant at t = 0, and
+  // elsewhere if some edges are no later than their sample and others no earlier. If all of them
+  // are later, the drive may be.
+  const bool is_pinned = !(bounds->low_hz < bounds->high_hz * (1.0 - kEdgeRounding));
+  constexpr double kTimeRounding = 1e-9;  // in half periods
+  std::vector<double> drive(record.drive.begin(), record.drive.end());
+  for (std::size_t i = 0; i < drive.size(); ++i) {
+    const double halves = 2.0 * f * record.time_s[i];
+    const bool at_edge = std::abs(halves - std::round(halves)) <= kTimeRounding * (1.0 + halves);
+    const bool at_start = std::lround(halves) == 0 && drive[i] >= 0.0;
+    const bool between = std::abs(drive[i]) <= amplitude + record.tolerance();
+    if (at_edge && between && (is_pinned || at_start)) drive[i] = signal.value(record.time_s[i]);
+  }
   return named(
-      record, model::Signal::square(amplitude, f), amplitude,
+      {record.time_s, drive, record.sd, record.step}, signal, amplitude,
       fmt::format("a square wave of {:.6g} Hz with an amplitude of {:.6g} {}", f, amplitude, unit));
+}
+
+/// Whether a record has the two levels of a square wave, but for a sample at each edge and the
+/// first.
+bool has_two_levels(const Recorded& record, double top) {
+  const auto at_top = [&](double x) {
+    return std::abs(std::abs(x) - top) <= kMostErrors * record.sd;
+  };
+  std::ptrdiff_t edges = 1;
+  for (std::size_t i = 1; i < record.size(); ++i)
+    edges += std::signbit(record.drive[i]) == std::signbit(record.drive[i - 1]) ? 0 : 1;
+  const auto others =
+      std::count_if(record.drive.begin(), record.drive.end(), [&](double x) { return !at_top(x); });
+  return others <= edges && others < static_cast<std::ptrdiff_t>(record.size() / 4);
 }
 
 /// Returns the zero crossings, interpolated between samples. Consecutive crossings are half a cycle
@@ -253,10 +300,7 @@ std::optional<RecognisedDrive> recognised_drive(std::span<const double> time_s,
   const double amplitude = 0.5 * (*high - *low);
   if (!(amplitude > 0.0)) return std::nullopt;
   Recorded record{time_s, drive, sd, 0.0};
-  const auto at_top = [&, top = *high](double x) {
-    return std::abs(std::abs(x) - top) <= kMostErrors * sd;
-  };
-  if (*low < 0.0 && std::all_of(drive.begin(), drive.end(), at_top))
+  if (*low < 0.0 && has_two_levels(record, *high))
     return as_square(record, sd > 0.0 ? amplitude : *high, unit);
   record.step = std::min(resolution(equal_runs(drive)), kMostStep * amplitude);
   const WaveformGuess guess = guess_waveform(time_s, drive);

@@ -22,7 +22,9 @@ struct RecognisedDrive {
 /// recorded drive must match the generated signal within the rounding of the record: three quarters
 /// of a step of its converter or of its last digit. If the campaign states the noise of the channel
 /// (`sd`), the tolerance increases by five times `sd`, and the rms deviation may be up to 1.2 times
-/// `sd`. Noise that is not stated is not estimated, because it may be real motion of the rig.
+/// `sd`. Noise that is not stated is not estimated, because it may be real motion of the rig. A
+/// sample at the instant of an edge of a square wave may have any value between the two levels, as
+/// simulation programs write it.
 ///
 /// @param time_s  shape (n), increasing
 /// @param drive   shape (n), SI
@@ -33,8 +35,8 @@ std::optional<RecognisedDrive> recognised_drive(std::span<const double> time_s,
                                                 const std::string& unit, double sd);
 
 /// Replaces a recorded drive with the generated signal that it equals, and adds a note. Does
-/// nothing
-/// if the campaign sets `recognise = false` for the channel, or if the drive is generated already.
+/// nothing if the campaign sets `recognise = false` for the channel, or if the drive is generated
+/// already.
 void recognise_drive(const Campaign& campaign, const Condition& condition, Record& record);
 
 }  // namespace rigcal::datasets

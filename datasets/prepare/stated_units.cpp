@@ -48,6 +48,8 @@ bool is_same(const UnitConversion& conversion) {
 bool contradicts(const StatedUnit& stated, const NamedUnit& named) {
   const auto conversion = conversion_between(named.unit, stated.unit);
   if (!conversion) {
+    // Degrees of a temperature are often written without their scale: "Temp [Grad]".
+    if (named.unit == "deg" && conversion_between(stated.unit, "K")) return false;
     const bool is_pure_number = conversion_between(named.unit, "1").has_value();
     return named.is_certain && !stated.gain && !is_pure_number;
   }

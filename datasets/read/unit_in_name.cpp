@@ -34,6 +34,7 @@ constexpr std::array<std::string_view, 10> kMoving{
 constexpr std::array<std::string_view, 5> kPerTime{"s", "sec", "s2", "s^2", "s\u00b2"};
 constexpr std::array<std::string_view, 2> kLitres{"l", "L"};
 constexpr std::array<std::string_view, 1> kPerMinute{"min"};
+constexpr std::array<std::string_view, 3> kTurns{"1", "U", "rev"};
 constexpr std::array<std::string_view, 6> kVolumes{"m3",      "dm3",      "cm3",
                                                    "m\u00b3", "dm\u00b3", "cm\u00b3"};
 constexpr std::array<std::string_view, 4> kPerSpan{"s", "sec", "min", "h"};
@@ -44,10 +45,10 @@ constexpr std::array<std::string_view, 3> kPounds{"lb", "lbf", "lbs"};
 constexpr std::array<std::string_view, 3> kFeet{"ft", "in", "inch"};
 constexpr std::array<std::string_view, 2> kLeadingFeet{"ft", "inch"};  // "force in lbs"
 constexpr std::array kSplitUnits{
-    SplitUnit{kMoving, kPerTime, "/"},    SplitUnit{kLitres, kPerMinute, "/"},
-    SplitUnit{kVolumes, kPerSpan, "/"},   SplitUnit{kForces, kPerArea, "/"},
-    SplitUnit{kForces, kMetres, " "},     SplitUnit{kPounds, kFeet, " "},
-    SplitUnit{kLeadingFeet, kPounds, " "}};
+    SplitUnit{kMoving, kPerTime, "/"},  SplitUnit{kLitres, kPerMinute, "/"},
+    SplitUnit{kTurns, kPerMinute, "/"}, SplitUnit{kVolumes, kPerSpan, "/"},
+    SplitUnit{kForces, kPerArea, "/"},  SplitUnit{kForces, kMetres, " "},
+    SplitUnit{kPounds, kFeet, " "},     SplitUnit{kLeadingFeet, kPounds, " "}};
 
 /// Common spellings of units, in lower case, with the units that they mean.
 constexpr std::array kSpellings{std::pair<std::string_view, std::string_view>{"c", "degC"},
@@ -77,6 +78,8 @@ constexpr std::array kSpellings{std::pair<std::string_view, std::string_view>{"c
                                 std::pair<std::string_view, std::string_view>{"lbf in", "inch lbf"},
                                 std::pair<std::string_view, std::string_view>{"ips", "inch/s"},
                                 std::pair<std::string_view, std::string_view>{"u/min", "rpm"},
+                                std::pair<std::string_view, std::string_view>{"1/min", "rpm"},
+                                std::pair<std::string_view, std::string_view>{"rev/min", "rpm"},
                                 std::pair<std::string_view, std::string_view>{"grad", "deg"},
                                 std::pair<std::string_view, std::string_view>{"pct", "%"},
                                 std::pair<std::string_view, std::string_view>{"percent", "%"},
@@ -87,8 +90,10 @@ constexpr std::array<std::string_view, 9> kUsualSpellings{
     "psig", "psia", "barg", "bara", "lbs", "grad", "pct", "percent", "prozent"};
 
 /// After one of these words, an isolated A means a chamber, not amperes.
-constexpr std::array<std::string_view, 8> kChamberWords{"p",      "pressure", "chamber", "druck",
-                                                        "kammer", "port",     "side",    "seite"};
+constexpr std::array<std::string_view, 17> kChamberWords{
+    "p",       "pressure", "chamber", "druck",    "kammer",  "port",         "side",
+    "seite",   "press",    "prs",     "pression", "presion", "presi\u00f3n", "pressione",
+    "chambre", "camara",   "camera"};
 
 /// Units that are also words, or names of chambers and gauges.
 constexpr std::array<std::string_view, 6> kWords{"in", "min", "A", "at", "h", "d"};

@@ -32,7 +32,7 @@ std::vector<std::string_view> fields_of(std::string_view line, char separator) {
 }
 
 bool is_number(std::string_view text, char separator) {
-  return csv_number(text, separator != ',').has_value();
+  return number_in_field(text, separator).has_value();
 }
 
 /// Whether a text may be in a row of numbers: a clock counts.

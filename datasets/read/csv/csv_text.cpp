@@ -180,6 +180,19 @@ std::optional<double> csv_number(std::string_view text, bool decimal_comma) {
   return value;
 }
 
+std::optional<double> number_in_field(std::string_view text, char separator) {
+  const bool decimal_comma = separator != ',' || text.starts_with('"');
+  if (const auto number = csv_number(text, decimal_comma)) return number;
+  // Fortran writes "1.5D-03".
+  const std::size_t exponent = text.find_first_of("dD");
+  if (exponent == std::string_view::npos || exponent == 0 ||
+      !(is_digit(text[exponent - 1]) || text[exponent - 1] == '.'))
+    return std::nullopt;
+  std::string number(text);
+  number[exponent] = 'e';
+  return csv_number(number, decimal_comma);
+}
+
 std::string shown(std::string_view text) {
   std::size_t length = std::min(text.size(), kMostShown);
   while (length < text.size() && length > 0 && is_continuation(text[length])) --length;

@@ -65,6 +65,11 @@ std::vector<CsvName> header_names(std::string_view header, char separator);
 /// @param decimal_comma  whether to accept "1,5", too
 std::optional<double> csv_number(std::string_view text, bool decimal_comma);
 
+/// Returns the number in a field of a file of columns. A comma is its decimal sign unless it
+/// separates the columns; between double quotes it is in any file: "1,5". The exponent may be that
+/// of Fortran: "1.5D-03".
+std::optional<double> number_in_field(std::string_view text, char separator);
+
 /// Shortens a text for a message, and replaces unprintable characters with '?'.
 std::string shown(std::string_view text);
 

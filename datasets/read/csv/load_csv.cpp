@@ -18,6 +18,7 @@
 #include "datasets/read/csv/csv_lines.hpp"
 #include "datasets/read/csv/csv_text.hpp"
 #include "datasets/read/csv/lvm_header.hpp"
+#include "datasets/read/csv/stamp_clock.hpp"
 #include "datasets/read/csv/time_stamp.hpp"
 #include "datasets/read/limits.hpp"
 
@@ -205,7 +206,7 @@ Header read_header(HeadedLines& lines, const std::string& file, char separator) 
   header.names = header_names(line, header.separator);
   const bool numbers_only =
       std::all_of(header.names.begin(), header.names.end(), [&header](const CsvName& name) {
-        return csv_number(name.full, header.separator != ',').has_value();
+        return number_in_field(name.full, header.separator).has_value();
       });
   if (numbers_only)
     fail(
@@ -244,6 +245,22 @@ std::size_t find_column(const Header& header, const std::string& wanted) {
         "; {} was assumed to be the separator, expected one of ',', ';' or tab between the columns",
         separator_name(header.separator));
   throw InputError(where, message);
+}
+
+/// Whether a number with commas may have them between thousands: "12,345" but neither "0,345" nor
+/// "1,5".
+bool may_have_thousands(std::string_view text) {
+  constexpr std::size_t kGroup = 3;
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  while (!text.empty() && std::string_view("\" +-").find(text.front()) != std::string_view::npos)
+    text.remove_prefix(1);
+  while (!text.empty() && std::string_view("\" ").find(text.back()) != std::string_view::npos)
+    text.remove_suffix(1);
+  const std::size_t comma = text.find(',');
+  if (comma == std::string_view::npos || comma == 0 || comma > kGroup || text.front() == '0')
+    return false;
+  const std::string_view behind = text.substr(comma + 1);
+  return behind.size() == kGroup && std::all_of(behind.begin(), behind.end(), is_digit);
 }
 
 // ---- Rows ----------------------------------------------------------------------------------
@@ -303,8 +320,20 @@ class RowReader {
         last_length_ == 1 ? "" : "s", shortest_length_);
   }
 
+  /// Refuses numbers between quotes whose commas may all be between thousands: "1,500".
+  /// @throws InputError  naming the first
+  void judge_commas() const {
+    if (header_.separator != ',' || comma_line_ == 0 || decimal_commas_) return;
+    throw InputError(
+        {header_.file, comma_line_},
+        "the commas of this file may be decimal signs or between thousands: every one has three "
+        "digits behind it; expected numbers without a sign between thousands, or decimal points");
+  }
+
   /// Returns the table, after freeing capacity that is mostly unused.
   RecordTable take() {
+    if (table_.warning.empty() && !clock_.doubt().empty())
+      table_.warning = fmt::format("{}: {}", header_.file, clock_.doubt());
     if (left_out_ > 0)
       table_.left_out = fmt::format("{} row{} without a number: {}", left_out_,
                                     left_out_ == 1 ? "" : "s", first_left_out_);
@@ -317,7 +346,7 @@ class RowReader {
   /// Reads a row as most loggers write it: wanted numbers are directly between separators, and no
   /// field begins with a quote. Returns false for any other row, whether right or wrong.
   bool read_plain(std::string_view line, long line_number) {
-    if (header_.separator == ' ' || first_stamp_) return false;
+    if (header_.separator == ' ' || clock_.has_begun()) return false;
     const char* at = line.data();
     const char* const end = at + line.size();
     std::size_t length = 0;  // length of the last wanted field
@@ -333,7 +362,7 @@ class RowReader {
       const auto [rest, error] = parse_double(at, end, *value);
       if (error != std::errc{} || !std::isfinite(*value)) return false;
       length = static_cast<std::size_t>(rest - at);
-      const bool tells_sign = header_.separator != ',' && (point_line_ == 0 || comma_line_ != 0);
+      const bool tells_sign = point_line_ == 0 || comma_line_ != 0;
       // note_decimal_sign() must see decimal points.
       if (tells_sign && std::find(at, rest, '.') != rest) return false;
       at = rest;
@@ -361,10 +390,10 @@ class RowReader {
     CsvFields fields(line, header_.separator);
     for (CsvField field; fields.next(field); ++count)
       for (; next != wanted_.end() && next->field == count; ++next) {
-        auto value = csv_number(field.text, header_.separator != ',');
+        auto value = number_in_field(field.text, header_.separator);
         const bool is_stamp = next->is_time && !value;
         if (is_stamp) value = seconds_of_stamp(field.text, next->target);
-        if (next->is_time && first_stamp_ && !is_stamp) value.reset();
+        if (next->is_time && clock_.has_begun() && !is_stamp) value.reset();
         if (!value && !bad) {
           bad = field;
           bad_index = count;
@@ -380,7 +409,10 @@ class RowReader {
     // A comment that a row omits is not a number, so a request for that column is an error.
     const bool lacks_last =
         header_.last_may_lack && count + 1 == header_.names.size() && next == wanted_.end();
-    if (count != header_.names.size() && !lacks_last) fail_on_count(line, line_number, count);
+    if (line_number == first_line_) rows_end_empty_ = ends_empty(line, count);
+    const bool ends = rows_end_empty_ && ends_empty(line, count);
+    if (count != header_.names.size() && !lacks_last && !ends)
+      fail_on_count(line, line_number, count);
     if (!bad) return true;
     if (!request_.leaves_out_rows || is_text_only(line))
       fail_on_number(line, line_number, *bad, bad_index);
@@ -391,17 +423,23 @@ class RowReader {
     return false;
   }
 
+  /// Whether a row has a separator behind its last column, which the header does not have.
+  bool ends_empty(std::string_view line, std::size_t count) const {
+    return count == header_.names.size() + 1 && header_.separator != ' ' &&
+           line.find_last_not_of(" \t\r") != std::string_view::npos &&
+           line.substr(line.rfind(header_.separator) + 1).find_first_not_of(" \t") ==
+               std::string_view::npos;
+  }
+
   /// Returns the seconds since the first time stamp. Numbers and stamps do not mix.
   std::optional<double> seconds_of_stamp(std::string_view text, std::size_t target) {
     const auto stamp = time_stamp(text);
-    if (!stamp || (rows_ > 0 && !first_stamp_)) return std::nullopt;
-    if (!first_stamp_) {
-      first_stamp_ = stamp;
+    if (!stamp || (rows_ > 0 && !clock_.has_begun())) return std::nullopt;
+    if (!clock_.has_begun()) {
       table_.labels[target].unit = "s";
       table_.labels[target].place = "time stamps";
     }
-    return 86400.0 * static_cast<double>(stamp->day - first_stamp_->day) +
-           (stamp->time_s - first_stamp_->time_s);
+    return clock_.seconds(*stamp);
   }
 
   InputError error(std::string_view line, long line_number, std::size_t byte,
@@ -448,6 +486,11 @@ class RowReader {
                               "second header line; expected numbers. Remove such a line; units "
                               "follow the names (\"x [mm]\") or are in the campaign file",
                               shown(field.text), shown(name)));
+    if (header_name(field.text).full == name)
+      throw error(line, line_number, field.begin,
+                  fmt::format("the header occurs again ('{}'): a second recording begins here; "
+                              "expected one in each file",
+                              shown(name)));
     if (field.text.empty())
       throw error(line, line_number, field.begin,
                   fmt::format("column '{}' is empty; expected a number", shown(name)));
@@ -463,6 +506,7 @@ class RowReader {
   void note_decimal_sign(std::string_view line, long line_number, const CsvField& field) {
     const bool has_comma = field.text.find(',') != std::string_view::npos;
     const bool has_point = field.text.find('.') != std::string_view::npos;
+    decimal_commas_ = decimal_commas_ || (has_comma && !may_have_thousands(field.text));
     if (has_comma && comma_line_ == 0) comma_line_ = line_number;
     if (has_point && point_line_ == 0) point_line_ = line_number;
     if ((!has_comma && !has_point) || comma_line_ == 0 || point_line_ == 0) return;
@@ -484,7 +528,7 @@ class RowReader {
     bool any = false;
     CsvFields fields(line, header_.separator);
     for (CsvField field; fields.next(field);) {
-      if (csv_number(field.text, header_.separator != ',')) return false;
+      if (number_in_field(field.text, header_.separator)) return false;
       any = any || !field.text.empty();
     }
     return any;
@@ -497,12 +541,14 @@ class RowReader {
   RecordTable table_;
   std::size_t rows_ = 0;
   long first_line_ = 0;  ///< line of the first row
-  std::optional<TimeStamp> first_stamp_;
-  long comma_line_ = 0;         ///< line of the first decimal comma; 0: none
-  long point_line_ = 0;         ///< line of the first decimal point; 0: none
-  long last_line_ = 0;          ///< line of the last number; 0: the last column is not wanted
-  std::size_t left_out_ = 0;    ///< number of rows that lack a number
-  std::string first_left_out_;  ///< the first of them, in words
+  StampClock clock_;
+  bool rows_end_empty_ = false;  ///< the first row has a separator behind its last column
+  long comma_line_ = 0;          ///< line of the first decimal comma; 0: none
+  bool decimal_commas_ = false;  ///< some comma cannot be between thousands
+  long point_line_ = 0;          ///< line of the first decimal point; 0: none
+  long last_line_ = 0;           ///< line of the last number; 0: the last column is not wanted
+  std::size_t left_out_ = 0;     ///< number of rows that lack a number
+  std::string first_left_out_;   ///< the first of them, in words
   std::size_t last_length_ = 0;
   std::size_t shortest_length_ = std::numeric_limits<std::size_t>::max();
 };
@@ -585,6 +631,7 @@ RecordTable load_csv_record(const std::filesystem::path& path, const RecordReque
                                : std::string("no rows after the header")) +
             "; expected at least one row of numbers");
   if (file.ends_without_newline()) reader.judge_end();
+  reader.judge_commas();
   RecordTable table = reader.take();
   if (header.time) insert_lvm_time(request, header, table);
   return table;

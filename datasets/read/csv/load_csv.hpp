@@ -16,14 +16,16 @@ std::vector<RecordColumn> csv_record_columns(const std::filesystem::path& path);
 /// that is not a comment ("#..."), or is found by find_layout(): below lines of text, with spaces
 /// as separators, or above a row of units. A unit may follow the name
 /// ("x [mm]", "x (mm)") and is not part of it. CRLF, a byte-order mark and a missing final newline
-/// are accepted, as is a decimal comma if the separator is ';' or tab. Anything else in a wanted
+/// are accepted, as is a decimal comma if the separator is ';' or tab, or if the number is between
+/// double quotes and not every such comma may be between thousands. Anything else in a wanted
 /// column that is not a finite number is an error. Other errors are a wrong number of columns, an
 /// empty field, a time that does not increase, and a binary file. Columns that are not wanted are
 /// counted but not converted. A requested name may include its unit, and must do so if only the
 /// unit distinguishes two columns. At most 12 million numbers are read (96 MB), from at most 4 GiB.
 ///
 /// A warning says why the file may have been cut off within its last number: it ends without a
-/// newline, and that number has fewer characters than all others in its column.
+/// newline, and that number has fewer characters than all others in its column. Another says which
+/// order of day and month was assumed where time stamps have two readings (StampClock).
 ///
 /// @throws InputError  if the file is not as described; the message gives file:line:column (the
 ///                     position of the field in characters, from 1), what was found and what was

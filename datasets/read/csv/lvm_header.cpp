@@ -33,7 +33,7 @@ std::optional<double> shared_number(const std::optional<LvmLine>& line, char sep
   std::optional<double> shared;
   for (std::size_t i = 1; i < line->fields.size(); ++i) {
     if (line->fields[i].empty()) continue;
-    const auto number = csv_number(line->fields[i], separator != ',');
+    const auto number = number_in_field(line->fields[i], separator);
     if (!number || (shared && *number != *shared)) return std::nullopt;
     shared = number;
   }

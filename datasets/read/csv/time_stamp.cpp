@@ -1,5 +1,8 @@
 #include "datasets/read/csv/time_stamp.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cctype>
 #include <chrono>
 #include <string>
 #include <system_error>
@@ -55,32 +58,62 @@ std::optional<long> day_number(int year, int month, int day) {
   return std::chrono::sys_days{date}.time_since_epoch().count();
 }
 
-/// Reads a date from the beginning of a text, and removes it: 2024-03-01, 2024/03/01, 1.3.2024 and
-/// 3/1/2024, month first unless that is no date. Only the differences of days matter.
-std::optional<long> taken_date(std::string_view& text) {
+/// Reads a year of four or two digits from the beginning of a text, and removes it.
+std::optional<int> taken_year(std::string_view& text) {
+  constexpr int kCentury = 2000;
+  if (const auto year = taken_number(text, 4)) return year;
+  const auto year = taken_number(text, 2);
+  return year ? std::optional(kCentury + *year) : std::nullopt;
+}
+
+/// Reads the name of a month from the beginning of a text, and removes it: "Mar".
+std::optional<int> taken_month_name(std::string_view& text) {
+  constexpr std::array<std::string_view, 12> kMonths{"jan", "feb", "mar", "apr", "may", "jun",
+                                                     "jul", "aug", "sep", "oct", "nov", "dec"};
+  std::string name(text.substr(0, 3));
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const auto found = std::find(kMonths.begin(), kMonths.end(), name);
+  if (found == kMonths.end()) return std::nullopt;
+  text.remove_prefix(name.size());
+  return static_cast<int>(found - kMonths.begin()) + 1;
+}
+
+/// Both readings of a date. Only the differences of days matter.
+struct Date {
+  std::optional<long> day_first;
+  std::optional<long> month_first;
+};
+
+/// Reads a date from the beginning of a text, and removes it: 2024-03-01, 2024/03/01, 1.3.2024,
+/// 3/1/2024, 01-03-24 and 01-Mar-2024.
+std::optional<Date> taken_date(std::string_view& text) {
+  constexpr std::string_view kSigns = "-/.";
   std::string_view rest = text;
-  if (const auto year = taken_number(rest, 4)) {
-    if (!take_sign(rest, "-/")) return std::nullopt;
+  Date date;
+  if (const auto leading = taken_number(rest, 4)) {
+    const std::string_view sign = rest.substr(0, 1);
+    if (!take_sign(rest, kSigns)) return std::nullopt;
     const auto month = taken_number(rest, 2);
-    if (!month || !take_sign(rest, "-/")) return std::nullopt;
+    if (!month || !take_sign(rest, sign)) return std::nullopt;
     const auto day = taken_number(rest, 2);
     if (!day) return std::nullopt;
-    text = rest;
-    return day_number(*year, *month, *day);
+    date.day_first = date.month_first = day_number(*leading, *month, *day);
+  } else {
+    const auto first = taken_short_number(rest);
+    const std::string_view sign = rest.substr(0, 1);
+    if (!first || !take_sign(rest, kSigns)) return std::nullopt;
+    const auto name = taken_month_name(rest);
+    const auto second = name ? name : taken_short_number(rest);
+    if (!second || !take_sign(rest, sign)) return std::nullopt;
+    const auto year = taken_year(rest);
+    if (!year) return std::nullopt;
+    date.day_first = day_number(*year, *second, *first);
+    date.month_first = name ? date.day_first : day_number(*year, *first, *second);
   }
-  const auto first = taken_short_number(rest);
-  if (!first || rest.empty() || (rest.front() != '.' && rest.front() != '/')) return std::nullopt;
-  const std::string_view sign = rest.substr(0, 1);
-  take_sign(rest, sign);
-  const auto second = taken_short_number(rest);
-  if (!second || !take_sign(rest, sign)) return std::nullopt;
-  const auto year = taken_number(rest, 4);
-  if (!year) return std::nullopt;
+  if (!date.day_first && !date.month_first) return std::nullopt;
   text = rest;
-  const auto day_first = day_number(*year, *second, *first);
-  if (sign == ".") return day_first;
-  const auto month_first = day_number(*year, *first, *second);
-  return month_first ? month_first : day_first;
+  return date;
 }
 
 /// Takes "AM" or "PM" off the end of a text. Returns the hours that it adds to midnight or noon;
@@ -118,9 +151,12 @@ std::optional<TimeStamp> time_stamp(std::string_view text) {
   text = between_quotes(text);
   TimeStamp stamp;
   std::string_view rest = text;
-  if (const auto day = taken_date(rest)) {
+  stamp.day_first = stamp.month_first = 0;
+  if (const auto date = taken_date(rest)) {
     if (!take_sign(rest, "T ")) return std::nullopt;
-    stamp.day = *day;
+    stamp.day_first = date->day_first;
+    stamp.month_first = date->month_first;
+    stamp.has_date = true;
     text = rest;
   }
   const auto half_day = taken_half_day(text);

@@ -157,12 +157,27 @@ TEST_CASE("guess_column: what no channel records", "[datasets]") {
     const char* name;
     std::string_view other;
   };
-  for (const Case& each :
-       {Case{"v_mm_s", "a velocity"}, Case{"v_mm/s", "a velocity"},
-        Case{"Geschwindigkeit_mm/s", "a velocity"}, Case{"Durchfluss_l/min", "a flow"},
-        Case{"n_rpm", ""}, Case{"y_%", ""}, Case{"err_mm", "a control error"},
-        Case{"valve_position_mm", "the position of a spool"}, Case{"supply voltage [V]", ""},
-        Case{"start", ""}, Case{"offset", ""}, Case{"Untitled 1", ""}}) {
+  for (const Case& each : {Case{"v_mm_s", "a velocity"},
+                           Case{"v_mm/s", "a velocity"},
+                           Case{"Geschwindigkeit_mm/s", "a velocity"},
+                           Case{"Durchfluss_l/min", "a flow"},
+                           Case{"n_rpm", ""},
+                           Case{"y_%", ""},
+                           Case{"err_mm", "a control error"},
+                           Case{"valve_position_mm", "the position of a spool"},
+                           Case{"supply voltage [V]", ""},
+                           Case{"start", ""},
+                           Case{"offset", ""},
+                           Case{"Untitled 1", ""},
+                           Case{"Spool Feedback (V)", "the position of a spool"},
+                           Case{"Istwert Ventil [V]", "the position of a spool"},
+                           Case{"Schieber_Ist_%", "the position of a spool"},
+                           Case{"PosDiff", "a control error"},
+                           Case{"Schleppfehler [mm]", "a control error"},
+                           Case{"ActVelo", "a velocity"},
+                           Case{"n_Pumpe_1_min", "a speed of rotation"},
+                           Case{"D\u00e9bit [l/min]", "a flow"},
+                           Case{"Cycle pressure time [ms]", ""}}) {
     CAPTURE(each.name);
     const ColumnGuess guess = guess_column(each.name);
     CHECK_FALSE(guess.is_time);
@@ -189,6 +204,80 @@ TEST_CASE("guess_column: a unit that the file gives decides like one in the name
   CHECK(guess_column("x", "bar").channel == std::nullopt);
   CHECK(guess_column("p", "PSI").unit == "psi");
   CHECK(guess_column("x", "counts").unit == "counts");
+}
+
+TEST_CASE("guess_column: names of other languages and of controllers", "[datasets]") {
+  struct Case {
+    const char* name;
+    Channel channel;
+  };
+  for (const Case& each : {Case{"Consigne position [mm]", Channel::reference},
+                           Case{"Consigna [mm]", Channel::reference},
+                           Case{"Riferimento posizione [mm]", Channel::reference},
+                           Case{"D\u00e9placement [mm]", Channel::position},
+                           Case{"Course v\u00e9rin (mm)", Channel::position},
+                           Case{"POSICI\u00d3N (mm)", Channel::position},
+                           Case{"Posizione attuale [mm]", Channel::position},
+                           Case{"Fuerza (kN)", Channel::force},
+                           Case{"Effort [kN]", Channel::force},
+                           Case{"Pression chambre A (bar)", Channel::pressure_a},
+                           Case{"Presi\u00f3n A (bar)", Channel::pressure_a},
+                           Case{"Pressione B [bar]", Channel::pressure_b},
+                           Case{"Pression alimentation [bar]", Channel::supply_pressure},
+                           Case{"Pressione scarico [bar]", Channel::tank_pressure},
+                           Case{"Commande vanne (V)", Channel::command},
+                           Case{"Corrente valvola [mA]", Channel::command},
+                           Case{"Corriente v\u00e1lvula (mA)", Channel::command},
+                           Case{"I_Spule_A", Channel::command},
+                           Case{"Ventilansteuerung [%]", Channel::command},
+                           Case{"Schieber_Soll_%", Channel::command},
+                           Case{"Temperatura olio (\u00b0C)", Channel::temperature},
+                           Case{"\u00d6ltemp. [\u00b0C]", Channel::temperature},
+                           Case{"temp_grad", Channel::temperature},
+                           Case{"Pos. Soll [mm]", Channel::reference},
+                           Case{"Pos. Ist", Channel::position},
+                           Case{"GVL.rPressureA", Channel::pressure_a},
+                           Case{"MAIN.fValveOut", Channel::command},
+                           Case{"rActPosition", Channel::position},
+                           Case{"lrPosition", Channel::position},
+                           Case{"fPosSoll", Channel::reference},
+                           Case{"fSoll_N", Channel::force_reference},
+                           Case{"xSoll", Channel::reference},
+                           Case{"CylPressA_bar", Channel::pressure_a},
+                           Case{"RodEndPressure", Channel::pressure_b},
+                           Case{"BoomPressHead", Channel::pressure_a},
+                           Case{"\"Model Root\"/\"Position\"/\"Out1\"", Channel::position},
+                           Case{"A-Druck [bar]", Channel::pressure_a},
+                           Case{"P-Druck [bar]", Channel::supply_pressure},
+                           Case{"p_Sys_bar", Channel::supply_pressure},
+                           Case{"Prs_A", Channel::pressure_a},
+                           Case{"ax [g]", Channel::acceleration},
+                           Case{"AccX_g", Channel::acceleration},
+                           Case{"F_N_m", Channel::force}}) {
+    CAPTURE(each.name);
+    CHECK(guess_column(each.name).channel == each.channel);
+  }
+  CHECK(guess_column("temp_grad").unit == "degC");
+  CHECK(guess_column("F_N_m").unit == "N");
+  for (const char* name : {"Tiempo (s)", "Tempo [s]", "RecTime", "timestamps", "Zeit rel. [s]"}) {
+    CAPTURE(name);
+    CHECK(guess_column(name).is_time);
+  }
+}
+
+TEST_CASE("guess_column: a load from outside, and a force between parts of the rig", "[datasets]") {
+  for (const char* name : {"F_ext_kN", "External Force (kN)", "F_load_N", "Lastkraft_kN", "M_ext",
+                           "M_ext_Nm", "St\u00f6rkraft_kN", "Gegenkraft [N]", "Lastmoment_Nm"}) {
+    CAPTURE(name);
+    const ColumnGuess guess = guess_column(name);
+    CHECK(guess.is_external_load);
+    CHECK((guess.channel == Channel::force || guess.channel == Channel::torque));
+  }
+  for (const char* name : {"Load (kN)", "load cell [kN]", "Axial Force (kN)", "F_kN", "Istkraft",
+                           "F_load_ist_N", "M_Nm", "p_ext_bar", "m_load"}) {
+    CAPTURE(name);
+    CHECK_FALSE(guess_column(name).is_external_load);
+  }
 }
 
 TEST_CASE("guess_by_unit: where the name tells nothing", "[datasets]") {

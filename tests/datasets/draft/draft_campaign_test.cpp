@@ -243,8 +243,58 @@ TEST_CASE("draft_campaign: a joint may have a torque, and a slide has none", "[d
   text.replace(text.find("angle_deg"), 9, "x_mm");
   draft = draft_campaign({folder.write("s.csv", text)}, folder.path()).text;
   CHECK_THAT(draft,
-             Contains("# 'torque_Nm' looks like a torque, but no column looks like an angle") &&
+             Contains("# 'torque_Nm' looks like torque, but no column looks like an angle") &&
                  !Contains("\ntorque = "));
+}
+
+TEST_CASE("draft_campaign: a load from outside is an input, in the direction of the rig's motion",
+          "[datasets]") {
+  const TemporaryFolder folder;
+  std::string text = "t_s,u_V,x_mm,F_ext_kN\n";
+  for (int i = 0; i < 200; ++i)
+    text += fmt::format("{},{},{},{}\n", 0.01 * i, i > 50 ? 4 : 0, 0.1 * i, 20.0 + 0.3 * (i % 7));
+  std::string draft = draft_campaign({folder.write("s.csv", text)}, folder.path()).text;
+  CHECK_THAT(draft,
+             Contains("\nforce = { column = \"F_ext_kN\", unit = \"kN\", role = \"input\" }  # "));
+  std::string cell = text;
+  cell.replace(cell.find("F_ext_kN"), 8, "F_ist_kN");
+  draft = draft_campaign({folder.write("c.csv", cell)}, folder.path()).text;
+  CHECK_THAT(draft, Contains("\nforce = { column = \"F_ist_kN\", unit = \"kN\" }  # ") &&
+                        Contains("role = \"input\" if it is a load"));
+  // The loop has this force as its own.
+  cell.replace(cell.find("F_ist_kN"), 8, "F_ext_kN");
+  cell.replace(cell.find("u_V"), 3, "F_soll_kN");
+  draft = draft_campaign({folder.write("l.csv", cell)}, folder.path()).text;
+  CHECK_THAT(draft,
+             Contains("\nforce = { column = \"F_ext_kN\"") && !Contains("role = \"input\" }"));
+  // A joint has a moment, and no channel of a slide.
+  text.replace(text.find("x_mm,F_ext_kN"), 13, "angle_deg,M_ext_Nm");
+  draft = draft_campaign({folder.write("j.csv", text)}, folder.path()).text;
+  CHECK_THAT(
+      draft,
+      Contains("\ntorque = { column = \"M_ext_Nm\", unit = \"N m\", role = \"input\" }  # "));
+  text.replace(text.find("M_ext_Nm"), 8, "F_ext_kN");
+  draft = draft_campaign({folder.write("f.csv", text)}, folder.path()).text;
+  CHECK_THAT(draft, Contains("# 'F_ext_kN' looks like force, but the rig turns an arm") &&
+                        !Contains("\nforce = "));
+}
+
+TEST_CASE("draft_campaign: a square wave of a simulation program is a generated one",
+          "[datasets]") {
+  const TemporaryFolder folder;
+  std::string text = "t_s,ref_m,x_m\n";
+  for (int i = 0; i < 3001; ++i) {
+    const bool late = i == 300 || i == 1100;  // an edge on which the solver has the old value
+    const int half = (late ? i - 1 : i) / 50;
+    text += fmt::format("{:.3f},{},{}\n", 0.001 * i,
+                        i == 0          ? 0.0
+                        : half % 2 == 0 ? 0.002
+                                        : -0.002,
+                        1e-5 * (i % 11));
+  }
+  const std::string draft = draft_campaign({folder.write("h.csv", text)}, folder.path()).text;
+  CHECK_THAT(draft, Contains("\nwaveform = \"square\"\n") && Contains("frequency = \"10 Hz\"") &&
+                        Contains("amplitude = \"0.002 m\""));
 }
 
 TEST_CASE("draft_campaign: both pressures and a position suggest a load by a table", "[datasets]") {

@@ -67,8 +67,33 @@ TEST_CASE("recognised_drive: a square wave, to its edges", "[datasets]") {
     CHECK(farthest(square, found->signal) == 0.0);
   }
   Sampled late = sampled(Signal::square(0.004, 10.0));
-  late.drive[50] = late.drive[49];  // one edge is a sample late
+  late.drive[51] = late.drive[50] = late.drive[49];  // one edge is later than its instant
   CHECK_FALSE(recognised(late));
+}
+
+TEST_CASE("recognised_drive: a sample at the instant of an edge has either level", "[datasets]") {
+  // Hopsan writes 0 at t = 0, and at an edge what its solver has there.
+  const Sampled exact = sampled(Signal::square(0.004, 10.0));
+  Sampled hopsan = exact;
+  hopsan.drive[0] = 0.0;
+  for (const std::size_t edge : {50U, 300U, 350U}) hopsan.drive[edge] = hopsan.drive[edge - 1];
+  hopsan.drive[1000] = 0.0;
+  const auto found = recognised(hopsan);
+  REQUIRE(found);
+  CHECK(found->signal.period_s() == 1.0 / 10.0);
+  CHECK(found->farthest == 0.0);
+
+  Sampled away = hopsan;
+  away.drive[75] = 0.0;  // not at an edge
+  CHECK_FALSE(recognised(away));
+  Sampled beyond = hopsan;
+  beyond.drive[50] = 0.0041;
+  CHECK_FALSE(recognised(beyond));
+  // All edges are a sample late: the drive was, or its recording.
+  Sampled all = exact;
+  for (std::size_t edge = 50; edge < all.drive.size(); edge += 50)
+    all.drive[edge] = exact.drive[edge - 1];
+  CHECK_FALSE(recognised(all));
 }
 
 TEST_CASE("recognised_drive: chirps, linear and logarithmic", "[datasets]") {
