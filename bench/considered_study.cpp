@@ -171,10 +171,7 @@ const std::vector<ForeignEffect> kOthers{
      [](ForeignRig& r, double s) { r.reference_step_m = s; }},
     {"a start off the middle", 0.0001, false, [](ForeignRig& r, double s) { r.start_m = s; }},
     {"a controller that sees the sensor's gain", 0.002, false,
-     [](ForeignRig& r, double s) {
-       r.sensor_in_loop = true;
-       r.sensor_gain = s;
-     }},
+     [](ForeignRig& r, double s) { r.loop_gain = s; }},
     {"a controller that sees the sensor's bow", 0.000152, false,
      [](ForeignRig& r, double s) {
        r.sensor_in_loop = true;
@@ -190,6 +187,9 @@ const std::vector<ForeignEffect> kOthers{
        r.sensor_in_loop = true;
        r.sensor_hysteresis_m = s;
      }},
+    {"a record that begins early", 0.0003, true, [](ForeignRig& r, double s) { r.delay_s = -s; }},
+    {"a supply line that resonates", 0.02, true, [](ForeignRig& r, double s) { r.line_drop = s; }},
+    {"samples that are off", 0.001, true, [](ForeignRig& r, double s) { r.spike_m = s; }},
     {"a delay of one record", 0.0003, true, [](ForeignRig& r, double s) { r.delay_s = s; }, true},
     {"a supply lower in one record", 0.01, false,
      [](ForeignRig& r, double s) { r.supply_pa *= 1.0 - s; }, true},
@@ -364,8 +364,11 @@ datasets::Campaign campaign_of(const Bench& bench,
 
 datasets::Record record_of(const datasets::Campaign& campaign, const datasets::Condition& condition,
                            const std::vector<double>& readings, int repeats,
-                           boost::random::mt19937_64& stream, double quantum_m) {
+                           boost::random::mt19937_64& stream, const ForeignRig& rig) {
+  constexpr double kSpikes = 0.005;  // fraction of the samples
   boost::random::normal_distribution<double> normal(0.0, kNoise_m);
+  boost::random::uniform_real_distribution<double> even(0.0, 1.0);
+  const double quantum_m = rig.quantum_m;
   std::vector<datasets::Repeat> all;
   for (int r = 0; r < repeats; ++r) {
     datasets::Repeat& repeat = all.emplace_back();
@@ -373,7 +376,9 @@ datasets::Record record_of(const datasets::Campaign& campaign, const datasets::C
     std::vector<double>& x = repeat.values[Channel::position];
     for (std::size_t k = 0; k < readings.size(); ++k) {
       repeat.time_s.push_back(static_cast<double>(k) / 1000.0);
-      const double reading = readings[k] + normal(stream);
+      double reading = readings[k] + normal(stream);
+      if (rig.spike_m > 0.0 && even(stream) < kSpikes)
+        reading += even(stream) < 0.5 ? rig.spike_m : -rig.spike_m;
       x.push_back(quantum_m > 0.0 ? quantum_m * std::round(reading / quantum_m) : reading);
     }
   }
@@ -398,6 +403,7 @@ Motion motion_of(const ForeignRig& rig, const Reference& reference) {
   Motion motion;
   motion.readings = foreign_readings(rig, reference);
   motion.position = same ? motion.readings : foreign_readings(ideal, reference);
+  for (double& each : motion.position) each /= 1.0 + rig.loop_gain;
   return motion;
 }
 
@@ -420,12 +426,11 @@ std::vector<Motion> motions_of_all(const Bench& bench) {
 
 std::vector<datasets::Record> records_of(const datasets::Campaign& campaign,
                                          const std::vector<Motion>& motions, int repeats,
-                                         boost::random::mt19937_64& stream,
-                                         double quantum_m = 0.0) {
+                                         boost::random::mt19937_64& stream, const ForeignRig& rig) {
   std::vector<datasets::Record> records;
   for (std::size_t c = 0; c < campaign.conditions.size(); ++c)
-    records.push_back(record_of(campaign, campaign.conditions[c], motions[c].readings, repeats,
-                                stream, quantum_m));
+    records.push_back(
+        record_of(campaign, campaign.conditions[c], motions[c].readings, repeats, stream, rig));
   return records;
 }
 
@@ -441,8 +446,8 @@ const std::map<std::string, double>& detectable_sizes(int repeats) {
     boost::random::mt19937_64 stream(kFreshSeed);
     const Bench bench;
     const datasets::Campaign campaign = campaign_of(bench);
-    const auto fit =
-        calib::fit(campaign, records_of(campaign, motions_of_all(bench), repeats, stream), {});
+    const auto fit = calib::fit(
+        campaign, records_of(campaign, motions_of_all(bench), repeats, stream, bench.rig), {});
     std::map<std::string, double> sizes;
     for (const calib::ConsideredEffect& each : fit.considered.value().effects)
       if (each.alone_error) sizes[each.key] = kFound * *each.alone_error;
@@ -461,13 +466,14 @@ double cost_of(const Bench& bench, const ForeignRig& first, int repeats) {
   campaign.considered.none = true;
   campaign.channels.at(Channel::position).sd = kNoise_m;
   const auto records = records_of(campaign, motions_of_all(bench, first, bench.rig, bench.rig),
-                                  repeats, stream, bench.rig.quantum_m);
+                                  repeats, stream, bench.rig);
   return calib::fit(campaign, records, {}).cost;
 }
 
 /// Returns the detectable size of an effect that is not in the catalogue: the size at which it
 /// leaves as much in the residuals as a detectable one. It is scaled from the given size, because
-/// the sum of squares that an effect leaves grows with the square of its size.
+/// the sum of squares that an effect leaves grows with the square of its size. An effect that
+/// leaves less than one residual's variance is absorbed by the estimates and has no such size.
 double detectable_size(const ForeignEffect& effect, int repeats) {
   static const double none = cost_of({}, {}, repeats);
   Bench bench;
@@ -475,7 +481,7 @@ double detectable_size(const ForeignEffect& effect, int repeats) {
   effect.apply(first, effect.plausible);
   if (!effect.first_only) bench.rig = first;
   const double left = 2.0 * (cost_of(bench, first, repeats) - none);
-  return effect.plausible * kFound / std::sqrt(std::max(left, 1.0));
+  return left < 1.0 ? HUGE_VAL : effect.plausible * kFound / std::sqrt(left);
 }
 
 std::string name_of(const SizedRow& row) {
@@ -774,7 +780,7 @@ void study_row(const Row& row, const StudyExtent& extent, OutcomeFile& file) {
     const datasets::Campaign campaign = campaign_of(bench, row.days);
     const std::vector<Motion> motions =
         row.drawn ? motions_of_all(bench, first, fitted, validated) : same_motions;
-    const auto records = records_of(campaign, motions, repeats, stream, bench.rig.quantum_m);
+    const auto records = records_of(campaign, motions, repeats, stream, bench.rig);
     outcomes[k] = outcome_of(row, bench.rig, motions, calib::fit(campaign, records, {}));
     file.add(key, outcomes[k]);
   });

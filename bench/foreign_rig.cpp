@@ -13,8 +13,9 @@ constexpr int kStepsPerSample = 100;
 
 /// Position, velocity, load pressure, filtered error, integral, spool signal, rate of the spool
 /// signal, lagged reference, position and velocity of a loose mass, deflection of a sensor bracket
-/// and its rate, and pressure that an accumulator has lost [fraction of the supply].
-using ForeignState = std::array<double, 13>;
+/// and its rate, pressure that an accumulator has lost [fraction of the supply], and pressure that
+/// the end of a supply line has lost [the same] and its rate.
+using ForeignState = std::array<double, 15>;
 
 /// The part of the state that changes only between steps.
 struct Memory {
@@ -27,6 +28,9 @@ struct Memory {
 /// Resonance of a loose mass and of a sensor bracket, and their damping ratio.
 constexpr double kLoose_rad_per_s = 2.0 * std::numbers::pi * 80.0;
 constexpr double kLooseDamping = 0.05;
+/// Resonance of a supply line, and its damping ratio.
+constexpr double kLine_rad_per_s = 2.0 * std::numbers::pi * 30.0;
+constexpr double kLineDamping = 0.1;
 constexpr double kHum_rad_per_s = 2.0 * std::numbers::pi * 50.0;
 /// Times in which an accumulator recovers, and in which the friction of a cold seal fades.
 constexpr double kRecovery_s = 0.5;
@@ -67,7 +71,7 @@ double limited(const ForeignRig& rig, double volts) {
 /// Returns the reading of a sensor with gain, offset and nonlinearity.
 double bent(const ForeignRig& rig, double position) {
   const double turn = position * rig.area_m2 / rig.volume_m3;
-  return position * (1.0 + rig.sensor_gain) + rig.sensor_offset_m +
+  return position * (1.0 + rig.sensor_gain) * (1.0 + rig.loop_gain) + rig.sensor_offset_m +
          rig.sensor_bow_m * 4.0 * turn * turn +
          rig.sensor_wave_m * std::sin(2.0 * std::numbers::pi * turn);
 }
@@ -78,7 +82,8 @@ double with_sensor_play(const ForeignRig& rig, double read, double reading) {
 
 /// Returns the position that the controller sees.
 double seen_position(const ForeignRig& rig, double position, double read) {
-  return rig.sensor_in_loop ? with_sensor_play(rig, read, bent(rig, position)) : position;
+  return rig.sensor_in_loop ? with_sensor_play(rig, read, bent(rig, position))
+                            : (1.0 + rig.loop_gain) * position;
 }
 
 /// Returns the reference that the controller receives.
@@ -162,7 +167,7 @@ ForeignState slope(const ForeignRig& rig, const ForeignState& s, const Memory& m
   const double source = rig.supply_pa * (1.0 - rig.supply_drift * elapsed) *
                             (1.0 - (elapsed > 0.5 ? rig.supply_step : 0.0)) *
                             (1.0 + rig.supply_ripple * std::sin(kHum_rad_per_s * t)) *
-                            (1.0 - s[12]) -
+                            (1.0 - s[12]) * (1.0 - s[13]) -
                         rig.return_pa;
   const double full = valve_flow(rig, rig.limit_v, 0.0, source);
   double supply = source;
@@ -197,6 +202,9 @@ ForeignState slope(const ForeignRig& rig, const ForeignState& s, const Memory& m
     d[11] = ringing(s[10], s[11]) - rig.bracket * d[1];
   }
   d[12] = (rig.accumulator * std::abs(flow) / full - s[12]) / kRecovery_s;
+  d[13] = s[14];
+  d[14] = kLine_rad_per_s * (kLine_rad_per_s * (rig.line_drop * std::abs(flow) / full - s[13]) -
+                             2.0 * kLineDamping * s[14]);
   if (!ticks) {
     d[3] = filter_of(rig) * (error - s[3]);
     d[4] = rig.integral_v_per_m_s * error +

@@ -27,6 +27,7 @@ struct ForeignRig {
   double hose_volume_m3 = 0.0,
          sag = 0.0;  ///< sag: fraction of the supply pressure lost at full flow
   double sensor_lag_s = 0.0, sensor_gain = 0.0, sensor_offset_m = 0.0;  ///< gain: relative error
+  double loop_gain = 0.0;  ///< relative error of the sensor's gain; the controller sees it, too
   double sensor_bow_m = 0.0, sensor_wave_m = 0.0, sensor_hysteresis_m = 0.0;
   double valve_play_v = 0.0;  ///< half-width; the spool moves only after the play has been taken up
   /// Friction at rest in addition to Coulomb friction; decays over 10 mm/s.
@@ -43,18 +44,22 @@ struct ForeignRig {
   double supply_drift = 0.0;          ///< relative decrease in the supply pressure over a record
   double volume_bow = 0.0;            ///< relative decrease in the oil volume towards either end
   double reference_lag_s = 0.0;       ///< lag of a filter in front of the controller
+  double spike_m = 0.0;               ///< error of one sample in two hundred, of either sign
   double quantum_m = 0.0;  ///< resolution of the converter; the noise includes its quantisation
 
   double area_error = 0.0;  ///< true over stated piston area, minus 1
   double return_pa = 0.0;   ///< pressure in the return line
   double back_pressure =
       0.0;  ///< fraction of the supply lost at full flow; rises with the flow squared
-  double oil_stiffening = 0.0;     ///< relative rise of the bulk modulus at supply pressure
-  double valve_curve = 0.0;        ///< relative rise of the valve's gain at full command
-  double underlap_v = 0.0;         ///< half-width of the range in which the valve's gain is double
-  double slew_v_per_s = 0.0;       ///< largest rate of the spool signal; 0: none
-  double supply_ripple = 0.0;      ///< relative amplitude of 50 Hz in the supply pressure
-  double accumulator = 0.0;        ///< fraction of the supply lost in 0.5 s of full flow; recovers
+  double oil_stiffening = 0.0;  ///< relative rise of the bulk modulus at supply pressure
+  double valve_curve = 0.0;     ///< relative rise of the valve's gain at full command
+  double underlap_v = 0.0;      ///< half-width of the range in which the valve's gain is double
+  double slew_v_per_s = 0.0;    ///< largest rate of the spool signal; 0: none
+  double supply_ripple = 0.0;   ///< relative amplitude of 50 Hz in the supply pressure
+  double accumulator = 0.0;     ///< fraction of the supply lost in 0.5 s of full flow; recovers
+  /// Fraction of the supply that a steady full flow takes from the end of a supply line, which
+  /// resonates at 30 Hz.
+  double line_drop = 0.0;
   double supply_step = 0.0;        ///< relative drop of the supply midway through a record
   double leak_drift = 0.0;         ///< relative rise of the leak over a record
   double leak_by_travel = 0.0;     ///< relative change of the leak towards either end

@@ -84,8 +84,10 @@ void note_exact_values(const Campaign& campaign, const Fit& fit, std::vector<Rea
   if (names.empty()) return;
   reasons.push_back(
       reason(AspectState::note, "exact_values",
-             fmt::format("conditional on {} known value{} taken as exact: {}", names.size(),
-                         names.size() == 1 ? "" : "s", fmt::join(names, ", ")),
+             fmt::format("conditional on {} known value{} taken as exact: {}; an error in one can "
+                         "shift estimates by a similar fraction unseen, and prior_sd states how "
+                         "large it may be",
+                         names.size(), names.size() == 1 ? "" : "s", fmt::join(names, ", ")),
              {}, {{"values", static_cast<double>(names.size())}}));
 }
 
