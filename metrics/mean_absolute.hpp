@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 namespace rigcal::metrics {
 
@@ -15,8 +16,14 @@ namespace rigcal::metrics {
 /// @throws std::domain_error      if the mean exceeds the largest double
 double mean_absolute(std::span<const double> time_s, std::span<const double> signal);
 
-/// Derivative of mean_absolute() with respect to a parameter of the signal. Exact for the
-/// interpolated signal, including its changes of sign.
+/// Derivative of mean_absolute() with respect to each sample, shape (n). Exact for the interpolated
+/// signal, including its changes of sign.
+///
+/// @throws std::invalid_argument, std::domain_error  under the conditions of mean_absolute()
+std::vector<double> mean_absolute_weights(std::span<const double> time_s,
+                                          std::span<const double> signal);
+
+/// Derivative of mean_absolute() with respect to a parameter of the signal.
 ///
 /// @param slope  shape (n): derivative of the signal with respect to the parameter
 /// @throws std::invalid_argument, std::domain_error  under the conditions of mean_absolute()

@@ -37,9 +37,11 @@ Candidate simulate_leak(const calib::Problem& problem, const calib::ProblemCondi
   std::vector<model::Output> outputs = condition.outputs;
   outputs.push_back(model::Output::servo_flow);
   outputs.push_back(model::Output::leakage_flow);
-  const auto run =
-      model::simulate(condition.rig, values, {}, condition.inputs, condition.record->time_s,
-                      outputs, problem.simulation_options(cancel));
+  // As coarse as the search, which starts from the best coefficient.
+  model::SimulationOptions options = problem.simulation_options(cancel);
+  options.tolerance = problem.coarse_tolerance();
+  const auto run = model::simulate(condition.rig, values, {}, condition.inputs,
+                                   condition.record->time_s, outputs, options);
   if (!run.ok()) {
     throw NoResultError(
         fmt::format("condition \"{}\" could not be simulated with {} = {:g}: {} at {:g} s",

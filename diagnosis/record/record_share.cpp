@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <span>
+#include <vector>
 
 #include "common/error.hpp"
 #include "datasets/campaign/campaign.hpp"
@@ -57,10 +59,12 @@ SteadyLeak leak_in_record(const calib::ProblemCondition& condition, const model:
     Eigen::VectorXd result;
     if (run.sensitivities.empty()) return result;
     const auto& matrix = run.sensitivities[static_cast<std::size_t>(column)];
+    const std::vector<double> weights =
+        metrics::mean_absolute_weights(times, counted(run.outputs, column, part));
     result.resize(matrix.cols());
     for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
-      result(j) = metrics::mean_absolute_slope(times, counted(run.outputs, column, part),
-                                               counted(matrix, j, part));
+      const auto slopes = counted(matrix, j, part);
+      result(j) = std::inner_product(weights.begin(), weights.end(), slopes.begin(), 0.0);
     }
     return result;
   };

@@ -3,12 +3,14 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <stdexcept>
 #include <vector>
 
 using Catch::WithinRel;
 using rigcal::metrics::mean_absolute;
 using rigcal::metrics::mean_absolute_slope;
+using rigcal::metrics::mean_absolute_weights;
 
 namespace {
 
@@ -69,6 +71,10 @@ TEST_CASE("mean_absolute_slope: against central differences, through sign change
   const double difference = (mean_absolute(t, ahead) - mean_absolute(t, behind)) / (2.0 * h);
   // Rounding limits the difference to 1e-16 / 1e-6.
   CHECK_THAT(mean_absolute_slope(t, y, direction), WithinRel(difference, 1e-8));
+  const auto weights = mean_absolute_weights(t, y);
+  CHECK_THAT(std::inner_product(weights.begin(), weights.end(), direction.begin(), 0.0),
+             WithinRel(difference, 1e-8));
+  CHECK_THROWS_AS(mean_absolute_weights(t, std::vector{1.0}), std::invalid_argument);
   // Scaling a signal scales its mean.
   CHECK_THAT(mean_absolute_slope(t, y, y), WithinRel(mean_absolute(t, y), 1e-13));
   CHECK_THROWS_AS(mean_absolute_slope(t, y, std::vector{1.0}), std::invalid_argument);

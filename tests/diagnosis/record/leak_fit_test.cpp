@@ -141,9 +141,17 @@ TEST_CASE("fit_leak: the simulation without a leak serves all records that have 
   for (const datasets::Record& single : records.singles) {
     const diagnosis::LeakFit alone = fit(single, nullptr);
     const diagnosis::LeakFit shared = fit(single, &runs);
-    CHECK(shared.coefficient == alone.coefficient);
+    CHECK_THAT(shared.coefficient, WithinAbs(alone.coefficient, 0.03 * alone.white_se));
+    CHECK_THAT(shared.white_se, WithinRel(alone.white_se, 0.01));
+    CHECK_THAT(shared.rig_se, WithinRel(alone.rig_se, 0.01));
     CHECK_THAT(shared.parity_rms_m, WithinRel(alone.parity_rms_m, 1e-5));
   }
+  // The runs of a record with another leak are no worse a start.
+  std::optional<diagnosis::LeakRuns> far;
+  fit(healthy_sine(0.25).record, &far);
+  const diagnosis::LeakFit from_far = fit(records.average, &far);
+  const diagnosis::LeakFit average = fit(records.average, nullptr);
+  CHECK_THAT(from_far.coefficient, WithinAbs(average.coefficient, 0.03 * average.white_se));
   // Modified outputs reveal a reused run. It must not be reused for another drive, state, time or
   // value.
   const datasets::Record& single = records.singles.front();
