@@ -155,7 +155,7 @@ void judge_missing(const Fit& fit, std::vector<Reason>& reasons) {
   std::vector<std::string> moved;
   for (const FittedParameter& each : fit.parameters) {
     if (each.fitted && !each.nuisance && each.moved_by_missing > half_width_if_exact(each))
-      moved.push_back(parameter_label(each.name, each.scope, each.level));
+      moved.push_back(parameter_label(each.key, each.scope, each.level));
   }
   for (const std::string& key : fit.considered->missing) {
     const ConsideredEffect& effect = *fit.considered->find(key);
@@ -192,8 +192,8 @@ void judge_stability(const Campaign& campaign, const Fit& fit, std::vector<Reaso
     const int row = model::parameter_index(campaign.rig.plant, each.key);
     const auto& spec = table[static_cast<std::size_t>(row)];
     words.push_back(fmt::format("{} {:.4g} {} ({:+.2g}, {:.2g} allowed)",
-                                parameter_label(std::string(spec.name), each.scope, each.level),
-                                each.value, spec.unit, each.difference, each.expanded));
+                                parameter_label(each.key, each.scope, each.level), each.value,
+                                spec.unit, each.difference, each.expanded));
   }
   const std::vector<std::pair<std::string, double>> numbers{
       {"differ", static_cast<double>(words.size())},
@@ -227,7 +227,8 @@ void judge_unexplained(const FittedParameter& estimate, std::vector<Reason>& rea
       AspectState::reservation, "unexplained_error",
       fmt::format("{}: the model error visible in the residuals, which no small effect explains, "
                   "could shift it by up to {} times the half width of its interval",
-                  name, significant(times, 2)),
+                  parameter_label(estimate.key, estimate.scope, estimate.level),
+                  significant(times, 2)),
       name, {{"times_half_width", times}}));
 }
 
@@ -249,7 +250,7 @@ void note_unseen(const Fit& fit, std::vector<Reason>& reasons) {
       AspectState::note, "unseen_error",
       fmt::format("a model error too small to be seen in the residuals could shift {} by up to {} "
                   "times the half width of its interval, if it acted exactly like that parameter",
-                  name, significant(times, 2)),
+                  parameter_label(worst->key, worst->scope, worst->level), significant(times, 2)),
       name, {{"times_half_width", times}}));
 }
 
@@ -318,7 +319,9 @@ Aspect judge_parameters(const Campaign& campaign, const Fit& fit) {
                              ? "not_identifiable"
                          : active ? "active_bound"
                                   : "weak";
-      reasons.push_back(reason(AspectState::reservation, code, name + ": " + each.reason, name));
+      reasons.push_back(
+          reason(AspectState::reservation, code,
+                 parameter_label(each.key, each.scope, each.level) + ": " + each.reason, name));
     }
   }
   if (found_once(fit)) {

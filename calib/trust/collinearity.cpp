@@ -56,8 +56,8 @@ std::string collinearity_words(const std::vector<std::string>& names,
   }
   const double strongest = correlation(first, second);
   const auto name = [&](Eigen::Index i) { return names[static_cast<std::size_t>(i)]; };
-  std::string text =
-      fmt::format("Strongest: {:.3f} between {} and {}", strongest, name(first), name(second));
+  std::string text = fmt::format("Strongest correlation: {:.3f} between {} and {}", strongest,
+                                 name(first), name(second));
   if (std::abs(strongest) > kCombination) {
     text += ": the records determine a combination of the two far better than either alone";
   } else if (std::abs(strongest) > kMadeUp) {

@@ -14,10 +14,46 @@ namespace {
 
 /// A share within this fraction of a limit counts as being on it.
 constexpr double kOnLimit = 0.05;
-/// If the disagreement is less probable than this, the error is widened.
+/// If the disagreement is less probable than this, a variance between the members is added.
 constexpr double kDisagree = 0.05;
 
 double square_of(double x) { return x * x; }
+
+struct WeightedMean {
+  Eigen::VectorXd weights;  ///< they sum to one
+  double value = 0.0;
+  double chi_squared = 0.0;
+};
+
+/// Returns the mean by generalised least squares.
+WeightedMean weighted_mean(const Eigen::VectorXd& values, const Eigen::MatrixXd& covariance) {
+  const Eigen::LLT<Eigen::MatrixXd> root(covariance);
+  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(values.size());
+  const Eigen::VectorXd weighted = root.solve(ones);
+  WeightedMean mean;
+  mean.weights = weighted / weighted.sum();
+  mean.value = mean.weights.dot(values);
+  const Eigen::VectorXd left = values - mean.value * ones;
+  mean.chi_squared = left.dot(root.solve(left));
+  return mean;
+}
+
+/// Returns the variance between members that makes chi-square equal to its degrees of freedom
+/// (Mandel and Paule, Anal. Chem. 42, 1970).
+double variance_between(const Eigen::VectorXd& values, const Eigen::MatrixXd& covariance) {
+  const auto n = values.size();
+  const auto freedom = static_cast<double>(n - 1);
+  // At the sample variance, chi-square is at most its degrees of freedom, whatever the covariance.
+  double low = 0.0;
+  double high = (values.array() - values.mean()).square().sum() / freedom;
+  constexpr int kHalvings = 60;  // beyond the precision of a double
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = 0.5 * (low + high);
+    const Eigen::MatrixXd wider = covariance + middle * Eigen::MatrixXd::Identity(n, n);
+    (weighted_mean(values, wider).chi_squared > freedom ? low : high) = middle;
+  }
+  return high;
+}
 
 }  // namespace
 
@@ -61,24 +97,26 @@ PooledLeak pooled_leak(const std::vector<StateMember>& members,
   Eigen::MatrixXd covariance =
       moves * rig_covariance * moves.transpose() + days.factor * day_moves * day_moves.transpose();
   covariance.diagonal() += own;
-  const Eigen::LLT<Eigen::MatrixXd> root(covariance);
-  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(n);
-  const Eigen::VectorXd weighted = root.solve(ones);
-  const Eigen::VectorXd weights = weighted / weighted.sum();
+  WeightedMean mean = weighted_mean(coefficients, covariance);
 
   PooledLeak pooled;
-  pooled.coefficient = weights.dot(coefficients);
+  pooled.chi_squared = mean.chi_squared;
+  pooled.freedom = static_cast<double>(n - 1);
+  if (n > 1) pooled.p = metrics::chi_squared_exceedance(pooled.chi_squared, pooled.freedom);
+  pooled.agree = !(pooled.p < kDisagree);
+  double between = 0.0;
+  if (!pooled.agree) {
+    between = variance_between(coefficients, covariance);
+    covariance.diagonal().array() += between;
+    mean = weighted_mean(coefficients, covariance);
+  }
+  const Eigen::VectorXd& weights = mean.weights;
+  pooled.coefficient = mean.value;
   pooled.rig_moves = moves.transpose() * weights;
   pooled.day_moves = day_moves.transpose() * weights;
   pooled.day_weights = Eigen::VectorXd::Zero(members.front().day_weights.size());
   for (Eigen::Index i = 0; i < n; ++i)
     pooled.day_weights += weights(i) * members[static_cast<std::size_t>(i)].day_weights;
-  const Eigen::VectorXd left = coefficients - pooled.coefficient * ones;
-  pooled.chi_squared = left.dot(root.solve(left));
-  pooled.freedom = static_cast<double>(n - 1);
-  if (n > 1) pooled.p = metrics::chi_squared_exceedance(pooled.chi_squared, pooled.freedom);
-  pooled.agree = !(pooled.p < kDisagree);
-  if (!pooled.agree) pooled.widened = std::max(1.0, std::sqrt(pooled.chi_squared / pooled.freedom));
 
   double variance = 0.0;
   double squares = 0.0;  // sum for the Welch-Satterthwaite formula
@@ -87,18 +125,22 @@ PooledLeak pooled_leak(const std::vector<StateMember>& members,
     variance += part;
     squares += square_of(part) / members[static_cast<std::size_t>(i)].freedom;
   }
+  const double between_variance = between * weights.squaredNorm();
+  if (between > 0.0) squares += square_of(between_variance) / pooled.freedom;
+  pooled.widened = std::sqrt((variance + between_variance) / variance);
+  variance += between_variance;
   const double rig_variance =
       std::max(0.0, pooled.rig_moves.dot(rig_covariance * pooled.rig_moves));
-  pooled.error.own_se = pooled.widened * std::sqrt(variance);
+  pooled.error.own_se = std::sqrt(variance);
   for (Eigen::Index i = 0; i < n; ++i) {
     const StateMember& member = members[static_cast<std::size_t>(i)];
     pooled.error.own.push_back(
-        {member.condition, "records", pooled.widened * std::abs(weights(i)) * member.own_se});
+        {member.condition, "records", std::abs(weights(i)) * std::sqrt(own(i) + between)});
   }
-  pooled.error.rig_se = pooled.widened * std::sqrt(rig_variance);
+  pooled.error.rig_se = std::sqrt(rig_variance);
   const double days_variance = days.factor * pooled.day_moves.squaredNorm();
   squares += square_of(days_variance) / days.freedom;
-  pooled.error.days_se = pooled.widened * std::sqrt(days_variance);
+  pooled.error.days_se = std::sqrt(days_variance);
   pooled.error.freedom =
       std::clamp(square_of(variance + rig_variance + days_variance) / squares, 1.0, 1e6);
   return pooled;

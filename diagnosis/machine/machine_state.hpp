@@ -50,7 +50,7 @@ struct SignalsAgreement {
   double p = 1.0;            ///< probability that errors alone cause such a disagreement
   double chi_squared = 0.0;  ///< measure of the disagreement between members
   double freedom = 0.0;      ///< number of members - 1
-  double widened = 1.0;      ///< factor by which the error was widened, at least 1
+  double widened = 1.0;      ///< factor on the error of the records, above 1 if members disagree
   bool agree = true;         ///< false if the disagreement is significant at 5 %
   RIGCAL_DESCRIBE(p, chi_squared, freedom, widened, agree)
 };
@@ -58,7 +58,7 @@ struct SignalsAgreement {
 /// The leak that all members have in common.
 struct PooledLeak : SignalsAgreement {
   double coefficient = 0.0;
-  CoefficientError error;       ///< widened if the members disagree
+  CoefficientError error;       ///< includes a disagreement of the members
   Eigen::VectorXd rig_moves;    ///< change in the pooled coefficient
   Eigen::VectorXd day_moves;    ///< change in the pooled coefficient with each quantity on each day
   Eigen::VectorXd day_weights;  ///< one per day
@@ -66,9 +66,10 @@ struct PooledLeak : SignalsAgreement {
 
 /// Pools members by generalised least squares. Each member has its own error. In addition, a common
 /// error due to the rig's parameters and day-to-day differences shifts all of them together. If the
-/// members disagree by more than their errors, the error is multiplied by Birge's ratio, the square
-/// root of chi-square divided by its degrees of freedom (Phys. Rev. 40, 1932), because it is not
-/// known which of the members is wrong.
+/// members disagree by more than their errors, each has a further error, which makes chi-square
+/// equal to its degrees of freedom (Mandel and Paule), because it is not known which of them is
+/// wrong. The pooled coefficient is then close to their plain mean. Without that error, common
+/// errors that act on the members to different degrees could put it beyond all of them.
 ///
 /// @param members         at least one; each with own_se > 0
 /// @param rig_covariance  covariance of the rig's parameters, shape (rig_moves)^2

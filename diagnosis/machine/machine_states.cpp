@@ -87,14 +87,11 @@ void judge_state(const LeakProblem& problem, const RigFit& rig, const Prepared& 
     const double share_days_se = share_days_error(problem, duty, days, leak, state);
     const double share_se = std::hypot(rig.error(share_moves), share_days_se);
     const PooledLeak& pooled = state.pooled;
-    state.estimate = estimate_leak(leak.coefficient, pooled.error, curve,
-                                   state.pooled.widened * share_se, campaign.diagnosis);
-    // A disagreement between members widens every contribution by the same factor.
-    state.estimate.budget =
-        coefficient_budget(pooled.error, rig.contributions(pooled.widened * pooled.rig_moves));
+    state.estimate =
+        estimate_leak(leak.coefficient, pooled.error, curve, share_se, campaign.diagnosis);
+    state.estimate.budget = coefficient_budget(pooled.error, rig.contributions(pooled.rig_moves));
     state.estimate.share_budget = share_budget(pooled.error, state.share_slope,
-                                               rig.contributions(pooled.widened * share_moves),
-                                               pooled.widened * share_days_se);
+                                               rig.contributions(share_moves), share_days_se);
   } catch (const NoResultError& failure) {
     state.failure = failure.what();
   }

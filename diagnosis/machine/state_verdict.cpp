@@ -25,8 +25,7 @@ std::string agreement_of(const MachineState& state) {
       [](const auto& a, const auto& b) { return a.coefficient < b.coefficient; });
   return fmt::format(
       " {} disagree (coefficients {:.3g} to {:.3g}, {}): one leak cannot explain all, or the fit "
-      "is "
-      "wrong. Interval widened (Birge).",
+      "is wrong. The interval includes their disagreement.",
       signals_of(state), low->coefficient, high->coefficient, p_value_text(state.pooled.p));
 }
 

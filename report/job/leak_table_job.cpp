@@ -11,6 +11,7 @@
 #include "report/leak/leak_table.hpp"
 #include "report/page/page_parts.hpp"
 #include "report/store/json.hpp"
+#include "report/text/readable.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -122,8 +123,8 @@ std::vector<std::string> replaced_by_assumptions(const LeakTableInput& input) {
     const datasets::ParameterSetting* setting = input.campaign.setting(each.index);
     if (setting == nullptr || setting->value == each.value || each.source == "--set") continue;
     const model::ParameterSpec& spec = spec_in(input, each.index);
-    replaced.push_back(
-        fmt::format("{} ({:g} for {:g} {})", spec.key, each.value, setting->value, spec.unit));
+    replaced.push_back(fmt::format("{} ({} for {})", spec.key, readable(each.value, spec.unit),
+                                   readable(setting->value, spec.unit)));
   }
   if (replaced.empty()) return {};
   return {

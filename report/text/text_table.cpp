@@ -7,6 +7,20 @@ namespace {
 
 constexpr std::size_t kGap = 2;  ///< spaces between columns
 
+/// Breaks the lines of a cell that are longer than `columns`.
+std::vector<std::string> broken_lines(const std::vector<std::string>& lines, std::size_t columns) {
+  std::vector<std::string> result;
+  for (const std::string& line : lines) {
+    std::string text = wrapped(line, columns, 2);
+    for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n')) {
+      result.push_back(text.substr(0, end));
+      text.erase(0, end + 1);
+    }
+    result.push_back(std::move(text));
+  }
+  return result;
+}
+
 }  // namespace
 
 std::string on_one_line(std::string text) {
@@ -148,14 +162,22 @@ std::vector<std::vector<std::size_t>> TextTable::blocks(std::size_t columns) con
 }
 
 std::string TextTable::text(std::size_t columns) const {
-  const std::vector<std::size_t> width = widths();
+  constexpr std::size_t kNarrowest = 16;  // below it, words would be broken into a ladder
   std::string result;
   for (const std::vector<std::size_t>& block : blocks(columns)) {
+    std::vector<std::size_t> width = widths();
+    std::size_t before_last = 0;
+    for (const std::size_t i : block) before_last += i == block.back() ? 0 : width[i] + kGap;
+    // If not even one column fits beside the keys, its lines are broken within it.
+    const bool breaks = columns >= before_last + kNarrowest &&
+                        before_last + width[block.back()] > columns && block.size() > 1;
+    if (breaks) width[block.back()] = columns - before_last;
     const auto add_line = [&](const auto& cell) {
       std::string line;
       for (const std::size_t i : block) {
         const std::string& text = cell(i);
-        const std::string blanks(width[i] - text_width(text), ' ');
+        const std::size_t printed = text_width(text);
+        const std::string blanks(width[i] > printed ? width[i] - printed : 0, ' ');
         if (i != block.front()) line += std::string(kGap, ' ');
         line += columns_[i].align == Align::left ? text + blanks : blanks + text;
       }
@@ -165,7 +187,8 @@ std::string TextTable::text(std::size_t columns) const {
     const bool titled = std::any_of(columns_.begin(), columns_.end(),
                                     [](const Column& column) { return !column.title.empty(); });
     if (titled) add_line([&](std::size_t i) -> const std::string& { return columns_[i].title; });
-    for (const auto& row : rows_) {
+    for (auto row : rows_) {
+      if (breaks) row[block.back()] = broken_lines(row[block.back()], width[block.back()]);
       std::size_t lines = 1;
       for (const std::size_t i : block) lines = std::max(lines, row[i].size());
       for (std::size_t line = 0; line < lines; ++line) {

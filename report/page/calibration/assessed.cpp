@@ -33,7 +33,8 @@ std::string open_aspects(const StoredFit& fit) {
     if (state == calib::AspectState::pass) continue;
     std::string name = aspect.name;
     name.front() = static_cast<char>(name.front() | 0x20);  // ASCII, to lower case
-    text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", name, doc::badge(state).words);
+    text += (text.empty() ? "" : ", ") + name;
+    if (state != calib::AspectState::reservation) text += ": " + doc::badge(state).words;
   }
   return text;
 }

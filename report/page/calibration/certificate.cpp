@@ -32,6 +32,22 @@ using doc::State;
 constexpr std::size_t kSignals = 8;
 constexpr std::size_t kValues = 12;
 constexpr std::size_t kDoubts = 9;
+constexpr std::size_t kFewestSignals = 3;
+
+/// Returns how many signals the first printed sheet has room for, below its doubts and values.
+/// Heights are those of the print style.
+std::size_t signals_with_room(std::size_t doubt_lines, std::size_t values, bool is_signed) {
+  constexpr double kRoomMm = 148.0;   // an A4 sheet less headings, verdict, rule and item
+  constexpr double kSignedMm = 25.0;  // sensors and signatures
+  constexpr double kDoubtMm = 3.4;
+  constexpr double kValueMm = 5.4;
+  constexpr double kSignalMm = 8.6;
+  const double room = kRoomMm - (is_signed ? kSignedMm : 0.0) -
+                      kDoubtMm * static_cast<double>(doubt_lines) -
+                      kValueMm * static_cast<double>(values);
+  const auto fits = static_cast<std::size_t>(std::max(0.0, room / kSignalMm));
+  return std::clamp(fits, kFewestSignals, kSignals);
+}
 
 std::string plural(std::size_t count, const std::string& noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
@@ -95,6 +111,39 @@ std::string tolerance_words(const std::vector<Judged>& signals) {
   return fmt::format("with at most {} of the permitted error", calib::tolerance_used_text(used));
 }
 
+/// Adds how well the identified parameters are known, and how many are not identified.
+void add_grades(const StoredFit& fit, Line& sentence) {
+  double widest = 0.0;
+  std::size_t identified = 0;
+  std::size_t bounded = 0;
+  const auto found = signed_estimates(fit);
+  for (const calib::FittedParameter* p : found) {
+    // A bounded parameter is described by its limit, not by a half-width.
+    if (p->identifiability == calib::Identifiability::bounded) ++bounded;
+    if (p->identifiability != calib::Identifiability::identified) continue;
+    widest = std::max(widest, relative_half_width(*p));
+    ++identified;
+  }
+  if (identified == 0 || !is_determined(widest)) return;
+  const std::size_t all = found.size();
+  const std::size_t weak = all - identified - bounded;
+  const std::string which = all == 1            ? std::string("The one parameter is")
+                            : identified == all ? fmt::format("All {} parameters are", all)
+                                                : fmt::format("{} of {} parameters {}", identified,
+                                                              all, identified == 1 ? "is" : "are");
+  sentence.emplace_back(fmt::format(" {} determined to {}{}", which, half_width_text(widest),
+                                    identified == 1 ? "" : " or better"));
+  if (weak > 0)
+    sentence.emplace_back(
+        fmt::format("; {} {} not well determined", weak, weak == 1 ? "is" : "are"));
+  if (bounded > 0)
+    sentence.emplace_back(
+        identified + bounded == all
+            ? std::string(bounded > 1 ? ", the others bounded" : ", the other is bounded")
+            : fmt::format(", {} bounded", bounded));
+  sentence.emplace_back(".");
+}
+
 /// Adds to a sentence how many signals the model reproduces and how well its parameters are known.
 void add_numbers(const StoredFit& fit, Line& sentence) {
   const std::vector<Judged> signals = judged_signals(fit);
@@ -105,8 +154,9 @@ void add_numbers(const StoredFit& fit, Line& sentence) {
       if (each.held_back() && (unseen.empty() || unseen.back() != id)) unseen.push_back(id);
     }
     sentence.emplace_back(
-        signals.size() == 1
-            ? std::string("The model reproduces the test signal")
+        signals.size() == 1 ? std::string("The model reproduces the test signal")
+        : signals.size() == 2
+            ? std::string("The model reproduces both test signals")
             : fmt::format("The model reproduces all {} test signals", signals.size()));
     if (is_fit_schema(fit.schema) && !unseen.empty()) {
       constexpr std::size_t kNamed = 2;
@@ -121,27 +171,7 @@ void add_numbers(const StoredFit& fit, Line& sentence) {
     }
     sentence.emplace_back(" " + tolerance_words(signals) + ".");
   }
-  double widest = 0.0;
-  std::size_t determined = 0;
-  const auto found = signed_estimates(fit);
-  for (const calib::FittedParameter* p : found) {
-    // A bounded parameter is described by its limit, not by a half-width.
-    if (p->identifiability == calib::Identifiability::bounded) continue;
-    widest = std::max(widest, relative_half_width(*p));
-    ++determined;
-  }
-  if (determined > 0 && is_determined(widest)) {
-    const std::string which = found.size() == 1 ? std::string("The one parameter is")
-                              : determined == found.size()
-                                  ? fmt::format("All {} parameters are", determined)
-                                  : fmt::format("{} of {} parameters {}", determined, found.size(),
-                                                determined == 1 ? "is" : "are");
-    sentence.emplace_back(fmt::format(" {} determined to {}{}{}.", which, half_width_text(widest),
-                                      determined == 1 ? "" : " or better",
-                                      determined == found.size()      ? ""
-                                      : found.size() - determined > 1 ? ", the others bounded"
-                                                                      : ", the other is bounded"));
-  }
+  add_grades(fit, sentence);
 }
 
 doc::Verdict failed_verdict(const StoredFit& fit) {
@@ -224,7 +254,14 @@ doc::Doubts doubts_of(const StoredFit& fit) {
   std::stable_sort(found.begin(), found.end(), [&](const auto& a, const auto& b) {
     return gravity(a.first) < gravity(b.first);
   });
-  for (auto& [state, line] : found) doubts.items.push_back(std::move(line));
+  // Agreement and validation may give the same reason.
+  std::vector<std::string> listed;
+  for (auto& [state, line] : found) {
+    std::string words = std::get<doc::Link>(line.front()).words;
+    if (std::find(listed.begin(), listed.end(), words) != listed.end()) continue;
+    listed.push_back(std::move(words));
+    doubts.items.push_back(std::move(line));
+  }
   if (doubts.items.size() > kDoubts) {
     const std::size_t more = doubts.items.size() - kDoubts;
     doubts.items.resize(kDoubts);
@@ -238,6 +275,23 @@ doc::Doubts doubts_of(const StoredFit& fit) {
     doubts.warnings = std::move(line);
   }
   return doubts;
+}
+
+/// Returns the number of printed lines, with the heading.
+std::size_t printed_lines(const doc::Doubts& doubts) {
+  constexpr std::size_t kCharacters = 115;  // on a line of the first sheet
+  std::size_t lines = 0;
+  const auto add = [&](const Line& line) {
+    std::size_t characters = 0;
+    for (const doc::Inline& part : line) {
+      if (const auto* link = std::get_if<doc::Link>(&part)) characters += link->words.size();
+      if (const auto* text = std::get_if<std::string>(&part)) characters += text->size();
+    }
+    lines += characters / kCharacters + 1;
+  };
+  for (const Line& line : doubts.items) add(line);
+  if (doubts.warnings) add(*doubts.warnings);
+  return lines == 0 ? 0 : lines + 1;
 }
 
 /// Returns half the length of an interval that is symmetric about the value. Returns std::nullopt
@@ -492,8 +546,10 @@ doc::Row signal_row(const Calibration& stored, const Judged& signal) {
   }
   add_score(signal, score);
   used.portion = signal.used();
-  used.below = {{calib::tolerance_used_text(signal.used()) + " of the tolerance"}};
-  if (signal.verdict() != Verdict::pass) used.line = {doc::badge(signal.verdict())};
+  Line words;
+  if (signal.verdict() != Verdict::pass) words = {doc::badge(signal.verdict()), " "};
+  words.emplace_back(calib::tolerance_used_text(signal.used()) + " of the tolerance");
+  used.below = {std::move(words)};
   return {{std::move(name), std::move(strip), std::move(rms), std::move(score), std::move(used)}};
 }
 
@@ -529,7 +585,8 @@ std::string not_judged_words(const StoredFit& fit) {
                      fmt::join(found, "; "));
 }
 
-void add_signals(const Calibration& stored, doc::Blocks& blocks) {
+/// @param room  number of signals that the table lists
+void add_signals(const Calibration& stored, std::size_t room, doc::Blocks& blocks) {
   const StoredFit& fit = stored.result;
   std::vector<Judged> signals = judged_signals(fit);
   const std::string not_judged = not_judged_words(fit);
@@ -537,9 +594,10 @@ void add_signals(const Calibration& stored, doc::Blocks& blocks) {
     blocks.emplace_back(doc::Heading{{"Agreement: residual of each signal against its limit",
                                       doc::Aside{" (grey: the rms that rho2 allows)"}},
                                      2});
-    const std::size_t more = signals.size() > kSignals ? signals.size() - kSignals : 0;
+    const std::size_t more = signals.size() > room ? signals.size() - room : 0;
     doc::Table table{"Agreement of each signal with its limit"};
     table.style = "signals";
+    table.shape = doc::Table::Shape::cards;
     table.columns = {{"Signal"},
                      {"Measured − model, whole record"},
                      {"rms", doc::Column::Kind::number},
@@ -552,11 +610,12 @@ void add_signals(const Calibration& stored, doc::Blocks& blocks) {
       const auto beyond = static_cast<std::size_t>(
           std::count_if(signals.end() - static_cast<std::ptrdiff_t>(more), signals.end(),
                         [](const Judged& each) { return each.verdict() == Verdict::fail; }));
-      blocks.emplace_back(
-          doc::Paragraph{{doc::Link{"#matrix", plural(more, "more signal")},
-                          beyond == 0 ? std::string(", all within their limits.")
-                                      : fmt::format(", {} of them outside their limits.", beyond)},
-                         doc::Paragraph::Tone::small});
+      blocks.emplace_back(doc::Paragraph{
+          {doc::Link{"#matrix", plural(more, "more signal")},
+           beyond == 0      ? std::string(", all within their limits.")
+           : beyond == more ? std::string(", all outside their limits.")
+                            : fmt::format(", {} of them outside their limits.", beyond)},
+          doc::Paragraph::Tone::small});
     }
   }
   if (!not_judged.empty())
@@ -674,9 +733,13 @@ doc::Blocks certificate(const Calibration& stored) {
   const StoredFit& fit = stored.result;
   const bool unfinished = fit.status == FitStatus::stopped && !searched_to_the_end(fit);
   doc::Blocks blocks;
-  blocks.emplace_back(doubts_of(fit));
+  doc::Doubts doubts = doubts_of(fit);
+  const std::size_t room =
+      signals_with_room(printed_lines(doubts), std::min(signed_estimates(fit).size(), kValues),
+                        fit.report.is_object() && !fit.report.empty());
+  blocks.emplace_back(std::move(doubts));
   if (fit.status != FitStatus::failed) add_values(fit, !unfinished, blocks);
-  add_signals(stored, blocks);
+  add_signals(stored, room, blocks);
   add_aspects(fit, blocks);
   add_scope(fit, blocks);
   return blocks;

@@ -63,7 +63,7 @@ TEST_CASE("pooled_leak: an error that all members share does not average out", "
   CHECK(opposite.p > 0.5);  // the error of the rig explains their difference
 }
 
-TEST_CASE("pooled_leak: members that disagree widen the interval by Birge's ratio", "[diagnosis]") {
+TEST_CASE("pooled_leak: members that disagree have a variance between them", "[diagnosis]") {
   // The scores around the mean are -3, 0 and 3, so chi-square is 18 with 2 degrees of freedom.
   const auto pooled =
       diagnosis::pooled_leak({member(0.7, 0.1), member(1.0, 0.1), member(1.3, 0.1)}, kExactRig);
@@ -72,15 +72,29 @@ TEST_CASE("pooled_leak: members that disagree widen the interval by Birge's rati
   CHECK_THAT(pooled.p, WithinRel(std::exp(-9.0), 1e-9));
   CHECK_THAT(pooled.widened, WithinRel(3.0, 1e-9));
   CHECK_THAT(pooled.error.own_se, WithinRel(0.3 / std::sqrt(3.0), 1e-9));
-  // An error of the rig that moves all members alike explains none of it, and is widened as well.
+  CHECK_THAT(pooled.error.freedom, WithinRel(2.0 * 81.0 / 64.0, 1e-4));  // 8/9 of the variance
+  // An error of the rig that moves all members alike explains none of it, and is not widened.
   const auto unsure = diagnosis::pooled_leak(
       {member(0.7, 0.1, 1e6, 1.0), member(1.0, 0.1, 1e6, 1.0), member(1.3, 0.1, 1e6, 1.0)},
       Eigen::MatrixXd::Constant(1, 1, 0.01));
   CHECK_THAT(unsure.widened, WithinRel(3.0, 1e-9));
-  CHECK_THAT(unsure.error.rig_se, WithinRel(3.0 * 0.1, 1e-9));
+  CHECK_THAT(unsure.error.rig_se, WithinRel(0.1, 1e-9));
   CHECK(diagnosis::pooled_leak({member(0.7, 0.1)}, kExactRig).p == 1.0);
   CHECK_THROWS_AS(diagnosis::pooled_leak({}, kExactRig), std::invalid_argument);
   CHECK_THROWS_AS(diagnosis::pooled_leak({member(0.7, 0.0)}, kExactRig), std::invalid_argument);
+}
+
+TEST_CASE("pooled_leak: members that disagree are pooled to a value among them", "[diagnosis]") {
+  // The error of the rig moves the second member three times as far as the first. Without a
+  // variance between them, their difference of 1 would be read as an error of the rig, and the
+  // first member, corrected for it, would be 0.5 smaller: less than both.
+  const auto pooled =
+      diagnosis::pooled_leak({member(1.0, 0.01, 1e6, 1.0), member(2.0, 0.01, 1e6, 3.0)},
+                             Eigen::MatrixXd::Constant(1, 1, 0.01));
+  CHECK_FALSE(pooled.agree);
+  CHECK(pooled.coefficient > 1.2);
+  CHECK(pooled.coefficient < 1.5);
+  CHECK(pooled.error.half_width() > 1.0);
 }
 
 TEST_CASE("nearest_limit: how far a share is from the next class", "[diagnosis]") {

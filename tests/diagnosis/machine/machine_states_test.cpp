@@ -81,21 +81,29 @@ TEST_CASE("machine_states: one state of all signals, at the slowest sine", "[dia
   CHECK_THAT(state.sentence, Contains("2 signals agree"));
 }
 
-TEST_CASE("machine_states: members that disagree widen the share's whole interval", "[diagnosis]") {
-  // The error of the valve gain changes the share at the duty, whatever the coefficient.
+TEST_CASE("machine_states: a disagreement of members widens the share by theirs only",
+          "[diagnosis]") {
   TwoSines scene;
   for (RecordDiagnosis& each : scene.found) each.fit.white_se = 0.001;
-  const auto width = [](const MachineState& state) {
-    return state.estimate.share_ci95.high - state.estimate.share_ci95.low;
-  };
   const MachineState agreed = scene.only_state();
-  // Two standard errors below and above their mean: Birge's ratio is the root of 8.
+  // Two standard errors below and above their mean: their own error is widened by the root of 8.
   scene.found[0].fit.coefficient -= 0.002;
   scene.found[1].fit.coefficient += 0.002;
   const MachineState torn = scene.only_state();
   CHECK(agreed.pooled.widened == 1.0);
   CHECK_THAT(torn.pooled.widened, WithinRel(std::sqrt(8.0), 1e-9));
-  CHECK_THAT(width(torn), WithinRel(std::sqrt(8.0) * width(agreed), 0.02));
+  // The error of the valve gain changes the share at the duty, whatever the members say.
+  const auto contribution = [](const MachineState& state, const std::string& kind) {
+    double squares = 0.0;
+    for (const calib::BudgetLine& line : state.estimate.share_budget.lines)
+      if ((line.kind == "records") == (kind == "records"))
+        squares += line.uncertainty * line.uncertainty;
+    return std::sqrt(squares);
+  };
+  CHECK(contribution(agreed, "rig") > 0.0);
+  CHECK_THAT(contribution(torn, "rig"), WithinRel(contribution(agreed, "rig"), 1e-3));
+  CHECK_THAT(contribution(torn, "records"),
+             WithinRel(std::sqrt(8.0) * contribution(agreed, "records"), 1e-3));
 }
 
 TEST_CASE("machine_states: the campaign's duty", "[diagnosis]") {

@@ -177,6 +177,44 @@ TEST_CASE("page: the three numbers are the worst of all channels and estimates",
                           !Contains("> identified<"));
 }
 
+TEST_CASE("page: the verdict calls no weak estimate determined, and no doubt comes twice",
+          "[report]") {
+  Json json = stored_result();
+  json["verdict"] = "WARN";
+  speak(json, "agreement", "reservation", "limit", "sine: rho2 is low");
+  speak(json, "validation", "reservation", "limit", "sine: rho2 is low");
+  Json weak = json["parameters"][0];
+  weak["key"] = "damping";
+  weak["name"] = "damping_n_s_per_m";
+  weak["ci95"] = {20.0, 150.0};
+  weak["identifiability"] = "weak";
+  json["parameters"].push_back(weak);
+  const std::string html = page(json);
+  const std::string first = html.substr(0, html.find("<section id=\"assessment\""));
+  CHECK_THAT(first, Contains("1 of 2 parameters is determined to ± 0.") &&
+                        Contains("; 1 is not well determined."));
+  const std::size_t doubt = first.find(">sine: rho2 is low<");
+  REQUIRE(doubt != std::string::npos);
+  CHECK(first.find(">sine: rho2 is low<", doubt + 1) == std::string::npos);
+}
+
+TEST_CASE("page: many doubts and values leave the first sheet fewer signals", "[report]") {
+  Json json = stored_result();
+  const Json condition = json["conditions"][0];
+  json["conditions"] = Json::array();
+  for (int i = 0; i < 10; ++i) {
+    json["conditions"].push_back(condition);
+    json["conditions"].back()["id"] = fmt::format("c{}", i);
+  }
+  CHECK_THAT(page(json), Contains("2 more signals</a>"));
+  for (int i = 0; i < 6; ++i)
+    speak(json, "parameters", "reservation", fmt::format("code_{}", i).c_str(),
+          fmt::format("{} {}", i, std::string(300, 'x')));
+  const Json parameter = json["parameters"][0];
+  for (int i = 0; i < 11; ++i) json["parameters"].push_back(parameter);
+  CHECK_THAT(page(json), Contains("7 more signals</a>"));
+}
+
 TEST_CASE("page: carries the exact numbers beside the readable ones", "[report]") {
   const std::string html = page(stored_result());
   CHECK_THAT(html, Contains("value=\"85.01139529\">85.01<"));
@@ -372,8 +410,8 @@ TEST_CASE("page: reservations stand apart from what speaks for a result", "[repo
     speak(json, "parameters", "reservation", "weak", "parameter " + std::to_string(i));
   const std::string html = page(json);
   CHECK_THAT(word_of(html), Contains("WARN"));
-  CHECK_THAT(html, Contains("Passed with reservations (independent validation: not assessed; "
-                            "adequacy of the model: reservation; parameters: reservation)."));
+  CHECK_THAT(html, Contains("Passed with reservations (independent validation: not assessed, "
+                            "adequacy of the model, parameters)."));
   CHECK_THAT(html, Contains("none: every condition was fitted</a>"));
   CHECK_THAT(html, Contains("<p>sine keeps its limits</p>"));
   CHECK_THAT(html, Contains("parameter 2") && Contains("and 2 more") && !Contains("parameter 3"));

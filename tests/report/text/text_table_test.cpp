@@ -60,6 +60,15 @@ TEST_CASE("TextTable: what is too wide follows in blocks, each with its keys", "
   CHECK(table.text(0) == "rig  level  first  second  third\na    0 %    1      2       3\n");
 }
 
+TEST_CASE("TextTable: a column wider than the terminal is broken within itself", "[report]") {
+  TextTable table({{"rig"}, {"estimates"}}, 1);
+  table.add({"bench", "mass 85.01 kg bulk modulus"});
+  table.add({"b", "x"});
+  CHECK(table.text(23) ==
+        "rig    estimates\nbench  mass 85.01 kg\n         bulk modulus\nb      x\n");
+  CHECK(table.text(33) == table.text());
+}
+
 TEST_CASE("wrapped_lines: each line by itself, further ones deeper", "[report]") {
   CHECK(wrapped_lines("one two\n  three four\n\n", 9) == "one two\n  three\n    four\n\n");
   CHECK(wrapped_lines("one two", 5) == "one\n  two");
