@@ -9,9 +9,9 @@ function(rigcal_optimised_first target)
 endfunction()
 
 # Numerical code is optimised under the sanitizers, too, because the tests would otherwise be far too slow. Code that
-# prepares, judges or writes is not optimised, so that it compiles in a quarter of the time. Even a release optimises it
+# prepares, judges or writes is not optimised, so that it compiles in a third of the time. Even a release optimises it
 # less.
-set(rigcal_optimised $<$<BOOL:${RIGCAL_SANITIZE}>:-O1>)
+set(rigcal_optimised $<$<OR:$<BOOL:${RIGCAL_SANITIZE}>,$<BOOL:${RIGCAL_SANITIZE_THREAD}>>:-O1>)
 set(rigcal_less_optimised $<$<CONFIG:Release>:-O1>)
 set(rigcal_light report)
 

@@ -55,7 +55,10 @@ TEST_CASE("drawn_shares: each leak level has the class of its share", "[diagnosi
     CHECK(draws.size() == 200);
     const auto found = diagnosis::drawn_shares(problem, draws, 1, left);
     REQUIRE(found.size() == 2);
-    CHECK(same(diagnosis::drawn_shares(problem, draws, 3, left), found));
+    const std::vector<std::vector<double>> few(draws.begin(), draws.begin() + 40);
+    const auto of_few = diagnosis::drawn_shares(problem, few, 1, left);
+    REQUIRE(of_few.size() == 2);
+    CHECK(same(diagnosis::drawn_shares(problem, few, 3, left), of_few));
     for (const calib::DrawnShare& each : found) {
       CAPTURE(each.level);
       // The slowest sine is the duty of both.
@@ -76,11 +79,11 @@ TEST_CASE("drawn_shares: each leak level has the class of its share", "[diagnosi
     CHECK(found[0].leak_share_percent != found[1].leak_share_percent);
 
     // A limit at the median divides the draws.
-    const calib::DrawnShare& worn = found[found[0].level == "worn" ? 0 : 1];
+    const calib::DrawnShare& worn = of_few[of_few[0].level == "worn" ? 0 : 1];
     const auto limits = twin.campaign.diagnosis.limits;
     const double median = worn.leak_share_percent / 100.0;
     twin.campaign.diagnosis.limits = {median / 4.0, median / 2.0, median, 2.0 * median};
-    for (const calib::DrawnShare& each : diagnosis::drawn_shares(problem, draws, 1, left)) {
+    for (const calib::DrawnShare& each : diagnosis::drawn_shares(problem, few, 1, left)) {
       if (each.level != "worn") continue;
       CHECK_THAT(probability_of(each, datasets::LeakClass::medium), WithinAbs(0.5, 0.01));
       CHECK_THAT(probability_of(each, datasets::LeakClass::critical), WithinAbs(0.5, 0.01));
@@ -88,9 +91,9 @@ TEST_CASE("drawn_shares: each leak level has the class of its share", "[diagnosi
     twin.campaign.diagnosis.limits = limits;
 
     twin.campaign.diagnosis.duty = "fast_worn";
-    CHECK(diagnosis::drawn_shares(problem, draws, 1, left).at(0).condition == "fast_worn");
+    CHECK(diagnosis::drawn_shares(problem, few, 1, left).at(0).condition == "fast_worn");
     twin.campaign.diagnosis.duty = "not fitted";
-    CHECK(same(diagnosis::drawn_shares(problem, draws, 1, left), found));
+    CHECK(same(diagnosis::drawn_shares(problem, few, 1, left), of_few));
 
     const std::atomic<bool> stopped = true;
     CHECK(diagnosis::drawn_shares(problem, draws, 1, calib::Budget(&stopped)).empty());

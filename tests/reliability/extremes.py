@@ -108,6 +108,8 @@ repeats = ["records/{waveform}_*.csv"]
 """ for waveform, more in (("square", ""), ("chirp", 'end_frequency = "3 Hz"\nsweep_time = "2 s"\n')))
 # Tables of names, texts and switches.
 WITHOUT_NUMBERS = ("averaging", "report")
+# Tables of parameters, and whether these are gains.
+OF_PARAMETERS = {"rig.parameters": False, "condition.parameters": False, "rig.controller": True, "condition.controller": True}
 # Waveforms whose frequencies determine the length of a loop.
 WAVEFORMS = ("square", "triangle", "chirp")
 
@@ -148,6 +150,9 @@ class Study:
         must(rigcal, ["synthesize", base, "--seed", "1", "--out", self.twin, "--quiet"])
         must(rigcal, ["fit", base, "--data", self.twin, "--out", folder / "fit", "--quiet"])
         self.limits_memory = b"__asan_init" not in rigcal.read_bytes()  # AddressSanitizer takes terabytes of address space
+        of_plants = parameters(rigcal)
+        self.parameters = {each["key"]: each for each in of_plants[rig["rig"]["model"].strip('"')]}
+        self.of_any_plant = {each["key"] for rows in of_plants.values() for each in rows}
 
     def arguments(self, verb, campaign, out):
         if verb == "batch":
@@ -188,25 +193,37 @@ class Study:
         return list(dict.fromkeys([*names, *self.base[table]]))
 
     def values(self, table, key):
-        """Returns the values to try, from the message about a value of a wrong type; none for texts and tables."""
+        """Returns the values to try: of a parameter by its unit, else by the message about a value of a wrong type. There are
+        none for texts, tables and the parameters of other tables or plants."""
+        if table in OF_PARAMETERS and key in self.of_any_plant:
+            row = self.parameters.get(key)
+            if not row or (row["kind"] == "controller") != OF_PARAMETERS[table]:
+                return []
+            return in_unit(row["unit"])
         if (table, key) == ("[report.sensor]", "uncertainty"):  # a text with two numbers
             return [f'"{number} {rest}"' for number in NUMBERS for rest in ("mm (k = 2)", "% (k = 2)")] + [
                 f'"0.002 mm (k = {number})"' for number in NUMBERS]
         _, message = self.ended("check", text_of(table, key, "[[[]]]", self.base), f"ask_{table.strip('[]')}_{key}")
         if quantity := re.search(r'text "number unit" such as "1.5 ([^"]*)"', message):
-            return [f'"{number} {quantity.group(1)}"' for number in NUMBERS]
+            return in_unit(quantity.group(1))
         if "a plain number" in message or "number of seconds" in message:
-            return [number if "e" in number else f"{number}.0" for number in NUMBERS]
+            return in_unit("1")
         if "a whole number" in message:
             return list(WHOLE)
         return []
 
 
-def parameters(rigcal, model=None):
-    """Returns the keys of the parameters of one plant, or of all."""
+def in_unit(unit):
+    """Returns every number in a unit, or as a plain number where the unit is 1."""
+    if unit == "1":
+        return [number if "e" in number else f"{number}.0" for number in NUMBERS]
+    return [f'"{number} {unit}"' for number in NUMBERS]
+
+
+def parameters(rigcal):
+    """Returns the parameters of each plant as the program lists them."""
     _, out, _ = run(rigcal, ["params", "--json"])
-    of_plants = json.loads(out)
-    return list(dict.fromkeys(each["key"] for plant in ([model] if model else of_plants) for each in of_plants[plant]))
+    return json.loads(out)
 
 
 def changes_of(study, pairs):
@@ -219,12 +236,11 @@ def changes_of(study, pairs):
 def study(rigcal, folder, size):
     tests = Study(rigcal, folder)
     tables = [each for each in RIG if each and each != "rig"]
-    of_rig = parameters(rigcal)
     pairs = []
     for table in tables:
         known = tests.known_keys(table)
-        if table in ("rig.parameters", "rig.controller", "condition.parameters", "condition.controller"):
-            known = list(dict.fromkeys(known + of_rig))
+        if table in OF_PARAMETERS:
+            known = list(dict.fromkeys([*known, *tests.parameters]))
         pairs += [(table, key) for key in known if f"{table}.{key}" not in RIG]  # those are tables of their own
     changes = changes_of(tests, pairs)
     for waveform in WAVEFORMS:
@@ -240,7 +256,7 @@ def study(rigcal, folder, size):
     runs = [(change, verb) for change in changes for verb in VERBS]
     for model, base in (("two_chamber", TWO_CHAMBER), ("linkage", LINKAGE)):
         plant = Study(rigcal, folder / model, base)
-        keys = [key for key in parameters(rigcal, model) if f"rig.parameters.{key}" not in base]
+        keys = [key for key in plant.parameters if f"rig.parameters.{key}" not in base]
         tried = changes_of(plant, [("rig.parameters", key) for key in keys] +
                            [(table, "start") for table in base if table.startswith("rig.parameters.")])
         if len(tried) < 100:
