@@ -101,6 +101,7 @@ struct RepeatReport {
   double deviation = 0.0;
   bool outlier = false;    ///< whether the repeat is too far from the others
   double shifted_s = 0.0;  ///< offset_s if it was subtracted to align the repeat, else 0
+  double shift = 0.0;      ///< sample i of the first repeat is at i + shift of this one
   RIGCAL_DESCRIBE(source, offset_s, deviation, outlier)
 };
 

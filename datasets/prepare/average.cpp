@@ -369,8 +369,8 @@ Record average(const std::string& condition, const std::vector<Repeat>& repeats,
   record.repeats =
       repeats.size() == 1 ? options.repeats_averaged : static_cast<int>(repeats.size());
   for (std::size_t r = 0; r < repeats.size(); ++r)
-    record.repeat_reports.push_back(
-        {repeats[r].source, aligned.offset_s[r], 0.0, false, aligned.shifted_s[r]});
+    record.repeat_reports.push_back({repeats[r].source, aligned.offset_s[r], 0.0, false,
+                                     aligned.shifted_s[r], aligned.shift[r]});
   record.time_s.assign(time_s.begin() + static_cast<std::ptrdiff_t>(span.begin),
                        time_s.begin() + static_cast<std::ptrdiff_t>(span.end));
   warn_of_gaps(repeats, aligned.shift, record.warnings);

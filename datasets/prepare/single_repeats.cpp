@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "datasets/prepare/alignment.hpp"
 #include "datasets/prepare/bridged_holes.hpp"
 #include "datasets/prepare/load_record.hpp"
 #include "datasets/prepare/resample.hpp"
@@ -63,13 +62,13 @@ RepeatRecords repeat_records(const Campaign& campaign, const Condition& conditio
   RepeatRecords result;
   result.average = average_of(campaign, condition, repeats);
   if (condition.averaged || repeats.size() < 2) return result;
-  const AlignedRepeats aligned = align(repeats, campaign.alignment == Alignment::correlate);
   const std::vector<double>& base = repeats.front().time_s;
   std::vector<std::size_t> kept;
   for (std::size_t i = 0; i < base.size() && kept.size() < result.average.time_s.size(); ++i)
     if (base[i] == result.average.time_s[kept.size()]) kept.push_back(i);
   for (std::size_t r = 0; r < repeats.size(); ++r) {
-    result.singles.push_back(single_record(result.average, repeats[r], aligned.shift[r], base, kept,
+    const double shift = result.average.repeat_reports[r].shift;
+    result.singles.push_back(single_record(result.average, repeats[r], shift, base, kept,
                                            result.covered.emplace_back()));
   }
   return result;

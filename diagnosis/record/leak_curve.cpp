@@ -1,6 +1,7 @@
 #include "diagnosis/record/leak_curve.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 namespace rigcal::diagnosis {
@@ -47,7 +48,8 @@ constexpr double kProportional = 0.02;
 bool is_none(double coefficient, double reach) { return coefficient <= kProportional * reach; }
 
 LeakPoint without_leak(const LeakAt& leak_at, double next) {
-  const LeakPoint small = leak_at(kProportional * next);
+  // Records whose next coefficients are similar share this one.
+  const LeakPoint small = leak_at(std::exp2(std::floor(std::log2(kProportional * next))));
   return {0.0, 0.0, 0.0, small.share / small.coefficient,
           small.leak_flow_m3_per_s / small.coefficient};
 }

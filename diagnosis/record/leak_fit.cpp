@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <stdexcept>
 
 #include "calib/consider/effect_changes.hpp"
@@ -508,15 +509,18 @@ std::shared_ptr<const LeakEffects> leak_effects_of(const LeakProblem& leak_probl
     return values;
   };
   constexpr std::array kFlows{model::Output::servo_flow, model::Output::leakage_flow};
-  const auto changes_at = [&](double coefficient) {
+  const auto changes_at = [&](double coefficient, std::span<const model::Output> further) {
     return calib::changes_by(problem, 0, values_at(coefficient), acting, rig.effects,
-                             leak_problem.cancel, kFlows);
+                             leak_problem.cancel, further);
   };
   auto result = std::make_shared<LeakEffects>();
-  result->healthy = *healthy.of(prepared, values_at(0.0), acting, [&] { return changes_at(0.0); });
-  result->by_leak = changes_at(leak);
-  for (std::size_t k = 0; k < result->healthy.size(); ++k) {
-    if (!result->healthy[k].allFinite() || !result->by_leak[k].allFinite()) return nullptr;
+  result->healthy =
+      *healthy.of(prepared, values_at(0.0), acting, [&] { return changes_at(0.0, {}); });
+  result->by_leak = changes_at(leak, kFlows);
+  for (const calib::EffectChanges* changes : {&result->healthy, &result->by_leak}) {
+    if (!std::all_of(changes->begin(), changes->end(),
+                     [](const Eigen::MatrixXd& each) { return each.allFinite(); }))
+      return nullptr;
   }
   // The share is computed from the flows over the record.
   model::Simulation run =
@@ -525,7 +529,6 @@ std::shared_ptr<const LeakEffects> leak_effects_of(const LeakProblem& leak_probl
   if (!run.ok()) return nullptr;
   run.sensitivities.assign(result->by_leak.end() - kFlows.size(), result->by_leak.end());
   result->share = leak_in_record(prepared, run, 0).share_slope / leak;
-  result->healthy.resize(prepared.channels.size());
   result->by_leak.resize(prepared.channels.size());
   for (std::size_t k = 0; k < result->healthy.size(); ++k)
     result->by_leak[k] = (result->by_leak[k] - result->healthy[k]) / leak;

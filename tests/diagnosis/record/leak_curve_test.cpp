@@ -64,8 +64,9 @@ TEST_CASE("curve_about: from no leak on where that is within reach", "[diagnosis
   REQUIRE(curve.points().size() == 2);
   CHECK(curve.points().front().coefficient == 0.0);
   CHECK(curve.points().front().share == 0.0);
-  // The slope is that of a fiftieth of the range: (1 - exp(-x)) / x = 1 - x / 2.
-  CHECK_THAT(curve.share_slope(0.0), WithinRel(1.0 - 1e-3, 1e-6));
+  // The slope is that of the power of two below a fiftieth of the range: (1 - exp(-x)) / x.
+  const double small = std::exp2(-9.0);
+  CHECK_THAT(curve.share_slope(0.0), WithinRel(-std::expm1(-small) / small, 1e-12));
   CHECK_THAT(curve.points().back().coefficient, WithinRel(0.1, 1e-12));
 }
 
