@@ -14,14 +14,14 @@ namespace {
 
 constexpr double kOfAcceleration = 0.8;  // partial correlation
 constexpr double kOfVelocity = 0.1;      // partial correlation; friction may be small
-constexpr double kLeastOwnShare = 0.01;  // of an acceleration, beyond position and velocity
-constexpr double kSteadyStep = 0.1;      // fraction of the time step
+constexpr double kLeastOwnShare = 0.01;  // fraction of an acceleration
+constexpr double kEqualStep = 0.1;       // fraction of the time step
 constexpr double kSmoothSign = 0.05;     // fraction of the highest speed
-constexpr Eigen::Index kFewestBlocks = 100;
-constexpr std::size_t kMostBlocks = 20'000;  // so that a record of an hour costs no second
+constexpr Eigen::Index kFewestMeans = 100;
+constexpr std::size_t kMostMeans = 20'000;  // so that a record of an hour costs no second
 
-/// Motion and pressures at equal distances in time, all smoothed alike.
-struct Motion {
+/// ChamberMotion and pressures at equal distances in time, all smoothed alike.
+struct ChamberMotion {
   Eigen::VectorXd position, speed, acceleration, pressure_a, pressure_b;
 };
 
@@ -36,8 +36,9 @@ Eigen::VectorXd block_means(const std::vector<double>& values, std::size_t lengt
 }
 
 /// @param length  samples in a block
-Motion motion_in_blocks(const std::vector<double>& position, const std::vector<double>& pressure_a,
-                        const std::vector<double>& pressure_b, std::size_t length) {
+ChamberMotion motion_in_blocks(const std::vector<double>& position,
+                               const std::vector<double>& pressure_a,
+                               const std::vector<double>& pressure_b, std::size_t length) {
   const Eigen::VectorXd x = block_means(position, length);
   const Eigen::Index n = x.size() - 2;
   const auto smooth = [n](const Eigen::VectorXd& y) -> Eigen::VectorXd {
@@ -54,7 +55,7 @@ struct Partial {
 };
 
 /// @param known  shape (n, m), what is taken out of all of them first
-std::optional<Partial> partial(const Eigen::VectorXd& motion, const Motion& in,
+std::optional<Partial> partial(const Eigen::VectorXd& motion, const ChamberMotion& in,
                                const Eigen::MatrixXd& known) {
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> solver(known);
   const auto beyond = [&](const Eigen::VectorXd& y) -> Eigen::VectorXd {
@@ -68,7 +69,7 @@ std::optional<Partial> partial(const Eigen::VectorXd& motion, const Motion& in,
   return Partial{own.dot(a) / (own.norm() * a.norm()), own.dot(b) / (own.norm() * b.norm())};
 }
 
-bool is_swapped(const Motion& in) {
+bool is_swapped(const ChamberMotion& in) {
   const Eigen::Index n = in.position.size();
   const double fastest = in.speed.cwiseAbs().maxCoeff();
   const Eigen::VectorXd x = in.position.array() - in.position.mean();
@@ -86,10 +87,10 @@ bool is_swapped(const Motion& in) {
   return friction && friction->a < -kOfVelocity && friction->b > kOfVelocity;
 }
 
-bool is_steady(const std::vector<double>& time_s) {
+bool has_equal_steps(const std::vector<double>& time_s) {
   const double step_s = (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1);
   for (std::size_t i = 1; i < time_s.size(); ++i)
-    if (!(std::abs(time_s[i] - time_s[i - 1] - step_s) <= kSteadyStep * step_s)) return false;
+    if (!(std::abs(time_s[i] - time_s[i - 1] - step_s) <= kEqualStep * step_s)) return false;
   return true;
 }
 
@@ -113,11 +114,11 @@ std::string swapped_chambers_warning(const Campaign& campaign, const Record& rec
   const auto* pressure_a = values(Channel::pressure_a);
   const auto* pressure_b = values(Channel::pressure_b);
   if (position == nullptr || pressure_a == nullptr || pressure_b == nullptr) return {};
-  if (record.time_s.size() < 3 || !is_steady(record.time_s)) return {};
-  const std::size_t shortest = record.time_s.size() / kMostBlocks + 1;
+  if (record.time_s.size() < 3 || !has_equal_steps(record.time_s)) return {};
+  const std::size_t shortest = record.time_s.size() / kMostMeans + 1;
   for (const std::size_t length : {2 * shortest, 4 * shortest}) {
-    const Motion in = motion_in_blocks(*position, *pressure_a, *pressure_b, length);
-    if (in.position.size() < kFewestBlocks || !is_swapped(in)) return {};
+    const ChamberMotion in = motion_in_blocks(*position, *pressure_a, *pressure_b, length);
+    if (in.position.size() < kFewestMeans || !is_swapped(in)) return {};
   }
   return fmt::format(
       "pressure_a falls and pressure_b rises where the {0} accelerates, as if each were that of "

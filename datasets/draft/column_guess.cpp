@@ -148,6 +148,8 @@ std::vector<Token> tokens_of_lower(std::string_view part, std::span<const Token>
       place && has(before, Meaning::pressure))
     return {{*place}};
   if (const auto symbol = symbol_in(quantity_symbols(), part)) return {{*symbol, true}};
+  // "ax" is an acceleration unless a word names another quantity: "ax1_pos".
+  if (part == "ax" || part == "ay" || part == "az") return {{Meaning::acceleration, true}};
   if (auto whole = meanings_of(part); !whole.empty()) return whole;
   if (auto words = joined_words(part, false); !words.empty()) return words;
   const auto symbol = symbol_in(quantity_symbols(), part.substr(0, 1));
@@ -229,7 +231,8 @@ struct Reading {
 /// Whether a unit is that of a pure number, such as a percentage.
 bool is_share(const std::string& unit) { return converts_to(unit, "1"); }
 
-/// Whether the column tells where the spool of the valve is. Its signal has a voltage or a current.
+/// Whether the column is the position of the valve's spool. The valve's signal is a voltage or a
+/// current.
 bool is_of_spool(const Reading& reading, std::optional<Meaning> quantity) {
   if (!reading.says(Meaning::spool)) return false;
   return quantity == Meaning::position ||
@@ -246,8 +249,9 @@ std::optional<Meaning> quantity_in(const Reading& reading) {
 
 bool is_time(const Reading& reading) {
   if (reading.of_unit && *reading.of_unit != Meaning::time) return false;
-  const auto known = std::find_if(reading.tokens.begin(), reading.tokens.end(),
-                                  [](const Token& t) { return t.meaning != Meaning::filler; });
+  const auto known = std::find_if(reading.tokens.begin(), reading.tokens.end(), [](const Token& t) {
+    return t.meaning != Meaning::filler && t.meaning != Meaning::measured;
+  });
   return known != reading.tokens.end() && known->meaning == Meaning::time &&
          !has(reading.tokens, Meaning::temperature);
 }
@@ -336,7 +340,7 @@ bool is_difference(const Reading& reading, std::optional<Meaning> quantity) {
 
 /// Whether a force or torque acts from outside. A load cell, which says "load" alone, is part of
 /// the rig.
-bool is_external_load(std::optional<Channel> channel, const Reading& reading) {
+bool acts_from_outside(std::optional<Channel> channel, const Reading& reading) {
   if (channel != Channel::force && channel != Channel::torque) return false;
   if (reading.says(Meaning::external)) return true;
   const bool by_name = reading.says(Meaning::force) || reading.says(Meaning::torque);
@@ -383,7 +387,7 @@ ColumnGuess meaning_of(const Reading& reading) {
       guess.channel = drives ? reference_of(*quantity, reading) : measured(*quantity, reading);
   }
   if (!guess.channel) guess.other = of_spool ? kSpoolPosition : other_of(quantity, reading);
-  guess.is_external_load = is_external_load(guess.channel, reading);
+  guess.is_external_load = acts_from_outside(guess.channel, reading);
   return guess;
 }
 
@@ -398,11 +402,11 @@ std::string meant_unit(const std::string& unit, const Reading& reading) {
   return unit;
 }
 
-/// Whether a name states a force whose "N" stands before an "m" with another meaning: "F_N_m",
+/// Whether a name is that of a force, and the "m" behind its "N" has another meaning: "F_N_m",
 /// where m may be a place or "measured".
 bool is_force_with_suffix(const UnitInName& unit, const std::string& name) {
   const std::string_view text = std::string_view(name).substr(unit.begin, unit.end - unit.begin);
-  if (unit.unit != "N m" || text != "N_m") return false;
+  if (!unit.unit.ends_with("N m") || !text.ends_with("N_m")) return false;
   const auto parts = parts_of(std::string_view(name).substr(0, unit.begin));
   std::vector<Token> tokens;
   for (const std::string& part : parts) {
@@ -432,6 +436,16 @@ std::string last_of_path(std::string path) {
   return path;
 }
 
+/// Whether a part is the place of the pressure behind it: "A-Druck", "T pressure". In "p Druck A"
+/// and "P pressure 2" it is not.
+bool is_place_before(const std::vector<std::string>& parts, std::size_t i) {
+  constexpr std::string_view kPorts = "abpt";
+  const std::string part = lower(parts[i]);
+  if (part.size() != 1 || kPorts.find(part[0]) == std::string_view::npos) return false;
+  if (i + 1 >= parts.size() || !has(tokens_of(parts[i + 1], {}), Meaning::pressure)) return false;
+  return i + 2 >= parts.size() || !symbol_in(pressure_places(), lower(parts[i + 2]));
+}
+
 /// Adds what the parts of a name say.
 void read_parts(const std::vector<std::string>& parts, std::vector<Token>& tokens) {
   const auto is = [&](std::size_t i, std::string_view text) {
@@ -447,11 +461,8 @@ void read_parts(const std::vector<std::string>& parts, std::vector<Token>& token
     if (is(i, "x") && is(i + 1, "axis")) continue;
     // "x_d" is what is desired.
     const bool desired = is(i, "x") && is(i + 1, "d");
-    // The "A" in "A-Druck" is a place.
-    const auto place = symbol_in(pressure_places(), lower(parts[i]));
-    if (place && !is(i, "p") && i + 1 < parts.size() &&
-        has(tokens_of(parts[i + 1], {}), Meaning::pressure)) {
-      tokens.push_back({*place});
+    if (is_place_before(parts, i)) {
+      tokens.push_back({*symbol_in(pressure_places(), lower(parts[i]))});
       continue;
     }
     const auto more = tokens_of(desired ? "xd" : parts[i], tokens);
@@ -476,7 +487,7 @@ ColumnGuess guess_column(const std::string& name, const std::string& unit) {
   Reading reading;
   auto in_name = unit_in_name(name);
   if (in_name && is_force_with_suffix(*in_name, name)) {
-    in_name->unit = "N";
+    in_name->unit.resize(in_name->unit.size() - std::string_view(" m").size());
     in_name->end -= std::string_view("_m").size();
   }
   if (in_name) {

@@ -25,10 +25,11 @@ constexpr std::array<Word, 38> kValve{
     "spule",        "vanne",        "servovanne",  "distributeur", "valvula",  "servovalvula",
     "valvola",      "servovalvola", "corriente",   "corrente",     "courant",  "tensione",
     "bobine",       "bobina"};
-constexpr std::array<Word, 24> kMeasured{
-    "encoder", "drehgeber", "resolver", "act",      "actual",   "ist",      "istwert", "fb",
-    "fbk",     "feedback",  "meas",     "measured", "gemessen", "fdbk",     "mesure",  "mesuree",
-    "reel",    "real",      "medido",   "medida",   "misurato", "misurata", "attuale", "actuelle"};
+constexpr std::array<Word, 25> kMeasured{
+    "encoder",  "drehgeber", "resolver", "act",   "actual",   "ist",      "istwert",
+    "fb",       "fbk",       "feedback", "meas",  "measured", "gemessen", "fdbk",
+    "mesure",   "mesuree",   "reel",     "real",  "medido",   "medida",   "misurato",
+    "misurata", "attuale",   "actuelle", "effort"};
 constexpr std::array<Word, 11> kElectric{
     "voltage",  "spannung", "steuerspannung", "strom", "current", "corriente",
     "corrente", "courant",  "tensione",       "pwm",   "duty"};
@@ -47,14 +48,14 @@ constexpr std::array<Word, 15> kAngle{"angle",        "theta",      "ang",      
                                       "winkel",       "tilt",       "schwenkwinkel", "jointangle",
                                       "gelenkwinkel", "drehwinkel", "rotation",      "inclinometer",
                                       "neigung",      "angulo",     "angolo"};
-constexpr std::array<Word, 8> kForce{"force", "loadcell", "kraft",  "kraftmessdose",
-                                     "fl",    "effort",   "fuerza", "forza"};
+constexpr std::array<Word, 7> kForce{"force", "loadcell", "kraft", "kraftmessdose",
+                                     "fl",    "fuerza",   "forza"};
 constexpr std::array<Word, 15> kPressure{"pressure", "druck",     "press",   "chamber", "kammer",
                                          "prs",      "dp",        "deltap",  "port",    "pression",
                                          "presion",  "pressione", "chambre", "camara",  "camera"};
-constexpr std::array<Word, 11> kAcceleration{
-    "acc", "accel", "acceleration", "accelerometer", "beschleunigung", "beschl",
-    "ax",  "ay",    "az",           "aceleracion",   "accelerazione"};
+constexpr std::array<Word, 8> kAcceleration{"acc",           "accel",          "acceleration",
+                                            "accelerometer", "beschleunigung", "beschl",
+                                            "aceleracion",   "accelerazione"};
 constexpr std::array<Word, 6> kTemperature{"temp", "temperature", "temperatur",
                                            "tmp",  "toil",        "temperatura"};
 constexpr std::array<Word, 9> kVelocity{"vel",     "velocity", "speed",   "geschwindigkeit",

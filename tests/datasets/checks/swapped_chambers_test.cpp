@@ -22,7 +22,7 @@ struct Cylinder {
   double noise_pa = 2e3;
 };
 
-Record record_of(const Cylinder& rig) {
+Record moving_record(const Cylinder& rig) {
   constexpr double kRate_hz = 1000.0;
   std::mt19937 random(3);
   std::normal_distribution<double> normal(0.0, 1.0);
@@ -72,7 +72,7 @@ TEST_CASE("swapped_chambers_warning: whatever the load, the friction and the are
   even.area_a_m2 = even.area_b_m2;
   for (const Cylinder& rig : {Cylinder{}, hanging, spring, over_centre, smooth, even}) {
     CAPTURE(rig.load_n, rig.stiffness_n_per_m, rig.friction_n, rig.area_a_m2);
-    const Record record = record_of(rig);
+    const Record record = moving_record(rig);
     CHECK(swapped_chambers_warning(campaign, record).empty());
     CHECK_THAT(swapped_chambers_warning(campaign, swapped(record)), Contains("swapped"));
   }
@@ -82,15 +82,15 @@ TEST_CASE("swapped_chambers_warning: silent where the record does not show it", 
   const Campaign campaign;
   Cylinder light;
   light.mass_kg = 0.5;
-  CHECK(swapped_chambers_warning(campaign, swapped(record_of(light))).empty());
-  Record still = swapped(record_of({}));
+  CHECK(swapped_chambers_warning(campaign, swapped(moving_record(light))).empty());
+  Record still = swapped(moving_record({}));
   for (double& x : still.channels[Channel::position].mean) x = 0.01;
   CHECK(swapped_chambers_warning(campaign, still).empty());
-  Record one = swapped(record_of({}));
+  Record one = swapped(moving_record({}));
   one.channels.erase(Channel::pressure_b);
   CHECK(swapped_chambers_warning(campaign, one).empty());
-  // A sine alone does not tell a mass from a spring that pushes away.
-  Record sine = record_of({});
+  // In a sine alone a mass and a spring that pushes away look alike.
+  Record sine = moving_record({});
   for (std::size_t i = 0; i < sine.time_s.size(); ++i) {
     const double s = std::sin(12.0 * sine.time_s[i]);
     sine.channels[Channel::position].mean[i] = 0.01 * s;

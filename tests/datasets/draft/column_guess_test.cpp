@@ -257,6 +257,11 @@ TEST_CASE("guess_column: names of other languages and of controllers", "[dataset
     CAPTURE(each.name);
     CHECK(guess_column(each.name).channel == each.channel);
   }
+  CHECK(guess_column("AI 1/Druck_B").channel == Channel::pressure_b);
+  CHECK(guess_column("p Druck A").channel == Channel::pressure_a);
+  CHECK(guess_column("control effort [V]").channel == Channel::command);
+  CHECK(guess_column("ax1_pos").channel == Channel::position);
+  CHECK(guess_column("Real Time (s)").is_time);
   CHECK(guess_column("temp_grad").unit == "degC");
   CHECK(guess_column("F_N_m").unit == "N");
   for (const char* name : {"Tiempo (s)", "Tempo [s]", "RecTime", "timestamps", "Zeit rel. [s]"}) {

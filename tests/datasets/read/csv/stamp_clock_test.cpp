@@ -8,14 +8,14 @@ using namespace rigcal::datasets;
 
 namespace {
 
-struct Counted {
+struct ClockSeconds {
   std::vector<std::optional<double>> seconds;
   std::string doubt;
 };
 
-Counted counted(const std::vector<std::string>& texts) {
+ClockSeconds clock_seconds(const std::vector<std::string>& texts) {
   StampClock clock;
-  Counted result;
+  ClockSeconds result;
   for (const std::string& text : texts) result.seconds.push_back(clock.seconds(*time_stamp(text)));
   result.doubt = clock.doubt();
   return result;
@@ -35,7 +35,7 @@ TEST_CASE("StampClock: one order of day and month in all dates of a file", "[dat
            {"12.07.2024 23:59:59", "13.07.2024 00:00:00", "13.07.2024 00:00:01"},
            {"2024-07-03 23:59:59", "2024-07-04 00:00:00", "2024-07-04 00:00:01"}}) {
     CAPTURE(texts[0]);
-    const Counted found = counted(texts);
+    const ClockSeconds found = clock_seconds(texts);
     CHECK(found.seconds == midnight);
     CHECK(found.doubt.empty());
   }
@@ -45,23 +45,23 @@ TEST_CASE("StampClock: one order of day and month in all dates of a file", "[dat
            {"01/02/2024 23:59:59", "01/03/2024 00:00:00", "01/03/2024 00:00:01"},
            {"03.04.24 23:59:59", "04.04.24 00:00:00", "04.04.24 00:00:01"}}) {
     CAPTURE(texts[0]);
-    const Counted found = counted(texts);
+    const ClockSeconds found = clock_seconds(texts);
     CHECK(found.seconds == midnight);
     CHECK_FALSE(found.doubt.empty());
   }
   // The order does not change again.
-  const Counted other =
-      counted({"12/07/2024 23:59:59", "13/07/2024 00:00:00", "07/14/2024 00:00:00"});
+  const ClockSeconds other =
+      clock_seconds({"12/07/2024 23:59:59", "13/07/2024 00:00:00", "07/14/2024 00:00:00"});
   CHECK_FALSE(other.seconds.back());
-  // One date alone does not tell, and need not.
-  const Counted day = counted({"01/02/2024 10:00:00", "01/02/2024 10:00:05"});
+  // One date alone leaves the order open.
+  const ClockSeconds day = clock_seconds({"01/02/2024 10:00:00", "01/02/2024 10:00:05"});
   CHECK(day.seconds == Seconds{0.0, 5.0});
   CHECK(day.doubt.empty());
 }
 
 TEST_CASE("StampClock: times of day pass midnight, and do not go back", "[datasets]") {
   using Seconds = std::vector<std::optional<double>>;
-  CHECK(counted({"23:59:59.5", "00:00:00.5", "00:00:01"}).seconds == Seconds{0.0, 1.0, 1.5});
-  CHECK(counted({"12:00:01", "12:00:00"}).seconds == Seconds{0.0, -1.0});
-  CHECK_FALSE(counted({"23:59:59", "2024-03-01 00:00:00"}).seconds.back());
+  CHECK(clock_seconds({"23:59:59.5", "00:00:00.5", "00:00:01"}).seconds == Seconds{0.0, 1.0, 1.5});
+  CHECK(clock_seconds({"12:00:01", "12:00:00"}).seconds == Seconds{0.0, -1.0});
+  CHECK_FALSE(clock_seconds({"23:59:59", "2024-03-01 00:00:00"}).seconds.back());
 }
