@@ -37,9 +37,9 @@ constexpr std::size_t kFewestSignals = 3;
 /// Returns how many signals the first printed sheet has room for, below its doubts and values.
 /// Heights are those of the print style.
 std::size_t signals_with_room(std::size_t doubt_lines, std::size_t values, bool is_signed) {
-  constexpr double kRoomMm = 148.0;   // an A4 sheet less headings, verdict, rule and item
+  constexpr double kRoomMm = 156.0;   // an A4 sheet less headings, verdict, rule and item
   constexpr double kSignedMm = 25.0;  // sensors and signatures
-  constexpr double kDoubtMm = 3.4;
+  constexpr double kDoubtMm = 3.2;
   constexpr double kValueMm = 5.4;
   constexpr double kSignalMm = 8.6;
   const double room = kRoomMm - (is_signed ? kSignedMm : 0.0) -

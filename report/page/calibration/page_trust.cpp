@@ -81,6 +81,7 @@ doc::Row bootstrap_row(const calib::FittedParameter& parameter,
 doc::Table lack_of_fit_table(const StoredFit& fit) {
   const calib::LackOfFitTests& lack = *fit.lack_of_fit;
   doc::Table table{"Lack of fit by condition"};
+  table.style = "noise-tests";
   table.columns = {{"Condition"},
                    {"Channel"},
                    {"Against"},
