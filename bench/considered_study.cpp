@@ -100,7 +100,8 @@ const std::vector<ForeignEffect> kEffects{
     {"valve_hysteresis", 0.01, true, [](ForeignRig& r, double s) { r.valve_play_v = s; }},
     {"stribeck_friction", 10.0, true, [](ForeignRig& r, double s) { r.breakaway_n = s; }},
     {"sample_time", 1e-3, true,
-     [](ForeignRig& r, double s) { r.controller_tick_s = 1e-5 * std::round(1e5 * s); }}};
+     [](ForeignRig& r, double s) { r.controller_tick_s = 1e-5 * std::round(1e5 * s); }},
+    {"loop_gain", 2e-3, false, [](ForeignRig& r, double s) { r.loop_gain = s; }}};
 
 /// Effects that are not in the catalogue. The detectable size is computed by scaling the size given
 /// here.
@@ -170,8 +171,6 @@ const std::vector<ForeignEffect> kOthers{
     {"steps of the reference", 0.0001, true,
      [](ForeignRig& r, double s) { r.reference_step_m = s; }},
     {"a start off the middle", 0.0001, false, [](ForeignRig& r, double s) { r.start_m = s; }},
-    {"a controller that sees the sensor's gain", 0.002, false,
-     [](ForeignRig& r, double s) { r.loop_gain = s; }},
     {"a controller that sees the sensor's bow", 0.000152, false,
      [](ForeignRig& r, double s) {
        r.sensor_in_loop = true;

@@ -73,6 +73,7 @@ std::vector<SizedQuantity> effect_names(model::PlantKind plant) {
     names.push_back({std::string(key), unit_of(plant, index)});
   }
   names.push_back({"supply_sag", "1"});
+  names.push_back({"loop_gain", "1"});
   const bool turns = plant == model::PlantKind::linkage;
   names.push_back({"valve_hysteresis", "V"});
   if (turns) names.push_back({"pilot_hysteresis", "Pa"});

@@ -163,6 +163,10 @@ constexpr std::array kCatalogue{
                  [](const RigScale& rig) {
                    return EffectSize{0.01 * rig.kd, "1 % of its value"};
                  }},
+    CatalogueRow{"loop_gain", EffectKind::loop_gain, false, "gain of the sensor that the loop sees",
+                 [](const RigScale&) {
+                   return EffectSize{2e-3, "0.2 % of the reading"};
+                 }},
     CatalogueRow{"sample_time", EffectKind::sampling, true, "sampling of the controller",
                  [](const RigScale& rig) {
                    return EffectSize{std::clamp(rig.sample_s, kShortestPeriod_s, kLongestPeriod_s),
@@ -406,11 +410,53 @@ bool is_in_model(const Problem& problem, std::string_view key, int index) {
     if (key == "valve_time_constant" && each.values.is_given("valve_frequency")) return true;
   }
   if (const auto channel = sensor_channel(key)) {
-    const auto& stated = problem.campaign->channels.at(*channel);
-    if (key.ends_with("_gain") && stated.gain_sd > 0.0) return true;
-    if (key.ends_with("_offset") && stated.offset_sd > 0.0) return true;
+    const auto stated = problem.campaign->channels.find(*channel);
+    if (stated == problem.campaign->channels.end()) return false;
+    if (key.ends_with("_gain") && stated->second.gain_sd > 0.0) return true;
+    if (key.ends_with("_offset") && stated->second.offset_sd > 0.0) return true;
   }
   return false;
+}
+
+/// Returns the gain of the sensor that a motion loop sees; empty for loops on other quantities.
+std::string_view sensor_gain_of(model::Feedback feedback) {
+  if (feedback == model::Feedback::position) return "position_gain";
+  return feedback == model::Feedback::angle ? "angle_gain" : "";
+}
+
+/// Returns true if a loop may see the same error of the sensor's gain as the records: a motion loop
+/// with generated references, whose sensor has no stated or fitted gain.
+bool sees_its_sensor(const Problem& problem) {
+  const std::string_view gain = sensor_gain_of(problem.campaign->rig.feedback);
+  if (gain.empty() ||
+      is_in_model(problem, gain, model::parameter_index(problem.campaign->rig.plant, gain)))
+    return false;
+  return std::all_of(problem.conditions.begin(), problem.conditions.end(), [](const auto& each) {
+    return each.rig.controller != model::ControllerKind::none &&
+           each.condition->waveform != datasets::Waveform::recorded;
+  });
+}
+
+/// Gives a loop the error of its sensor's gain. Its controller computes with the reading (1 + e) x
+/// and therefore acts as if its gains were larger and its reference smaller by this factor. The
+/// reading itself has the gain, too. A recorded reference stays as it is.
+void see_with_gain(const Problem& problem, std::size_t condition, double error,
+                   model::ParameterValues& values, model::SimulationInputs& inputs) {
+  const ProblemCondition& data = problem.conditions[condition];
+  if (data.condition->waveform == datasets::Waveform::recorded) return;
+  const double factor = 1.0 + error;
+  const model::FeedbackRow& loop = model::gain_keys(data.rig.feedback);
+  for (const std::string_view key :
+       {loop.kp, loop.ki, loop.kd, loop.velocity_feedforward, loop.acceleration_feedforward,
+        sensor_gain_of(data.rig.feedback)}) {
+    const int index = model::parameter_index(data.rig.plant, key);
+    if (index < 0) continue;
+    const double value = values.value[static_cast<std::size_t>(index)];
+    if (value != 0.0) values.set(index, factor * value);
+  }
+  datasets::Condition smaller = *data.condition;
+  if (smaller.amplitude) *smaller.amplitude /= factor;
+  inputs.drive = datasets::inputs_of(*problem.campaign, smaller, values, data.record).drive;
 }
 
 /// Returns the effects in the catalogue that may act in a problem, regardless of the campaign's
@@ -429,6 +475,7 @@ std::vector<Effect> possible_effects(const Problem& problem, std::span<const dou
         std::find_if(names.begin(), names.end(), [&](const auto& each) { return each.key == key; });
     if (name == names.end()) continue;
     if (is_of_other_valve(key, problem.campaign->rig.pilot)) continue;
+    if (row.kind == EffectKind::loop_gain && !sees_its_sensor(problem)) continue;
     Effect effect;
     effect.kind = row.kind;
     effect.curved = is_curved(key);
@@ -588,6 +635,7 @@ OutputsWith outputs_with(const Problem& problem, std::size_t condition, std::spa
   double sag = 0.0;
   const Effect* line = nullptr;
   double play = 0.0;
+  double loop_gain = 0.0;
   std::size_t sampling = effects.size();
   for (std::size_t e = 0; e < effects.size(); ++e) {
     if (size_of(e) == 0.0) continue;
@@ -601,8 +649,12 @@ OutputsWith outputs_with(const Problem& problem, std::size_t condition, std::spa
       play = size_of(e);
     } else if (effects[e].kind == EffectKind::sampling) {
       sampling = e;
+    } else if (effects[e].kind == EffectKind::loop_gain) {
+      loop_gain = size_of(e);
     }
   }
+  model::SimulationInputs driven = data.inputs;
+  if (loop_gain != 0.0) see_with_gain(problem, condition, loop_gain, values, driven);
   const auto run = [&](const model::ParameterValues& at, const std::vector<int>& rows,
                        const model::SimulationOptions& with) {
     std::vector<Output> outputs = data.outputs;
@@ -610,9 +662,9 @@ OutputsWith outputs_with(const Problem& problem, std::size_t condition, std::spa
                                const std::vector<int>& columns) {
       return model::simulate(data.rig, at, columns, inputs, data.fit_times(), outputs, with);
     };
-    if (line == nullptr && play == 0.0) return simulated(data.inputs, rows);
+    if (line == nullptr && play == 0.0) return simulated(driven, rows);
     outputs.insert(outputs.end(), {Output::servo_flow, valve_drive(at)});
-    model::SimulationInputs inputs = data.inputs;
+    model::SimulationInputs inputs = driven;
     const auto periods = periods_of(inputs, data.fit_times());
     model::Simulation simulation = simulated(inputs, {});
     const int rounds = play != 0.0 ? kPlayRounds : 1;
@@ -748,6 +800,8 @@ std::vector<Eigen::MatrixXd> effect_changes(const Problem& problem, std::size_t 
         inputs.spool_error = spool_error(times_s, driven, size, periods);
       } else if (effect.kind == EffectKind::supply_sag) {
         inputs.supply_pressure_pa = sagging_supply(effect, values, times_s, flow, size, periods);
+      } else if (effect.kind == EffectKind::loop_gain) {
+        see_with_gain(problem, condition, size, changed, inputs);
       } else {
         changed.set(effect.index, values.value[static_cast<std::size_t>(effect.index)] + size);
         // A sensor changes no reading but its own, since the loop does not use it, unless the run

@@ -19,6 +19,7 @@ enum class EffectKind {
   sampling,    ///< the controller acts only at ticks, and the parameter is their period
   supply_sag,  ///< the supply pressure falls with the flow taken from it
   valve_play,  ///< the spool moves only after the signal has taken up the play
+  loop_gain,   ///< gain of the sensor whose reading is both recorded and fed back to the controller
   bow,         ///< nonlinearity of the motion sensor that is quadratic in the reading
   wave,        ///< nonlinearity of the motion sensor in the form of one sine wave over the range
   hysteresis,  ///< play of the motion sensor
@@ -105,7 +106,7 @@ inline constexpr double kEffectStep = 0.1;
 
 /// Returns the weighted outputs of one condition with all effects active at once. The derivatives
 /// neglect how motion sensor errors, supply sag and valve play depend on the unknowns, and treat
-/// the controller as continuous.
+/// the controller as continuous and its gains as those of an exact sensor.
 ///
 /// @param sizes  sizes of the effects, as multiples of their plausible sizes
 OutputsWith outputs_with(const Problem& problem, std::size_t condition, std::span<const double> z,
