@@ -1,10 +1,9 @@
-#include "calib/score/judges.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "calib/score/judges.hpp"
 #include "calib/trust/lack_of_fit.hpp"
 #include "common/significant.hpp"
 #include "metrics/metric_table.hpp"

@@ -1,5 +1,3 @@
-#include "calib/score/judges.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -8,6 +6,7 @@
 #include <set>
 #include <string>
 
+#include "calib/score/judges.hpp"
 #include "common/significant.hpp"
 
 namespace rigcal::calib {

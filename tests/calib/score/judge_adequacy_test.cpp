@@ -1,7 +1,6 @@
-#include "calib/score/judges.hpp"
-
 #include <catch2/catch.hpp>
 
+#include "calib/score/judges.hpp"
 #include "tests/calib/assessment_scene.hpp"
 
 namespace rigcal::calib {

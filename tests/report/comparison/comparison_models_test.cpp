@@ -1,8 +1,7 @@
-#include "report/comparison/comparison_parts.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "report/comparison/comparison_parts.hpp"
 #include "tests/report/stored_fixture.hpp"
 
 using Catch::Contains;

@@ -1,7 +1,6 @@
-#include "report/store/csv.hpp"
-
 #include <catch2/catch.hpp>
 
+#include "report/store/csv.hpp"
 #include "tests/report/stored_fixture.hpp"
 
 using rigcal::report::Json;
