@@ -163,7 +163,7 @@ TEST_CASE("leak-table: of a fitted rig, whatever the campaign assumes", "[apps]"
   CHECK(guessed["entries"][0]["coefficients_ci95"][0].is_null());
   CHECK(guessed["entries"][0]["coefficients"] != fitted["entries"][0]["coefficients"]);
   CHECK_THAT(warned, Contains("warning: [leak_table.assumptions] replace") &&
-                         Contains("valve_gain (5e-05 for") && Contains("--fit"));
+                         Contains("valve_gain (50 µm/V for") && Contains("--fit"));
   // fitted.toml together with the fit gives the same table.
   const auto [again, same] = table("fit/fitted.toml", {"--fit", "fit/fit.json"});
   CHECK(same["entries"] == fitted["entries"]);

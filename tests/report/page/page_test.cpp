@@ -774,7 +774,7 @@ TEST_CASE("page: page one has eight signals, those held back and the worst first
     json["conditions"].push_back(next);
   }
   const std::string html = page(json);
-  const std::size_t begin = html.find("<table class=\"signals\">");
+  const std::size_t begin = html.find("<table class=\"signals stack\">");
   REQUIRE(begin != std::string::npos);
   const std::string table = html.substr(begin, html.find("</table>", begin) - begin);
   CHECK(table.find(">c3<") < table.find(">c10<"));
@@ -805,7 +805,7 @@ TEST_CASE("page: a signal that fails is on page one, however many are held back"
   }
   json["verdict"] = "FAIL";
   const std::string html = page(json);
-  const std::size_t begin = html.find("<table class=\"signals\">");
+  const std::size_t begin = html.find("<table class=\"signals stack\">");
   REQUIRE(begin != std::string::npos);
   const std::string table = html.substr(begin, html.find("</table>", begin) - begin);
   REQUIRE(table.find(">c1<") != std::string::npos);

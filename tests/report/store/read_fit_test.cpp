@@ -86,8 +86,9 @@ TEST_CASE("earlier_fit: the larger error of a value counts, and without one its 
   Json fit = fit_of({{1.0, 0.5}, {0.5, 1.0}});
   fit["parameters"][0]["standard_error"] = 2.0;
   fit["parameters"][0]["robust_standard_error"] = 3.0;
-  fit["parameters"][1]["standard_error"] = 5.0;
-  fit["parameters"][1]["robust_standard_error"] = 4.0;
+  const auto damping = fit["parameters"].size() - 1;
+  fit["parameters"][damping]["standard_error"] = 5.0;
+  fit["parameters"][damping]["robust_standard_error"] = 4.0;
   const auto covariance = [&] {
     return earlier_fit(as<StoredFit>(fit, "", "fit.json"), "fit.json",
                        rigcal::model::PlantKind::load_pressure)
@@ -99,10 +100,10 @@ TEST_CASE("earlier_fit: the larger error of a value counts, and without one its 
   CHECK_THAT(found(1, 1), Catch::WithinRel(25.0, 1e-12));
   CHECK_THAT(found(0, 1), Catch::WithinRel(0.5 * 3.0 * 5.0, 1e-12));
   for (const char* error : {"standard_error", "robust_standard_error"})
-    fit["parameters"][1][error] = nullptr;
-  fit["parameters"][1]["ci95"] = nullptr;
-  fit["parameters"][1]["lower"] = 10.0;
-  fit["parameters"][1]["upper"] = 16.0;
+    fit["parameters"][damping][error] = nullptr;
+  fit["parameters"][damping]["ci95"] = nullptr;
+  fit["parameters"][damping]["lower"] = 10.0;
+  fit["parameters"][damping]["upper"] = 16.0;
   // A uniform distribution of width w has a variance of w^2 / 12.
   CHECK_THAT(covariance()(1, 1), Catch::WithinRel(3.0, 1e-12));
 }
