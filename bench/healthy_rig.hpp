@@ -13,7 +13,7 @@ inline diagnosis::RigFit rig_of(const datasets::Campaign& campaign, const calib:
   stored.findings() = Inlined<calib::Findings>(fit);
   const report::EarlierFit earlier = report::earlier_fit(stored, "fit", campaign.rig.plant);
   diagnosis::RigFit rig{earlier.values, earlier.indices, earlier.covariance};
-  if (earlier.spread) rig.consider(*earlier.spread, campaign.diagnosis.leak_law);
+  if (earlier.joint) rig.consider(*earlier.joint, campaign.diagnosis.leak_law);
   return rig;
 }
 
