@@ -630,14 +630,16 @@ void add_aspects(const StoredFit& fit, doc::Blocks& blocks) {
     const calib::Aspect& found = (*fit.assessment).*aspect.aspect;
     doc::Aspects::Aspect one{doc::badge(found.state), aspect.short_name, {}};
     const auto against = static_cast<std::size_t>(
-        std::count_if(found.reasons.begin(), found.reasons.end(),
-                      [](const calib::Reason& each) { return calib::is_against(each.state); }));
+        std::count_if(found.reasons.begin(), found.reasons.end(), [&](const calib::Reason& each) {
+          return calib::is_against(each.state) && each.state == found.state;
+        }));
     const auto in_favour =
         std::find_if(found.reasons.begin(), found.reasons.end(),
                      [](const calib::Reason& each) { return each.state == AspectState::pass; });
     if (against > 0)
-      one.lines.push_back({doc::Link{"#assessment", fmt::format("{}: {} against", one.badge.words,
-                                                                plural(against, "reason"))}});
+      one.lines.push_back({doc::Link{"#assessment", found.state == AspectState::fail
+                                                        ? "fails for " + plural(against, "reason")
+                                                        : plural(against, "reservation")}});
     if (in_favour != found.reasons.end())
       one.lines.push_back({in_favour->words});
     else if (against == 0)

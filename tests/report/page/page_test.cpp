@@ -731,6 +731,17 @@ TEST_CASE("page: the posterior says how probable each leak class is", "[report]"
   CHECK_THAT(page(json), !Contains("Probability of each leak class"));
 }
 
+TEST_CASE("page: an aspect says how many reasons it has for its own state", "[report]") {
+  Json json = stored_result();
+  json["verdict"] = "FAIL";
+  speak(json, "adequacy", "reservation", "lack_of_fit", "lack of fit of a");
+  speak(json, "agreement", "reservation", "recording_doubtful", "a spike");
+  speak(json, "agreement", "fail", "limit_broken", "a breaks its limit");
+  speak(json, "agreement", "fail", "limit_broken", "b breaks its limit");
+  const std::string html = page(json);
+  CHECK_THAT(html, Contains(">fails for 2 reasons<") && Contains(">1 reservation<"));
+}
+
 TEST_CASE("page: every kind of doubt is told before one signs", "[report]") {
   Json json = stored_result();
   json["verdict"] = "WARN";
