@@ -107,7 +107,7 @@ void add_content(const Cell& cell, std::string& page) {
                         100.0 * std::clamp(*cell.portion, 0.0, 1.0));
   bool first = cell.line.empty();
   for (const Line& line : cell.below) {
-    if (!first) page += "<br>";
+    if (!first) page += "<br> ";  // a phone hides the break, and the space separates the words
     page += "<small>" + html(line) + "</small>";
     first = false;
   }
@@ -187,7 +187,7 @@ void add(const Table& table, std::string& page) {
   for (const Column& column : table.columns) {
     page += "<th scope=\"col\"" + html_attribute("class", class_of(column.kind)) + ">" +
             escaped(column.title);
-    if (!column.below.empty()) page += "<br><small>" + escaped(column.below) + "</small>";
+    if (!column.below.empty()) page += "<br> <small>" + escaped(column.below) + "</small>";
     page += "</th>";
   }
   page += "</tr></thead>\n<tbody>\n";
