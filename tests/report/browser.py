@@ -114,7 +114,7 @@ class Browser:
         return result["result"].get("value")
 
     def wait_for(self, script, what, frame=None):
-        for _ in range(600):
+        for _ in range(2400):  # two minutes; a busy machine needs half a minute for the longest record
             if self.run(script, frame):
                 return
             time.sleep(0.05)
