@@ -20,7 +20,7 @@ constexpr double kSmoothSign = 0.05;     // fraction of the highest speed
 constexpr Eigen::Index kFewestMeans = 100;
 constexpr std::size_t kMostMeans = 20'000;  // so that a record of an hour costs no second
 
-/// ChamberMotion and pressures at equal distances in time, all smoothed alike.
+/// Motion and pressures at equal time steps, all smoothed alike.
 struct ChamberMotion {
   Eigen::VectorXd position, speed, acceleration, pressure_a, pressure_b;
 };
@@ -122,8 +122,7 @@ std::string swapped_chambers_warning(const Campaign& campaign, const Record& rec
   }
   return fmt::format(
       "pressure_a falls and pressure_b rises where the {0} accelerates, as if each were that of "
-      "the "
-      "other chamber: are their columns swapped, or is the sign of the {0} wrong?",
+      "the other chamber: are their columns swapped, or is the sign of the {0} wrong?",
       motion.key);
 }
 

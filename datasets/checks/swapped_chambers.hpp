@@ -7,8 +7,8 @@
 
 namespace rigcal::datasets {
 
-/// Returns a warning if the pressures of a record are those of the other chamber each. Empty
-/// otherwise, also if the record does not show it.
+/// Returns a warning if each pressure of a record appears to be that of the other chamber. Returns
+/// an empty text otherwise, and if the record does not show which is which.
 ///
 /// The pressure in chamber A minus that in chamber B, each times its area, is mass times
 /// acceleration plus friction plus load. Friction grows with the velocity, and most loads follow
