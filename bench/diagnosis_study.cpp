@@ -170,7 +170,7 @@ diagnosis::RigFit healthy_fit(Campaign& campaign, const std::vector<RepeatRecord
     return bench::rig_of(campaign, fit);
   datasets::ParameterSetting& supply = setting_of(campaign, "supply_pressure");
   supply.lower = supply.upper = std::numeric_limits<double>::quiet_NaN();
-  datasets::differ_between_repeats(datasets::spec_of(campaign.rig.plant, supply.index),
+  datasets::differ_between_repeats(model::parameter_spec(campaign.rig.plant, supply.index),
                                    *repeats->cause_sd * supply.value, supply);
   const calib::Fit again = usable_fit(campaign, records);
   return bench::rig_of(campaign, again);

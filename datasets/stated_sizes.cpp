@@ -53,7 +53,7 @@ constexpr std::array kOfParameters{"valve_time_constant",
                                    "payload_acceleration_offset"};
 
 std::string unit_of(model::PlantKind plant, int index) {
-  return std::string(model::parameter_table(plant)[static_cast<std::size_t>(index)].unit);
+  return std::string(model::parameter_spec(plant, index).unit);
 }
 
 }  // namespace

@@ -21,10 +21,9 @@ struct Parameter {
 };
 
 std::vector<Parameter> campaign_parameters(const Campaign& self) {
-  const auto table = model::parameter_table(self.campaign.rig.plant);
   std::vector<Parameter> parameters;
   for (const datasets::ParameterSetting& setting : self.campaign.parameters)
-    parameters.push_back({setting, table[static_cast<std::size_t>(setting.index)]});
+    parameters.push_back({setting, model::parameter_spec(self.campaign.rig.plant, setting.index)});
   return parameters;
 }
 

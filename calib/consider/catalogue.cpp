@@ -402,8 +402,7 @@ bool is_in_model(const Problem& problem, std::string_view key, int index) {
       }))
     return true;
   if (changes_value(key, loop)) return false;
-  const auto& spec =
-      model::parameter_table(problem.campaign->rig.plant)[static_cast<std::size_t>(index)];
+  const auto& spec = model::parameter_spec(problem.campaign->rig.plant, index);
   const double neutral = spec.default_value.value_or(0.0);
   for (const ProblemCondition& each : problem.conditions) {
     if (each.values.value[static_cast<std::size_t>(index)] != neutral) return true;
@@ -428,9 +427,8 @@ std::string_view sensor_gain_of(model::Feedback feedback) {
 /// with generated references, whose sensor has no stated or fitted gain.
 bool sees_its_sensor(const Problem& problem) {
   const std::string_view gain = sensor_gain_of(problem.campaign->rig.feedback);
-  if (gain.empty() ||
-      is_in_model(problem, gain, model::parameter_index(problem.campaign->rig.plant, gain)))
-    return false;
+  const int index = model::parameter_index(problem.campaign->rig.plant, gain);
+  if (index < 0 || is_in_model(problem, gain, index)) return false;
   return std::all_of(problem.conditions.begin(), problem.conditions.end(), [](const auto& each) {
     return each.rig.controller != model::ControllerKind::none &&
            each.condition->waveform != datasets::Waveform::recorded;

@@ -80,8 +80,7 @@ bool changes_start(const model::Rig& rig, const model::ParameterValues& values,
   const model::Sensor sensor = model::sensor_of(output, values);
   if (sensor.gain < 0 || (index != sensor.gain && index != sensor.offset)) return false;
   constexpr std::string_view kGain = "_gain";
-  const std::string_view key =
-      model::parameter_table(values.plant)[static_cast<std::size_t>(sensor.gain)].key;
+  const std::string_view key = model::parameter_spec(values.plant, sensor.gain).key;
   const int initial = model::parameter_index(
       values.plant, "initial_" + std::string(key.substr(0, key.size() - kGain.size())));
   if (initial < 0) return false;

@@ -42,16 +42,13 @@ bool is_set(const std::atomic<bool>* flag) { return flag != nullptr && flag->loa
 
 // Functions that check the names of parameters.
 
-const model::ParameterSpec& spec_at(const Campaign& campaign, int index) {
-  return model::parameter_table(campaign.rig.plant)[static_cast<std::size_t>(index)];
-}
-
 [[noreturn]] void fail_known(const Campaign& campaign, const TrialRig& rig, int index,
                              const std::string& name) {
   const datasets::ParameterSetting* setting = campaign.setting(index);
-  const std::string section = spec_at(campaign, index).kind == model::ParameterKind::controller
-                                  ? "controller"
-                                  : "parameters";
+  const std::string section =
+      model::parameter_spec(campaign.rig.plant, index).kind == model::ParameterKind::controller
+          ? "controller"
+          : "parameters";
   if (setting != nullptr && setting->fit)
     throw InputError(rig.settings().where,
                      fmt::format("key 'design.like': --design names {0}, but \"{1}\" has a known "
@@ -69,7 +66,8 @@ std::vector<std::size_t> named_unknowns(const Campaign& campaign, const TrialRig
                                         const std::vector<std::string>& names) {
   const auto& unknowns = rig.problem().map.unknowns();
   std::vector<std::string> fitted;
-  for (const Unknown& unknown : unknowns) fitted.emplace_back(spec_at(campaign, unknown.index).key);
+  for (const Unknown& unknown : unknowns)
+    fitted.emplace_back(model::parameter_spec(campaign.rig.plant, unknown.index).key);
   std::set<std::size_t> found;
   for (const std::string& name : names) {
     const int index = model::parameter_index(campaign.rig.plant, name);

@@ -45,8 +45,7 @@ void require_levels(const Campaign& campaign, const datasets::Condition& conditi
     if (!setting.fit || setting.scope != datasets::Scope::leak_level ||
         known_in(campaign, condition, setting.index))
       continue;
-    const auto& spec =
-        model::parameter_table(campaign.rig.plant)[static_cast<std::size_t>(setting.index)];
+    const auto& spec = model::parameter_spec(campaign.rig.plant, setting.index);
     throw InputError(condition.where,
                      fmt::format("key 'design': {} has one value per leak level: expected like = "
                                  "\"...\", the id of a condition of the level at which the test "

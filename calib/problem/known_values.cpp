@@ -33,7 +33,7 @@ bool is_nuisance(const Campaign& campaign, int index) {
     scope = value.scope;
     levels.push_back(fmt::format("\"{}\"", value.level));
   }
-  const auto key = model::parameter_table(campaign.rig.plant)[static_cast<std::size_t>(index)].key;
+  const auto key = model::parameter_spec(campaign.rig.plant, index).key;
   if (levels.empty()) {
     throw InputError(condition.where,
                      fmt::format("condition \"{}\": the fit has no value for {}, which this "

@@ -90,13 +90,12 @@ std::string level_in(const Condition& condition, Scope scope, std::string_view p
 ParameterMap::ParameterMap(const Campaign& campaign,
                            const std::vector<const Condition*>& conditions, bool nuisance_only,
                            const std::vector<Unknown>& extra, const std::vector<int>& repeats) {
-  const auto table = model::parameter_table(campaign.rig.plant);
   std::vector<ParameterSetting> settings = campaign.parameters;
   std::stable_sort(settings.begin(), settings.end(),
                    [](const auto& a, const auto& b) { return a.index < b.index; });
   for (const ParameterSetting& setting : settings) {
     if (!setting.fit || (nuisance_only && !setting.nuisance)) continue;
-    const auto key = table[static_cast<std::size_t>(setting.index)].key;
+    const auto key = model::parameter_spec(campaign.rig.plant, setting.index).key;
     const std::size_t first = unknowns_.size();
     for (std::size_t i = 0; i < conditions.size(); ++i) {
       const Condition* condition = conditions[i];
@@ -113,7 +112,8 @@ ParameterMap::ParameterMap(const Campaign& campaign,
     if (unknowns_.size() > first) check(unknowns_.back(), key, setting.where);
   }
   for (const Unknown& unknown : extra) {
-    check(unknown, table[static_cast<std::size_t>(unknown.index)].key, {campaign.file.string()});
+    check(unknown, model::parameter_spec(campaign.rig.plant, unknown.index).key,
+          {campaign.file.string()});
     unknowns_.push_back(unknown);
   }
   std::stable_sort(unknowns_.begin(), unknowns_.end(),

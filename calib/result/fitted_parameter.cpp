@@ -21,7 +21,7 @@ FittedParameter parameter_in_row(model::PlantKind plant, int index, Scope scope,
                                  const std::string& level) {
   FittedParameter parameter;
   parameter.index = index;
-  parameter.name_after(model::parameter_table(plant)[static_cast<std::size_t>(index)]);
+  parameter.name_after(model::parameter_spec(plant, index));
   parameter.scope = scope;
   if (scope != Scope::rig) parameter.level = level;
   return parameter;

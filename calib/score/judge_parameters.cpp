@@ -62,7 +62,6 @@ Reason judge_bounded(const Campaign& campaign, const Fit& fit, const FittedParam
 /// Notes the known values that are treated as exact because the campaign states no `prior_sd` for
 /// them.
 void note_exact_values(const Campaign& campaign, const Fit& fit, std::vector<Reason>& reasons) {
-  const auto table = model::parameter_table(campaign.rig.plant);
   std::set<int> uncertain;
   for (const FittedParameter& each : fit.parameters) {
     if (each.fitted) uncertain.insert(each.index);
@@ -73,7 +72,7 @@ void note_exact_values(const Campaign& campaign, const Fit& fit, std::vector<Rea
   std::vector<std::string> names;
   std::set<int> seen;
   for (const FittedParameter& each : fit.parameters) {
-    const model::ParameterSpec& spec = table[static_cast<std::size_t>(each.index)];
+    const model::ParameterSpec& spec = model::parameter_spec(campaign.rig.plant, each.index);
     if (uncertain.contains(each.index) || !spec.can_be_fitted ||
         spec.kind == model::ParameterKind::initial || !seen.insert(each.index).second) {
       continue;
@@ -184,12 +183,11 @@ void judge_missing(const Fit& fit, std::vector<Reason>& reasons) {
 /// Judges whether the validation records alone lead to the same estimates.
 void judge_stability(const Campaign& campaign, const Fit& fit, std::vector<Reason>& reasons) {
   if (!fit.stability || fit.stability->empty()) return;
-  const auto table = model::parameter_table(campaign.rig.plant);
   std::vector<std::string> words;
   for (const StabilityCheck& each : *fit.stability) {
     if (!each.differs) continue;
     const int row = model::parameter_index(campaign.rig.plant, each.key);
-    const auto& spec = table[static_cast<std::size_t>(row)];
+    const auto& spec = model::parameter_spec(campaign.rig.plant, row);
     words.push_back(fmt::format("{} {:.4g} {} ({:+.2g}, {:.2g} allowed)",
                                 parameter_label(each.key, each.scope, each.level), each.value,
                                 spec.unit, each.difference, each.expanded));

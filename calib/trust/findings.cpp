@@ -76,10 +76,9 @@ void warn_of_priors(const Problem& problem, const std::vector<FittedParameter>& 
            "records and prior disagree: the fit ends at");
     }
   }
-  const auto table = model::parameter_table(problem.campaign->rig.plant);
   for (const auto& setting : problem.campaign->parameters) {
     if (!setting.prior || setting.fit) continue;
-    const auto& spec = table[static_cast<std::size_t>(setting.index)];
+    const auto& spec = model::parameter_spec(problem.campaign->rig.plant, setting.index);
     warn(std::string(spec.key), setting.value, *setting.prior, spec.unit, "known, and taken to be");
   }
 }

@@ -40,10 +40,9 @@ void add_sensor(const Problem& problem, const datasets::ChannelSetting& channel,
 }
 
 std::vector<Known> uncertain_values(const Problem& problem) {
-  const auto table = model::parameter_table(problem.campaign->rig.plant);
   std::vector<Known> result;
   for (const auto& setting : problem.campaign->parameters) {
-    const auto& spec = table[static_cast<std::size_t>(setting.index)];
+    const auto& spec = model::parameter_spec(problem.campaign->rig.plant, setting.index);
     if (setting.prior && !setting.fit && spec.can_be_fitted)
       result.push_back({std::string(spec.name), setting.index, setting.prior->sd, false});
   }

@@ -260,8 +260,7 @@ void add_to(const Problem& problem, std::size_t i, std::span<const double> z,
   if (condition.condition->use != datasets::Use::fit && root.rows() > 0) {
     explain(condition, gradients, root, score);
     std::vector<std::string> keys;
-    for (const int index : free)
-      keys.emplace_back(model::parameter_table(values.plant)[static_cast<std::size_t>(index)].key);
+    for (const int index : free) keys.emplace_back(model::parameter_spec(values.plant, index).key);
     find_open(condition, gradients, root, keys, score);
   }
   for (std::size_t k = 0; k < condition.channels.size(); ++k) {

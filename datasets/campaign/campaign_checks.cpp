@@ -24,7 +24,7 @@ bool overrides(const Overrides& values, int index) {
 }
 
 bool is_initial(const Campaign& campaign, int index) {
-  return spec_of(campaign.rig.plant, index).kind == model::ParameterKind::initial;
+  return model::parameter_spec(campaign.rig.plant, index).kind == model::ParameterKind::initial;
 }
 
 void check_initial(const Campaign& campaign) {
@@ -34,9 +34,10 @@ void check_initial(const Campaign& campaign) {
       "from zero, \"record\" from the record";
   for (const ParameterSetting& setting : campaign.parameters) {
     if (!is_initial(campaign, setting.index)) continue;
-    throw InputError(setting.where,
-                     fmt::format("key 'rig.parameters.{}': {}",
-                                 spec_of(campaign.rig.plant, setting.index).key, message));
+    throw InputError(
+        setting.where,
+        fmt::format("key 'rig.parameters.{}': {}",
+                    model::parameter_spec(campaign.rig.plant, setting.index).key, message));
   }
   for (const Condition& condition : campaign.conditions) {
     for (const auto& entry : condition.overrides) {
@@ -49,7 +50,7 @@ void check_controller(const Campaign& campaign) {
   if (campaign.rig.controller != model::ControllerKind::none) return;
   for (const Condition& condition : campaign.conditions) {
     for (const auto& entry : condition.overrides) {
-      const model::ParameterSpec& spec = spec_of(campaign.rig.plant, entry.first);
+      const model::ParameterSpec& spec = model::parameter_spec(campaign.rig.plant, entry.first);
       if (spec.kind != model::ParameterKind::controller) continue;
       fail(condition, fmt::format("controller.{} is given, but the rig has no controller: expected "
                                   "type = \"pid\" in [rig.controller]",
@@ -131,7 +132,7 @@ void check_levels(const Campaign& campaign, const Condition& condition) {
     if (overrides(condition.overrides, setting.index)) continue;
     fail(condition, fmt::format("has no leak_level, but {} has one value per leak level: expected "
                                 "leak_level = \"...\"",
-                                spec_of(campaign.rig.plant, setting.index).key));
+                                model::parameter_spec(campaign.rig.plant, setting.index).key));
   }
 }
 

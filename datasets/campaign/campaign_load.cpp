@@ -59,7 +59,7 @@ void read_controller(const TomlNode& node, Campaign& campaign) {
   const auto settings = read_settings(node, campaign.rig.plant, ParameterGroup::controller,
                                       controller_keys().names());
   if (campaign.rig.controller == Kind::none && !settings.empty()) {
-    const std::string key(spec_of(campaign.rig.plant, settings.front().index).key);
+    const std::string key(model::parameter_spec(campaign.rig.plant, settings.front().index).key);
     node.require(key, "a gain").fail("is given, but type is \"none\": expected type = \"pid\"");
   }
   const auto feedback = node.find("feedback");

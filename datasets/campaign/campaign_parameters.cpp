@@ -38,7 +38,7 @@ double read_value(const TomlNode& node, const model::ParameterSpec& spec) {
 int read_index(const TomlNode& table, std::string_view key, model::PlantKind plant,
                ParameterGroup group, const std::vector<std::string>& others) {
   const int index = model::parameter_index(plant, key);
-  if (index >= 0 && belongs_to(spec_of(plant, index), group)) return index;
+  if (index >= 0 && belongs_to(model::parameter_spec(plant, index), group)) return index;
   if (index >= 0) {
     table.require(key, "a parameter")
         .fail(group == ParameterGroup::rig ? "is a controller parameter: expected in "
@@ -167,10 +167,6 @@ void differ_between_repeats(const model::ParameterSpec& spec, double sd,
   if (std::isnan(setting.upper)) setting.upper = std::min(spec.upper, setting.value + kReach * sd);
 }
 
-const model::ParameterSpec& spec_of(model::PlantKind plant, int index) {
-  return model::parameter_table(plant)[static_cast<std::size_t>(index)];
-}
-
 std::vector<std::string> parameter_keys(model::PlantKind plant, ParameterGroup group) {
   std::vector<std::string> keys;
   for (const model::ParameterSpec& spec : model::parameter_table(plant)) {
@@ -254,7 +250,7 @@ std::vector<ParameterSetting> read_settings(const TomlNode& table, model::PlantK
     setting.lower = kNotGiven;
     setting.upper = kNotGiven;
     setting.where = node.where();
-    const model::ParameterSpec& spec = spec_of(plant, setting.index);
+    const model::ParameterSpec& spec = model::parameter_spec(plant, setting.index);
     if (node.is_table()) {
       read_setting_table(node, spec, setting);
     } else {
@@ -279,7 +275,7 @@ Overrides read_overrides(const TomlNode& table, model::PlantKind plant, Paramete
           "a known value: fitted ones belong in [rig.parameters] or [rig.controller], "
           "with scope = \"leak_level\" or \"condition\" if it differs from run to run");
     }
-    overrides.emplace_back(index, read_value(node, spec_of(plant, index)));
+    overrides.emplace_back(index, read_value(node, model::parameter_spec(plant, index)));
   }
   return overrides;
 }

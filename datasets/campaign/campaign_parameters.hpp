@@ -22,8 +22,6 @@ enum class ParameterGroup {
 /// from the value, within the parameter's limits.
 void differ_between_repeats(const model::ParameterSpec& spec, double sd, ParameterSetting& setting);
 
-const model::ParameterSpec& spec_of(model::PlantKind plant, int index);
-
 /// Lists the keys in a group, in the order of the parameter table.
 std::vector<std::string> parameter_keys(model::PlantKind plant, ParameterGroup group);
 

@@ -227,7 +227,7 @@ double most_considered(const TomlNode& entry, const Campaign& campaign, int inde
   const ParameterSetting* setting = campaign.setting(index);
   if (setting != nullptr && (setting->fit || setting->prior))
     entry.fail("is already in the model, with an estimate or a prior: remove its size here");
-  return spec_of(campaign.rig.plant, index).upper;
+  return model::parameter_spec(campaign.rig.plant, index).upper;
 }
 
 double most_between_days(const TomlNode& /*entry*/, const Campaign& campaign, int index,
@@ -235,7 +235,7 @@ double most_between_days(const TomlNode& /*entry*/, const Campaign& campaign, in
   if (index < 0) return kMostTriggerSd_s;
   const ParameterSetting* setting = campaign.setting(index);
   if (setting != nullptr && setting->value > 0.0) return setting->value;
-  return spec_of(campaign.rig.plant, index).upper;
+  return model::parameter_spec(campaign.rig.plant, index).upper;
 }
 
 constexpr SizesSection kConsideredSection{
@@ -265,8 +265,9 @@ KeyForm sizes_form(const SizesSection& section) {
     for (const SizedQuantity& each : section.quantities(plant)) {
       if (find_key(table.keys, each.key) != nullptr) continue;
       const int index = model::parameter_index(plant, each.key);
-      table.keys.push_back({each.key, either_form({quantity_form(each.unit), left_out}, ""),
-                            section.meaning(index < 0 ? nullptr : &spec_of(plant, index))});
+      table.keys.push_back(
+          {each.key, either_form({quantity_form(each.unit), left_out}, ""),
+           section.meaning(index < 0 ? nullptr : &model::parameter_spec(plant, index))});
     }
   }
   return either_form({left_out, std::move(table)}, "table");

@@ -18,7 +18,7 @@ int index_of(const Campaign& campaign, std::string_view option, std::string_view
                     unknown_name_message("parameter", name,
                                          parameter_keys(campaign.rig.plant, ParameterGroup::any))));
   }
-  if (spec_of(campaign.rig.plant, index).kind == model::ParameterKind::controller &&
+  if (model::parameter_spec(campaign.rig.plant, index).kind == model::ParameterKind::controller &&
       campaign.rig.controller == model::ControllerKind::none) {
     throw UsageError(
         fmt::format("{}: the rig of this campaign has no controller, so {} has no "
@@ -75,7 +75,7 @@ Assignment read_assignment(const Campaign& campaign, std::string_view assignment
   }
   read.name = assignment.substr(0, equals);
   read.index = index_of(campaign, read.option, read.name);
-  const model::ParameterSpec& spec = spec_of(campaign.rig.plant, read.index);
+  const model::ParameterSpec& spec = model::parameter_spec(campaign.rig.plant, read.index);
   try {
     read.value = parse_quantity(assignment.substr(equals + 1), spec.unit);
   } catch (const QuantityError& error) {
@@ -131,7 +131,8 @@ void set_value(Campaign& campaign, std::string_view assignment) {
   changed.value = value;
   if (changed.between_repeats) changed.prior->mean = value;
   if (changed.fit) {
-    if (const auto problem = complete_bounds(spec_of(campaign.rig.plant, index), changed)) {
+    if (const auto problem =
+            complete_bounds(model::parameter_spec(campaign.rig.plant, index), changed)) {
       throw UsageError(fmt::format("{}: {}", option, *problem));
     }
   }
@@ -159,7 +160,7 @@ void set_free(Campaign& campaign, const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     const std::string option = fmt::format("--free {}", name);
     const int index = index_of(changed, option, name);
-    const model::ParameterSpec& spec = spec_of(changed.rig.plant, index);
+    const model::ParameterSpec& spec = model::parameter_spec(changed.rig.plant, index);
     if (const auto problem = cannot_be_fitted(spec)) {
       throw UsageError(fmt::format("{}: {}", option, *problem));
     }

@@ -97,7 +97,7 @@ bool has_own_value(const Campaign& campaign, const Condition& condition, int ind
 /// and the start cannot be mistaken for a result.
 void write_scoped_start(toml::table& root, const Campaign& campaign,
                         const ParameterSetting& setting, const std::vector<FittedValue>& values) {
-  const model::ParameterSpec& spec = spec_of(campaign.rig.plant, setting.index);
+  const model::ParameterSpec& spec = model::parameter_spec(campaign.rig.plant, setting.index);
   const bool everywhere = std::all_of(
       campaign.conditions.begin(), campaign.conditions.end(), [&](const Condition& condition) {
         return has_own_value(campaign, condition, setting.index, values);
@@ -126,7 +126,7 @@ void write_changed_values(toml::table& root, const Campaign& campaign) {
     if (setting.fit) continue;
     const ParameterSetting* before = original.setting(setting.index);
     if (before != nullptr && !before->fit && before->value == setting.value) continue;
-    const model::ParameterSpec& spec = spec_of(campaign.rig.plant, setting.index);
+    const model::ParameterSpec& spec = model::parameter_spec(campaign.rig.plant, setting.index);
     put(rig_table(root, spec), spec, spec.key, setting.value);
   }
 }
@@ -167,7 +167,7 @@ void write_changed_freedom(toml::table& root, const Campaign& campaign) {
     const bool was_free = before != nullptr && before->fit;
     if (setting.fit == was_free && (!setting.fit || before->value == setting.value)) continue;
     if (!setting.fit) continue;  // write_changed_values() wrote it
-    const model::ParameterSpec& spec = spec_of(campaign.rig.plant, setting.index);
+    const model::ParameterSpec& spec = model::parameter_spec(campaign.rig.plant, setting.index);
     toml::table& table = rig_table(root, spec);
     if (!table[spec.key].is_table()) {
       toml::table entry;
@@ -238,7 +238,7 @@ std::string fitted_campaign_text(const Campaign& campaign, const std::vector<Fit
   toml::table root = parse_toml_file(campaign.file);
   write_changed_values(root, campaign);
   for (const FittedValue& fitted : values) {
-    const model::ParameterSpec& spec = spec_of(campaign.rig.plant, fitted.index);
+    const model::ParameterSpec& spec = model::parameter_spec(campaign.rig.plant, fitted.index);
     const ParameterSetting* setting = campaign.setting(fitted.index);
     if (setting != nullptr && setting->nuisance) {
       write_nuisance_start(root, spec, fitted);

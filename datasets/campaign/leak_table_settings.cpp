@@ -356,7 +356,7 @@ const model::ParameterSpec& assumption_spec(model::PlantKind plant, int index) {
       .kind = model::ParameterKind::sensor,
       .lower = 1e-6,
       .upper = 1e9};
-  return index == kResidualScale ? kScale : spec_of(plant, index);
+  return index == kResidualScale ? kScale : model::parameter_spec(plant, index);
 }
 
 const Assumption* LeakTableSettings::assumption(int index) const {

@@ -142,8 +142,8 @@ std::string terms_text(model::PlantKind plant, const RecordedSigns& signs) {
   if (signs.temperature) add(kWarmOilTerms);
   std::string text = "# Terms that are absent unless given (rigcal params lists all):\n";
   for (const std::string_view key : terms) {
-    const int row = model::parameter_index(plant, key);
-    const model::ParameterSpec& spec = model::parameter_table(plant)[static_cast<std::size_t>(row)];
+    const model::ParameterSpec& spec =
+        model::parameter_spec(plant, model::parameter_index(plant, key));
     text += fmt::format("# {} = {}{}\n", key,
                         spec.unit == "1" ? "..." : fmt::format("\"... {}\"", spec.unit),
                         comment(fmt::format("{}: {}", spec.symbol, spec.meaning)));
@@ -201,9 +201,7 @@ std::string rig_text(model::PlantKind plant, std::optional<model::Feedback> loop
                       signs.pilot ? "pilot pressure" : "command");
   const model::FeedbackRow& row = model::gain_keys(*loop);
   const auto unit_of = [&](std::string_view key) {
-    return model::parameter_table(
-               plant)[static_cast<std::size_t>(model::parameter_index(plant, key))]
-        .unit;
+    return model::parameter_spec(plant, model::parameter_index(plant, key)).unit;
   };
   text += "[rig.controller]\ntype = \"pid\"\n";
   if (*loop != model::Feedback::position)

@@ -92,7 +92,7 @@ void require_measurable(const RepeatSource& source, const std::string& column,
 bool delays_its_drive(const Campaign& campaign) {
   return std::any_of(
       campaign.parameters.begin(), campaign.parameters.end(), [&](const ParameterSetting& setting) {
-        const auto key = spec_of(campaign.rig.plant, setting.index).key;
+        const auto key = model::parameter_spec(campaign.rig.plant, setting.index).key;
         return key == "transport_delay" || key == "valve_time_constant" || key == "valve_frequency";
       });
 }

@@ -95,10 +95,9 @@ Json by_channel(const std::map<Channel, double>& values) {
 
 Json settings_json(const Campaign& truth) {
   const SyntheticSettings& settings = *truth.synthetic_settings;
-  const auto table = model::parameter_table(truth.rig.plant);
   Json variation = Json::object();
   for (const auto& [index, sd] : settings.variation)
-    variation[std::string(table[static_cast<std::size_t>(index)].key)] = sd;
+    variation[std::string(model::parameter_spec(truth.rig.plant, index).key)] = sd;
   return {{"repeats", settings.repeats},
           {"noise_sd", by_channel(settings.noise_sd)},
           {"ar1_sd", by_channel(settings.ar1_sd)},
@@ -112,7 +111,6 @@ Json settings_json(const Campaign& truth) {
 }
 
 Json fates_json(const Campaign& truth, const std::vector<std::vector<RepeatFate>>& fates) {
-  const auto table = model::parameter_table(truth.rig.plant);
   Json list = Json::array();
   for (std::size_t c = 0; c < truth.conditions.size(); ++c) {
     const Condition& condition = truth.conditions[c];
@@ -120,7 +118,7 @@ Json fates_json(const Campaign& truth, const std::vector<std::vector<RepeatFate>
     for (const RepeatFate& fate : fates[c]) {
       Json varied = Json::object();
       for (const auto& [index, value] : fate.varied)
-        varied[std::string(table[static_cast<std::size_t>(index)].name)] = value;
+        varied[std::string(model::parameter_spec(truth.rig.plant, index).name)] = value;
       repeats.push_back(
           {{"file", synthetic_record_path(condition.id, static_cast<int>(repeats.size()) + 1)},
            {"late_s", fate.late_s},

@@ -88,6 +88,14 @@ std::vector<std::string> plant_names() {
 
 std::span<const ParameterSpec> parameter_table(PlantKind plant) { return row_of(plant).parameters; }
 
+const ParameterSpec& parameter_spec(PlantKind plant, int index) {
+  const auto table = parameter_table(plant);
+  if (index < 0 || static_cast<std::size_t>(index) >= table.size())
+    throw std::out_of_range(std::string(to_string(plant)) + ": has no parameter of index " +
+                            std::to_string(index));
+  return table[static_cast<std::size_t>(index)];
+}
+
 int parameter_index(PlantKind plant, std::string_view key) {
   const auto table = parameter_table(plant);
   for (std::size_t i = 0; i < table.size(); ++i) {

@@ -49,6 +49,10 @@ std::vector<std::string> plant_names();
 /// position is the index of that parameter everywhere (values, free lists, Jacobians).
 std::span<const ParameterSpec> parameter_table(PlantKind plant);
 
+/// The row of the table with this index. Throws std::out_of_range if there is none, as for the -1
+/// of a key that the plant has not.
+const ParameterSpec& parameter_spec(PlantKind plant, int index);
+
 /// Index of a key in the table, or -1.
 int parameter_index(PlantKind plant, std::string_view key);
 

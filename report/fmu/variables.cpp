@@ -143,9 +143,8 @@ void add_derivatives(std::vector<FmuVariable>& variables) {
 }
 
 void add_parameters(const ExportedRig& rig, std::vector<FmuVariable>& variables) {
-  const auto table = model::parameter_table(rig.rig.plant);
   for (const int index : model::exported_parameters(rig)) {
-    const ParameterSpec& spec = table[static_cast<std::size_t>(index)];
+    const ParameterSpec& spec = model::parameter_spec(rig.rig.plant, index);
     FmuVariable variable = made(spec.key, model::kParameterReference + static_cast<unsigned>(index),
                                 Causality::parameter, spec.unit, spec.meaning);
     variable.tunable = model::is_tunable(spec);

@@ -61,10 +61,9 @@ std::optional<std::string> chosen_level(const ExportRequest& request,
 /// Throws if the fit has no value for the leak level, and names the options that help.
 void require_values_of_level(const ExportRequest& request, const Campaign& campaign,
                              const Condition& condition, const EarlierFit& earlier) {
-  const auto table = model::parameter_table(campaign.rig.plant);
   for (const datasets::FittedValue& value : earlier.values) {
     if (value.scope == Scope::rig || calib::known_in(campaign, condition, value.index)) continue;
-    const std::string_view key = table[static_cast<std::size_t>(value.index)].key;
+    const std::string_view key = model::parameter_spec(campaign.rig.plant, value.index).key;
     if (value.scope == Scope::condition)
       throw UsageError(fmt::format("{}: the fit has a {} for each condition: expected --condition",
                                    request.fit.name(), key));
@@ -109,11 +108,10 @@ ParameterValues values_of(const std::vector<std::string>& set, const Campaign& c
 void warn_of_start_values(const Campaign& campaign, const Condition& condition,
                           const std::optional<EarlierFit>& earlier,
                           std::vector<std::string>& warnings) {
-  const auto table = model::parameter_table(campaign.rig.plant);
   std::vector<std::string_view> starts;
   std::vector<std::string_view> of_records;
   for (const datasets::ParameterSetting& setting : campaign.parameters) {
-    const model::ParameterSpec& spec = table[static_cast<std::size_t>(setting.index)];
+    const model::ParameterSpec& spec = model::parameter_spec(campaign.rig.plant, setting.index);
     if (!setting.fit || spec.kind == model::ParameterKind::sensor ||
         calib::known_in(campaign, condition, setting.index))
       continue;

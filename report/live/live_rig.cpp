@@ -127,8 +127,7 @@ Json driven(const Campaign& campaign) {
 Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json live_parameter(const Campaign& campaign, int index, double value) {
-  const auto table = model::parameter_table(campaign.rig.plant);
-  const model::ParameterSpec& spec = table[static_cast<std::size_t>(index)];
+  const model::ParameterSpec& spec = model::parameter_spec(campaign.rig.plant, index);
   const datasets::ParameterSetting* setting = campaign.setting(index);
   const auto range = slider_range(setting, spec, value);
   const ReadableUnit unit = readable_unit(value != 0.0 || !range ? value : range->upper, spec.unit);

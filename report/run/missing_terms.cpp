@@ -32,7 +32,7 @@ std::vector<MissingTerm> missing_terms(model::PlantKind plant,
     const double size = *effect->alone;
     const int index = model::parameter_index(plant, key);
     if (index < 0) continue;
-    const auto& spec = model::parameter_table(plant)[static_cast<std::size_t>(index)];
+    const auto& spec = model::parameter_spec(plant, index);
     // A wrong value of a parameter that every campaign specifies is not a missing term.
     if (!spec.default_value || is_stated_gain(key)) continue;
     const auto number = [&](double value) {

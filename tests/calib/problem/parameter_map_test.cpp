@@ -72,8 +72,8 @@ TEST_CASE("parameter map: what differs between repeats averages out in a mean of
   Twin twin = three_scopes();
   datasets::ParameterSetting& supply = twin.setting("supply_pressure");
   supply.lower = supply.upper = std::numeric_limits<double>::quiet_NaN();
-  datasets::differ_between_repeats(datasets::spec_of(twin.campaign.rig.plant, supply.index), 1e5,
-                                   supply);
+  datasets::differ_between_repeats(model::parameter_spec(twin.campaign.rig.plant, supply.index),
+                                   1e5, supply);
   CHECK(supply.lower == supply.value - 8e5);
   const auto sds = [&](const std::vector<int>& repeats) {
     const ParameterMap map(twin.campaign, all(twin.campaign), false, {}, repeats);

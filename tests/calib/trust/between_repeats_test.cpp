@@ -262,7 +262,7 @@ TEST_CASE("between repeats: a supply that is declared to differ accounts for wha
   const Fit without = fit(rig.twin.campaign, rig.records, {});
   datasets::ParameterSetting& supply = rig.twin.setting("supply_pressure");
   supply.lower = supply.upper = std::numeric_limits<double>::quiet_NaN();
-  datasets::differ_between_repeats(datasets::spec_of(rig.twin.campaign.rig.plant, supply.index),
+  datasets::differ_between_repeats(model::parameter_spec(rig.twin.campaign.rig.plant, supply.index),
                                    0.02 * supply.value, supply);
   const Fit found = fit(rig.twin.campaign, rig.records, {});
   REQUIRE(found.status == FitStatus::converged);
@@ -357,7 +357,7 @@ TEST_CASE("between repeats: a deviation is shared between what is declared and n
   DifferingSupply rig(false);
   datasets::ParameterSetting& supply = rig.twin.setting("supply_pressure");
   supply.lower = supply.upper = std::numeric_limits<double>::quiet_NaN();
-  datasets::differ_between_repeats(datasets::spec_of(rig.twin.campaign.rig.plant, supply.index),
+  datasets::differ_between_repeats(model::parameter_spec(rig.twin.campaign.rig.plant, supply.index),
                                    0.02 * supply.value, supply);
   const Problem whole = problem_of(rig.twin, rig.records);
   const VectorXd felt =

@@ -52,7 +52,7 @@ TEST_CASE("find_conflict: a derivative needs its filter", "[datasets]") {
 
 TEST_CASE("complete_bounds: a tenth and ten times the start, within the limits", "[datasets]") {
   const auto index = model::parameter_index(model::PlantKind::load_pressure, "density");
-  const model::ParameterSpec& spec = spec_of(model::PlantKind::load_pressure, index);
+  const model::ParameterSpec& spec = model::parameter_spec(model::PlantKind::load_pressure, index);
   REQUIRE(spec.lower == 100.0);
   REQUIRE(spec.upper == 5000.0);
   const auto bounds_of = [&](double start) {
@@ -71,7 +71,7 @@ TEST_CASE("complete_bounds: a tenth and ten times the start, within the limits",
 TEST_CASE("outside_limits: a limit may be absent, but no number is beyond what results may hold",
           "[datasets]") {
   const int maximum = model::parameter_index(model::PlantKind::two_chamber, "pressure_a_maximum");
-  const auto& spec = spec_of(model::PlantKind::two_chamber, maximum);
+  const auto& spec = model::parameter_spec(model::PlantKind::two_chamber, maximum);
   CHECK_FALSE(outside_limits(spec, 40e6));
   CHECK_FALSE(outside_limits(spec, std::numeric_limits<double>::infinity()));
   REQUIRE(outside_limits(spec, 1e300));

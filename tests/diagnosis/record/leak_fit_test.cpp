@@ -71,7 +71,7 @@ TEST_CASE("fit_leak: a supply that differs between repeats is part of the error"
   for (auto& setting : campaign.parameters) {
     if (setting.index != supply) continue;
     setting.lower = setting.upper = std::numeric_limits<double>::quiet_NaN();
-    datasets::differ_between_repeats(datasets::spec_of(campaign.rig.plant, supply),
+    datasets::differ_between_repeats(model::parameter_spec(campaign.rig.plant, supply),
                                      0.02 * setting.value, setting);
   }
   // For 40 independent scores, the 0.1 and 99.9 % quantiles of the rms are 0.68 and 1.35.

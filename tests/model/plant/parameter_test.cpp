@@ -126,3 +126,13 @@ TEST_CASE("ParameterValues: set marks as given, missing names what has no value"
   CHECK_THROWS_AS(values["mas"], std::invalid_argument);
   CHECK_THROWS_AS(values.set(-1, 1.0), std::out_of_range);
 }
+
+TEST_CASE("parameter_spec: an index outside the table is an error", "[model]") {
+  const PlantKind plant = GENERATE(from_range(kPlants));
+  const auto table = parameter_table(plant);
+  const int past = static_cast<int>(table.size());
+  CHECK(&parameter_spec(plant, 0) == &table.front());
+  CHECK(&parameter_spec(plant, past - 1) == &table.back());
+  CHECK_THROWS_AS(parameter_spec(plant, past), std::out_of_range);
+  CHECK_THROWS_AS(parameter_spec(plant, parameter_index(plant, "no_such_key")), std::out_of_range);
+}
