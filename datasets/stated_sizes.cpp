@@ -72,6 +72,9 @@ std::vector<SizedQuantity> effect_names(model::PlantKind plant) {
     if (plant == model::PlantKind::load_pressure && key == "valve_null_leakage") continue;
     names.push_back({std::string(key), unit_of(plant, index)});
   }
+  if (model::parameter_index(plant, "transport_delay") >= 0) names.push_back({kTriggerKey, "s"});
+  if (model::parameter_index(plant, "valve_dead_band") >= 0)
+    names.push_back({"valve_underlap", "V"});
   names.push_back({"supply_sag", "1"});
   names.push_back({"loop_gain", "1"});
   const bool turns = plant == model::PlantKind::linkage;
