@@ -11,7 +11,7 @@
 namespace rigcal::metrics {
 
 std::string score_text(const MetricSpec& metric, double score, const std::optional<double>& limit) {
-  constexpr int kLeastDecimals = 3;
+  constexpr int kLeastDecimals = 4;
   constexpr int kMostDigits = 10;
   const bool is_fraction = metric.unit == "1" && metric.highest == 1.0;
   int digits = 4;

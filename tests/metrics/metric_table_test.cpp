@@ -60,8 +60,8 @@ TEST_CASE("score_text: digits that show the distance from the best value and the
   const MetricSpec& rho2 = *find_metric("rho2");
   const MetricSpec& error = *find_metric("absolute_error_percent");
   CHECK(score_text(rho2, 0.99987) == "0.99987");
-  CHECK(score_text(rho2, 0.778966) == "0.779");
-  CHECK(score_text(rho2, 1.0) == "1.000");
+  CHECK(score_text(rho2, 0.778966) == "0.7790");
+  CHECK(score_text(rho2, 1.0) == "1.0000");
   CHECK(score_text(rho2, 0.989996, 0.99) == "0.989996");
   CHECK(score_text(rho2, 0.990004, 0.99) == "0.9900");
   CHECK(score_text(error, 10.7863, 1.0) == "10.79");

@@ -66,7 +66,7 @@ TEST_CASE("page: the repeats of every condition, their offsets and the noise flo
   const std::string html = page_with("average.json", stored_average());
   CHECK_THAT(html, Contains("AVERAGED") && Contains("rig &lt;b&gt;") && !Contains("rig <b>"));
   CHECK_THAT(html, Contains("start up to 2.1 ms apart") && Contains("1 repeat flagged as outlier"));
-  CHECK_THAT(html, Contains("value=\"2.5e-05\">25<") && Contains(">0.9980<"));
+  CHECK_THAT(html, Contains("value=\"2.5e-05\">25.0<") && Contains(">0.9980<"));
   CHECK_THAT(html, Contains("offset of each repeat of sine"));
   CHECK_THAT(html, Contains("position of sine, mean and standard deviation of its repeats"));
   CHECK_THAT(html, Contains("Warnings (1)") && Contains("sine: c.csv is an outlier"));
