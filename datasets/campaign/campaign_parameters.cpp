@@ -475,6 +475,16 @@ std::optional<ParameterConflict> find_actuator_conflict(const model::ParameterVa
                              "makes the rig a rotary actuator: expected only one of them",
                              present)};
   }
+  constexpr std::array kOfPiston{"coulomb_friction",   "stribeck_friction", "stribeck_velocity",
+                                 "friction_smoothing", "seal_friction",     "bristle_stiffness",
+                                 "bristle_damping",    "film_velocity",     "film_growth_time",
+                                 "film_decay_time",    "film_dwell_time"};
+  if (const char* const present = completeness(values, kOfPiston).present)
+    return ParameterConflict{
+        present, fmt::format("{} is friction of a piston that slides, in newtons and metres, but "
+                             "displacement_per_radian makes the rig a rotary actuator, whose "
+                             "friction is a moment: expected joint_friction",
+                             present)};
   return std::nullopt;
 }
 

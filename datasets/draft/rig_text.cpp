@@ -75,6 +75,10 @@ constexpr std::array<std::string_view, 6> kPilotTerms{
 constexpr std::array<std::string_view, 1> kLeakLineTerms{"leakage_resistance"};
 constexpr std::array<std::string_view, 1> kSealTerms{"seal_friction"};
 
+/// Friction of the cylinder of a joint, proposed with that of its seals: in newtons, apart from the
+/// moment of the joint.
+constexpr std::array<std::string_view, 2> kJointSealTerms{"coulomb_friction", "bristle_stiffness"};
+
 /// A load that varies along the travel, proposed if a position and pressures were recorded.
 constexpr std::array<std::string_view, 2> kLoadGradientTerms{"load_gradient", "load_curvature"};
 
@@ -135,7 +139,8 @@ std::string terms_text(model::PlantKind plant, const RecordedSigns& signs) {
   if (signs.command && four_edges) add(kOpeningTerms);
   if (signs.supply && four_edges) add(kSupplyTerms);
   if (signs.pressures) add(kLeakLineTerms);
-  if (signs.pressures && slides) add(kSealTerms);
+  if (signs.pressures) add(kSealTerms);
+  if (signs.pressures && !slides) add(kJointSealTerms);
   if (signs.pressures && signs.position && slides) add(kLoadGradientTerms);
   if (signs.load_table) add(kLoadTableTerms);
   if (signs.payload) add(kPayloadTerms);

@@ -114,14 +114,12 @@ void plant_indicators(const LinkagePlant::Coefficients<double>& p, const Present
 template <typename Plant, typename P, std::size_t N>
 void friction_indicators(const P& p, const PresentTerms& terms, const std::array<double, N>& x,
                          std::vector<double>& indicators) {
-  if constexpr (requires { Plant::pressure_across(x); }) {
-    if (terms.seal_friction) indicators.push_back(Plant::pressure_across(x));
-  }
-  if (terms.bristles >= 0) indicators.push_back(x[Plant::velocity]);
+  if (terms.seal_friction) indicators.push_back(Plant::pressure_across(x));
+  const double v = Plant::piston_velocity(x, p);
+  if (terms.bristles >= 0) indicators.push_back(v);
   if (terms.film >= 0)
-    indicators.push_back(
-        steady_film(x[Plant::velocity], p.film_velocity_m_per_s, p.friction_smoothing_m_per_s) -
-        x[static_cast<std::size_t>(terms.film)]);
+    indicators.push_back(steady_film(v, p.film_velocity_m_per_s, p.friction_smoothing_m_per_s) -
+                         x[static_cast<std::size_t>(terms.film)]);
 }
 
 /// Appends the indicators for the limits of controller output and spool rate.

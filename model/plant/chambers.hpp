@@ -43,7 +43,6 @@ struct Chambers {
 
   /// Index of the state that an output equals, apart from sensor errors; std::nullopt if the output
   /// is not a pressure.
-  /// not a pressure.
   static constexpr std::optional<int> pressure_of(Output output) {
     if (output == Output::pressure_a) return pressure_a;
     if (output == Output::pressure_b) return pressure_b;
@@ -181,6 +180,11 @@ struct Chambers {
   static X bulk_modulus(const X& pressure_pa, const P& p, const PresentTerms& terms) {
     if (!terms.air) return X(p.bulk_modulus_pa);
     return aerated_bulk_modulus(pressure_pa, p.bulk_modulus_pa, p.air_fraction, p.air_exponent);
+  }
+
+  template <typename X, std::size_t M>
+  static X pressure_across(const std::array<X, M>& x) {
+    return x[pressure_a] - x[pressure_b];
   }
 
   /// Force of the oil on the piston, outwards [N].

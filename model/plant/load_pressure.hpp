@@ -102,6 +102,11 @@ struct LoadPressurePlant {
     return x[load_pressure];
   }
 
+  template <typename X, std::size_t M, typename C>
+  static const X& piston_velocity(const std::array<X, M>& x, const Coefficients<C>& /*p*/) {
+    return x[velocity];
+  }
+
   /// Time derivative of the state [m/s, m/s2, Pa/s].
   ///
   /// @param x  shape (kStates or more): the plant's states come first
