@@ -17,14 +17,24 @@ namespace rigcal::model {
 /// @param dx       time derivative at x
 template <std::size_t N>
 void plant_indicators(const LoadPressurePlant::Coefficients<double>& p, const PresentTerms& terms,
-                      const std::array<double, N>& /*x*/, const std::array<double, N>& /*dx*/,
+                      const std::array<double, N>& x, const std::array<double, N>& /*dx*/,
                       double spool_v, std::vector<double>& indicators) {
-  if (!terms.spool_shape) {
+  if (terms.spool_shape) {
+    indicators.push_back(spool_v + p.valve_offset_v - p.valve_dead_band_v);
+    indicators.push_back(spool_v + p.valve_offset_v + p.valve_dead_band_v);
+  } else {
     indicators.push_back(spool_v);
-    return;
   }
-  indicators.push_back(spool_v + p.valve_offset_v - p.valve_dead_band_v);
-  indicators.push_back(spool_v + p.valve_offset_v + p.valve_dead_band_v);
+  const double supply_pa =
+      terms.supply >= 0 ? x[static_cast<std::size_t>(terms.supply)] : p.supply_pressure_pa;
+  const PlantInput<double> in{spool_v, 0.0, supply_pa, 0.0};
+  if (terms.relief) {
+    for (const Output output : {Output::pressure_a, Output::pressure_b})
+      indicators.push_back(p.relief_pressure_pa -
+                           LoadPressurePlant::output(output, x, in, p, terms));
+  }
+  if (terms.pump_flow)
+    indicators.push_back(p.pump_flow_m3_per_s - asked_flow(p.supply_pressure_pa, in, p));
 }
 
 /// Appends the indicators of chambers, valve and pump. Pressures are relative to the tank pressure,

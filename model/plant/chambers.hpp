@@ -169,9 +169,8 @@ struct Chambers {
       flow_b = flow_b + positive_part(X(P_t - p_B)) * G;
     }
     if (terms.relief) {
-      const auto& G = p.relief_conductance_m3_per_s_pa;
-      flow_a = flow_a - positive_part(X(p_A - p.relief_pressure_pa)) * G;
-      flow_b = flow_b - positive_part(X(p_B - p.relief_pressure_pa)) * G;
+      flow_a = flow_a - relief_flow(p_A, p);
+      flow_b = flow_b - relief_flow(p_B, p);
     }
     return {flow_a, flow_b};
   }
@@ -255,7 +254,7 @@ struct Chambers {
   static X pump_flow(const X& limit_pa, const std::array<X, M>& x, const PlantInput<X>& in,
                      const P& p, const PresentTerms& terms) {
     const X kept_pa = terms.load_sensing ? sensed_pressure(limit_pa, x, in, p, terms) : limit_pa;
-    const X asked = (kept_pa - in.supply_pressure_pa) / p.supply_resistance_pa_s_per_m3;
+    const X asked = asked_flow(kept_pa, in, p);
     if (!terms.pump_flow) return asked;
     const X largest = largest_flow(x, p, terms);
     return value_of(asked) > value_of(largest) ? largest : asked;
@@ -270,10 +269,7 @@ struct Chambers {
                        const PlantInput<X>& in, const P& p, const PresentTerms& terms) {
     X flow = pump_flow(limit_pa, x, in, p, terms) - taken;
     if (terms.bypass) flow = flow - bypass_flow(in, p, terms);
-    if (!terms.accumulator) return flow / p.supply_capacity_m3_per_pa;
-    return flow / (accumulator_capacity(in.supply_pressure_pa, p.accumulator_volume_m3,
-                                        p.accumulator_precharge_pa, p.accumulator_exponent) +
-                   p.supply_capacity_m3_per_pa);
+    return supply_rise(flow, in, p, terms);
   }
 };
 

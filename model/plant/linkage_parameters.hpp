@@ -236,8 +236,9 @@ constexpr auto linkage_fields() {
                 electric_gain_rows<LinkageParameters, T>(), valve_rows<LinkageParameters, T>(),
                 rows_without(load_rows<LinkageParameters, T>(), kOtherLoads),
                 rows_without(chamber_term_rows<LinkageParameters, T>(), kOtherTerms),
-                linkage_term_rows<T>(), travel_rows<T>(), metering_rows<LinkageParameters, T>(),
-                angle_rows<T>(), rows_without(sensor_rows<LinkageParameters, T>(), kOtherSensors),
+                supply_rows<LinkageParameters, T>(), linkage_term_rows<T>(), travel_rows<T>(),
+                metering_rows<LinkageParameters, T>(), angle_rows<T>(),
+                rows_without(sensor_rows<LinkageParameters, T>(), kOtherSensors),
                 chamber_initial_rows<LinkageParameters, T>(), joint_loop_rows<T>(),
                 rows_without(controller_rows<LinkageParameters, T>(), kOtherLoops));
 }

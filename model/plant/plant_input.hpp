@@ -43,6 +43,31 @@ X internal_leak(const X& load_pressure_pa, const P& p, const PresentTerms& terms
   return laminar + orifice_leakage(load_pressure_pa, p.leak_conductance, p.leakage_smoothing_pa);
 }
 
+/// Flow from the source to the valve that keeps a pressure at the pump [m3/s].
+template <typename X, typename C>
+X asked_flow(const X& kept_pa, const PlantInput<X>& in, const CommonParameters<C>& p) {
+  return (kept_pa - in.supply_pressure_pa) / p.supply_resistance_pa_s_per_m3;
+}
+
+/// Time derivative of the supply pressure at the valve [Pa/s], where oil and accumulator take up a
+/// flow.
+///
+/// @param flow  of the pump, less what the valve takes [m3/s]
+template <typename X, typename C>
+X supply_rise(const X& flow, const PlantInput<X>& in, const CommonParameters<C>& p,
+              const PresentTerms& terms) {
+  if (!terms.accumulator) return flow / p.supply_capacity_m3_per_pa;
+  return flow / (accumulator_capacity(in.supply_pressure_pa, p.accumulator_volume_m3,
+                                      p.accumulator_precharge_pa, p.accumulator_exponent) +
+                 p.supply_capacity_m3_per_pa);
+}
+
+/// Flow through the relief valve of a chamber to the tank [m3/s].
+template <typename X, typename C>
+X relief_flow(const X& chamber_pa, const CommonParameters<C>& p) {
+  return positive_part(X(chamber_pa - p.relief_pressure_pa)) * p.relief_conductance_m3_per_s_pa;
+}
+
 /// Sliding friction where the part above Coulomb's fades with the film [N]. Not inlined, to keep
 /// the code of rigs without a film short.
 template <typename X, typename C>

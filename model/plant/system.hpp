@@ -765,14 +765,12 @@ class System {
         dx[static_cast<std::size_t>(layout_.hoses) + 1] = rates[1];
       }
     }
-    if constexpr (requires { p.supply_capacity_m3_per_pa; }) {
-      if (layout_.supply >= 0) {
-        dx[static_cast<std::size_t>(layout_.supply)] =
-            Plant::supply_rate(source_pressure(by, t), Plant::supply_flow(x, in, p, layout_.terms),
-                               x, in, p, layout_.terms);
-      }
+    if (layout_.supply >= 0) {
+      dx[static_cast<std::size_t>(layout_.supply)] =
+          Plant::supply_rate(source_pressure(by, t), Plant::supply_flow(x, in, p, layout_.terms), x,
+                             in, p, layout_.terms);
     }
-    if constexpr (requires { p.pump_flow_m3_per_s; }) {
+    if constexpr (requires { p.pump_delay_s; }) {
       if (layout_.pump >= 0)
         dx[static_cast<std::size_t>(layout_.pump)] = Plant::demand_rate(x, in, p, layout_.terms);
     }

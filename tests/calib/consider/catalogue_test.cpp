@@ -184,7 +184,7 @@ TEST_CASE("catalogue: the leak of closed edges is an effect where it is no lamin
   CHECK(has(model::PlantKind::linkage, "valve_null_leakage"));
   CHECK(has(model::PlantKind::linkage, "pilot_hysteresis"));
   CHECK_FALSE(has(model::PlantKind::two_chamber, "pilot_hysteresis"));
-  // The friction of a joint stands for that of its cylinder.
+  // The friction of a joint includes that of its cylinder.
   CHECK(has(model::PlantKind::linkage, "joint_friction"));
   CHECK_FALSE(has(model::PlantKind::linkage, "coulomb_friction"));
   CHECK(has(model::PlantKind::two_chamber, "stribeck_friction"));

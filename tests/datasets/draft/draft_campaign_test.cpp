@@ -726,6 +726,10 @@ TEST_CASE("draft_campaign: the channels suggest terms of valve, supply, load and
   }
   for (const char* key : {"velocity_feedforward", "acceleration_feedforward"})
     CHECK(offers(bare_loop, key));
+  const std::string supplied = drafted("t,ref_mm,x_mm,pl_bar,ps_bar");
+  for (const char* key : {"supply_resistance", "pump_flow", "accumulator_volume"})
+    CHECK((offers(supplied, key) && !offers(loop, key)));
+  CHECK_FALSE(offers(supplied, "load_sensing_margin"));
 
   const std::string open = drafted("t,u_V,x_mm,pA_bar,pB_bar,ps_bar,spool_mm");
   for (const char* key : {"valve_exponent", "opening_20", "compensator_pressure", "main_spool_gain",

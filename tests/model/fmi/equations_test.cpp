@@ -420,6 +420,39 @@ TEST_CASE("equations: an arm whose cylinder rubs moves as it is simulated", "[mo
   CHECK(indicators[6] == Approx(steady_film(v, 0.1, 1e-3) - x[5]).margin(1e-12));
 }
 
+TEST_CASE("equations: a load-pressure rig has a supply that gives way as it is simulated",
+          "[model]") {
+  Experiment e;
+  e.rig.controller = ControllerKind::none;
+  e.set("supply_resistance", 1e10).set("supply_capacity", 1e-13).set("pump_flow", 7e-5);
+  e.set("accumulator_volume", 1e-6).set("accumulator_precharge", 3e6);
+  e.set("relief_pressure", 4e6).set("relief_conductance", 1e-11);
+  e.inputs.drive = Signal::constant(2.0);
+  e.times_s = {0.0, 0.1};
+  e.options.tolerance = 1e-10;
+  const Simulation run = e();
+  INFO(run.reason);
+  REQUIRE(run.ok());
+  const ExportedRig rig = exported(e);
+  CHECK(names(rig) ==
+        std::vector<std::string>{"position", "velocity", "load_pressure", "valve_supply_pressure"});
+  const auto equations = make_equations(rig);
+  equations->set(rig.values, inputs_of(2.0, 6.2e6), 1.0);
+  std::vector<double> x = equations->initial();
+  CHECK(x[3] == 6.2e6);
+  StepMemory memory;
+  equations->advance(x, memory, 0.0, 0.1, 1e-10);
+  REQUIRE(run.outputs(1, 0) > 1e-3);
+  CHECK(x[0] == Approx(run.outputs(1, 0)).epsilon(1e-6));
+  CHECK(x[2] == Approx(run.outputs(1, 1)).epsilon(1e-5));
+  // One indicator each for the sign of the spool, both relief valves and the limit of the pump.
+  const std::vector<double> indicators = equations->indicators(x);
+  REQUIRE(indicators.size() == 4);
+  CHECK(indicators[1] == Approx(4e6 - 0.5 * (x[3] + x[2])));
+  CHECK(indicators[2] == Approx(4e6 - 0.5 * (x[3] - x[2])));
+  CHECK(indicators[3] == Approx(7e-5 - (6.2e6 - x[3]) / 1e10));
+}
+
 TEST_CASE("equations: a step that was planned at rest is repeated when the drive jumps",
           "[model]") {
   const ExportedRig rig = rig_with({});
