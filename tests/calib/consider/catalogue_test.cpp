@@ -193,6 +193,10 @@ TEST_CASE("catalogue: the leak of closed edges is an effect where it is no lamin
   CHECK(has(model::PlantKind::linkage, "valve_null_leakage"));
   CHECK(has(model::PlantKind::linkage, "pilot_hysteresis"));
   CHECK_FALSE(has(model::PlantKind::two_chamber, "pilot_hysteresis"));
+  // The friction of a joint includes that of its cylinder.
+  CHECK(has(model::PlantKind::linkage, "joint_friction"));
+  CHECK_FALSE(has(model::PlantKind::linkage, "coulomb_friction"));
+  CHECK(has(model::PlantKind::two_chamber, "stribeck_friction"));
 }
 
 TEST_CASE("catalogue: gains are those of the loop that the rig has", "[calib]") {

@@ -726,6 +726,10 @@ TEST_CASE("draft_campaign: the channels suggest terms of valve, supply, load and
   }
   for (const char* key : {"velocity_feedforward", "acceleration_feedforward"})
     CHECK(offers(bare_loop, key));
+  const std::string supplied = drafted("t,ref_mm,x_mm,pl_bar,ps_bar");
+  for (const char* key : {"supply_resistance", "pump_flow", "accumulator_volume"})
+    CHECK((offers(supplied, key) && !offers(loop, key)));
+  CHECK_FALSE(offers(supplied, "load_sensing_margin"));
 
   const std::string open = drafted("t,u_V,x_mm,pA_bar,pB_bar,ps_bar,spool_mm");
   for (const char* key : {"valve_exponent", "opening_20", "compensator_pressure", "main_spool_gain",
@@ -741,10 +745,12 @@ TEST_CASE("draft_campaign: the channels suggest terms of valve, supply, load and
     CAPTURE(key);
     CHECK_FALSE(offers(less, key));
   }
-  // A joint has no seals of a slide.
+  // The cylinder of a joint has seals, but no load over its travel.
   const std::string joint = drafted("t,u_V,angle_deg,pA_bar,pB_bar,ps_bar");
   CHECK((offers(joint, "leakage_resistance") && offers(joint, "accumulator_volume")));
-  CHECK_FALSE((offers(joint, "seal_friction") || offers(joint, "load_curvature")));
+  CHECK((offers(joint, "seal_friction") && offers(joint, "coulomb_friction")));
+  CHECK((offers(joint, "bristle_stiffness") && !offers(joint, "load_curvature")));
+  CHECK_FALSE(offers(drafted("t,u_V,angle_deg"), "bristle_stiffness"));
 }
 
 TEST_CASE("draft_campaign: an array of Simulink's To File has its time in the first row",
