@@ -180,7 +180,10 @@ std::string rig_text(model::PlantKind plant, std::optional<model::Feedback> loop
   std::string text = "[rig]\n" + model_text(plant);
   text +=
       "# Fit what the data sheet does not give: { start = ..., lower = ..., upper = ..., fit = "
-      "true }\n[rig.parameters]\n";
+      "true }\n"
+      "# A value that is not fitted counts as exact unless its uncertainty is given: { start = "
+      "..., "
+      "prior = ..., prior_sd = ... }\n[rig.parameters]\n";
   for (const model::ParameterSpec& spec : model::parameter_table(plant)) {
     // A valve with four metering edges has one of two gains, depending on what drives it.
     // A linkage may have a triangle or a table in place of its lever, or a rotary actuator in place
