@@ -5,8 +5,8 @@
 #include <cmath>
 #include <optional>
 
+#include "calib/trust/unit_product.hpp"
 #include "common/significant.hpp"
-#include "common/unit_product.hpp"
 #include "metrics/distributions.hpp"
 
 namespace rigcal::calib {
