@@ -125,7 +125,7 @@ class OwnRig {
     if (bristle > 0.0) dx[At::bristle] = bristle_rate(x);
     if (film_speed > 0.0) dx[At::film] = film_rate(x);
     if (plant_ == PlantKind::load_pressure) {
-      dx[At::a] = 4.0 * modulus / oil_volume * (symmetric_flow(x, spool) - area * x[At::speed]);
+      take_load_pressure(x, spool, dx);
     } else {
       take_chambers(x, spool, dx);
     }
@@ -177,11 +177,10 @@ class OwnRig {
   double table_to = value("load_table_to");
   std::array<double, 6> table_n{value("load_0"),  value("load_20"), value("load_40"),
                                 value("load_60"), value("load_80"), value("load_100")};
-  double dry = value(plant_ == PlantKind::linkage ? "joint_friction" : "coulomb_friction");
+  double dry = value("coulomb_friction");
   double breakaway = value("stribeck_friction");
   double breakaway_speed = value("stribeck_velocity");
-  double still_speed =
-      value(plant_ == PlantKind::linkage ? "joint_friction_smoothing" : "friction_smoothing");
+  double still_speed = value("friction_smoothing");
   double seal = value("seal_friction");
   double bristle = value("bristle_stiffness");
   double bristle_damping = value("bristle_damping");
@@ -190,6 +189,8 @@ class OwnRig {
   double film_decay = value("film_decay_time");
   double film_dwell = value("film_dwell_time");
   // Joint.
+  double joint_dry = value("joint_friction");
+  double joint_still_rate = value("joint_friction_smoothing");
   double reference_angle = value("reference_angle");
   std::array<double, 3> lever_terms{value("lever"), value("lever_gradient"),
                                     value("lever_curvature")};
@@ -428,16 +429,19 @@ class OwnRig {
            push(x[At::motion] - upper_stop, x[At::speed]);
   }
 
+  double piston_speed(const Whole& x) const { return travel(x[At::motion])[1] * x[At::speed]; }
+
   double sliding(const Whole& x) const {
-    const double ratio = x[At::speed] / breakaway_speed;
+    const double ratio = piston_speed(x) / breakaway_speed;
     const double more = breakaway > 0.0 ? breakaway * std::exp(-ratio * ratio) : 0.0;
     return dry + more * (1.0 - x[At::film]) + seal * std::abs(x[At::a] - x[At::b]);
   }
   double bristle_rate(const Whole& x) const {
-    return bristle * (x[At::speed] - std::abs(x[At::speed]) * x[At::bristle] / sliding(x));
+    const double v = piston_speed(x);
+    return bristle * (v - std::abs(v) * x[At::bristle] / sliding(x));
   }
   double film_rate(const Whole& x) const {
-    const double square = x[At::speed] * x[At::speed];
+    const double square = piston_speed(x) * piston_speed(x);
     const double smooth = still_speed * still_speed;
     const double full =
         square / std::pow(square + smooth, 2.0 / 3.0) / std::cbrt(film_speed * film_speed);
@@ -446,9 +450,10 @@ class OwnRig {
     const double moving_s = x[At::film] < steady ? film_growth : film_decay;
     return (steady - x[At::film]) * (still / film_dwell + (1.0 - still) / moving_s);
   }
+  /// Dry friction of piston and rod.
   double friction(const Whole& x) const {
     if (bristle > 0.0) return x[At::bristle] + bristle_damping / bristle * bristle_rate(x);
-    return sliding(x) * std::tanh(x[At::speed] / still_speed);
+    return sliding(x) * std::tanh(piston_speed(x) / still_speed);
   }
 
   /// Acceleration of the second mass.
@@ -461,7 +466,8 @@ class OwnRig {
   double rod_force(const Whole& x) const { return piston_force(x) + stops(x) - friction(x); }
   /// Reading of a transducer at the joint.
   double shaft_moment(const Whole& x) const {
-    return travel(x[At::motion])[1] * piston_force(x) + stops(x) - friction(x);
+    return travel(x[At::motion])[1] * (piston_force(x) - friction(x)) + stops(x) -
+           joint_dry * std::tanh(x[At::speed] / joint_still_rate);
   }
 
   double acceleration(const Whole& x) const {
@@ -492,13 +498,22 @@ class OwnRig {
     return laminar * head_pa + orifice;
   }
 
-  /// Flow of the load-pressure plant's valve, less its leaks.
-  double symmetric_flow(const Whole& x, double signal) const {
+  double at_valve_pa(const Whole& x) const { return supply ? x[At::supply] : source_pa; }
+
+  void take_load_pressure(const Whole& x, double signal, Whole& dx) const {
     const double out = signal + null_shift;
     const double beyond = std::copysign(std::max(std::abs(out) - band, 0.0), out);
-    const double head = source_pa - std::copysign(x[At::a], beyond * x[At::a]);
-    return valve_size / std::sqrt(density) * valve_gain * beyond * rounded_root(head) -
-           clearance * x[At::a] - leak(x[At::a]);
+    const double head = at_valve_pa(x) - std::copysign(x[At::a], beyond * x[At::a]);
+    const double through =
+        valve_size / std::sqrt(density) * valve_gain * std::abs(beyond) * rounded_root(head);
+    // Both chambers share the load pressure equally.
+    const auto relieved = [&](double side) {
+      return relief * std::max(0.5 * (at_valve_pa(x) + side * x[At::a]) - relief_pa, 0.0);
+    };
+    double flow = std::copysign(through, out) - clearance * x[At::a] - leak(x[At::a]);
+    if (relief > 0.0) flow -= 0.5 * (relieved(1.0) - relieved(-1.0));
+    dx[At::a] = 4.0 * modulus / oil_volume * (flow - area * x[At::speed]);
+    if (supply) take_supply(x, out, through + clearance * x[At::supply], dx);
   }
 
   double opening(bool to_tank, double signal, double lap) const {
@@ -543,9 +558,8 @@ class OwnRig {
 
   void take_chambers(const Whole& x, double signal, Whole& dx) const {
     const double out = signal + null_shift;
-    const double at_valve_pa = supply ? x[At::supply] : source_pa;
-    const double to_a = edge(0, out, at_valve_pa, x[At::a]);
-    const double to_b = edge(2, -out, at_valve_pa, x[At::b]);
+    const double to_a = edge(0, out, at_valve_pa(x), x[At::a]);
+    const double to_b = edge(2, -out, at_valve_pa(x), x[At::b]);
     const double across = leak(x[At::a] - x[At::b]);
     const auto [s, lever] = travel(x[At::motion]);
     const double rate = lever * x[At::speed];
@@ -640,11 +654,16 @@ Experiment& with_second_mass(Experiment& e, double mass_kg, double frequency_rad
   return e.set("payload_damping_ratio", 0.15);
 }
 
+Experiment& with_accumulator(Experiment& e, double gas_m3) {
+  e.set("accumulator_volume", gas_m3).set("accumulator_precharge", 2e6);
+  return e.set("accumulator_exponent", 1.3);
+}
+
 Experiment& with_pump(Experiment& e) {
-  e.set("supply_resistance", 2e9).set("supply_capacity", 5e-12).set("pump_flow", 5e-4);
-  e.set("pump_second_flow", 8e-4).set("pump_delay", 0.4).set("pump_rise", 0.1);
-  e.set("pump_first_rate", 2e-4).set("load_sensing_margin", 2e6).set("accumulator_volume", 2e-4);
-  e.set("accumulator_precharge", 2e6).set("accumulator_exponent", 1.3).set("bypass_opening", 5e-5);
+  with_accumulator(e, 2e-4).set("supply_resistance", 2e9).set("supply_capacity", 5e-12);
+  e.set("pump_flow", 5e-4).set("pump_second_flow", 8e-4).set("pump_delay", 0.4);
+  e.set("pump_rise", 0.1).set("pump_first_rate", 2e-4).set("load_sensing_margin", 2e6);
+  e.set("bypass_opening", 5e-5);
   e.set("make_up_conductance", 2e-9).set("relief_pressure", 9e6).set("relief_conductance", 3e-10);
   return e;
 }
@@ -705,6 +724,13 @@ std::vector<TermCase> load_pressure_cases() {
     with_two_stages(with_bristles_and_film(e, 200.0, 1e6));
     add("two stages, bristles and film, load table", with_load_table(e, -1e-3, 4e-3, 400.0), 5.0,
         3.0);
+  }
+  {
+    Experiment e = plain;
+    with_accumulator(e, 5e-5).set("supply_resistance", 1e10).set("supply_capacity", 5e-13);
+    e.set("pump_flow", 1e-4).set("relief_pressure", 3.2e6).set("relief_conductance", 5e-11);
+    e.set("external_force", 2e3);
+    add("pump, accumulator, relief valves", e.set("valve_null_leakage", 4e-12), 6.0, 4.0);
   }
   {
     Experiment e = plain;
@@ -868,6 +894,9 @@ std::vector<TermCase> linkage_cases() {
     constexpr std::array kTravel_m{0.02, 0.10, 0.24, 0.40, 0.52, 0.61};
     for (std::size_t i = 0; i < kKeys.size(); ++i) e.set(kKeys[i], kTravel_m[i]);
     add("travel and opening by tables", with_opening_table(e, 8.0), 7.0, 0.5);
+    with_bristles_and_film(e, 4e3, 2e6).set("seal_friction", 2e-4).set("stribeck_velocity", 0.2);
+    e.set("friction_smoothing", 0.05);
+    add("bristles and film of the cylinder", e, 7.0, 0.5);
   }
   const auto loop = [&](const char* name, Feedback feedback, double amplitude, double kp, double ki,
                         double kd, double limit_v) {
