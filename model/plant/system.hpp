@@ -219,14 +219,16 @@ class System {
       states[payload + 1] = states[Plant::velocity];
     }
     // Film and bristles start as if the motion had been steady for long.
-    const C v = Plant::piston_velocity(states, p);
-    if (layout_.film >= 0)
-      states[static_cast<std::size_t>(layout_.film)] =
-          steady_film(v, p.film_velocity_m_per_s, p.friction_smoothing_m_per_s);
-    if (layout_.bristles >= 0)
-      states[static_cast<std::size_t>(layout_.bristles)] =
-          sliding_friction_of<Plant>(states, p, layout_.terms) *
-          smooth_sign(v, p.friction_smoothing_m_per_s);
+    if constexpr (requires { Plant::piston_velocity(states, p); }) {
+      const C v = Plant::piston_velocity(states, p);
+      if (layout_.film >= 0)
+        states[static_cast<std::size_t>(layout_.film)] =
+            steady_film(v, p.film_velocity_m_per_s, p.friction_smoothing_m_per_s);
+      if (layout_.bristles >= 0)
+        states[static_cast<std::size_t>(layout_.bristles)] =
+            sliding_friction_of<Plant>(states, p, layout_.terms) *
+            smooth_sign(v, p.friction_smoothing_m_per_s);
+    }
     if (given && layout_.integral >= 0)
       states[static_cast<std::size_t>(layout_.integral)] = p.initial_integral_v;
     if (layout_.reference >= 0)  // the filtered rate begins at zero
@@ -754,10 +756,13 @@ class System {
           dx[payload + 1] = dx[payload + 1] - input_value(by, *base_acceleration_, t, false);
       }
     }
-    if (layout_.bristles >= 0)
-      dx[static_cast<std::size_t>(layout_.bristles)] = bristle_rate_of<Plant>(x, p, layout_.terms);
-    if (layout_.film >= 0)
-      dx[static_cast<std::size_t>(layout_.film)] = film_rate_of<Plant>(x, p, layout_.terms);
+    if constexpr (requires { Plant::piston_velocity(x, p); }) {
+      if (layout_.bristles >= 0)
+        dx[static_cast<std::size_t>(layout_.bristles)] =
+            bristle_rate_of<Plant>(x, p, layout_.terms);
+      if (layout_.film >= 0)
+        dx[static_cast<std::size_t>(layout_.film)] = film_rate_of<Plant>(x, p, layout_.terms);
+    }
     if constexpr (requires { Plant::kHoses; }) {
       if (layout_.hoses >= 0) {
         const auto rates = Plant::hose_rates(x, plant_dx, p, layout_.terms);
@@ -765,10 +770,12 @@ class System {
         dx[static_cast<std::size_t>(layout_.hoses) + 1] = rates[1];
       }
     }
-    if (layout_.supply >= 0) {
-      dx[static_cast<std::size_t>(layout_.supply)] =
-          Plant::supply_rate(source_pressure(by, t), Plant::supply_flow(x, in, p, layout_.terms), x,
-                             in, p, layout_.terms);
+    if constexpr (requires { Plant::supply_flow(x, in, p, layout_.terms); }) {
+      if (layout_.supply >= 0) {
+        dx[static_cast<std::size_t>(layout_.supply)] =
+            Plant::supply_rate(source_pressure(by, t), Plant::supply_flow(x, in, p, layout_.terms),
+                               x, in, p, layout_.terms);
+      }
     }
     if constexpr (requires { p.pump_delay_s; }) {
       if (layout_.pump >= 0)
